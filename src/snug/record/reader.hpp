@@ -1,0 +1,45 @@
+// RecordingReader: opens a recording and fetches frames by number or time.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "snug/record/recording.hpp"
+
+namespace snug::record {
+
+/// Random access to a recording without loading all of it: times, header and events are in memory, frames are read
+/// in blocks of about a second as they are asked for.
+///
+/// A file that is missing, truncated, not a recording, or newer than this program throws InputError that says so.
+class RecordingReader {
+ public:
+  explicit RecordingReader(const std::filesystem::path& path);
+  ~RecordingReader();
+  RecordingReader(RecordingReader&&) noexcept;
+  RecordingReader& operator=(RecordingReader&&) noexcept;
+
+  [[nodiscard]] const RecordingHeader& header() const;
+  [[nodiscard]] const std::vector<Event>& events() const;
+  /// Time of every frame, s, strictly increasing.
+  [[nodiscard]] const std::vector<double>& times() const;
+  [[nodiscard]] std::size_t frame_count() const { return times().size(); }
+  /// False for the file of a run that was killed.
+  [[nodiscard]] bool is_complete() const;
+
+  /// Index of the last frame at or before `time`; the first frame for earlier times. Needs at least one frame.
+  [[nodiscard]] std::size_t find_frame(double time) const;
+  /// Reads frame `index` (< frame_count()) into `frame`, reusing its memory.
+  void read_frame(std::size_t index, Frame& frame);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads everything.
+[[nodiscard]] Recording load_recording(const std::filesystem::path& path);
+
+}  // namespace snug::record
