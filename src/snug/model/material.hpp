@@ -1,0 +1,48 @@
+// Material, ContactParams: what surfaces are made of and what happens when two of them touch.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "snug/model/field.hpp"
+
+namespace snug::model {
+
+/// Index into Scenario::materials.
+struct MaterialId {
+  int index = 0;
+  bool operator==(const MaterialId&) const = default;
+};
+
+struct Material {
+  std::string name;
+  std::optional<double> density;  ///< kg/m^3; needed only where a layer names the material
+  bool operator==(const Material&) const = default;
+};
+
+/// Law of one contact: exact Coulomb cone, Newton restitution, and compliance where the pair is soft.
+struct ContactParams {
+  double friction = 0.3;            ///< Coulomb coefficient mu, >= 0
+  double restitution = 0.0;         ///< Newton coefficient e_N, 0 .. 1
+  std::optional<double> stiffness;  ///< N/m of one contact patch (all its points together); absent: rigid
+  std::optional<double> damping;    ///< Ns/m of one contact patch; absent: 0. Only with a stiffness
+
+  template <class Archive>
+  void fields(Archive& a) {
+    a("friction", friction, Range::NotNegative);
+    a("restitution", restitution, Range::Fraction);
+    a("stiffness", stiffness, Range::Positive);
+    a("damping", damping, Range::NotNegative);
+  }
+  bool operator==(const ContactParams&) const = default;
+};
+
+/// One entry of the pair table; the order of a and b has no meaning.
+struct ContactPair {
+  MaterialId a;
+  MaterialId b;
+  ContactParams params;
+  bool operator==(const ContactPair&) const = default;
+};
+
+}  // namespace snug::model
