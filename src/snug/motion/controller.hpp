@@ -1,0 +1,84 @@
+// Controller: runs a Program on the tool frame, one tick at a time: as the demonstrator did, or as it should have.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "snug/motion/limits.hpp"
+#include "snug/motion/lspb.hpp"
+#include "snug/motion/tool_path.hpp"
+#include "snug/motion/waypoint.hpp"
+
+namespace snug::motion {
+
+enum class ControllerKind {
+  /// The tool follows the LSPB reference as a critically damped second-order task without feed-forward; every row
+  /// starts from the measured pose; a row is reached when the error is within its precision.
+  Faithful,
+  /// The tool is on the reference; a row is reached exactly, at the first tick after the segment's duration.
+  Ideal,
+};
+
+struct ControllerSettings {
+  ControllerKind kind = ControllerKind::Faithful;
+  double tick = 0.008;                       ///< s
+  double task_stiffness = 10.0;              ///< 1/s^2 (Faithful)
+  double vacuum_wait = 0.5;                  ///< s, hold after the vacuum changed or the blow-off was switched on
+  double convergence_deg_per_metre = 500.0;  ///< degrees of orientation error that weigh as much as one metre
+  bool sampled_coast = true;                 ///< Faithful: LspbSegment::with_sampled_coast; lengthens a program by ~1 %
+  std::vector<NamedLimits> limits;
+  bool operator==(const ControllerSettings&) const = default;
+};
+
+/// A program with everything looked up and checked, so that a tick can neither fail nor allocate.
+struct PreparedProgram {
+  Program program;
+  ControllerSettings settings;
+  std::vector<MotionLimits> row_limits;  ///< one per waypoint
+};
+
+/// Throws InputError for an unknown waypoint name, an empty program, and settings or limits out of range.
+[[nodiscard]] PreparedProgram prepare(Program program, ControllerSettings settings);
+
+enum class ControllerPhase { Ready, Waiting, Moving, Finished };
+
+/// All that changes from tick to tick. Copying it is a snapshot.
+struct ControllerState {
+  ControllerPhase phase = ControllerPhase::Ready;
+  int row = -1;                       ///< the waypoint aimed at (or last reached, when finished); -1 before the first
+  std::int64_t tick_count = 0;        ///< ticks since the start; time is tick_count * tick
+  std::int64_t phase_ticks = 0;       ///< ticks since the present phase began
+  IO io;                              ///< commanded now
+  LspbSegment segment;                ///< toward `row`
+  Pose X_WE_reference;                ///< what the task follows
+  ToolState command;                  ///< at the end of the last tick
+  bool operator==(const ControllerState&) const = default;
+};
+
+struct ControllerOutput {
+  ToolState tool;     ///< commanded, at the end of the coming tick
+  Pose X_WE_reference;  ///< what the task followed (recordings)
+  IO io;              ///< from the start of the coming tick
+  ControllerPhase phase = ControllerPhase::Ready;
+  int row = -1;       ///< aimed at
+  int reached = -1;   ///< row found reached at the start of this tick, -1 if none
+  int departed = -1;  ///< row whose IO took effect at the start of this tick, -1 if none; equals `row` then
+  bool finished_now = false;  ///< the last row was reached at the start of this tick
+};
+
+/// The state before the first tick, tool at rest.
+[[nodiscard]] ControllerState make_controller_state(const Pose& X_WE_start) noexcept;
+
+/// One tick. `measured`: the tool at its start; a tool that follows exactly is measured where the last tick put it.
+/// After the last row the tool stays (Ideal) or settles (Faithful) on it.
+[[nodiscard]] ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured,
+                                    ControllerState& state) noexcept;
+
+/// |position error| + angle / (convergence_deg_per_metre), m: what is compared with a row's precision.
+[[nodiscard]] double convergence_error(const Pose& X_WE, const Pose& X_WE_target,
+                                       double convergence_deg_per_metre) noexcept;
+
+/// Duration of a program without any physics, the tool following exactly, s. Stops at `longest` seconds.
+[[nodiscard]] double compute_duration(const PreparedProgram& plan, const Pose& X_WE_start, double longest = 3600.0);
+
+}  // namespace snug::motion
