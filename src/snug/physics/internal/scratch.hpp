@@ -1,0 +1,139 @@
+// Scratch: what a step works with and forgets.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "snug/core/bounded_vector.hpp"
+#include "snug/physics/world.hpp"
+
+namespace snug::physics::internal {
+
+/// Pose and velocity of a body during the step, world frame.
+struct BodyWork {
+  Matrix3 R_WB = Matrix3::Identity();
+  Vector3 p_WB = Vector3::Zero();           ///< origin of B
+  Vector3 p_WBcm = Vector3::Zero();         ///< the point its velocity belongs to
+  Vector3 velocity_start = Vector3::Zero(); ///< of that point; kinematic bodies: the mean over the step
+  Vector3 angular_start = Vector3::Zero();
+  Vector3 velocity = Vector3::Zero();       ///< at the end of the step; before the solver: without contacts
+  Vector3 angular = Vector3::Zero();
+  double speed = 0.0;                       ///< bound on the speed of any of its points, m/s
+  int active = -1;                          ///< index among the bodies that move in this step
+  bool is_moving = false;                   ///< dynamic and awake, or kinematic with a motion
+  bool has_element = false;
+};
+
+/// Maps impulses to velocities of one moving body: v = T u with T T^T = inverse mass, so that every row of the
+/// contact problem is J T and the mass disappears from the sweeps.
+struct Whitening {
+  bool is_dense = false;
+  double linear = 0.0;                      ///< 1/sqrt(mass)
+  Matrix3 angular = Matrix3::Zero();        ///< R_WI diag(1/sqrt(I))
+  Matrix6 dense = Matrix6::Zero();          ///< T of a body with an implicit force element
+};
+
+/// A touching point that may matter in this step.
+struct Contact {
+  std::uint32_t pair = 0;
+  int point = 0;
+  int body_a = 0, body_b = 0;
+  Vector3 p_WQ = Vector3::Zero();
+  Vector3 n = Vector3::UnitZ();             ///< from A to B, W
+  Vector3 t1 = Vector3::UnitX(), t2 = Vector3::UnitY();
+  double phi = 0.0;
+  double approach = 0.0;                    ///< normal relative velocity at the start of the step, m/s
+  double patch_share = 1.0;                 ///< 1 / points of the manifold
+  const ContactLaw* law = nullptr;
+  int island = 0;
+};
+
+/// One frictional contact in whitened coordinates: rows n, t1, t2.
+struct alignas(16) Row {
+  double a[3][6];                           ///< of body A (zero when A does not move)
+  double b[3][6];
+  double W[6];                              ///< Delassus block: nn, n1, n2, 11, 12, 22 (with regularisation in nn)
+  double W_inverse[6];
+  double lambda[3];                         ///< impulses, N s
+  double bias[3];                           ///< relative velocity from kinematic bodies, m/s
+  double target;                            ///< least allowed normal velocity (regularised when compliant), m/s
+  double gamma;                             ///< compliance in nn, (m/s)/(N s)
+  double mu;
+  double step_t;                            ///< 1 / largest eigenvalue of the tangential block
+  double gap_end;                           ///< wanted gap after the step, m
+  double position_lambda;
+  std::int32_t ia, ib;                      ///< active body or -1
+  std::int32_t contact;
+  bool is_rigid;
+  bool is_bounce;
+};
+
+struct Island {
+  int first_row = 0;
+  int end_row = 0;
+  int first_element = 0;
+  int end_element = 0;
+};
+
+struct Scratch {
+  explicit Scratch(const WorldModel& model);
+
+  std::vector<BodyWork> bodies;
+  std::vector<int> active;                  ///< bodies that move in this step; [0, active_count)
+  int active_count = 0;
+  std::vector<Whitening> whitening;         ///< by active index
+  std::vector<double> u;                    ///< 6 per active body
+  std::vector<double> shift;                ///< 6 per active body, position correction in whitened coordinates
+  std::vector<int> parent;                  ///< union-find over active bodies
+  std::vector<int> island_of_root;
+  BoundedVector<Contact> contacts;
+  BoundedVector<Contact> sorted;            ///< contacts by island
+  BoundedVector<Row> rows;
+  BoundedVector<ContactReport> reports;
+  std::vector<Island> islands;
+  int island_count = 0;
+  std::vector<int> element_order;           ///< elements by island
+  int element_count = 0;
+
+  BoundedVector<PairState> merged_pairs;    ///< broad phase
+  std::vector<std::uint64_t> keys;
+  std::vector<int> moved;
+  std::vector<char> is_moved;
+  std::vector<int> sweep_order;
+  std::vector<char> pair_done;
+};
+
+// The stages of a step, in order.
+
+/// Poses, velocities and the list of moving bodies. False when nothing moves.
+bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work);
+/// Keeps state.pairs equal to the geoms whose fat boxes overlap. False: too many pairs.
+bool update_pairs(const WorldModel& model, WorldState& state, Scratch& work);
+/// Manifolds of all pairs that matter, wakes what is touched, fills work.contacts.
+void detect_contacts(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
+                     StepReport& report);
+/// Marks a sleeping group as moving, from within a step.
+void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int group);
+/// Velocities at the end of the step without contacts (bodies with force elements: done in solve_islands).
+void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work);
+void build_islands(const WorldInput& input, Scratch& work);
+void solve_islands(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work,
+                   StepReport& report);
+/// Positions, penetration, impulses kept for the next step, sleep.
+void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report);
+
+// The contact problem of one island (contact_solver.cpp).
+
+struct SolveResult {
+  int sweeps = 0;
+  double residual = 0.0;
+  bool has_converged = true;
+};
+[[nodiscard]] SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, double* u) noexcept;
+/// Displacements that close the position errors of rigid contacts with the least kinetic measure.
+void correct_positions(const StepSettings& settings, Row* first, Row* end, const Contact* contacts, const double* u,
+                       double* shift) noexcept;
+void finish_row(Row& row) noexcept;
+[[nodiscard]] double relative_velocity(const Row& row, int axis, const double* u) noexcept;
+
+}  // namespace snug::physics::internal

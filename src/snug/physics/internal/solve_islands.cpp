@@ -1,0 +1,398 @@
+// Solves the islands of a step: contact rows, implicit force elements by Newton's method, the contact solver inside.
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "snug/physics/internal/scratch.hpp"
+
+namespace snug::physics::internal {
+namespace {
+
+constexpr int kElementIterations = 12;
+
+Whitening plain_whitening(const WorldModel::MassProperties& mass, const Matrix3& R_WB) {
+  Whitening whitening;
+  whitening.linear = std::sqrt(mass.inverse_mass);
+  whitening.angular = (R_WB * mass.R_BI) * mass.inverse_inertia.cwiseSqrt().asDiagonal();
+  return whitening;
+}
+
+/// u = T^-1 v.
+Vector6 whiten(const Whitening& whitening, const Vector3& linear, const Vector3& angular) {
+  Vector6 v;
+  v << linear, angular;
+  if (whitening.is_dense) return whitening.dense.triangularView<Eigen::Upper>().solve(v);
+  Vector6 u;
+  u.head<3>() = linear / whitening.linear;
+  // The columns of the angular part are orthogonal: its inverse is its transpose over the squared lengths.
+  u.tail<3>() =
+      (whitening.angular.transpose() * angular).cwiseQuotient(whitening.angular.colwise().squaredNorm().transpose());
+  return u;
+}
+
+void unwhiten(const Whitening& whitening, const double* u, Vector3& linear, Vector3& angular) {
+  const Eigen::Map<const Vector6> map(u);
+  if (whitening.is_dense) {
+    const Vector6 v = whitening.dense.triangularView<Eigen::Upper>() * map;
+    linear = v.head<3>();
+    angular = v.tail<3>();
+    return;
+  }
+  linear = whitening.linear * map.head<3>();
+  angular = whitening.angular * map.tail<3>();
+}
+
+void fill_side(const Whitening& whitening, const Contact& contact, const Vector3& arm, double sign,
+               double (&out)[3][6]) {
+  const Vector3* axes[3] = {&contact.n, &contact.t1, &contact.t2};
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 d = sign * *axes[i];
+    const Vector3 moment = arm.cross(d);
+    Eigen::Map<Vector6> row(out[i]);
+    if (whitening.is_dense) {
+      Vector6 j;
+      j << d, moment;
+      row = whitening.dense.triangularView<Eigen::Upper>().transpose() * j;
+    } else {
+      row.head<3>() = whitening.linear * d;
+      row.tail<3>() = whitening.angular.transpose() * moment;
+    }
+  }
+}
+
+void add_bias(const BodyWork& body, const Contact& contact, double sign, Row& row) {
+  if (!body.is_moving) return;
+  const Vector3 v = sign * (body.velocity_start + body.angular_start.cross(contact.p_WQ - body.p_WBcm));
+  row.bias[0] += contact.n.dot(v);
+  row.bias[1] += contact.t1.dot(v);
+  row.bias[2] += contact.t2.dot(v);
+}
+
+/// The law of one contact in this step: docs/theory/contact.md, section 3.
+void fill_law(const StepSettings& settings, const Contact& contact, double free_velocity, Row& row) {
+  const double dt = settings.dt;
+  const double mean = 0.5 * (contact.approach + free_velocity);
+  const ContactLaw& law = *contact.law;
+  row.mu = law.friction;
+  row.gamma = 0.0;
+  row.gap_end = 0.0;
+  row.is_bounce = false;
+  row.is_rigid = law.stiffness <= 0.0;
+  if (!row.is_rigid) {
+    const double k = law.stiffness * contact.patch_share, d = law.damping * contact.patch_share;
+    const double s = 0.5 * k * dt + d;
+    row.gamma = 1.0 / (dt * s);
+    row.target = -k * (contact.phi + 0.5 * dt * contact.approach) / s;
+    return;
+  }
+  if (contact.phi + dt * mean > 0.0) {  // does not close by itself: may be pushed as far as closing
+    row.target = -2.0 * contact.phi / dt - contact.approach;
+    return;
+  }
+  // Closes at the fraction theta of the step, with this speed.
+  const double theta = contact.phi > 0.0 ? std::clamp(-contact.phi / (dt * mean), 0.0, 1.0) : 0.0;
+  const double impact = contact.approach + theta * (free_velocity - contact.approach);
+  row.target = 0.0;
+  if (law.restitution > 0.0 && impact < -settings.restitution_threshold) {
+    const double rest = (1.0 - theta) * (free_velocity - contact.approach);  // acceleration after the impact
+    row.target = std::max(0.0, -law.restitution * impact + rest);
+    row.gap_end = std::max(0.0, (1.0 - theta) * dt * (-law.restitution * impact + 0.5 * rest));
+    row.is_bounce = true;
+  }
+}
+
+void build_row(const WorldModel& model, const WorldState& state, Scratch& work, int index, bool is_first) {
+  const Contact& contact = work.sorted[static_cast<std::size_t>(index)];
+  Row& row = work.rows[static_cast<std::size_t>(index)];
+  const BodyWork& a = work.bodies[static_cast<std::size_t>(contact.body_a)];
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(contact.body_b)];
+  double kept[3] = {row.lambda[0], row.lambda[1], row.lambda[2]};
+  row = Row{};
+  row.ia = a.active;
+  row.ib = b.active;
+  row.contact = index;
+  if (a.active >= 0) {
+    fill_side(work.whitening[static_cast<std::size_t>(a.active)], contact, contact.p_WQ - a.p_WBcm, -1.0, row.a);
+  } else {
+    add_bias(a, contact, -1.0, row);
+  }
+  if (b.active >= 0) {
+    fill_side(work.whitening[static_cast<std::size_t>(b.active)], contact, contact.p_WQ - b.p_WBcm, 1.0, row.b);
+  } else {
+    add_bias(b, contact, 1.0, row);
+  }
+  fill_law(model.settings, contact, relative_velocity(row, 0, work.u.data()), row);
+  finish_row(row);
+  if (!is_first) {
+    std::copy(kept, kept + 3, row.lambda);
+    return;
+  }
+  const PairPoint& point = state.pairs[contact.pair].points[static_cast<std::size_t>(contact.point)];
+  const Vector3 impulse = a.R_WB * point.impulse_A;
+  row.lambda[0] = std::max(0.0, contact.n.dot(impulse));
+  row.lambda[1] = contact.t1.dot(impulse);
+  row.lambda[2] = contact.t2.dot(impulse);
+  const double limit = row.mu * row.lambda[0], size = std::hypot(row.lambda[1], row.lambda[2]);
+  if (size > limit) {
+    row.lambda[1] *= limit / size;
+    row.lambda[2] *= limit / size;
+  }
+}
+
+/// Mean pose of a kinematic carrier over the step, with the element's frame.
+ElementQuery carrier_query(const WorldInput& input, const Scratch& work, const ElementUse& use) {
+  const BodyWork& carrier = work.bodies[static_cast<std::size_t>(use.carrier.index)];
+  Pose X_WC{carrier.R_WB, carrier.p_WB};
+  for (const KinematicTarget& target : input.kinematic) {
+    if (target.body != use.carrier) continue;
+    X_WC.p = 0.5 * (carrier.p_WB + target.X_WB_end.p);
+    X_WC.R = carrier.R_WB * exp_rotation(0.5 * log_rotation(carrier.R_WB.transpose() * target.X_WB_end.R));
+    break;
+  }
+  ElementQuery query;
+  query.X_WE = X_WC * use.X_CE;
+  query.V_WE.angular = carrier.angular_start;
+  query.V_WE.linear = carrier.velocity_start + carrier.angular_start.cross(X_WC.R * use.X_CE.p);
+  return query;
+}
+
+struct BodyForces {
+  Vector6 wrench = Vector6::Zero();
+  Matrix6 stiffness = Matrix6::Zero();
+  Matrix6 damping = Matrix6::Zero();
+};
+
+/// Elements and gyroscopic torque of one body at the middle of the step, for a guess of the velocity at its end.
+BodyForces evaluate_elements(const WorldModel& model, const WorldInput& input, const Scratch& work,
+                             const Island& island, int body, const Matrix3& inertia_W) {
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(body)];
+  const double dt = model.settings.dt;
+  const Vector3 v_mid = 0.5 * (b.velocity_start + b.velocity);
+  const Vector3 w_mid = 0.5 * (b.angular_start + b.angular);
+  const Matrix3 R_WB = exp_rotation(0.5 * dt * w_mid) * b.R_WB;
+  const Vector3 p_WBcm = b.p_WBcm + 0.5 * dt * v_mid;
+  BodyForces forces;
+  for (int i = island.first_element; i < island.end_element; ++i) {
+    const ElementUse& use = input.elements[static_cast<std::size_t>(work.element_order[static_cast<std::size_t>(i)])];
+    if (use.body.index != body) continue;
+    ElementQuery query = carrier_query(input, work, use);
+    const Vector3 p_BoBcm_W = R_WB * model.bodies[static_cast<std::size_t>(body)].inertia.com;
+    query.X_WB = {R_WB, p_WBcm - p_BoBcm_W};
+    query.V_WB = {v_mid - w_mid.cross(p_BoBcm_W), w_mid};
+    query.p_WBcm = p_WBcm;
+    const ElementResponse response = use.element->evaluate(query);
+    forces.wrench += response.wrench;
+    forces.stiffness += response.stiffness;
+    forces.damping += response.damping;
+  }
+  forces.wrench.tail<3>() -= w_mid.cross(inertia_W * w_mid);
+  return forces;
+}
+
+Matrix3 inertia_in_world(const WorldModel::MassProperties& mass, const Matrix3& R_WB) {
+  const Matrix3 R_WI = R_WB * mass.R_BI;
+  return R_WI * mass.inverse_inertia.cwiseInverse().asDiagonal() * R_WI.transpose();
+}
+
+/// One Newton step for a body with elements: sets its whitening and its velocity without contacts (into work.u).
+/// Returns by how much the wrench at the present guess differs from the one the last solve assumed, as a velocity.
+double linearize_body(const WorldModel& model, const WorldInput& input, Scratch& work, const Island& island, int body,
+                      BodyForces& assumed, Vector6& at_velocity, bool is_first) {
+  BodyWork& b = work.bodies[static_cast<std::size_t>(body)];
+  const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(body)];
+  const double dt = model.settings.dt;
+  const Matrix3 inertia_W = inertia_in_world(mass, b.R_WB);
+  const BodyForces now = evaluate_elements(model, input, work, island, body, inertia_W);
+  Vector6 velocity;
+  velocity << b.velocity, b.angular;
+  const Matrix6 C = 0.25 * dt * now.stiffness + 0.5 * now.damping;
+  Matrix6 M = Matrix6::Zero();
+  M.diagonal().head<3>().setConstant(1.0 / mass.inverse_mass);
+  M.bottomRightCorner<3, 3>() = inertia_W;
+  double error = 0.0;
+  if (!is_first) {
+    const Matrix6 C_old = 0.25 * dt * assumed.stiffness + 0.5 * assumed.damping;
+    const Vector6 predicted = assumed.wrench - C_old * (velocity - at_velocity);
+    const Vector6 difference = dt * (now.wrench - predicted);
+    error = std::max(difference.head<3>().norm() * mass.inverse_mass,
+                     difference.tail<3>().norm() * mass.inverse_inertia.maxCoeff() * mass.radius);
+  }
+  assumed = now;
+  at_velocity = velocity;
+  // Effective mass; its symmetric part is what the contact solver needs, the exact wrench comes by iteration.
+  Matrix6 effective = M + 0.5 * dt * (C + C.transpose());
+  Eigen::LLT<Matrix6> cholesky(effective);
+  if (cholesky.info() != Eigen::Success) {  // softening beyond the range of the law: fall back to the plain mass
+    cholesky.compute(M);
+    effective = M;
+  }
+  Vector6 start;
+  start << b.velocity_start, b.angular_start;
+  Vector6 external;
+  external << model.gravity / mass.inverse_mass, Vector3::Zero();
+  for (const ExternalWrench& wrench : input.wrenches) {
+    if (wrench.body.index == body) external += as_vector(wrench.wrench_W);
+  }
+  const Vector6 momentum = M * start + dt * (external + now.wrench) + (effective - M) * velocity;
+  const Vector6 free = cholesky.solve(momentum);
+  Whitening& whitening = work.whitening[static_cast<std::size_t>(b.active)];
+  whitening.is_dense = true;
+  const Matrix6 upper = cholesky.matrixU();
+  whitening.dense = upper.triangularView<Eigen::Upper>().solve(Matrix6::Identity());
+  Eigen::Map<Vector6>(work.u.data() + 6 * b.active) = whiten(whitening, free.head<3>(), free.tail<3>());
+  return error;
+}
+
+/// The bodies with elements of an island, each once, at most this many.
+constexpr int kMaxElementBodies = 8;
+
+struct ElementBodies {
+  int count = 0;
+  std::array<int, kMaxElementBodies> body;
+  std::array<BodyForces, kMaxElementBodies> forces;
+  std::array<Vector6, kMaxElementBodies> velocity;
+};
+
+void find_element_bodies(const WorldInput& input, const Scratch& work, const Island& island, ElementBodies& found) {
+  found.count = 0;
+  for (int i = island.first_element; i < island.end_element; ++i) {
+    const int body =
+        input.elements[static_cast<std::size_t>(work.element_order[static_cast<std::size_t>(i)])].body.index;
+    if (std::find(found.body.begin(), found.body.begin() + found.count, body) != found.body.begin() + found.count) {
+      continue;
+    }
+    SNUG_CHECK(found.count < kMaxElementBodies, "more bodies with force elements in one island than expected");
+    found.body[static_cast<std::size_t>(found.count++)] = body;
+  }
+}
+
+void read_velocities(Scratch& work, const Row* first, const Row* end) {
+  for (const Row* row = first; row != end; ++row) {
+    for (const int active : {row->ia, row->ib}) {
+      if (active < 0) continue;
+      BodyWork& body = work.bodies[static_cast<std::size_t>(work.active[static_cast<std::size_t>(active)])];
+      unwhiten(work.whitening[static_cast<std::size_t>(active)], work.u.data() + 6 * active, body.velocity,
+               body.angular);
+    }
+  }
+}
+
+void solve_plain_island(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island,
+                        StepReport& report) {
+  for (int i = island.first_row; i < island.end_row; ++i) build_row(model, state, work, i, true);
+  const SolveResult result = solve_rows(model.settings, work.rows.begin() + island.first_row,
+                                        work.rows.begin() + island.end_row, work.u.data());
+  report.sweeps = std::max(report.sweeps, result.sweeps);
+  report.residual = std::max(report.residual, result.residual);
+  if (!result.has_converged) report.status = StepStatus::NotConverged;
+}
+
+/// Copies the free velocities of the island's plain bodies into work.u (the solver changes them in place).
+void reset_plain_bodies(Scratch& work, const Island& island) {
+  for (int i = island.first_row; i < island.end_row; ++i) {
+    const Contact& contact = work.sorted[static_cast<std::size_t>(i)];
+    for (const int index : {contact.body_a, contact.body_b}) {
+      BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
+      if (body.active < 0 || body.has_element) continue;
+      Eigen::Map<Vector6>(work.u.data() + 6 * body.active) =
+          whiten(work.whitening[static_cast<std::size_t>(body.active)], body.velocity, body.angular);
+    }
+  }
+}
+
+void solve_element_island(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work,
+                          const Island& island, StepReport& report) {
+  ElementBodies bodies;
+  find_element_bodies(input, work, island, bodies);
+  Row* first = work.rows.begin() + island.first_row;
+  Row* end = work.rows.begin() + island.end_row;
+  double error = 0.0;
+  for (int iteration = 0; iteration < kElementIterations; ++iteration) {
+    error = 0.0;
+    for (int i = 0; i < bodies.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      error = std::max(error, linearize_body(model, input, work, island, bodies.body[k], bodies.forces[k],
+                                             bodies.velocity[k], iteration == 0));
+    }
+    if (iteration > 0 && error <= model.settings.tolerance) break;
+    reset_plain_bodies(work, island);
+    for (int i = island.first_row; i < island.end_row; ++i) build_row(model, state, work, i, iteration == 0);
+    SolveResult result;
+    if (first != end) result = solve_rows(model.settings, first, end, work.u.data());
+    report.sweeps = std::max(report.sweeps, result.sweeps);
+    report.residual = std::max(report.residual, result.residual);
+    if (!result.has_converged) report.status = StepStatus::NotConverged;
+    for (int i = 0; i < bodies.count; ++i) {
+      BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.body[static_cast<std::size_t>(i)])];
+      unwhiten(work.whitening[static_cast<std::size_t>(b.active)], work.u.data() + 6 * b.active, b.velocity,
+               b.angular);
+    }
+  }
+  report.element_residual = std::max(report.element_residual, error);
+}
+
+}  // namespace
+
+void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work) {
+  const double dt = model.settings.dt;
+  for (int i = 0; i < work.active_count; ++i) {
+    const int index = work.active[static_cast<std::size_t>(i)];
+    BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
+    const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(index)];
+    body.velocity = body.velocity_start + dt * model.gravity;
+    body.angular = body.angular_start;
+    work.whitening[static_cast<std::size_t>(i)] = plain_whitening(mass, body.R_WB);
+    if (body.has_element) {  // first guess of Newton's method
+      body.velocity = body.velocity_start;
+      continue;
+    }
+    if (dt * body.angular_start.squaredNorm() > 1e-9) {
+      // Euler's equations in principal axes by the implicit midpoint rule; keeps energy and angular momentum.
+      const Matrix3 R_WI = body.R_WB * mass.R_BI;
+      const Vector3 inertia = mass.inverse_inertia.cwiseInverse();
+      const Vector3 w0 = R_WI.transpose() * body.angular_start;
+      Vector3 w1 = w0;
+      for (int k = 0; k < 20; ++k) {
+        const Vector3 mid = 0.5 * (w0 + w1);
+        const Vector3 next = w0 - dt * mass.inverse_inertia.cwiseProduct(mid.cross(inertia.cwiseProduct(mid)));
+        const double change = (next - w1).norm();
+        w1 = next;
+        if (change <= 1e-14 * (1.0 + w0.norm())) break;
+      }
+      body.angular = R_WI * (exp_rotation(0.5 * dt * (w0 + w1)) * w1);
+    }
+  }
+  for (const ExternalWrench& wrench : input.wrenches) {
+    BodyWork& body = work.bodies[static_cast<std::size_t>(wrench.body.index)];
+    if (body.active < 0 || body.has_element) continue;
+    const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(wrench.body.index)];
+    const Matrix3& T = work.whitening[static_cast<std::size_t>(body.active)].angular;
+    body.velocity += dt * mass.inverse_mass * wrench.wrench_W.force;
+    body.angular += dt * (T * (T.transpose() * wrench.wrench_W.torque));
+  }
+}
+
+void solve_islands(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work,
+                   StepReport& report) {
+  for (int i = 0; i < work.active_count; ++i) {
+    const BodyWork& body = work.bodies[static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)])];
+    Eigen::Map<Vector6>(work.u.data() + 6 * i) =
+        whiten(work.whitening[static_cast<std::size_t>(i)], body.velocity, body.angular);
+  }
+  work.rows.resize(work.sorted.size());
+  std::fill_n(work.shift.begin(), 6 * work.active_count, 0.0);
+  for (int i = 0; i < work.island_count; ++i) {
+    const Island& island = work.islands[static_cast<std::size_t>(i)];
+    if (island.end_element > island.first_element) {
+      solve_element_island(model, input, state, work, island, report);
+    } else {
+      solve_plain_island(model, state, work, island, report);
+    }
+    Row* first = work.rows.begin() + island.first_row;
+    Row* end = work.rows.begin() + island.end_row;
+    correct_positions(model.settings, first, end, work.sorted.begin(), work.u.data(), work.shift.data());
+    read_velocities(work, first, end);
+  }
+}
+
+}  // namespace snug::physics::internal

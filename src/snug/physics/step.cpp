@@ -1,0 +1,199 @@
+// step: one instant to the next. Reads like the sequence in docs/theory/contact.md, section 1.
+#include <algorithm>
+#include <cmath>
+
+#include "snug/physics/internal/scratch.hpp"
+#include "snug/physics/world.hpp"
+
+namespace snug::physics {
+namespace internal {
+namespace {
+
+void start_dynamic(const BodyModel& body, const WorldModel::MassProperties& mass, const BodyState& state,
+                   BodyWork& work) {
+  work.R_WB = state.quat_WB.toRotationMatrix();
+  work.p_WBcm = state.p_WBcm;
+  work.p_WB = state.p_WBcm - work.R_WB * body.inertia.com;
+  work.velocity_start = work.velocity = state.velocity;
+  work.angular_start = work.angular = state.angular_velocity;
+  work.speed = state.velocity.norm() + state.angular_velocity.norm() * mass.radius;
+}
+
+void start_kinematic(const BodyState& state, const KinematicTarget& target, double dt, double radius, BodyWork& work) {
+  const Matrix3 R_end_start = target.X_WB_end.R * work.R_WB.transpose();
+  work.velocity_start = (target.X_WB_end.p - state.p_WBcm) / dt;
+  work.angular_start = log_rotation(R_end_start) / dt;
+  work.velocity = work.velocity_start;
+  work.angular = work.angular_start;
+  work.speed = work.velocity_start.norm() + work.angular_start.norm() * radius;
+  work.is_moving = work.speed > 0.0;
+}
+
+bool has_finite(const BodyState& body) {
+  return body.p_WBcm.allFinite() && body.quat_WB.coeffs().allFinite() && body.velocity.allFinite() &&
+         body.angular_velocity.allFinite();
+}
+
+void keep_impulses(WorldState& state, Scratch& work, double dt) {
+  work.reports.resize(work.sorted.size());
+  for (std::size_t i = 0; i < work.sorted.size(); ++i) {
+    const Contact& contact = work.sorted[i];
+    const Row& row = work.rows[i];
+    const Vector3 impulse = row.lambda[0] * contact.n + row.lambda[1] * contact.t1 + row.lambda[2] * contact.t2;
+    const BodyWork& a = work.bodies[static_cast<std::size_t>(contact.body_a)];
+    state.pairs[contact.pair].points[static_cast<std::size_t>(contact.point)].impulse_A = a.R_WB.transpose() * impulse;
+    work.reports[i] = {BodyId{contact.body_a}, BodyId{contact.body_b}, contact.p_WQ, contact.n, impulse / dt,
+                       contact.phi};
+  }
+}
+
+void move_body(const WorldModel& model, int index, Scratch& work, BodyState& state) {
+  const BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
+  const double dt = model.settings.dt;
+  const Whitening& whitening = work.whitening[static_cast<std::size_t>(body.active)];
+  const Eigen::Map<const Vector6> shift(work.shift.data() + 6 * body.active);
+  Vector3 slide = Vector3::Zero(), turn = Vector3::Zero();
+  if (!shift.isZero(0.0)) {
+    if (whitening.is_dense) {
+      const Vector6 v = whitening.dense.triangularView<Eigen::Upper>() * shift;
+      slide = v.head<3>();
+      turn = v.tail<3>();
+    } else {
+      slide = whitening.linear * shift.head<3>();
+      turn = whitening.angular * shift.tail<3>();
+    }
+  }
+  state.p_WBcm += 0.5 * dt * (body.velocity_start + body.velocity) + slide;
+  const Vector3 rotation = 0.5 * dt * (body.angular_start + body.angular) + turn;
+  if (!rotation.isZero(0.0)) state.quat_WB = (exp_quaternion(rotation) * state.quat_WB).normalized();
+  state.velocity = body.velocity;
+  state.angular_velocity = body.angular;
+}
+
+/// Wake and sleep rules: docs/theory/contact.md, section 6.
+void put_to_sleep(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work) {
+  const SleepSettings& sleep = model.settings.sleep;
+  for (int i = 0; i < work.active_count; ++i) {
+    const auto index = static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)]);
+    BodyState& body = state.bodies[index];
+    const bool is_slow = body.velocity.norm() < sleep.linear_speed &&
+                         body.angular_velocity.norm() < sleep.angular_speed && !work.bodies[index].has_element;
+    body.slow_time = is_slow ? body.slow_time + model.settings.dt : 0.0;
+  }
+  for (const ExternalWrench& wrench : input.wrenches) {
+    state.bodies[static_cast<std::size_t>(wrench.body.index)].slow_time = 0.0;
+  }
+  for (const Contact& contact : work.sorted) {  // what a moving kinematic body touches stays awake
+    const BodyWork& a = work.bodies[static_cast<std::size_t>(contact.body_a)];
+    const BodyWork& b = work.bodies[static_cast<std::size_t>(contact.body_b)];
+    if (a.active < 0 && a.is_moving) state.bodies[static_cast<std::size_t>(contact.body_b)].slow_time = 0.0;
+    if (b.active < 0 && b.is_moving) state.bodies[static_cast<std::size_t>(contact.body_a)].slow_time = 0.0;
+  }
+  // Islands are complete sets in the union-find forest; a body without contacts falls and never sleeps.
+  std::fill_n(work.island_of_root.begin(), work.active_count, -1);  // now: 1 may sleep, 0 must not
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int i = 0; i < work.active_count; ++i) {
+      int root = i;
+      while (work.parent[static_cast<std::size_t>(root)] != root) root = work.parent[static_cast<std::size_t>(root)];
+      const auto index = static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)]);
+      BodyState& body = state.bodies[index];
+      int& may_sleep = work.island_of_root[static_cast<std::size_t>(root)];
+      if (pass == 0) {
+        may_sleep = (may_sleep != 0 && body.slow_time >= sleep.time) ? 1 : 0;
+      } else if (may_sleep == 1) {
+        body.sleep_group = work.active[static_cast<std::size_t>(root)];
+        body.velocity.setZero();
+        body.angular_velocity.setZero();
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work) {
+  bool is_anything_moving = false;
+  for (const ElementUse& use : input.elements) wake(state, use.body);
+  for (const ExternalWrench& wrench : input.wrenches) wake(state, wrench.body);
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    is_anything_moving |= model.bodies[i].kind == BodyKind::Dynamic && state.bodies[i].is_present &&
+                          state.bodies[i].sleep_group < 0;
+  }
+  for (const KinematicTarget& target : input.kinematic) {
+    const BodyState& body = state.bodies[static_cast<std::size_t>(target.body.index)];
+    const Matrix3 R_WB = body.quat_WB.toRotationMatrix();
+    is_anything_moving |= target.X_WB_end.p != body.p_WBcm || target.X_WB_end.R != R_WB;
+  }
+  if (!is_anything_moving) return false;
+  work.active_count = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodyState& body = state.bodies[i];
+    BodyWork& body_work = work.bodies[i];
+    body_work = BodyWork{};
+    start_dynamic(model.bodies[i], model.masses[i], body, body_work);
+    if (model.bodies[i].kind != BodyKind::Dynamic || !body.is_present || body.sleep_group >= 0) continue;
+    body_work.is_moving = true;
+    body_work.active = work.active_count;
+    work.active[static_cast<std::size_t>(work.active_count++)] = static_cast<int>(i);
+  }
+  for (const KinematicTarget& target : input.kinematic) {
+    const auto i = static_cast<std::size_t>(target.body.index);
+    if (!state.bodies[i].is_present) continue;
+    start_kinematic(state.bodies[i], target, model.settings.dt, model.masses[i].radius, work.bodies[i]);
+  }
+  for (const ElementUse& use : input.elements) {
+    if (state.bodies[static_cast<std::size_t>(use.body.index)].is_present) {
+      work.bodies[static_cast<std::size_t>(use.body.index)].has_element = true;
+    }
+  }
+  return true;
+}
+
+void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
+              StepReport& report) {
+  keep_impulses(state, work, model.settings.dt);
+  for (int i = 0; i < work.active_count; ++i) {
+    const int index = work.active[static_cast<std::size_t>(i)];
+    BodyState& body = state.bodies[static_cast<std::size_t>(index)];
+    move_body(model, index, work, body);
+    if (!has_finite(body)) {
+      report.status = StepStatus::NotFinite;
+      report.culprit = BodyId{index};
+    } else if (body.p_WBcm.cwiseAbs().maxCoeff() > 1000.0 && report.status != StepStatus::NotFinite) {
+      report.status = StepStatus::LostBody;
+      report.culprit = BodyId{index};
+    }
+  }
+  for (const KinematicTarget& target : input.kinematic) {
+    const auto i = static_cast<std::size_t>(target.body.index);
+    BodyState& body = state.bodies[i];
+    body.velocity = work.bodies[i].velocity_start;
+    body.angular_velocity = work.bodies[i].angular_start;
+    body.p_WBcm = target.X_WB_end.p;
+    if (body.quat_WB.toRotationMatrix() != target.X_WB_end.R) body.quat_WB = Quaternion(target.X_WB_end.R).normalized();
+  }
+  report.contacts = static_cast<int>(work.sorted.size());
+  report.awake = work.active_count;
+  if (model.settings.sleep.enabled) put_to_sleep(model, input, state, work);
+}
+
+}  // namespace internal
+
+StepReport step(const WorldModel& model, const WorldInput& input, WorldState& state, Workspace& workspace) noexcept {
+  internal::Scratch& work = workspace.scratch();
+  StepReport report;
+  ++state.step_index;
+  if (!internal::begin_step(model, input, state, work)) return report;
+  if (!internal::update_pairs(model, state, work)) {
+    report.status = StepStatus::TooManyPairs;
+    return report;
+  }
+  internal::detect_contacts(model, input, state, work, report);
+  internal::free_motion(model, input, work);
+  internal::build_islands(input, work);
+  internal::solve_islands(model, input, state, work, report);
+  internal::end_step(model, input, state, work, report);
+  return report;
+}
+
+}  // namespace snug::physics
