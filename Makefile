@@ -1,0 +1,63 @@
+# The front door: each verb sets up what it needs, then calls a preset of CMakePresets.json. `make` lists the verbs.
+.DEFAULT_GOAL := help
+JOBS ?= $(shell nproc)
+ROOM ?=
+SCENARIO := scenarios/box-demonstrator.yaml
+SOURCES = $(shell find src apps bench tests examples -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
+
+configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
+run-tests = ctest --preset $(1) -j $(JOBS)
+
+.PHONY: help setup setup-lint setup-peers build demo test check format-check fix san tsan tidy cover bench bench-peers docs clean
+
+help: ## list the verbs
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
+
+setup: ## install the Debian packages that are missing (root or sudo)
+	@scripts/install-deps.sh
+setup-lint:
+	@scripts/install-deps.sh lint
+setup-peers:
+	@scripts/install-deps.sh peers
+
+build: setup ## build the program as build/snug
+	@$(call configure-build,release,--log-level=WARNING)
+
+demo: build ## pack sequence 1 of the report with a program of our own
+	@scripts/demo.sh
+
+test: setup ## build and run every test; ROOM=cup for one room's
+	@scripts/test.sh $(ROOM)
+
+check: format-check test ## format check, warnings as errors, every test: before each push
+
+format-check: setup-lint
+	@clang-format --dry-run --Werror $(SOURCES)
+
+fix: setup-lint ## format every source, apply the safe clang-tidy fixes
+	@clang-format -i $(SOURCES)
+	@$(call configure-build,dev,-DSNUG_WERROR=OFF) && run-clang-tidy -quiet -fix -format -p build-dev -checks='-*,modernize-use-override,modernize-use-nullptr,modernize-use-using,readability-redundant-*,performance-move-const-arg'
+
+san: setup ## tests under the address and undefined-behaviour sanitizers
+	@$(call configure-build,asan) && $(call run-tests,asan)
+
+tsan: setup ## tests under the thread sanitizer
+	@$(call configure-build,tsan) && $(call run-tests,tsan)
+
+tidy: setup-lint ## clang-tidy over everything
+	@$(call configure-build,tidy)
+
+cover: setup ## which lines the tests reach, by room
+	@$(call configure-build,coverage) && $(call run-tests,coverage) && python3 tools/coverage.py build-coverage
+
+bench: build ## how fast and how accurate the physics is, beside its targets
+	@build/snug bench
+
+bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run
+	@$(call configure-build,bench) && scripts/bench-peers.sh build-bench
+
+docs: setup ## check that every link in the documents leads somewhere
+	@python3 tools/check_docs.py .
+
+clean: ## remove what the verbs built
+	@rm -rf build build-dev build-asan build-tsan build-tidy build-coverage build-bench out

@@ -1,0 +1,55 @@
+#!/bin/sh
+# install-deps.sh: the one list of Debian 12 packages that snug is built, tested and compared with.
+#
+#   scripts/install-deps.sh              what building, testing and running need
+#   scripts/install-deps.sh lint peers   that, and the groups named
+#   scripts/install-deps.sh --list ...   only print the packages
+#
+# Installs only what is missing, as root or through sudo; with nothing missing it takes a tenth of a second.
+set -eu
+
+base="make cmake ninja-build g++ pkg-config ccache python3
+  libeigen3-dev libexpected-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libhdf5-dev hdf5-tools libcli11-dev
+  libgtest-dev libbenchmark-dev liborocos-kdl-dev"
+lint="clang-format clang-tidy"      # make check, fix, tidy
+peers="libbullet-dev libmujoco-dev" # make bench-peers
+
+wanted="$base"
+only_list=no
+for argument in "$@"; do
+  case "$argument" in
+    --list) only_list=yes ;;
+    lint) wanted="$wanted $lint" ;;
+    peers) wanted="$wanted $peers" ;;
+    *) echo "install-deps.sh: unknown group '$argument'; expected lint, peers or --list" >&2; exit 2 ;;
+  esac
+done
+if [ "$only_list" = yes ]; then
+  for package in $wanted; do echo "$package"; done
+  exit 0
+fi
+
+if ! command -v dpkg-query >/dev/null 2>&1; then
+  echo "install-deps.sh: this is not Debian; install what corresponds to:" $wanted >&2
+  exit 0
+fi
+
+# One dpkg-query for all: a package that was removed but left its settings behind does not count as installed.
+installed=" $(dpkg-query -W -f='${db:Status-Status} ${Package}\n' $wanted 2>/dev/null | sed -n 's/^installed //p' | tr '\n' ' ') "
+missing=""
+for package in $wanted; do
+  case "$installed" in *" $package "*) ;; *) missing="$missing $package" ;; esac
+done
+[ -n "$missing" ] || exit 0
+
+as_root=""
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null 2>&1; then
+    echo "install-deps.sh: run as root or install sudo; missing:$missing" >&2
+    exit 1
+  fi
+  as_root="sudo"
+fi
+echo "installing:$missing" >&2
+$as_root apt-get update -qq >&2 || echo "install-deps.sh: apt-get update failed; trying with the lists at hand" >&2
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >&2
