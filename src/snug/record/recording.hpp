@@ -33,7 +33,7 @@ enum class ShapeKind : std::uint8_t { Box = 0, Capsule = 1, Hull = 2 };
 /// Enough of a shape to draw it. Frame G is the shape's own.
 struct ShapeInfo {
   ShapeKind kind = ShapeKind::Box;
-  Pose X_BG;                       ///< in the body frame B
+  PoseSample X_BG;                 ///< in the body frame B
   Vector3 half = Vector3::Zero();  ///< box: half edge lengths, m
   double radius = 0.0;             ///< capsule: m
   double half_length = 0.0;        ///< capsule: half of the segment along z of G, m
@@ -55,8 +55,8 @@ struct BodyInfo {
 /// The container that is packed. Name empty when the scene has none.
 struct ContainerInfo {
   std::string name;
-  Pose X_WT;                             ///< container frame, as the scenario defines it
-  Pose X_TI;                             ///< I: middle of the inner floor, z up, axes along the inner edges
+  PoseSample X_WT;                       ///< container frame, as the scenario defines it
+  PoseSample X_TI;                       ///< I: middle of the inner floor, z up, axes along the inner edges
   Vector3 inner_size = Vector3::Zero();  ///< along the axes of I, m
   bool operator==(const ContainerInfo&) const = default;
 };

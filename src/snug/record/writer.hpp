@@ -11,17 +11,19 @@ namespace snug::record {
 /// Writes the HDF5 layout of docs/formats.md. Frames are gathered in columns and written about once per second of
 /// recorded time; a process that is killed leaves a file with all frames but those of the last second.
 ///
-/// Bad input and files that cannot be written (no such folder, disk full) throw InputError naming the path.
+/// A header that cannot be stored and a file that cannot be written (no such folder, disk full) throw InputError
+/// naming the path. HDF5 is not thread-safe: use one writer or reader at a time in a process.
 class RecordingWriter {
  public:
   /// Creates the file; an earlier recording at that path is replaced, any other file is refused.
   RecordingWriter(const std::filesystem::path& path, const RecordingHeader& header);
-  /// Closes like close(), but stays silent when that fails.
+  /// Writes the rest like close(), but leaves the recording marked incomplete, and stays silent when that fails.
   ~RecordingWriter();
   RecordingWriter(RecordingWriter&&) noexcept;
   RecordingWriter& operator=(RecordingWriter&&) noexcept;
 
-  /// Time must be finite and grow, `bodies` must be as many as in the header, body indices must be valid.
+  /// Time must be finite and grow, `bodies` must be as many as in the header, body indices must be valid: a frame
+  /// that breaks this is a bug of the caller and aborts.
   void append(const Frame& frame);
   /// In any order; kept in the order of the calls.
   void append(const Event& event);

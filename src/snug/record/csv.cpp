@@ -1,0 +1,232 @@
+// CSV: a recording as one table with the column names of mc_rtc logs, for spreadsheets and plotting programs.
+#include "snug/record/csv.hpp"
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+#include <unistd.h>
+
+#include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug::record {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+
+/// A file of numbers; remembers whether writing failed until the end.
+class Table {
+ public:
+  explicit Table(const std::string& path) : file_(std::fopen(path.c_str(), "wb")) { buffer_.reserve(kBufferBytes); }
+  ~Table() {
+    if (file_ != nullptr) std::fclose(file_);
+  }
+  Table(const Table&) = delete;
+  Table& operator=(const Table&) = delete;
+
+  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
+
+  void cell(std::string_view text) {
+    if (!is_first_) buffer_ += ';';
+    is_first_ = false;
+    buffer_ += text;
+  }
+  /// Shortest form that reads back to the same number; empty when it is not one.
+  void cell(double value) {
+    if (!std::isfinite(value)) return cell(std::string_view());
+    char text[32];
+    const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);
+    cell(std::string_view(text, static_cast<std::size_t>(end.ptr - text)));
+  }
+  void cell(int value) { cell(std::string_view(std::to_string(value))); }
+  void cell(const Vector3& v) {
+    for (const double x : {v.x(), v.y(), v.z()}) cell(x);
+  }
+  void cell(const Quaternion& q) {
+    for (const double x : {q.w(), q.x(), q.y(), q.z()}) cell(x);
+  }
+  void empty_cells(int count) {
+    for (int i = 0; i < count; ++i) cell(std::string_view());
+  }
+  void end_row() {
+    buffer_ += '\n';
+    is_first_ = true;
+    if (buffer_.size() > kBufferBytes - 65536) spill();
+  }
+  /// Writes the rest through to the disk; false if anything failed.
+  [[nodiscard]] bool close() {
+    spill();
+    has_failed_ = std::fflush(file_) != 0 || has_failed_;
+    has_failed_ = ::fsync(::fileno(file_)) != 0 || has_failed_;
+    has_failed_ = std::fclose(std::exchange(file_, nullptr)) != 0 || has_failed_;
+    return !has_failed_;
+  }
+
+ private:
+  void spill() {
+    has_failed_ = std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size() || has_failed_;
+    buffer_.clear();
+  }
+
+  std::FILE* file_;
+  std::string buffer_;
+  bool is_first_ = true;
+  bool has_failed_ = false;
+};
+
+/// Inverse rotation with the sign nearest to the previous one of the same column, so that curves do not jump.
+class LoggedRotation {
+ public:
+  Quaternion next(const Quaternion& quat_WB) {
+    Quaternion inverse = quat_WB.conjugate();
+    if (inverse.dot(previous_) < 0.0) inverse.coeffs() = -inverse.coeffs();
+    if (inverse.coeffs().allFinite()) previous_ = inverse;
+    return inverse;
+  }
+
+ private:
+  Quaternion previous_ = Quaternion(1.0, 0.0, 0.0, 0.0);
+};
+
+/// "BOX024" is logged as "box024"; other names as they are, but with what would break the table replaced.
+std::string column_prefix(const std::string& name) {
+  std::string prefix = name;
+  const bool is_numbered_box = name.size() > 3 && std::isdigit(static_cast<unsigned char>(name[3])) != 0 &&
+                               (name.starts_with("BOX") || name.starts_with("Box"));
+  if (is_numbered_box) prefix.replace(0, 3, "box");
+  for (char& c : prefix)
+    if (c == ';' || c == '"' || c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0) c = '_';
+  return prefix;
+}
+
+void name_columns(Table& table, const std::string& prefix, std::string_view suffixes) {
+  for (const char suffix : suffixes) table.cell(prefix + '_' + suffix);
+}
+
+void name_pose(Table& table, const std::string& prefix) {
+  name_columns(table, prefix + "_orientation", "wxyz");
+  name_columns(table, prefix + "_position", "xyz");
+}
+
+void name_wrench(Table& table, const std::string& prefix) {
+  for (const char* part : {"cx", "cy", "cz", "fx", "fy", "fz"}) table.cell(prefix + '_' + part);
+}
+
+void write_names(Table& table, const RecordingHeader& header) {
+  table.cell("t");
+  name_pose(table, "tool");
+  for (const char* part : {"wx", "wy", "wz", "vx", "vy", "vz"}) table.cell(std::string("tool_velocity_") + part);
+  name_pose(table, "tool_command");
+  name_wrench(table, "UR10FTSensor");
+  for (const char* name : {"vacuum", "blow_off", "pressure_gauge", "cup_attached", "cup_length", "cup_bend"})
+    table.cell(name);
+  name_pose(table, "cup");
+  name_wrench(table, "cup_wrench");
+  for (const char* name : {"program_row", "contacts", "solver_residual", "solver_iterations", "solver_status"})
+    table.cell(name);
+  for (const BodyInfo& body : header.bodies)
+    if (body.kind != BodyKind::Static) name_pose(table, column_prefix(body.name) + "_FloatingBase");
+  if (!header.container.name.empty()) name_pose(table, column_prefix(header.container.name) + "_FloatingBase");
+  table.end_row();
+}
+
+/// Writes frames in order; keeps the last quaternions.
+class FrameRows {
+ public:
+  explicit FrameRows(const RecordingHeader& header) : header_(header), bodies_(header.bodies.size()) {}
+
+  void write(Table& table, const Frame& frame) {
+    SNUG_CHECK(frame.bodies.size() == bodies_.size(), "a frame must have the bodies of the header");
+    table.cell(frame.time);
+    write_pose(table, tool_, frame.X_WE);
+    table.cell(frame.V_WE.angular);
+    table.cell(frame.V_WE.linear);
+    write_pose(table, command_, frame.X_WE_command);
+    write_wrench(table, frame.F_flange);
+    write_cup(table, frame.cup);
+    table.cell(frame.program_row);
+    table.cell(static_cast<int>(frame.contacts.size()));
+    table.cell(frame.solver.residual);
+    table.cell(frame.solver.iterations);
+    table.cell(static_cast<int>(frame.solver.status));
+    write_bodies(table, frame);
+    table.end_row();
+  }
+
+ private:
+  static void write_pose(Table& table, LoggedRotation& rotation, const PoseSample& X) {
+    table.cell(rotation.next(X.quat));
+    table.cell(X.p);
+  }
+  static void write_wrench(Table& table, const Wrench& F) {
+    table.cell(F.torque);
+    table.cell(F.force);
+  }
+  void write_cup(Table& table, const CupSample& cup) {
+    table.cell(cup.vacuum_command ? 1 : 0);
+    table.cell(cup.blow_off_command ? 1 : 0);
+    table.cell(cup.pressure_gauge);
+    if (cup.attached_body < 0)
+      table.empty_cells(1);
+    else
+      table.cell(column_prefix(header_.bodies[static_cast<std::size_t>(cup.attached_body)].name));
+    table.cell(cup.length);
+    table.cell(cup.bend);
+    write_pose(table, cup_, cup.X_ES);
+    write_wrench(table, cup.F_PSo_S);
+  }
+  void write_bodies(Table& table, const Frame& frame) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (header_.bodies[i].kind == BodyKind::Static) continue;
+      if (frame.bodies[i].present)
+        write_pose(table, bodies_[i], frame.bodies[i].X_WB);
+      else
+        table.empty_cells(7);
+    }
+    if (!header_.container.name.empty()) write_pose(table, container_, header_.container.X_WT);
+  }
+
+  const RecordingHeader& header_;
+  LoggedRotation tool_, command_, cup_, container_;
+  std::vector<LoggedRotation> bodies_;
+};
+
+}  // namespace
+
+void write_csv(const Recording& recording, const std::filesystem::path& path) {
+  const auto refuse = [&](const std::string& got) {
+    throw InputError(path.string(), "", got, "a path where a file can be written");
+  };
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) refuse("a folder");
+  const std::string draft = path.string() + ".part" + std::to_string(::getpid());
+  bool is_written = false;
+  {
+    Table table(draft);
+    if (!table.is_open()) refuse("no permission or no such folder");
+    write_names(table, recording.header);
+    FrameRows rows(recording.header);
+    double last_time = -std::numeric_limits<double>::infinity();
+    for (const Frame& frame : recording.frames) {
+      SNUG_CHECK(std::isfinite(frame.time) && frame.time > last_time, "time of a frame must be finite and grow");
+      last_time = frame.time;
+      rows.write(table, frame);
+    }
+    is_written = table.close();
+  }
+  if (is_written) std::filesystem::rename(draft, path, error);
+  if (!is_written || error) {
+    std::error_code ignored;
+    std::filesystem::remove(draft, ignored);
+    refuse(is_written ? error.message() : "a write that failed (disk full?)");
+  }
+}
+
+}  // namespace snug::record

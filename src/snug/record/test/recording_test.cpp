@@ -1,0 +1,308 @@
+// Recordings: what is written is read, bit by bit, and files that are not right are refused with a reason.
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <bit>
+#include <fstream>
+#include <limits>
+
+#include "snug/core/input_error.hpp"
+#include "snug/record/reader.hpp"
+#include "snug/record/test/random_recording.hpp"
+#include "snug/record/writer.hpp"
+
+namespace snug::record {
+namespace {
+
+using test::ScratchFolder;
+
+/// The message of the InputError that `work` throws, or "" if it throws none.
+template <class Work>
+std::string complaint(Work work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string load_complaint(const std::filesystem::path& path) {
+  return complaint([&] { (void)load_recording(path); });
+}
+
+bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+TEST(Recording, IsReadAsItWasWrittenBitByBit) {
+  const ScratchFolder folder;
+  Rng rng = Rng(11).split("round trip");
+  // Frame counts around the chunk of 125 and the reader's block of 1000.
+  for (const int frames : {0, 1, 124, 125, 126, 1000, 1251}) {
+    for (const int bodies : {0, 1, 7}) {
+      SCOPED_TRACE(std::to_string(frames) + " frames, " + std::to_string(bodies) + " bodies");
+      const Recording written = test::random_recording(rng, bodies, frames, frames / 10);
+      save_recording(folder / "run.h5", written);
+      const Recording read = load_recording(folder / "run.h5");
+      EXPECT_EQ(read.header, written.header);
+      EXPECT_EQ(read.events, written.events);
+      EXPECT_EQ(read.frames.size(), written.frames.size());
+      EXPECT_TRUE(read == written);
+    }
+  }
+}
+
+TEST(Recording, KeepsFramesWhenFlushedAtAnyMoment) {
+  const ScratchFolder folder;
+  Rng rng = Rng(12).split("flush");
+  const Recording written = test::random_recording(rng, 5, 400, 20);
+  RecordingWriter writer(folder / "run.h5", written.header);
+  for (std::size_t i = 0; i < written.frames.size(); ++i) {
+    writer.append(written.frames[i]);
+    if (i % 20 == 0) writer.append(written.events[i / 20]);
+    if (rng.index(30) != 0) continue;
+    writer.flush();
+    const Recording so_far = load_recording(folder / "run.h5");
+    EXPECT_FALSE(so_far.is_complete);
+    ASSERT_EQ(so_far.frames.size(), i + 1);
+    EXPECT_TRUE(std::equal(so_far.frames.begin(), so_far.frames.end(), written.frames.begin()));
+  }
+  writer.close();
+  EXPECT_TRUE(load_recording(folder / "run.h5") == written);
+}
+
+TEST(Recording, RoundsContactsToTheStatedQuanta) {
+  const ScratchFolder folder;
+  Rng rng = Rng(13).split("quanta");
+  Recording written = test::random_recording(rng, 3, 1, 0);
+  written.frames[0].contacts.clear();
+  for (int i = 0; i < 1000; ++i) {
+    ContactSample contact = test::random_contact(rng, 3);
+    contact.p_WQ = test::random_vector(rng, 15.0);
+    contact.force_B_W = test::random_vector(rng, 2000.0);
+    contact.phi = rng.uniform(-0.1, 0.1);
+    written.frames[0].contacts.push_back(contact);
+  }
+  save_recording(folder / "run.h5", written);
+  const Recording read = load_recording(folder / "run.h5");
+  ASSERT_EQ(read.frames[0].contacts.size(), 1000u);
+  for (std::size_t i = 0; i < 1000; ++i) {
+    const ContactSample& a = written.frames[0].contacts[i];
+    const ContactSample& b = read.frames[0].contacts[i];
+    EXPECT_EQ(a.body_a, b.body_a);
+    EXPECT_EQ(a.body_b, b.body_b);
+    // Half a quantum, by rounding to nearest; all values are below 2^24 quanta.
+    EXPECT_LE((a.p_WQ - b.p_WQ).cwiseAbs().maxCoeff(), 0.5 * kPointQuantum);
+    EXPECT_LE((a.force_B_W - b.force_B_W).cwiseAbs().maxCoeff(), 0.5 * kForceQuantum);
+    EXPECT_LE(std::abs(a.phi - b.phi), 0.5 * kGapQuantum);
+  }
+}
+
+TEST(Recording, KeepsNaNAndHugeValuesWhereTheyStood) {
+  const ScratchFolder folder;
+  Rng rng = Rng(14).split("attack");
+  Recording written = test::random_recording(rng, 2, 3, 0);
+  const double nan = std::bit_cast<double>(0x7ff8dead0000beefULL);
+  const double huge = std::numeric_limits<double>::max();
+  const double infinity = std::numeric_limits<double>::infinity();
+  Frame& frame = written.frames[1];
+  frame.bodies[0].X_WB.p = {nan, -infinity, huge};
+  frame.cup.F_PSo_S.force = {std::numeric_limits<double>::denorm_min(), -0.0, nan};
+  frame.contacts.assign(1, ContactSample{0, 1, {nan, 1e300, -1e30}, {0, 0, 1}, {-infinity, 1e6, 0.0}, nan});
+  save_recording(folder / "run.h5", written);
+  const Recording read = load_recording(folder / "run.h5");
+  ASSERT_EQ(read.frames.size(), 3u);
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(bits(read.frames[1].bodies[0].X_WB.p[i]), bits(frame.bodies[0].X_WB.p[i]));
+    EXPECT_EQ(bits(read.frames[1].cup.F_PSo_S.force[i]), bits(frame.cup.F_PSo_S.force[i]));
+  }
+  const ContactSample& contact = read.frames[1].contacts.at(0);
+  EXPECT_TRUE(std::isnan(contact.p_WQ.x()) && std::isnan(contact.phi));
+  EXPECT_EQ(contact.p_WQ.y(), infinity);  // beyond single precision
+  EXPECT_FLOAT_EQ(static_cast<float>(contact.p_WQ.z()), -1e30f);
+  EXPECT_EQ(contact.force_B_W.x(), -infinity);
+  EXPECT_EQ(contact.force_B_W.y(), 1e6);  // beyond 2^24 quanta, but exact in single precision
+  EXPECT_TRUE(read.frames[2] == written.frames[2]);
+}
+
+TEST(Recording, StoresAbsentBodiesAsNaN) {
+  const ScratchFolder folder;
+  Rng rng = Rng(15).split("absent");
+  Recording written = test::random_recording(rng, 2, 200, 0);
+  for (std::size_t i = 0; i < 150; ++i) written.frames[i].bodies[1].present = false;
+  save_recording(folder / "run.h5", written);
+  const Recording read = load_recording(folder / "run.h5");
+  for (std::size_t i = 0; i < 200; ++i) {
+    EXPECT_EQ(read.frames[i].bodies[1].present, i >= 150);
+    EXPECT_EQ(read.frames[i].bodies[1].X_WB.p.hasNaN(), i < 150);
+    EXPECT_EQ(read.frames[i].bodies[1].V_WB.angular.hasNaN(), i < 150);
+    EXPECT_EQ(read.frames[i].bodies[0], written.frames[i].bodies[0]);
+  }
+}
+
+TEST(Recording, StoresRestingContactsOnce) {
+  const ScratchFolder folder;
+  Rng rng = Rng(16).split("resting");
+  Recording resting = test::random_recording(rng, 4, 1, 0);
+  for (int i = 0; i < 40; ++i) resting.frames[0].contacts.push_back(test::random_contact(rng, 4));
+  resting.frames.resize(1000, resting.frames[0]);
+  for (std::size_t i = 0; i < 1000; ++i) {
+    resting.frames[i].time = 0.008 * static_cast<double>(i);
+    for (ContactSample& contact : resting.frames[i].contacts) contact.force_B_W.z() += 1e-9 * rng.uniform(-1.0, 1.0);
+  }
+  save_recording(folder / "run.h5", resting);
+  const Recording read = load_recording(folder / "run.h5");
+  for (const Frame& frame : read.frames) EXPECT_TRUE(frame.contacts == read.frames[0].contacts);
+  // 1000 frames of 40 contacts would take 1.6 MB; time and step change and need 16 kB, the rest is empty chunks.
+  EXPECT_LT(std::filesystem::file_size(folder / "run.h5"), 600'000u);
+}
+
+TEST(RecordingReader, FetchesAnyFrameAndFindsItByTime) {
+  const ScratchFolder folder;
+  Rng rng = Rng(17).split("random access");
+  const Recording written = test::random_recording(rng, 6, 2300, 3);
+  save_recording(folder / "run.h5", written);
+  RecordingReader reader(folder / "run.h5");
+  ASSERT_EQ(reader.frame_count(), 2300u);
+  EXPECT_TRUE(reader.is_complete());
+  Frame frame;
+  for (int i = 0; i < 60; ++i) {
+    const auto index = static_cast<std::size_t>(rng.index(2300));
+    reader.read_frame(index, frame);
+    EXPECT_TRUE(frame == written.frames[index]) << index;
+    EXPECT_EQ(reader.find_frame(frame.time), index);
+    EXPECT_EQ(reader.find_frame(frame.time + 0.004), index);
+  }
+  EXPECT_EQ(reader.find_frame(-5.0), 0u);
+  EXPECT_EQ(reader.find_frame(1e9), 2299u);
+}
+
+TEST(RecordingReader, SaysWhatIsWrongWithAFile) {
+  const ScratchFolder folder;
+  EXPECT_TRUE(has(load_complaint(folder / "none.h5"), "no such file"));
+  EXPECT_TRUE(has(load_complaint(folder / ""), "not a file"));
+  std::ofstream(folder / "text.h5") << "t;x\n0;1\n";
+  EXPECT_TRUE(has(load_complaint(folder / "text.h5"), "not HDF5"));
+  std::ofstream(folder / "empty.h5").close();
+  EXPECT_TRUE(has(load_complaint(folder / "empty.h5"), "not HDF5"));
+  H5Fclose(H5Fcreate((folder / "other.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  EXPECT_TRUE(has(load_complaint(folder / "other.h5"), "HDF5 file of another kind"));
+}
+
+TEST(RecordingReader, RefusesARecordingOfANewerVersion) {
+  const ScratchFolder folder;
+  Rng rng(18);
+  save_recording(folder / "run.h5", test::random_recording(rng, 1, 3, 0));
+  const hid_t file = H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
+  const int newer = kFormatVersion + 1;
+  H5Awrite(attribute, H5T_NATIVE_INT, &newer);
+  H5Aclose(attribute);
+  H5Fclose(file);
+  EXPECT_TRUE(has(load_complaint(folder / "run.h5"), "newer snug"));
+}
+
+TEST(RecordingReader, NeverReturnsATruncatedRecordingAsWhole) {
+  const ScratchFolder folder;
+  Rng rng = Rng(19).split("truncated");
+  const Recording written = test::random_recording(rng, 3, 300, 5);
+  save_recording(folder / "run.h5", written);
+  const auto size = std::filesystem::file_size(folder / "run.h5");
+  for (int i = 0; i < 40; ++i) {
+    const auto cut = static_cast<std::uintmax_t>(static_cast<double>(size) * rng.uniform());
+    std::filesystem::copy_file(folder / "run.h5", folder / "cut.h5", std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(folder / "cut.h5", cut);
+    EXPECT_NE(load_complaint(folder / "cut.h5"), "") << cut << " of " << size;
+  }
+}
+
+TEST(RecordingReader, SurvivesFilesWithDamagedBytes) {
+  const ScratchFolder folder;
+  Rng rng = Rng(20).split("damaged");
+  save_recording(folder / "run.h5", test::random_recording(rng, 3, 200, 5));
+  const auto size = static_cast<int>(std::filesystem::file_size(folder / "run.h5"));
+  for (int i = 0; i < 100; ++i) {
+    std::filesystem::copy_file(folder / "run.h5", folder / "bad.h5", std::filesystem::copy_options::overwrite_existing);
+    std::fstream file(folder / "bad.h5", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(rng.index(size));
+    for (int k = 0; k < 16; ++k) file.put(static_cast<char>(rng.next()));
+    file.close();
+    (void)load_complaint(folder / "bad.h5");  // data bytes may change unseen; it must not crash
+  }
+}
+
+TEST(RecordingWriter, ReplacesAnEarlierRecordingButNoOtherFile) {
+  const ScratchFolder folder;
+  Rng rng(21);
+  const Recording first = test::random_recording(rng, 2, 300, 2);
+  const Recording second = test::random_recording(rng, 3, 10, 1);
+  save_recording(folder / "run.h5", first);
+  save_recording(folder / "run.h5", second);
+  EXPECT_TRUE(load_recording(folder / "run.h5") == second);
+  std::ofstream(folder / "thesis.txt") << "months of work";
+  EXPECT_TRUE(has(complaint([&] { save_recording(folder / "thesis.txt", first); }), "not overwritten"));
+  EXPECT_EQ(std::filesystem::file_size(folder / "thesis.txt"), 14u);
+  H5Fclose(H5Fcreate((folder / "other.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  EXPECT_TRUE(has(complaint([&] { save_recording(folder / "other.h5", first); }), "not overwritten"));
+  EXPECT_TRUE(has(complaint([&] { save_recording(folder / "no/such/run.h5", first); }), "No such file"));
+  EXPECT_TRUE(has(complaint([&] { save_recording(folder / "", first); }), "not a regular file"));
+}
+
+TEST(RecordingWriter, RefusesAHeaderThatCannotBeRead) {
+  const ScratchFolder folder;
+  Rng rng(22);
+  const RecordingHeader good = test::random_header(rng, 2);
+  const auto complain = [&](const RecordingHeader& header) {
+    return complaint([&] { RecordingWriter(folder / "run.h5", header); });
+  };
+  RecordingHeader header = good;
+  header.record_period = std::nan("");
+  EXPECT_TRUE(has(complain(header), "record_period"));
+  header = good;
+  header.bodies[1].name = header.bodies[0].name;
+  EXPECT_TRUE(has(complain(header), "twice"));
+  header = good;
+  header.bodies[1].name.clear();
+  EXPECT_TRUE(has(complain(header), "without a name"));
+  EXPECT_EQ(complain(good), "");
+}
+
+TEST(RecordingWriter, MarksARunThatEndedInAnErrorAsIncomplete) {
+  const ScratchFolder folder;
+  Rng rng(23);
+  const Recording written = test::random_recording(rng, 2, 130, 1);
+  {
+    RecordingWriter writer(folder / "run.h5", written.header);
+    for (const Frame& frame : written.frames) writer.append(frame);
+    for (const Event& event : written.events) writer.append(event);
+  }
+  const Recording read = load_recording(folder / "run.h5");
+  EXPECT_FALSE(read.is_complete);
+  EXPECT_TRUE(read.frames == written.frames);
+  EXPECT_EQ(read.events, written.events);
+}
+
+TEST(RecordingWriterDeathTest, StopsOnFramesThatBreakTheRules) {
+  const ScratchFolder folder;
+  Rng rng(24);
+  const Recording written = test::random_recording(rng, 2, 2, 0);
+  const auto append = [&](const Frame& second) {
+    RecordingWriter writer(folder / "run.h5", written.header);
+    writer.append(written.frames[0]);
+    writer.append(second);
+  };
+  Frame frame = written.frames[1];
+  frame.time = 0.0;
+  EXPECT_DEATH(append(frame), "time of a frame");
+  frame.time = std::nan("");
+  EXPECT_DEATH(append(frame), "time of a frame");
+  frame = written.frames[1];
+  frame.bodies.pop_back();
+  EXPECT_DEATH(append(frame), "bodies of the header");
+  frame = written.frames[1];
+  frame.contacts.assign(1, ContactSample{});
+  EXPECT_DEATH(append(frame), "bodies of a contact");
+}
+
+}  // namespace
+}  // namespace snug::record

@@ -1,0 +1,322 @@
+// RecordingWriter: appends frames and events to a file that stays readable if the run is killed.
+#include "snug/record/writer.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/record/internal/commit_driver.hpp"
+#include "snug/record/internal/contact_log.hpp"
+#include "snug/record/internal/header_file.hpp"
+#include "snug/record/internal/layout.hpp"
+
+namespace snug::record {
+namespace {
+
+using namespace internal;
+
+void validate(const std::filesystem::path& path, const RecordingHeader& header) {
+  const auto refuse = [&](const char* key, const std::string& got, const char* expected) {
+    throw InputError(path.string(), key, got, expected);
+  };
+  if (!(header.record_period > 0.0) || !std::isfinite(header.record_period))
+    refuse("record_period", std::to_string(header.record_period), "a time between frames, s, > 0");
+  std::set<std::string> names;
+  for (const BodyInfo& body : header.bodies) {
+    if (body.name.empty()) refuse("bodies", "a body without a name", "a name for each body");
+    if (!names.insert(body.name).second) refuse("bodies", '"' + body.name + "\" twice", "unique names");
+  }
+}
+
+/// Replaces nothing but an earlier recording or an empty file.
+void refuse_foreign_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return;
+  const char* expected = "a path that is free or holds an earlier recording";
+  if (!std::filesystem::is_regular_file(path, error))
+    throw InputError(path.string(), "", "something that is not a regular file", expected);
+  if (std::filesystem::file_size(path, error) == 0) return;
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  bool is_ours = false;
+  if (file >= 0) {
+    is_ours = is_recording(file);
+    H5Fclose(file);
+  }
+  if (!is_ours) throw InputError(path.string(), "", "a file that is not a recording: not overwritten", expected);
+}
+
+/// An open file and the driver that writes it.
+struct OutputFile {
+  Handle driver;
+  Handle file;
+};
+
+OutputFile create_file(const std::filesystem::path& path) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
+  // The formats of HDF5 1.8 have no "open for writing" mark: the file of a killed run opens with any reader.
+  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18), "file access");
+  OutputFile output;
+  output.driver = use_commit_driver(access.get());
+  output.file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), "create file");
+  return output;
+}
+
+struct Row7 {
+  double v[7];
+};
+struct Row6 {
+  double v[6];
+};
+
+Row7 row_of(const PoseSample& X) {
+  return {{X.p.x(), X.p.y(), X.p.z(), X.quat.w(), X.quat.x(), X.quat.y(), X.quat.z()}};
+}
+Row6 row_of(const Vector3& a, const Vector3& b) { return {{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()}}; }
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr Row7 kAbsentPose = {{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
+constexpr Row6 kAbsentTwist = {{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
+
+/// Events wait here until they are written; their texts must stay where they are until then.
+class EventLog {
+ public:
+  explicit EventLog(hid_t file) : text_type_(string_type(H5T_VARIABLE)) {
+    const auto text = [&](const char* path) {
+      return ColumnSpec{.path = path, .type = text_type_.get(), .value_bytes = sizeof(char*)};
+    };
+    const ColumnSpec specs[] = {
+        text(kNumberName),
+        column_of<double>(kNumberValue, 1, "as its name says", "", ""),
+        column_of<double>(kEventTime, 1, "s", "", ""),
+        text(kEventKind),
+        text(kEventBody),
+        text(kEventText),
+        column_of<std::int64_t>(kEventNumberFirst, 1, "row of /events/number_name", "", ""),
+        column_of<std::int32_t>(kEventNumberCount, 1, "rows of /events/number_name", "", ""),
+    };
+    for (const ColumnSpec& spec : specs) columns_.emplace_back(file, spec);
+  }
+
+  void append(const Event& event) { pending_.push_back(event); }
+
+  void write() {
+    for (const Event& event : pending_) put(event);
+    for (FlatColumn& column : columns_) column.write();
+    pending_.clear();
+  }
+
+ private:
+  void put(const Event& event) {
+    const char* const texts[] = {event.kind.c_str(), event.body.c_str(), event.text.c_str()};
+    const auto count = static_cast<std::int32_t>(event.numbers.size());
+    for (const EventNumber& number : event.numbers) {
+      const char* name = number.name.c_str();
+      columns_[0].put(&name, 1);
+      columns_[1].put(&number.value, 1);
+    }
+    columns_[2].put(&event.time, 1);
+    for (std::size_t i = 0; i < 3; ++i) columns_[3 + i].put(&texts[i], 1);
+    columns_[6].put(&number_rows_, 1);
+    columns_[7].put(&count, 1);
+    number_rows_ += count;
+  }
+
+  Handle text_type_;
+  std::vector<FlatColumn> columns_;
+  std::vector<Event> pending_;
+  std::int64_t number_rows_ = 0;
+};
+
+}  // namespace
+
+struct RecordingWriter::Impl {
+  Impl(const std::filesystem::path& file_path, const RecordingHeader& header);
+  void append(const Frame& frame);
+  void put_frame(const Frame& frame);
+  void put_bodies(const Frame& frame);
+  void write();
+  void close(bool is_complete);
+  /// Runs `work` with HDF5 quiet; its errors become InputErrors that name the file.
+  template <class Work>
+  void guarded(Work work) {
+    const QuietErrors quiet;
+    try {
+      work();
+    } catch (const H5Error& error) {
+      throw InputError(path.string(), "", error.what(), "a file that can be written");
+    }
+  }
+
+  std::filesystem::path path;
+  std::size_t body_count;
+  std::size_t chunk_rows;
+  OutputFile output;
+  std::vector<Column> columns;       ///< by FrameColumn
+  std::vector<Column> body_columns;  ///< present, pose, twist; none without bodies
+  std::optional<ContactLog> contacts;
+  std::optional<EventLog> events;
+  std::vector<std::uint8_t> present;
+  hsize_t chunk_first = 0;  ///< row of the file at which the chunk being filled starts
+  std::size_t filled = 0;   ///< rows in it
+  double last_time = -std::numeric_limits<double>::infinity();
+};
+
+RecordingWriter::Impl::Impl(const std::filesystem::path& file_path, const RecordingHeader& header)
+    : path(file_path), body_count(header.bodies.size()), chunk_rows(0) {
+  validate(path, header);
+  chunk_rows = chunk_rows_for(header.record_period);
+  guarded([&] {
+    refuse_foreign_file(path);
+    output = create_file(path);
+    write_header(output.file.get(), header);
+    // The commit driver writes the lengths of datasets in the order of their creation: what is referred to first.
+    events.emplace(output.file.get());
+    contacts.emplace(output.file.get());
+    if (body_count > 0) {
+      body_columns.emplace_back(output.file.get(), body_present_column(body_count), chunk_rows);
+      body_columns.emplace_back(output.file.get(), body_pose_column(body_count), chunk_rows);
+      body_columns.emplace_back(output.file.get(), body_twist_column(body_count), chunk_rows);
+    }
+    for (std::size_t i = 0; i < kFrameColumnCount; ++i)
+      columns.emplace_back(output.file.get(), frame_column(static_cast<FrameColumn>(i)), chunk_rows);
+    present.resize(body_count);
+    check(H5Fflush(output.file.get(), H5F_SCOPE_LOCAL), "flush");
+  });
+}
+
+void RecordingWriter::Impl::append(const Frame& frame) {
+  SNUG_CHECK(std::isfinite(frame.time) && frame.time > last_time, "time of a frame must be finite and grow");
+  SNUG_CHECK(frame.bodies.size() == body_count, "a frame must have the bodies of the header");
+  const int bodies = static_cast<int>(body_count);
+  SNUG_CHECK(frame.cup.attached_body >= -1 && frame.cup.attached_body < bodies, "attached body must exist");
+  for (const ContactSample& contact : frame.contacts)
+    SNUG_CHECK(contact.body_a >= 0 && contact.body_a < bodies && contact.body_b >= 0 && contact.body_b < bodies,
+               "bodies of a contact must exist");
+  last_time = frame.time;
+  put_frame(frame);
+  put_bodies(frame);
+  if (++filled == chunk_rows) guarded([&] { write(); });
+}
+
+void RecordingWriter::Impl::put_frame(const Frame& frame) {
+  const std::size_t row = filled;
+  const auto put = [&](FrameColumn column, const auto& value) { columns[column].put(row, &value); };
+  const CupSample& cup = frame.cup;
+  const ContactLog::Range range = contacts->append(frame.contacts);
+  put(kTime, frame.time);
+  put(kStep, frame.step);
+  put(kProgramRow, std::int32_t{frame.program_row});
+  put(kToolPose, row_of(frame.X_WE));
+  put(kToolTwist, row_of(frame.V_WE.linear, frame.V_WE.angular));
+  put(kToolPoseCommand, row_of(frame.X_WE_command));
+  put(kVacuumCommand, static_cast<std::uint8_t>(cup.vacuum_command));
+  put(kBlowOffCommand, static_cast<std::uint8_t>(cup.blow_off_command));
+  put(kPressureGauge, cup.pressure_gauge);
+  put(kAttachedBody, std::int32_t{cup.attached_body});
+  put(kCupPose, row_of(cup.X_ES));
+  put(kCupLength, cup.length);
+  put(kCupBend, cup.bend);
+  put(kCupWrench, row_of(cup.F_PSo_S.force, cup.F_PSo_S.torque));
+  put(kFlangeWrench, row_of(frame.F_flange.force, frame.F_flange.torque));
+  put(kSolverResidual, frame.solver.residual);
+  put(kSolverIterations, std::int32_t{frame.solver.iterations});
+  put(kSolverStatus, static_cast<std::uint8_t>(frame.solver.status));
+  put(kContactFirst, range.first);
+  put(kContactCount, range.count);
+}
+
+void RecordingWriter::Impl::put_bodies(const Frame& frame) {
+  if (body_count == 0) return;
+  for (std::size_t i = 0; i < body_count; ++i) {
+    const BodySample& body = frame.bodies[i];
+    const Row7 pose = body.present ? row_of(body.X_WB) : kAbsentPose;
+    const Row6 twist = body.present ? row_of(body.V_WB.linear, body.V_WB.angular) : kAbsentTwist;
+    present[i] = static_cast<std::uint8_t>(body.present);
+    body_columns[1].put(filled, pose.v, i);
+    body_columns[2].put(filled, twist.v, i);
+  }
+  body_columns[0].put(filled, present.data());
+}
+
+/// Writes the chunk as far as it is filled, with all it refers to, and commits.
+void RecordingWriter::Impl::write() {
+  events->write();
+  contacts->write();
+  if (filled > 0) {
+    for (Column& column : body_columns) column.write(chunk_first, filled);
+    for (Column& column : columns) column.write(chunk_first, filled);
+  }
+  if (filled == chunk_rows) {
+    chunk_first += chunk_rows;
+    filled = 0;
+  }
+  check(H5Fflush(output.file.get(), H5F_SCOPE_LOCAL), "flush");
+}
+
+void RecordingWriter::Impl::close(bool is_complete) {
+  guarded([&] {
+    write();  // commits; only then may the file be called complete
+    const auto complete = static_cast<std::uint8_t>(is_complete);
+    update_attribute(output.file.get(), "complete", H5T_NATIVE_UINT8, &complete);
+    check(H5Fflush(output.file.get(), H5F_SCOPE_LOCAL), "flush");
+    contacts.reset();
+    events.reset();
+    columns.clear();
+    body_columns.clear();
+    output.file.reset();
+  });
+}
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHeader& header)
+    : impl_(std::make_unique<Impl>(path, header)) {}
+
+RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
+
+RecordingWriter& RecordingWriter::operator=(RecordingWriter&& other) noexcept {
+  std::swap(impl_, other.impl_);
+  return *this;
+}
+
+RecordingWriter::~RecordingWriter() {
+  if (!impl_) return;
+  const QuietErrors quiet;
+  try {
+    impl_->close(false);
+  } catch (const InputError&) {  // nobody to tell; the file keeps what was written before
+  }
+  impl_.reset();
+}
+
+void RecordingWriter::append(const Frame& frame) {
+  SNUG_CHECK(impl_ != nullptr, "recording is closed");
+  impl_->append(frame);
+}
+
+void RecordingWriter::append(const Event& event) {
+  SNUG_CHECK(impl_ != nullptr, "recording is closed");
+  impl_->events->append(event);
+}
+
+void RecordingWriter::flush() {
+  SNUG_CHECK(impl_ != nullptr, "recording is closed");
+  impl_->guarded([&] { impl_->write(); });
+}
+
+void RecordingWriter::close() {
+  SNUG_CHECK(impl_ != nullptr, "recording is closed");
+  const QuietErrors quiet;
+  const std::unique_ptr<Impl> impl = std::move(impl_);
+  impl->close(true);
+}
+
+void save_recording(const std::filesystem::path& path, const Recording& recording) {
+  RecordingWriter writer(path, recording.header);
+  for (const Event& event : recording.events) writer.append(event);
+  for (const Frame& frame : recording.frames) writer.append(frame);
+  writer.close();
+}
+
+}  // namespace snug::record
