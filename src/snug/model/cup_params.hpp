@@ -119,7 +119,7 @@ struct CupParams {
     a("lip_friction", lip_friction, Range::NotNegative);
     a("vacuum", vacuum);
     a("seal", seal);
-    a("limits", limits);
+    a("hold_limits", limits);
   }
   bool operator==(const CupParams&) const = default;
 };

@@ -37,7 +37,7 @@ struct Layer {
   bool operator==(const Layer&) const = default;
 };
 
-/// Six thin faces of a box: mass spread evenly over the outer surface, uniform thickness.
+/// The empty box: a hollow cuboid of uniform density and uniform wall thickness, its outside the size of the box.
 struct Shell {
   double mass = 0.0;       ///< kg
   double thickness = 0.0;  ///< m

@@ -1,0 +1,187 @@
+// Checks of a scenario's parts against each other: what overlaps, what does not fit, which materials can meet.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "snug/geometry/manifold.hpp"
+#include "snug/model/internal/scenario_reader.hpp"
+
+namespace snug::model::internal {
+namespace {
+
+/// Static things may touch; more than this is an overlap (poses written with six decimals stay below), m.
+constexpr double kStaticOverlap = 1e-6;
+/// Bodies that move may start this deep in something, m; the contact solver pushes them out.
+constexpr double kStartOverlap = 1e-3;
+
+double bounding_radius(const geometry::Shape& shape) {
+  struct Radius {
+    double operator()(const geometry::Box& box) const { return box.half.norm(); }
+    double operator()(const geometry::Capsule& capsule) const { return capsule.half_length + capsule.radius; }
+    double operator()(const geometry::ConvexHull& hull) const {
+      double radius = 0.0;
+      for (const Vector3& vertex : hull.vertices) radius = std::max(radius, vertex.norm());
+      return radius;
+    }
+  };
+  return std::visit(Radius{}, shape);
+}
+
+/// Depth of overlap of two shapes, m; 0 when they are apart.
+double overlap_of(const PlacedShape& a, const Pose& X_WA, const PlacedShape& b, const Pose& X_WB) {
+  const Pose X_WG = X_WA * a.X_BG;
+  const Pose X_WH = X_WB * b.X_BG;
+  if ((X_WG.p - X_WH.p).norm() > bounding_radius(a.shape) + bounding_radius(b.shape)) return 0.0;
+  geometry::PairCache cache;
+  geometry::Manifold manifold;
+  geometry::collide(a.shape, X_WG, b.shape, X_WH, 0.0, cache, manifold);
+  double depth = 0.0;
+  for (int i = 0; i < manifold.count; ++i) depth = std::max(depth, -manifold.points[static_cast<std::size_t>(i)].phi);
+  return depth;
+}
+
+std::array<double, 3> sorted(const Vector3& size) {
+  std::array<double, 3> edges{size.x(), size.y(), size.z()};
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+std::string to_millimetres(const Vector3& size) {
+  return to_text(1e3 * size.x()) + " x " + to_text(1e3 * size.y()) + " x " + to_text(1e3 * size.z()) + " mm";
+}
+
+}  // namespace
+
+struct ScenarioReader::Placed {
+  std::string name;
+  Value value;
+  std::vector<PlacedShape> shapes;
+  Pose X_WB;
+  BodyKind kind;
+  bool is_there_at_start;
+};
+
+std::vector<ScenarioReader::Placed> ScenarioReader::placed_solids() const {
+  std::vector<Placed> solids;
+  for (std::size_t i = 0; i < scenario_.containers.size(); ++i) {
+    const Container& container = scenario_.containers[i];
+    solids.push_back({container.name, container_values_[i], make_walls(container), container.X_WT, BodyKind::Static,
+                      true});
+  }
+  for (std::size_t i = 0; i < scenario_.bodies.size(); ++i) {
+    const Body& body = scenario_.bodies[i];
+    solids.push_back({body.name, body_values_[i], body.shapes, body.X_WB, body.kind, body.appears_at == 0.0});
+  }
+  if (scenario_.aligner && !scenario_.aligner->plates.empty())
+    solids.push_back({"aligner", *aligner_value_, scenario_.aligner->plates, scenario_.aligner->X_WA, BodyKind::Static,
+                      true});
+  return solids;
+}
+
+void ScenarioReader::check_overlaps() const {
+  const std::vector<Placed> solids = placed_solids();
+  for (std::size_t j = 1; j < solids.size(); ++j) {
+    for (std::size_t i = 0; i < j; ++i) {
+      const Placed& a = solids[i];
+      const Placed& b = solids[j];
+      const bool are_static = a.kind == BodyKind::Static && b.kind == BodyKind::Static;
+      const bool is_one_dynamic = a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic;
+      if (!(are_static || is_one_dynamic) || !a.is_there_at_start || !b.is_there_at_start) continue;
+      double depth = 0.0;
+      for (const PlacedShape& shape_a : a.shapes)
+        for (const PlacedShape& shape_b : b.shapes)
+          depth = std::max(depth, overlap_of(shape_a, a.X_WB, shape_b, b.X_WB));
+      if (depth <= (are_static ? kStaticOverlap : kStartOverlap)) continue;
+      const std::string got = quote(b.name) + " overlaps " + quote(a.name) + " by " +
+                              to_text(std::round(depth * 1e7) / 1e4) + " mm";
+      b.value.fail(got, are_static ? "static bodies that touch at most"
+                                   : "bodies that start no deeper than 1 mm in another");
+    }
+  }
+}
+
+void ScenarioReader::check_parcel_fits(const Value& value, const Parcel& parcel) const {
+  const Container* target = find_container(scenario_, scenario_.target);
+  if (target == nullptr) return;
+  const auto box = sorted(collision_size(scenario_, parcel));
+  const auto room = sorted(target->inner_size);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (box[i] > room[i])
+      value.fail("parcel " + quote(parcel.id) + " of " + to_millimetres(parcel.size),
+                 "a box that fits into container " + quote(target->name) + " of " +
+                     to_millimetres(target->inner_size) + " in some orientation");
+}
+
+void ScenarioReader::check_drops_fit(const Value& value, const Drops& drops) const {
+  const Vector3& room = find_container(scenario_, drops.container)->inner_size;
+  for (const std::string& name : drops.types) {
+    const Vector3& size = find_parcel_type(scenario_, name)->size;
+    const bool fits = (size.x() <= room.x() && size.y() <= room.y()) || (size.y() <= room.x() && size.x() <= room.y());
+    if (!fits)
+      value.fail("parcel type " + quote(name) + " of " + to_millimetres(size),
+                 "types whose upright footprint fits into the container of " + to_millimetres(room));
+  }
+}
+
+void ScenarioReader::check_materials_meet(const Value& at) const {
+  // How many things of each material can move, and which materials the others have.
+  std::map<int, int> moving;
+  std::set<int> fixed;
+  if (!scenario_.sequences.empty())
+    for (const Parcel& parcel : scenario_.parcels) ++moving[parcel.material.index];
+  if (scenario_.drops) moving[scenario_.drops->material.index] += scenario_.drops->count;
+  for (const Body& body : scenario_.bodies) {
+    if (body.kind == BodyKind::Dynamic) ++moving[body.material.index];
+    else fixed.insert(body.material.index);
+  }
+  for (const Container& container : scenario_.containers) fixed.insert(container.material.index);
+  if (scenario_.aligner && !scenario_.aligner->plates.empty()) fixed.insert(scenario_.aligner->material.index);
+  if (scenario_.tool && !scenario_.tool->rod_shapes.empty()) fixed.insert(scenario_.tool->rod_material.index);
+  if (scenario_.tool && !scenario_.tool->cup_shapes.empty()) fixed.insert(scenario_.tool->cup_material.index);
+
+  const auto require_pair = [&](int a, int b) {
+    if (find_contact(scenario_, {a}, {b})) return;
+    at.fail("nothing for " + quote(scenario_.materials[static_cast<std::size_t>(a)].name) + " on " +
+                quote(scenario_.materials[static_cast<std::size_t>(b)].name) + ", which can meet",
+            "a pair between them, or a default");
+  };
+  for (const auto& [a, count] : moving) {
+    for (const int b : fixed) require_pair(a, b);
+    for (const auto& [b, other_count] : moving)
+      if (a != b || count > 1) require_pair(a, b);
+  }
+}
+
+void ScenarioReader::read() {
+  const MapReader map = root_.map(
+      "scenario", {"name", "gravity", "time_step", "duration", "seed", "solver", "materials", "contacts", "frames",
+                   "parcel_clearance", "parcel_types", "parcels", "containers", "target", "bodies", "aligner", "tool",
+                   "cup", "controller", "sequences", "springs", "drops"});
+  const auto each = [&map](const char* key, auto&& read_one) {
+    if (const auto values = map.find(key))
+      for (const Value& value : values->list()) read_one(value);
+  };
+  read_settings(map);
+  read_materials(map);
+  if (const auto contacts = map.find("contacts")) read_contacts(*contacts);
+  if (const auto frames = map.find("frames")) read_frames(*frames);
+  each("parcel_types", [this](const Value& value) { read_parcel_type(value); });
+  each("parcels", [this](const Value& value) { read_parcel(value); });
+  read_containers(map);
+  each("bodies", [this](const Value& value) { read_body(value); });
+  if (const auto aligner = map.find("aligner")) read_aligner(*aligner);
+  if (const auto tool = map.find("tool")) read_tool(*tool);
+  if (const auto cup = map.find("cup")) read_cup(*cup);
+  if (const auto controller = map.find("controller")) read_controller(*controller);
+  each("sequences", [this](const Value& value) { read_sequence(value); });
+  each("springs", [this](const Value& value) { read_spring(value); });
+  if (const auto drops = map.find("drops")) read_drops(*drops);
+
+  for (std::size_t i = 0; i < scenario_.parcels.size(); ++i) check_parcel_fits(parcel_values_[i], scenario_.parcels[i]);
+  if (scenario_.drops) check_drops_fit(*drops_value_, *scenario_.drops);
+  const auto contacts = map.find("contacts");
+  check_materials_meet(contacts ? *contacts : map.require("materials"));
+  check_overlaps();
+}
+
+}  // namespace snug::model::internal

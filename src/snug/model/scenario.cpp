@@ -1,0 +1,106 @@
+// Scenario: loading from file or text, and looking things up by name.
+#include "snug/model/scenario.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "snug/model/internal/parse.hpp"
+#include "snug/model/internal/scenario_reader.hpp"
+
+namespace snug::model {
+namespace internal {
+namespace {
+
+std::string where_of(std::string_view name, const YAML::Mark& mark) {
+  return std::string(name) + (mark.is_null() ? "" : ":" + std::to_string(mark.line + 1));
+}
+
+}  // namespace
+
+Scenario parse_text(std::string_view text, std::string_view name, std::set<std::string>* known_keys) {
+  Document document{std::string(name), {}};
+  Scenario scenario;
+  scenario.source_name = document.name;
+  scenario.source_text = std::string(text);
+  scenario.name = document.name;
+  try {
+    const std::vector<YAML::Node> roots = YAML::LoadAll(scenario.source_text);
+    if (roots.size() != 1)
+      throw InputError(document.name + ":1", "", std::to_string(roots.size()) + " YAML documents", "exactly one");
+    ScenarioReader(Value(roots.front(), "", document, 1), scenario).read();
+  } catch (const YAML::Exception& error) {
+    throw InputError(where_of(name, error.mark), "", error.msg, "YAML that can be parsed");
+  }
+  if (known_keys != nullptr) known_keys->insert(document.known_keys.begin(), document.known_keys.end());
+  return scenario;
+}
+
+}  // namespace internal
+
+namespace {
+
+template <class Thing, class Key>
+const Thing* find_named(const std::vector<Thing>& things, Key Thing::*key, std::string_view name) {
+  const auto found = std::find_if(things.begin(), things.end(), [&](const Thing& t) { return t.*key == name; });
+  return found == things.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw InputError(path.string(), "", "no readable file", "a scenario file (YAML)");
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!(text << file.rdbuf())) throw InputError(path.string(), "", "a file that is empty or cannot be read", "YAML text");
+  Scenario scenario = parse_scenario(text.str(), path.string());
+  if (scenario.name == scenario.source_name) scenario.name = path.stem().string();
+  return scenario;
+}
+
+Scenario parse_scenario(std::string_view text, std::string_view name) {
+  return internal::parse_text(text, name, nullptr);
+}
+
+std::optional<ContactParams> find_contact(const Scenario& scenario, MaterialId a, MaterialId b) {
+  for (const ContactPair& pair : scenario.contact_pairs)
+    if ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a)) return pair.params;
+  return scenario.default_contact;
+}
+
+const Parcel* find_parcel(const Scenario& scenario, std::string_view id) {
+  return find_named(scenario.parcels, &Parcel::id, id);
+}
+
+const ParcelType* find_parcel_type(const Scenario& scenario, std::string_view name) {
+  return find_named(scenario.parcel_types, &ParcelType::name, name);
+}
+
+const Container* find_container(const Scenario& scenario, std::string_view name) {
+  return find_named(scenario.containers, &Container::name, name);
+}
+
+const Sequence* find_sequence(const Scenario& scenario, std::string_view name) {
+  return find_named(scenario.sequences, &Sequence::name, name);
+}
+
+const Body* find_body(const Scenario& scenario, std::string_view name) {
+  return find_named(scenario.bodies, &Body::name, name);
+}
+
+const CorrectionLayer* find_correction_layer(const Scenario& scenario, std::string_view name) {
+  return find_named(scenario.controller.correction_layers, &CorrectionLayer::name, name);
+}
+
+double compute_filling_degree_percent(const Scenario& scenario, const Container& container,
+                                      const std::vector<std::string>& parcel_ids) {
+  double volume = 0.0;
+  for (const std::string& id : parcel_ids)
+    if (const Parcel* parcel = find_parcel(scenario, id)) volume += parcel->size.prod();
+  return 100.0 * volume / compute_volume(container);
+}
+
+}  // namespace snug::model
