@@ -35,15 +35,15 @@ bool has_finite(const BodyState& body) {
 }
 
 void keep_impulses(WorldState& state, Scratch& work, double dt) {
-  work.reports.resize(work.sorted.size());
-  for (std::size_t i = 0; i < work.sorted.size(); ++i) {
-    const Contact& contact = work.sorted[i];
-    const Row& row = work.rows[i];
-    const Vector3 impulse = row.lambda[0] * contact.n + row.lambda[1] * contact.t1 + row.lambda[2] * contact.t2;
-    const BodyWork& a = work.bodies[static_cast<std::size_t>(contact.body_a)];
-    state.pairs[contact.pair].points[static_cast<std::size_t>(contact.point)].impulse_A = a.R_WB.transpose() * impulse;
-    work.reports[i] = {BodyId{contact.body_a}, BodyId{contact.body_b}, contact.p_WQ, contact.n, impulse / dt,
-                       contact.phi};
+  work.reports.resize(work.contacts.size());
+  for (const Row& row : work.rows) {
+    const Contact& contact = work.contacts[static_cast<std::size_t>(row.contact)];
+    const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+    const Vector3 impulse = row.lambda[0] * patch.n + row.lambda[1] * patch.t1 + row.lambda[2] * patch.t2;
+    const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
+    state.pairs[patch.pair].points[static_cast<std::size_t>(contact.point)].impulse_A = a.R_WB.transpose() * impulse;
+    work.reports[static_cast<std::size_t>(row.contact)] = {
+        BodyId{patch.body_a}, BodyId{patch.body_b}, contact.p_WQ, patch.n, impulse / dt, contact.phi};
   }
 }
 
@@ -83,11 +83,11 @@ void put_to_sleep(const WorldModel& model, const WorldInput& input, WorldState& 
   for (const ExternalWrench& wrench : input.wrenches) {
     state.bodies[static_cast<std::size_t>(wrench.body.index)].slow_time = 0.0;
   }
-  for (const Contact& contact : work.sorted) {  // what a moving kinematic body touches stays awake
-    const BodyWork& a = work.bodies[static_cast<std::size_t>(contact.body_a)];
-    const BodyWork& b = work.bodies[static_cast<std::size_t>(contact.body_b)];
-    if (a.active < 0 && a.is_moving) state.bodies[static_cast<std::size_t>(contact.body_b)].slow_time = 0.0;
-    if (b.active < 0 && b.is_moving) state.bodies[static_cast<std::size_t>(contact.body_a)].slow_time = 0.0;
+  for (const Patch& patch : work.patches) {  // what a moving kinematic body touches stays awake
+    const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
+    const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
+    if (a.active < 0 && a.is_moving) state.bodies[static_cast<std::size_t>(patch.body_b)].slow_time = 0.0;
+    if (b.active < 0 && b.is_moving) state.bodies[static_cast<std::size_t>(patch.body_a)].slow_time = 0.0;
   }
   // Islands are complete sets in the union-find forest; a body without contacts falls and never sleeps.
   std::fill_n(work.island_of_root.begin(), work.active_count, -1);  // now: 1 may sleep, 0 must not
@@ -172,7 +172,7 @@ void end_step(const WorldModel& model, const WorldInput& input, WorldState& stat
     body.p_WBcm = target.X_WB_end.p;
     if (body.quat_WB.toRotationMatrix() != target.X_WB_end.R) body.quat_WB = Quaternion(target.X_WB_end.R).normalized();
   }
-  report.contacts = static_cast<int>(work.sorted.size());
+  report.contacts = static_cast<int>(work.contacts.size());
   report.awake = work.active_count;
   if (model.settings.sleep.enabled) put_to_sleep(model, input, state, work);
 }
@@ -183,6 +183,7 @@ StepReport step(const WorldModel& model, const WorldInput& input, WorldState& st
   internal::Scratch& work = workspace.scratch();
   StepReport report;
   ++state.step_index;
+  work.reports.clear();
   if (!internal::begin_step(model, input, state, work)) return report;
   if (!internal::update_pairs(model, state, work)) {
     report.status = StepStatus::TooManyPairs;

@@ -110,7 +110,8 @@ internal::Scratch::Scratch(const WorldModel& model) {
   parent.resize(n);
   island_of_root.resize(n);
   contacts = BoundedVector<Contact>(contact_capacity);
-  sorted = BoundedVector<Contact>(contact_capacity);
+  patches = BoundedVector<Patch>(std::min(model.pair_capacity, contact_capacity));
+  patch_order.resize(patches.capacity());
   rows = BoundedVector<Row>(contact_capacity);
   reports = BoundedVector<ContactReport>(contact_capacity);
   islands.resize(n + 1);

@@ -125,12 +125,13 @@ double relative_velocity(const Row& row, int axis, const double* u) noexcept {
 }
 
 void finish_row(Row& row) noexcept {
-  const auto product = [&row](int i, int j) {
-    double sum = 0.0;
-    for (int k = 0; k < 6; ++k) sum += row.a[i][k] * row.a[j][k] + row.b[i][k] * row.b[j][k];
-    return sum;
-  };
   double* W = row.W;
+  const auto product = [&row](int i, int j) {
+    Pair sum{};
+    if (row.ia >= 0) sum = dot(row.a[i], row.a[j]);
+    if (row.ib >= 0) sum += dot(row.b[i], row.b[j]);
+    return sum[0] + sum[1];
+  };
   W[0] = product(0, 0) + row.gamma, W[1] = product(0, 1), W[2] = product(0, 2);
   W[3] = product(1, 1), W[4] = product(1, 2), W[5] = product(2, 2);
   const double c0 = W[3] * W[5] - W[4] * W[4];

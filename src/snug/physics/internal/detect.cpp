@@ -11,6 +11,7 @@ namespace {
 // still followed exactly to first order; the neglected part is angle^2 * size, below 1e-8 m for a 0.3 m box.
 constexpr double kKeepDistance = 5e-5;      ///< m
 constexpr double kKeepHalfAngle = 5e-5;     ///< rad/2
+constexpr double kTouchGap = 1e-5;          ///< m, a pair nearer than this at the end of a step wakes sleepers
 constexpr double kMatchDistance = 4e-3;     ///< m, impulses are handed to a new feature this near to an old one
 
 struct PairBodies {
@@ -115,12 +116,8 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
   const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
   const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
   const Vector3 n = a.R_WB * pair.n_A;
-  Vector3 t1, t2;
-  tangents_of(n, t1, t2);
-  const ContactLaw& law = model.law(bodies.geom_a.material, bodies.geom_b.material);
-  const double dt = model.settings.dt;
+  const auto first = static_cast<int>(work.contacts.size());
   bool touches = false;
-  int used = 0;
   for (int i = 0; i < pair.count; ++i) {
     PairPoint& point = pair.points[static_cast<std::size_t>(i)];
     const Vector3 p_WA = a.R_WB * point.p_A + a.p_WB;
@@ -133,25 +130,21 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
     const Vector3 p_WQ = 0.5 * (p_WA + p_WB);
     const Vector3 v = (b.velocity_start + b.angular_start.cross(p_WQ - b.p_WBcm)) -
                       (a.velocity_start + a.angular_start.cross(p_WQ - a.p_WBcm));
-    Contact& contact = work.contacts.push_back(Contact{});
-    contact.pair = index;
-    contact.point = i;
-    contact.body_a = bodies.a;
-    contact.body_b = bodies.b;
-    contact.p_WQ = p_WQ;
-    contact.n = n;
-    contact.t1 = t1;
-    contact.t2 = t2;
-    contact.phi = phi;
-    contact.approach = n.dot(v);
-    contact.law = &law;
-    ++used;
-    if (phi + dt * std::min(0.0, contact.approach) <= model.settings.contact_margin * 1e-2) touches = true;
+    const double approach = n.dot(v);
+    work.contacts.push_back({p_WQ, phi, approach, static_cast<int>(work.patches.size()), i});
+    if (phi + model.settings.dt * std::min(0.0, approach) <= kTouchGap) touches = true;
   }
-  const double share = used > 0 ? 1.0 / used : 1.0;
-  for (int i = 0; i < used; ++i) {
-    work.contacts[work.contacts.size() - 1 - static_cast<std::size_t>(i)].patch_share = share;
-  }
+  const int count = static_cast<int>(work.contacts.size()) - first;
+  if (count == 0) return false;
+  Patch& patch = work.patches.push_back(Patch{});
+  patch.pair = index;
+  patch.body_a = bodies.a;
+  patch.body_b = bodies.b;
+  patch.first_contact = first;
+  patch.contact_count = count;
+  patch.n = n;
+  tangents_of(n, patch.t1, patch.t2);
+  patch.law = &model.law(bodies.geom_a.material, bodies.geom_b.material);
   return touches;
 }
 
@@ -183,6 +176,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   // A body can be pushed by another one, so the fastest of all bounds what may close a gap in one step.
   const double reach = dt * (2.0 * fastest + 2.0 * dt * model.gravity.norm()) + 2e-5;
   const double margin = std::max(model.settings.contact_margin, 1.5 * reach);
+  work.patches.clear();
   work.contacts.clear();
   std::fill_n(work.pair_done.begin(), state.pairs.size(), char{0});
   for (bool has_woken = true; has_woken;) {  // waking a group brings its pairs in
@@ -218,7 +212,8 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
     }
   }
   for (const Contact& contact : work.contacts) {
-    if (contact.law->stiffness <= 0.0) report.worst_penetration = std::max(report.worst_penetration, -contact.phi);
+    if (work.patches[static_cast<std::size_t>(contact.patch)].law->stiffness > 0.0) continue;
+    report.worst_penetration = std::max(report.worst_penetration, -contact.phi);
   }
 }
 

@@ -34,38 +34,40 @@ int island_of(Scratch& work, int active) {
 void build_islands(const WorldInput& input, Scratch& work) {
   std::iota(work.parent.begin(), work.parent.begin() + work.active_count, 0);
   std::fill_n(work.island_of_root.begin(), work.active_count, -1);
-  for (const Contact& contact : work.contacts) {
-    const int a = active_of(work, contact.body_a), b = active_of(work, contact.body_b);
+  for (const Patch& patch : work.patches) {
+    const int a = active_of(work, patch.body_a), b = active_of(work, patch.body_b);
     if (a < 0 || b < 0) continue;
     const int root_a = find_root(work.parent, a), root_b = find_root(work.parent, b);
     if (root_a != root_b) work.parent[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
   }
   work.island_count = 0;
-  for (Contact& contact : work.contacts) {
-    const int a = active_of(work, contact.body_a);
-    contact.island = island_of(work, a >= 0 ? a : active_of(work, contact.body_b));
-    ++work.islands[static_cast<std::size_t>(contact.island)].end_row;  // counts first, ranges below
+  for (Patch& patch : work.patches) {
+    const int a = active_of(work, patch.body_a);
+    patch.island = island_of(work, a >= 0 ? a : active_of(work, patch.body_b));
+    Island& island = work.islands[static_cast<std::size_t>(patch.island)];
+    ++island.end_patch;  // counts first, ranges below
+    island.end_row += patch.contact_count;
   }
-  work.element_count = 0;
-  for (std::size_t i = 0; i < input.elements.size(); ++i) {
-    const int active = active_of(work, input.elements[i].body.index);
-    if (active < 0) continue;
-    ++work.islands[static_cast<std::size_t>(island_of(work, active))].end_element;
-    ++work.element_count;
+  for (const ElementUse& use : input.elements) {
+    const int active = active_of(work, use.body.index);
+    if (active >= 0) ++work.islands[static_cast<std::size_t>(island_of(work, active))].end_element;
   }
-  int rows = 0, elements = 0;
+  int patches = 0, rows = 0, elements = 0;
   for (int i = 0; i < work.island_count; ++i) {
     Island& island = work.islands[static_cast<std::size_t>(i)];
+    island.first_patch = patches;
+    patches += island.end_patch;
+    island.end_patch = island.first_patch;  // filled below
     island.first_row = rows;
     rows += island.end_row;
-    island.end_row = island.first_row;  // filled below
+    island.end_row = rows;
     island.first_element = elements;
     elements += island.end_element;
     island.end_element = island.first_element;
   }
-  work.sorted.resize(work.contacts.size());
-  for (const Contact& contact : work.contacts) {
-    work.sorted[static_cast<std::size_t>(work.islands[static_cast<std::size_t>(contact.island)].end_row++)] = contact;
+  for (std::size_t i = 0; i < work.patches.size(); ++i) {
+    Island& island = work.islands[static_cast<std::size_t>(work.patches[i].island)];
+    work.patch_order[static_cast<std::size_t>(island.end_patch++)] = static_cast<int>(i);
   }
   for (std::size_t i = 0; i < input.elements.size(); ++i) {
     const int active = active_of(work, input.elements[i].body.index);

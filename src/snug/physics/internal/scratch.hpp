@@ -22,6 +22,7 @@ struct BodyWork {
   int active = -1;                          ///< index among the bodies that move in this step
   bool is_moving = false;                   ///< dynamic and awake, or kinematic with a motion
   bool has_element = false;
+  bool has_result = false;                  ///< velocity holds the answer of the contact solver
 };
 
 /// Maps impulses to velocities of one moving body: v = T u with T T^T = inverse mass, so that every row of the
@@ -33,19 +34,25 @@ struct Whitening {
   Matrix6 dense = Matrix6::Zero();          ///< T of a body with an implicit force element
 };
 
-/// A touching point that may matter in this step.
-struct Contact {
+/// The contacts of one pair: they share bodies, normal and law.
+struct Patch {
   std::uint32_t pair = 0;
-  int point = 0;
   int body_a = 0, body_b = 0;
-  Vector3 p_WQ = Vector3::Zero();
+  int first_contact = 0;
+  int contact_count = 0;
+  int island = 0;
   Vector3 n = Vector3::UnitZ();             ///< from A to B, W
   Vector3 t1 = Vector3::UnitX(), t2 = Vector3::UnitY();
+  const ContactLaw* law = nullptr;
+};
+
+/// A touching point that may matter in this step.
+struct Contact {
+  Vector3 p_WQ = Vector3::Zero();
   double phi = 0.0;
   double approach = 0.0;                    ///< normal relative velocity at the start of the step, m/s
-  double patch_share = 1.0;                 ///< 1 / points of the manifold
-  const ContactLaw* law = nullptr;
-  int island = 0;
+  int patch = 0;
+  int point = 0;                            ///< of the pair's manifold
 };
 
 /// One frictional contact in whitened coordinates: rows n, t1, t2.
@@ -69,6 +76,8 @@ struct alignas(16) Row {
 };
 
 struct Island {
+  int first_patch = 0;                      ///< in Scratch::patch_order
+  int end_patch = 0;
   int first_row = 0;
   int end_row = 0;
   int first_element = 0;
@@ -86,8 +95,9 @@ struct Scratch {
   std::vector<double> shift;                ///< 6 per active body, position correction in whitened coordinates
   std::vector<int> parent;                  ///< union-find over active bodies
   std::vector<int> island_of_root;
-  BoundedVector<Contact> contacts;
-  BoundedVector<Contact> sorted;            ///< contacts by island
+  BoundedVector<Patch> patches;
+  BoundedVector<Contact> contacts;          ///< by patch
+  std::vector<int> patch_order;             ///< patches by island
   BoundedVector<Row> rows;
   BoundedVector<ContactReport> reports;
   std::vector<Island> islands;
@@ -109,7 +119,7 @@ struct Scratch {
 bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work);
 /// Keeps state.pairs equal to the geoms whose fat boxes overlap. False: too many pairs.
 bool update_pairs(const WorldModel& model, WorldState& state, Scratch& work);
-/// Manifolds of all pairs that matter, wakes what is touched, fills work.contacts.
+/// Manifolds of all pairs that matter, wakes what is touched, fills work.patches and work.contacts.
 void detect_contacts(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
                      StepReport& report);
 /// Marks a sleeping group as moving, from within a step.

@@ -42,51 +42,84 @@ void unwhiten(const Whitening& whitening, const double* u, Vector3& linear, Vect
   angular = whitening.angular * map.tail<3>();
 }
 
-void fill_side(const Whitening& whitening, const Contact& contact, const Vector3& arm, double sign,
-               double (&out)[3][6]) {
-  const Vector3* axes[3] = {&contact.n, &contact.t1, &contact.t2};
+/// How a body enters the rows of a patch: whitened J of axis i at arm r is sign (L_i, G_i r), G_i a 3 x 3 matrix.
+struct Side {
+  int active = -1;
+  Vector3 p_WBcm;
+  double linear[3][3];                       ///< L_i; unused when dense
+  Eigen::Matrix<double, 9, 3> angular;       ///< G_i stacked: row 3 i + j is (d_i x t_j), t_j columns of the whitening
+  const Whitening* whitening = nullptr;
+  double sign = 1.0;
+};
+
+Side side_of(const Scratch& work, const BodyWork& body, const Patch& patch, double sign) {
+  Side side;
+  side.active = body.active;
+  side.sign = sign;
+  if (body.active < 0) return side;
+  side.p_WBcm = body.p_WBcm;
+  side.whitening = &work.whitening[static_cast<std::size_t>(body.active)];
+  if (side.whitening->is_dense) return side;
+  const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
   for (int i = 0; i < 3; ++i) {
     const Vector3 d = sign * *axes[i];
-    const Vector3 moment = arm.cross(d);
-    Eigen::Map<Vector6> row(out[i]);
-    if (whitening.is_dense) {
+    for (int j = 0; j < 3; ++j) {
+      side.linear[i][j] = side.whitening->linear * d[j];
+      side.angular.row(3 * i + j) = d.cross(side.whitening->angular.col(j)).transpose();
+    }
+  }
+  return side;
+}
+
+void fill_side(const Side& side, const Patch& patch, const Vector3& p_WQ, double (&out)[3][6]) {
+  const Vector3 arm = p_WQ - side.p_WBcm;
+  if (side.whitening->is_dense) {
+    const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
+    for (int i = 0; i < 3; ++i) {
       Vector6 j;
-      j << d, moment;
-      row = whitening.dense.triangularView<Eigen::Upper>().transpose() * j;
-    } else {
-      row.head<3>() = whitening.linear * d;
-      row.tail<3>() = whitening.angular.transpose() * moment;
+      j << side.sign * *axes[i], arm.cross(side.sign * *axes[i]);
+      Eigen::Map<Vector6> row(out[i]);
+      row = side.whitening->dense.triangularView<Eigen::Upper>().transpose() * j;
+    }
+    return;
+  }
+  const Eigen::Matrix<double, 9, 1> angular = side.angular * arm;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      out[i][j] = side.linear[i][j];
+      out[i][3 + j] = angular[3 * i + j];
     }
   }
 }
 
-void add_bias(const BodyWork& body, const Contact& contact, double sign, Row& row) {
-  if (!body.is_moving) return;
-  const Vector3 v = sign * (body.velocity_start + body.angular_start.cross(contact.p_WQ - body.p_WBcm));
-  row.bias[0] += contact.n.dot(v);
-  row.bias[1] += contact.t1.dot(v);
-  row.bias[2] += contact.t2.dot(v);
+/// Relative velocity that a moving kinematic body brings in.
+void add_bias(const BodyWork& body, const Patch& patch, const Vector3& p_WQ, double sign, Row& row) {
+  const Vector3 v = sign * (body.velocity_start + body.angular_start.cross(p_WQ - body.p_WBcm));
+  row.bias[0] += patch.n.dot(v);
+  row.bias[1] += patch.t1.dot(v);
+  row.bias[2] += patch.t2.dot(v);
 }
 
 /// The law of one contact in this step: docs/theory/contact.md, section 3.
-void fill_law(const StepSettings& settings, const Contact& contact, double free_velocity, Row& row) {
+void fill_law(const StepSettings& settings, const Patch& patch, const Contact& contact, double free_velocity,
+              Row& row) {
   const double dt = settings.dt;
   const double mean = 0.5 * (contact.approach + free_velocity);
-  const ContactLaw& law = *contact.law;
+  const ContactLaw& law = *patch.law;
   row.mu = law.friction;
   row.gamma = 0.0;
   row.gap_end = 0.0;
   row.is_bounce = false;
   row.is_rigid = law.stiffness <= 0.0;
   if (!row.is_rigid) {
-    const double k = law.stiffness * contact.patch_share, d = law.damping * contact.patch_share;
+    const double k = law.stiffness / patch.contact_count, d = law.damping / patch.contact_count;
     const double s = 0.5 * k * dt + d;
     row.gamma = 1.0 / (dt * s);
     row.target = -k * (contact.phi + 0.5 * dt * contact.approach) / s;
     return;
   }
   if (contact.phi + dt * mean > 0.0) {  // does not close by itself: may be pushed as far as closing
-    row.target = -2.0 * contact.phi / dt - contact.approach;
+    row.target = std::min(0.0, -2.0 * contact.phi / dt - contact.approach);
     return;
   }
   // Closes at the fraction theta of the step, with this speed.
@@ -101,41 +134,43 @@ void fill_law(const StepSettings& settings, const Contact& contact, double free_
   }
 }
 
-void build_row(const WorldModel& model, const WorldState& state, Scratch& work, int index, bool is_first) {
-  const Contact& contact = work.sorted[static_cast<std::size_t>(index)];
-  Row& row = work.rows[static_cast<std::size_t>(index)];
-  const BodyWork& a = work.bodies[static_cast<std::size_t>(contact.body_a)];
-  const BodyWork& b = work.bodies[static_cast<std::size_t>(contact.body_b)];
-  double kept[3] = {row.lambda[0], row.lambda[1], row.lambda[2]};
-  row = Row{};
-  row.ia = a.active;
-  row.ib = b.active;
-  row.contact = index;
-  if (a.active >= 0) {
-    fill_side(work.whitening[static_cast<std::size_t>(a.active)], contact, contact.p_WQ - a.p_WBcm, -1.0, row.a);
-  } else {
-    add_bias(a, contact, -1.0, row);
-  }
-  if (b.active >= 0) {
-    fill_side(work.whitening[static_cast<std::size_t>(b.active)], contact, contact.p_WQ - b.p_WBcm, 1.0, row.b);
-  } else {
-    add_bias(b, contact, 1.0, row);
-  }
-  fill_law(model.settings, contact, relative_velocity(row, 0, work.u.data()), row);
-  finish_row(row);
-  if (!is_first) {
-    std::copy(kept, kept + 3, row.lambda);
-    return;
-  }
-  const PairPoint& point = state.pairs[contact.pair].points[static_cast<std::size_t>(contact.point)];
-  const Vector3 impulse = a.R_WB * point.impulse_A;
-  row.lambda[0] = std::max(0.0, contact.n.dot(impulse));
-  row.lambda[1] = contact.t1.dot(impulse);
-  row.lambda[2] = contact.t2.dot(impulse);
-  const double limit = row.mu * row.lambda[0], size = std::hypot(row.lambda[1], row.lambda[2]);
-  if (size > limit) {
-    row.lambda[1] *= limit / size;
-    row.lambda[2] *= limit / size;
+/// Starts from the impulses of the step before, cut to the cone.
+void warm_start(const Patch& patch, const Vector3& impulse, Row& row) {
+  row.lambda[0] = std::max(0.0, patch.n.dot(impulse));
+  row.lambda[1] = patch.t1.dot(impulse);
+  row.lambda[2] = patch.t2.dot(impulse);
+  const double limit = row.mu * row.lambda[0];
+  const double square = row.lambda[1] * row.lambda[1] + row.lambda[2] * row.lambda[2];
+  if (square <= limit * limit) return;
+  const double scale = limit / std::sqrt(square);
+  row.lambda[1] *= scale;
+  row.lambda[2] *= scale;
+}
+
+/// Rows of an island, from the free velocities in work.u. The first time with the impulses of the step before, later
+/// with those of the row.
+void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first) {
+  Row* row = work.rows.begin() + island.first_row;
+  for (int i = island.first_patch; i < island.end_patch; ++i) {
+    const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
+    const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
+    const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
+    const Side side_a = side_of(work, a, patch, -1.0), side_b = side_of(work, b, patch, 1.0);
+    const auto& points = state.pairs[patch.pair].points;
+    for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
+      const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
+      row->ia = a.active;
+      row->ib = b.active;
+      row->contact = k;
+      std::fill_n(row->bias, 3, 0.0);
+      if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, row->a);
+      if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, row->b);
+      if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ, -1.0, *row);
+      if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ, 1.0, *row);
+      fill_law(model.settings, patch, contact, relative_velocity(*row, 0, work.u.data()), *row);
+      finish_row(*row);
+      if (is_first) warm_start(patch, a.R_WB * points[static_cast<std::size_t>(contact.point)].impulse_A, *row);
+    }
   }
 }
 
@@ -266,12 +301,15 @@ void find_element_bodies(const WorldInput& input, const Scratch& work, const Isl
   }
 }
 
-void read_velocities(Scratch& work, const Row* first, const Row* end) {
-  for (const Row* row = first; row != end; ++row) {
-    for (const int active : {row->ia, row->ib}) {
-      if (active < 0) continue;
-      BodyWork& body = work.bodies[static_cast<std::size_t>(work.active[static_cast<std::size_t>(active)])];
-      unwhiten(work.whitening[static_cast<std::size_t>(active)], work.u.data() + 6 * active, body.velocity,
+/// Velocities that the contacts changed.
+void read_velocities(Scratch& work, const Island& island) {
+  for (int i = island.first_patch; i < island.end_patch; ++i) {
+    const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
+    for (const int index : {patch.body_a, patch.body_b}) {
+      BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
+      if (body.active < 0 || body.has_result) continue;
+      body.has_result = true;
+      unwhiten(work.whitening[static_cast<std::size_t>(body.active)], work.u.data() + 6 * body.active, body.velocity,
                body.angular);
     }
   }
@@ -279,7 +317,7 @@ void read_velocities(Scratch& work, const Row* first, const Row* end) {
 
 void solve_plain_island(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island,
                         StepReport& report) {
-  for (int i = island.first_row; i < island.end_row; ++i) build_row(model, state, work, i, true);
+  build_rows(model, state, work, island, true);
   const SolveResult result = solve_rows(model.settings, work.rows.begin() + island.first_row,
                                         work.rows.begin() + island.end_row, work.u.data());
   report.sweeps = std::max(report.sweeps, result.sweeps);
@@ -289,9 +327,9 @@ void solve_plain_island(const WorldModel& model, const WorldState& state, Scratc
 
 /// Copies the free velocities of the island's plain bodies into work.u (the solver changes them in place).
 void reset_plain_bodies(Scratch& work, const Island& island) {
-  for (int i = island.first_row; i < island.end_row; ++i) {
-    const Contact& contact = work.sorted[static_cast<std::size_t>(i)];
-    for (const int index : {contact.body_a, contact.body_b}) {
+  for (int i = island.first_patch; i < island.end_patch; ++i) {
+    const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
+    for (const int index : {patch.body_a, patch.body_b}) {
       BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
       if (body.active < 0 || body.has_element) continue;
       Eigen::Map<Vector6>(work.u.data() + 6 * body.active) =
@@ -316,7 +354,7 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
     }
     if (iteration > 0 && error <= model.settings.tolerance) break;
     reset_plain_bodies(work, island);
-    for (int i = island.first_row; i < island.end_row; ++i) build_row(model, state, work, i, iteration == 0);
+    build_rows(model, state, work, island, iteration == 0);
     SolveResult result;
     if (first != end) result = solve_rows(model.settings, first, end, work.u.data());
     report.sweeps = std::max(report.sweeps, result.sweeps);
@@ -379,7 +417,7 @@ void solve_islands(const WorldModel& model, const WorldInput& input, const World
     Eigen::Map<Vector6>(work.u.data() + 6 * i) =
         whiten(work.whitening[static_cast<std::size_t>(i)], body.velocity, body.angular);
   }
-  work.rows.resize(work.sorted.size());
+  work.rows.resize(work.contacts.size());
   std::fill_n(work.shift.begin(), 6 * work.active_count, 0.0);
   for (int i = 0; i < work.island_count; ++i) {
     const Island& island = work.islands[static_cast<std::size_t>(i)];
@@ -390,8 +428,8 @@ void solve_islands(const WorldModel& model, const WorldInput& input, const World
     }
     Row* first = work.rows.begin() + island.first_row;
     Row* end = work.rows.begin() + island.end_row;
-    correct_positions(model.settings, first, end, work.sorted.begin(), work.u.data(), work.shift.data());
-    read_velocities(work, first, end);
+    correct_positions(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
+    read_velocities(work, island);
   }
 }
 
