@@ -1,0 +1,87 @@
+// Vacuum phases: when the lip seals, how pressure drives the cup, when it lets go, and the push of an unsealed lip.
+#pragma once
+
+#include "snug/core/expected.hpp"
+#include "snug/cup/suction_cup.hpp"
+
+namespace snug::cup {
+
+/// Holding: the model of the report, attached and released at once. Phases: with pressure (docs/theory/cup.md, 6).
+enum class CupMode { Holding, Phases };
+
+enum class CupPhase {
+  Free,       ///< not sealed; the lip may push
+  Holding,    ///< sealed, vacuum on
+  Releasing,  ///< sealed, vacuum off, pressure on its way back
+};
+
+struct CupCommand {
+  bool vacuum = false;
+  bool blow_off = false;
+};
+
+/// Everything about the cup that changes. Copying it is a snapshot.
+struct CupState {
+  CupPhase phase = CupPhase::Free;
+  double pressure_gauge = 0.0;  ///< Pa, vacuum is negative
+  int body = -1;                ///< sealed to this body of the world
+  Pose X_PS;                    ///< lip on it
+  double bend = 0.0;            ///< rad, of the last step
+  bool operator==(const CupState&) const = default;
+};
+
+enum class NoSeal { OutOfReach, TooTilted, OverEdge };
+[[nodiscard]] const char* describe(NoSeal reason);
+
+struct NoSealReason {
+  NoSeal reason = NoSeal::OutOfReach;
+  double gap = 0.0;       ///< m, between the free lip and the face along Ez
+  double tilt = 0.0;      ///< rad, between lip plane and face
+  double overhang = 0.0;  ///< m, of the sealing disc over an edge of the face
+};
+
+struct Seal {
+  Pose X_PS;            ///< lip on the package: at the face, z into it, yaw of E
+  double length = 0.0;  ///< m, from E to the face along Ez
+  double tilt = 0.0;    ///< rad
+};
+
+/// Where the axis of the cup meets a box of these half sizes, and whether the lip seals there.
+[[nodiscard]] Expected<Seal, NoSealReason> try_seal(const model::CupParams& params, const Pose& X_WE,
+                                                    const Vector3& half, const Pose& X_WP);
+
+/// How far the cup is drawn in: 0 free, 1 holding. Smooth in the pressure.
+[[nodiscard]] double drawn_in(const model::CupParams& params, double pressure_gauge);
+/// Length from E to the unloaded lip at this pressure, m.
+[[nodiscard]] double unloaded_length(const model::CupParams& params, double pressure_gauge);
+/// The sealed cup at this pressure.
+[[nodiscard]] SuctionCup cup_at(const model::CupParams& params, double pressure_gauge, const Pose& X_PS);
+/// One step of the pressure, exact for a constant command.
+void advance_pressure(const model::CupParams& params, const CupCommand& command, double dt, CupState& state);
+
+enum class HoldLoss { None, Tension, Shear, Peel, Bending };
+[[nodiscard]] const char* describe(HoldLoss loss);
+
+/// Is this wrench (on the package, in S about the lip) more than the vacuum and the friction of the lip can carry?
+[[nodiscard]] HoldLoss find_hold_loss(const model::CupParams& params, double pressure_gauge, const Wrench& F_S,
+                                      double bend);
+
+/// The push of an open lip on a face: a unilateral spring along the face's normal, from E to the face.
+class LipPush final : public physics::ForceElement {
+ public:
+  LipPush() = default;
+  /// `stiffness` N/m and `damping` Ns/m along the normal, `length` of the unloaded cup; p_PS, n_P: where the lip
+  /// stands on the package and the outward normal there.
+  LipPush(double stiffness, double damping, double length, const Vector3& p_PS, const Vector3& n_P)
+      : stiffness_(stiffness), damping_(damping), length_(length), p_PS_(p_PS), n_P_(n_P) {}
+  [[nodiscard]] physics::ElementResponse evaluate(const physics::ElementQuery& query) const noexcept override;
+
+ private:
+  double stiffness_ = 0.0;
+  double damping_ = 0.0;
+  double length_ = 0.0;
+  Vector3 p_PS_ = Vector3::Zero();
+  Vector3 n_P_ = Vector3::UnitZ();
+};
+
+}  // namespace snug::cup
