@@ -45,24 +45,25 @@ enum class ControllerPhase { Ready, Waiting, Moving, Finished };
 /// All that changes from tick to tick. Copying it is a snapshot.
 struct ControllerState {
   ControllerPhase phase = ControllerPhase::Ready;
-  int row = -1;                       ///< the waypoint aimed at (or last reached, when finished); -1 before the first
-  std::int64_t tick_count = 0;        ///< ticks since the start; time is tick_count * tick
-  std::int64_t phase_ticks = 0;       ///< ticks since the present phase began
-  IO io;                              ///< commanded now
-  LspbSegment segment;                ///< toward `row`
-  Pose X_WE_reference;                ///< what the task follows
-  ToolState command;                  ///< at the end of the last tick
+  int row = -1;                  ///< the waypoint aimed at (or last reached, when finished); -1 before the first
+  std::int64_t tick_count = 0;   ///< ticks since the start; time is tick_count * tick
+  std::int64_t phase_ticks = 0;  ///< ticks since the present phase began
+  IO io;                         ///< commanded now
+  Pose X_WE_departure;           ///< where the tool was when it left the row before: the segment's start
+  LspbSegment segment;           ///< toward `row`; not yet set while waiting
+  Pose X_WE_reference;           ///< what the task follows
+  ToolState command;             ///< at the end of the last tick
   bool operator==(const ControllerState&) const = default;
 };
 
 struct ControllerOutput {
-  ToolState tool;     ///< commanded, at the end of the coming tick
+  ToolState tool;       ///< commanded, at the end of the coming tick
   Pose X_WE_reference;  ///< what the task followed (recordings)
-  IO io;              ///< from the start of the coming tick
+  IO io;                ///< from the start of the coming tick
   ControllerPhase phase = ControllerPhase::Ready;
-  int row = -1;       ///< aimed at
-  int reached = -1;   ///< row found reached at the start of this tick, -1 if none
-  int departed = -1;  ///< row whose IO took effect at the start of this tick, -1 if none; equals `row` then
+  int row = -1;               ///< aimed at
+  int reached = -1;           ///< row found reached at the start of this tick, -1 if none
+  int departed = -1;          ///< row whose IO took effect at the start of this tick, -1 if none; equals `row` then
   bool finished_now = false;  ///< the last row was reached at the start of this tick
 };
 

@@ -32,7 +32,8 @@ struct NamedLimits {
 [[nodiscard]] const MotionLimits& find_limits(const Program& program, std::size_t row,
                                               std::span<const NamedLimits> table);
 
-/// Throws InputError naming the prefix and the key when a limit is not a finite positive number. `where`: whose table.
+/// Throws InputError naming the prefix and the key when a limit is not between 1e-9 and 1e9. `where`: whose
+/// table.
 void check_limits(std::span<const NamedLimits> table, const std::string& where);
 
 }  // namespace snug::motion

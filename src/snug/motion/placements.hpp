@@ -27,11 +27,12 @@ struct Placement {
 
 /// Heights in W along z, which is up.
 struct PlacementSettings {
-  Pose X_WT;                 ///< container
-  double rim_height = 0.25;  ///< m, z of the container's rim in T
+  Pose X_WT;                       ///< container
+  double rim_height = 0.25;        ///< m, z of the container's rim in T
   double obstacle_top = -1.0e9;    ///< m, z in W of the highest fixed thing between aligner and container
   double pick_length = 0.050;      ///< m, from E to the top face when pressing
   double hold_length = 0.055;      ///< m, from E to the top face while the box hangs
+  double free_length = 0.070;      ///< m, from E to the lip of the cup that holds nothing
   double release_gap = 0.0;        ///< m, below the box when it is let go
   double travel_clearance = 0.06;  ///< m, under box or cup when crossing; above the precision of fly-by rows (0.05)
   /// m, above rim and packed boxes: height of a stop (PrePlaceNNN_2) where the tool settles sideways before it goes

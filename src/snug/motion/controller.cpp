@@ -1,0 +1,179 @@
+// Controller: runs a Program on the tool frame, one tick at a time: as the demonstrator did, or as it should have.
+#include "snug/motion/controller.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug::motion {
+namespace {
+
+void require(bool ok, const Program& program, const char* key, double got, const char* expected) {
+  if (!ok) throw InputError(program.name, key, fmt::format("{}", got), expected);
+}
+
+/// Ticks that pass until `time` is over; exact multiples are not rounded up.
+std::int64_t ticks_of(double time, double tick) { return static_cast<std::int64_t>(std::ceil(time / tick - 1e-9)); }
+
+void begin_motion(const PreparedProgram& plan, ControllerState& state) {
+  const std::size_t row = static_cast<std::size_t>(state.row);
+  state.phase = ControllerPhase::Moving;
+  state.phase_ticks = 0;
+  state.segment = LspbSegment(state.X_WE_departure, plan.program.waypoints[row].X_WE, plan.row_limits[row]);
+  if (plan.settings.kind == ControllerKind::Faithful && plan.settings.sampled_coast) {
+    state.segment = state.segment.with_sampled_coast(plan.settings.tick);
+  }
+}
+
+/// The row's switches act now; the motion to it begins now or, after a change of the vacuum, later.
+void depart(const PreparedProgram& plan, int row, const Pose& X_WE, ControllerState& state) {
+  const IO& io = plan.program.waypoints[static_cast<std::size_t>(row)].io;
+  const bool waits = io.vacuum != state.io.vacuum || (io.blow_off && !state.io.blow_off);
+  state.row = row;
+  state.io = io;
+  state.X_WE_departure = X_WE;
+  state.phase_ticks = 0;
+  if (waits && plan.settings.vacuum_wait > 0.0) {
+    state.phase = ControllerPhase::Waiting;
+  } else {
+    begin_motion(plan, state);
+  }
+}
+
+bool has_reached_row(const PreparedProgram& plan, const ToolState& measured, const ControllerState& state) {
+  const std::size_t row = static_cast<std::size_t>(state.row);
+  if (plan.settings.kind == ControllerKind::Ideal) {
+    return static_cast<double>(state.phase_ticks) * plan.settings.tick >= state.segment.duration();
+  }
+  return convergence_error(measured.X_WE, plan.program.waypoints[row].X_WE, plan.settings.convergence_deg_per_metre) <=
+         plan.row_limits[row].precision;
+}
+
+/// What the program does at the start of a tick: starts, waits, goes on to the next row, ends.
+void advance_program(const PreparedProgram& plan, const ToolState& measured, ControllerState& state,
+                     ControllerOutput& output) {
+  const bool is_ideal = plan.settings.kind == ControllerKind::Ideal;
+  const Pose& X_WE = is_ideal ? state.command.X_WE : measured.X_WE;
+  if (state.phase == ControllerPhase::Ready) {
+    depart(plan, 0, X_WE, state);
+    output.departed = 0;
+  } else if (state.phase == ControllerPhase::Waiting) {
+    if (state.phase_ticks >= ticks_of(plan.settings.vacuum_wait, plan.settings.tick)) begin_motion(plan, state);
+  } else if (state.phase == ControllerPhase::Moving && has_reached_row(plan, measured, state)) {
+    output.reached = state.row;
+    if (state.row + 1 < static_cast<int>(plan.program.waypoints.size())) {
+      depart(plan, state.row + 1, X_WE, state);
+      output.departed = state.row;
+    } else {
+      state.phase = ControllerPhase::Finished;
+      state.phase_ticks = 0;
+      state.X_WE_reference = plan.program.waypoints.back().X_WE;
+      output.finished_now = true;
+    }
+  }
+}
+
+/// Constant acceleration over one tick toward the reference: k err - 2 sqrt(k) V, as the demonstrator's task.
+ToolState follow_reference(const ToolState& measured, const Pose& X_WE_reference, double stiffness, double dt,
+                           const ToolState& command) {
+  const double damping = 2.0 * std::sqrt(stiffness);
+  const Vector3 error = X_WE_reference.p - measured.X_WE.p;
+  const Vector3 turn_W = log_rotation(X_WE_reference.R * measured.X_WE.R.transpose());
+  const Vector3 linear = stiffness * error - damping * measured.V_WE.linear;
+  const Vector3 angular = stiffness * turn_W - damping * measured.V_WE.angular;
+  ToolState next;
+  next.X_WE.p = command.X_WE.p + dt * (command.V_WE.linear + 0.5 * dt * linear);
+  next.X_WE.R = orthonormalized(exp_rotation(dt * (command.V_WE.angular + 0.5 * dt * angular)) * command.X_WE.R);
+  next.V_WE = {command.V_WE.linear + dt * linear, command.V_WE.angular + dt * angular};
+  return next;
+}
+
+}  // namespace
+
+PreparedProgram prepare(Program program, ControllerSettings settings) {
+  constexpr const char* kPositive = "a finite number above 0";
+  const auto is_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
+  require(is_positive(settings.tick), program, "controller tick", settings.tick, kPositive);
+  require(is_positive(settings.task_stiffness), program, "task stiffness", settings.task_stiffness, kPositive);
+  require(is_positive(settings.convergence_deg_per_metre), program, "convergence degrees per metre",
+          settings.convergence_deg_per_metre, kPositive);
+  require(std::isfinite(settings.vacuum_wait) && settings.vacuum_wait >= 0.0, program, "vacuum wait",
+          settings.vacuum_wait, "a finite number, 0 or more");
+  // The discrete task is stable below sqrt(k) dt = 1; the limit keeps it well damped.
+  const double product = std::sqrt(settings.task_stiffness) * settings.tick;
+  require(settings.kind == ControllerKind::Ideal || product <= 0.5, program, "task stiffness", settings.task_stiffness,
+          "sqrt(stiffness) * tick at most 0.5, else the task oscillates");
+  check_limits(settings.limits, program.name);
+  if (program.waypoints.empty()) throw InputError(program.name, "", "no rows", "at least one waypoint");
+
+  PreparedProgram plan;
+  for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
+    const Pose& X_WE = program.waypoints[row].X_WE;
+    if (!X_WE.p.allFinite() || !X_WE.R.allFinite()) {
+      throw InputError(place_of(program, row), program.waypoints[row].name, "a pose that is not finite",
+                       "a finite pose");
+    }
+    plan.row_limits.push_back(find_limits(program, row, settings.limits));
+  }
+  plan.program = std::move(program);
+  plan.settings = std::move(settings);
+  return plan;
+}
+
+ControllerState make_controller_state(const Pose& X_WE_start) noexcept {
+  ControllerState state;
+  state.X_WE_departure = X_WE_start;
+  state.X_WE_reference = X_WE_start;
+  state.command.X_WE = X_WE_start;
+  return state;
+}
+
+ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured, ControllerState& state) noexcept {
+  ControllerOutput output;
+  advance_program(plan, measured, state, output);
+  const double dt = plan.settings.tick;
+  if (plan.settings.kind == ControllerKind::Ideal) {
+    if (state.phase == ControllerPhase::Moving) {
+      const LspbSegment::Sample at_end = state.segment.sample(static_cast<double>(state.phase_ticks + 1) * dt);
+      state.command = {at_end.X_WE, at_end.V_WE};
+    }
+    state.X_WE_reference = state.command.X_WE;
+  } else {
+    if (state.phase == ControllerPhase::Moving) {
+      state.X_WE_reference = state.segment.sample(static_cast<double>(state.phase_ticks) * dt).X_WE;
+    }
+    state.command = follow_reference(measured, state.X_WE_reference, plan.settings.task_stiffness, dt, state.command);
+  }
+  ++state.phase_ticks;
+  ++state.tick_count;
+  output.tool = state.command;
+  output.X_WE_reference = state.X_WE_reference;
+  output.io = state.io;
+  output.phase = state.phase;
+  output.row = state.row;
+  return output;
+}
+
+double convergence_error(const Pose& X_WE, const Pose& X_WE_target, double convergence_deg_per_metre) noexcept {
+  const double angle_deg = angle_between(X_WE.R, X_WE_target.R) * 180.0 / std::numbers::pi;
+  return (X_WE_target.p - X_WE.p).norm() + angle_deg / convergence_deg_per_metre;
+}
+
+double compute_duration(const PreparedProgram& plan, const Pose& X_WE_start, double longest) {
+  ControllerState state = make_controller_state(X_WE_start);
+  ToolState measured = state.command;
+  const double dt = plan.settings.tick;
+  while (static_cast<double>(state.tick_count) * dt < longest) {
+    const ControllerOutput output = tick(plan, measured, state);
+    if (output.finished_now) return static_cast<double>(state.tick_count - 1) * dt;
+    measured = output.tool;
+  }
+  return longest;
+}
+
+}  // namespace snug::motion
