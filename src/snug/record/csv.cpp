@@ -1,6 +1,7 @@
 // CSV: a recording as one table with the column names of mc_rtc logs, for spreadsheets and plotting programs.
 #include "snug/record/csv.hpp"
 
+#include <unistd.h>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -11,7 +12,6 @@
 #include <system_error>
 #include <utility>
 #include <vector>
-#include <unistd.h>
 
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"

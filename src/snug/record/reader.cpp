@@ -295,8 +295,7 @@ void RecordingReader::Impl::read_frame(std::size_t index, Frame& frame) {
   const std::size_t bodies = header.bodies.size();
   if (cup.attached_body < -1 || cup.attached_body >= static_cast<int>(bodies))
     throw H5Error("/cup/attached_body refers to a body that does not exist");
-  if (status > static_cast<std::uint8_t>(SolverStatus::Failed))
-    throw H5Error("/solver/status holds an unknown status");
+  if (status > static_cast<std::uint8_t>(SolverStatus::Failed)) throw H5Error("/solver/status holds an unknown status");
   frame.solver.status = static_cast<SolverStatus>(status);
   frame.bodies.resize(bodies);
   for (std::size_t i = 0; i < bodies; ++i) {

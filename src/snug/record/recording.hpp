@@ -13,9 +13,10 @@ namespace snug::record {
 /// Version of the file layout (docs/formats.md). Readers refuse newer files.
 inline constexpr int kFormatVersion = 1;
 
-/// Pose as it is stored: the numbers of a file, not an orthonormal matrix, so that they survive a round trip bit by bit.
+/// Pose as it is stored: the numbers of a file, not an orthonormal matrix, so that they survive a round trip bit by
+/// bit.
 struct PoseSample {
-  Vector3 p = Vector3::Zero();                     ///< p_AB, m
+  Vector3 p = Vector3::Zero();                       ///< p_AB, m
   Quaternion quat = Quaternion(1.0, 0.0, 0.0, 0.0);  ///< quat_AB, unit; maps B to A. Never normalised by this room
 
   PoseSample() = default;
@@ -46,8 +47,8 @@ struct BodyInfo {
   std::string name;  ///< unique, not empty, e.g. "box024"; becomes a column prefix of the CSV
   std::string type;  ///< box type of the scenario ("B3"), or empty
   BodyKind kind = BodyKind::Dynamic;
-  double mass = 0.0;                ///< kg; 0 for static and kinematic bodies
-  Vector3 com = Vector3::Zero();    ///< p_BBcm, m
+  double mass = 0.0;              ///< kg; 0 for static and kinematic bodies
+  Vector3 com = Vector3::Zero();  ///< p_BBcm, m
   std::vector<ShapeInfo> shapes;
   bool operator==(const BodyInfo&) const = default;
 };
@@ -68,10 +69,10 @@ struct RecordingHeader {
   std::string program_name;   ///< its name, or empty
   std::string sequence;       ///< item sequence, or empty
   std::uint64_t seed = 0;
-  std::string version;         ///< snug version and commit
+  std::string version;          ///< snug version and commit
   std::string settings = "{}";  ///< settings of the run that are not in the scenario, JSON
-  double dt = 0.0;             ///< length of a simulation step, s
-  double record_period = 0.0;  ///< time between frames, s, > 0
+  double dt = 0.0;              ///< length of a simulation step, s
+  double record_period = 0.0;   ///< time between frames, s, > 0
   std::vector<BodyInfo> bodies;
   ContainerInfo container;
   bool operator==(const RecordingHeader&) const = default;
@@ -89,20 +90,20 @@ enum class ContactState : std::uint8_t { Unknown = 0, Open = 1, Sticking = 2, Sl
 
 /// One contact point. Stored in single precision, rounded to kPointQuantum, kForceQuantum, kGapQuantum.
 struct ContactSample {
-  int body_a = -1;                     ///< index into RecordingHeader::bodies
+  int body_a = -1;  ///< index into RecordingHeader::bodies
   int body_b = -1;
-  Vector3 p_WQ = Vector3::Zero();      ///< m
-  Vector3 n_AB_W = Vector3::UnitZ();   ///< unit, from A to B
+  Vector3 p_WQ = Vector3::Zero();       ///< m
+  Vector3 n_AB_W = Vector3::UnitZ();    ///< unit, from A to B
   Vector3 force_B_W = Vector3::Zero();  ///< force on B (minus it acts on A), N
-  double phi = 0.0;                    ///< signed gap, m, positive apart
+  double phi = 0.0;                     ///< signed gap, m, positive apart
   ContactState state = ContactState::Unknown;
   bool operator==(const ContactSample&) const = default;
 };
 
 /// Rounding of contacts in the file. It lets a contact at rest repeat exactly, and so be stored once.
-inline constexpr double kPointQuantum = 0x1.0p-20;   ///< m, about 1 um; also for the normal (no unit)
-inline constexpr double kForceQuantum = 0x1.0p-13;   ///< N, about 0.12 mN
-inline constexpr double kGapQuantum = 0x1.0p-27;     ///< m, about 7.5 nm
+inline constexpr double kPointQuantum = 0x1.0p-20;  ///< m, about 1 um; also for the normal (no unit)
+inline constexpr double kForceQuantum = 0x1.0p-13;  ///< N, about 0.12 mN
+inline constexpr double kGapQuantum = 0x1.0p-27;    ///< m, about 7.5 nm
 
 /// Suction cup. E: control point at the gripper's end; S: lip; P: the package held.
 struct CupSample {
@@ -129,11 +130,11 @@ struct SolverSample {
 
 /// Everything at one instant. Reuse one object for all frames of a run: its vectors keep their memory.
 struct Frame {
-  double time = 0.0;       ///< s, strictly increasing from frame to frame
-  std::int64_t step = 0;   ///< simulation steps done; time = step * dt
-  int program_row = -1;    ///< 0-based row of the program being approached, -1: none
-  PoseSample X_WE;         ///< tool as it is
-  Twist V_WE;              ///< in W, linear part at the origin of E
+  double time = 0.0;        ///< s, strictly increasing from frame to frame
+  std::int64_t step = 0;    ///< simulation steps done; time = step * dt
+  int program_row = -1;     ///< 0-based row of the program being approached, -1: none
+  PoseSample X_WE;          ///< tool as it is
+  Twist V_WE;               ///< in W, linear part at the origin of E
   PoseSample X_WE_command;  ///< tool as commanded by the reference
   CupSample cup;
   /// Wrench of the tool and all it carries or touches on the flange, about the flange's origin, in the flange's

@@ -72,8 +72,8 @@ void Column::write_chunk(const hsize_t* offset, std::size_t lane, std::size_t ro
   const std::size_t bytes = chunk_rows_ * row_bytes_;
   const unsigned char* data = buffer_.data() + lane * bytes;
   // A chunk that was begun keeps its size, so that it is completed in place and never misread.
-  const bool is_constant = rows == chunk_rows_ && !is_begun_ &&
-                           std::memcmp(data, data + row_bytes_, bytes - row_bytes_) == 0;
+  const bool is_constant =
+      rows == chunk_rows_ && !is_begun_ && std::memcmp(data, data + row_bytes_, bytes - row_bytes_) == 0;
   constexpr std::uint32_t kSkipDeflate = 1;
   if (is_constant) {
     const std::vector<unsigned char>& packed = pack(lane);

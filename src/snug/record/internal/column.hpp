@@ -14,12 +14,12 @@ struct ColumnSpec {
   const char* path = "";
   hid_t type = H5I_INVALID_HID;
   std::size_t value_bytes = 0;
-  std::size_t width = 1;    ///< values in a row
-  std::size_t lanes = 0;    ///< > 0: dataset [rows, lanes, width] with a chunk of its own for each lane
-  const char* unit = "";    ///< written as attributes, like the next two
+  std::size_t width = 1;  ///< values in a row
+  std::size_t lanes = 0;  ///< > 0: dataset [rows, lanes, width] with a chunk of its own for each lane
+  const char* unit = "";  ///< written as attributes, like the next two
   const char* frame = "";
   const char* columns = "";
-  bool is_table = false;    ///< two-dimensional even when width is 1
+  bool is_table = false;  ///< two-dimensional even when width is 1
 };
 
 template <class T>
@@ -54,7 +54,7 @@ class Column {
   std::size_t row_bytes_;
   std::size_t lanes_;
   std::vector<unsigned char> buffer_;
-  bool is_begun_ = false;  ///< the chunk being filled is in the file already, as far as it was filled then
+  bool is_begun_ = false;       ///< the chunk being filled is in the file already, as far as it was filled then
   std::vector<Packed> packed_;  ///< of each lane: a body that stays at rest is deflated once
 };
 

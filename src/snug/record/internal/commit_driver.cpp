@@ -24,10 +24,11 @@ struct CommitFile {
   H5FD_t base = {};  ///< must be first: HDF5 sees only this
   int descriptor = -1;
   haddr_t end_of_allocation = 0;
-  haddr_t end_of_file = 0;            ///< of the file on disk
-  haddr_t committed_end = 0;          ///< nothing in the file refers to what lies behind
-  bool has_failed = false;            ///< reported once; then writes are dropped so that HDF5 can close
+  haddr_t end_of_file = 0;                  ///< of the file on disk
+  haddr_t committed_end = 0;                ///< nothing in the file refers to what lies behind
+  bool has_failed = false;                  ///< reported once; then writes are dropped so that HDF5 can close
   std::map<haddr_t, PendingWrite> pending;  ///< changes of the committed part, by address
+  std::vector<unsigned char> tail;          ///< what follows the committed part
 };
 
 CommitFile& self(H5FD_t* file) { return *reinterpret_cast<CommitFile*>(file); }
@@ -58,19 +59,26 @@ bool write_at(CommitFile& file, haddr_t address, const unsigned char* bytes, std
 int rank_of(const PendingWrite& write) {
   constexpr int kIndexRank = 300;
   switch (write.type) {
-    case H5FD_MEM_SUPER: return 0;
-    case H5FD_MEM_DRAW: return 1;
-    case H5FD_MEM_GHEAP: return 2;
-    case H5FD_MEM_LHEAP: return 3;
+    case H5FD_MEM_SUPER:
+      return 0;
+    case H5FD_MEM_DRAW:
+      return 1;
+    case H5FD_MEM_GHEAP:
+      return 2;
+    case H5FD_MEM_LHEAP:
+      return 3;
     case H5FD_MEM_BTREE: {
       const bool is_node = write.bytes.size() > 5 && std::memcmp(write.bytes.data(), "TREE", 4) == 0;
       return is_node ? kIndexRank - write.bytes[5] : kIndexRank;  // byte 5: level above the leaves, 0..255
     }
-    default: return kIndexRank + 1;
+    default:
+      return kIndexRank + 1;
   }
 }
 
 bool commit(CommitFile& file) {
+  if (!write_at(file, file.committed_end, file.tail.data(), file.tail.size())) return false;
+  file.tail.clear();
   if (file.end_of_file < file.end_of_allocation) {
     if (::ftruncate(file.descriptor, static_cast<off_t>(file.end_of_allocation)) != 0) return false;
     file.end_of_file = file.end_of_allocation;
@@ -151,6 +159,7 @@ herr_t read_file(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t 
     done += static_cast<std::size_t>(got);
   }
   for (const auto& [from, write] : file.pending) overlay(from, write.bytes, address, size, out);
+  overlay(file.committed_end, file.tail, address, size, out);
   return 0;
 }
 
@@ -183,7 +192,12 @@ herr_t write_file(H5FD_t* base, H5FD_mem_t type, hid_t /*transfer*/, haddr_t add
   CommitFile& file = self(base);
   if (file.has_failed) return 0;
   const auto* bytes = static_cast<const unsigned char*>(buffer);
-  if (address >= file.committed_end) return write_at(file, address, bytes, size) ? 0 : fail(file);
+  if (address >= file.committed_end) {
+    const std::size_t offset = address - file.committed_end;
+    if (file.tail.size() < offset + size) file.tail.resize(offset + size);
+    std::copy(bytes, bytes + size, file.tail.begin() + static_cast<std::ptrdiff_t>(offset));
+    return 0;
+  }
   const auto same = file.pending.find(address);
   if (same != file.pending.end() && same->second.bytes.size() == size) {
     same->second.type = type;

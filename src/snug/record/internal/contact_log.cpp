@@ -1,6 +1,7 @@
 // ContactLog: stores contacts so that those that stay as they were cost nothing.
 #include "snug/record/internal/contact_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -23,6 +24,32 @@ void quantize(const Vector3& value, double quantum, float* out) {
   for (int i = 0; i < 3; ++i) out[i] = quantized(value[i], quantum);
 }
 
+PackedContact packed_from(const ContactSample& contact) {
+  PackedContact packed;
+  quantize(contact.p_WQ, kPointQuantum, packed.point);
+  quantize(contact.n_AB_W, kPointQuantum, packed.normal);
+  quantize(contact.force_B_W, kForceQuantum, packed.force);
+  packed.gap = quantized(contact.phi, kGapQuantum);
+  packed.state = static_cast<std::uint32_t>(contact.state);
+  return packed;
+}
+
+/// Same bits, bodies included.
+bool is_same(const ContactSample& a, const ContactSample& b) {
+  const auto* begin = reinterpret_cast<const unsigned char*>(&a);
+  const auto* end = reinterpret_cast<const unsigned char*>(&a.state);  // the last member; padding follows it
+  return std::memcmp(begin, &b, static_cast<std::size_t>(end - begin)) == 0 && a.state == b.state;
+}
+static_assert(sizeof(ContactSample) == 2 * sizeof(int) + 11 * sizeof(double), "no padding before the state");
+
+/// Number of contacts at the beginning that are the same in both.
+std::size_t count_equal(const std::vector<ContactSample>& a, const std::vector<ContactSample>& b) {
+  const std::size_t size = std::min(a.size(), b.size());
+  std::size_t i = 0;
+  while (i < size && is_same(a[i], b[i])) ++i;
+  return i;
+}
+
 }  // namespace
 
 ContactLog::ContactLog(hid_t file) {
@@ -31,9 +58,12 @@ ContactLog::ContactLog(hid_t file) {
 }
 
 ContactLog::Range ContactLog::append(const std::vector<ContactSample>& contacts) {
+  const std::size_t kept = count_equal(contacts, contacts_);
+  if (kept == contacts.size() && kept == contacts_.size()) return range_;
   std::swap(packed_, previous_packed_);
   std::swap(blocks_, previous_blocks_);
   pack(contacts);
+  contacts_ = contacts;
   if (match_previous_blocks()) return range_;
   range_ = {list_rows_, static_cast<std::int32_t>(blocks_.size())};
   for (ContactBlock& block : blocks_) {
@@ -50,11 +80,10 @@ void ContactLog::pack(const std::vector<ContactSample>& contacts) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactSample& contact = contacts[i];
     PackedContact& packed = packed_[i];
-    quantize(contact.p_WQ, kPointQuantum, packed.point);
-    quantize(contact.n_AB_W, kPointQuantum, packed.normal);
-    quantize(contact.force_B_W, kForceQuantum, packed.force);
-    packed.gap = quantized(contact.phi, kGapQuantum);
-    packed.state = static_cast<std::uint32_t>(contact.state);
+    if (i < contacts_.size() && is_same(contact, contacts_[i]))
+      packed = previous_packed_[i];
+    else
+      packed = packed_from(contact);
     if (blocks_.empty() || blocks_.back().body_a != contact.body_a || blocks_.back().body_b != contact.body_b)
       blocks_.push_back({contact.body_a, contact.body_b, 0, -1, i});
     ++blocks_.back().count;

@@ -14,8 +14,8 @@ struct ContactBlock {
   std::int32_t body_a = 0;
   std::int32_t body_b = 0;
   std::int32_t count = 0;
-  std::int32_t row = -1;    ///< of the file's block table; -1: not stored yet
-  std::size_t first = 0;    ///< into the packed contacts of its frame
+  std::int32_t row = -1;  ///< of the file's block table; -1: not stored yet
+  std::size_t first = 0;  ///< into the packed contacts of its frame
 };
 
 /// A contact as it is stored, rounded.
@@ -49,12 +49,13 @@ class ContactLog {
   void store_block(ContactBlock& block);
 
   std::vector<FlatColumn> columns_;
+  std::vector<ContactSample> contacts_;  ///< of the previous frame, as given
   std::vector<PackedContact> packed_, previous_packed_;
   std::vector<ContactBlock> blocks_, previous_blocks_;
-  Range range_;                    ///< of the previous frame
-  std::int64_t list_rows_ = 0;     ///< rows of frame_block so far
-  std::int32_t block_rows_ = 0;    ///< rows of the block table so far
-  std::int64_t point_rows_ = 0;    ///< rows of the point tables so far
+  Range range_;                  ///< of the previous frame
+  std::int64_t list_rows_ = 0;   ///< rows of frame_block so far
+  std::int32_t block_rows_ = 0;  ///< rows of the block table so far
+  std::int64_t point_rows_ = 0;  ///< rows of the point tables so far
 };
 
 }  // namespace snug::record::internal

@@ -52,17 +52,29 @@ void check(herr_t status, const std::string& what);
 template <class T>
 hid_t file_type();
 template <>
-inline hid_t file_type<double>() { return H5T_IEEE_F64LE; }
+inline hid_t file_type<double>() {
+  return H5T_IEEE_F64LE;
+}
 template <>
-inline hid_t file_type<float>() { return H5T_IEEE_F32LE; }
+inline hid_t file_type<float>() {
+  return H5T_IEEE_F32LE;
+}
 template <>
-inline hid_t file_type<std::int64_t>() { return H5T_STD_I64LE; }
+inline hid_t file_type<std::int64_t>() {
+  return H5T_STD_I64LE;
+}
 template <>
-inline hid_t file_type<std::uint64_t>() { return H5T_STD_U64LE; }
+inline hid_t file_type<std::uint64_t>() {
+  return H5T_STD_U64LE;
+}
 template <>
-inline hid_t file_type<std::int32_t>() { return H5T_STD_I32LE; }
+inline hid_t file_type<std::int32_t>() {
+  return H5T_STD_I32LE;
+}
 template <>
-inline hid_t file_type<std::uint8_t>() { return H5T_STD_U8LE; }
+inline hid_t file_type<std::uint8_t>() {
+  return H5T_STD_U8LE;
+}
 
 using Dims = std::vector<hsize_t>;
 

@@ -124,7 +124,8 @@ void read_shapes(hid_t file, std::vector<BodyInfo>& bodies) {
     shape.half = vector_at(half, i);
     shape.radius = radius[i];
     shape.half_length = half_length[i];
-    for (std::int64_t v = first[i]; v < end; ++v) shape.vertices.push_back(vector_at(vertex, static_cast<std::size_t>(v)));
+    for (std::int64_t v = first[i]; v < end; ++v)
+      shape.vertices.push_back(vector_at(vertex, static_cast<std::size_t>(v)));
     bodies[static_cast<std::size_t>(body[i])].shapes.push_back(std::move(shape));
   }
 }

@@ -104,9 +104,10 @@ inline void randomize(Frame& frame, Rng& rng, int index, const RecordingHeader& 
   frame.X_WE = random_pose(rng);
   frame.V_WE = {random_vector(rng, 1.0), random_vector(rng, 1.0)};
   frame.X_WE_command = random_pose(rng);
-  frame.cup = {rng.index(2) == 1, rng.index(2) == 1, rng.uniform(-6e4, 0.0), rng.index(bodies + 1) - 1,
-               random_pose(rng),  rng.uniform(),     rng.uniform(),          {random_vector(rng, 50.0),
-                                                                              random_vector(rng, 3.0)}};
+  frame.cup = {rng.index(2) == 1,      rng.index(2) == 1,
+               rng.uniform(-6e4, 0.0), rng.index(bodies + 1) - 1,
+               random_pose(rng),       rng.uniform(),
+               rng.uniform(),          {random_vector(rng, 50.0), random_vector(rng, 3.0)}};
   frame.F_flange = {random_vector(rng, 50.0), random_vector(rng, 3.0)};
   frame.solver = {rng.uniform(), rng.index(100), static_cast<SolverStatus>(rng.index(4))};
   frame.bodies.resize(header.bodies.size());
@@ -117,8 +118,11 @@ inline void randomize(Frame& frame, Rng& rng, int index, const RecordingHeader& 
   }
   if (bodies == 0) return;
   switch (rng.index(4)) {
-    case 0: break;  // as in the previous frame
-    case 1: frame.contacts.clear(); break;
+    case 0:
+      break;  // as in the previous frame
+    case 1:
+      frame.contacts.clear();
+      break;
     case 2:
       if (!frame.contacts.empty()) frame.contacts.erase(frame.contacts.begin() + rng.index(int(frame.contacts.size())));
       break;
@@ -131,7 +135,8 @@ inline Event random_event(Rng& rng, int index) {
   Event event{0.1 * index, "seal", "BOX013", "lip on the face; gap \xE2\x89\xA4 1 mm", {}};
   if (index % 3 == 0) event.body.clear();
   if (index % 7 == 0) event.text = std::string(5000, 'x');
-  for (int i = rng.index(4); i > 0; --i) event.numbers.push_back({std::string("n").append(std::to_string(i)), rng.normal()});
+  for (int i = rng.index(4); i > 0; --i)
+    event.numbers.push_back({std::string("n").append(std::to_string(i)), rng.normal()});
   return event;
 }
 

@@ -1,8 +1,11 @@
 // Recordings: what is written is read, bit by bit, and files that are not right are refused with a reason.
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <bit>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 
@@ -29,6 +32,19 @@ std::string complaint(Work work) {
 
 std::string load_complaint(const std::filesystem::path& path) {
   return complaint([&] { (void)load_recording(path); });
+}
+
+/// Runs `work` in a child process (HDF5 itself leaks on some damaged files); false if it crashes.
+template <class Work>
+bool ends_in_order(Work work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    work();
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
@@ -221,13 +237,15 @@ TEST(RecordingReader, SurvivesFilesWithDamagedBytes) {
   Rng rng = Rng(20).split("damaged");
   save_recording(folder / "run.h5", test::random_recording(rng, 3, 200, 5));
   const auto size = static_cast<int>(std::filesystem::file_size(folder / "run.h5"));
-  for (int i = 0; i < 100; ++i) {
+  const char* rounds_text = std::getenv("SNUG_DAMAGE_ROUNDS");
+  const int rounds = rounds_text == nullptr ? 100 : std::atoi(rounds_text);
+  for (int i = 0; i < rounds; ++i) {
     std::filesystem::copy_file(folder / "run.h5", folder / "bad.h5", std::filesystem::copy_options::overwrite_existing);
     std::fstream file(folder / "bad.h5", std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(rng.index(size));
     for (int k = 0; k < 16; ++k) file.put(static_cast<char>(rng.next()));
     file.close();
-    (void)load_complaint(folder / "bad.h5");  // data bytes may change unseen; it must not crash
+    EXPECT_TRUE(ends_in_order([&] { (void)load_complaint(folder / "bad.h5"); })) << "data may change unseen";
   }
 }
 
