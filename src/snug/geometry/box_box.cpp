@@ -1,0 +1,184 @@
+// BoxBox: picks the axis, then builds the manifold that belongs to it.
+#include <algorithm>
+#include <cmath>
+
+#include "snug/geometry/internal/box_axes.hpp"
+#include "snug/geometry/internal/box_box.hpp"
+#include "snug/geometry/internal/box_clip.hpp"
+#include "snug/geometry/internal/box_topology.hpp"
+#include "snug/geometry/internal/polytope_pair.hpp"
+#include "snug/geometry/internal/segment.hpp"
+
+namespace snug::geometry::internal {
+
+namespace {
+
+/// The axis of the contact: the remembered one while it is as good as the best, else the best face unless an edge is
+/// better by more than half the allowance. `separation` receives the largest of all.
+BoxAxis choose(const BoxPair& pair, const BoxAxes& axes, const Axis& remembered, double& separation) noexcept {
+  const bool has_edge = axes.best_edge.axis.kind == AxisKind::Edge;
+  separation = has_edge ? axes.best_edge.separation : axes.best_face.separation;
+  const double slack = allowance(separation);
+  if (remembered.kind != AxisKind::None && !(remembered == axes.best_face.axis)) {
+    const BoxAxis old = evaluate(pair, remembered);
+    const double least = remembered.kind == AxisKind::Edge ? std::max(axes.best_face.separation, separation - slack)
+                                                           : separation - slack;
+    if (old.separation >= least) return old;
+  } else if (remembered.kind != AxisKind::None && axes.best_face.separation >= separation - slack) {
+    return axes.best_face;
+  }
+  return axes.best_face.separation >= separation - 0.5 * slack ? axes.best_face : axes.best_edge;
+}
+
+/// README.md, "Seams": apart or hardly overlapping along n, and flush along a second face axis.
+bool is_corner_pair(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& chosen) noexcept {
+  if (chosen.separation <= -kCornerSlop) return false;
+  for (int k = 0; k < 6; ++k) {
+    if (std::abs(axes.face[static_cast<std::size_t>(k)]) > kCornerSlop) continue;
+    if (std::abs(face_normal(pair, axes, k).dot(chosen.n_A)) <= kCornerCosine) return true;
+  }
+  return false;
+}
+
+void clip(const BoxPair& pair, bool ref_is_A, int face, const Vector3& n_A, bool swapped, BoxPolygon& polygon) noexcept {
+  if (ref_is_A) {
+    clip_box_face({pair.half_A, pair.half_B, pair.R_AB, pair.p_AB, face, n_A, !swapped}, polygon);
+  } else {
+    const Matrix3 R_BA = pair.R_AB.transpose();
+    clip_box_face({pair.half_B, pair.half_A, R_BA, -(R_BA * pair.p_AB), face, -(R_BA * n_A), swapped}, polygon);
+  }
+}
+
+/// Writes the corners within the margin.
+void emit_polygon(const PairCall& call, const BoxPolygon& polygon, bool ref_is_A, int face, const Vector3& half_ref,
+                  const Vector3& n_A, Manifold& out) noexcept {
+  const Pose& X_WR = ref_is_A ? call.X_WA : call.X_WB;
+  const int ax = face / 2;
+  const int au = next(ax);
+  const int av = next(au);
+  const Vector3 base = X_WR.p + ((face & 1) != 0 ? half_ref[ax] : -half_ref[ax]) * X_WR.R.col(ax);
+  const Vector3 n_W = call.X_WA.R * n_A;
+  const Vector3 out_of_ref = ref_is_A ? n_W : Vector3(-n_W);
+  set_normal(call.swapped, n_W, out);
+  for (int i = 0; i < polygon.count; ++i) {
+    const BoxClipPoint& corner = polygon.points[static_cast<std::size_t>(i)];
+    if (!(corner.phi <= call.margin)) continue;
+    const Vector3 p_ref = base + corner.u * X_WR.R.col(au) + corner.v * X_WR.R.col(av);
+    const Vector3 p_inc = p_ref + corner.phi * out_of_ref;
+    if (ref_is_A) {
+      emit(call.swapped, p_ref, p_inc, corner.phi, corner.code_ref, corner.code_inc, out);
+    } else {
+      emit(call.swapped, p_inc, p_ref, corner.phi, corner.code_inc, corner.code_ref, out);
+    }
+  }
+}
+
+bool face_contact(const BoxPair& pair, const BoxAxis& chosen, double separation, const PairCall& call,
+                  Manifold& out) noexcept {
+  const bool ref_is_A = chosen.axis.kind == AxisKind::FaceA;
+  const int face = ref_is_A ? chosen.axis.a : chosen.axis.b;
+  BoxPolygon polygon;
+  clip(pair, ref_is_A, face, chosen.n_A, call.swapped, polygon);
+  if (polygon.count == 0 || polygon.least_phi > separation + allowance(separation)) return false;
+  emit_polygon(call, polygon, ref_is_A, face, ref_is_A ? pair.half_A : pair.half_B, chosen.n_A, out);
+  return true;
+}
+
+int largest(const Vector3& v) noexcept {
+  int axis = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
+  if (std::abs(v[2]) > std::abs(v[axis])) axis = 2;
+  return axis;
+}
+
+/// Ends of edge e of a box, in the box frame.
+void edge_ends(const Vector3& half, int e, Vector3& p, Vector3& q) noexcept {
+  const std::array<int, 4>& edge = kBoxEdges[static_cast<std::size_t>(e)];
+  for (int k = 0; k < 3; ++k) {
+    p[k] = (edge[0] >> k & 1) != 0 ? half[k] : -half[k];
+    q[k] = (edge[1] >> k & 1) != 0 ? half[k] : -half[k];
+  }
+}
+
+/// Two edges that cross. False when they are apart and not nearest where their lines are.
+bool edge_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& call, Manifold& out) noexcept {
+  Vector3 a0, a1, b0, b1;
+  edge_ends(pair.half_A, chosen.axis.a, a0, a1);
+  edge_ends(pair.half_B, chosen.axis.b, b0, b1);
+  b0 = pair.R_AB * b0 + pair.p_AB;
+  b1 = pair.R_AB * b1 + pair.p_AB;
+  const SegmentPair crossing = crossing_points(a0, a1, b0, b1);
+  // Exact where the lines cross inside both edges: then the points lie along the axis.
+  const double miss = (crossing.p_b - crossing.p_a - chosen.separation * chosen.n_A).norm();
+  if (chosen.separation > 0.0 && miss > 1e-9) return false;
+  const Vector3 n_B = pair.R_AB.transpose() * chosen.n_A;
+  const int axis_A = largest(chosen.n_A);
+  if (std::abs(chosen.n_A[axis_A]) > kNearFaceCosine && std::abs(n_B[largest(n_B)]) > kNearFaceCosine) {
+    const int face = box_face(axis_A, chosen.n_A[axis_A] > 0.0);
+    BoxPolygon polygon;
+    clip(pair, true, face, chosen.n_A, call.swapped, polygon);
+    if (polygon.count > 1 && std::abs(polygon.least_phi - chosen.separation) < 1e-9) {
+      emit_polygon(call, polygon, true, face, pair.half_A, chosen.n_A, out);
+      return true;
+    }
+  }
+  const Vector3 n_W = call.X_WA.R * chosen.n_A;
+  const Vector3 p_WA = call.X_WA * crossing.p_a;
+  set_normal(call.swapped, n_W, out);
+  emit(call.swapped, p_WA, p_WA + chosen.separation * n_W, chosen.separation, edge_code(chosen.axis.a),
+       edge_code(chosen.axis.b), out);
+  return true;
+}
+
+/// What is left when rounding leaves no polygon: the deepest corner over the face plane.
+void corner_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& call, Manifold& out) noexcept {
+  const bool ref_is_A = chosen.axis.kind == AxisKind::FaceA;
+  const Vector3 toward = ref_is_A ? Vector3(-(pair.R_AB.transpose() * chosen.n_A)) : chosen.n_A;
+  const Vector3& half = ref_is_A ? pair.half_B : pair.half_A;
+  Vector3 corner;
+  int vertex = 0;
+  for (int k = 0; k < 3; ++k) {
+    corner[k] = toward[k] > 0.0 ? half[k] : -half[k];
+    if (toward[k] > 0.0) vertex |= 1 << k;
+  }
+  const Vector3 n_W = call.X_WA.R * chosen.n_A;
+  const double phi = chosen.separation;
+  set_normal(call.swapped, n_W, out);
+  if (ref_is_A) {
+    const Vector3 p_WB = call.X_WB * corner;
+    emit(call.swapped, p_WB - phi * n_W, p_WB, phi, face_code(chosen.axis.a), vertex_code(vertex), out);
+  } else {
+    const Vector3 p_WA = call.X_WA * corner;
+    emit(call.swapped, p_WA, p_WA + phi * n_W, phi, vertex_code(vertex), face_code(chosen.axis.b), out);
+  }
+}
+
+}  // namespace
+
+void collide_boxes(const Box& A, const Box& B, const PairCall& call, Axis& axis, Manifold& out) noexcept {
+  if (axis.kind != AxisKind::None &&
+      quick_separation(A.half, call.X_WA, B.half, call.X_WB, axis) > call.margin) {
+    return;
+  }
+  BoxPair pair{A.half, B.half, {}, {}};
+  pair.place(call.X_WA, call.X_WB);
+  BoxAxes axes;
+  if (!find_axes(pair, call.margin, axes)) {
+    axis = axes.best_face.axis;
+    return;
+  }
+  double separation = 0.0;
+  const BoxAxis chosen = choose(pair, axes, axis, separation);
+  axis = chosen.axis;
+  if (is_corner_pair(pair, axes, chosen)) return;
+  if (chosen.axis.kind != AxisKind::Edge && face_contact(pair, chosen, separation, call, out)) return;
+  const BoxAxis& edge = chosen.axis.kind == AxisKind::Edge ? chosen : axes.best_edge;
+  if (edge.axis.kind == AxisKind::Edge && edge_contact(pair, edge, call, out)) {
+    axis = edge.axis;
+  } else if (separation > 0.0) {
+    collide_apart(A, B, pair.R_AB, pair.p_AB, chosen.n_A, call, out);
+  } else {
+    corner_contact(pair, chosen, call, out);
+  }
+}
+
+}  // namespace snug::geometry::internal
