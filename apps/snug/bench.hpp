@@ -1,0 +1,20 @@
+// bench: how fast and how accurate the physics is, beside its targets.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "verb.hpp"
+
+namespace snug::app {
+
+struct BenchOptions {
+  bool json = false;
+  bool quick = false;               ///< shorter scenes; figures that need the full length are left out
+  std::optional<std::string> only;  ///< run the scenes whose figures start with this
+};
+
+void add_bench(CLI::App& app, Action& action);
+[[nodiscard]] int run_bench(const BenchOptions& options);
+
+}  // namespace snug::app

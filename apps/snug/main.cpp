@@ -1,0 +1,74 @@
+// snug: the command line. Parses words, calls rooms, prints; no physics here.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "snug/core/input_error.hpp"
+#include "verb.hpp"
+#include "verbs.hpp"
+
+namespace {
+
+using snug::app::Action;
+
+constexpr const char* kExamples = R"(Examples:
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
+  snug simulate scenarios/s2-drop.yaml --until 5 --json
+  snug program scenarios/box-demonstrator.yaml placements.yaml -o program.csv
+  snug cup evaluate deformations.jsonl
+  snug bench --json
+`snug VERB --help` tells the options of a verb. Data goes to stdout, messages to stderr.
+Exit codes: 0 done, 1 the run failed, 2 the input cannot be used.)";
+
+/// A misspelt verb deserves a better answer than "unexpected argument".
+void check_verb(const CLI::App& app, int argc, char** argv) {
+  const auto word = std::find_if(argv + 1, argv + argc, [](const char* text) { return text[0] != '-'; });
+  if (word == argv + argc) return;
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands({})) names.push_back(verb->get_name());
+  if (std::find(names.begin(), names.end(), *word) != names.end()) return;
+  std::string expected = "one of";
+  for (const std::string& name : names) expected += (name == names.front() ? " " : ", ") + name;
+  const std::string_view nearest = snug::find_nearest(*word, names);
+  if (!nearest.empty()) expected += "; did you mean " + std::string(nearest) + "?";
+  throw snug::InputError("command line", "verb", std::string("'") + *word + "'", expected);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("snug simulates how a robot with a suction cup packs boxes, contact included.", "snug");
+  app.set_version_flag("--version", "snug " SNUG_VERSION);
+  app.require_subcommand(0, 1);
+  app.footer(kExamples);
+  Action action;
+  snug::app::add_verbs(app, action);
+  check_verb(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {  // --help, --version
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    throw snug::InputError("command line", std::string(error.what()) + " (see --help)", "", "");
+  }
+  if (!action) {
+    std::fputs(app.help().c_str(), stdout);
+    return snug::app::kSuccess;
+  }
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const snug::InputError& error) {
+    std::fprintf(stderr, "snug: error: %s\n", error.what());
+    return snug::app::kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "snug: failed: %s\n", error.what());
+    return snug::app::kRunFailed;
+  }
+}

@@ -1,0 +1,56 @@
+// Checks of option values, with messages for people.
+#include "options.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::app {
+namespace {
+
+template <class Number>
+bool reads_as(std::string_view text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+CLI::Validator one_of(std::vector<std::string> words) {
+  return CLI::Validator(
+      [words = std::move(words)](const std::string& text) {
+        std::string list;
+        for (const std::string& word : words) {
+          if (word == text) return std::string();
+          list += (list.empty() ? "" : ", ") + word;
+        }
+        const std::string_view nearest = find_nearest(text, words);
+        const std::string hint = nearest.empty() ? "" : "; did you mean " + std::string(nearest) + "?";
+        return "got '" + text + "'; expected one of " + list + hint;
+      },
+      "");
+}
+
+CLI::Validator positive() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0.0;
+        const bool fits = reads_as(text, value) && std::isfinite(value) && value > 0.0;
+        return fits ? std::string() : "got '" + text + "'; expected a number above 0";
+      },
+      "");
+}
+
+CLI::Validator at_least_one() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        int value = 0;
+        return reads_as(text, value) && value >= 1 ? std::string()
+                                                   : "got '" + text + "'; expected a whole number, 1 or more";
+      },
+      "");
+}
+
+}  // namespace snug::app

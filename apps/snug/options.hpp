@@ -1,0 +1,17 @@
+// Checks of option values, with messages for people.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace snug::app {
+
+/// The word must be one of these; the message lists them and names the nearest.
+[[nodiscard]] CLI::Validator one_of(std::vector<std::string> words);
+/// A finite number above zero.
+[[nodiscard]] CLI::Validator positive();
+/// A whole number, 1 or more.
+[[nodiscard]] CLI::Validator at_least_one();
+
+}  // namespace snug::app

@@ -1,0 +1,21 @@
+// program: turns a list of placements into a program of plain pick-and-place waypoints.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "verb.hpp"
+
+namespace snug::app {
+
+struct ProgramOptions {
+  std::string scenario;
+  std::string placements;
+  std::optional<std::string> sequence;  ///< absent: the one that the placements file names
+  std::optional<std::string> output;    ///< absent: stdout
+};
+
+void add_program(CLI::App& app, Action& action);
+[[nodiscard]] int run_program(const ProgramOptions& options);
+
+}  // namespace snug::app

@@ -1,0 +1,35 @@
+// simulate: runs a scenario, with or without a program, and says what became of every box.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "verb.hpp"
+
+namespace snug::app {
+
+/// The words of `snug simulate`. An absent option leaves the choice to the scenario or to the cell.
+struct SimulateOptions {
+  std::string scenario;
+  std::optional<std::string> program;
+  std::optional<std::string> sequence;
+  std::optional<double> until;  ///< s
+  std::optional<double> dt;     ///< s
+  std::optional<std::uint64_t> seed;
+  std::optional<std::string> controller;  ///< faithful | ideal
+  std::optional<std::string> cup;         ///< holding | phases
+  std::string corrections = "none";       ///< none, or the name of a correction layer of the scenario
+  int ensemble = 0;                       ///< runs with varied boxes; 0: one run as described
+  int threads = 0;                        ///< 0: as many as there are cores
+  std::optional<std::string> record;      ///< HDF5 file to write
+  std::optional<std::string> csv;         ///< table to write
+  bool json = false;
+};
+
+void add_simulate(CLI::App& app, Action& action);
+
+/// Prints the result on stdout and returns the exit code. Throws InputError for input that cannot be used.
+[[nodiscard]] int run_simulate(const SimulateOptions& options);
+
+}  // namespace snug::app

@@ -1,0 +1,64 @@
+// simulate: what may be said after the verb.
+#include <memory>
+
+#include "options.hpp"
+#include "simulate.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
+  snug simulate scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --ensemble 20 --seed 7
+  snug simulate scenarios/s3-slide-0.yaml --until 5 --csv slide.csv)";
+
+void add_program_options(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--program", options.program, "waypoint file (13 columns) to run; needs --sequence")
+      ->type_name("FILE.csv");
+  verb.add_option("--sequence", options.sequence, "item sequence of the scenario that the program packs")
+      ->type_name("NAME");
+  verb.add_option("--controller", options.controller,
+                  "faithful: the demonstrator's timing and lag; ideal: the reference, exactly (default: faithful)")
+      ->check(one_of({"faithful", "ideal"}))
+      ->type_name("KIND");
+  verb.add_option("--corrections", options.corrections,
+                  "site corrections: a layer of the scenario such as seq1 or seq2-5, or none")
+      ->type_name("LAYER")
+      ->capture_default_str();
+}
+
+void add_physics_options(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--until", options.until, "stop at this simulated time; default: the program's end")
+      ->check(positive())
+      ->type_name("SECONDS");
+  verb.add_option("--dt", options.dt, "time step, instead of the scenario's")->check(positive())->type_name("SECONDS");
+  verb.add_option("--cup", options.cup,
+                  "holding: attached and released at once; phases: pressure builds up and decays, holds can fail")
+      ->check(one_of({"holding", "phases"}))
+      ->type_name("MODEL");
+  verb.add_option("--seed", options.seed, "seed of everything random, instead of the scenario's")->type_name("N");
+  verb.add_option("--ensemble", options.ensemble, "run N times with aligner, sizes and friction varied")
+      ->check(at_least_one())
+      ->type_name("N");
+  verb.add_option("--threads", options.threads, "threads to use; the result does not depend on it (default: all cores)")
+      ->check(at_least_one())
+      ->type_name("N");
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand("simulate", "run a scenario and say what became of every box");
+  const auto options = std::make_shared<SimulateOptions>();
+  verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  add_program_options(verb, *options);
+  add_physics_options(verb, *options);
+  verb.add_option("-o,--record", options->record, "write a recording")->type_name("FILE.h5");
+  verb.add_option("--csv", options->csv, "write one table, a row per recorded instant")->type_name("FILE.csv");
+  verb.add_flag("--json", options->json, "print the result as JSON");
+  verb.footer(kExamples);
+  verb.callback([options, &action] { action = [options] { return run_simulate(*options); }; });
+}
+
+}  // namespace snug::app
