@@ -1,0 +1,153 @@
+// bench_peers: the scenes S1 to S6 in every engine at hand, as a table or as JSON.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "peers/measure.hpp"
+
+namespace {
+
+using snug::peers::Engine;
+using snug::peers::Result;
+
+struct Candidate {
+  std::string name;
+  std::function<std::unique_ptr<Engine>()> make;
+};
+
+/// The settings are those of bench/README.md; a new engine is one line here.
+std::vector<Candidate> candidates() {
+  using namespace snug::peers;
+  return {
+      {"bullet-si50", [] { return make_bullet({.iterations = 50, .use_two_friction_directions = true}); }},
+      {"bullet-si10", [] { return make_bullet({}); }},
+      {"mujoco-elliptic-stiff", [] { return make_mujoco(kMujocoStiff); }},
+      {"mujoco-pyramid", [] { return make_mujoco({}); }},
+  };
+}
+
+constexpr const char* kUsage = R"(usage: bench_peers [--json] [--engine NAME]... [--scene s1|s2|s3|s4|s5|s6]...
+Runs the scenes in the engines named (default: all in all) and prints the figures that bench/README.md explains.
+  bench_peers --scene s1 --engine bullet-si50
+  bench_peers --json > peers.json
+)";
+
+struct Options {
+  bool is_json = false;
+  std::vector<std::string> engines, scenes;
+};
+
+bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
+const std::vector<std::string> kScenes{"s1", "s2", "s3", "s4", "s5", "s6"};
+
+/// The problem with the arguments, empty if there is none.
+std::string parse(int argc, char** argv, Options& options) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--json") {
+      options.is_json = true;
+    } else if ((word == "--engine" || word == "--scene") && i + 1 < argc) {
+      (word == "--engine" ? options.engines : options.scenes).emplace_back(argv[++i]);
+    } else {
+      return fmt::format("unknown or incomplete argument '{}'", word);
+    }
+  }
+  std::vector<std::string> engines;
+  for (const Candidate& candidate : candidates()) engines.push_back(candidate.name);
+  for (const std::string& name : options.engines) {
+    if (!is_wanted(engines, name)) return fmt::format("unknown engine '{}'; known: {}", name, fmt::join(engines, ", "));
+  }
+  for (const std::string& name : options.scenes) {
+    if (!is_wanted(kScenes, name)) return fmt::format("unknown scene '{}'; known: {}", name, fmt::join(kScenes, ", "));
+  }
+  return {};
+}
+
+struct Row {
+  std::string unit;
+  std::map<std::string, double> values;  // by engine
+};
+
+struct Table {
+  std::vector<std::string> engines, names;  // in the order of measuring
+  std::map<std::string, Row> rows;
+};
+
+void add(Table& table, const std::string& engine, const Result& result) {
+  if (table.rows.count(result.name) == 0) table.names.push_back(result.name);
+  Row& row = table.rows[result.name];
+  row.unit = result.unit;
+  row.values[engine] = result.value;
+}
+
+Table run_all(const Options& options) {
+  Table table;
+  for (const Candidate& candidate : candidates()) {
+    if (!is_wanted(options.engines, candidate.name)) continue;
+    table.engines.push_back(candidate.name);
+    for (const std::string& scene : kScenes) {
+      if (!is_wanted(options.scenes, scene)) continue;
+      fmt::print(stderr, "{} {}\n", candidate.name, scene);
+      const std::unique_ptr<Engine> engine = candidate.make();
+      for (const Result& result : measure(*engine, scene)) add(table, candidate.name, result);
+    }
+  }
+  return table;
+}
+
+void print_json(const Table& table) {
+  nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  for (const std::string& engine : table.engines) {
+    for (const std::string& name : table.names) {
+      const Row& row = table.rows.at(name);
+      const auto value = row.values.find(engine);
+      if (value == row.values.end()) continue;
+      nlohmann::ordered_json entry{{"engine", engine}, {"name", name}, {"value", nullptr}, {"unit", row.unit}};
+      if (std::isfinite(value->second)) entry["value"] = value->second;
+      results.push_back(entry);
+    }
+  }
+  fmt::print("{}\n", nlohmann::ordered_json{{"results", results}}.dump(2));
+}
+
+void print_table(const Table& table) {
+  fmt::print("{:<32}{:>6}", "", "unit");
+  for (const std::string& engine : table.engines) fmt::print("{:>24}", engine);
+  fmt::print("\n");
+  for (const std::string& name : table.names) {
+    const Row& row = table.rows.at(name);
+    fmt::print("{:<32}{:>6}", name, row.unit);
+    for (const std::string& engine : table.engines) fmt::print("{:>24.4g}", row.values.at(engine));
+    fmt::print("\n");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  if (argc == 2 && std::string(argv[1]) == "--help") {
+    fmt::print("{}", kUsage);
+    return 0;
+  }
+  if (const std::string problem = parse(argc, argv, options); !problem.empty()) {
+    fmt::print(stderr, "bench_peers: {}\n{}", problem, kUsage);
+    return 2;
+  }
+  try {
+    const Table table = run_all(options);
+    options.is_json ? print_json(table) : print_table(table);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_peers: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

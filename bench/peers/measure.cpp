@@ -1,0 +1,319 @@
+// Measure: the runs and figures of S1 to S6.
+#include "peers/measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "peers/penetration.hpp"
+#include "peers/spring.hpp"
+#include "snug/core/rng.hpp"
+
+namespace snug::peers {
+
+namespace {
+
+constexpr double kDt = 1e-3;  // s, of every scene but S5
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kGravity = 9.81;  // m/s^2
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Largest value seen; once not a number, always not a number.
+class Largest {
+ public:
+  void see(double value) {
+    if (std::isnan(value) || value > value_) value_ = std::isnan(value_) ? value_ : value;
+  }
+  [[nodiscard]] double value() const { return value_; }
+
+ private:
+  double value_ = 0.0;
+};
+
+/// Microseconds of CPU per step in the best whole second of simulated time, and in all of them.
+class StepTimer {
+ public:
+  template <class Work>
+  void time(int steps, Work&& work) {
+    const double begin = cpu_seconds();
+    work();
+    const double spent = cpu_seconds() - begin;
+    second_ += spent;
+    total_ += spent;
+    steps_ += steps;
+    if (steps_ % kStepsPerSecond != 0) return;
+    best_ = std::min(best_, second_ / kStepsPerSecond);
+    second_ = 0.0;
+  }
+  [[nodiscard]] double best_us() const { return 1e6 * best_; }
+  [[nodiscard]] double mean_us() const { return 1e6 * total_ / steps_; }
+
+ private:
+  static constexpr int kStepsPerSecond = 1000;
+  double best_ = std::numeric_limits<double>::max(), second_ = 0.0, total_ = 0.0;
+  int steps_ = 0;
+};
+
+void run(Engine& engine, double duration) {
+  for (int i = 0; i < std::lround(duration / kDt); ++i) engine.step();
+}
+
+std::vector<Pose> poses_of(const Engine& engine, const Scene& scene) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const BoxBody& box = scene.bodies[i];
+    poses.push_back(box.mass > 0 ? engine.pose(static_cast<int>(i)) : box.X_WB);
+  }
+  return poses;
+}
+
+std::vector<Result> measure_stack(Engine& engine) {
+  const Scene scene = stacked_scene();
+  const std::vector<bool> present(scene.bodies.size(), true);
+  engine.build(scene, kDt);
+  StepTimer timer;
+  Largest depth, drift;
+  std::vector<Pose> start;
+  for (int tenth = 1; tenth <= 100; ++tenth) {
+    timer.time(100, [&] { run(engine, 0.1); });
+    if (tenth < 20) continue;
+    const std::vector<Pose> poses = poses_of(engine, scene);
+    if (tenth == 20) start = poses;
+    depth.see(worst_depth(scene, poses, present));
+    for (std::size_t i = 0; i < poses.size(); ++i) drift.see((poses[i].p - start[i].p).norm());
+  }
+  return {{"s1.awake.us_per_step", timer.best_us(), "us"},
+          {"s1.awake.penetration_mm", 1e3 * depth.value(), "mm"},
+          {"s1.awake.drift_mm", 1e3 * drift.value(), "mm"}};
+}
+
+/// A pose above everything present, inside the walls, at a random yaw.
+Pose drop_pose(const Scene& scene, const std::vector<Pose>& poses, std::size_t body, Rng& rng) {
+  const Vector3& half = scene.bodies[body].half;
+  const double yaw = rng.uniform(0.0, 2.0 * std::numbers::pi), c = std::abs(std::cos(yaw)), s = std::abs(std::sin(yaw));
+  const double room_x = kContainerHalf.x() - (c * half.x() + s * half.y());
+  const double room_y = kContainerHalf.y() - (s * half.x() + c * half.y());
+  double top = 0.0;
+  for (std::size_t i = 0; i < body; ++i) {
+    top = std::max(top, 2.0 * poses[i].p.z() - lowest_corner(scene.bodies[i].half, poses[i]));
+  }
+  Pose X_WB{exp_rotation({0, 0, yaw}), Vector3::Zero()};
+  X_WB.p.x() = rng.uniform(-room_x, room_x);
+  X_WB.p.y() = rng.uniform(-room_y, room_y);
+  X_WB.p.z() = top + 0.050 + half.z();
+  return X_WB;
+}
+
+struct DropFigures {
+  Largest depth, late_speed, mean_us;
+  int failures = 0;
+};
+
+void drop_boxes(Engine& engine, unsigned seed, DropFigures& figures) {
+  constexpr int kInterval = 500, kSteps = 8000, kLate = 1000;  // steps
+  const Scene scene = dropped_scene(seed);
+  Rng rng = Rng(seed).split("places");
+  engine.build(scene, kDt);
+  std::vector<bool> present;
+  for (const BoxBody& box : scene.bodies) present.push_back(box.is_present);
+  std::vector<Pose> poses(scene.bodies.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = scene.bodies[i].X_WB;
+  StepTimer timer;
+  for (int k = 0; k < kSteps; ++k) {
+    const std::size_t next = static_cast<std::size_t>(k / kInterval);
+    if (k % kInterval == 0 && next < 12) {
+      engine.insert(static_cast<int>(next), drop_pose(scene, poses, next, rng));
+      present[next] = true;
+    }
+    timer.time(1, [&] { engine.step(); });
+    if (engine.has_failed()) {
+      ++figures.failures;
+      break;
+    }
+    for (std::size_t i = 0; i < 12 && present[i]; ++i) {
+      poses[i] = engine.pose(static_cast<int>(i));
+      const bool is_late = k >= static_cast<int>(i) * kInterval + kLate;
+      if (is_late) figures.late_speed.see(engine.velocity(static_cast<int>(i)).linear.norm());
+    }
+    figures.depth.see(worst_depth(scene, poses, present));
+  }
+  figures.mean_us.see(timer.mean_us());
+}
+
+std::vector<Result> measure_drop(Engine& engine) {
+  DropFigures figures;
+  for (unsigned seed = 1; seed <= 5; ++seed) drop_boxes(engine, seed, figures);
+  return {{"s2.worst_penetration_mm", 1e3 * figures.depth.value(), "mm"},
+          {"s2.late_speed_m_s", figures.late_speed.value(), "m/s"},
+          {"s2.failed_runs", static_cast<double>(figures.failures), "1"},
+          {"s2.mean_us_per_step", figures.mean_us.value(), "us"}};
+}
+
+std::vector<Result> measure_slide(Engine& engine) {
+  constexpr double kSettle = 0.5, kFriction = 0.2;  // s, -
+  std::vector<Result> results;
+  for (const double heading_deg : {0.0, 22.5, 45.0}) {
+    engine.build(sliding_scene(0.0), kDt);
+    run(engine, kSettle);
+    const double heading = heading_deg * kDegree;
+    const Pose from = engine.pose(0);
+    engine.set_motion(0, from, {{std::cos(heading), std::sin(heading), 0.0}, Vector3::Zero()});
+    run(engine, 1.0);
+    const Vector3 way = engine.pose(0).p - from.p;
+    const double expected = 1.0 / (2.0 * kFriction * kGravity);
+    const std::string name = "s3." + std::to_string(static_cast<int>(heading_deg));
+    results.push_back({name + ".error_percent", 100.0 * (way.head<2>().norm() / expected - 1.0), "%"});
+    results.push_back({name + ".heading_error_deg", (std::atan2(way.y(), way.x()) - heading) / kDegree, "deg"});
+  }
+  engine.build(sliding_scene(kFriction / 2.0), kDt);
+  run(engine, kSettle);
+  const Vector3 from = engine.pose(0).p;
+  run(engine, 10.0);
+  results.push_back({"s3.creep_mm", 1e3 * (engine.pose(0).p - from).head<2>().norm(), "mm"});
+  return results;
+}
+
+/// Height of the lower face's middle where it first turns back after the first impact, m; 0 if it never rises.
+double rebound_height(Engine& engine, const Scene& scene) {
+  double speed = 0.0;
+  bool has_hit = false;
+  for (int i = 0; i < 1500; ++i) {
+    engine.step();
+    const double next = engine.velocity(0).linear.z();
+    has_hit = has_hit || next > speed;
+    if (has_hit && speed > 0.0 && next <= 0.0) return engine.pose(0).p.z() - scene.bodies[0].half.z();
+    speed = next;
+  }
+  return 0.0;
+}
+
+std::vector<Result> measure_bounce(Engine& engine) {
+  const Scene scene = bouncing_scene();
+  engine.build(scene, kDt);
+  const double expected = 0.5 * 0.5 * 0.5;  // m, e^2 h
+  return {{"s4.error_percent", 100.0 * (rebound_height(engine, scene) / expected - 1.0), "%"}};
+}
+
+/// Largest deflection of the swing at a step size; nothing if one exceeds `lost`, m.
+std::optional<double> swing_peak(Engine& engine, const HeldScene& held, double dt, double lost) {
+  engine.build(held.scene, dt);
+  double peak = 0.0;
+  for (int i = 0; i < std::lround(held.end / dt); ++i) {
+    const HolderMotion end = held.holder((i + 1) * dt);
+    engine.pull(held.held, held.spring, held.holder(i * dt), end);
+    engine.step();
+    const double deflection = spring_deflection(held.spring, end, engine.pose(held.held)).norm();
+    if (!(deflection < lost)) return std::nullopt;
+    peak = std::max(peak, deflection);
+  }
+  return peak;
+}
+
+std::vector<Result> measure_swing(Engine& engine) {
+  const HeldScene held = swing_scene();
+  const double converged = converged_peak_deflection(held);
+  const auto error_percent = [&](double dt) {
+    const std::optional<double> peak = swing_peak(engine, held, dt, 2.0 * converged);
+    return peak ? 100.0 * (*peak / converged - 1.0) : std::numeric_limits<double>::quiet_NaN();
+  };
+  double stable = 0.0;
+  for (int quarter = 4; quarter <= 80; ++quarter) {
+    const double dt = 0.25e-3 * quarter;
+    if (!swing_peak(engine, held, dt, 2.0 * converged)) break;
+    stable = dt;
+  }
+  return {{"s5.converged_peak_mm", 1e3 * converged, "mm"},
+          {"s5.peak_error_percent_at_1ms", error_percent(1e-3), "%"},
+          {"s5.peak_error_percent_at_4ms", error_percent(4e-3), "%"},
+          {"s5.stable_up_to_ms", 1e3 * stable, "ms"}};
+}
+
+struct GapFigures {
+  Largest peak{};              ///< N
+  double smallest_hold = 0.0;  ///< N, least mean over 0.1 s of the held box's most loaded pair, last 5 s
+  double held_for = 0.0;       ///< s, from the end of the drive, that this mean stays above 200 N
+  bool is_complete = false;
+  double best_us = 0.0;
+};
+
+double most_loaded_pair(const Engine& engine, const HeldScene& held) {
+  double force = engine.normal_force(held.held, kPlane);
+  for (int other = 0; other < static_cast<int>(held.scene.bodies.size()); ++other) {
+    if (other != held.held) force = std::max(force, engine.normal_force(held.held, other));
+  }
+  return force;
+}
+
+bool has_arrived(const HeldScene& held, const Pose& X_WB) {
+  const Vector3& half = held.scene.bodies[static_cast<std::size_t>(held.held)].half;
+  double highest = std::numeric_limits<double>::lowest();
+  for (const double x : {-half.x(), half.x()}) {
+    for (const double y : {-half.y(), half.y()}) highest = std::max(highest, (X_WB * Vector3(x, y, -half.z())).z());
+  }
+  return highest < 3e-3 && std::acos(std::min(1.0, X_WB.R(2, 2))) < kDegree;
+}
+
+GapFigures press_into_gap(Engine& engine, const HeldScene& held) {
+  constexpr int kWindow = 100, kSkipped = 100, kHold = 5000;  // steps
+  constexpr double kJam = 200.0;                              // N, of the 245 with which the spring can press
+  engine.build(held.scene, kDt);
+  GapFigures figures{.smallest_hold = std::numeric_limits<double>::max()};
+  StepTimer timer;
+  double window = 0.0;
+  const int steps = static_cast<int>(std::lround(held.end / kDt));
+  for (int i = 0; i < steps; ++i) {
+    timer.time(1, [&] {
+      engine.pull(held.held, held.spring, held.holder(i * kDt), held.holder((i + 1) * kDt));
+      engine.step();
+    });
+    const double force = most_loaded_pair(engine, held);
+    if (i >= kSkipped) figures.peak.see(force);
+    window += force / kWindow;
+    if ((i + 1) % kWindow != 0) continue;
+    if (i >= steps - kHold) {
+      figures.smallest_hold = std::min(figures.smallest_hold, window);
+      if (figures.smallest_hold > kJam) figures.held_for += kWindow * kDt;
+    }
+    window = 0.0;
+  }
+  figures.is_complete = has_arrived(held, engine.pose(held.held));
+  figures.best_us = timer.best_us();
+  return figures;
+}
+
+std::vector<Result> measure_gap(Engine& engine) {
+  const GapFigures a = press_into_gap(engine, gap_scene(GapVariant::A));
+  const GapFigures b = press_into_gap(engine, gap_scene(GapVariant::B));
+  const GapFigures c = press_into_gap(engine, gap_scene(GapVariant::C));
+  return {{"s6a.peak_force_N", a.peak.value(), "N"},
+          {"s6a.completes", a.is_complete ? 1.0 : 0.0, "1"},
+          {"s6b.peak_force_N", b.peak.value(), "N"},
+          {"s6b.completes", b.is_complete ? 1.0 : 0.0, "1"},
+          {"s6b.us_per_step", b.best_us, "us"},
+          {"s6c.jam_force_N", c.smallest_hold, "N"},
+          {"s6c.held_for_s", c.held_for, "s"},
+          {"s6c.peak_force_N", c.peak.value(), "N"},
+          {"s6c.passes_through", c.is_complete ? 1.0 : 0.0, "1"}};
+}
+
+}  // namespace
+
+std::vector<Result> measure(Engine& engine, const std::string& scene) {
+  if (scene == "s1") return measure_stack(engine);
+  if (scene == "s2") return measure_drop(engine);
+  if (scene == "s3") return measure_slide(engine);
+  if (scene == "s4") return measure_bounce(engine);
+  if (scene == "s5") return measure_swing(engine);
+  if (scene == "s6") return measure_gap(engine);
+  return {};
+}
+
+}  // namespace snug::peers

@@ -1,0 +1,20 @@
+// Measure: runs a scene in an engine and says how fast and how right it was; the same code for every engine.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "peers/engine.hpp"
+
+namespace snug::peers {
+
+struct Result {
+  std::string name;  ///< "s1.awake.us_per_step"
+  double value = 0.0;
+  std::string unit;
+};
+
+/// scene: "s1" .. "s6"; anything else gives nothing. bench/README.md says what each figure means.
+[[nodiscard]] std::vector<Result> measure(Engine& engine, const std::string& scene);
+
+}  // namespace snug::peers
