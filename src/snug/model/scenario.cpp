@@ -6,6 +6,9 @@
 #include <sstream>
 #include <system_error>
 
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
 #include "snug/model/internal/parse.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
 
@@ -17,6 +20,33 @@ std::string where_of(std::string_view name, const YAML::Mark& mark) {
   return std::string(name) + (mark.is_null() ? "" : ":" + std::to_string(mark.line + 1));
 }
 
+/// Notes where documents start and is deaf to the rest.
+class DocumentStarts final : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { last_start = mark; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+  YAML::Mark last_start;
+};
+
+/// YAML::Load takes the first document and silently drops what follows, be it a second one or the rest after a stray
+/// bracket; YAML::LoadAll never returns when it meets a stray comma.
+void check_one_document(const std::string& text, std::string_view name) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts starts;
+  if (!parser.HandleNextDocument(starts)) throw InputError(std::string(name) + ":1", "", "nothing", "a mapping");
+  if (parser.HandleNextDocument(starts))
+    throw InputError(where_of(name, starts.last_start), "", "something after the end of the YAML document",
+                     "one document and nothing else (look for a stray bracket, comma or ---)");
+}
+
 }  // namespace
 
 Scenario parse_text(std::string_view text, std::string_view name, std::set<std::string>* known_keys) {
@@ -26,10 +56,8 @@ Scenario parse_text(std::string_view text, std::string_view name, std::set<std::
   scenario.source_text = std::string(text);
   scenario.name = document.name;
   try {
-    const std::vector<YAML::Node> roots = YAML::LoadAll(scenario.source_text);
-    if (roots.size() != 1)
-      throw InputError(document.name + ":1", "", std::to_string(roots.size()) + " YAML documents", "exactly one");
-    ScenarioReader(Value(roots.front(), "", document, 1), scenario).read();
+    check_one_document(scenario.source_text, name);
+    ScenarioReader(Value(YAML::Load(scenario.source_text), "", document, 1), scenario).read();
   } catch (const YAML::Exception& error) {
     throw InputError(where_of(name, error.mark), "", error.msg, "YAML that can be parsed");
   }

@@ -1,0 +1,269 @@
+// Strict loading: each way to get a scenario wrong is met by the line, the key and what would have been right.
+#include <gtest/gtest.h>
+
+#include "scenario_text.hpp"
+
+namespace snug::model {
+namespace {
+
+using test::Complaint;
+using test::expect_complaint;
+using test::replaced;
+
+const std::string kText = R"(name: small
+gravity: [0, 0, -9.81]
+time_step: 0.001
+solver:
+  tolerance: 1.0e-5
+  sleep: {enabled: true}
+materials:
+  - {name: box}
+  - {name: wood, density: 620}
+contacts:
+  pairs:
+    - {between: [box, box], friction: 0.2, restitution: 0.05}
+    - {between: [box, wood], friction: 0.15, restitution: 0.1}
+frames:
+  - {name: T, pose: {position: [1, 0, 0]}}
+parcel_types:
+  - {name: B1, size: [0.2, 0.3, 0.1], mass: 0.5}
+parcels:
+  - id: BOX1
+    type: B1
+    material: box
+    inertia: [0.002, 0.003, 0.004]
+    com: [0, 0, -0.03]
+  - id: BOX2
+    type: B1
+    material: box
+    shell: {mass: 0.1, thickness: 0.001}
+    layers:
+      - {material: wood, size: [0.19, 0.29, 0.01], z: -0.04}
+containers:
+  - name: tote
+    pose: {frame: T}
+    inner_size: [0.4, 0.6, 0.25]
+    material: wood
+bodies:
+  - name: table
+    kind: static
+    material: wood
+    size: [1, 1, 0.1]
+    pose: {position: [-1, 0, -0.05]}
+  - name: cube
+    material: box
+    size: [0.1, 0.1, 0.1]
+    mass: 2
+    pose: {position: [-1, 0, 0.05], yaw_deg: 30}
+cup:
+  stiffness: {lateral: 2500, axial: 6000, bend: 5, torsion: 3, coupling: 10}
+sequences:
+  - name: first
+    items:
+      - {parcel: BOX1, up: Z}
+      - {parcel: BOX2, up: X, yaw_deg: 90}
+)";
+
+TEST(StrictLoading, AcceptsTheUnchangedText) {
+  const Scenario scenario = parse_scenario(kText, "test.yaml");
+  EXPECT_EQ(scenario.name, "small");
+  EXPECT_EQ(scenario.source_text, kText);
+  EXPECT_EQ(scenario.target, "tote");
+  EXPECT_EQ(scenario, parse_scenario(kText, "test.yaml"));
+}
+
+TEST(StrictLoading, NamesTheNearestKeyWhenAKeyIsUnknown) {
+  expect_complaint(replaced(kText, "time_step", "timestep"),
+                   {"timestep:", "timestep", "unknown key", "'time_step' (nearest)"});
+  expect_complaint(replaced(kText, "friction: 0.2", "fricton: 0.2"),
+                   {"fricton", "contacts.pairs[0].fricton", "unknown key 'fricton'", "'friction'"});
+  expect_complaint(replaced(kText, "tolerance:", "tolerence:"),
+                   {"tolerence", "solver.tolerence", "unknown key", "'tolerance'"});
+  expect_complaint(replaced(kText, "{enabled: true}", "{enabledd: true}"),
+                   {"enabledd", "solver.sleep.enabledd", "unknown key", "'enabled'"});
+  expect_complaint(replaced(kText, "pose: {frame: T}", "pose: {fraem: T}"),
+                   {"fraem", "containers[0].pose.fraem", "unknown key", "'frame'"});
+}
+
+TEST(StrictLoading, RefusesAKeyGivenTwice) {
+  expect_complaint(replaced(kText, "    type: B1\n    material: box\n    inertia", "    type: B1\n    type: B1\n    material: box\n    inertia"),
+                   {"    type: B1\n    material: box\n    inertia", "parcels[0].type", "a second time", "once"});
+}
+
+TEST(StrictLoading, NamesARequiredKeyThatIsMissing) {
+  expect_complaint(replaced(kText, ", restitution: 0.05", ""),
+                   {"friction: 0.2", "contacts.pairs[0].restitution", "nothing", "required"});
+  expect_complaint(replaced(kText, "    inner_size: [0.4, 0.6, 0.25]\n", ""),
+                   {"name: tote", "containers[0].inner_size", "nothing", "required"});
+  expect_complaint(replaced(kText, "    mass: 2\n", ""), {"name: cube", "bodies[1].mass", "nothing", "required"});
+}
+
+TEST(StrictLoading, RefusesAWrongTypeOrUnit) {
+  expect_complaint(replaced(kText, "time_step: 0.001", "time_step: 1 ms"),
+                   {"time_step", "time_step", "'1 ms'", "without unit text"});
+  expect_complaint(replaced(kText, "time_step: 0.001", "time_step: \"0.001\""),
+                   {"time_step", "time_step", "'0.001'", "number"});
+  expect_complaint(replaced(kText, "gravity: [0, 0, -9.81]", "gravity: -9.81"),
+                   {"gravity", "gravity", "'-9.81'", "a list of 3 numbers"});
+  expect_complaint(replaced(kText, "{enabled: true}", "{enabled: yes}"),
+                   {"enabled: yes", "solver.sleep.enabled", "'yes'", "true or false"});
+  expect_complaint(replaced(kText, "kind: static", "kind: statik"),
+                   {"statik", "bodies[0].kind", "'statik'", "nearest is 'static'"});
+  expect_complaint(replaced(kText, "up: X,", "up: W,"), {"up: W", "sequences[0].items[1].up", "'W'", "one of X Y Z"});
+  expect_complaint(replaced(kText, "yaw_deg: 90", "yaw_deg: 45"),
+                   {"yaw_deg: 45", "sequences[0].items[1].yaw_deg", "'45'", "90"});
+}
+
+TEST(StrictLoading, RefusesNumbersThatAreNotFinite) {
+  for (const std::string word : {".nan", "nan", ".inf", "-inf", "1e999", "~"}) {
+    SCOPED_TRACE(word);
+    expect_complaint(replaced(kText, "mass: 2\n", "mass: " + word + "\n"), {"mass: " + word, "bodies[1].mass", "", "number"});
+    expect_complaint(replaced(kText, "com: [0, 0, -0.03]", "com: [0, 0, " + word + "]"),
+                     {"com: [0", "parcels[0].com[2]", "", "number"});
+  }
+}
+
+TEST(StrictLoading, RefusesNegativeAndAbsurdValues) {
+  expect_complaint(replaced(kText, "mass: 2\n", "mass: -2\n"), {"mass: -2", "bodies[1].mass", "'-2'", "mass in kg"});
+  expect_complaint(replaced(kText, "mass: 2\n", "mass: 0\n"), {"mass: 0\n", "bodies[1].mass", "'0'", "mass in kg"});
+  expect_complaint(replaced(kText, "friction: 0.2", "friction: -0.2"),
+                   {"-0.2", "contacts.pairs[0].friction", "'-0.2'", ">= 0"});
+  expect_complaint(replaced(kText, "restitution: 0.05", "restitution: 1.5"),
+                   {"1.5", "contacts.pairs[0].restitution", "'1.5'", "0 to 1"});
+  expect_complaint(replaced(kText, "size: [0.2, 0.3, 0.1]", "size: [200, 300, 100]"),
+                   {"[200", "parcel_types[0].size[0]", "'200'", "a size in metres"});
+  expect_complaint(replaced(kText, "size: [0.1, 0.1, 0.1]", "size: [0.1, 0, 0.1]"),
+                   {"[0.1, 0,", "bodies[1].size[1]", "'0'", "a size in metres"});
+  expect_complaint(replaced(kText, "position: [1, 0, 0]", "position: [1, 0, 1e6]"),
+                   {"1e6", "frames[0].pose.position[2]", "'1e6'", "metres"});
+  expect_complaint(replaced(kText, "coupling: 10", "coupling: 120"),
+                   {"lateral: 2500", "cup", "coupling 120", "coupling^2"});
+}
+
+TEST(StrictLoading, RefusesAnInertiaThatNoBodyHas) {
+  expect_complaint(replaced(kText, "[0.002, 0.003, 0.004]", "[0.002, 0.003, 0.006]"),
+                   {"0.006]", "parcels[0].inertia", "0.006", "triangle inequality"});
+  expect_complaint(replaced(kText, "[0.002, 0.003, 0.004]", "[0.002, 0.003, 0.004, 0.0, 0.0035, 0.0]"),
+                   {"0.0035", "parcels[0].inertia", "principal moments", "positive definite"});
+  expect_complaint(replaced(kText, "[0.002, 0.003, 0.004]", "[0.002, -0.003, 0.004]"),
+                   {"-0.003", "parcels[0].inertia[1]", "'-0.003'", "> 0"});
+}
+
+TEST(StrictLoading, AcceptsAFlatPlateWhoseInertiaMeetsTheTriangleInequalityWithEquality) {
+  EXPECT_NO_THROW((void)parse_scenario(replaced(kText, "[0.002, 0.003, 0.004]", "[0.002, 0.003, 0.005]"), "test.yaml"));
+}
+
+TEST(StrictLoading, RefusesACentreOfMassOrALayerOutsideTheBox) {
+  expect_complaint(replaced(kText, "com: [0, 0, -0.03]", "com: [0, 0, -0.06]"),
+                   {"-0.06", "parcels[0].com", "", "inside the box"});
+  expect_complaint(replaced(kText, "z: -0.04}", "z: -0.0451}"),
+                   {"-0.0451", "parcels[1].layers[0]", "sticks out", "inside the box"});
+}
+
+TEST(StrictLoading, ReportsStaticBodiesThatOverlapWithNamesAndDepth) {
+  const std::string shelf = R"(  - name: shelf
+    kind: static
+    material: wood
+    size: [1, 1, 0.1]
+    pose: {position: [-1, 0, -0.148]}
+  - name: cube
+)";
+  const std::string text = replaced(kText, "  - name: cube\n", shelf);
+  expect_complaint(text, {"name: shelf", "bodies[1]", "'shelf' overlaps 'table' by 2 mm", "touch at most"});
+  EXPECT_NO_THROW((void)parse_scenario(replaced(text, "-0.148", "-0.15"), "test.yaml"));  // flush
+  expect_complaint(replaced(kText, "pose: {position: [-1, 0, -0.05]}", "pose: {position: [0.299, 0, 0.10]}"),
+                   {"name: table", "bodies[0]", "'table' overlaps 'tote' by 9 mm", "touch at most"});
+}
+
+TEST(StrictLoading, ReportsABodyThatStartsDeepInAnother) {
+  // 2 mm: refused; 0.5 mm: left to the contact solver.
+  expect_complaint(replaced(kText, "[-1, 0, 0.05], yaw", "[-1, 0, 0.048], yaw"),
+                   {"name: cube", "bodies[1]", "'cube' overlaps 'table' by 2 mm", "no deeper than 1 mm"});
+  EXPECT_NO_THROW((void)parse_scenario(replaced(kText, "[-1, 0, 0.05], yaw", "[-1, 0, 0.0495], yaw"), "test.yaml"));
+}
+
+TEST(StrictLoading, RefusesABoxThatFitsTheContainerInNoOrientation) {
+  // Turned on its side 0.61 m exceeds the longest inner edge of 0.6 m; 0.59 m fits along it.
+  const std::string text = replaced(kText, "    inertia: [0.002", "    size: [0.1, 0.1, 0.61]\n    inertia: [0.002");
+  expect_complaint(text, {"id: BOX1", "parcels[0]", "'BOX1' of 100 x 100 x 610 mm", "'tote' of 400 x 600 x 250 mm"});
+  EXPECT_NO_THROW((void)parse_scenario(replaced(text, "0.61", "0.59"), "test.yaml"));
+}
+
+TEST(StrictLoading, RefusesNamesUsedTwice) {
+  expect_complaint(replaced(kText, "{name: wood, density", "{name: box, density"),
+                   {"density", "materials[1].name", "'box' a second time", "no other material"});
+  expect_complaint(replaced(kText, "  - id: BOX2\n    type", "  - type"), {"  - type", "parcels[1].id", "nothing", "required"});
+  expect_complaint(replaced(kText, "id: BOX2", "id: BOX1 # again"),
+                   {"# again", "parcels[1].id", "'BOX1' a second time", "no other parcel"});
+  expect_complaint(replaced(kText, "name: cube", "name: tote # again"),
+                   {"# again", "bodies[1].name", "'tote' a second time", "no other body or container"});
+  expect_complaint(replaced(kText, "between: [box, wood]", "between: [box, box]"),
+                   {"friction: 0.15", "contacts.pairs[1].between", "a second time", "each pair once"});
+  expect_complaint(replaced(kText, "{parcel: BOX2, up: X", "{parcel: BOX1, up: X"),
+                   {"up: X", "sequences[0].items[1]", "'BOX1' a second time", "once in a sequence"});
+}
+
+TEST(StrictLoading, RefusesNamesOfNothing) {
+  expect_complaint(replaced(kText, "{parcel: BOX2, up: X", "{parcel: BOX3, up: X"),
+                   {"BOX3", "sequences[0].items[1].parcel", "'BOX3'", "'BOX1' (nearest)"});
+  expect_complaint(replaced(kText, "between: [box, wood]", "between: [box, woood]"),
+                   {"woood", "contacts.pairs[1].between[1]", "'woood'", "'wood' (nearest)"});
+  expect_complaint(replaced(kText, "{frame: T}", "{frame: U}"),
+                   {"frame: U", "containers[0].pose.frame", "'U'", "defined are T"});
+  expect_complaint(kText + "target: toat\n", {"toat", "target", "'toat'", "'tote' (nearest)"});
+}
+
+TEST(StrictLoading, RefusesAPairOfMaterialsThatCanMeetWithoutContactParameters) {
+  const std::string pair = "    - {between: [box, wood], friction: 0.15, restitution: 0.1}\n";
+  const std::string without = replaced(kText, pair, "");
+  expect_complaint(without, {"  pairs:", "contacts", "'box' on 'wood'", "a pair between them, or a default"});
+  const std::string covered = replaced(without, "  pairs:\n", "  default: {friction: 0.3, restitution: 0}\n  pairs:\n");
+  const Scenario scenario = parse_scenario(covered, "test.yaml");
+  EXPECT_EQ(find_contact(scenario, {1}, {0}).value().friction, 0.3);
+  EXPECT_EQ(find_contact(scenario, {0}, {0}).value().friction, 0.2);
+}
+
+TEST(StrictLoading, RefusesContradictions) {
+  expect_complaint(replaced(kText, "yaw_deg: 30}", "yaw_deg: 30, rpy_deg: [0, 0, 30]}"),
+                   {"rpy_deg", "bodies[1].pose.rpy_deg", "both", "one of the two"});
+  expect_complaint(replaced(kText, "yaw_deg: 30}", "quat_wxyz: [1, 1, 0, 0]}"),
+                   {"quat_wxyz", "bodies[1].pose.quat_wxyz", "norm", "norm 1"});
+  expect_complaint(replaced(kText, "    mass: 2\n", "    mass: 2\n    shapes: []\n"),
+                   {"shapes: []", "bodies[1].shapes", "'size' and 'shapes'", "only one of"});
+  expect_complaint(replaced(kText, "    kind: static\n", "    kind: static\n    mass: 3\n"),
+                   {"mass: 3", "bodies[0].mass", "", "only dynamic bodies"});
+  expect_complaint(replaced(kText, "    kind: static\n", "    kind: static\n    twist: {linear: [1, 0, 0]}\n"),
+                   {"twist", "bodies[0].twist", "", "never moves"});
+  expect_complaint(replaced(kText, "friction: 0.2,", "friction: 0.2, damping: 5,"),
+                   {"damping: 5", "contacts.pairs[0].damping", "", "stiffness"});
+  expect_complaint(replaced(kText, "{material: wood, size: [0.19", "{material: box, size: [0.19"),
+                   {"[0.19", "parcels[1].layers[0].material", "'box'", "density"});
+}
+
+TEST(StrictLoading, ReportsWhatIsNotYaml) {
+  const auto error_of = [](const std::string& text) {
+    try {
+      (void)parse_scenario(text, "test.yaml");
+    } catch (const InputError& error) {
+      return error;
+    }
+    return InputError("no error", "", "", "");
+  };
+  EXPECT_EQ(error_of("name: a\nsolver: {tolerance: [1\n").where.substr(0, 10), "test.yaml:");
+  EXPECT_EQ(error_of("name: a\n\tb: 1\n").where, "test.yaml:2");
+  EXPECT_EQ(error_of("").where, "test.yaml:1");
+  EXPECT_EQ(error_of("just words").expected, "a mapping");
+  EXPECT_EQ(error_of("- 1\n- 2\n").got, "a list of 2");
+  EXPECT_EQ(error_of("name: a\n---\nname: b\n").where, "test.yaml:2");
+  EXPECT_EQ(error_of("name: a\n]\nseed: 1\n").where, "test.yaml:2");  // YAML::Load would drop the rest
+  EXPECT_EQ(error_of(",ame: a\nseed: 1\n").where.substr(0, 10), "test.yaml:");  // YAML::LoadAll would not return
+  EXPECT_EQ(error_of("? [a, b]\n: 1\n").expected, "a key in words");
+}
+
+TEST(StrictLoading, ReportsAFileThatIsNotThere) {
+  EXPECT_THROW((void)load_scenario("/nowhere/at/all.yaml"), InputError);
+  EXPECT_THROW((void)load_scenario(test::project_file("scenarios")), InputError);
+}
+
+}  // namespace
+}  // namespace snug::model
