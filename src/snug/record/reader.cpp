@@ -57,45 +57,25 @@ void require_format(hid_t file, const std::filesystem::path& path) {
                      "1 to " + std::to_string(kFormatVersion) + ": a newer snug is needed to read this file");
 }
 
-std::vector<std::string> read_long_texts(hid_t file, const char* path, std::size_t count) {
-  const Handle dataset = open_dataset(file, path);
-  const Handle type = string_type(H5T_VARIABLE);
-  std::vector<std::string> texts;
-  std::vector<char*> pointers(count, nullptr);
-  if (count == 0) return texts;
-  read_rows(dataset.get(), type.get(), 0, count, pointers.data());
-  for (char* pointer : pointers) {
-    texts.emplace_back(pointer == nullptr ? "" : pointer);
-    H5free_memory(pointer);
-  }
-  return texts;
-}
-
-std::size_t rows_of(hid_t file, const char* path) {
-  const Dims dims = dims_of(open_dataset(file, path).get());
-  return dims.empty() ? 0 : static_cast<std::size_t>(dims[0]);
-}
-
+/// The events that all columns hold: a killed run may have left some columns longer than others.
 std::vector<Event> read_events(hid_t file) {
-  std::size_t count = std::numeric_limits<std::size_t>::max();
-  for (const char* path : {kEventTime, kEventKind, kEventBody, kEventText, kEventNumberFirst, kEventNumberCount})
-    count = std::min(count, rows_of(file, path));
   const auto times = read_all<double>(file, kEventTime);
-  const auto kinds = read_long_texts(file, kEventKind, count);
-  const auto bodies = read_long_texts(file, kEventBody, count);
-  const auto texts = read_long_texts(file, kEventText, count);
+  const auto kinds = read_texts(file, kEventKind);
+  const auto bodies = read_texts(file, kEventBody);
+  const auto texts = read_texts(file, kEventText);
   const auto first = read_all<std::int64_t>(file, kEventNumberFirst);
   const auto numbers = read_all<std::int32_t>(file, kEventNumberCount);
   const auto values = read_all<double>(file, kNumberValue);
-  const auto names = read_long_texts(file, kNumberName, std::min(rows_of(file, kNumberName), values.size()));
-  std::vector<Event> events;
-  for (std::size_t i = 0; i < count; ++i) {
-    Event event{times[i], kinds[i], bodies[i], texts[i], {}};
-    if (first[i] < 0 || numbers[i] < 0 || first[i] + numbers[i] > static_cast<std::int64_t>(names.size()))
+  const auto names = read_texts(file, kNumberName);
+  const auto known = static_cast<std::int64_t>(std::min(names.size(), values.size()));
+  std::vector<Event> events(
+      std::min({times.size(), kinds.size(), bodies.size(), texts.size(), first.size(), numbers.size()}));
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    events[i] = {times[i], kinds[i], bodies[i], texts[i], {}};
+    if (first[i] < 0 || numbers[i] < 0 || first[i] > known - numbers[i])
       throw H5Error("/events refers to numbers that do not exist");
-    for (std::int64_t k = first[i]; k < first[i] + numbers[i]; ++k)
-      event.numbers.push_back({names[static_cast<std::size_t>(k)], values[static_cast<std::size_t>(k)]});
-    events.push_back(std::move(event));
+    for (auto k = static_cast<std::size_t>(first[i]); k < static_cast<std::size_t>(first[i] + numbers[i]); ++k)
+      events[i].numbers.push_back({names[k], values[k]});
   }
   return events;
 }
@@ -131,7 +111,7 @@ void append_block(const Contacts& c, std::int32_t block, std::size_t body_count,
   const auto b = static_cast<std::size_t>(block);
   const std::int64_t first = c.block_first[b];
   const std::int64_t count = c.block_count[b];
-  if (first < 0 || count < 0 || first + count > static_cast<std::int64_t>(c.gap.size()))
+  if (first < 0 || count < 0 || first > static_cast<std::int64_t>(c.gap.size()) - count)
     throw H5Error("/contacts/block_first refers to points that do not exist");
   for (std::size_t side = 0; side < 2; ++side)
     if (c.block_body[2 * b + side] < 0 || static_cast<std::size_t>(c.block_body[2 * b + side]) >= body_count)
@@ -311,7 +291,7 @@ void RecordingReader::Impl::read_frame(std::size_t index, Frame& frame) {
 void RecordingReader::Impl::read_contacts_of(std::size_t row, Frame& frame) {
   const std::int64_t first = *at<std::int64_t>(kContactFirst, row);
   const std::int64_t count = *at<std::int32_t>(kContactCount, row);
-  if (first < 0 || count < 0 || first + count > static_cast<std::int64_t>(contacts->frame_block.size()))
+  if (first < 0 || count < 0 || first > static_cast<std::int64_t>(contacts->frame_block.size()) - count)
     throw H5Error("/contacts/frame_first refers to blocks that do not exist");
   frame.contacts.clear();
   for (std::int64_t i = first; i < first + count; ++i)

@@ -153,7 +153,8 @@ struct EventNumber {
   bool operator==(const EventNumber&) const = default;
 };
 
-/// Something that happened: seal, no seal, slip, flip, release, a warning.
+/// Something that happened: seal, no seal, slip, flip, release, a warning. In the file the text is cut after 1024
+/// bytes, the other words and the names of numbers after 64.
 struct Event {
   double time = 0.0;  ///< s
   std::string kind;   ///< short, stable word, e.g. "seal"

@@ -1,6 +1,8 @@
 // RecordingWriter: appends frames and events to a file that stays readable if the run is killed.
 #include "snug/record/writer.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -80,53 +82,61 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr Row7 kAbsentPose = {{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
 constexpr Row6 kAbsentTwist = {{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
 
-/// Events wait here until they are written; their texts must stay where they are until then.
+/// Appends `text` padded with zeros to the width of the column, cut at the end of a UTF-8 character if it is longer.
+template <std::size_t kBytes>
+void put_text(FlatColumn& column, const std::string& text) {
+  std::array<char, kBytes> padded = {};
+  std::size_t size = std::min(text.size(), kBytes);
+  const auto is_inside_character = [&](std::size_t at) {
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+  };
+  while (size > 0 && is_inside_character(size)) --size;
+  text.copy(padded.data(), size);
+  column.put(padded.data(), 1);
+}
+
 class EventLog {
  public:
-  explicit EventLog(hid_t file) : text_type_(string_type(H5T_VARIABLE)) {
-    const auto text = [&](const char* path) {
-      return ColumnSpec{.path = path, .type = text_type_.get(), .value_bytes = sizeof(char*)};
+  explicit EventLog(hid_t file) {
+    const auto text = [&](const char* path, std::size_t bytes) {
+      text_types_.push_back(string_type(bytes));
+      return ColumnSpec{.path = path, .type = text_types_.back().get(), .value_bytes = bytes};
     };
     const ColumnSpec specs[] = {
-        text(kNumberName),
+        text(kNumberName, kEventWordBytes),
         column_of<double>(kNumberValue, 1, "as its name says", "", ""),
         column_of<double>(kEventTime, 1, "s", "", ""),
-        text(kEventKind),
-        text(kEventBody),
-        text(kEventText),
+        text(kEventKind, kEventWordBytes),
+        text(kEventBody, kEventWordBytes),
+        text(kEventText, kEventTextBytes),
         column_of<std::int64_t>(kEventNumberFirst, 1, "row of /events/number_name", "", ""),
         column_of<std::int32_t>(kEventNumberCount, 1, "rows of /events/number_name", "", ""),
     };
     for (const ColumnSpec& spec : specs) columns_.emplace_back(file, spec);
   }
 
-  void append(const Event& event) { pending_.push_back(event); }
-
-  void write() {
-    for (const Event& event : pending_) put(event);
-    for (FlatColumn& column : columns_) column.write();
-    pending_.clear();
-  }
-
- private:
-  void put(const Event& event) {
-    const char* const texts[] = {event.kind.c_str(), event.body.c_str(), event.text.c_str()};
+  void append(const Event& event) {
     const auto count = static_cast<std::int32_t>(event.numbers.size());
     for (const EventNumber& number : event.numbers) {
-      const char* name = number.name.c_str();
-      columns_[0].put(&name, 1);
+      put_text<kEventWordBytes>(columns_[0], number.name);
       columns_[1].put(&number.value, 1);
     }
     columns_[2].put(&event.time, 1);
-    for (std::size_t i = 0; i < 3; ++i) columns_[3 + i].put(&texts[i], 1);
+    put_text<kEventWordBytes>(columns_[3], event.kind);
+    put_text<kEventWordBytes>(columns_[4], event.body);
+    put_text<kEventTextBytes>(columns_[5], event.text);
     columns_[6].put(&number_rows_, 1);
     columns_[7].put(&count, 1);
     number_rows_ += count;
   }
 
-  Handle text_type_;
+  void write() {
+    for (FlatColumn& column : columns_) column.write();
+  }
+
+ private:
+  std::vector<Handle> text_types_;
   std::vector<FlatColumn> columns_;
-  std::vector<Event> pending_;
   std::int64_t number_rows_ = 0;
 };
 

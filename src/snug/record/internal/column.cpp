@@ -25,7 +25,7 @@ Handle create(hid_t file, const ColumnSpec& spec, const Dims& dims, const Dims& 
   const Handle properties(H5Pcreate(H5P_DATASET_CREATE), spec.path);
   check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), spec.path);
   if (with_deflate) check(H5Pset_deflate(properties.get(), 1), spec.path);
-  if (H5Tget_class(spec.type) != H5T_STRING) set_fill(properties.get(), spec.type);
+  set_fill(properties.get(), spec.type);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), spec.path);
   check(H5Pset_create_intermediate_group(links.get(), 1), spec.path);
   Handle dataset(H5Dcreate2(file, spec.path, spec.type, space.get(), links.get(), properties.get(), H5P_DEFAULT),
@@ -99,7 +99,8 @@ const std::vector<unsigned char>& Column::pack(std::size_t lane) {
 
 FlatColumn::FlatColumn(hid_t file, const ColumnSpec& spec)
     : type_(spec.type), dims_(shape(spec, 0)), row_bytes_(spec.width * spec.value_bytes) {
-  dataset_ = create(file, spec, dims_, shape(spec, 2048), false);
+  constexpr std::size_t kChunkBytes = 24576;  // small files stay small, and a run needs some hundred chunks
+  dataset_ = create(file, spec, dims_, shape(spec, std::clamp<std::size_t>(kChunkBytes / row_bytes_, 16, 2048)), false);
 }
 
 void FlatColumn::write() {

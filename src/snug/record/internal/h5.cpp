@@ -69,7 +69,7 @@ Handle string_type(std::size_t size) {
   Handle type(H5Tcopy(H5T_C_S1), "string type");
   check(H5Tset_size(type.get(), size), "string type");
   check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "string type");
-  check(H5Tset_strpad(type.get(), size == H5T_VARIABLE ? H5T_STR_NULLTERM : H5T_STR_NULLPAD), "string type");
+  check(H5Tset_strpad(type.get(), H5T_STR_NULLPAD), "string type");
   return type;
 }
 

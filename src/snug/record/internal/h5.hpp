@@ -78,7 +78,7 @@ inline hid_t file_type<std::uint8_t>() {
 
 using Dims = std::vector<hsize_t>;
 
-/// Fixed-length UTF-8 type that holds `size` bytes; variable-length when `size` is H5T_VARIABLE.
+/// UTF-8 text of `size` bytes, padded with zeros.
 [[nodiscard]] Handle string_type(std::size_t size);
 
 void write_attribute(hid_t object, const char* name, const std::string& text);

@@ -134,7 +134,7 @@ inline void randomize(Frame& frame, Rng& rng, int index, const RecordingHeader& 
 inline Event random_event(Rng& rng, int index) {
   Event event{0.1 * index, "seal", "BOX013", "lip on the face; gap \xE2\x89\xA4 1 mm", {}};
   if (index % 3 == 0) event.body.clear();
-  if (index % 7 == 0) event.text = std::string(5000, 'x');
+  if (index % 7 == 0) event.text = std::string(1024, 'x');
   for (int i = rng.index(4); i > 0; --i)
     event.numbers.push_back({std::string("n").append(std::to_string(i)), rng.normal()});
   return event;

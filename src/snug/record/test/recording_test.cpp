@@ -173,6 +173,19 @@ TEST(Recording, StoresRestingContactsOnce) {
   EXPECT_LT(std::filesystem::file_size(folder / "run.h5"), 600'000u);
 }
 
+TEST(Recording, CutsLongTextsOfEventsBetweenCharacters) {
+  const ScratchFolder folder;
+  Rng rng(26);
+  Recording written = test::random_recording(rng, 1, 1, 0);
+  const std::string text = std::string(1023, 'x') + "\xC2\xB5m";
+  written.events.push_back({0.0, std::string(70, 'k'), std::string(64, 'b'), text, {}});
+  save_recording(folder / "run.h5", written);
+  const Event event = load_recording(folder / "run.h5").events.at(0);
+  EXPECT_EQ(event.kind, std::string(64, 'k'));
+  EXPECT_EQ(event.body, std::string(64, 'b'));
+  EXPECT_EQ(event.text, std::string(1023, 'x'));
+}
+
 TEST(RecordingReader, FetchesAnyFrameAndFindsItByTime) {
   const ScratchFolder folder;
   Rng rng = Rng(17).split("random access");
