@@ -62,6 +62,13 @@ std::optional<Refusal> find_problem(const PickSpec& pick, const Pose& X_WP_place
   return refuse(is_along_an_axis(up_place) ? NoProgram::NeedsFlip : NoProgram::TiltedPlacement, pick.box);
 }
 
+bool is_finite(const PlacementSettings& s) {
+  return is_finite(s.X_WT) && is_finite(s.X_WE_home) && std::isfinite(s.rim_height) && std::isfinite(s.obstacle_top) &&
+         std::isfinite(s.pick_length) && std::isfinite(s.hold_length) && std::isfinite(s.free_length) &&
+         std::isfinite(s.release_gap) && std::isfinite(s.travel_clearance) && std::isfinite(s.tool_yaw) &&
+         std::isfinite(s.entry_clearance.value_or(0.0));
+}
+
 Move plan_move(const PickSpec& pick, const Pose& X_WP_place, const PlacementSettings& settings) {
   Move move;
   const bool has_prefix = pick.box.size() > 3 && (pick.box.starts_with("BOX") || pick.box.starts_with("Box"));
@@ -179,6 +186,7 @@ const char* describe(NoProgram reason) {
 Expected<Program, NoProgramReason> program_from_placements(std::span<const PickSpec> picks,
                                                            std::span<const Placement> placements,
                                                            const PlacementSettings& settings) {
+  if (!is_finite(settings)) return refuse(NoProgram::BadNumber, "settings", "every number must be finite");
   std::vector<Move> moves;
   for (std::size_t i = 0; i < placements.size(); ++i) {
     const Placement& placement = placements[i];

@@ -1,0 +1,209 @@
+// Tests of reading and writing programs.
+#include "snug/motion/waypoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "snug/core/rng.hpp"
+#include "snug/motion/test/demonstrator.hpp"
+
+namespace snug::motion {
+namespace {
+
+constexpr const char* kRow = ".1, -.2, +0.3, 0, 3.14, 0,Box027,0,0,0,0,0,0";
+
+std::string failing_place(const std::string& text) {
+  return where_it_fails([&] { (void)parse_program(text, "f.csv"); });
+}
+
+/// kRow with column `column` (from 1) replaced.
+std::string with_column(int column, const std::string& value) {
+  std::string text = kRow;
+  std::size_t begin = 0;
+  for (int i = 1; i < column; ++i) begin = text.find(',', begin) + 1;
+  return text.substr(0, begin) + value + text.substr(std::min(text.find(',', begin), text.size()));
+}
+
+Vector3 random_vector(Rng& rng, double size) {
+  return {rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
+}
+
+double largest_difference(const Pose& a, const Pose& b) {
+  return std::max((a.p - b.p).cwiseAbs().maxCoeff(), (a.R - b.R).cwiseAbs().maxCoeff());
+}
+
+TEST(Program, ReadsPoseNameSwitchesAndLine) {
+  const Program program = parse_program("\n.1,-.2,+0.3,0,0,1.5707963267948966,Box027,1,0,1,0,1,0\n", "f.csv");
+  ASSERT_EQ(program.waypoints.size(), 1u);
+  const Waypoint& w = program.waypoints[0];
+  EXPECT_EQ(w.X_WE.p, Vector3(0.1, -0.2, 0.3));
+  EXPECT_LT((w.X_WE.R * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-15);  // rounding of sin and cos
+  EXPECT_EQ(w.name, "Box027");
+  EXPECT_EQ(w.io, (IO{true, false, true, false, true, false}));
+  EXPECT_EQ(w.line, 2);
+  EXPECT_EQ(place_of(program, 0), "f.csv:2");
+}
+
+TEST(Program, ToleratesCarriageReturnsBlankLinesSpacesAndMissingLastNewline) {
+  const std::string messy =
+      std::string("\xEF\xBB\xBF  \r\n\t") + kRow + " \r\n\r\n" + " .1 ,\t-.2, 0.3,0,3.14,0 , Box027 ,0,0,0,0,0, 0";
+  const Program program = parse_program(messy, "f.csv");
+  ASSERT_EQ(program.waypoints.size(), 2u);
+  EXPECT_EQ(program.waypoints[0].line, 2);
+  EXPECT_EQ(program.waypoints[1].line, 4);
+  EXPECT_EQ(program.waypoints[0].X_WE, program.waypoints[1].X_WE);
+  EXPECT_EQ(program.waypoints[0].name, program.waypoints[1].name);
+}
+
+TEST(Program, NamesFileLineAndColumnOfWhatItCannotUse) {
+  const std::string good = std::string(kRow) + "\n";
+  EXPECT_EQ(failing_place(good + with_column(3, "abc")), "f.csv:2 column 3 (z)");
+  EXPECT_EQ(failing_place(good + with_column(1, "nan")), "f.csv:2 column 1 (x)");
+  EXPECT_EQ(failing_place(good + with_column(4, "-inf")), "f.csv:2 column 4 (rx)");
+  EXPECT_EQ(failing_place(good + with_column(2, "")), "f.csv:2 column 2 (y)");
+  EXPECT_EQ(failing_place(good + with_column(2, "1.0.0")), "f.csv:2 column 2 (y)");
+  EXPECT_EQ(failing_place(good + with_column(2, "+-1")), "f.csv:2 column 2 (y)");
+  EXPECT_EQ(failing_place(good + with_column(2, "0x1p3")), "f.csv:2 column 2 (y)");
+  EXPECT_EQ(failing_place(good + with_column(2, "1 2")), "f.csv:2 column 2 (y)");
+  EXPECT_EQ(failing_place(good + with_column(2, "1e999")), "f.csv:2 column 2 (y)");
+  EXPECT_EQ(failing_place(good + with_column(1, "460")), "f.csv:2 column 1 (x)");
+  EXPECT_EQ(failing_place(good + with_column(6, "180")), "f.csv:2 column 6 (rz)");
+  EXPECT_EQ(failing_place(good + with_column(7, "  ")), "f.csv:2 column 7 (name)");
+  EXPECT_EQ(failing_place(good + with_column(7, "a\x01z")), "f.csv:2 column 7 (name)");
+  EXPECT_EQ(failing_place(good + with_column(8, "2")), "f.csv:2 column 8 (vacuum)");
+  EXPECT_EQ(failing_place(good + with_column(9, "true")), "f.csv:2 column 9 (blow-off)");
+  EXPECT_EQ(failing_place(good + with_column(13, "")), "f.csv:2 column 13 (reserved)");
+  EXPECT_EQ(failing_place(good + kRow + ",0"), "f.csv:2 ");
+  EXPECT_EQ(failing_place(good + ".1,.2"), "f.csv:2 ");
+  EXPECT_EQ(failing_place(good + "x,y,z,rx,ry,rz,name,1,0,0,0,0,0"), "f.csv:2 column 1 (x)");
+  EXPECT_EQ(failing_place(good + with_column(2, std::string("0\0", 2))), "f.csv:2 column 2 (y)");
+  EXPECT_EQ(failing_place(""), "f.csv ");
+  EXPECT_EQ(failing_place("\n \r\n"), "f.csv ");
+}
+
+TEST(Program, SaysWhatStoodThereAndWhatWasExpected) {
+  try {
+    (void)parse_program(with_column(8, "yes"), "f.csv");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "f.csv:1: column 8 (vacuum): got 'yes'; expected 0 or 1");
+  }
+}
+
+TEST(Program, NeverDoesAnythingButReadOrThrowOnGarbage) {
+  Rng rng = Rng(7).split("garbage");
+  const std::string alphabet = "0123456789.,+-eE \t\r\nBoxnaif\"#;\x00\xff";
+  const std::string good = std::string(kRow) + "\n" + kRow + "\n";
+  for (int i = 0; i < 20000; ++i) {
+    std::string text = good;
+    const int edits = 1 + rng.index(6);
+    for (int e = 0; e < edits; ++e) {
+      const std::size_t at = static_cast<std::size_t>(rng.index(static_cast<int>(text.size())));
+      const char c = alphabet[static_cast<std::size_t>(rng.index(static_cast<int>(alphabet.size())))];
+      if (rng.uniform() < 0.4) {
+        text.erase(at, 1);
+      } else if (rng.uniform() < 0.5) {
+        text[at] = c;
+      } else {
+        text.insert(at, 1, c);
+      }
+    }
+    try {
+      for (const Waypoint& w : parse_program(text, "f.csv").waypoints) {
+        ASSERT_TRUE(w.X_WE.p.allFinite() && w.X_WE.R.allFinite() && !w.name.empty()) << text;
+      }
+    } catch (const InputError& error) {
+      ASSERT_TRUE(error.where.starts_with("f.csv")) << text;
+    }
+  }
+}
+
+TEST(Program, ReadsRotationVectorsLongerThanPiAsTheSameTurn) {
+  const Vector3 axis = Vector3(1.0, -2.0, 0.5).normalized();
+  for (const double angle : {0.0, 1e-13, 1.0, std::numbers::pi, 3.1416, 4.0, 2.0 * std::numbers::pi, 9.0}) {
+    SCOPED_TRACE(angle);
+    Program program = parse_program(kRow, "f.csv");
+    program.waypoints[0].X_WE.R = exp_rotation(angle * axis);
+    const Program again = parse_program(format_program(program), "f.csv");
+    // Roundings of the logarithm and exponential.
+    EXPECT_LT(largest_difference(again.waypoints[0].X_WE, program.waypoints[0].X_WE), 1e-14);
+    EXPECT_LE(log_rotation(again.waypoints[0].X_WE.R).norm(), std::numbers::pi + 1e-15);
+  }
+}
+
+TEST(Program, ComesBackFromItsTextToTheLastBitsForAnyPose) {
+  Rng rng = Rng(7).split("round trip");
+  Program program{"f.csv", {}};
+  for (int i = 0; i < 2000; ++i) {
+    Waypoint w;
+    w.X_WE = {exp_rotation(random_vector(rng, 4.0)), random_vector(rng, std::pow(10.0, rng.uniform(-12.0, 1.0)))};
+    w.name = "Box" + std::to_string(i);
+    w.io = {rng.index(2) == 1, rng.index(2) == 1, rng.index(2) == 1, rng.index(2) == 1, rng.index(2) == 1, false};
+    w.line = i + 1;
+    program.waypoints.push_back(w);
+  }
+  const Program again = parse_program(format_program(program), "f.csv");
+  ASSERT_EQ(again.waypoints.size(), program.waypoints.size());
+  for (std::size_t i = 0; i < program.waypoints.size(); ++i) {
+    EXPECT_EQ(again.waypoints[i].X_WE.p, program.waypoints[i].X_WE.p);
+    // Required is 1e-12; the logarithm near pi costs a few digits less than that.
+    EXPECT_LT(largest_difference(again.waypoints[i].X_WE, program.waypoints[i].X_WE), 1e-13);
+    EXPECT_EQ(again.waypoints[i].io, program.waypoints[i].io);
+    EXPECT_EQ(again.waypoints[i].name, program.waypoints[i].name);
+    EXPECT_EQ(again.waypoints[i].line, program.waypoints[i].line);
+  }
+}
+
+TEST(Program, RefusesToWriteWhatCouldNotBeRead) {
+  Program program = parse_program(kRow, "f.csv");
+  program.waypoints[0].line = 0;
+  for (const char* name : {"", "a,b", " a", "a\n"}) {
+    program.waypoints[0].name = name;
+    EXPECT_EQ(where_it_fails([&] { (void)format_program(program); }), "f.csv row 1 column 7 (name)");
+  }
+  program.waypoints[0].name = "home";
+  program.waypoints[0].X_WE.p.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(where_it_fails([&] { (void)format_program(program); }), "f.csv row 1 home");
+}
+
+TEST(Program, IsWrittenWholeAndLeavesNothingBeside) {
+  const auto folder = std::filesystem::temp_directory_path() / "snug_motion_waypoint_test";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  const auto path = folder / "program.csv";
+  std::ofstream(path) << "old";
+  const Program program = parse_program(kRow, path.string());
+  write_program(program, path);
+  const Program again = load_program(path);
+  ASSERT_EQ(again.waypoints.size(), 1u);
+  EXPECT_LT(largest_difference(again.waypoints[0].X_WE, program.waypoints[0].X_WE), 1e-14);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()), 1);
+  EXPECT_THROW(write_program(program, folder / "missing" / "program.csv"), InputError);
+  EXPECT_THROW((void)load_program(folder / "missing.csv"), InputError);
+  EXPECT_THROW((void)load_program(folder), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Program, ReadsEveryFileOfTheDemonstrator) {
+  SNUG_NEED_WAYPOINT_FILES();
+  const std::vector<std::size_t> rows = {98, 98, 107, 107, 116, 116};  // interfaces: rows of sequences 1 to 3
+  for (std::size_t i = 0; i < waypoint_files().size(); ++i) {
+    SCOPED_TRACE(waypoint_files()[i]);
+    const Program program = load_program(waypoint_folder() / waypoint_files()[i]);
+    EXPECT_EQ(program.waypoints.size(), rows[i]);
+    EXPECT_EQ(program.waypoints.back().name, "home");
+    const Program again = parse_program(format_program(program), program.name);
+    for (std::size_t k = 0; k < rows[i]; ++k) {
+      EXPECT_LT(largest_difference(again.waypoints[k].X_WE, program.waypoints[k].X_WE), 1e-12) << k;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug::motion
