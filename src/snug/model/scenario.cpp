@@ -17,7 +17,9 @@ namespace internal {
 namespace {
 
 std::string where_of(std::string_view name, const YAML::Mark& mark) {
-  return std::string(name) + (mark.is_null() ? "" : ":" + std::to_string(mark.line + 1));
+  std::string where(name);
+  if (!mark.is_null()) where.append(":").append(std::to_string(mark.line + 1));
+  return where;
 }
 
 /// Notes where documents start and is deaf to the rest.
