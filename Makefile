@@ -54,7 +54,7 @@ bench: build ## how fast and how accurate the physics is, beside its targets
 	@build/snug bench
 
 bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run
-	@$(call configure-build,bench) && scripts/bench-peers.sh build-bench
+	@$(call configure-build,bench) && build-bench/bench_peers
 
 docs: setup ## check that every link in the documents leads somewhere
 	@python3 tools/check_docs.py .
