@@ -1,6 +1,7 @@
 // bench_peers: the scenes S1 to S6 in every engine at hand, as a table or as JSON.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -118,6 +119,16 @@ void print_json(const Table& table) {
   fmt::print("{}\n", nlohmann::ordered_json{{"results", results}}.dump(2));
 }
 
+/// Times of one run relative to the first engine: what can be compared across machines.
+void print_ratios(const Table& table, const std::string& name) {
+  const Row& row = table.rows.at(name);
+  fmt::print("{:<32}{:>6}", "  relative to the first", "");
+  for (const std::string& engine : table.engines) {
+    fmt::print("{:>24.3g}", row.values.at(engine) / row.values.at(table.engines.front()));
+  }
+  fmt::print("\n");
+}
+
 void print_table(const Table& table) {
   fmt::print("{:<32}{:>6}", "", "unit");
   for (const std::string& engine : table.engines) fmt::print("{:>24}", engine);
@@ -127,6 +138,7 @@ void print_table(const Table& table) {
     fmt::print("{:<32}{:>6}", name, row.unit);
     for (const std::string& engine : table.engines) fmt::print("{:>24.4g}", row.values.at(engine));
     fmt::print("\n");
+    if (row.unit == "us") print_ratios(table, name);
   }
 }
 

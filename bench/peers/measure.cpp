@@ -112,8 +112,11 @@ Pose drop_pose(const Scene& scene, const std::vector<Pose>& poses, std::size_t b
   return X_WB;
 }
 
+constexpr int kDropSeeds = 5;
+
 struct DropFigures {
-  Largest depth, late_speed, mean_us;
+  Largest depth, late_speed;
+  double mean_us = 0.0;
   int failures = 0;
 };
 
@@ -145,16 +148,16 @@ void drop_boxes(Engine& engine, unsigned seed, DropFigures& figures) {
     }
     figures.depth.see(worst_depth(scene, poses, present));
   }
-  figures.mean_us.see(timer.mean_us());
+  figures.mean_us += timer.mean_us() / kDropSeeds;
 }
 
 std::vector<Result> measure_drop(Engine& engine) {
   DropFigures figures;
-  for (unsigned seed = 1; seed <= 5; ++seed) drop_boxes(engine, seed, figures);
+  for (unsigned seed = 1; seed <= kDropSeeds; ++seed) drop_boxes(engine, seed, figures);
   return {{"s2.worst_penetration_mm", 1e3 * figures.depth.value(), "mm"},
           {"s2.late_speed_m_s", figures.late_speed.value(), "m/s"},
           {"s2.failed_runs", static_cast<double>(figures.failures), "1"},
-          {"s2.mean_us_per_step", figures.mean_us.value(), "us"}};
+          {"s2.mean_us_per_step", figures.mean_us, "us"}};
 }
 
 std::vector<Result> measure_slide(Engine& engine) {

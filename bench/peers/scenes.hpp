@@ -61,7 +61,7 @@ struct HeldScene {
 
 enum class GapVariant { A, B, C };
 
-/// One of the four box types, standing on its largest stated footprint. type: 0 .. 3 for B1 .. B4.
+/// One of the four box types, its axes along those of the world. type: 0 .. 3 for B1 .. B4.
 [[nodiscard]] BoxBody parcel(int type);
 
 /// S1: 14 boxes in three layers, tight in the container.
