@@ -240,6 +240,24 @@ TEST(StrictLoading, RefusesContradictions) {
                    {"[0.19", "parcels[1].layers[0].material", "'box'", "density"});
 }
 
+TEST(StrictLoading, ReadsHullsAndCapsulesAndRefusesFlatOnes) {
+  const std::string text = replaced(kText, "    size: [0.1, 0.1, 0.1]\n",
+                                    "    shapes:\n"
+                                    "      - {hull: [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]}\n"
+                                    "      - {capsule: {length: 0.1, radius: 0.02}, pose: {position: [0, 0, 0.2]}}\n");
+  const Scenario scenario = parse_scenario(text, "test.yaml");
+  const Body& body = *find_body(scenario, "cube");
+  ASSERT_EQ(body.shapes.size(), 2u);
+  EXPECT_EQ(std::get<geometry::ConvexHull>(body.shapes[0].shape).faces.size(), 4u);
+  EXPECT_EQ(std::get<geometry::Capsule>(body.shapes[1].shape), (geometry::Capsule{0.05, 0.02}));
+  expect_complaint(replaced(text, "[0, 0, 0.1]]", "[0.1, 0.1, 0]]"),
+                   {"hull:", "bodies[1].shapes[0].hull", "one plane", "span a volume"});
+  expect_complaint(replaced(text, "radius: 0.02", "radius: 0"),
+                   {"radius: 0", "bodies[1].shapes[1].capsule.radius", "'0'", "a size in metres"});
+  expect_complaint(replaced(text, "{hull: [[0", "{box: [1, 1, 1], hull: [[0"),
+                   {"hull:", "bodies[1].shapes[0].hull", "'box' and 'hull'", "only one of"});
+}
+
 TEST(StrictLoading, ReportsWhatIsNotYaml) {
   const auto error_of = [](const std::string& text) {
     try {
