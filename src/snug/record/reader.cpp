@@ -33,6 +33,8 @@ struct Contacts {
   std::vector<std::int64_t> block_first;
   std::vector<float> point, normal, force, gap;
   std::vector<std::uint8_t> state;
+  std::size_t blocks = 0;  ///< rows that all block tables have
+  std::size_t points = 0;  ///< rows that all point tables have
 };
 
 Handle open_file(const std::filesystem::path& path) {
@@ -80,7 +82,8 @@ std::vector<Event> read_events(hid_t file) {
   return events;
 }
 
-Contacts read_contacts(hid_t file) {
+/// Tables of a killed run may differ in length by what was being written: the rows that all have count.
+Contacts read_contacts(hid_t file, bool is_complete) {
   const auto path = [](ContactColumn column) { return contact_column(column).path; };
   Contacts c;
   c.frame_block = read_all<std::int32_t>(file, path(kFrameBlock));
@@ -92,11 +95,13 @@ Contacts read_contacts(hid_t file) {
   c.force = read_all<float>(file, path(kForce), 3);
   c.gap = read_all<float>(file, path(kGap));
   c.state = read_all<std::uint8_t>(file, path(kState));
-  const std::size_t points = c.gap.size();
-  const std::size_t blocks = c.block_first.size();
-  if (c.block_body.size() != 2 * blocks || c.block_count.size() != blocks || c.point.size() != 3 * points ||
-      c.normal.size() != 3 * points || c.force.size() != 3 * points || c.state.size() != points)
+  const auto [points, most_points] =
+      std::minmax({c.point.size() / 3, c.normal.size() / 3, c.force.size() / 3, c.gap.size(), c.state.size()});
+  const auto [blocks, most_blocks] = std::minmax({c.block_body.size() / 2, c.block_first.size(), c.block_count.size()});
+  if (is_complete && (points != most_points || blocks != most_blocks))
     throw H5Error("the tables of /contacts differ in length");
+  c.points = points;
+  c.blocks = blocks;
   return c;
 }
 
@@ -106,12 +111,12 @@ PoseSample pose_from(const double* v) { return {vector_from(v), Quaternion(v[3],
 
 /// Appends the contacts of one block.
 void append_block(const Contacts& c, std::int32_t block, std::size_t body_count, std::vector<ContactSample>& out) {
-  if (block < 0 || static_cast<std::size_t>(block) >= c.block_first.size())
+  if (block < 0 || static_cast<std::size_t>(block) >= c.blocks)
     throw H5Error("/contacts/frame_block refers to a block that does not exist");
   const auto b = static_cast<std::size_t>(block);
   const std::int64_t first = c.block_first[b];
   const std::int64_t count = c.block_count[b];
-  if (first < 0 || count < 0 || first > static_cast<std::int64_t>(c.gap.size()) - count)
+  if (first < 0 || count < 0 || first > static_cast<std::int64_t>(c.points) - count)
     throw H5Error("/contacts/block_first refers to points that do not exist");
   for (std::size_t side = 0; side < 2; ++side)
     if (c.block_body[2 * b + side] < 0 || static_cast<std::size_t>(c.block_body[2 * b + side]) >= body_count)
@@ -220,7 +225,7 @@ void RecordingReader::Impl::find_times() {
 
 void RecordingReader::Impl::load_block(std::size_t index) {
   if (index >= block.first && index < block.first + block.count) return;
-  if (!contacts) contacts = read_contacts(file.get());
+  if (!contacts) contacts = read_contacts(file.get(), is_complete);
   block.count = 0;  // stays so if reading throws
   const std::size_t first = index - index % kBlockFrames;
   const std::size_t count = std::min(kBlockFrames, times.size() - first);

@@ -126,6 +126,18 @@ herr_t query(const H5FD_t* /*file*/, unsigned long* flags) {
   return 0;
 }
 
+/// Places tables so that none crosses a page of the system: a write within a page is whole or not there when the
+/// process is killed, one across pages may be half there.
+haddr_t allocate(H5FD_t* base, H5FD_mem_t type, hid_t /*transfer*/, hsize_t size) {
+  constexpr haddr_t kPage = 4096;
+  CommitFile& file = self(base);
+  haddr_t address = file.end_of_allocation;
+  const haddr_t left = kPage - address % kPage;
+  if (type != H5FD_MEM_DRAW && size <= kPage && size > left) address += left;
+  file.end_of_allocation = address + size;
+  return address;
+}
+
 haddr_t get_eoa(const H5FD_t* file, H5FD_mem_t /*type*/) { return self(file).end_of_allocation; }
 
 herr_t set_eoa(H5FD_t* file, H5FD_mem_t /*type*/, haddr_t address) {
@@ -237,6 +249,7 @@ H5FD_class_t make_class() {
   driver.open = open_file;
   driver.close = close_file;
   driver.query = query;
+  driver.alloc = allocate;
   driver.get_eoa = get_eoa;
   driver.set_eoa = set_eoa;
   driver.get_eof = get_eof;

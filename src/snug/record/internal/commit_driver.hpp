@@ -11,7 +11,7 @@ namespace snug::record::internal {
 /// open. This driver keeps what would change the committed part of the file in memory until H5Fflush, and then
 /// writes it so that what is referred to is there before what refers to it: first everything new behind the old end,
 /// then the superblock with the new end, then changed data, then chunk indices from their roots down, last the object
-/// headers with the lengths of the datasets. Killed between any two writes, the file shows the old or the new state of
+/// headers with the lengths of the datasets. Killed at any time, the file shows the old or the new state of
 /// each dataset. It is a plain HDF5 file. docs/formats.md tells what that means for readers.
 [[nodiscard]] Handle use_commit_driver(hid_t access);
 
