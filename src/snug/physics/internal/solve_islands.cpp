@@ -229,53 +229,65 @@ Matrix3 inertia_in_world(const WorldModel::MassProperties& mass, const Matrix3& 
   return R_WI * mass.inverse_inertia.cwiseInverse().asDiagonal() * R_WI.transpose();
 }
 
-/// One Newton step for a body with elements: sets its whitening and its velocity without contacts (into work.u).
-/// Returns by how much the wrench at the present guess differs from the one the last solve assumed, as a velocity.
-double linearize_body(const WorldModel& model, const WorldInput& input, Scratch& work, const Island& island, int body,
-                      BodyForces& assumed, Vector6& at_velocity, bool is_first) {
-  BodyWork& b = work.bodies[static_cast<std::size_t>(body)];
-  const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(body)];
+/// A body with elements in Newton's method: its forces at the middle of the step, linear in the velocity at its end.
+struct ElementBody {
+  int body = -1;
+  Matrix3 inertia_W = Matrix3::Identity();
+  BodyForces forces;                    ///< at `velocity`
+  Vector6 velocity = Vector6::Zero();   ///< guess of the velocity at the end of the step
+};
+
+/// -d wrench / d velocity at the end of the step: the middle moves by dt/4 and half the velocity of the end.
+Matrix6 resistance(const BodyForces& forces, double dt) { return 0.25 * dt * forces.stiffness + 0.5 * forces.damping; }
+
+/// Evaluates the forces at the body's present velocity. Returns by how much they miss what the last linearisation
+/// predicted there, as a velocity.
+double evaluate_body(const WorldModel& model, const WorldInput& input, const Scratch& work, const Island& island,
+                     ElementBody& element) {
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(element.body)];
+  const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(element.body)];
   const double dt = model.settings.dt;
-  const Matrix3 inertia_W = inertia_in_world(mass, b.R_WB);
-  const BodyForces now = evaluate_elements(model, input, work, island, body, inertia_W);
+  const BodyForces now = evaluate_elements(model, input, work, island, element.body, element.inertia_W);
   Vector6 velocity;
   velocity << b.velocity, b.angular;
-  const Matrix6 C = 0.25 * dt * now.stiffness + 0.5 * now.damping;
+  const Vector6 predicted =
+      element.forces.wrench - resistance(element.forces, dt) * (velocity - element.velocity);
+  const Vector6 miss = dt * (now.wrench - predicted);
+  element.forces = now;
+  element.velocity = velocity;
+  return std::max(miss.head<3>().norm() * mass.inverse_mass,
+                  miss.tail<3>().norm() * mass.inverse_inertia.maxCoeff() * mass.radius);
+}
+
+/// Sets the body's effective mass and its velocity without contacts (into work.u) from the last evaluation.
+void linearize_body(const WorldModel& model, const WorldInput& input, Scratch& work, const ElementBody& element) {
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(element.body)];
+  const double mass = 1.0 / model.masses[static_cast<std::size_t>(element.body)].inverse_mass;
+  const double dt = model.settings.dt;
   Matrix6 M = Matrix6::Zero();
-  M.diagonal().head<3>().setConstant(1.0 / mass.inverse_mass);
-  M.bottomRightCorner<3, 3>() = inertia_W;
-  double error = 0.0;
-  if (!is_first) {
-    const Matrix6 C_old = 0.25 * dt * assumed.stiffness + 0.5 * assumed.damping;
-    const Vector6 predicted = assumed.wrench - C_old * (velocity - at_velocity);
-    const Vector6 difference = dt * (now.wrench - predicted);
-    error = std::max(difference.head<3>().norm() * mass.inverse_mass,
-                     difference.tail<3>().norm() * mass.inverse_inertia.maxCoeff() * mass.radius);
-  }
-  assumed = now;
-  at_velocity = velocity;
-  // Effective mass; its symmetric part is what the contact solver needs, the exact wrench comes by iteration.
+  M.diagonal().head<3>().setConstant(mass);
+  M.bottomRightCorner<3, 3>() = element.inertia_W;
+  // Its symmetric part is what the contact solver needs; the exact wrench comes by iteration.
+  const Matrix6 C = resistance(element.forces, dt);
   Matrix6 effective = M + 0.5 * dt * (C + C.transpose());
   Eigen::LLT<Matrix6> cholesky(effective);
   if (cholesky.info() != Eigen::Success) {  // softening beyond the range of the law: fall back to the plain mass
     cholesky.compute(M);
     effective = M;
   }
-  Vector6 start;
+  Vector6 start, external;
   start << b.velocity_start, b.angular_start;
-  Vector6 external;
-  external << model.gravity / mass.inverse_mass, Vector3::Zero();
+  external << mass * model.gravity, Vector3::Zero();
   for (const ExternalWrench& wrench : input.wrenches) {
-    if (wrench.body.index == body) external += as_vector(wrench.wrench_W);
+    if (wrench.body.index == element.body) external += as_vector(wrench.wrench_W);
   }
-  const Vector6 momentum = M * start + dt * (external + now.wrench) + (effective - M) * velocity;
+  const Vector6 momentum = M * start + dt * (external + element.forces.wrench) + (effective - M) * element.velocity;
   const Vector6 free = cholesky.solve(momentum);
   Whitening& whitening = work.whitening[static_cast<std::size_t>(b.active)];
   whitening.is_dense = true;
   const Matrix6 upper = cholesky.matrixU();
   whitening.dense = upper.triangularView<Eigen::Upper>().solve(Matrix6::Identity());
   Eigen::Map<Vector6>(work.u.data() + 6 * b.active) = whiten(whitening, free.head<3>(), free.tail<3>());
-  return error;
 }
 
 /// The bodies with elements of an island, each once, at most this many.
@@ -283,21 +295,22 @@ constexpr int kMaxElementBodies = 8;
 
 struct ElementBodies {
   int count = 0;
-  std::array<int, kMaxElementBodies> body;
-  std::array<BodyForces, kMaxElementBodies> forces;
-  std::array<Vector6, kMaxElementBodies> velocity;
+  std::array<ElementBody, kMaxElementBodies> items;
 };
 
-void find_element_bodies(const WorldInput& input, const Scratch& work, const Island& island, ElementBodies& found) {
-  found.count = 0;
+void find_element_bodies(const WorldModel& model, const WorldInput& input, const Scratch& work, const Island& island,
+                         ElementBodies& found) {
   for (int i = island.first_element; i < island.end_element; ++i) {
     const int body =
         input.elements[static_cast<std::size_t>(work.element_order[static_cast<std::size_t>(i)])].body.index;
-    if (std::find(found.body.begin(), found.body.begin() + found.count, body) != found.body.begin() + found.count) {
-      continue;
-    }
+    bool is_known = false;
+    for (int k = 0; k < found.count; ++k) is_known |= found.items[static_cast<std::size_t>(k)].body == body;
+    if (is_known) continue;
     SNUG_CHECK(found.count < kMaxElementBodies, "more bodies with force elements in one island than expected");
-    found.body[static_cast<std::size_t>(found.count++)] = body;
+    ElementBody& item = found.items[static_cast<std::size_t>(found.count++)];
+    item.body = body;
+    item.inertia_W = inertia_in_world(model.masses[static_cast<std::size_t>(body)],
+                                      work.bodies[static_cast<std::size_t>(body)].R_WB);
   }
 }
 
@@ -341,31 +354,32 @@ void reset_plain_bodies(Scratch& work, const Island& island) {
 void solve_element_island(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work,
                           const Island& island, StepReport& report) {
   ElementBodies bodies;
-  find_element_bodies(input, work, island, bodies);
+  find_element_bodies(model, input, work, island, bodies);
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
+  SolveResult result;
   double error = 0.0;
   for (int iteration = 0; iteration < kElementIterations; ++iteration) {
     error = 0.0;
     for (int i = 0; i < bodies.count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      error = std::max(error, linearize_body(model, input, work, island, bodies.body[k], bodies.forces[k],
-                                             bodies.velocity[k], iteration == 0));
+      error = std::max(error, evaluate_body(model, input, work, island, bodies.items[static_cast<std::size_t>(i)]));
     }
     if (iteration > 0 && error <= model.settings.tolerance) break;
+    for (int i = 0; i < bodies.count; ++i) {
+      linearize_body(model, input, work, bodies.items[static_cast<std::size_t>(i)]);
+    }
     reset_plain_bodies(work, island);
     build_rows(model, state, work, island, iteration == 0);
-    SolveResult result;
     if (first != end) result = solve_rows(model.settings, first, end, work.u.data());
     report.sweeps = std::max(report.sweeps, result.sweeps);
-    report.residual = std::max(report.residual, result.residual);
-    if (!result.has_converged) report.status = StepStatus::NotConverged;
     for (int i = 0; i < bodies.count; ++i) {
-      BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.body[static_cast<std::size_t>(i)])];
+      BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.items[static_cast<std::size_t>(i)].body)];
       unwhiten(work.whitening[static_cast<std::size_t>(b.active)], work.u.data() + 6 * b.active, b.velocity,
                b.angular);
     }
   }
+  report.residual = std::max(report.residual, result.residual);
+  if (!result.has_converged) report.status = StepStatus::NotConverged;
   report.element_residual = std::max(report.element_residual, error);
 }
 

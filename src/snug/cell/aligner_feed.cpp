@@ -1,0 +1,77 @@
+// AlignerFeed: how a box of the sequence stands at the aligner when the robot comes for it.
+#include "snug/cell/aligner_feed.hpp"
+
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "snug/core/check.hpp"
+
+namespace snug::cell {
+namespace {
+
+/// Does the box stand as the sequence wants its heavy side?
+bool agrees_with_heavy_side(const model::Item& item, const model::Aligner& aligner, const Matrix3& R_AP) {
+  if (item.up == model::UpAxis::Z) return true;
+  switch (item.heavy_side.value_or(aligner.heavy_side)) {
+    case model::HeavySide::Any: return true;
+    case model::HeavySide::Corner: return model::has_heavy_side_at_corner(R_AP);
+    case model::HeavySide::Away: return !model::has_heavy_side_at_corner(R_AP);
+  }
+  return true;
+}
+
+}  // namespace
+
+Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
+                     const std::optional<Vector3>& p_WE_pick) {
+  SNUG_CHECK(scenario.aligner.has_value(), "a sequence needs an aligner");
+  const model::Aligner& aligner = *scenario.aligner;
+  const Vector3 size = model::collision_size(scenario, *model::find_parcel(scenario, item.parcel));
+  const bool by_pick = !item.yaw && aligner.yaw_rule == model::YawRule::NearestPick && p_WE_pick;
+  if (!by_pick) {
+    return model::standing_pose(aligner, size, model::standing_rotation(item.up, item.up_sign, item.yaw.value_or(0.0)));
+  }
+  Pose best;
+  double best_distance = std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn < 4; ++turn) {
+    const Matrix3 R_AP = model::standing_rotation(item.up, item.up_sign, turn * 0.5 * std::numbers::pi);
+    if (!agrees_with_heavy_side(item, aligner, R_AP)) continue;
+    const Pose X_WP = model::standing_pose(aligner, size, R_AP);
+    const double distance = (X_WP.p - *p_WE_pick).head<2>().norm();
+    if (distance < best_distance - 1e-9) {
+      best_distance = distance;
+      best = X_WP;
+    }
+  }
+  return best;
+}
+
+int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view prefix) {
+  if (waypoint_name.substr(0, prefix.size()) != prefix) return -1;
+  std::string digits;
+  for (const char c : waypoint_name.substr(prefix.size())) {
+    if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
+      digits += c;
+    } else if (!digits.empty()) {
+      break;
+    }
+  }
+  if (digits.empty()) return -1;
+  for (std::size_t i = 0; i < sequence.items.size(); ++i) {
+    if (sequence.items[i].parcel.ends_with(digits)) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int vertical_axis(const Matrix3& R_WP) {
+  int axis = 0;
+  R_WP.row(2).cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
+
+char axis_letter(int axis) { return static_cast<char>('X' + axis); }
+
+}  // namespace snug::cell

@@ -1,0 +1,25 @@
+// AlignerFeed: how a box of the sequence stands at the aligner when the robot comes for it.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "snug/model/scenario.hpp"
+
+namespace snug::cell {
+
+/// X_WP of an item at the aligner: in its corner, the axis up that the sequence says; the quarter turn from the
+/// sequence, or by the aligner's rule from `p_WE_pick`, the point that the pick waypoint aims at.
+/// The scenario must have an aligner (checked).
+[[nodiscard]] Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
+                                   const std::optional<Vector3>& p_WE_pick);
+
+/// Index of the item whose box id ends with the number that follows `prefix` in a waypoint's name
+/// ("PrePick027" -> the box whose id ends in 027), or -1.
+[[nodiscard]] int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view prefix);
+
+/// The axis of a box that is nearest to vertical, 0 .. 2.
+[[nodiscard]] int vertical_axis(const Matrix3& R_WP);
+[[nodiscard]] char axis_letter(int axis);
+
+}  // namespace snug::cell

@@ -1,0 +1,155 @@
+// Gripper: the cup in the cell: what it seals to, what it does to that box in the coming step, and when it lets go.
+#include "snug/cell/gripper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snug::cell {
+namespace {
+
+/// A cup that found nothing says so after this long with the vacuum on; it keeps trying.
+constexpr double kSealPatience = 0.4;  // s
+
+physics::ElementQuery query_of(const CellWorld& world, const physics::WorldState& state, int body, const Pose& X_WE,
+                               const Twist& V_WE) {
+  physics::ElementQuery query;
+  query.X_WE = X_WE;
+  query.V_WE = V_WE;
+  query.X_WB = physics::pose_of(world.model, state, physics::BodyId{body});
+  query.V_WB = physics::twist_of(world.model, state, physics::BodyId{body});
+  query.p_WBcm = state.bodies[static_cast<std::size_t>(body)].p_WBcm;
+  return query;
+}
+
+Vector3 half_of(const CellWorld& world, int body) {
+  return std::get<geometry::Box>(world.model.bodies[static_cast<std::size_t>(body)].geoms[0].shape).half;
+}
+
+}  // namespace
+
+Gripper::Gripper(const model::CupParams& params, cup::CupMode mode, const CellWorld& world)
+    : params_(params), mode_(mode), world_(&world) {}
+
+Gripper::Target Gripper::find_target(const physics::WorldState& world_state, const Pose& X_WE) const {
+  model::CupParams loose = params_;  // anything in front of the cup, sealable or not
+  loose.seal.reach = params_.free_length;
+  loose.seal.max_tilt = 1.5;
+  loose.seal.max_overhang = params_.effective_diameter;
+  Target nearest;
+  for (const physics::BodyId id : world_->parcels) {
+    if (!world_state.bodies[static_cast<std::size_t>(id.index)].is_present) continue;
+    const Pose X_WP = physics::pose_of(world_->model, world_state, id);
+    const Vector3 half = half_of(*world_, id.index);
+    if ((X_WP.p - X_WE.p).norm() > half.norm() + 2.0 * params_.free_length) continue;
+    const auto seal = cup::try_seal(loose, X_WE, half, X_WP);
+    if (seal && (nearest.body < 0 || seal->length < nearest.hit.length)) nearest = {id.index, *seal, half, X_WP};
+  }
+  return nearest;
+}
+
+void Gripper::try_to_seal(const Target& target, const Pose& X_WE, const cup::CupCommand& command, GripperState& state,
+                          std::vector<GripperEvent>& events) const {
+  if (!command.vacuum) return;
+  GripperEvent event;
+  event.body = target.body;
+  if (target.body >= 0) {
+    const auto seal = cup::try_seal(params_, X_WE, target.half, target.X_WP);
+    if (seal) {
+      state.cup.phase = cup::CupPhase::Holding;
+      state.cup.body = target.body;
+      state.cup.X_PS = seal->X_PS;
+      if (mode_ == cup::CupMode::Holding) state.cup.pressure_gauge = params_.vacuum.pressure_gauge_hold;
+      state.has_warned = false;
+      event.kind = GripperEvent::Kind::Seal;
+      const Vector3 outward = -seal->X_PS.R.col(2);
+      event.offset_P = seal->X_PS.p - outward.cwiseProduct(target.half).cwiseProduct(outward.cwiseAbs());
+      event.length = seal->length;
+      event.angle = seal->tilt;
+      events.push_back(event);
+      return;
+    }
+    event.no_seal = seal.error();
+  }
+  if (state.has_reported || state.vacuum_time < kSealPatience) return;
+  state.has_reported = true;
+  event.kind = GripperEvent::Kind::NoSeal;
+  events.push_back(event);
+}
+
+void Gripper::let_go(GripperEvent event, GripperState& state, std::vector<GripperEvent>& events) const {
+  event.body = state.cup.body;
+  events.push_back(event);
+  state.cup.phase = cup::CupPhase::Free;
+  state.cup.body = -1;
+  state.cup.bend = 0.0;
+  state.F_S = Wrench{};
+  if (event.kind == GripperEvent::Kind::HoldLost || mode_ == cup::CupMode::Holding) state.cup.pressure_gauge = 0.0;
+}
+
+void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
+                         const cup::CupCommand& command, GripperState& state,
+                         std::vector<GripperEvent>& events) const {
+  if (!command.vacuum && state.cup.phase == cup::CupPhase::Holding) state.cup.phase = cup::CupPhase::Releasing;
+  const physics::ElementQuery query = query_of(*world_, world_state, state.cup.body, X_WE, V_WE);
+  const cup::SuctionCup cup = cup::cup_at(params_, state.cup.pressure_gauge, state.cup.X_PS);
+  state.F_S = cup.lip_wrench(query);
+  state.cup.bend = cup::bend_angle(X_WE.R.transpose() * query.X_WB.R * state.cup.X_PS.R);
+  GripperEvent event;
+  event.angle = state.cup.bend;
+  if (state.cup.phase == cup::CupPhase::Releasing && mode_ == cup::CupMode::Holding) {
+    event.kind = GripperEvent::Kind::Released;
+    let_go(event, state, events);
+    return;
+  }
+  // While the vacuum builds up the lip stands on the face by the push that found it; limits count from holding on.
+  const bool is_established = state.cup.phase == cup::CupPhase::Releasing ||
+                              state.cup.pressure_gauge <= params_.vacuum.pressure_gauge_collapse;
+  if (is_established) {
+    event.loss = cup::find_hold_loss(params_, state.cup.pressure_gauge, state.F_S, state.cup.bend);
+    if (event.loss != cup::HoldLoss::None) {
+      event.kind = state.cup.phase == cup::CupPhase::Releasing ? GripperEvent::Kind::Released
+                                                               : GripperEvent::Kind::HoldLost;
+      let_go(event, state, events);
+      return;
+    }
+  }
+  if (state.cup.bend > params_.limits.warn_bend && !state.has_warned) {
+    state.has_warned = true;
+    event.kind = GripperEvent::Kind::BendWarning;
+    event.body = state.cup.body;
+    events.push_back(event);
+  }
+}
+
+void Gripper::prepare(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
+                      const cup::CupCommand& command, double dt, GripperState& state, GripperStep& out,
+                      std::vector<GripperEvent>& events) const {
+  out.element = nullptr;
+  out.body = out.ignored = -1;
+  if (mode_ == cup::CupMode::Phases) cup::advance_pressure(params_, command, dt, state.cup);
+  state.vacuum_time = command.vacuum ? state.vacuum_time + dt : 0.0;
+  if (!command.vacuum) state.has_reported = false;
+  if (state.cup.phase != cup::CupPhase::Free) check_hold(world_state, X_WE, V_WE, command, state, events);
+  if (state.cup.phase == cup::CupPhase::Free) {
+    const Target target = find_target(world_state, X_WE);
+    out.ignored = target.body;
+    try_to_seal(target, X_WE, command, state, events);
+    const double length = cup::unloaded_length(params_, state.cup.pressure_gauge);
+    if (state.cup.phase == cup::CupPhase::Free && mode_ == cup::CupMode::Phases && target.body >= 0 &&
+        target.hit.length < length) {
+      out.push = cup::LipPush(params_.free_stiffness_ratio * params_.stiffness.axial,
+                              params_.free_damping_ratio * params_.damping.axial, length, target.hit.X_PS.p,
+                              -target.hit.X_PS.R.col(2));
+      out.element = &out.push;
+      out.body = target.body;
+    }
+  }
+  if (state.cup.phase != cup::CupPhase::Free) {
+    out.cup = cup::cup_at(params_, state.cup.pressure_gauge, state.cup.X_PS);
+    out.element = &out.cup;
+    out.body = state.cup.body;
+    out.ignored = state.cup.body;
+  }
+}
+
+}  // namespace snug::cell

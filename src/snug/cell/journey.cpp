@@ -1,0 +1,163 @@
+// Journey: what became of every box: picked, flipped, re-picked, placed, lost; the answer of a run.
+#include "snug/cell/journey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "snug/cell/aligner_feed.hpp"
+
+namespace snug::cell {
+namespace {
+
+double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
+
+}  // namespace
+
+const char* name_of(BoxState state) {
+  switch (state) {
+    case BoxState::Waiting: return "waiting";
+    case BoxState::Held: return "held";
+    case BoxState::Packed: return "packed";
+    case BoxState::Outside: return "outside";
+    case BoxState::Dropped: return "dropped";
+  }
+  return "";
+}
+
+Journey::Journey(const model::Scenario& scenario, const model::Sequence& sequence, const CellWorld& world)
+    : world_(&world), items_(sequence.items.size()) {
+  for (const model::Item& item : sequence.items) {
+    ids_.push_back(item.parcel);
+    sizes_.push_back(model::collision_size(scenario, *model::find_parcel(scenario, item.parcel)));
+  }
+  if (const model::Container* container = model::find_container(scenario, scenario.target)) {
+    X_WT_ = container->X_WT;
+    inner_size_ = container->inner_size;
+  }
+}
+
+int Journey::item_of(int body) const {
+  for (std::size_t i = 0; i < world_->parcels.size(); ++i) {
+    if (world_->parcels[i].index == body) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void Journey::log(double time, std::string kind, int item, std::string text,
+                  std::vector<record::EventNumber> numbers) {
+  events_.push_back({time, std::move(kind), item >= 0 ? ids_[static_cast<std::size_t>(item)] : std::string(),
+                     std::move(text), std::move(numbers)});
+}
+
+void Journey::box_appeared(int item, double time) {
+  items_[static_cast<std::size_t>(item)].has_appeared = true;
+  log(time, "appear", item, "stands at the aligner");
+}
+
+void Journey::box_removed(int item, double time) {
+  items_[static_cast<std::size_t>(item)].was_removed = true;
+  log(time, "removed", item, "taken away from the aligner to make room for the next box");
+}
+
+void Journey::add_seal(int item, const GripperEvent& event, double time, const Matrix3& R_WP, const Matrix3& R_WE,
+                       const std::string& waypoint) {
+  Item& box = items_[static_cast<std::size_t>(item)];
+  const int up = vertical_axis(R_WP);
+  const double offset = event.offset_P.norm();
+  const std::vector<record::EventNumber> numbers{{"offset_x_mm", 1e3 * (R_WP * event.offset_P).x()},
+                                                 {"offset_y_mm", 1e3 * (R_WP * event.offset_P).y()},
+                                                 {"length_mm", 1e3 * event.length},
+                                                 {"tilt_deg", degrees(event.angle)}};
+  if (box.seals > 0 && up != box.up_at_seal) {
+    log(time, "flip", item,
+        fmt::format("now {} up, was {} up{}", axis_letter(up), axis_letter(box.up_at_seal),
+                    up == box.up_intended ? "" : ", not as intended"));
+  }
+  log(time, box.seals > 0 ? "repick" : "seal", item,
+      fmt::format("{}: sealed {:.1f} mm from the middle of the face", waypoint, 1e3 * offset), numbers);
+  if (box.seals > 0) {
+    repicks_.push_back({ids_[static_cast<std::size_t>(item)], offset, axis_letter(box.up_at_seal), axis_letter(up),
+                        axis_letter(box.up_intended)});
+  }
+  ++box.seals;
+  box.was_held = true;
+  box.up_at_seal = up;
+  box.R_EP = R_WE.transpose() * R_WP;
+}
+
+void Journey::add_release(int item, const GripperEvent& event, double time, const Pose& X_WE, const Pose& X_WP) {
+  Item& box = items_[static_cast<std::size_t>(item)];
+  box.up_intended = vertical_axis(X_WE.R * box.R_EP);
+  const Vector3 p_TP = X_WT_.inverse() * X_WP.p;
+  box.over_container = std::abs(p_TP.x()) < 0.5 * inner_size_.x() && std::abs(p_TP.y()) < 0.5 * inner_size_.y();
+  if (event.kind == GripperEvent::Kind::HoldLost) {
+    log(time, "lost", item, cup::describe(event.loss), {{"bend_deg", degrees(event.angle)}});
+  } else {
+    log(time, "release", item, box.over_container ? "over the container" : "outside the container");
+  }
+}
+
+void Journey::add(const GripperEvent& event, double time, const physics::WorldState& state, const Pose& X_WE,
+                  const std::string& waypoint) {
+  const int item = event.body >= 0 ? item_of(event.body) : -1;
+  switch (event.kind) {
+    case GripperEvent::Kind::NoSeal:
+      log(time, "no seal", item, fmt::format("{}: {}", waypoint, cup::describe(event.no_seal.reason)),
+          {{"gap_mm", 1e3 * event.no_seal.gap},
+           {"tilt_deg", degrees(event.no_seal.tilt)},
+           {"overhang_mm", 1e3 * event.no_seal.overhang}});
+      return;
+    case GripperEvent::Kind::BendWarning:
+      log(time, "bend", item, "cup bent beyond the range of its law", {{"bend_deg", degrees(event.angle)}});
+      return;
+    case GripperEvent::Kind::Seal: {
+      const Pose X_WP = physics::pose_of(world_->model, state, physics::BodyId{event.body});
+      add_seal(item, event, time, X_WP.R, X_WE.R, waypoint);
+      return;
+    }
+    case GripperEvent::Kind::HoldLost:
+    case GripperEvent::Kind::Released:
+      add_release(item, event, time, X_WE, physics::pose_of(world_->model, state, physics::BodyId{event.body}));
+      return;
+  }
+}
+
+std::vector<BoxResult> Journey::results(const physics::WorldState& state, int held_body) const {
+  std::vector<BoxResult> results;
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    const Item& item = items_[i];
+    if (!item.has_appeared) continue;
+    BoxResult result;
+    result.id = ids_[i];
+    const physics::BodyId body = world_->parcels[i];
+    const Pose X_WP = physics::pose_of(world_->model, state, body);
+    result.X_TP = X_WT_.inverse() * X_WP;
+    result.up = axis_letter(vertical_axis(X_WP.R));
+    const Vector3 reach = 0.5 * (result.X_TP.R.cwiseAbs() * sizes_[i]);
+    const Vector3 beyond = result.X_TP.p.cwiseAbs() + reach - 0.5 * inner_size_;
+    result.outside = std::max({0.0, beyond.x(), beyond.y()});
+    result.above_rim = std::max(0.0, result.X_TP.p.z() + reach.z() - inner_size_.z());
+    const bool is_in = result.outside <= kPackedBeyondWall && result.above_rim <= kPackedAboveRim &&
+                       result.X_TP.p.z() > 0.0;
+    if (body.index == held_body) {
+      result.state = BoxState::Held;
+    } else if (!item.was_held || item.was_removed) {
+      result.state = BoxState::Waiting;
+    } else if (is_in) {
+      result.state = BoxState::Packed;
+    } else {
+      result.state = item.over_container ? BoxState::Outside : BoxState::Dropped;
+    }
+    for (const record::Event& event : events_) {
+      if (event.body == result.id) result.events.push_back(event);
+    }
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+}  // namespace snug::cell

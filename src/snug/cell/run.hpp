@@ -1,0 +1,60 @@
+// run: a Scenario and what to do with it in, what became of everything out. The first file to read.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/cell/journey.hpp"
+#include "snug/motion/controller.hpp"
+
+namespace snug::cell {
+
+struct RunOptions {
+  std::optional<motion::Program> program;  ///< none: bodies alone, for `until` seconds
+  std::string program_text;                ///< for the recording
+  std::string sequence;                    ///< name; needed with a program
+  std::string corrections;                 ///< name of a layer of the scenario, or empty
+  motion::ControllerKind controller = motion::ControllerKind::Faithful;
+  cup::CupMode cup = cup::CupMode::Phases;
+  std::optional<double> until;             ///< s; absent: to the end of the program, or the scenario's duration
+  std::filesystem::path record_path;       ///< HDF5, or empty
+  std::string version;                     ///< for the recording
+};
+
+/// How well the contact solver did over a run.
+struct SolverSummary {
+  std::int64_t steps = 0;
+  std::int64_t not_converged = 0;
+  double worst_residual = 0.0;      ///< m/s
+  double worst_penetration = 0.0;   ///< m, rigid contacts
+  double mean_sweeps = 0.0;         ///< over steps with contacts
+};
+
+struct BodyResult {
+  std::string name;
+  Pose X_WB;
+  double speed = 0.0;  ///< m/s, of the centre of mass
+};
+
+struct RunResult {
+  double duration = 0.0;            ///< s, simulated until the program's end (or `until`)
+  double wall = 0.0;                ///< s
+  double real_time_factor = 0.0;
+  double filling_degree_percent = 0.0;
+  std::vector<BoxResult> boxes;     ///< of the sequence
+  std::vector<BodyResult> bodies;   ///< dynamic ones of a scene without a program
+  std::vector<record::Event> events;
+  std::vector<Repick> repicks;
+  SolverSummary solver;
+  std::uint64_t state_hash = 0;
+  std::string failure;              ///< empty, or why the run had to stop: body, time, last contacts
+};
+
+/// Throws InputError for options that do not fit the scenario (unknown sequence, corrections, waypoint name, tick that
+/// is no multiple of the time step, no tool or aligner) and for a recording that cannot be written.
+[[nodiscard]] RunResult run(const model::Scenario& scenario, const RunOptions& options);
+
+}  // namespace snug::cell

@@ -1,0 +1,39 @@
+// Scene: the bodies of a scenario without robot: free, driven by springs, dropped; stepped one time step at a time.
+#pragma once
+
+#include <vector>
+
+#include "snug/cell/world_builder.hpp"
+#include "snug/cup/suction_cup.hpp"
+
+namespace snug::cell {
+
+class Scene {
+ public:
+  explicit Scene(const model::Scenario& scenario);
+
+  /// One step of Scenario::time_step.
+  physics::StepReport advance();
+
+  [[nodiscard]] const CellWorld& world() const { return world_; }
+  [[nodiscard]] physics::WorldState& state() { return state_; }
+  [[nodiscard]] const physics::WorldState& state() const { return state_; }
+  [[nodiscard]] const physics::Workspace& work() const { return work_; }
+
+ private:
+  void let_bodies_appear();
+  void drop_next();
+
+  model::Scenario scenario_;
+  std::vector<physics::BodyId> holders_;  ///< kinematic bodies without shape that carry the springs
+  CellWorld world_;
+  physics::WorldState state_;
+  physics::Workspace work_;
+  DropPlan drop_plan_;
+  std::size_t dropped_ = 0;
+  std::vector<cup::SuctionCup> springs_;
+  std::vector<physics::ElementUse> elements_;
+  std::vector<physics::KinematicTarget> targets_;
+};
+
+}  // namespace snug::cell
