@@ -5,10 +5,12 @@ namespace snug::cup {
 
 /// Everything that the spring and the damper need at one instant.
 struct SuctionCup::State {
-  Pose H;            ///< S2_H_S1
+  Pose H;  ///< S2_H_S1
   Matrix3 R_WS1;
   Vector3 p_PcmS1;   ///< from the package's centre of mass to the origin of S1, W
-  Vector6 twist_S1;  ///< of S1 in E, body coordinates
+  Vector3 linear;    ///< velocity of S1 relative to E, W
+  Vector3 angular;   ///< angular velocity of S1 relative to E, W
+  Vector6 twist_S1;  ///< both in the axes of S1
 };
 
 SuctionCup::SuctionCup(const Matrix6& stiffness, const Matrix6& damping, const Pose& X_ES2, const Pose& X_PS,
@@ -26,10 +28,10 @@ SuctionCup::State SuctionCup::state_of(const physics::ElementQuery& query) const
   state.H = (query.X_WE * X_ES2_).inverse() * X_WS1;
   state.R_WS1 = X_WS1.R;
   state.p_PcmS1 = X_WS1.p - query.p_WBcm;
-  const Vector3 angular = query.V_WB.angular - query.V_WE.angular;
-  const Vector3 linear = (query.V_WB.linear + query.V_WB.angular.cross(X_WS1.p - query.X_WB.p)) -
-                         (query.V_WE.linear + query.V_WE.angular.cross(X_WS1.p - query.X_WE.p));
-  state.twist_S1 << X_WS1.R.transpose() * linear, X_WS1.R.transpose() * angular;
+  state.angular = query.V_WB.angular - query.V_WE.angular;
+  state.linear = (query.V_WB.linear + query.V_WB.angular.cross(X_WS1.p - query.X_WB.p)) -
+                 (query.V_WE.linear + query.V_WE.angular.cross(X_WS1.p - query.X_WE.p));
+  state.twist_S1 << X_WS1.R.transpose() * state.linear, X_WS1.R.transpose() * state.angular;
   return state;
 }
 
@@ -45,7 +47,11 @@ physics::ElementResponse SuctionCup::evaluate(const physics::ElementQuery& query
   response.wrench = A.transpose() * both;
   response.energy = potential(state.H, K_);
   response.damping = A.transpose() * D_ * A;
-  response.stiffness = -A.transpose() * spring_tangent(state.H, K_) * A;
+  // Velocities in the axes of S1 change too when the package moves at constant velocities in W.
+  Matrix6 T;
+  T << -R.transpose() * skew(query.V_WE.angular), R.transpose() * (skew(state.linear) - skew(state.angular) * skew(r)),
+      Matrix3::Zero(), R.transpose() * skew(state.angular);
+  response.stiffness = A.transpose() * (D_ * T - spring_tangent(state.H, K_) * A);
   // The wrench turns with the package, and so does its arm.
   const Vector3 force_W = R * both.head<3>(), torque_W = R * both.tail<3>();
   response.stiffness.topRightCorner<3, 3>() += skew(force_W);
