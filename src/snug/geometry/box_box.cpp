@@ -99,24 +99,24 @@ void edge_ends(const Vector3& half, int e, Vector3& p, Vector3& q) noexcept {
   }
 }
 
-/// Two edges that cross. False when they are apart and not nearest where their lines are.
-bool edge_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& call, Manifold& out) noexcept {
+/// Two edges that cross. False when the edges do not meet across the axis, unless `forced`.
+bool edge_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& call, bool forced,
+                  Manifold& out) noexcept {
   Vector3 a0, a1, b0, b1;
   edge_ends(pair.half_A, chosen.axis.a, a0, a1);
   edge_ends(pair.half_B, chosen.axis.b, b0, b1);
   b0 = pair.R_AB * b0 + pair.p_AB;
   b1 = pair.R_AB * b1 + pair.p_AB;
-  const SegmentPair crossing = crossing_points(a0, a1, b0, b1);
-  // Exact where the lines cross inside both edges: then the points lie along the axis.
+  const SegmentPair crossing = crossing_points(a0, a1, b0, b1, chosen.separation * chosen.n_A);
   const double miss = (crossing.p_b - crossing.p_a - chosen.separation * chosen.n_A).norm();
-  if (chosen.separation > 0.0 && miss > 1e-9) return false;
+  if (miss > kMiss && !forced) return false;
   const Vector3 n_B = pair.R_AB.transpose() * chosen.n_A;
   const int axis_A = largest(chosen.n_A);
   if (std::abs(chosen.n_A[axis_A]) > kNearFaceCosine && std::abs(n_B[largest(n_B)]) > kNearFaceCosine) {
     const int face = box_face(axis_A, chosen.n_A[axis_A] > 0.0);
     BoxPolygon polygon;
     clip(pair, true, face, chosen.n_A, call.swapped, polygon);
-    if (polygon.count > 1 && std::abs(polygon.least_phi - chosen.separation) < 1e-9) {
+    if (polygon.count > 1 && std::abs(polygon.least_phi - chosen.separation) < kMiss) {
       emit_polygon(call, polygon, true, face, pair.half_A, chosen.n_A, out);
       return true;
     }
@@ -152,11 +152,21 @@ void corner_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& 
   }
 }
 
+/// The contact that belongs to the axis, if the features of the axis meet.
+bool contact_along(const BoxPair& pair, const BoxAxis& axis, double separation, const PairCall& call,
+                   Manifold& out) noexcept {
+  switch (axis.axis.kind) {
+    case AxisKind::None: return false;
+    case AxisKind::Edge: return edge_contact(pair, axis, call, false, out);
+    default: return face_contact(pair, axis, separation, call, out);
+  }
+}
+
 }  // namespace
 
 void collide_boxes(const Box& A, const Box& B, const PairCall& call, Axis& axis, Manifold& out) noexcept {
   if (axis.kind != AxisKind::None &&
-      quick_separation(A.half, call.X_WA, B.half, call.X_WB, axis) > call.margin) {
+      quick_separation(A.half, call.X_WA, B.half, call.X_WB, axis) > call.margin + kTie) {
     return;
   }
   BoxPair pair{A.half, B.half, {}, {}};
@@ -170,14 +180,19 @@ void collide_boxes(const Box& A, const Box& B, const PairCall& call, Axis& axis,
   const BoxAxis chosen = choose(pair, axes, axis, separation);
   axis = chosen.axis;
   if (is_corner_pair(pair, axes, chosen)) return;
-  if (chosen.axis.kind != AxisKind::Edge && face_contact(pair, chosen, separation, call, out)) return;
-  const BoxAxis& edge = chosen.axis.kind == AxisKind::Edge ? chosen : axes.best_edge;
-  if (edge.axis.kind == AxisKind::Edge && edge_contact(pair, edge, call, out)) {
-    axis = edge.axis;
-  } else if (separation > 0.0) {
-    collide_apart(A, B, pair.R_AB, pair.p_AB, chosen.n_A, call, out);
+  if (contact_along(pair, chosen, separation, call, out)) return;
+  if (separation > 0.0) return collide_apart(A, B, pair.R_AB, pair.p_AB, chosen.n_A, call, out);
+  // What was chosen for the sake of the past, or by preference, has nothing to show: the best of the other kind.
+  for (const BoxAxis& other : {axes.best_face, axes.best_edge}) {
+    axis = other.axis;
+    if (!(other.axis == chosen.axis) && contact_along(pair, other, separation, call, out)) return;
+  }
+  const bool by_edge = axes.best_edge.axis.kind == AxisKind::Edge;
+  axis = by_edge ? axes.best_edge.axis : axes.best_face.axis;
+  if (by_edge) {
+    edge_contact(pair, axes.best_edge, call, true, out);
   } else {
-    corner_contact(pair, chosen, call, out);
+    corner_contact(pair, axes.best_face, call, out);
   }
 }
 

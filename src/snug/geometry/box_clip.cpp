@@ -168,8 +168,15 @@ class Namer {
   unsigned used_ = 0;
 };
 
-bool near(const Corner& a, const Corner& b) noexcept {
-  return std::abs(a.u - b.u) <= kMerge && std::abs(a.v - b.v) <= kMerge;
+/// True when the corner coincides with the point, which then takes the deeper place of the two.
+bool joins(const Corner& corner, BoxClipPoint& point) noexcept {
+  if (std::abs(corner.u - point.u) > kMerge || std::abs(corner.v - point.v) > kMerge) return false;
+  if (corner.phi < point.phi) {
+    point.u = corner.u;
+    point.v = corner.v;
+    point.phi = corner.phi;
+  }
+  return true;
 }
 
 /// Cuts by those sides of the reference face that the parallelogram reaches beyond.
@@ -221,15 +228,13 @@ void clip_box_face(const BoxFacePair& pair, BoxPolygon& out) noexcept {
   if (count == 0) return;
   Namer namer(pair, inc, ax, hu, hv);
   out.least_phi = (*corners)[0].phi;
-  int last_kept = -1;
   for (int i = 0; i < count; ++i) {
     const Corner& corner = (*corners)[static_cast<std::size_t>(i)];
     const int before = (*corners)[static_cast<std::size_t>(i == 0 ? count - 1 : i - 1)].label;
     out.least_phi = std::min(out.least_phi, corner.phi);
-    if (last_kept >= 0 && near(corner, (*corners)[static_cast<std::size_t>(last_kept)])) continue;
-    if (last_kept > 0 && i == count - 1 && near(corner, (*corners)[0])) continue;
+    if (out.count > 0 && joins(corner, out.points[static_cast<std::size_t>(out.count - 1)])) continue;
+    if (out.count > 1 && i == count - 1 && joins(corner, out.points[0])) continue;
     if (out.count == 8) break;
-    last_kept = i;
     BoxClipPoint& point = out.points[static_cast<std::size_t>(out.count++)];
     point.u = corner.u;
     point.v = corner.v;

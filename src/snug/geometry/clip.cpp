@@ -75,10 +75,7 @@ class Namer {
     point.phi = height(corner.p);
     point.p_ref = corner.p - point.phi * task_.n;
     out.least_phi = out.count == 0 ? point.phi : std::min(out.least_phi, point.phi);
-    if (out.count > 0) {
-      const auto last = static_cast<std::size_t>(out.count - 1);
-      if (near(point.p_ref, out.points[0].p_ref, kMerge) || near(point.p_ref, out.points[last].p_ref, kMerge)) return;
-    }
+    if (joins(point, out)) return;
     name(before, corner.label, point, out);
     out.points[static_cast<std::size_t>(out.count++)] = point;
   }
@@ -89,7 +86,7 @@ class Namer {
     point.phi = height(p);
     point.p_ref = p - point.phi * task_.n;
     out.least_phi = out.count == 0 ? point.phi : std::min(out.least_phi, point.phi);
-    if (out.count > 0 && near(point.p_ref, out.points[0].p_ref, kMerge)) return;
+    if (joins(point, out)) return;
     point.code_inc = inc_code;
     point.code_ref = side < 0 ? face_code(task_.face) : edge_code(find_edge(task_.ref, at(ref_loop_, side), ref_next(side)));
     out.points[static_cast<std::size_t>(out.count++)] = point;
@@ -98,6 +95,20 @@ class Namer {
  private:
   static bool near(const Vector3& a, const Vector3& b, double tolerance) {
     return (a - b).squaredNorm() <= tolerance * tolerance;
+  }
+  /// True when the point coincides with its neighbour or the first one, which then takes the deeper place of the two.
+  static bool joins(const ClipPoint& point, ClipPolygon& out) {
+    if (out.count == 0) return false;
+    for (const int i : {0, out.count - 1}) {
+      ClipPoint& other = out.points[static_cast<std::size_t>(i)];
+      if (!near(point.p_ref, other.p_ref, kMerge)) continue;
+      if (point.phi < other.phi) {
+        other.phi = point.phi;
+        other.p_ref = point.p_ref;
+      }
+      return true;
+    }
+    return false;
   }
   int ref_next(int side) const { return at(ref_loop_, (side + 1) % static_cast<int>(ref_loop_.size())); }
   int inc_next(int side) const { return at(inc_loop_, (side + 1) % static_cast<int>(inc_loop_.size())); }

@@ -58,7 +58,7 @@ void compare_vertices(const Polytope& base, const Slack& slack_base, const Polyt
     for (int v = 0; v < tip.vertex_count(); ++v) {
       if (least + slack_tip[v] + separation > out.distance) continue;
       const double height = height_over(base, f, tip.vertex(v));
-      if (height < 0.0 || height >= out.distance - kTie) continue;
+      if (height < 0.0 || height >= out.distance - kDistanceTie) continue;
       const Vector3& m = base.normal(f);
       const Vector3 foot = tip.vertex(v) - height * m;
       out = base_is_A ? Closest{height, m, foot, tip.vertex(v), face_code(f), vertex_code(v)}
@@ -77,6 +77,7 @@ std::uint32_t name_on_edge(const Polytope& shape, int e, double parameter) noexc
 
 void compare_edges(const Polytope& A, const Slack& slack_A, const Polytope& B, const Slack& slack_B,
                    double separation, const Vector3& fallback, Closest& out) noexcept {
+  int most_inside = out.code_A != 0 ? 2 : 0;  // a vertex over a face is as good
   for (int i = 0; i < A.edge_count(); ++i) {
     const std::array<int, 4>& a = A.edge(i);
     const double least_a = std::min(slack_A[a[0]], slack_A[a[1]]);
@@ -87,9 +88,14 @@ void compare_edges(const Polytope& A, const Slack& slack_A, const Polytope& B, c
       const SegmentPair pair = nearest_points(A.vertex(a[0]), A.vertex(a[1]), B.vertex(b[0]), B.vertex(b[1]));
       const Vector3 difference = pair.p_b - pair.p_a;
       const double distance = difference.norm();
-      if (!(distance < out.distance - kTie)) continue;
+      const std::uint32_t code_A = name_on_edge(A, i, pair.s);
+      const std::uint32_t code_B = name_on_edge(B, j, pair.t);
+      // Of several as near, parallel edges first: their middle moves least.
+      const int inside = (code_A == edge_code(i) ? 1 : 0) + (code_B == edge_code(j) ? 1 : 0);
+      if (!(distance < out.distance - (inside > most_inside ? -kDistanceTie : kDistanceTie))) continue;
       const Vector3 n = distance > kTooShort ? Vector3(difference / distance) : fallback;
-      out = {distance, n, pair.p_a, pair.p_b, name_on_edge(A, i, pair.s), name_on_edge(B, j, pair.t)};
+      out = {distance, n, pair.p_a, pair.p_b, code_A, code_B};
+      most_inside = inside;
     }
   }
 }
@@ -102,7 +108,7 @@ void compare_point(const Polytope& A, const Polytope& point, const Vector3& fall
     const SegmentPair pair = nearest_points(A.vertex(a[0]), A.vertex(a[1]), q, q);
     const Vector3 difference = q - pair.p_a;
     const double distance = difference.norm();
-    if (!(distance < out.distance - kTie)) continue;
+    if (!(distance < out.distance - kDistanceTie)) continue;
     const Vector3 n = distance > kTooShort ? Vector3(difference / distance) : fallback;
     out = {distance, n, pair.p_a, q, name_on_edge(A, i, pair.s), vertex_code(0)};
   }

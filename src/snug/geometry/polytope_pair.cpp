@@ -130,10 +130,26 @@ bool is_corner_pair(const PolytopePair& pair, const PolytopeAxes& axes, const Po
   return false;
 }
 
-/// One point; p_A and p_B are on the cores, in A.
+/// From a point at `p` on the core of B against n to the surface of B: the radius, and more where a capsule is
+/// left sideways through its round wall.
+double surface_distance(const PolytopePair& pair, const Vector3& p, const Vector3& n) noexcept {
+  if (pair.radius == 0.0 || pair.B.vertex_count() < 2) return pair.radius;
+  const Vector3 along = pair.B.vertex(1) - pair.B.vertex(0);
+  const double length = along.norm();
+  const double cosine = n.dot(along) / length;
+  const double at = (p - pair.B.vertex(0)).dot(along) / length;
+  const double through_wall = pair.radius / std::sqrt(std::max(1.0 - cosine * cosine, 1e-30));
+  const double leaves_at = at - through_wall * cosine;
+  if (leaves_at >= 0.0 && leaves_at <= length) return through_wall;
+  // Through the ball at one end.
+  const double past = at - (leaves_at < 0.0 ? 0.0 : length);
+  return past * cosine + std::sqrt(std::max(pair.radius * pair.radius - past * past * (1.0 - cosine * cosine), 0.0));
+}
+
+/// One point; p_A is on A, p_A + phi_core n on the core of B, in A.
 void emit_point(const PolytopePair& pair, const PairCall& call, const Vector3& n, const Vector3& p_A, double phi_core,
                 std::uint32_t code_A, std::uint32_t code_B, Manifold& out) noexcept {
-  const double phi = phi_core - pair.radius;
+  const double phi = phi_core - surface_distance(pair, p_A + phi_core * n, n);
   if (!(phi <= call.margin)) return;
   const Vector3 n_W = call.X_WA.R * n;
   const Vector3 p_WA = call.X_WA * p_A;
@@ -143,7 +159,8 @@ void emit_point(const PolytopePair& pair, const PairCall& call, const Vector3& n
 
 void emit_polygon(const PolytopePair& pair, const PairCall& call, const Vector3& n, bool ref_is_A,
                   ClipPolygon& polygon, Manifold& out) noexcept {
-  reduce(call.margin + pair.radius, polygon);
+  // A capsule's segment has two points at most; a hull has no radius.
+  if (!pair.B.is_segment()) reduce(call.margin, polygon);
   for (int i = 0; i < polygon.count; ++i) {
     const ClipPoint& point = polygon.points[static_cast<std::size_t>(i)];
     if (ref_is_A) {
@@ -178,19 +195,24 @@ bool near_face_contact(const PolytopePair& pair, const Vector3& n, double distan
   }
   ClipPolygon polygon;
   clip_faces({pair.A, face, pair.B, n, !call.swapped}, polygon);
-  if (polygon.count < 2 || std::abs(polygon.least_phi - distance) > 1e-9) return false;
+  if (polygon.count < 2 || std::abs(polygon.least_phi - distance) > kMiss) return false;
   emit_polygon(pair, call, n, true, polygon, out);
   return true;
 }
 
-void edge_contact(const PolytopePair& pair, const PolytopeAxis& chosen, const PairCall& call, Manifold& out) noexcept {
-  if (near_face_contact(pair, chosen.n, chosen.separation, call, out)) return;
+/// Two edges that cross. False when the edges do not meet across the axis, unless `forced`.
+bool edge_contact(const PolytopePair& pair, const PolytopeAxis& chosen, const PairCall& call, bool forced,
+                  Manifold& out) noexcept {
   const std::array<int, 4>& a = pair.A.edge(chosen.axis.a);
   const std::array<int, 4>& b = pair.B.edge(chosen.axis.b);
+  const Vector3 offset = chosen.separation * chosen.n;
   const SegmentPair crossing =
-      crossing_points(pair.A.vertex(a[0]), pair.A.vertex(a[1]), pair.B.vertex(b[0]), pair.B.vertex(b[1]));
+      crossing_points(pair.A.vertex(a[0]), pair.A.vertex(a[1]), pair.B.vertex(b[0]), pair.B.vertex(b[1]), offset);
+  if ((crossing.p_b - crossing.p_a - offset).norm() > kMiss && !forced) return false;
+  if (near_face_contact(pair, chosen.n, chosen.separation, call, out)) return true;
   emit_point(pair, call, chosen.n, crossing.p_a, chosen.separation, edge_code(chosen.axis.a),
              edge_code(chosen.axis.b), out);
+  return true;
 }
 
 void apart_contact(const PolytopePair& pair, const Vector3& n, const PairCall& call, Manifold& out) noexcept {
@@ -214,11 +236,21 @@ void vertex_contact(const PolytopePair& pair, const PolytopeAxis& chosen, const 
   }
 }
 
+/// The contact that belongs to the axis, if the features of the axis meet.
+bool contact_along(const PolytopePair& pair, const PolytopeAxis& axis, double separation, const PairCall& call,
+                   Manifold& out) noexcept {
+  switch (axis.axis.kind) {
+    case AxisKind::None: return false;
+    case AxisKind::Edge: return edge_contact(pair, axis, call, false, out);
+    default: return face_contact(pair, axis, separation, call, out);
+  }
+}
+
 }  // namespace
 
 void collide_polytopes(const PolytopePair& pair, const PairCall& call, Axis& axis, Manifold& out) noexcept {
   const double limit = call.margin + pair.radius;
-  if (axis.kind != AxisKind::None && evaluate(pair, axis).separation > limit) return;
+  if (axis.kind != AxisKind::None && evaluate(pair, axis).separation > limit + kTie) return;
   PolytopeAxes axes;
   if (!find_face_axes(pair, limit, axes)) {
     axis = axes.best_face.axis;
@@ -232,14 +264,19 @@ void collide_polytopes(const PolytopePair& pair, const PairCall& call, Axis& axi
   const PolytopeAxis chosen = choose(pair, axes, axis, separation);
   axis = chosen.axis;
   if (is_corner_pair(pair, axes, chosen)) return;
-  if (chosen.axis.kind != AxisKind::Edge && face_contact(pair, chosen, separation, call, out)) return;
+  if (contact_along(pair, chosen, separation, call, out)) return;
   if (separation > 0.0) return apart_contact(pair, chosen.n, call, out);
-  const PolytopeAxis& edge = chosen.axis.kind == AxisKind::Edge ? chosen : axes.best_edge;
-  if (edge.axis.kind == AxisKind::Edge) {
-    axis = edge.axis;
-    edge_contact(pair, edge, call, out);
+  // What was chosen for the sake of the past, or by preference, has nothing to show: the best of the other kind.
+  for (const PolytopeAxis& other : {axes.best_face, axes.best_edge}) {
+    axis = other.axis;
+    if (!(other.axis == chosen.axis) && contact_along(pair, other, separation, call, out)) return;
+  }
+  const bool by_edge = axes.best_edge.axis.kind == AxisKind::Edge;
+  axis = by_edge ? axes.best_edge.axis : axes.best_face.axis;
+  if (by_edge) {
+    edge_contact(pair, axes.best_edge, call, true, out);
   } else {
-    vertex_contact(pair, chosen, call, out);
+    vertex_contact(pair, axes.best_face, call, out);
   }
 }
 

@@ -49,7 +49,8 @@ SegmentPair nearest_points(const Vector3& a0, const Vector3& a1, const Vector3& 
   return pair;
 }
 
-SegmentPair crossing_points(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1) noexcept {
+SegmentPair crossing_points(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1,
+                            const Vector3& offset) noexcept {
   const Vector3 d1 = a1 - a0;
   const Vector3 d2 = b1 - b0;
   const Vector3 r = a0 - b0;
@@ -58,8 +59,9 @@ SegmentPair crossing_points(const Vector3& a0, const Vector3& a1, const Vector3&
   SegmentPair pair;
   if (!(n_squared > 0.0)) return nearest_points(a0, a1, b0, b1);
   pair.s = clamp01(d2.cross(r).dot(n) / n_squared);
-  pair.t = clamp01(d1.cross(r).dot(n) / n_squared);
   pair.p_a = a0 + pair.s * d1;
+  // From the point, not from the other formula: nearly parallel edges then still give points that face each other.
+  pair.t = clamp01(d2.dot(pair.p_a + offset - b0) / d2.squaredNorm());
   pair.p_b = b0 + pair.t * d2;
   return pair;
 }

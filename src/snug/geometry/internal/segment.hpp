@@ -16,8 +16,8 @@ struct SegmentPair {
 [[nodiscard]] SegmentPair nearest_points(const Vector3& a0, const Vector3& a1, const Vector3& b0,
                                          const Vector3& b1) noexcept;
 
-/// Where the lines through the segments are nearest, clamped to each segment on its own. For edges that cross.
-[[nodiscard]] SegmentPair crossing_points(const Vector3& a0, const Vector3& a1, const Vector3& b0,
-                                          const Vector3& b1) noexcept;
+/// Where edges a and b cross when b is moved back by `offset`, which is along the common normal; clamped to the edges.
+[[nodiscard]] SegmentPair crossing_points(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1,
+                                          const Vector3& offset) noexcept;
 
 }  // namespace snug::geometry::internal

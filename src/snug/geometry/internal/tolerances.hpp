@@ -22,7 +22,12 @@ inline constexpr double kSnap = 1e-5;
 inline constexpr double kParallelSquared = 1e-14;
 /// Both faces within this cosine of an edge-edge normal: the contact keeps the polygon of the faces.
 inline constexpr double kNearFaceCosine = 0.99;
+/// Features meet across an axis when their points miss each other by less than this [m], sideways.
+inline constexpr double kMiss = 1e-9;
 /// Axes whose separations differ by less [m] are tied and the first one wins.
 inline constexpr double kTie = 1e-12;
+/// Distances that differ by less [m] are tied. Smaller, because a distance hardly feels the direction: 1e-15 m at
+/// 1 mm is 1e-6 rad.
+inline constexpr double kDistanceTie = 1e-15;
 
 }  // namespace snug::geometry::internal
