@@ -16,10 +16,7 @@ using snug::app::Action;
 
 constexpr const char* kExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
-  snug simulate scenarios/s2-drop.yaml --until 5 --json
-  snug program scenarios/box-demonstrator.yaml placements.yaml -o program.csv
-  snug cup evaluate deformations.jsonl
-  snug bench --json
+  snug simulate scenarios/drop.yaml --until 5 --json
 `snug VERB --help` tells the options of a verb. Data goes to stdout, messages to stderr.
 Exit codes: 0 done, 1 the run failed, 2 the input cannot be used.)";
 

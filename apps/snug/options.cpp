@@ -43,12 +43,13 @@ CLI::Validator positive() {
       "");
 }
 
-CLI::Validator at_least_one() {
+CLI::Validator whole(std::uint64_t least) {
   return CLI::Validator(
-      [](const std::string& text) {
-        int value = 0;
-        return reads_as(text, value) && value >= 1 ? std::string()
-                                                   : "got '" + text + "'; expected a whole number, 1 or more";
+      [least](const std::string& text) {
+        std::uint64_t value = 0;
+        const bool fits = reads_as(text, value) && value >= least;
+        return fits ? std::string()
+                    : "got '" + text + "'; expected a whole number, " + std::to_string(least) + " or more";
       },
       "");
 }

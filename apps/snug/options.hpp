@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace snug::app {
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> words);
 /// A finite number above zero.
 [[nodiscard]] CLI::Validator positive();
-/// A whole number, 1 or more.
-[[nodiscard]] CLI::Validator at_least_one();
+/// A whole number that fits into 64 bits, `least` or more.
+[[nodiscard]] CLI::Validator whole(std::uint64_t least);
 
 }  // namespace snug::app

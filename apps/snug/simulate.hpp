@@ -20,8 +20,6 @@ struct SimulateOptions {
   std::optional<std::string> controller;  ///< faithful | ideal
   std::optional<std::string> cup;         ///< holding | phases
   std::string corrections = "none";       ///< none, or the name of a correction layer of the scenario
-  int ensemble = 0;                       ///< runs with varied boxes; 0: one run as described
-  int threads = 0;                        ///< 0: as many as there are cores
   std::optional<std::string> record;      ///< HDF5 file to write
   std::optional<std::string> csv;         ///< table to write
   bool json = false;

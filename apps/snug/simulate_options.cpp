@@ -10,8 +10,7 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug simulate scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json
-  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --ensemble 20 --seed 7
-  snug simulate scenarios/s3-slide-0.yaml --until 5 --csv slide.csv)";
+  snug simulate scenarios/slide.yaml --until 5 --csv slide.csv)";
 
 void add_program_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--program", options.program, "waypoint file (13 columns) to run; needs --sequence")
@@ -37,12 +36,8 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
                   "holding: attached and released at once; phases: pressure builds up and decays, holds can fail")
       ->check(one_of({"holding", "phases"}))
       ->type_name("MODEL");
-  verb.add_option("--seed", options.seed, "seed of everything random, instead of the scenario's")->type_name("N");
-  verb.add_option("--ensemble", options.ensemble, "run N times with aligner, sizes and friction varied")
-      ->check(at_least_one())
-      ->type_name("N");
-  verb.add_option("--threads", options.threads, "threads to use; the result does not depend on it (default: all cores)")
-      ->check(at_least_one())
+  verb.add_option("--seed", options.seed, "seed of everything random, instead of the scenario's")
+      ->check(whole(0))
       ->type_name("N");
 }
 

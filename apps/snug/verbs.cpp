@@ -1,8 +1,10 @@
 // add_verbs: every verb that this program offers, in the order of --help.
 #include "verbs.hpp"
 
+#include "simulate.hpp"
+
 namespace snug::app {
 
-void add_verbs([[maybe_unused]] CLI::App& app, [[maybe_unused]] Action& action) {}
+void add_verbs(CLI::App& app, Action& action) { add_simulate(app, action); }
 
 }  // namespace snug::app

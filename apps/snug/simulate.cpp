@@ -1,0 +1,93 @@
+// simulate: loads what the options name, runs it, prints what became of it.
+#include "simulate.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "run_report.hpp"
+#include "snug/cell/run.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/model/scenario.hpp"
+#include "snug/motion/waypoint.hpp"
+#include "snug/record/csv.hpp"
+#include "snug/record/reader.hpp"
+
+namespace snug::app {
+namespace {
+
+/// A recording that is needed only to make a table of it; gone when this goes.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::filesystem::path path) : path_(std::move(path)) {}
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) throw InputError(path, "", "", "a file that can be read");
+  return text.str();
+}
+
+std::string list_sequences(const model::Scenario& scenario) {
+  std::string names;
+  for (const model::Sequence& sequence : scenario.sequences) names += (names.empty() ? "" : ", ") + sequence.name;
+  return names.empty() ? "a scenario with sequences" : "one of " + names;
+}
+
+model::Scenario load_with_overrides(const SimulateOptions& options) {
+  model::Scenario scenario = model::load_scenario(options.scenario);
+  if (options.dt) scenario.time_step = *options.dt;
+  if (options.seed) scenario.seed = *options.seed;
+  return scenario;
+}
+
+cell::RunOptions make_run_options(const SimulateOptions& options, const model::Scenario& scenario) {
+  cell::RunOptions run;
+  if (options.program) {
+    run.program_text = read_text(*options.program);
+    run.program = motion::parse_program(run.program_text, *options.program);
+    if (!options.sequence) throw InputError("command line", "--sequence", "nothing", list_sequences(scenario));
+  } else if (options.sequence) {
+    throw InputError("command line", "--sequence", "'" + *options.sequence + "' without --program", "both or none");
+  }
+  if (options.sequence) run.sequence = *options.sequence;
+  if (options.corrections != "none") run.corrections = options.corrections;
+  if (options.controller == "ideal") run.controller = motion::ControllerKind::Ideal;
+  if (options.cup) run.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
+  run.until = options.until;
+  run.version = SNUG_VERSION;
+  if (options.record) run.record_path = *options.record;
+  return run;
+}
+
+}  // namespace
+
+int run_simulate(const SimulateOptions& options) {
+  const model::Scenario scenario = load_with_overrides(options);
+  cell::RunOptions run_options = make_run_options(options, scenario);
+  std::optional<TemporaryFile> temporary;
+  if (options.csv && !options.record) {
+    run_options.record_path = *options.csv + ".part.h5";
+    temporary.emplace(run_options.record_path);
+  }
+  const cell::RunResult result = cell::run(scenario, run_options);
+  if (options.csv) record::write_csv(record::load_recording(run_options.record_path), *options.csv);
+  std::fputs((options.json ? format_json(result) : format_table(result)).c_str(), stdout);
+  if (result.failure.empty()) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());
+  return kRunFailed;
+}
+
+}  // namespace snug::app
