@@ -28,8 +28,16 @@ Matrix6 as_matrix(const model::CupElasticity& elasticity) {
 }
 
 Vector6 deformation(const Pose& H) {
+  const Vector3& o = H.p;
   Vector6 e;
-  e << H.p + H.R.transpose() * H.p, odd_part(H.R);
+  // (I + R^T) o rather than o + R^T o: near a half turn the sum of the matrices cancels exactly, that of the vectors
+  // does not. What is left there is rounding, and the fused sums in this order round as the reference vectors do.
+  for (int i = 0; i < 3; ++i) {
+    Vector3 row = H.R.col(i);
+    row[i] += 1.0;
+    e[i] = std::fma(row[2], o[2], std::fma(row[0], o[0], row[1] * o[1]));
+  }
+  e.tail<3>() = odd_part(H.R);
   return e;
 }
 
