@@ -1,48 +1,51 @@
-// Statics: where a held load hangs at rest.
+// settle: where a load comes to rest under a held cup, found without simulating.
 #pragma once
 
 #include "snug/cup/law.hpp"
 
 namespace snug::cup {
 
-/// A load held by one cup whose gripper stands still.
+/// A load hanging from a cup. Only the directions of W matter, so the gripper's position is not asked for.
 struct HeldLoad {
-  Matrix3 R_WE = Matrix3::Identity();             ///< orientation of the gripper
-  double mass = 1.0;                              ///< kg
-  Vector3 p_SBcm = Vector3::Zero();               ///< centre of mass in the lip frame, m
-  Matrix6 K = Matrix6::Identity();                ///< stiffness at S1
-  Pose X_ES2;                                     ///< undeformed spring frame on the gripper
-  Pose X_SS1;                                     ///< spring frame on the package
-  Vector3 gravity_W = Vector3(0.0, 0.0, -9.81);   ///< m/s^2
-};
-
-enum class SettleStatus {
-  Settled,       ///< residual below tolerance
-  OutOfRange,    ///< bending passed 45 degrees on the way: the law has softened, no equilibrium of use beyond
-  NotConverged,  ///< iterations ran out or the step length vanished
-};
-
-struct SettleResult {
-  SettleStatus status = SettleStatus::NotConverged;
-  Pose X_ES;                   ///< lip in the gripper frame; the best found when not settled
-  bool is_stable = false;      ///< settled, and the symmetrised tangent is positive definite
-  double residual = 0.0;       ///< N, norm of [force; torque / 50 mm] at S
-  double min_tangent = 0.0;    ///< smallest eigenvalue of the symmetrised tangent at S (torque rows not scaled)
-  int iterations = 0;          ///< Newton steps, all load steps together
-  CupShape shape;
+  Matrix3 R_WE = Matrix3::Identity();       ///< of the gripper's end
+  double mass = 1.0;                        ///< kg, not negative
+  Vector3 p_SScm = Vector3::Zero();         ///< centre of mass seen from the lip, in S, m
+  Matrix6 stiffness = Matrix6::Identity();  ///< K in S1, symmetric and positive definite
+  Pose X_ES2;                               ///< spring's end on the gripper
+  Pose X_SS1;                               ///< spring's end on the package
+  Vector3 gravity_W{0.0, 0.0, -9.81};       ///< m/s^2
 };
 
 struct SettleOptions {
-  int load_steps = 8;          ///< the load grows in this many equal parts, from the undeformed cup on
-  int max_iterations = 60;     ///< per load step
-  double tolerance = 1e-11;    ///< of the residual, relative to the weight (absolute below 1 N)
+  int load_steps = 8;        ///< gravity is turned on in as many equal parts
+  int max_iterations = 60;   ///< Newton steps for each part, and then for parts of parts
+  double tolerance = 1e-12;  ///< of SettleResult::residual relative to the load; rounding comes on top
+  double max_turn = 0.3;     ///< rad, of one Newton step
 };
 
-/// Equilibrium of spring and gravity, on the branch that starts at the undeformed cup: damped Newton with the exact
-/// tangent and load stepping (docs/theory/cup.md, section 4).
-[[nodiscard]] SettleResult settle(const HeldLoad& load, const SettleOptions& options = {});
+enum class SettleStatus {
+  Converged,       ///< equilibrium found; `is_stable` says whether the load would stay there
+  BeyondCapacity,  ///< the load could not be carried before the law softens: no equilibrium on the branch from rest
+  NotConverged,    ///< no more progress, and not because of the law: the residual says how far
+  BadInput,        ///< NaN, negative mass, or a stiffness without inverse
+};
 
-/// Name as printed: settled, out_of_range, not_converged.
-[[nodiscard]] const char* name_of(SettleStatus status) noexcept;
+[[nodiscard]] const char* name_of(SettleStatus status);
+
+struct SettleResult {
+  SettleStatus status = SettleStatus::NotConverged;
+  Pose X_ES;                         ///< where the lip is; the last point reached when not converged
+  Pose H;                            ///< deformation S2_H_S1 there
+  bool is_stable = false;            ///< converged, and the smallest eigenvalue below is positive
+  double residual = 0.0;             ///< N: norm of [force; 20/m x torque] left over at S1 under the whole load
+  double load_fraction = 0.0;        ///< of gravity that is carried at X_ES: 1 when converged
+  double smallest_eigenvalue = 0.0;  ///< of the symmetric part of the tangent stiffness at S
+  double bend = 0.0;                 ///< rad, between the z axes of the two ends
+  int iterations = 0;                ///< Newton steps in all
+};
+
+/// The equilibrium reached from the undeformed cup by turning gravity on slowly: load stepping, in each step Newton's
+/// method on SE(3) with the exact tangent, a step limit and backtracking. docs/theory/cup.md, section 5.
+[[nodiscard]] SettleResult settle(const HeldLoad& load, const SettleOptions& options = {});
 
 }  // namespace snug::cup
