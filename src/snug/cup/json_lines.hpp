@@ -1,4 +1,4 @@
-// JSON lines of the cup: one question a line in, one answer a line out; behind `snug cup evaluate` and `snug cup settle`.
+// Questions to the cup model as JSON lines: what `snug cup evaluate` and `snug cup settle` read and print.
 #pragma once
 
 #include <string>
@@ -6,13 +6,14 @@
 
 namespace snug::cup {
 
-/// Wrench of a deformation. Keys in: R, o, K; S_R_S1, S_o_S1 (default: S = S1); id (echoed). Out: wrench_S, wrench_S1, V.
-/// Other keys of a stored test case are accepted and ignored. Throws InputError{where, key, ...}.
-[[nodiscard]] std::string evaluate_json_line(const std::string& line, std::string_view where = "line 1");
+/// Wrench of one deformation. Reads an object with R, o (H = S2_H_S1), K, S_R_S1, S_o_S1 and answers with V,
+/// wrench_S1, wrench_S and bend_deg; `id` is handed on. Units SI, matrices as nested rows, wrenches force first.
+/// Throws InputError with "source:line" for anything else: src/snug/cup/README.md lists the keys.
+[[nodiscard]] std::string evaluate_json_line(std::string_view line, int line_number, std::string_view source);
 
-/// Where a held load hangs. Keys in: W_R_E, mass, com_S, K, E_H_S2 and S_H_S1 (each {R, o}), gravity (m/s^2 downwards,
-/// default 9.81), id (echoed). Out: E_R_S, E_o_S, stable, residual, bend_deg, status, iterations. Other keys of a stored
-/// test case are accepted and ignored. Throws InputError{where, key, ...}.
-[[nodiscard]] std::string settle_json_line(const std::string& line, std::string_view where = "line 1");
+/// Where a held load comes to rest. Reads W_R_E, mass, com_S, K, E_H_S2 {R, o}, S_H_S1 {R, o} and perhaps gravity
+/// (m/s^2 along -Wz, 9.81 when absent); answers with E_R_S, E_o_S, stable, status, residual, bend_deg, iterations,
+/// load_fraction and min_tangent_eig (see SettleResult). Throws InputError as above.
+[[nodiscard]] std::string settle_json_line(std::string_view line, int line_number, std::string_view source);
 
 }  // namespace snug::cup
