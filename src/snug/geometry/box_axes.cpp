@@ -1,6 +1,7 @@
 // BoxAxes: separations along face normals and edge cross products, after Gottschalk's OBB test, with unit axes.
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "snug/geometry/internal/box_axes.hpp"
 #include "snug/geometry/internal/box_topology.hpp"
@@ -42,32 +43,54 @@ BoxAxis edge_axis(const BoxPair& pair, int i, int j) noexcept {
   return result;
 }
 
-/// The nine cross products. An axis is worked out in full only when its unnormalised form beats the best so far.
+/// One of the nine cross products. It is worked out in full only when its unnormalised form beats the best so far.
+template <int i, int j>
+bool is_worth_normalising(const BoxPair& pair, const Matrix3& abs_R, double best) noexcept {
+  constexpr int i1 = next(i);
+  constexpr int i2 = next(i1);
+  constexpr int j1 = next(j);
+  constexpr int j2 = next(j1);
+  const double c1 = pair.R_AB(i1, j);
+  const double c2 = pair.R_AB(i2, j);
+  const double gap = std::abs(pair.p_AB[i2] * c1 - pair.p_AB[i1] * c2) -
+                     ((pair.half_A[i1] * abs_R(i2, j) + pair.half_A[i2] * abs_R(i1, j)) +
+                      (pair.half_B[j1] * abs_R(i, j2) + pair.half_B[j2] * abs_R(i, j1)));
+  // gap / length > best, without root and division.
+  const double bound = best * best * (c1 * c1 + c2 * c2);
+  return best < 0.0 ? (gap >= 0.0 || gap * gap < bound) : (gap > 0.0 && gap * gap > bound);
+}
+
 bool find_edge_axis(const BoxPair& pair, const Matrix3& abs_R, double margin, BoxAxes& out) noexcept {
-  double best = out.best_face.separation;
-  for (int i = 0; i < 3; ++i) {
-    const int i1 = next(i);
-    const int i2 = next(i1);
-    for (int j = 0; j < 3; ++j) {
-      const int j1 = next(j);
-      const int j2 = next(j1);
-      const double c1 = pair.R_AB(i1, j);
-      const double c2 = pair.R_AB(i2, j);
-      const double gap = std::abs(pair.p_AB[i2] * c1 - pair.p_AB[i1] * c2) -
-                         (pair.half_A[i1] * abs_R(i2, j) + pair.half_A[i2] * abs_R(i1, j) +
-                          pair.half_B[j1] * abs_R(i, j2) + pair.half_B[j2] * abs_R(i, j1));
-      // gap / length > best, without root and division.
-      const double bound = best * best * (c1 * c1 + c2 * c2);
-      const bool beats = best < 0.0 ? (gap >= 0.0 || gap * gap < bound) : (gap > 0.0 && gap * gap > bound);
-      if (!beats) continue;
-      const BoxAxis axis = edge_axis(pair, i, j);
-      if (!(axis.separation > best)) continue;
-      best = axis.separation;
-      out.best_edge = axis;
-      if (best > margin) return false;
-    }
+  // An edge axis that ties with the face axis is the face axis.
+  double best = out.best_face.separation + kMiss;
+  const auto go_on = [&]<int i, int j>(std::integral_constant<int, i>, std::integral_constant<int, j>) {
+    if (!is_worth_normalising<i, j>(pair, abs_R, best)) return true;
+    const BoxAxis axis = edge_axis(pair, i, j);
+    if (!(axis.separation > best)) return true;
+    best = axis.separation;
+    out.best_edge = axis;
+    return best <= margin;
+  };
+  constexpr std::integral_constant<int, 0> x;
+  constexpr std::integral_constant<int, 1> y;
+  constexpr std::integral_constant<int, 2> z;
+  return go_on(x, x) && go_on(x, y) && go_on(x, z) && go_on(y, x) && go_on(y, y) && go_on(y, z) && go_on(z, x) &&
+         go_on(z, y) && go_on(z, z);
+}
+
+/// Gaps along the six face normals and which face looks at the other box.
+void find_face_gaps(const BoxPair& pair, const Matrix3& abs_R, BoxAxes& out) noexcept {
+  const Vector3 p_B = pair.R_AB.transpose() * pair.p_AB;
+  const Vector3 gap_A = pair.p_AB.cwiseAbs() - pair.half_A - abs_R * pair.half_B;
+  const Vector3 gap_B = p_B.cwiseAbs() - pair.half_B - abs_R.transpose() * pair.half_A;
+  for (int k = 0; k < 3; ++k) {
+    const auto slot = static_cast<std::size_t>(k);
+    out.face[slot] = gap_A[k];
+    out.face[slot + 3] = gap_B[k];
+    // The face of A looks along +p_AB, that of B against it.
+    out.face_index[slot] = box_face(k, pair.p_AB[k] >= 0.0);
+    out.face_index[slot + 3] = box_face(k, p_B[k] < 0.0);
   }
-  return true;
 }
 
 }  // namespace
@@ -130,37 +153,21 @@ double quick_separation(const Vector3& half_A, const Pose& X_WA, const Vector3& 
 
 bool find_axes(const BoxPair& pair, double margin, BoxAxes& out) noexcept {
   const Matrix3 abs_R = pair.R_AB.cwiseAbs();
-  const Vector3 p_B = pair.R_AB.transpose() * pair.p_AB;
-  const Vector3 reach_B = abs_R * pair.half_B;
-  const Vector3 reach_A = abs_R.transpose() * pair.half_A;
-  int best = 0;
-  for (int k = 0; k < 6; ++k) {
-    const bool of_A = k < 3;
-    const int axis = of_A ? k : k - 3;
-    const double distance = of_A ? pair.p_AB[axis] : p_B[axis];
-    const double reach = of_A ? pair.half_A[axis] + reach_B[axis] : pair.half_B[axis] + reach_A[axis];
-    const auto slot = static_cast<std::size_t>(k);
-    out.face[slot] = std::abs(distance) - reach;
-    // The face of A looks along +p_AB, that of B against it.
-    out.face_index[slot] = box_face(axis, of_A == (distance >= 0.0));
-    // Negated so that a NaN leaves through the same door as a gap.
-    if (out.face[slot] > out.face[static_cast<std::size_t>(best)] + kTie) best = k;
-    if (!(out.face[slot] <= margin)) {
-      best = k;
-      break;
-    }
+  find_face_gaps(pair, abs_R, out);
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < 6; ++k) {
+    if (out.face[k] > out.face[best] + kTie) best = k;
   }
-  const auto slot = static_cast<std::size_t>(best);
-  out.best_face.axis = best < 3 ? Axis{AxisKind::FaceA, out.face_index[slot], 0}
-                                : Axis{AxisKind::FaceB, 0, out.face_index[slot]};
-  out.best_face.separation = out.face[slot];
-  if (!(out.best_face.separation <= margin)) return false;
-  out.best_face.n_A = face_normal(pair, out, best);
-  if (!find_edge_axis(pair, abs_R, margin, out)) {
-    out.best_face = out.best_edge;
-    return false;
-  }
-  return true;
+  out.best_face.axis = best < 3 ? Axis{AxisKind::FaceA, out.face_index[best], 0}
+                                : Axis{AxisKind::FaceB, 0, out.face_index[best]};
+  out.best_face.separation = out.face[best];
+  // A NaN in any of the six must not pass as a contact; all six enter the sum.
+  const double sum = (out.face[0] + out.face[1] + out.face[2]) + (out.face[3] + out.face[4] + out.face[5]);
+  if (!(out.best_face.separation <= margin) || std::isnan(sum)) return false;
+  out.best_face.n_A = face_normal(pair, out, static_cast<int>(best));
+  if (find_edge_axis(pair, abs_R, margin, out)) return true;
+  out.best_face = out.best_edge;
+  return false;
 }
 
 }  // namespace snug::geometry::internal

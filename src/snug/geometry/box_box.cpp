@@ -184,8 +184,9 @@ void collide_boxes(const Box& A, const Box& B, const PairCall& call, Axis& axis,
   if (separation > 0.0) return collide_apart(A, B, pair.R_AB, pair.p_AB, chosen.n_A, call, out);
   // What was chosen for the sake of the past, or by preference, has nothing to show: the best of the other kind.
   for (const BoxAxis& other : {axes.best_face, axes.best_edge}) {
+    if (other.axis == chosen.axis || other.separation < separation - allowance(separation)) continue;
     axis = other.axis;
-    if (!(other.axis == chosen.axis) && contact_along(pair, other, separation, call, out)) return;
+    if (contact_along(pair, other, separation, call, out)) return;
   }
   const bool by_edge = axes.best_edge.axis.kind == AxisKind::Edge;
   axis = by_edge ? axes.best_edge.axis : axes.best_face.axis;

@@ -1,4 +1,7 @@
-// BoxClip: Sutherland-Hodgman in the plane of the reference face, with the height carried along.
+// BoxClip: corners of the overlap of a rectangle and a parallelogram, found in closed form, with their heights.
+//
+// The corners are those of the parallelogram inside the rectangle, those of the rectangle inside the parallelogram,
+// and the crossings of their sides. Rounding may give a corner twice, never drop it; what comes twice is merged.
 #include <cmath>
 
 #include "snug/geometry/internal/box_clip.hpp"
@@ -9,12 +12,6 @@ namespace snug::geometry::internal {
 
 namespace {
 
-/// A corner and the label of the side that leaves it: 0-3 sides of the incident face, 4-7 of the reference face.
-struct Corner {
-  double u, v, phi;
-  int label;
-};
-
 /// The incident face as a parallelogram c +- e1 +- e2 in (u, v), with height.
 struct Parallelogram {
   int axis;       ///< of the incident box
@@ -23,9 +20,6 @@ struct Parallelogram {
   double e1u, e1v, e1_phi;  ///< half side along the next axis
   double e2u, e2v, e2_phi;  ///< half side along the axis after that
 };
-
-// A polygon of 4 corners cut by 4 lines has at most 8; rounding may add a spurious corner at each cut.
-using Corners = std::array<Corner, 16>;
 
 Parallelogram project(const BoxFacePair& pair, int ax) noexcept {
   const int au = next(ax);
@@ -58,189 +52,232 @@ Parallelogram project(const BoxFacePair& pair, int ax) noexcept {
   return result;
 }
 
-/// Keeps what has sign * coordinate <= limit. `side` names the new edge.
-template <double Corner::*Coordinate>
-int cut(const Corners& in, int count, double sign, double limit, int side, Corners& out) noexcept {
-  int kept = 0;
-  if (count == 0) return 0;
-  const Corner* from = &in[static_cast<std::size_t>(count - 1)];
-  double d_from = sign * (from->*Coordinate) - limit;
-  for (int i = 0; i < count; ++i) {
-    const Corner* to = &in[static_cast<std::size_t>(i)];
-    const double d_to = sign * (to->*Coordinate) - limit;
-    if ((d_from <= 0.0) != (d_to <= 0.0) && kept < 15) {
-      const double t = d_from / (d_from - d_to);
-      Corner& corner = out[static_cast<std::size_t>(kept++)];
-      corner.u = from->u + t * (to->u - from->u);
-      corner.v = from->v + t * (to->v - from->v);
-      corner.phi = from->phi + t * (to->phi - from->phi);
-      corner.*Coordinate = sign * limit;
-      corner.label = d_to > 0.0 ? side : from->label;
-    }
-    if (d_to <= 0.0) out[static_cast<std::size_t>(kept++)] = *to;
-    from = to;
-    d_from = d_to;
-  }
-  return kept;
-}
+/// Slack for corners on the rim of the other face, m and in units of half sides: twice beats never.
+constexpr double kOnRim = 1e-12;
 
-/// Names corners of the polygon.
-class Namer {
+int sign_bit(bool positive, int bit) noexcept { return positive ? 1 << bit : 0; }
+
+/// Collects corners: names them and merges those that coincide.
+class Collector {
  public:
-  Namer(const BoxFacePair& pair, const Parallelogram& inc, int ax, double hu, double hv)
-      : pair_(pair), inc_(inc), ax_(ax), au_(next(ax)), hu_(hu), hv_(hv) {
-    const double determinant = inc.e1u * inc.e2v - inc.e1v * inc.e2u;
-    inverse_ = determinant != 0.0 ? 1.0 / determinant : 0.0;
+  Collector(const BoxFacePair& pair, const Parallelogram& inc, BoxPolygon& out)
+      : pair_(pair),
+        inc_(inc),
+        out_(out),
+        ax_(pair.face / 2),
+        au_(next(ax_)),
+        av_(next(au_)),
+        k1_(next(inc.axis)),
+        k2_(next(k1_)),
+        hu_(pair.half_ref[au_]),
+        hv_(pair.half_ref[av_]),
+        snap1_(kSnap / pair.half_inc[k1_]),
+        snap2_(kSnap / pair.half_inc[k2_]) {
+    ref_base_ = sign_bit((pair.face & 1) != 0, ax_);
+    inc_base_ = sign_bit(inc.positive, inc.axis);
   }
 
-  /// Name of a corner between the sides `before` and `after`.
-  void name(const Corner& corner, int before, int after, BoxClipPoint& point) {
-    int ref = vertex_near_reference(corner);
-    int inc = vertex_near_incident(corner);
-    // A corner of both boxes at once takes its name from one of them, always the same.
-    if (ref >= 0 && inc >= 0) (pair_.name_ref_first ? inc : ref) = -1;
-    if (ref >= 0 && !used(ref)) return set_reference(ref, point);
-    if (inc >= 0 && !used(8 + inc)) return set_incident(inc, point);
-    name_by_sides(before, after, point);
-    if (ref >= 0 || inc >= 0) point.code_inc |= kSecond;
+  void collect() {
+    add_incident_corners();
+    if (inside_ == 15U) return;  // nothing sticks out, so nothing is cut
+    invert();
+    add_reference_corners();
+    for (int side = 0; side < 4; ++side) add_crossings(side);
   }
 
  private:
-  bool used(int bit) {
-    const bool was = (used_ >> bit & 1U) != 0;
-    used_ |= 1U << bit;
-    return was;
+  void invert() {
+    const double inverse = 1.0 / (inc_.e1u * inc_.e2v - inc_.e1v * inc_.e2u);
+    su_ = inc_.e2v * inverse;
+    sv_ = -inc_.e2u * inverse;
+    tu_ = -inc_.e1v * inverse;
+    tv_ = inc_.e1u * inverse;
+    // Used only where the side is not parallel to the rim; infinite otherwise.
+    per_u_ = {1.0 / inc_.e1u, 1.0 / inc_.e2u};
+    per_v_ = {1.0 / inc_.e1v, 1.0 / inc_.e2v};
   }
-  void set_reference(int vertex, BoxClipPoint& point) const {
-    point.code_ref = vertex_code(vertex);
-    point.code_inc = face_code(box_face(inc_.axis, inc_.positive));
+
+  struct Place {
+    double u, v, phi;
+  };
+
+  Place incident_corner(int i) const {
+    const double s1 = i == 1 || i == 2 ? 1.0 : -1.0;
+    const double s2 = i >= 2 ? 1.0 : -1.0;
+    return {inc_.cu + s1 * inc_.e1u + s2 * inc_.e2u, inc_.cv + s1 * inc_.e1v + s2 * inc_.e2v,
+            inc_.c_phi + s1 * inc_.e1_phi + s2 * inc_.e2_phi};
   }
-  void set_incident(int vertex, BoxClipPoint& point) const {
-    point.code_ref = face_code(pair_.face);
-    point.code_inc = vertex_code(vertex);
+
+  void add_incident_corners() {
+    for (int i = 0; i < 4; ++i) {
+      const Place p = incident_corner(i);
+      if (!(std::abs(p.u) <= hu_ && std::abs(p.v) <= hv_)) continue;
+      inside_ |= 1U << i;
+      add(p, near_reference(p), incident_vertex(i), 0, 0);
+    }
   }
-  int reference_vertex(bool u_positive, bool v_positive) const {
-    return box_vertex(ax_, (pair_.face & 1) != 0, u_positive, v_positive);
+
+  void add_reference_corners() {
+    for (int i = 0; i < 4; ++i) {
+      const double u = (i & 1) != 0 ? hu_ : -hu_;
+      const double v = (i & 2) != 0 ? hv_ : -hv_;
+      const double s = su_ * (u - inc_.cu) + sv_ * (v - inc_.cv);
+      const double t = tu_ * (u - inc_.cu) + tv_ * (v - inc_.cv);
+      if (!(std::abs(s) <= 1.0 + kOnRim && std::abs(t) <= 1.0 + kOnRim)) continue;
+      const int ref = ref_base_ | sign_bit(u > 0.0, au_) | sign_bit(v > 0.0, av_);
+      add({u, v, inc_.c_phi + s * inc_.e1_phi + t * inc_.e2_phi}, ref, near_incident(s, t), 0, 0);
+    }
   }
-  int incident_vertex(bool first_positive, bool second_positive) const {
-    return box_vertex(inc_.axis, inc_.positive, first_positive, second_positive);
+
+  /// Where side `side` of the incident face enters and leaves the rectangle.
+  void add_crossings(int side) {
+    const bool starts_inside = (inside_ >> side & 1U) != 0;
+    const bool ends_inside = (inside_ >> ((side + 1) & 3) & 1U) != 0;
+    if (starts_inside && ends_inside) return;
+    const Place from = incident_corner(side);
+    const double along = side < 2 ? 2.0 : -2.0;
+    const bool first = (side & 1) == 0;
+    const double du = along * (first ? inc_.e1u : inc_.e2u);
+    const double dv = along * (first ? inc_.e1v : inc_.e2v);
+    const double per_along = side < 2 ? 0.5 : -0.5;
+    double enter = 0.0;
+    double leave = 1.0;
+    int enters_by = -1;
+    int leaves_by = -1;
+    if (!cut(from.u, du, per_along * per_u_[static_cast<std::size_t>(side & 1)], hu_, 0, enter, enters_by, leave, leaves_by)) return;
+    if (!cut(from.v, dv, per_along * per_v_[static_cast<std::size_t>(side & 1)], hv_, 1, enter, enters_by, leave, leaves_by)) return;
+    if (enter > leave) return;
+    const double d_phi = along * (first ? inc_.e1_phi : inc_.e2_phi);
+    if (!starts_inside && enters_by >= 0) {
+      add_crossing({from.u + enter * du, from.v + enter * dv, from.phi + enter * d_phi}, enter, enters_by, side);
+    }
+    if (!ends_inside && leaves_by >= 0) {
+      add_crossing({from.u + leave * du, from.v + leave * dv, from.phi + leave * d_phi}, leave, leaves_by, side);
+    }
   }
-  int vertex_near_reference(const Corner& c) const {
-    if (std::abs(std::abs(c.u) - hu_) > kSnap || std::abs(std::abs(c.v) - hv_) > kSnap) return -1;
-    return reference_vertex(c.u > 0.0, c.v > 0.0);
+
+  /// Narrows the stretch to |start + t d| <= limit. Sides are 0: u positive, 1: v positive, 2: u negative,
+  /// 3: v negative. False when nothing is left.
+  static bool cut(double start, double d, double inverse, double limit, int side, double& enter, int& enters_by, double& leave,
+                  int& leaves_by) {
+    if (std::abs(d) <= kOnRim) return std::abs(start) <= limit + kOnRim;
+    const bool rising = d > 0.0;
+    const double in = ((rising ? -limit : limit) - start) * inverse;
+    const double out = ((rising ? limit : -limit) - start) * inverse;
+    if (in > enter) {
+      enter = in;
+      enters_by = rising ? side + 2 : side;
+    }
+    if (out < leave) {
+      leave = out;
+      leaves_by = rising ? side : side + 2;
+    }
+    return true;
   }
-  int vertex_near_incident(const Corner& c) const {
-    const double du = c.u - inc_.cu;
-    const double dv = c.v - inc_.cv;
-    const double s = (du * inc_.e2v - dv * inc_.e2u) * inverse_;
-    const double t = (inc_.e1u * dv - inc_.e1v * du) * inverse_;
-    const double length1 = pair_.half_inc[next(inc_.axis)];
-    const double length2 = pair_.half_inc[next(next(inc_.axis))];
-    if (std::abs(std::abs(s) - 1.0) * length1 > kSnap || std::abs(std::abs(t) - 1.0) * length2 > kSnap) return -1;
-    return incident_vertex(s > 0.0, t > 0.0);
+
+  /// `at`: 0 at the start of the incident side, 1 at its end.
+  void add_crossing(Place p, double at, int ref_side, int inc_side) {
+    // Exactly on the side.
+    if (ref_side == 0 || ref_side == 2) p.u = ref_side == 0 ? hu_ : -hu_;
+    if (ref_side == 1 || ref_side == 3) p.v = ref_side == 1 ? hv_ : -hv_;
+    add(p, near_reference(p), near_end(at, inc_side), reference_edge(ref_side), incident_edge(inc_side));
+  }
+
+  int near_reference(const Place& p) const {
+    if (std::abs(p.u) < hu_ - kSnap || std::abs(p.v) < hv_ - kSnap) return -1;
+    return ref_base_ | sign_bit(p.u > 0.0, au_) | sign_bit(p.v > 0.0, av_);
+  }
+  int near_incident(double s, double t) const {
+    if (std::abs(s) < 1.0 - snap1_ || std::abs(t) < 1.0 - snap2_) return -1;
+    if (std::abs(s) > 1.0 + snap1_ || std::abs(t) > 1.0 + snap2_) return -1;
+    return inc_base_ | sign_bit(s > 0.0, k1_) | sign_bit(t > 0.0, k2_);
+  }
+  int near_end(double at, int side) const {
+    const double snap = 0.5 * ((side & 1) == 0 ? snap1_ : snap2_);
+    if (at > snap && at < 1.0 - snap) return -1;
+    return incident_vertex(at > 0.5 ? (side + 1) & 3 : side);
+  }
+  int incident_vertex(int corner) const {
+    return inc_base_ | sign_bit(corner == 1 || corner == 2, k1_) | sign_bit(corner >= 2, k2_);
   }
   int reference_edge(int side) const {
     const bool positive = (pair_.face & 1) != 0;
-    // Side 4: u = +hu, 5: v = +hv, 6: u = -hu, 7: v = -hv.
-    if (side == 4 || side == 6) return box_edge(next(au_), positive, side == 4);
-    return box_edge(au_, side == 5, positive);
+    if (side == 0 || side == 2) return box_edge(av_, positive, side == 0);
+    return box_edge(au_, side == 1, positive);
   }
+  /// Sides 0 and 2 run along k1 (at k2 negative, positive), 1 and 3 along k2 (at k1 positive, negative).
   int incident_edge(int side) const {
-    const int k1 = next(inc_.axis);
-    // Sides 0 and 2 run along k1 (at the second axis negative, positive), 1 and 3 along k2.
-    if (side == 0 || side == 2) return box_edge(k1, side == 2, inc_.positive);
-    return box_edge(next(k1), inc_.positive, side == 1);
+    if (side == 0 || side == 2) return box_edge(k1_, side == 2, inc_.positive);
+    return box_edge(k2_, inc_.positive, side == 1);
   }
-  void name_by_sides(int before, int after, BoxClipPoint& point) const {
-    if (before < 4 && after < 4) return set_incident(incident_vertex(after == 1 || after == 2, after >= 2), point);
-    if (before >= 4 && after >= 4) {
-      return set_reference(reference_vertex(before == 4 || after == 4, before == 5 || after == 5), point);
+
+  /// `ref` and `inc`: the vertex of either box that the corner is or is near to, or -1.
+  void add(const Place& p, int ref, int inc, int ref_edge, int inc_edge) {
+    out_.least_phi = out_.count == 0 ? p.phi : std::min(out_.least_phi, p.phi);
+    // Only near a vertex can two corners coincide; a lone vertex knows only itself.
+    if ((ref >= 0 || inc >= 0) && joins_another(p)) return;
+    if (out_.count == static_cast<int>(out_.points.size())) return;
+    BoxClipPoint& point = out_.points[static_cast<std::size_t>(out_.count++)];
+    point.u = p.u;
+    point.v = p.v;
+    point.phi = p.phi;
+    name(ref, inc, ref_edge, inc_edge, point);
+  }
+
+  /// True when the corner coincides with a point, which then takes the deeper place of the two.
+  bool joins_another(const Place& p) {
+    for (int i = 0; i < out_.count; ++i) {
+      BoxClipPoint& point = out_.points[static_cast<std::size_t>(i)];
+      if (std::abs(p.u - point.u) > kMerge || std::abs(p.v - point.v) > kMerge) continue;
+      if (p.phi < point.phi) {
+        point.u = p.u;
+        point.v = p.v;
+        point.phi = p.phi;
+      }
+      return true;
     }
-    point.code_ref = edge_code(reference_edge(before < 4 ? after : before));
-    point.code_inc = edge_code(incident_edge(before < 4 ? before : after));
+    return false;
+  }
+
+  void name(int ref, int inc, int ref_edge, int inc_edge, BoxClipPoint& point) {
+    // A corner of both boxes at once takes its name from one of them, always the same.
+    const bool by_ref = ref >= 0 && (inc < 0 || pair_.name_ref_first);
+    const int vertex = by_ref ? ref : inc;
+    if (vertex < 0) {
+      point.code_ref = edge_code(ref_edge);
+      point.code_inc = edge_code(inc_edge);
+      return;
+    }
+    point.code_ref = by_ref ? vertex_code(vertex) : face_code(pair_.face);
+    point.code_inc = by_ref ? face_code(box_face(inc_.axis, inc_.positive)) : vertex_code(vertex);
+    // Up to four corners can lie around one vertex; they differ in these bits.
+    const int slot = (by_ref ? 0 : 16) + 2 * vertex;
+    const std::uint32_t order = static_cast<std::uint32_t>(used_ >> slot & 3U);
+    used_ += std::uint64_t{1} << slot;
+    point.code_inc |= order * kSecond;
   }
 
   const BoxFacePair& pair_;
   const Parallelogram& inc_;
-  int ax_, au_;
+  BoxPolygon& out_;
+  int ax_, au_, av_, k1_, k2_;
   double hu_, hv_;
-  double inverse_ = 0.0;
-  unsigned used_ = 0;
+  double snap1_, snap2_;        ///< kSnap in units of the incident half sides
+  double su_ = 0.0, sv_ = 0.0, tu_ = 0.0, tv_ = 0.0;  ///< (u, v) to the parallelogram's own coordinates
+  std::array<double, 2> per_u_{}, per_v_{};           ///< 1 / half side
+  int ref_base_ = 0;            ///< vertex bits that all corners of the face share
+  int inc_base_ = 0;
+  unsigned inside_ = 0;         ///< incident corners over the reference face
+  std::uint64_t used_ = 0;      ///< how often each vertex has given its name, two bits each
 };
-
-/// True when the corner coincides with the point, which then takes the deeper place of the two.
-bool joins(const Corner& corner, BoxClipPoint& point) noexcept {
-  if (std::abs(corner.u - point.u) > kMerge || std::abs(corner.v - point.v) > kMerge) return false;
-  if (corner.phi < point.phi) {
-    point.u = corner.u;
-    point.v = corner.v;
-    point.phi = corner.phi;
-  }
-  return true;
-}
-
-/// Cuts by those sides of the reference face that the parallelogram reaches beyond.
-int cut_by_sides(const Parallelogram& inc, double hu, double hv, Corners& first, Corners& second,
-                 Corners** result) noexcept {
-  int count = 4;
-  Corners* from = &first;
-  Corners* to = &second;
-  const double reach_u = std::abs(inc.e1u) + std::abs(inc.e2u);
-  const double reach_v = std::abs(inc.e1v) + std::abs(inc.e2v);
-  if (inc.cu + reach_u > hu) {
-    count = cut<&Corner::u>(*from, count, 1.0, hu, 4, *to);
-    std::swap(from, to);
-  }
-  if (inc.cv + reach_v > hv) {
-    count = cut<&Corner::v>(*from, count, 1.0, hv, 5, *to);
-    std::swap(from, to);
-  }
-  if (inc.cu - reach_u < -hu) {
-    count = cut<&Corner::u>(*from, count, -1.0, hu, 6, *to);
-    std::swap(from, to);
-  }
-  if (inc.cv - reach_v < -hv) {
-    count = cut<&Corner::v>(*from, count, -1.0, hv, 7, *to);
-    std::swap(from, to);
-  }
-  *result = from;
-  return count;
-}
 
 }  // namespace
 
 void clip_box_face(const BoxFacePair& pair, BoxPolygon& out) noexcept {
-  const int ax = pair.face / 2;
-  const double hu = pair.half_ref[next(ax)];
-  const double hv = pair.half_ref[next(next(ax))];
-  const Parallelogram inc = project(pair, ax);
-  Corners first;
-  Corners second;
-  for (int i = 0; i < 4; ++i) {
-    const double s1 = i == 1 || i == 2 ? 1.0 : -1.0;
-    const double s2 = i >= 2 ? 1.0 : -1.0;
-    first[static_cast<std::size_t>(i)] = {inc.cu + s1 * inc.e1u + s2 * inc.e2u, inc.cv + s1 * inc.e1v + s2 * inc.e2v,
-                                          inc.c_phi + s1 * inc.e1_phi + s2 * inc.e2_phi, i};
-  }
-  Corners* corners = nullptr;
-  const int count = cut_by_sides(inc, hu, hv, first, second, &corners);
   out.count = 0;
-  if (count == 0) return;
-  Namer namer(pair, inc, ax, hu, hv);
-  out.least_phi = (*corners)[0].phi;
-  for (int i = 0; i < count; ++i) {
-    const Corner& corner = (*corners)[static_cast<std::size_t>(i)];
-    const int before = (*corners)[static_cast<std::size_t>(i == 0 ? count - 1 : i - 1)].label;
-    out.least_phi = std::min(out.least_phi, corner.phi);
-    if (out.count > 0 && joins(corner, out.points[static_cast<std::size_t>(out.count - 1)])) continue;
-    if (out.count > 1 && i == count - 1 && joins(corner, out.points[0])) continue;
-    if (out.count == 8) break;
-    BoxClipPoint& point = out.points[static_cast<std::size_t>(out.count++)];
-    point.u = corner.u;
-    point.v = corner.v;
-    point.phi = corner.phi;
-    namer.name(corner, before, corner.label, point);
-  }
+  out.least_phi = 0.0;
+  const Parallelogram inc = project(pair, pair.face / 2);
+  Collector(pair, inc, out).collect();
 }
 
 }  // namespace snug::geometry::internal

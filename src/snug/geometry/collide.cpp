@@ -32,7 +32,8 @@ int compare(const double* a, const double* b, int count) noexcept {
 
 int compare_shapes(const Shape& A, const Shape& B) noexcept {
   if (const Box* box = std::get_if<Box>(&A)) {
-    return compare(box->half.data(), std::get_if<Box>(&B)->half.data(), 3);
+    // The larger first: of two faces that tie the first is cut with, and a larger one needs fewer cuts.
+    return compare(std::get_if<Box>(&B)->half.data(), box->half.data(), 3);
   }
   if (const Capsule* a = std::get_if<Capsule>(&A)) {
     const Capsule* b = std::get_if<Capsule>(&B);

@@ -268,8 +268,9 @@ void collide_polytopes(const PolytopePair& pair, const PairCall& call, Axis& axi
   if (separation > 0.0) return apart_contact(pair, chosen.n, call, out);
   // What was chosen for the sake of the past, or by preference, has nothing to show: the best of the other kind.
   for (const PolytopeAxis& other : {axes.best_face, axes.best_edge}) {
+    if (other.axis == chosen.axis || other.separation < separation - allowance(separation)) continue;
     axis = other.axis;
-    if (!(other.axis == chosen.axis) && contact_along(pair, other, separation, call, out)) return;
+    if (contact_along(pair, other, separation, call, out)) return;
   }
   const bool by_edge = axes.best_edge.axis.kind == AxisKind::Edge;
   axis = by_edge ? axes.best_edge.axis : axes.best_face.axis;

@@ -27,6 +27,7 @@ struct BoxClipPoint {
   std::uint32_t code_inc = 0;
 };
 
+/// Corners in no particular order.
 struct BoxPolygon {
   int count = 0;
   double least_phi = 0.0;  ///< over all corners, m

@@ -12,8 +12,8 @@ namespace snug::geometry::internal {
 constexpr std::uint32_t vertex_code(int index) { return 0x4000U | static_cast<std::uint32_t>(index); }
 constexpr std::uint32_t edge_code(int index) { return 0x8000U | static_cast<std::uint32_t>(index); }
 constexpr std::uint32_t face_code(int index) { return 0xC000U | static_cast<std::uint32_t>(index); }
-/// Tells apart two points that would carry the same name (both within kSnap of one vertex).
-inline constexpr std::uint32_t kSecond = 0x2000U;
+/// Times 0 to 3, tells apart points that would carry the same name (all within kSnap of one vertex).
+inline constexpr std::uint32_t kSecond = 0x1000U;
 
 constexpr std::uint32_t feature_of(std::uint32_t code_A, std::uint32_t code_B) { return code_A << 16 | code_B; }
 

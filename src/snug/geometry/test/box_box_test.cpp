@@ -43,10 +43,15 @@ TEST(BoxBox, TurnedOnItsLikeTouchesAtAnOctagonOfTheRightArea) {
   const Shape cube = Box{{0.1, 0.1, 0.1}};
   const Manifold m = collide_once(cube, at(0, 0, 0), cube, at(0, 0, 0.2, {0, 0, kPi / 4}), 1e-3);
   ASSERT_EQ(m.count, 8);
+  std::vector<Vector3> corners;
+  for (const ManifoldPoint& point : m.points) corners.push_back(point.p_WA);
+  std::sort(corners.begin(), corners.end(), [](const Vector3& a, const Vector3& b) {
+    return std::atan2(a.y(), a.x()) < std::atan2(b.y(), b.x());
+  });
   double area = 0.0;
   for (std::size_t i = 0; i < 8; ++i) {
-    const Vector3& p = m.points[i].p_WA;
-    const Vector3& q = m.points[(i + 1) % 8].p_WA;
+    const Vector3& p = corners[i];
+    const Vector3& q = corners[(i + 1) % 8];
     area += 0.5 * (p.x() * q.y() - p.y() * q.x());
   }
   // Two squares of side a turned by 45 degrees share 2 (sqrt 2 - 1) a^2.
