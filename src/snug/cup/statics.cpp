@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace snug::cup {
 namespace {
@@ -17,6 +18,7 @@ constexpr double kMaxStride = 0.5;   // rad, between two load steps; a larger on
 constexpr double kSmallestPart = 1.0 / 4096.0;  // of a load step
 constexpr double kNearFold = 0.1;  // of the unloaded stiffness; a fold at 1/4096 of a load step leaves about 0.01
 constexpr int kMaxHalvings = 10;
+constexpr double kLargestBend = std::numbers::pi / 4.0;  // where the law's moment is at its maximum
 
 Vector6 row_scale() {
   Vector6 scale;
@@ -172,13 +174,15 @@ SettleResult settle(const HeldLoad& load, const SettleOptions& options) {
   }
   const Balance balance(load);
   result.status = follow_branch(balance, options, result);
+  result.bend = bend_angle(result.H.R);
+  // Gravity alone can hold a load that has swung below the gripper, but no cup is bent like that.
+  if (result.bend >= kLargestBend) result.status = SettleStatus::BeyondCapacity;
   result.X_ES = load.X_ES2 * result.H * load.X_SS1.inverse();
   result.residual = scaled_norm(balance.wrench(result.H, 1.0));
   const Matrix6 X = wrench_transform(load.X_SS1);
   result.smallest_eigenvalue =
       smallest_eigenvalue(-(X * balance.tangent(result.H, result.load_fraction) * X.transpose()));
   result.is_stable = result.status == SettleStatus::Converged && result.smallest_eigenvalue > 0.0;
-  result.bend = bend_angle(result.H.R);
   return result;
 }
 

@@ -25,7 +25,7 @@ struct SettleOptions {
 
 enum class SettleStatus {
   Converged,       ///< equilibrium found; `is_stable` says whether the load would stay there
-  BeyondCapacity,  ///< the load could not be carried before the law softens: no equilibrium on the branch from rest
+  BeyondCapacity,  ///< more than the law can hold: no equilibrium on the branch from rest, or one bent by 45 degrees
   NotConverged,    ///< no more progress, and not because of the law: the residual says how far
   BadInput,        ///< NaN, negative mass, or a stiffness without inverse
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "snug/cup/test/vectors.hpp"
 
@@ -114,26 +115,27 @@ TEST(Settle, FindsAnUprightLoadBalancedAndSaysWhetherItWouldTip) {
 }
 
 TEST(Settle, SaysSoWhenTheMomentIsMoreThanTheCupCanHold) {
-  // Without lateral give, k_bend/2 sin(2 bend) = m g L cos(bend) has a solution only below k_bend = m g L.
+  // The cup gives k_bend / 2 = 2.5 Nm at most; these loads ask for 9 Nm and more in the undeformed pose.
   for (const double mass : {8.0, 20.0, 200.0}) {
-    SCOPED_TRACE(mass);
-    const SettleResult result = settle(tilted(mass, Vector3(0.12, 0.0, 0.05), 0.5));
-    EXPECT_EQ(result.status, SettleStatus::BeyondCapacity);
-    EXPECT_FALSE(result.is_stable);
-    EXPECT_GT(result.load_fraction, 0.0);
-    EXPECT_LT(result.load_fraction, 1.0);
-    EXPECT_GT(result.residual, 0.0);
+    for (const double tilt : {0.0, 0.5, 1.5, 2.5}) {
+      SCOPED_TRACE(std::to_string(mass) + " kg, tilt " + std::to_string(tilt));
+      const SettleResult result = settle(tilted(mass, Vector3(0.12, 0.0, 0.05), tilt));
+      EXPECT_EQ(result.status, SettleStatus::BeyondCapacity);
+      EXPECT_FALSE(result.is_stable);
+      EXPECT_GT(result.load_fraction, 0.0);
+      EXPECT_TRUE(result.X_ES.p.allFinite());
+      EXPECT_TRUE(result.load_fraction < 1.0 || result.bend >= kPi / 4.0);
+    }
   }
 }
 
-TEST(Settle, CarriesUpToTheFoldThatTheClosedFormGives) {
+TEST(Settle, TwistsAsTheClosedFormSaysUpToARightAngle) {
   // Torsion by a weight beside a horizontal axis, every other direction rigid: (k/2) sin(2 a) = m g L cos(a), so
-  // sin(a) = m g L / k: an equilibrium for every load below k, softening to none at a = 90 degrees.
+  // sin(a) = m g L / k while that is below 1; heavier loads hang straight down, held by gravity alone.
   HeldLoad load;
   load.R_WE = exp_rotation(Vector3(-0.5 * kPi, 0.0, 0.0));  // Ez along Wy, Ex along Wx
   load.p_SScm = Vector3(0.1, 0.0, 0.0);
   load.stiffness = as_matrix({1e9, 1e9, 1e6, 3.0, 0.0});
-  load.stiffness(5, 5) = 3.0;
   for (const double share : {0.1, 0.5, 0.9, 0.99}) {
     SCOPED_TRACE(share);
     load.mass = share * 3.0 / (9.81 * 0.1);
@@ -145,9 +147,8 @@ TEST(Settle, CarriesUpToTheFoldThatTheClosedFormGives) {
   }
   load.mass = 1.01 * 3.0 / (9.81 * 0.1);
   const SettleResult beyond = settle(load);
-  // Beyond, the load hangs at a right angle, where the spring has no torque left: an end of the branch or past it.
-  EXPECT_FALSE(beyond.status == SettleStatus::Converged && beyond.bend < 0.78 && beyond.is_stable &&
-               angle_between(beyond.H.R, Matrix3::Identity()) < 0.5 * kPi - 0.2);
+  EXPECT_EQ(beyond.status, SettleStatus::Converged);
+  EXPECT_NEAR(angle_between(beyond.H.R, Matrix3::Identity()), 0.5 * kPi, 1e-3);
 }
 
 TEST(Settle, RefusesWhatIsNotALoad) {
