@@ -157,3 +157,91 @@ class Simulate(unittest.TestCase):
         path = self.folder / "drop.h5"
         self.assertEqual(snug("simulate", DROP, "--until", "0.05", "-o", path).returncode, 0)
         self.assertEqual(path.read_bytes()[:8], b"\x89HDF\r\n\x1a\n")
+
+
+def rows(count):
+    return [[float(i == j) for j in range(count)] for i in range(count)]
+
+
+DEFORMATION = {"R": rows(3), "o": [0.0, 0.0, 0.001], "K": [[1000.0 * v for v in row] for row in rows(6)],
+               "S_R_S1": rows(3), "S_o_S1": [0.0, 0.0, 0.0]}
+LOAD = {"W_R_E": [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]], "mass": 1.0, "com_S": [0.0, 0.0, 0.05],
+        "K": [[1000.0 * v for v in row] for row in rows(6)],
+        "E_H_S2": {"R": rows(3), "o": [0.0, 0.0, 0.025]}, "S_H_S1": {"R": rows(3), "o": [0.0, 0.0, -0.025]}}
+
+
+def norm(values):
+    return sum(value * value for value in values) ** 0.5
+
+
+class Cup(unittest.TestCase):
+    assert_refused = CommandLine.assert_refused
+
+    def answers(self, part, cases):
+        result = snug("cup", part, stdin="".join(json.dumps(case) + "\n" for case in cases))
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return [json.loads(line) for line in result.stdout.splitlines()]
+
+    def vectors(self, name):
+        if not CUP_DATA.exists():
+            self.skipTest(f"no test vectors at {CUP_DATA}")
+        return json.loads((CUP_DATA / name).read_text())["cases"]
+
+    def test_cup_alone_asks_for_a_part(self):
+        self.assert_refused(snug("cup"), "subcommand")
+
+    def test_cup_help_has_examples(self):
+        for part in ("evaluate", "settle"):
+            self.assertIn("Example:", snug("cup", part, "--help").stdout)
+
+    def test_stretched_cup_pulls_the_box_back(self):
+        answer, = self.answers("evaluate", [DEFORMATION])
+        # Closed form: V = k x^2 / 2 and f = -k x for a translation; the rest is rounding.
+        self.assertAlmostEqual(answer["V"], 1000.0 * 0.001**2 / 2.0, delta=1e-15)
+        self.assertAlmostEqual(answer["wrench_S"][2], -1.0, delta=1e-12)
+
+    def test_hanging_box_stretches_the_cup_by_weight_over_stiffness(self):
+        answer, = self.answers("settle", [LOAD])
+        self.assertTrue(answer["stable"])
+        self.assertAlmostEqual(answer["E_o_S"][2], 0.05 + 9.81 / 1000.0, delta=1e-9)  # the solver's tolerance
+
+    def test_blank_lines_are_skipped_and_the_answers_keep_their_order(self):
+        cases = [dict(DEFORMATION, id=number) for number in (5, 3, 9)]
+        result = snug("cup", "evaluate", "-", stdin="\n" + "\n\n".join(json.dumps(case) for case in cases))
+        self.assertEqual([json.loads(line)["id"] for line in result.stdout.splitlines()], [5, 3, 9])
+
+    def test_bad_line_is_refused_with_its_number_after_the_good_ones(self):
+        result = snug("cup", "evaluate", stdin=json.dumps(DEFORMATION) + "\n\n{broken\n")
+        self.assertEqual((result.returncode, len(result.stdout.splitlines())), (2, 1))
+        self.assertRegex(result.stderr, r"^snug: error: stdin:3: ")
+
+    def test_bad_values_are_refused_by_key(self):
+        for key, value in (("R", [[2.0, 0, 0], [0, 1.0, 0], [0, 0, 1.0]]), ("o", [0.0, 0.0]), ("K", "stiff"),
+                           ("K", [[-1.0 * v for v in row] for row in rows(6)]), ("kay", 1)):
+            with self.subTest(key=key, value=value):
+                self.assert_refused(snug("cup", "evaluate", stdin=json.dumps(dict(DEFORMATION, **{key: value}))),
+                                    "stdin:1", key)
+
+    def test_missing_file_is_refused_by_name(self):
+        self.assert_refused(snug("cup", "settle", "/none/loads.jsonl"), "/none/loads.jsonl")
+
+    def test_evaluate_agrees_with_the_test_vectors(self):
+        cases = self.vectors("wrench.json")
+        for case, answer in zip(cases, self.answers("evaluate", cases), strict=True):
+            with self.subTest(id=case["id"], kind=case["kind"]):
+                # Tolerances as stated with the vectors.
+                self.assertLessEqual(abs(answer["V"] - case["V"]), 1e-10 * (abs(case["V"]) + 1e-12))
+                for key in ("wrench_S", "wrench_S1"):
+                    error = norm([a - b for a, b in zip(answer[key], case[key], strict=True)])
+                    self.assertLessEqual(error, 1e-9 * (norm(case[key]) + 1e-6), key)
+
+    def test_settle_agrees_with_the_test_vectors(self):
+        cases = self.vectors("static.json")
+        for case, answer in zip(cases, self.answers("settle", cases), strict=True):
+            with self.subTest(id=case["id"]):
+                # Tolerances as stated with the vectors: 1e-7 m, 1e-6 rad.
+                self.assertLessEqual(norm([a - b for a, b in zip(answer["E_o_S"], case["E_o_S"], strict=True)]), 1e-7)
+                turns = [a - b for got, right in zip(answer["E_R_S"], case["E_R_S"], strict=True)
+                         for a, b in zip(got, right, strict=True)]
+                self.assertLessEqual(norm(turns) / 2.0**0.5, 1e-6)  # |R1 - R2| = sqrt(2) x angle, for small angles
+                self.assertEqual(answer["stable"], case["min_tangent_eig"] > 0.0)

@@ -17,6 +17,7 @@ using snug::app::Action;
 constexpr const char* kExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug simulate scenarios/drop.yaml --until 5 --json
+  snug cup evaluate deformations.jsonl
 `snug VERB --help` tells the options of a verb. Data goes to stdout, messages to stderr.
 Exit codes: 0 done, 1 the run failed, 2 the input cannot be used.)";
 

@@ -1,10 +1,14 @@
 // add_verbs: every verb that this program offers, in the order of --help.
 #include "verbs.hpp"
 
+#include "cup.hpp"
 #include "simulate.hpp"
 
 namespace snug::app {
 
-void add_verbs(CLI::App& app, Action& action) { add_simulate(app, action); }
+void add_verbs(CLI::App& app, Action& action) {
+  add_simulate(app, action);
+  add_cup(app, action);
+}
 
 }  // namespace snug::app
