@@ -9,6 +9,8 @@ namespace {
 
 /// A cup that found nothing says so after this long with the vacuum on; it keeps trying.
 constexpr double kSealPatience = 0.4;  // s
+/// Share of the vacuum's set point from which on the limits of the hold count.
+constexpr double kEstablished = 0.8;
 
 physics::ElementQuery query_of(const CellWorld& world, const physics::WorldState& state, int body, const Pose& X_WE,
                                const Twist& V_WE) {
@@ -81,6 +83,7 @@ void Gripper::let_go(GripperEvent event, GripperState& state, std::vector<Grippe
   events.push_back(event);
   state.cup.phase = cup::CupPhase::Free;
   state.cup.body = -1;
+  state.cup.length = 0.0;
   state.cup.bend = 0.0;
   state.F_S = Wrench{};
   if (event.kind == GripperEvent::Kind::HoldLost || mode_ == cup::CupMode::Holding) state.cup.pressure_gauge = 0.0;
@@ -101,9 +104,10 @@ void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_W
     let_go(event, state, events);
     return;
   }
-  // While the vacuum builds up the lip stands on the face by the push that found it; limits count from holding on.
+  // While the cup draws a box in that cannot follow yet it pulls harder than the vacuum of the moment holds; the foam
+  // of the lip bridges that. Limits count once the vacuum is nearly there.
   const bool is_established = state.cup.phase == cup::CupPhase::Releasing ||
-                              state.cup.pressure_gauge <= params_.vacuum.pressure_gauge_collapse;
+                              state.cup.pressure_gauge <= kEstablished * params_.vacuum.pressure_gauge_hold;
   if (is_established) {
     event.loss = cup::find_hold_loss(params_, state.cup.pressure_gauge, state.F_S, state.cup.bend);
     if (event.loss != cup::HoldLoss::None) {
@@ -126,7 +130,14 @@ void Gripper::prepare(const physics::WorldState& world_state, const Pose& X_WE, 
                       std::vector<GripperEvent>& events) const {
   out.element = nullptr;
   out.body = out.ignored = -1;
-  if (mode_ == cup::CupMode::Phases) cup::advance_pressure(params_, command, dt, state.cup);
+  if (mode_ == cup::CupMode::Phases) {
+    if (state.cup.phase != cup::CupPhase::Free) {
+      const Vector3 p_WS =
+          physics::pose_of(world_->model, world_state, physics::BodyId{state.cup.body}) * state.cup.X_PS.p;
+      cup::follow_length(params_, (X_WE.R.transpose() * (p_WS - X_WE.p)).z(), state.cup);
+    }
+    cup::advance_pressure(params_, command, dt, state.cup);
+  }
   state.vacuum_time = command.vacuum ? state.vacuum_time + dt : 0.0;
   if (!command.vacuum) state.has_reported = false;
   if (state.cup.phase != cup::CupPhase::Free) check_hold(world_state, X_WE, V_WE, command, state, events);

@@ -125,6 +125,17 @@ void advance_pressure(const model::CupParams& params, const CupCommand& command,
   state.pressure_gauge = wanted + (state.pressure_gauge - wanted) * std::exp(-dt / time);
 }
 
+void follow_length(const model::CupParams& params, double length, CupState& state) {
+  const model::VacuumParams& vacuum = params.vacuum;
+  const double volume = vacuum.bellows_area * std::max(length, 0.0) + vacuum.hose_volume;
+  if (state.phase != CupPhase::Free && state.length > 0.0) {
+    const double volume_before = vacuum.bellows_area * state.length + vacuum.hose_volume;
+    state.pressure_gauge =
+        (vacuum.ambient_pressure_abs + state.pressure_gauge) * (volume_before / volume) - vacuum.ambient_pressure_abs;
+  }
+  state.length = state.phase == CupPhase::Free ? 0.0 : std::max(length, 0.0);
+}
+
 HoldLoss find_hold_loss(const model::CupParams& params, double pressure_gauge, const Wrench& F_S, double bend) {
   if (bend >= params.limits.fail_bend) return HoldLoss::Bending;
   const double area = 0.25 * std::numbers::pi * params.effective_diameter * params.effective_diameter;

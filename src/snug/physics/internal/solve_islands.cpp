@@ -191,7 +191,13 @@ ElementQuery carrier_query(const WorldInput& input, const Scratch& work, const E
   return query;
 }
 
+Matrix3 inertia_in_world(const WorldModel::MassProperties& mass, const Matrix3& R_WB) {
+  const Matrix3 R_WI = R_WB * mass.R_BI;
+  return R_WI * mass.inverse_inertia.cwiseInverse().asDiagonal() * R_WI.transpose();
+}
+
 struct BodyForces {
+  Matrix3 inertia_W = Matrix3::Identity();  ///< at the middle of the step
   Vector6 wrench = Vector6::Zero();
   Matrix6 stiffness = Matrix6::Zero();
   Matrix6 damping = Matrix6::Zero();
@@ -199,7 +205,7 @@ struct BodyForces {
 
 /// Elements and gyroscopic torque of one body at the middle of the step, for a guess of the velocity at its end.
 BodyForces evaluate_elements(const WorldModel& model, const WorldInput& input, const Scratch& work,
-                             const Island& island, int body, const Matrix3& inertia_W) {
+                             const Island& island, int body) {
   const BodyWork& b = work.bodies[static_cast<std::size_t>(body)];
   const double dt = model.settings.dt;
   const Vector3 v_mid = 0.5 * (b.velocity_start + b.velocity);
@@ -207,6 +213,7 @@ BodyForces evaluate_elements(const WorldModel& model, const WorldInput& input, c
   const Matrix3 R_WB = exp_rotation(0.5 * dt * w_mid) * b.R_WB;
   const Vector3 p_WBcm = b.p_WBcm + 0.5 * dt * v_mid;
   BodyForces forces;
+  forces.inertia_W = inertia_in_world(model.masses[static_cast<std::size_t>(body)], R_WB);
   for (int i = island.first_element; i < island.end_element; ++i) {
     const ElementUse& use = input.elements[static_cast<std::size_t>(work.element_order[static_cast<std::size_t>(i)])];
     if (use.body.index != body) continue;
@@ -220,19 +227,13 @@ BodyForces evaluate_elements(const WorldModel& model, const WorldInput& input, c
     forces.stiffness += response.stiffness;
     forces.damping += response.damping;
   }
-  forces.wrench.tail<3>() -= w_mid.cross(inertia_W * w_mid);
+  forces.wrench.tail<3>() -= w_mid.cross(forces.inertia_W * w_mid);
   return forces;
-}
-
-Matrix3 inertia_in_world(const WorldModel::MassProperties& mass, const Matrix3& R_WB) {
-  const Matrix3 R_WI = R_WB * mass.R_BI;
-  return R_WI * mass.inverse_inertia.cwiseInverse().asDiagonal() * R_WI.transpose();
 }
 
 /// A body with elements in Newton's method: its forces at the middle of the step, linear in the velocity at its end.
 struct ElementBody {
   int body = -1;
-  Matrix3 inertia_W = Matrix3::Identity();
   BodyForces forces;                    ///< at `velocity`
   Vector6 velocity = Vector6::Zero();   ///< guess of the velocity at the end of the step
 };
@@ -247,7 +248,7 @@ double evaluate_body(const WorldModel& model, const WorldInput& input, const Scr
   const BodyWork& b = work.bodies[static_cast<std::size_t>(element.body)];
   const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(element.body)];
   const double dt = model.settings.dt;
-  const BodyForces now = evaluate_elements(model, input, work, island, element.body, element.inertia_W);
+  const BodyForces now = evaluate_elements(model, input, work, island, element.body);
   Vector6 velocity;
   velocity << b.velocity, b.angular;
   const Vector6 predicted =
@@ -266,7 +267,7 @@ void linearize_body(const WorldModel& model, const WorldInput& input, Scratch& w
   const double dt = model.settings.dt;
   Matrix6 M = Matrix6::Zero();
   M.diagonal().head<3>().setConstant(mass);
-  M.bottomRightCorner<3, 3>() = element.inertia_W;
+  M.bottomRightCorner<3, 3>() = element.forces.inertia_W;
   // Its symmetric part is what the contact solver needs; the exact wrench comes by iteration.
   const Matrix6 C = resistance(element.forces, dt);
   Matrix6 effective = M + 0.5 * dt * (C + C.transpose());
@@ -298,8 +299,7 @@ struct ElementBodies {
   std::array<ElementBody, kMaxElementBodies> items;
 };
 
-void find_element_bodies(const WorldModel& model, const WorldInput& input, const Scratch& work, const Island& island,
-                         ElementBodies& found) {
+void find_element_bodies(const WorldInput& input, const Scratch& work, const Island& island, ElementBodies& found) {
   for (int i = island.first_element; i < island.end_element; ++i) {
     const int body =
         input.elements[static_cast<std::size_t>(work.element_order[static_cast<std::size_t>(i)])].body.index;
@@ -309,8 +309,6 @@ void find_element_bodies(const WorldModel& model, const WorldInput& input, const
     SNUG_CHECK(found.count < kMaxElementBodies, "more bodies with force elements in one island than expected");
     ElementBody& item = found.items[static_cast<std::size_t>(found.count++)];
     item.body = body;
-    item.inertia_W = inertia_in_world(model.masses[static_cast<std::size_t>(body)],
-                                      work.bodies[static_cast<std::size_t>(body)].R_WB);
   }
 }
 
@@ -354,7 +352,7 @@ void reset_plain_bodies(Scratch& work, const Island& island) {
 void solve_element_island(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work,
                           const Island& island, StepReport& report) {
   ElementBodies bodies;
-  find_element_bodies(model, input, work, island, bodies);
+  find_element_bodies(input, work, island, bodies);
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
   SolveResult result;
@@ -393,7 +391,10 @@ void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work
     const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(index)];
     body.velocity = body.velocity_start + dt * model.gravity;
     body.angular = body.angular_start;
-    work.whitening[static_cast<std::size_t>(i)] = plain_whitening(mass, body.R_WB);
+    // Inertia at the middle of the step: what makes turning under a torque second order.
+    const bool turns = dt * dt * body.angular_start.squaredNorm() > 1e-18;
+    const Matrix3 R_WB_mid = turns ? Matrix3(exp_rotation(0.5 * dt * body.angular_start) * body.R_WB) : body.R_WB;
+    work.whitening[static_cast<std::size_t>(i)] = plain_whitening(mass, R_WB_mid);
     if (body.has_element) {  // first guess of Newton's method
       body.velocity = body.velocity_start;
       continue;
