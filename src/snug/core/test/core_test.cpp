@@ -1,9 +1,8 @@
 // Tests of the core room: error texts, near names, random numbers, hashing.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include <array>
+#include <cmath>
 
 #include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
