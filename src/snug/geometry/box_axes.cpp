@@ -1,4 +1,5 @@
 // BoxAxes: separations along face normals and edge cross products, after Gottschalk's OBB test, with unit axes.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -52,11 +53,13 @@ bool is_worth_normalising(const BoxPair& pair, const Matrix3& abs_R, double best
   constexpr int j2 = next(j1);
   const double c1 = pair.R_AB(i1, j);
   const double c2 = pair.R_AB(i2, j);
+  const double length_squared = c1 * c1 + c2 * c2;
+  if (length_squared <= kParallelSquared) return false;
   const double gap = std::abs(pair.p_AB[i2] * c1 - pair.p_AB[i1] * c2) -
                      ((pair.half_A[i1] * abs_R(i2, j) + pair.half_A[i2] * abs_R(i1, j)) +
                       (pair.half_B[j1] * abs_R(i, j2) + pair.half_B[j2] * abs_R(i, j1)));
   // gap / length > best, without root and division.
-  const double bound = best * best * (c1 * c1 + c2 * c2);
+  const double bound = best * best * length_squared;
   return best < 0.0 ? (gap >= 0.0 || gap * gap < bound) : (gap > 0.0 && gap * gap > bound);
 }
 
@@ -76,6 +79,16 @@ bool find_edge_axis(const BoxPair& pair, const Matrix3& abs_R, double margin, Bo
   constexpr std::integral_constant<int, 2> z;
   return go_on(x, x) && go_on(x, y) && go_on(x, z) && go_on(y, x) && go_on(y, y) && go_on(y, z) && go_on(z, x) &&
          go_on(z, y) && go_on(z, z);
+}
+
+/// When the best face is parallel to a face of the other box, each edge axis is a face axis again. "Parallel" when the
+/// tilt moves no corner by more than a quarter of kBias: then the best face would be chosen whatever the edges say.
+bool edges_repeat_faces(const BoxPair& pair, int best) noexcept {
+  const Vector3 c = best < 3 ? Vector3(pair.R_AB.row(best)) : Vector3(pair.R_AB.col(best - 3));
+  const Vector3 squares = c.cwiseAbs2();
+  const double tilt_squared = std::min({squares[0] + squares[1], squares[1] + squares[2], squares[2] + squares[0]});
+  const double reach_squared = 2.0 * (pair.half_A.squaredNorm() + pair.half_B.squaredNorm());
+  return tilt_squared * reach_squared < 0.0625 * kBias * kBias;
 }
 
 /// Gaps along the six face normals and which face looks at the other box.
@@ -165,7 +178,7 @@ bool find_axes(const BoxPair& pair, double margin, BoxAxes& out) noexcept {
   const double sum = (out.face[0] + out.face[1] + out.face[2]) + (out.face[3] + out.face[4] + out.face[5]);
   if (!(out.best_face.separation <= margin) || std::isnan(sum)) return false;
   out.best_face.n_A = face_normal(pair, out, static_cast<int>(best));
-  if (find_edge_axis(pair, abs_R, margin, out)) return true;
+  if (edges_repeat_faces(pair, static_cast<int>(best)) || find_edge_axis(pair, abs_R, margin, out)) return true;
   out.best_face = out.best_edge;
   return false;
 }

@@ -78,8 +78,10 @@ class Collector {
   }
 
   void collect() {
+    place_incident_corners();
+    if ((beyond_[0] & beyond_[1] & beyond_[2] & beyond_[3]) != 0) return;  // beside each other
     add_incident_corners();
-    if (inside_ == 15U) return;  // nothing sticks out, so nothing is cut
+    if ((beyond_[0] | beyond_[1] | beyond_[2] | beyond_[3]) == 0) return;  // nothing sticks out
     invert();
     add_reference_corners();
     for (int side = 0; side < 4; ++side) add_crossings(side);
@@ -101,18 +103,23 @@ class Collector {
     double u, v, phi;
   };
 
-  Place incident_corner(int i) const {
-    const double s1 = i == 1 || i == 2 ? 1.0 : -1.0;
-    const double s2 = i >= 2 ? 1.0 : -1.0;
-    return {inc_.cu + s1 * inc_.e1u + s2 * inc_.e2u, inc_.cv + s1 * inc_.e1v + s2 * inc_.e2v,
-            inc_.c_phi + s1 * inc_.e1_phi + s2 * inc_.e2_phi};
+  void place_incident_corners() {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double s1 = i == 1 || i == 2 ? 1.0 : -1.0;
+      const double s2 = i >= 2 ? 1.0 : -1.0;
+      Place& p = corners_[i];
+      p.u = inc_.cu + s1 * inc_.e1u + s2 * inc_.e2u;
+      p.v = inc_.cv + s1 * inc_.e1v + s2 * inc_.e2v;
+      p.phi = inc_.c_phi + s1 * inc_.e1_phi + s2 * inc_.e2_phi;
+      // One bit for each side of the rectangle that the corner is beyond.
+      beyond_[i] = (p.u > hu_ ? 1U : 0U) | (p.v > hv_ ? 2U : 0U) | (p.u < -hu_ ? 4U : 0U) | (p.v < -hv_ ? 8U : 0U);
+    }
   }
 
   void add_incident_corners() {
     for (int i = 0; i < 4; ++i) {
-      const Place p = incident_corner(i);
-      if (!(std::abs(p.u) <= hu_ && std::abs(p.v) <= hv_)) continue;
-      inside_ |= 1U << i;
+      if (beyond_[static_cast<std::size_t>(i)] != 0) continue;
+      const Place& p = corners_[static_cast<std::size_t>(i)];
       add(p, near_reference(p), incident_vertex(i), 0, 0);
     }
   }
@@ -131,10 +138,10 @@ class Collector {
 
   /// Where side `side` of the incident face enters and leaves the rectangle.
   void add_crossings(int side) {
-    const bool starts_inside = (inside_ >> side & 1U) != 0;
-    const bool ends_inside = (inside_ >> ((side + 1) & 3) & 1U) != 0;
-    if (starts_inside && ends_inside) return;
-    const Place from = incident_corner(side);
+    const unsigned start_beyond = beyond_[static_cast<std::size_t>(side)];
+    const unsigned end_beyond = beyond_[static_cast<std::size_t>((side + 1) & 3)];
+    if ((start_beyond | end_beyond) == 0 || (start_beyond & end_beyond) != 0) return;
+    const Place& from = corners_[static_cast<std::size_t>(side)];
     const double along = side < 2 ? 2.0 : -2.0;
     const bool first = (side & 1) == 0;
     const double du = along * (first ? inc_.e1u : inc_.e2u);
@@ -148,10 +155,10 @@ class Collector {
     if (!cut(from.v, dv, per_along * per_v_[static_cast<std::size_t>(side & 1)], hv_, 1, enter, enters_by, leave, leaves_by)) return;
     if (enter > leave) return;
     const double d_phi = along * (first ? inc_.e1_phi : inc_.e2_phi);
-    if (!starts_inside && enters_by >= 0) {
+    if (start_beyond != 0 && enters_by >= 0) {
       add_crossing({from.u + enter * du, from.v + enter * dv, from.phi + enter * d_phi}, enter, enters_by, side);
     }
-    if (!ends_inside && leaves_by >= 0) {
+    if (end_beyond != 0 && leaves_by >= 0) {
       add_crossing({from.u + leave * du, from.v + leave * dv, from.phi + leave * d_phi}, leave, leaves_by, side);
     }
   }
@@ -267,7 +274,8 @@ class Collector {
   std::array<double, 2> per_u_{}, per_v_{};           ///< 1 / half side
   int ref_base_ = 0;            ///< vertex bits that all corners of the face share
   int inc_base_ = 0;
-  unsigned inside_ = 0;         ///< incident corners over the reference face
+  std::array<Place, 4> corners_;        ///< of the incident face
+  std::array<unsigned, 4> beyond_{};
   std::uint64_t used_ = 0;      ///< how often each vertex has given its name, two bits each
 };
 

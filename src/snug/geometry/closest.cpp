@@ -2,7 +2,8 @@
 //
 // With A below a plane n.x = a and B above n.x = b, nearest points at distance d have
 // (a - n.p_A) + (n.p_B - b) <= d - (b - a). The left side is the slack of the points; features whose least slack
-// is larger than what the best distance so far allows cannot be nearest.
+// is larger than what the best distance so far allows cannot be nearest. This holds for any direction n, so two are
+// used: the axis that separates most, and the line between the nearest two vertices.
 #include <algorithm>
 #include <limits>
 
@@ -17,21 +18,78 @@ namespace {
 /// Below this distance [m] the difference of the points is too short to give a direction.
 constexpr double kTooShort = 1e-9;
 
+/// Least slacks of the vertices of one shape along two directions.
 struct Slack {
-  std::array<double, kMaxHullVertices> at;
-  double plane;  ///< largest n . p
+  std::array<std::array<double, 2>, kMaxHullVertices> at;
+  std::array<double, 2> plane;  ///< largest n . p
 
-  Slack(const Polytope& shape, const Vector3& n) noexcept : plane(-std::numeric_limits<double>::infinity()) {
+  void fill(const Polytope& shape, const Vector3& n, std::size_t which) noexcept {
+    plane[which] = -std::numeric_limits<double>::infinity();
     for (int v = 0; v < shape.vertex_count(); ++v) {
-      at[static_cast<std::size_t>(v)] = n.dot(shape.vertex(v));
-      plane = std::max(plane, at[static_cast<std::size_t>(v)]);
+      const double reach = n.dot(shape.vertex(v));
+      at[static_cast<std::size_t>(v)][which] = reach;
+      plane[which] = std::max(plane[which], reach);
     }
     for (int v = 0; v < shape.vertex_count(); ++v) {
-      at[static_cast<std::size_t>(v)] = plane - at[static_cast<std::size_t>(v)];
+      double& value = at[static_cast<std::size_t>(v)][which];
+      value = plane[which] - value;
     }
   }
-  double operator[](int v) const noexcept { return at[static_cast<std::size_t>(v)]; }
+  std::array<double, 2> of_edge(const std::array<int, 4>& e) const noexcept {
+    const std::array<double, 2>& p = at[static_cast<std::size_t>(e[0])];
+    const std::array<double, 2>& q = at[static_cast<std::size_t>(e[1])];
+    return {std::min(p[0], q[0]), std::min(p[1], q[1])};
+  }
+  std::array<double, 2> of_face(std::span<const int> loop) const noexcept {
+    std::array<double, 2> least = at[static_cast<std::size_t>(loop[0])];
+    for (const int v : loop) {
+      least[0] = std::min(least[0], at[static_cast<std::size_t>(v)][0]);
+      least[1] = std::min(least[1], at[static_cast<std::size_t>(v)][1]);
+    }
+    return least;
+  }
 };
+
+/// The two slacks and what separates the shapes along the two directions.
+struct Pruning {
+  Slack A;
+  Slack B;
+  std::array<double, 2> separation;
+
+  void fill(const Polytope& shape_A, const Polytope& shape_B, const Vector3& n, std::size_t which) noexcept {
+    A.fill(shape_A, n, which);
+    B.fill(shape_B, -n, which);
+    // Rounding of the slacks must not exclude the nearest features.
+    separation[which] = -B.plane[which] - A.plane[which] - 1e-9;
+  }
+  /// Whether features with these slacks may be nearer than `distance`.
+  [[nodiscard]] bool may_beat(const std::array<double, 2>& a, const std::array<double, 2>& b,
+                              double distance) const noexcept {
+    return a[0] + b[0] + separation[0] <= distance && a[1] + b[1] + separation[1] <= distance;
+  }
+};
+
+constexpr std::array<double, 2> kNone = {0.0, 0.0};
+
+/// The line between the nearest of the vertices that may be nearest at all; `n` when there is none.
+Vector3 line_of_vertices(const Polytope& A, const Polytope& B, const Pruning& pruning, const Vector3& n,
+                         double limit) noexcept {
+  double best = std::numeric_limits<double>::infinity();
+  Vector3 line = n;
+  for (int v = 0; v < A.vertex_count(); ++v) {
+    const double slack_v = pruning.A.at[static_cast<std::size_t>(v)][0] + pruning.separation[0];
+    if (slack_v > limit) continue;
+    for (int w = 0; w < B.vertex_count(); ++w) {
+      if (slack_v + pruning.B.at[static_cast<std::size_t>(w)][0] > limit) continue;
+      const Vector3 difference = B.vertex(w) - A.vertex(v);
+      const double squared = difference.squaredNorm();
+      if (squared >= best || !(squared > kTooShort * kTooShort)) continue;
+      best = squared;
+      line = difference;
+    }
+  }
+  return line.normalized();
+}
 
 /// Height of p over the face when p lies over its inside; negative otherwise.
 double height_over(const Polytope& shape, int face, const Vector3& p) noexcept {
@@ -48,15 +106,18 @@ double height_over(const Polytope& shape, int face, const Vector3& p) noexcept {
   return height;
 }
 
-/// Vertices of `tip` over faces of `base`. `sign` is +1 when base is A.
-void compare_vertices(const Polytope& base, const Slack& slack_base, const Polytope& tip, const Slack& slack_tip,
-                      double separation, bool base_is_A, Closest& out) noexcept {
+/// Vertices of one shape over faces of the other.
+void compare_vertices(const Polytope& A, const Polytope& B, bool base_is_A, const Pruning& pruning,
+                      Closest& out) noexcept {
+  const Polytope& base = base_is_A ? A : B;
+  const Polytope& tip = base_is_A ? B : A;
+  const Slack& slack_base = base_is_A ? pruning.A : pruning.B;
+  const Slack& slack_tip = base_is_A ? pruning.B : pruning.A;
   for (int f = 0; f < base.face_count(); ++f) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const int v : base.face(f)) least = std::min(least, slack_base[v]);
-    if (least + separation > out.distance) continue;
+    const std::array<double, 2> least = slack_base.of_face(base.face(f));
+    if (!pruning.may_beat(least, kNone, out.distance)) continue;
     for (int v = 0; v < tip.vertex_count(); ++v) {
-      if (least + slack_tip[v] + separation > out.distance) continue;
+      if (!pruning.may_beat(least, slack_tip.at[static_cast<std::size_t>(v)], out.distance)) continue;
       const double height = height_over(base, f, tip.vertex(v));
       if (height < 0.0 || height >= out.distance - kDistanceTie) continue;
       const Vector3& m = base.normal(f);
@@ -75,16 +136,16 @@ std::uint32_t name_on_edge(const Polytope& shape, int e, double parameter) noexc
   return edge_code(e);
 }
 
-void compare_edges(const Polytope& A, const Slack& slack_A, const Polytope& B, const Slack& slack_B,
-                   double separation, const Vector3& fallback, Closest& out) noexcept {
+void compare_edges(const Polytope& A, const Polytope& B, const Pruning& pruning, const Vector3& fallback,
+                   Closest& out) noexcept {
   int most_inside = out.code_A != 0 ? 2 : 0;  // a vertex over a face is as good
   for (int i = 0; i < A.edge_count(); ++i) {
     const std::array<int, 4>& a = A.edge(i);
-    const double least_a = std::min(slack_A[a[0]], slack_A[a[1]]);
-    if (least_a + separation > out.distance) continue;
+    const std::array<double, 2> slack_a = pruning.A.of_edge(a);
+    if (!pruning.may_beat(slack_a, kNone, out.distance)) continue;
     for (int j = 0; j < B.edge_count(); ++j) {
       const std::array<int, 4>& b = B.edge(j);
-      if (least_a + std::min(slack_B[b[0]], slack_B[b[1]]) + separation > out.distance) continue;
+      if (!pruning.may_beat(slack_a, pruning.B.of_edge(b), out.distance)) continue;
       const SegmentPair pair = nearest_points(A.vertex(a[0]), A.vertex(a[1]), B.vertex(b[0]), B.vertex(b[1]));
       const Vector3 difference = pair.p_b - pair.p_a;
       const double distance = difference.norm();
@@ -117,15 +178,14 @@ void compare_point(const Polytope& A, const Polytope& point, const Vector3& fall
 }  // namespace
 
 bool find_closest(const Polytope& A, const Polytope& B, const Vector3& n, double limit, Closest& out) noexcept {
-  const Slack slack_A(A, n);
-  const Slack slack_B(B, -n);
-  // Rounding of the slacks must not exclude the nearest features.
-  const double separation = -slack_B.plane - slack_A.plane - 1e-9;
+  Pruning pruning;
+  pruning.fill(A, B, n, 0);
+  pruning.fill(A, B, line_of_vertices(A, B, pruning, n, limit), 1);
   const double start = limit + 2.0 * kTie;
   out.distance = start;
-  compare_vertices(A, slack_A, B, slack_B, separation, true, out);
-  compare_vertices(B, slack_B, A, slack_A, separation, false, out);
-  compare_edges(A, slack_A, B, slack_B, separation, n, out);
+  compare_vertices(A, B, true, pruning, out);
+  compare_vertices(A, B, false, pruning, out);
+  compare_edges(A, B, pruning, n, out);
   if (B.vertex_count() == 1) compare_point(A, B, n, out);
   return out.distance < start && out.distance <= limit;
 }

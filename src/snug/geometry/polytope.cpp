@@ -36,6 +36,7 @@ Polytope::Polytope(const ConvexHull& hull, const Pose& X, PolytopeRoom& room) no
       face_count_(static_cast<int>(hull.faces.size())),
       edge_count_(static_cast<int>(hull.edges.size())) {
   SNUG_CHECK(vertex_count_ >= 4 && vertex_count_ <= kMaxHullVertices && face_count_ <= kMaxHullFaces &&
+                 edge_count_ <= kMaxHullEdges &&
                  hull.normals.size() == hull.faces.size(),
              "a hull that make_convex_hull did not make");
   for (std::size_t v = 0; v < hull.vertices.size(); ++v) room.vertices[v] = X * hull.vertices[v];

@@ -31,15 +31,18 @@ double separation_along(const PolytopePair& pair, const Vector3& n) noexcept {
   return -pair.B.support(-n) - pair.A.support(n);
 }
 
-/// Cross product of two edges, outward from A; false when they are parallel or both slopes of an edge look away.
-bool edge_direction(const PolytopePair& pair, int i, int j, Vector3& n) noexcept {
+Vector3 edge_direction(const Polytope& shape, int e) noexcept {
+  const std::array<int, 4>& edge = shape.edge(e);
+  return (shape.vertex(edge[1]) - shape.vertex(edge[0])).normalized();
+}
+
+/// Cross product of edges i and j, of directions d_a and d_b, outward from A; false when they are parallel or their
+/// arcs of normals do not cross, so that the pair is no face of the Minkowski difference. Kept loose: a pair too many
+/// costs time, one too few costs depth.
+bool cross_edges(const PolytopePair& pair, int i, int j, const Vector3& d_a, const Vector3& d_b, Vector3& n) noexcept {
+  constexpr double kLoose = 1e-9;
   const std::array<int, 4>& a = pair.A.edge(i);
   const std::array<int, 4>& b = pair.B.edge(j);
-  const Vector3 d_a = (pair.A.vertex(a[1]) - pair.A.vertex(a[0])).normalized();
-  const Vector3 d_b = (pair.B.vertex(b[1]) - pair.B.vertex(b[0])).normalized();
-  // The arcs of normals of both edges must cross, else the pair is no face of the Minkowski difference. Kept loose:
-  // a pair too many costs time, one too few costs depth.
-  constexpr double kLoose = 1e-9;
   if (d_b.dot(pair.A.normal(a[2])) * d_b.dot(pair.A.normal(a[3])) > kLoose) return false;
   const bool has_faces = b[2] >= 0;
   if (has_faces && d_a.dot(pair.B.normal(b[2])) * d_a.dot(pair.B.normal(b[3])) > kLoose) return false;
@@ -58,7 +61,8 @@ PolytopeAxis evaluate(const PolytopePair& pair, const Axis& axis) noexcept {
   } else if (axis.kind == AxisKind::FaceB && axis.b < pair.B.face_count()) {
     result.n = -pair.B.normal(axis.b);
   } else if (axis.kind != AxisKind::Edge || axis.a >= pair.A.edge_count() || axis.b >= pair.B.edge_count() ||
-             !edge_direction(pair, axis.a, axis.b, result.n)) {
+             !cross_edges(pair, axis.a, axis.b, edge_direction(pair.A, axis.a), edge_direction(pair.B, axis.b),
+                          result.n)) {
     return result;
   }
   result.axis = axis;
@@ -84,10 +88,13 @@ bool find_face_axes(const PolytopePair& pair, double limit, PolytopeAxes& out) n
 
 bool find_edge_axes(const PolytopePair& pair, double limit, PolytopeAxes& out) noexcept {
   double best = out.best_face.separation;
+  std::array<Vector3, kMaxHullEdges> directions_B;
+  for (int j = 0; j < pair.B.edge_count(); ++j) directions_B[static_cast<std::size_t>(j)] = edge_direction(pair.B, j);
   for (int i = 0; i < pair.A.edge_count(); ++i) {
+    const Vector3 d_a = edge_direction(pair.A, i);
     for (int j = 0; j < pair.B.edge_count(); ++j) {
       Vector3 n;
-      if (!edge_direction(pair, i, j, n)) continue;
+      if (!cross_edges(pair, i, j, d_a, directions_B[static_cast<std::size_t>(j)], n)) continue;
       const double quick = n.dot(pair.B.vertex(pair.B.edge(j)[0]) - pair.A.vertex(pair.A.edge(i)[0]));
       if (!(quick > best)) continue;
       const double separation = separation_along(pair, n);

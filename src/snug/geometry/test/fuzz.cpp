@@ -166,10 +166,11 @@ class Checker {
 FuzzResult run_fuzz(std::uint64_t seed, long long count) {
   FuzzResult result;
   PairCache stale;
+  const PairMaker maker(seed);
   for (long long i = 0; i < count; ++i) {
     const Family family = static_cast<Family>(i % kFamilies);
     Rng rng = Rng(seed + static_cast<std::uint64_t>(i));
-    RandomPair pair = make_random_pair(family, rng);
+    RandomPair pair = maker.make(family, rng);
     Checker(pair, i, result).run();
     if (i / kFamilies % 8 != 0) continue;
     // Every eighth: move a little and come with the memory of the pose before.

@@ -128,10 +128,14 @@ void place_deep(RandomPair& pair, Rng& rng) {
   if (rng.index(3) > 0) pair.X_WB.p += log_uniform(1e-12, 0.1, rng) * random_unit(rng);
 }
 
-void place_capsules(RandomPair& pair, Rng& rng) {
+const ConvexHull& draw(const std::vector<ConvexHull>& stock, Rng& rng) {
+  return stock[static_cast<std::size_t>(rng.index(static_cast<int>(stock.size())))];
+}
+
+void place_capsules(const std::vector<ConvexHull>& stock, RandomPair& pair, Rng& rng) {
   pair.B = Capsule{rng.index(8) == 0 ? 0.0 : log_uniform(1e-3, 0.4, rng), log_uniform(2e-3, 0.1, rng)};
   switch (rng.index(4)) {
-    case 0: pair.A = random_hull(rng); break;
+    case 0: pair.A = draw(stock, rng); break;
     case 1: pair.A = Capsule{log_uniform(1e-3, 0.4, rng), log_uniform(2e-3, 0.1, rng)}; break;
     default: break;
   }
@@ -146,9 +150,9 @@ void place_capsules(RandomPair& pair, Rng& rng) {
   if (rng.index(8) == 0) pair.X_WB.p = pair.X_WA.p + rng.uniform(0.0, 0.05) * random_unit(rng);
 }
 
-void place_hulls(RandomPair& pair, Rng& rng) {
-  pair.A = random_hull(rng);
-  if (rng.index(2) == 0) pair.B = random_hull(rng);
+void place_hulls(const std::vector<ConvexHull>& stock, RandomPair& pair, Rng& rng) {
+  pair.A = draw(stock, rng);
+  if (rng.index(2) == 0) pair.B = draw(stock, rng);
   place_general(pair, rng);
   if (rng.index(3) == 0) {
     pair.X_WB.R = pair.X_WA.R;
@@ -187,7 +191,12 @@ ConvexHull random_hull(Rng& rng) {
   }
 }
 
-RandomPair make_random_pair(Family family, Rng& rng) {
+PairMaker::PairMaker(std::uint64_t seed, int hulls) {
+  Rng rng = Rng(seed).split("hulls");
+  for (int i = 0; i < hulls; ++i) stock_.push_back(random_hull(rng));
+}
+
+RandomPair PairMaker::make(Family family, Rng& rng) const {
   RandomPair pair;
   pair.family = family;
   const double margins[] = {0.0, 1e-3, 5e-3, 2e-2};
@@ -207,8 +216,8 @@ RandomPair make_random_pair(Family family, Rng& rng) {
       break;
     case Family::Diamond: place_diamond(pair, rng); break;
     case Family::Deep: place_deep(pair, rng); break;
-    case Family::Capsules: place_capsules(pair, rng); break;
-    case Family::Hulls: place_hulls(pair, rng); break;
+    case Family::Capsules: place_capsules(stock_, pair, rng); break;
+    case Family::Hulls: place_hulls(stock_, pair, rng); break;
   }
   return pair;
 }

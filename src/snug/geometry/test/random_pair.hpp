@@ -1,6 +1,8 @@
 // RandomPair: pairs of shapes that contact code gets wrong, made at random.
 #pragma once
 
+#include <vector>
+
 #include "snug/core/rng.hpp"
 #include "snug/geometry/manifold.hpp"
 
@@ -27,7 +29,15 @@ struct RandomPair {
   double margin = 0.0;
 };
 
-[[nodiscard]] RandomPair make_random_pair(Family family, Rng& rng);
+/// Draws pairs. Hulls come from a stock, because making one takes longer than colliding it.
+class PairMaker {
+ public:
+  explicit PairMaker(std::uint64_t seed, int hulls = 1000);
+  [[nodiscard]] RandomPair make(Family family, Rng& rng) const;
+
+ private:
+  std::vector<ConvexHull> stock_;
+};
 
 /// Uniform over all rotations.
 [[nodiscard]] Matrix3 random_rotation(Rng& rng);

@@ -198,7 +198,8 @@ Truth find_truth(const Solid& A, const Solid& B, long double limit) {
   }
   // The corner rule of README.md for any axis that could have been chosen: no worse than the best face.
   Real best_face = -kFar;
-  for (std::size_t f = 0; f < faces; ++f) best_face = std::max(best_face, all[f].separation);
+  for (const Point& n : A.face_normals) best_face = std::max(best_face, gap(A, B, n));
+  for (const Point& n : B.face_normals) best_face = std::max(best_face, gap(A, B, Real(-1) * n));
   const Real slack = 1.1e-6L + 1.1e-3L * std::max(Real(0), -best);
   for (std::size_t f = 0; f < faces && radii == 0; ++f) {
     if (std::abs(all[f].separation) > 21.1e-6L) continue;
