@@ -171,8 +171,8 @@ bool find_axes(const BoxPair& pair, double margin, BoxAxes& out) noexcept {
   for (std::size_t k = 1; k < 6; ++k) {
     if (out.face[k] > out.face[best] + kTie) best = k;
   }
-  out.best_face.axis = best < 3 ? Axis{AxisKind::FaceA, out.face_index[best], 0}
-                                : Axis{AxisKind::FaceB, 0, out.face_index[best]};
+  out.best_face.axis =
+      best < 3 ? Axis{AxisKind::FaceA, out.face_index[best], 0} : Axis{AxisKind::FaceB, 0, out.face_index[best]};
   out.best_face.separation = out.face[best];
   // A NaN in any of the six must not pass as a contact; all six enter the sum.
   const double sum = (out.face[0] + out.face[1] + out.face[2]) + (out.face[3] + out.face[4] + out.face[5]);

@@ -40,7 +40,8 @@ bool is_corner_pair(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& cho
   return false;
 }
 
-void clip(const BoxPair& pair, bool ref_is_A, int face, const Vector3& n_A, bool swapped, BoxPolygon& polygon) noexcept {
+void clip(const BoxPair& pair, bool ref_is_A, int face, const Vector3& n_A, bool swapped,
+          BoxPolygon& polygon) noexcept {
   if (ref_is_A) {
     clip_box_face({pair.half_A, pair.half_B, pair.R_AB, pair.p_AB, face, n_A, !swapped}, polygon);
   } else {
@@ -156,9 +157,12 @@ void corner_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& 
 bool contact_along(const BoxPair& pair, const BoxAxis& axis, double separation, const PairCall& call,
                    Manifold& out) noexcept {
   switch (axis.axis.kind) {
-    case AxisKind::None: return false;
-    case AxisKind::Edge: return edge_contact(pair, axis, call, false, out);
-    default: return face_contact(pair, axis, separation, call, out);
+    case AxisKind::None:
+      return false;
+    case AxisKind::Edge:
+      return edge_contact(pair, axis, call, false, out);
+    default:
+      return face_contact(pair, axis, separation, call, out);
   }
 }
 

@@ -151,8 +151,12 @@ class Collector {
     double leave = 1.0;
     int enters_by = -1;
     int leaves_by = -1;
-    if (!cut(from.u, du, per_along * per_u_[static_cast<std::size_t>(side & 1)], hu_, 0, enter, enters_by, leave, leaves_by)) return;
-    if (!cut(from.v, dv, per_along * per_v_[static_cast<std::size_t>(side & 1)], hv_, 1, enter, enters_by, leave, leaves_by)) return;
+    if (!cut(from.u, du, per_along * per_u_[static_cast<std::size_t>(side & 1)], hu_, 0, enter, enters_by, leave,
+             leaves_by))
+      return;
+    if (!cut(from.v, dv, per_along * per_v_[static_cast<std::size_t>(side & 1)], hv_, 1, enter, enters_by, leave,
+             leaves_by))
+      return;
     if (enter > leave) return;
     const double d_phi = along * (first ? inc_.e1_phi : inc_.e2_phi);
     if (start_beyond != 0 && enters_by >= 0) {
@@ -165,8 +169,8 @@ class Collector {
 
   /// Narrows the stretch to |start + t d| <= limit. Sides are 0: u positive, 1: v positive, 2: u negative,
   /// 3: v negative. False when nothing is left.
-  static bool cut(double start, double d, double inverse, double limit, int side, double& enter, int& enters_by, double& leave,
-                  int& leaves_by) {
+  static bool cut(double start, double d, double inverse, double limit, int side, double& enter, int& enters_by,
+                  double& leave, int& leaves_by) {
     if (std::abs(d) <= kOnRim) return std::abs(start) <= limit + kOnRim;
     const bool rising = d > 0.0;
     const double in = ((rising ? -limit : limit) - start) * inverse;
@@ -269,14 +273,14 @@ class Collector {
   BoxPolygon& out_;
   int ax_, au_, av_, k1_, k2_;
   double hu_, hv_;
-  double snap1_, snap2_;        ///< kSnap in units of the incident half sides
+  double snap1_, snap2_;                              ///< kSnap in units of the incident half sides
   double su_ = 0.0, sv_ = 0.0, tu_ = 0.0, tv_ = 0.0;  ///< (u, v) to the parallelogram's own coordinates
   std::array<double, 2> per_u_{}, per_v_{};           ///< 1 / half side
-  int ref_base_ = 0;            ///< vertex bits that all corners of the face share
+  int ref_base_ = 0;                                  ///< vertex bits that all corners of the face share
   int inc_base_ = 0;
-  std::array<Place, 4> corners_;        ///< of the incident face
+  std::array<Place, 4> corners_;  ///< of the incident face
   std::array<unsigned, 4> beyond_{};
-  std::uint64_t used_ = 0;      ///< how often each vertex has given its name, two bits each
+  std::uint64_t used_ = 0;  ///< how often each vertex has given its name, two bits each
 };
 
 }  // namespace

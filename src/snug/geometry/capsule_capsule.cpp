@@ -36,8 +36,7 @@ void collide_capsules(const Capsule& A, const Capsule& B, const PairCall& call, 
   const double phi = distance - A.radius - B.radius;
   if (!(phi <= call.margin)) return;
   // Below 1e-12 m the difference is rounding.
-  const Vector3 n_W =
-      distance > 1e-12 ? Vector3(difference / distance) : direction_where_crossed(axis_A, axis_B);
+  const Vector3 n_W = distance > 1e-12 ? Vector3(difference / distance) : direction_where_crossed(axis_A, axis_B);
   const Vector3 p_WA = call.X_WA.p + nearest.p_a + A.radius * n_W;
   set_normal(call.swapped, n_W, out);
   emit(call.swapped, p_WA, p_WA + phi * n_W, phi, name_on(nearest.s, 2.0 * A.half_length),

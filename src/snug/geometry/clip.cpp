@@ -66,9 +66,7 @@ class Namer {
   }
 
   /// Height over the reference face along n.
-  [[nodiscard]] double height(const Vector3& p) const {
-    return m_.dot(p - task_.ref.vertex(ref_loop_[0])) * inverse_;
-  }
+  [[nodiscard]] double height(const Vector3& p) const { return m_.dot(p - task_.ref.vertex(ref_loop_[0])) * inverse_; }
 
   void add(const Corner& corner, int before, ClipPolygon& out) const {
     ClipPoint point;
@@ -88,7 +86,8 @@ class Namer {
     out.least_phi = out.count == 0 ? point.phi : std::min(out.least_phi, point.phi);
     if (joins(point, out)) return;
     point.code_inc = inc_code;
-    point.code_ref = side < 0 ? face_code(task_.face) : edge_code(find_edge(task_.ref, at(ref_loop_, side), ref_next(side)));
+    point.code_ref =
+        side < 0 ? face_code(task_.face) : edge_code(find_edge(task_.ref, at(ref_loop_, side), ref_next(side)));
     out.points[static_cast<std::size_t>(out.count++)] = point;
   }
 
@@ -123,14 +122,14 @@ class Namer {
 
   void name(int before, int after, ClipPoint& point, const ClipPolygon& done) const {
     const bool ref_first = task_.name_ref_first;
-    const int first = ref_first ? vertex_near(task_.ref, ref_loop_, point.p_ref)
-                                : vertex_near(task_.inc, inc_loop_, point.p_ref);
+    const int first =
+        ref_first ? vertex_near(task_.ref, ref_loop_, point.p_ref) : vertex_near(task_.inc, inc_loop_, point.p_ref);
     if (first >= 0) {
       set_vertex(ref_first, first, point);
       if (is_new(point, done)) return;
     } else {
-      const int second = ref_first ? vertex_near(task_.inc, inc_loop_, point.p_ref)
-                                   : vertex_near(task_.ref, ref_loop_, point.p_ref);
+      const int second =
+          ref_first ? vertex_near(task_.inc, inc_loop_, point.p_ref) : vertex_near(task_.ref, ref_loop_, point.p_ref);
       if (second >= 0) {
         set_vertex(!ref_first, second, point);
         if (is_new(point, done)) return;

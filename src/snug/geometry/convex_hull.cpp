@@ -48,8 +48,8 @@ double size_of(std::span<const Vector3> points) {
 std::vector<Vector3> distinct(std::span<const Vector3> points, double tolerance) {
   std::vector<Vector3> result;
   for (const Vector3& p : points) {
-    const bool is_new = std::none_of(result.begin(), result.end(),
-                                     [&](const Vector3& q) { return (p - q).norm() <= tolerance; });
+    const bool is_new =
+        std::none_of(result.begin(), result.end(), [&](const Vector3& q) { return (p - q).norm() <= tolerance; });
     if (is_new) result.push_back(p);
   }
   return result;
@@ -141,14 +141,15 @@ std::vector<int> group_flat(const std::vector<Vector3>& p, const std::vector<Tri
     // The larger triangle knows its plane better.
     const Triangle& plane = one.area >= other.area ? one : other;
     const Triangle& guest = one.area >= other.area ? other : one;
-    const bool flat = std::all_of(guest.v.begin(), guest.v.end(),
-                                  [&](int v) { return std::abs(height(p, plane, v)) <= tolerance; });
+    const bool flat =
+        std::all_of(guest.v.begin(), guest.v.end(), [&](int v) { return std::abs(height(p, plane, v)) <= tolerance; });
     if (flat && plane.n.dot(guest.n) > 0.0) {
       parent[static_cast<std::size_t>(find_root(parent, t))] = find_root(parent, twin->second);
     }
   }
   std::vector<int> group(triangles.size());
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) group[static_cast<std::size_t>(t)] = find_root(parent, t);
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
+    group[static_cast<std::size_t>(t)] = find_root(parent, t);
   return group;
 }
 

@@ -21,8 +21,8 @@ enum class NoHull {
 };
 
 /// Convex hull of points in the shape's frame [m]. Points closer to each other, faces closer to one plane and corners
-/// closer to a straight line than 1e-7 of the cloud's size are merged, so a cloud of a box gives 8 vertices and 6 faces.
-/// Order of the result depends on the order of the points only.
+/// closer to a straight line than 1e-7 of the cloud's size are merged, so a cloud of a box gives 8 vertices and 6
+/// faces. Order of the result depends on the order of the points only.
 [[nodiscard]] Expected<ConvexHull, NoHull> make_convex_hull(std::span<const Vector3> points);
 
 }  // namespace snug::geometry

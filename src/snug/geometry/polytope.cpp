@@ -21,8 +21,8 @@ Polytope::Polytope(const Box& box, const Pose& X, PolytopeRoom& room) noexcept
   const Vector3 y = X.R.col(1) * box.half[1];
   const Vector3 z = X.R.col(2) * box.half[2];
   for (std::size_t v = 0; v < 8; ++v) {
-    room.vertices[v] = X.p + ((v & 1U) != 0 ? 1.0 : -1.0) * x + ((v & 2U) != 0 ? 1.0 : -1.0) * y +
-                       ((v & 4U) != 0 ? 1.0 : -1.0) * z;
+    room.vertices[v] =
+        X.p + ((v & 1U) != 0 ? 1.0 : -1.0) * x + ((v & 2U) != 0 ? 1.0 : -1.0) * y + ((v & 4U) != 0 ? 1.0 : -1.0) * z;
   }
   for (std::size_t f = 0; f < 6; ++f) {
     room.normals[f] = ((f & 1U) != 0 ? 1.0 : -1.0) * X.R.col(static_cast<Eigen::Index>(f / 2));
@@ -36,8 +36,7 @@ Polytope::Polytope(const ConvexHull& hull, const Pose& X, PolytopeRoom& room) no
       face_count_(static_cast<int>(hull.faces.size())),
       edge_count_(static_cast<int>(hull.edges.size())) {
   SNUG_CHECK(vertex_count_ >= 4 && vertex_count_ <= kMaxHullVertices && face_count_ <= kMaxHullFaces &&
-                 edge_count_ <= kMaxHullEdges &&
-                 hull.normals.size() == hull.faces.size(),
+                 edge_count_ <= kMaxHullEdges && hull.normals.size() == hull.faces.size(),
              "a hull that make_convex_hull did not make");
   for (std::size_t v = 0; v < hull.vertices.size(); ++v) room.vertices[v] = X * hull.vertices[v];
   for (std::size_t f = 0; f < hull.normals.size(); ++f) room.normals[f] = X.R * hull.normals[f];

@@ -164,8 +164,8 @@ void emit_point(const PolytopePair& pair, const PairCall& call, const Vector3& n
   emit(call.swapped, p_WA, p_WA + phi * n_W, phi, code_A, code_B, out);
 }
 
-void emit_polygon(const PolytopePair& pair, const PairCall& call, const Vector3& n, bool ref_is_A,
-                  ClipPolygon& polygon, Manifold& out) noexcept {
+void emit_polygon(const PolytopePair& pair, const PairCall& call, const Vector3& n, bool ref_is_A, ClipPolygon& polygon,
+                  Manifold& out) noexcept {
   // A capsule's segment has two points at most; a hull has no radius.
   if (!pair.B.is_segment()) reduce(call.margin, polygon);
   for (int i = 0; i < polygon.count; ++i) {
@@ -217,8 +217,8 @@ bool edge_contact(const PolytopePair& pair, const PolytopeAxis& chosen, const Pa
       crossing_points(pair.A.vertex(a[0]), pair.A.vertex(a[1]), pair.B.vertex(b[0]), pair.B.vertex(b[1]), offset);
   if ((crossing.p_b - crossing.p_a - offset).norm() > kMiss && !forced) return false;
   if (near_face_contact(pair, chosen.n, chosen.separation, call, out)) return true;
-  emit_point(pair, call, chosen.n, crossing.p_a, chosen.separation, edge_code(chosen.axis.a),
-             edge_code(chosen.axis.b), out);
+  emit_point(pair, call, chosen.n, crossing.p_a, chosen.separation, edge_code(chosen.axis.a), edge_code(chosen.axis.b),
+             out);
   return true;
 }
 
@@ -247,9 +247,12 @@ void vertex_contact(const PolytopePair& pair, const PolytopeAxis& chosen, const 
 bool contact_along(const PolytopePair& pair, const PolytopeAxis& axis, double separation, const PairCall& call,
                    Manifold& out) noexcept {
   switch (axis.axis.kind) {
-    case AxisKind::None: return false;
-    case AxisKind::Edge: return edge_contact(pair, axis, call, false, out);
-    default: return face_contact(pair, axis, separation, call, out);
+    case AxisKind::None:
+      return false;
+    case AxisKind::Edge:
+      return edge_contact(pair, axis, call, false, out);
+    default:
+      return face_contact(pair, axis, separation, call, out);
   }
 }
 

@@ -24,10 +24,10 @@ struct Capsule {
 
 /// Closed convex polyhedron. Built by make_convex_hull, which fills the derived parts.
 struct ConvexHull {
-  std::vector<Vector3> vertices;             ///< m
-  std::vector<std::vector<int>> faces;       ///< vertex loops, counter-clockwise from outside
-  std::vector<Vector3> normals;              ///< outward unit normal of each face
-  std::vector<std::array<int, 4>> edges;     ///< vertex, vertex, face, face; each edge once
+  std::vector<Vector3> vertices;          ///< m
+  std::vector<std::vector<int>> faces;    ///< vertex loops, counter-clockwise from outside
+  std::vector<Vector3> normals;           ///< outward unit normal of each face
+  std::vector<std::array<int, 4>> edges;  ///< vertex, vertex, face, face; each edge once
   bool operator==(const ConvexHull&) const = default;
 };
 

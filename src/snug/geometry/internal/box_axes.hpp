@@ -19,16 +19,16 @@ struct BoxPair {
 /// One axis with its direction.
 struct BoxAxis {
   Axis axis;
-  double separation = 0.0;          ///< m
-  Vector3 n_A = Vector3::UnitZ();   ///< unit, from A to B, in A
+  double separation = 0.0;         ///< m
+  Vector3 n_A = Vector3::UnitZ();  ///< unit, from A to B, in A
 };
 
 /// What the fifteen axes say.
 struct BoxAxes {
-  std::array<double, 6> face{};            ///< separation along the faces of A (0-2) and B (3-5), m
-  std::array<int, 6> face_index{};         ///< the face of that axis which looks at the other box
+  std::array<double, 6> face{};     ///< separation along the faces of A (0-2) and B (3-5), m
+  std::array<int, 6> face_index{};  ///< the face of that axis which looks at the other box
   BoxAxis best_face;
-  BoxAxis best_edge;                       ///< kind None when no edge axis separates by more than the best face
+  BoxAxis best_edge;  ///< kind None when no edge axis separates by more than the best face
 };
 
 /// Separation along one remembered axis; -infinity when the axis means nothing for the pair.

@@ -11,16 +11,16 @@ namespace snug::geometry::internal {
 struct BoxFacePair {
   Vector3 half_ref;
   Vector3 half_inc;
-  Matrix3 R_RI;        ///< incident box in the reference frame
+  Matrix3 R_RI;  ///< incident box in the reference frame
   Vector3 p_RI;
-  int face = 0;        ///< of the reference box
-  Vector3 n_R;         ///< direction of projection, unit, out of the face
+  int face = 0;                ///< of the reference box
+  Vector3 n_R;                 ///< direction of projection, unit, out of the face
   bool name_ref_first = true;  ///< corners of the reference box win when corners of both boxes coincide
 };
 
 /// One corner of the clipped polygon: p_R on the reference face, p_R + phi n_R on the incident face.
 struct BoxClipPoint {
-  double u = 0.0;    ///< coordinates on the reference face along the next two axes, m
+  double u = 0.0;  ///< coordinates on the reference face along the next two axes, m
   double v = 0.0;
   double phi = 0.0;  ///< m, along n_R
   std::uint32_t code_ref = 0;

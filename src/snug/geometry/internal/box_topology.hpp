@@ -24,9 +24,9 @@ inline constexpr std::array<std::array<int, 4>, 6> kBoxFaces = [] {
   std::array<std::array<int, 4>, 6> faces{};
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool positive : {false, true}) {
-      const std::array<int, 4> loop = {
-          box_vertex(axis, positive, false, false), box_vertex(axis, positive, true, false),
-          box_vertex(axis, positive, true, true), box_vertex(axis, positive, false, true)};
+      const std::array<int, 4> loop = {box_vertex(axis, positive, false, false),
+                                       box_vertex(axis, positive, true, false), box_vertex(axis, positive, true, true),
+                                       box_vertex(axis, positive, false, true)};
       for (std::size_t i = 0; i < 4; ++i) {
         faces[static_cast<std::size_t>(box_face(axis, positive))][i] = positive ? loop[i] : loop[3 - i];
       }
@@ -41,9 +41,9 @@ inline constexpr std::array<std::array<int, 4>, 12> kBoxEdges = [] {
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool n : {false, true}) {
       for (const bool a : {false, true}) {
-        edges[static_cast<std::size_t>(box_edge(axis, n, a))] = {
-            box_vertex(axis, false, n, a), box_vertex(axis, true, n, a), box_face(next(axis), n),
-            box_face(next(next(axis)), a)};
+        edges[static_cast<std::size_t>(box_edge(axis, n, a))] = {box_vertex(axis, false, n, a),
+                                                                 box_vertex(axis, true, n, a), box_face(next(axis), n),
+                                                                 box_face(next(next(axis)), a)};
       }
     }
   }

@@ -24,10 +24,10 @@ struct ClipPolygon {
 /// What is projected on what.
 struct ClipTask {
   const Polytope& ref;
-  int face;                     ///< of ref
-  const Polytope& inc;          ///< its face most against n is taken, or the segment it is
-  Vector3 n;                    ///< unit, out of the face; the direction of projection
-  bool name_ref_first = true;   ///< corners of ref win the name where corners of both coincide
+  int face;                    ///< of ref
+  const Polytope& inc;         ///< its face most against n is taken, or the segment it is
+  Vector3 n;                   ///< unit, out of the face; the direction of projection
+  bool name_ref_first = true;  ///< corners of ref win the name where corners of both coincide
 };
 
 void clip_faces(const ClipTask& task, ClipPolygon& out) noexcept;

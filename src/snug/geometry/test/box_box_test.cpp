@@ -45,9 +45,8 @@ TEST(BoxBox, TurnedOnItsLikeTouchesAtAnOctagonOfTheRightArea) {
   ASSERT_EQ(m.count, 8);
   std::vector<Vector3> corners;
   for (const ManifoldPoint& point : m.points) corners.push_back(point.p_WA);
-  std::sort(corners.begin(), corners.end(), [](const Vector3& a, const Vector3& b) {
-    return std::atan2(a.y(), a.x()) < std::atan2(b.y(), b.x());
-  });
+  std::sort(corners.begin(), corners.end(),
+            [](const Vector3& a, const Vector3& b) { return std::atan2(a.y(), a.x()) < std::atan2(b.y(), b.x()); });
   double area = 0.0;
   for (std::size_t i = 0; i < 8; ++i) {
     const Vector3& p = corners[i];

@@ -68,8 +68,8 @@ TEST(BoxCapsule, AgainstAnEdgeTouchesAtOnePointAlongTheShortestLine) {
 TEST(BoxCapsule, EndAgainstACornerHasTheEuclideanDistance) {
   const Vector3 corner(0.2, 0.2, 0.05);
   const Vector3 out = Vector3(1, 1, 1).normalized();
-  const Manifold m = collide_once(kTable, at(0, 0, 0), Capsule{0.0, 0.02},
-                                  {Matrix3::Identity(), corner + (0.02 + 3e-4) * out}, 1e-3);
+  const Manifold m =
+      collide_once(kTable, at(0, 0, 0), Capsule{0.0, 0.02}, {Matrix3::Identity(), corner + (0.02 + 3e-4) * out}, 1e-3);
   ASSERT_EQ(m.count, 1);
   EXPECT_NEAR(m.points[0].phi, 3e-4, kRounding);
   EXPECT_NEAR((m.n_AB_W - out).norm(), 0.0, 1e-14);
@@ -105,8 +105,8 @@ TEST(HullCapsule, AgreesWithTheBoxThatTheHullIs) {
 }
 
 TEST(CapsuleCapsule, CrossedTouchWhereTheAxesAreNearest) {
-  const Manifold m = collide_once(kCapsule, at(0, 0, 0, kAlongX), kCapsule, at(0.03, 0.02, 0.0401, {kPi / 2, 0, 0}),
-                                  1e-3);
+  const Manifold m =
+      collide_once(kCapsule, at(0, 0, 0, kAlongX), kCapsule, at(0.03, 0.02, 0.0401, {kPi / 2, 0, 0}), 1e-3);
   ASSERT_EQ(m.count, 1);
   EXPECT_NEAR(m.points[0].phi, 1e-4, kRounding);
   EXPECT_NEAR((m.n_AB_W - Vector3::UnitZ()).norm(), 0.0, 1e-13);

@@ -29,8 +29,8 @@ TEST(ConvexHull, OfABoxHasSixFacesWhateverLiesInsideOrOnIt) {
   std::vector<Vector3> points = box_corners({0.3, 0.2, 0.1});
   for (int i = 0; i < 300; ++i) {
     Vector3 p(rng.uniform(-0.3, 0.3), rng.uniform(-0.2, 0.2), rng.uniform(-0.1, 0.1));
-    if (i % 3 == 0) p.z() = 0.1;                            // on a face
-    if (i % 9 == 0) p.y() = -0.2;                           // on an edge
+    if (i % 3 == 0) p.z() = 0.1;   // on a face
+    if (i % 9 == 0) p.y() = -0.2;  // on an edge
     points.push_back(p);
   }
   const auto hull = make_convex_hull(points);

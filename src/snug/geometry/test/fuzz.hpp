@@ -13,14 +13,14 @@ namespace snug::geometry::test {
 struct Worst {
   long long pairs = 0;
   long long contacts = 0;
-  long long apart = 0;          ///< contacts with a positive distance
-  long long corners = 0;        ///< dropped by the corner rule
-  double phantom = 0.0;         ///< reported nearer or deeper than the truth, beyond the relative part of the allowance
-  double missed = 0.0;          ///< reported farther or shallower
-  double apart_phantom = 0.0;   ///< the first, only pairs that are apart
-  double normal = 0.0;          ///< |separation along the normal - reported|
-  double surface = 0.0;         ///< distance of a point from the surface it should lie on
-  double symmetry = 0.0;        ///< between both argument orders
+  long long apart = 0;         ///< contacts with a positive distance
+  long long corners = 0;       ///< dropped by the corner rule
+  double phantom = 0.0;        ///< reported nearer or deeper than the truth, beyond the relative part of the allowance
+  double missed = 0.0;         ///< reported farther or shallower
+  double apart_phantom = 0.0;  ///< the first, only pairs that are apart
+  double normal = 0.0;         ///< |separation along the normal - reported|
+  double surface = 0.0;        ///< distance of a point from the surface it should lie on
+  double symmetry = 0.0;       ///< between both argument orders
 };
 
 struct FuzzResult {

@@ -10,9 +10,7 @@ namespace snug::geometry::test {
 
 namespace {
 
-double log_uniform(double low, double high, Rng& rng) {
-  return std::exp(rng.uniform(std::log(low), std::log(high)));
-}
+double log_uniform(double low, double high, Rng& rng) { return std::exp(rng.uniform(std::log(low), std::log(high))); }
 
 Vector3 random_unit(Rng& rng) { return Vector3(rng.normal(), rng.normal(), rng.normal()).normalized(); }
 
@@ -24,12 +22,18 @@ Vector3 sizes(double low, double high, Rng& rng) {
 double random_gap(double margin, Rng& rng) {
   const double sign = rng.index(2) == 0 ? 1.0 : -1.0;
   switch (rng.index(6)) {
-    case 0: return 0.0;
-    case 1: return sign * log_uniform(1e-17, 1e-9, rng);
-    case 2: return sign * log_uniform(1e-9, 1e-4, rng);
-    case 3: return margin + sign * log_uniform(1e-12, 1e-4, rng);
-    case 4: return rng.uniform(-0.02, 0.01);
-    default: return margin * rng.uniform(0.0, 1.1);
+    case 0:
+      return 0.0;
+    case 1:
+      return sign * log_uniform(1e-17, 1e-9, rng);
+    case 2:
+      return sign * log_uniform(1e-9, 1e-4, rng);
+    case 3:
+      return margin + sign * log_uniform(1e-12, 1e-4, rng);
+    case 4:
+      return rng.uniform(-0.02, 0.01);
+    default:
+      return margin * rng.uniform(0.0, 1.1);
   }
 }
 
@@ -44,8 +48,7 @@ double reach(const Shape& shape, const Matrix3& R, const Vector3& n_W) {
 
 /// Moves B along n until the support planes square to n are `gap` apart.
 void set_gap(const Vector3& n, double gap, RandomPair& pair) {
-  const double now = n.dot(pair.X_WB.p - pair.X_WA.p) - reach(pair.A, pair.X_WA.R, n) -
-                     reach(pair.B, pair.X_WB.R, -n);
+  const double now = n.dot(pair.X_WB.p - pair.X_WA.p) - reach(pair.A, pair.X_WA.R, n) - reach(pair.B, pair.X_WB.R, -n);
   pair.X_WB.p += (gap - now) * n;
 }
 
@@ -55,14 +58,17 @@ Vector3 interesting_direction(const RandomPair& pair, Rng& rng) {
   const int i = rng.index(3);
   const int j = rng.index(3);
   switch (rng.index(4)) {
-    case 0: return sign * pair.X_WA.R.col(i);
-    case 1: return sign * pair.X_WB.R.col(j);
+    case 0:
+      return sign * pair.X_WA.R.col(i);
+    case 1:
+      return sign * pair.X_WB.R.col(j);
     case 2: {
       const Vector3 cross = pair.X_WA.R.col(i).cross(pair.X_WB.R.col(j));
       if (cross.norm() > 1e-3) return sign * cross.normalized();
       return sign * pair.X_WA.R.col(i);
     }
-    default: return random_unit(rng);
+    default:
+      return random_unit(rng);
   }
 }
 
@@ -99,10 +105,17 @@ void place_aligned(RandomPair& pair, Rng& rng) {
     const double touching = (rng.index(2) == 0 ? 1.0 : -1.0) * (A.half[k] + half_B[k]);
     const double flush = (rng.index(2) == 0 ? 1.0 : -1.0) * (A.half[k] - half_B[k]);
     switch (rng.index(4)) {
-      case 0: p_AB[k] = touching + std::copysign(random_gap(pair.margin, rng), touching); break;
-      case 1: p_AB[k] = flush + (rng.index(2) == 0 ? 0.0 : random_gap(0.0, rng)); break;
-      case 2: p_AB[k] = 0.0; break;
-      default: p_AB[k] = rng.uniform(-1.0, 1.0) * (A.half[k] + half_B[k]);
+      case 0:
+        p_AB[k] = touching + std::copysign(random_gap(pair.margin, rng), touching);
+        break;
+      case 1:
+        p_AB[k] = flush + (rng.index(2) == 0 ? 0.0 : random_gap(0.0, rng));
+        break;
+      case 2:
+        p_AB[k] = 0.0;
+        break;
+      default:
+        p_AB[k] = rng.uniform(-1.0, 1.0) * (A.half[k] + half_B[k]);
     }
   }
   pair.X_WB = pair.X_WA * Pose{P, p_AB};
@@ -135,9 +148,14 @@ const ConvexHull& draw(const std::vector<ConvexHull>& stock, Rng& rng) {
 void place_capsules(const std::vector<ConvexHull>& stock, RandomPair& pair, Rng& rng) {
   pair.B = Capsule{rng.index(8) == 0 ? 0.0 : log_uniform(1e-3, 0.4, rng), log_uniform(2e-3, 0.1, rng)};
   switch (rng.index(4)) {
-    case 0: pair.A = draw(stock, rng); break;
-    case 1: pair.A = Capsule{log_uniform(1e-3, 0.4, rng), log_uniform(2e-3, 0.1, rng)}; break;
-    default: break;
+    case 0:
+      pair.A = draw(stock, rng);
+      break;
+    case 1:
+      pair.A = Capsule{log_uniform(1e-3, 0.4, rng), log_uniform(2e-3, 0.1, rng)};
+      break;
+    default:
+      break;
   }
   place_general(pair, rng);
   if (rng.index(2) == 0) {
@@ -208,16 +226,28 @@ RandomPair PairMaker::make(Family family, Rng& rng) const {
   if (rng.index(2) == 0) pair.X_WA.p = rng.uniform(0.0, 1.0) * random_unit(rng);
   switch (family) {
     case Family::General:
-    case Family::Sliver: place_general(pair, rng); break;
-    case Family::Aligned: place_aligned(pair, rng); break;
+    case Family::Sliver:
+      place_general(pair, rng);
+      break;
+    case Family::Aligned:
+      place_aligned(pair, rng);
+      break;
     case Family::AlmostAligned:
       place_aligned(pair, rng);
       pair.X_WB.R = pair.X_WB.R * turned_by(log_uniform(1e-12, 1e-3, rng), rng);
       break;
-    case Family::Diamond: place_diamond(pair, rng); break;
-    case Family::Deep: place_deep(pair, rng); break;
-    case Family::Capsules: place_capsules(stock_, pair, rng); break;
-    case Family::Hulls: place_hulls(stock_, pair, rng); break;
+    case Family::Diamond:
+      place_diamond(pair, rng);
+      break;
+    case Family::Deep:
+      place_deep(pair, rng);
+      break;
+    case Family::Capsules:
+      place_capsules(stock_, pair, rng);
+      break;
+    case Family::Hulls:
+      place_hulls(stock_, pair, rng);
+      break;
   }
   return pair;
 }

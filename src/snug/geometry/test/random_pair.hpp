@@ -9,14 +9,14 @@
 namespace snug::geometry::test {
 
 enum class Family {
-  General,       ///< any size, any rotation, near touching
-  Aligned,       ///< parallel faces, equal sizes, flush sides, shared edges
-  AlmostAligned, ///< the same, turned by 1e-3 .. 1e-12
-  Sliver,        ///< edges 1000 : 1
-  Diamond,       ///< turned by 45 or 90 degrees about edges, and almost
-  Deep,          ///< coincident, contained, far inside
-  Capsules,      ///< capsule against box, hull and capsule
-  Hulls          ///< hull against hull and box
+  General,        ///< any size, any rotation, near touching
+  Aligned,        ///< parallel faces, equal sizes, flush sides, shared edges
+  AlmostAligned,  ///< the same, turned by 1e-3 .. 1e-12
+  Sliver,         ///< edges 1000 : 1
+  Diamond,        ///< turned by 45 or 90 degrees about edges, and almost
+  Deep,           ///< coincident, contained, far inside
+  Capsules,       ///< capsule against box, hull and capsule
+  Hulls           ///< hull against hull and box
 };
 inline constexpr int kFamilies = 8;
 

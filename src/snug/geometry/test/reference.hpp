@@ -17,10 +17,10 @@ struct Point {
 /// A shape in the world as points, planes and lines, with a radius around it.
 struct Solid {
   std::vector<Point> vertices;
-  std::vector<Point> face_normals;               ///< outward, unit
-  std::vector<std::vector<int>> faces;           ///< counter-clockwise
+  std::vector<Point> face_normals;      ///< outward, unit
+  std::vector<std::vector<int>> faces;  ///< counter-clockwise
   std::vector<std::array<int, 2>> edges;
-  std::vector<Point> edge_directions;            ///< unit; parallel ones once
+  std::vector<Point> edge_directions;  ///< unit; parallel ones once
   long double radius = 0;
 };
 

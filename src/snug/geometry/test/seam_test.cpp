@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "snug/core/rng.hpp"
 #include "scene.hpp"
+#include "snug/core/rng.hpp"
 
 namespace snug::geometry {
 namespace {
@@ -13,7 +13,7 @@ using test::at;
 using test::collide_once;
 
 constexpr double kMargin = 2e-3;
-const Box kTile{{0.1, 0.3, 0.02}};   // tiles lie side by side in x, tops at z = 0
+const Box kTile{{0.1, 0.3, 0.02}};  // tiles lie side by side in x, tops at z = 0
 const Box kSlider{{0.05, 0.04, 0.03}};
 
 struct Support {
