@@ -19,6 +19,8 @@ SOUND = {
     "src/snug/high/high.hpp": '#include "snug/middle/middle.hpp"\n#include "snug/low/low.hpp"\n',
     "apps/tool/main.cpp": '#include "beside.hpp"\n#include "snug/high/high.hpp"\n',
     "apps/tool/beside.hpp": "// Beside.\n",
+    "bench/peers/main.cpp": '#include "peers/engine.hpp"\n',
+    "bench/peers/engine.hpp": "// Engine.\n",
 }
 
 
@@ -40,7 +42,7 @@ class CheckRooms(unittest.TestCase):
 
     def test_accepts_declared_and_transitive_includes(self):
         status, output = self.run_on({})
-        self.assertEqual((status, output), (0, "8 includes follow the declared rooms\n"))
+        self.assertEqual((status, output), (0, "9 includes follow the declared rooms\n"))
 
     def test_refuses_an_undeclared_room(self):
         self.assert_refused({"src/snug/low/low.cpp": '// Low.\n\n#include "snug/high/high.hpp"\n'},
@@ -69,6 +71,9 @@ class CheckRooms(unittest.TestCase):
 
     def test_refuses_relative_ways_into_another_room(self):
         self.assert_refused({"src/snug/low/low.cpp": '#include "../high/high.hpp"\n'}, "low.cpp:1:", "leaves room")
+
+    def test_refuses_headers_outside_rooms_that_do_not_exist(self):
+        self.assert_refused({"bench/peers/main.cpp": '#include "peers/gone.hpp"\n'}, "main.cpp:1:", "gone.hpp")
 
     def test_refuses_headers_that_do_not_exist(self):
         self.assert_refused({"src/snug/high/high.cpp": '#include "snug/low/gone.hpp"\n'}, "high.cpp:1:", "no such file")

@@ -3,7 +3,7 @@
 
 A file under src/snug/<room> may include its own room, the rooms its snug_room(... DEPENDS ...) names and what those may use;
 headers under internal/ only from the same room. Files under apps, tests, bench and examples may include any room's public
-headers. Room tests (src/snug/<room>/test) follow the rule of their room. Prints `file:line: what is wrong` and exits with 1.
+headers and their own, from the folder they are in up to the top one. Room tests (src/snug/<room>/test) follow the rule of their room. Prints `file:line: what is wrong` and exits with 1.
 """
 import re
 import sys
@@ -65,7 +65,8 @@ def check_include(path, number, quote, target, room, rooms, allowed, source, pro
     parts = Path(target).parts
     if parts[:1] != ("snug",):
         beside = path.parent / target
-        if quote == '"' and not beside.exists():
+        bases = [path.parent] if room else [path.parent, *path.parents[: path.parents.index(source.parent.parent)]]
+        if quote == '"' and not any((base / target).exists() for base in bases):
             report(f'"{target}": includes start at src/ ("snug/room/file.hpp") or name a file beside this one')
         elif quote == '"' and room and (source / room) not in beside.resolve().parents:
             report(f'"{target}": leaves room \'{room}\' by a relative path')
