@@ -81,6 +81,8 @@ bool face_contact(const BoxPair& pair, const BoxAxis& chosen, double separation,
   BoxPolygon polygon;
   clip(pair, ref_is_A, face, chosen.n_A, call.swapped, polygon);
   if (polygon.count == 0 || polygon.least_phi > separation + allowance(separation)) return false;
+  // The allowance must not carry a contact over the margin.
+  if (separation > 0.0 && polygon.least_phi > call.margin) return false;
   emit_polygon(call, polygon, ref_is_A, face, ref_is_A ? pair.half_A : pair.half_B, chosen.n_A, out);
   return true;
 }

@@ -187,7 +187,11 @@ bool face_contact(const PolytopePair& pair, const PolytopeAxis& chosen, double s
   } else {
     clip_faces({pair.B, chosen.axis.b, pair.A, -chosen.n, call.swapped}, polygon);
   }
-  if (polygon.count == 0 || polygon.least_phi > separation + allowance(separation)) return false;
+  // A tilted capsule apart from a rim: its wall would come nearer along the face normal than it truly is.
+  const double slack = pair.radius > 0.0 && separation > 0.0 ? kMiss : allowance(separation);
+  if (polygon.count == 0 || polygon.least_phi > separation + slack) return false;
+  // The allowance must not carry a contact over the margin.
+  if (separation > 0.0 && polygon.least_phi > call.margin + pair.radius) return false;
   emit_polygon(pair, call, chosen.n, ref_is_A, polygon, out);
   return true;
 }
