@@ -3,7 +3,8 @@
 
 A file under src/snug/<room> may include its own room, the rooms its snug_room(... DEPENDS ...) names and what those may use;
 headers under internal/ only from the same room. Files under apps, tests, bench and examples may include any room's public
-headers and their own, from the folder they are in up to the top one. Room tests (src/snug/<room>/test) follow the rule of their room. Prints `file:line: what is wrong` and exits with 1.
+headers and their own, from the folder they are in up to the top one. Room tests (src/snug/<room>/test) follow the rule of
+their room. Prints `file:line: what is wrong` and exits with 1.
 """
 import re
 import sys
