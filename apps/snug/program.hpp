@@ -11,7 +11,7 @@ namespace snug::app {
 struct ProgramOptions {
   std::string scenario;
   std::string placements;
-  std::optional<std::string> sequence;  ///< absent: the one that the placements file names
+  std::optional<std::string> sequence;  ///< required: how each box stands at the aligner
   std::optional<std::string> output;    ///< absent: stdout
 };
 

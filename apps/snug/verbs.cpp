@@ -2,12 +2,14 @@
 #include "verbs.hpp"
 
 #include "cup.hpp"
+#include "program.hpp"
 #include "simulate.hpp"
 
 namespace snug::app {
 
 void add_verbs(CLI::App& app, Action& action) {
   add_simulate(app, action);
+  add_program(app, action);
   add_cup(app, action);
 }
 

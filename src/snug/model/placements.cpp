@@ -1,0 +1,78 @@
+// PlacementList: which box shall rest where in the container, in the order of packing, as a person or planner wrote it.
+#include "snug/model/placements.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include <yaml-cpp/yaml.h>
+
+#include "snug/model/internal/value.hpp"
+
+namespace snug::model {
+namespace {
+
+using internal::Document;
+using internal::MapReader;
+using internal::Value;
+
+// A quaternion written with four digits is this near to unit length.
+constexpr double kUnitTolerance = 1e-3;
+
+Matrix3 read_rotation(const MapReader& map) {
+  map.forbid_together("yaw_deg", "quat_wxyz");
+  if (const auto yaw = map.find("yaw_deg")) return exp_rotation(Vector3(0.0, 0.0, yaw->radians_from_degrees()));
+  const auto quat = map.find("quat_wxyz");
+  if (!quat) return Matrix3::Identity();
+  Eigen::Vector4d wxyz;
+  const std::vector<Value> numbers = quat->list_of(4, "w, x, y, z");
+  for (std::size_t i = 0; i < 4; ++i) wxyz[static_cast<Eigen::Index>(i)] = numbers[i].number();
+  if (std::abs(wxyz.norm() - 1.0) > kUnitTolerance) quat->fail("a unit quaternion w, x, y, z");
+  return Quaternion(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
+}
+
+std::vector<PlacementEntry> read_list(const Value& root, const Scenario& scenario) {
+  std::vector<std::string> ids;
+  for (const Parcel& parcel : scenario.parcels) ids.push_back(parcel.id);
+  std::set<std::string> placed;
+  std::vector<PlacementEntry> entries;
+  for (const Value& item : root.list()) {
+    const MapReader map = item.map("placement", {"box", "position", "yaw_deg", "quat_wxyz"});
+    const Value box = map.require("box");
+    PlacementEntry entry;
+    entry.parcel = box.name();
+    if (find_parcel(scenario, entry.parcel) == nullptr) {
+      box.fail("a parcel of the scenario" + internal::nearest_hint(entry.parcel, ids));
+    }
+    if (!placed.insert(entry.parcel).second) box.fail("each box at most once");
+    entry.X_TP = {read_rotation(map), map.require("position").position()};
+    const std::string where = box.where();
+    entry.line = std::stoi(where.substr(where.rfind(':') + 1));
+    entries.push_back(std::move(entry));
+  }
+  if (entries.empty()) root.fail("a list of placements, at least one");
+  return entries;
+}
+
+}  // namespace
+
+std::vector<PlacementEntry> load_placements(const std::filesystem::path& path, const Scenario& scenario) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) throw InputError(path.string(), "", "no readable file", "a placements file (YAML)");
+  return parse_placements(text.str(), path.string(), scenario);
+}
+
+std::vector<PlacementEntry> parse_placements(std::string_view text, std::string_view name, const Scenario& scenario) {
+  Document document{std::string(name), {}};
+  try {
+    return read_list(Value(YAML::Load(std::string(text)), "", document, 1), scenario);
+  } catch (const YAML::Exception& error) {
+    throw InputError(document.name + ":" + std::to_string(error.mark.line + 1), "", error.msg,
+                     "YAML that can be parsed");
+  }
+}
+
+}  // namespace snug::model
