@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "run_report.hpp"
+#include "snug/cell/ensemble.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/model/scenario.hpp"
@@ -77,6 +78,16 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
 int run_simulate(const SimulateOptions& options) {
   const model::Scenario scenario = load_with_overrides(options);
   cell::RunOptions run_options = make_run_options(options, scenario);
+  if (options.ensemble) {
+    if (!run_options.program) throw InputError("command line", "--ensemble", "no --program", "a program to run");
+    if (options.record || options.csv) {
+      throw InputError("command line", "--ensemble", "with --record or --csv", "one of them");
+    }
+    const cell::EnsembleResult result =
+        cell::run_ensemble(scenario, run_options, {*options.ensemble, scenario.seed, options.threads, {}});
+    std::fputs((options.json ? format_json(result) : format_table(result)).c_str(), stdout);
+    return kSuccess;
+  }
   std::optional<TemporaryFile> temporary;
   if (options.csv && !options.record) {
     run_options.record_path = *options.csv + ".part.h5";

@@ -10,6 +10,7 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug simulate scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --ensemble 20 --seed 7
   snug simulate scenarios/slide.yaml --until 5 --csv slide.csv)";
 
 void add_program_options(CLI::App& verb, SimulateOptions& options) {
@@ -49,6 +50,14 @@ void add_simulate(CLI::App& app, Action& action) {
   verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
   add_program_options(verb, *options);
   add_physics_options(verb, *options);
+  verb.add_option("--ensemble", options->ensemble,
+                  "run the program N times with aligner, box sizes and friction changed a little at random")
+      ->check(whole(1))
+      ->type_name("N");
+  verb.add_option("--threads", options->threads, "threads of an ensemble; the result does not depend on it")
+      ->check(whole(1))
+      ->type_name("N")
+      ->capture_default_str();
   verb.add_option("-o,--record", options->record, "write a recording")->type_name("FILE.h5");
   verb.add_option("--csv", options->csv, "write one table, a row per recorded instant")->type_name("FILE.csv");
   verb.add_flag("--json", options->json, "print the result as JSON");

@@ -77,14 +77,16 @@ void Journey::add_seal(int item, const GripperEvent& event, double time, const M
         fmt::format("now {} up, was {} up{}", axis_letter(up), axis_letter(box.up_at_seal),
                     up == box.up_intended ? "" : ", not as intended"));
   }
-  log(time, box.seals > 0 ? "repick" : "seal", item,
+  const bool is_repick = box.was_set_down;
+  log(time, is_repick ? "repick" : box.seals > 0 ? "reseal" : "seal", item,
       fmt::format("{}: sealed {:.1f} mm from the middle of the face", waypoint, 1e3 * offset), numbers);
-  if (box.seals > 0) {
+  if (is_repick) {
     repicks_.push_back({ids_[static_cast<std::size_t>(item)], offset, axis_letter(box.up_at_seal), axis_letter(up),
                         axis_letter(box.up_intended)});
   }
   ++box.seals;
   box.was_held = true;
+  box.was_set_down = false;
   box.up_at_seal = up;
   box.R_EP = R_WE.transpose() * R_WP;
 }
@@ -97,6 +99,7 @@ void Journey::add_release(int item, const GripperEvent& event, double time, cons
   if (event.kind == GripperEvent::Kind::HoldLost) {
     log(time, "lost", item, cup::describe(event.loss), {{"bend_deg", degrees(event.angle)}});
   } else {
+    box.was_set_down = true;
     log(time, "release", item, box.over_container ? "over the container" : "outside the container");
   }
 }

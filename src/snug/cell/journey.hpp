@@ -61,6 +61,7 @@ class Journey {
     bool was_removed = false;
     int seals = 0;
     bool was_held = false;
+    bool was_set_down = false;    ///< let go by the program since the last seal
     bool over_container = false;  ///< at the last release
     int up_at_seal = 2;
     int up_intended = 2;          ///< at the last release, from the tool's pose
