@@ -54,6 +54,8 @@ struct MujocoSettings {
 /// The stiffness that gave S1 0.013 mm of penetration and S3 0.025 mm of creep: four steps of time constant.
 inline constexpr MujocoSettings kMujocoStiff{true, 10.0, 0.004, 0.95, 0.99};
 
+/// snug itself, with the solver settings that scenarios have by default.
+[[nodiscard]] std::unique_ptr<Engine> make_snug();
 [[nodiscard]] std::unique_ptr<Engine> make_bullet(const BulletSettings& settings);
 [[nodiscard]] std::unique_ptr<Engine> make_mujoco(const MujocoSettings& settings);
 

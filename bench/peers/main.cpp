@@ -25,6 +25,7 @@ struct Candidate {
 std::vector<Candidate> candidates() {
   using namespace snug::peers;
   return {
+      {"snug", [] { return make_snug(); }},
       {"bullet-si50", [] { return make_bullet({.iterations = 50, .use_two_friction_directions = true}); }},
       {"bullet-si10", [] { return make_bullet({}); }},
       {"mujoco-elliptic-stiff", [] { return make_mujoco(kMujocoStiff); }},

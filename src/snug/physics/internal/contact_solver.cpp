@@ -161,6 +161,9 @@ SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, doubl
     ++result.sweeps;
     result.residual = change;
     if (change > settings.tolerance) continue;
+    // A contact satisfies its law right after its visit; later visits moved it by at most the sum of their changes.
+    result.residual = change * static_cast<double>(end - first);
+    if (result.residual <= settings.tolerance) return result;
     double residual = 0.0;
     for (const Row* row = first; row != end; ++row) residual = std::max(residual, natural_map(*row, u));
     result.residual = residual;
