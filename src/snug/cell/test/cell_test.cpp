@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/ensemble.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/cell/task.hpp"
 #include "snug/core/input_error.hpp"
@@ -82,6 +83,42 @@ TEST(DemoProgram, RefusesUnknownSequencesAndBoxes) {
   } catch (const InputError& error) {
     EXPECT_EQ(error.where, "list.yaml:7");
     EXPECT_EQ(error.key, "box");
+  }
+}
+
+// ---- ensembles
+
+TEST(Ensemble, GivesTheSameRunsWhateverTheNumberOfThreads) {
+  RunOptions options = demo_options();
+  options.until = 12.0;  // past the first pick
+  EnsembleOptions ensemble;
+  ensemble.count = 3;
+  ensemble.seed = 7;
+  const EnsembleResult alone = run_ensemble(demonstrator(), options, ensemble);
+  ensemble.threads = 2;
+  const EnsembleResult shared = run_ensemble(demonstrator(), options, ensemble);
+  ASSERT_EQ(alone.runs.size(), 3U);
+  ASSERT_EQ(shared.runs.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(alone.runs[i].state_hash, shared.runs[i].state_hash);
+  EXPECT_NE(alone.runs[0].state_hash, alone.runs[1].state_hash);
+  ensemble.seed = 8;
+  EXPECT_NE(run_ensemble(demonstrator(), options, ensemble).runs[0].state_hash, alone.runs[0].state_hash);
+}
+
+TEST(Ensemble, ChangesNoMoreThanItSays) {
+  const Perturbation limits;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const model::Scenario changed = perturbed(demonstrator(), limits, Rng(seed));
+    const Pose X_AA = demonstrator().aligner->X_WA.inverse() * changed.aligner->X_WA;
+    // 1e-12: rounding
+    EXPECT_LE(std::abs(X_AA.p.x()), limits.aligner_position + 1e-12);
+    EXPECT_LE(std::abs(X_AA.p.y()), limits.aligner_position + 1e-12);
+    EXPECT_LE(Eigen::AngleAxisd(X_AA.R).angle(), limits.aligner_yaw + 1e-12);
+    ASSERT_EQ(changed.parcels.size(), demonstrator().parcels.size());
+    for (std::size_t i = 0; i < changed.parcels.size(); ++i) {
+      const Vector3 change = changed.parcels[i].size - demonstrator().parcels[i].size;
+      EXPECT_LE(change.cwiseAbs().maxCoeff(), limits.parcel_size + 1e-12);
+    }
   }
 }
 
