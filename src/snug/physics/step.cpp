@@ -9,6 +9,8 @@ namespace snug::physics {
 namespace internal {
 namespace {
 
+constexpr double kFarthest = 1000.0;  ///< m; a body beyond is lost
+
 void start_dynamic(const BodyModel& body, const WorldModel::MassProperties& mass, const BodyState& state,
                    BodyWork& work) {
   work.R_WB = state.quat_WB.toRotationMatrix();
@@ -156,10 +158,11 @@ void end_step(const WorldModel& model, const WorldInput& input, WorldState& stat
     const int index = work.active[static_cast<std::size_t>(i)];
     BodyState& body = state.bodies[static_cast<std::size_t>(index)];
     move_body(model, index, work, body);
+    if (report.culprit.is_valid()) continue;  // the first one is named
     if (!has_finite(body)) {
       report.status = StepStatus::NotFinite;
       report.culprit = BodyId{index};
-    } else if (body.p_WBcm.cwiseAbs().maxCoeff() > 1000.0 && report.status != StepStatus::NotFinite) {
+    } else if (body.p_WBcm.cwiseAbs().maxCoeff() > kFarthest) {
       report.status = StepStatus::LostBody;
       report.culprit = BodyId{index};
     }
