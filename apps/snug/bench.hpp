@@ -10,7 +10,6 @@ namespace snug::app {
 
 struct BenchOptions {
   bool json = false;
-  bool quick = false;               ///< shorter scenes; figures that need the full length are left out
   std::optional<std::string> only;  ///< run the scenes whose figures start with this
 };
 

@@ -9,7 +9,6 @@ void add_bench(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("bench", "measure speed and accuracy, beside their targets");
   const auto options = std::make_shared<BenchOptions>();
   verb.add_flag("--json", options->json, "print the figures as JSON");
-  verb.add_flag("--quick", options->quick, "shorter scenes");
   verb.add_option("--only", options->only, "only figures whose name starts so, such as s3")->type_name("NAME");
   verb.footer("Examples:\n  snug bench\n  snug bench --json --only s1");
   verb.callback([options, &action] { action = [options] { return run_bench(*options); }; });

@@ -1,6 +1,7 @@
 // add_verbs: every verb that this program offers, in the order of --help.
 #include "verbs.hpp"
 
+#include "bench.hpp"
 #include "cup.hpp"
 #include "program.hpp"
 #include "simulate.hpp"
@@ -11,6 +12,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_simulate(app, action);
   add_program(app, action);
   add_cup(app, action);
+  add_bench(app, action);
 }
 
 }  // namespace snug::app

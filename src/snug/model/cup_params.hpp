@@ -32,7 +32,7 @@ struct CupElasticity {
 struct SealParams {
   double reach = 0.008;                              ///< m, largest gap between the free lip and the face
   double max_tilt = 15.0 * std::numbers::pi / 180.0;  ///< rad, between the lip plane and the face
-  double max_overhang = 0.004;                       ///< m, how far the lip may stand over an edge of the face
+  double max_overhang = 0.015;                       ///< m, how far the lip may stand over an edge of the face
 
   template <class Archive>
   void fields(Archive& a) {

@@ -133,6 +133,10 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
     BodyWork& body_work = work.bodies[i];
     body_work = BodyWork{};
     start_dynamic(model.bodies[i], model.masses[i], body, body_work);
+    if (model.bodies[i].kind != BodyKind::Dynamic) {  // stands still unless it has a target
+      body_work.velocity_start.setZero();
+      body_work.angular_start.setZero();
+    }
     if (model.bodies[i].kind != BodyKind::Dynamic || !body.is_present || body.sleep_group >= 0) continue;
     body_work.is_moving = true;
     body_work.active = work.active_count;

@@ -1,0 +1,74 @@
+// bench: runs the bench scenes, prints every figure beside its target.
+#include "bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "snug/core/input_error.hpp"
+#include "snug/experiment/bench.hpp"
+
+namespace snug::app {
+namespace {
+
+/// Where the scenario files are: under the present folder, or where the program was built from.
+std::filesystem::path find_scenarios() {
+  const std::filesystem::path folders[] = {"scenarios", std::filesystem::path(SNUG_SOURCE_DIR) / "scenarios"};
+  for (const std::filesystem::path& folder : folders) {
+    if (std::filesystem::is_directory(folder / "bench")) return folder;
+  }
+  throw InputError("scenarios/bench", "", "no such folder", "to be run from the project's folder");
+}
+
+std::string as_json(const std::vector<experiment::Figure>& figures) {
+  nlohmann::ordered_json document = {{"results", nlohmann::ordered_json::array()}};
+  for (const experiment::Figure& figure : figures) {
+    document["results"].push_back({{"name", figure.name},
+                                   {"value", figure.value},
+                                   {"unit", figure.unit},
+                                   {"target", figure.target},
+                                   {"ok", figure.ok}});
+  }
+  const model::SolverSettings solver;
+  document["settings"] = {{"tolerance_m_s", solver.tolerance},
+                          {"max_sweeps", solver.max_sweeps},
+                          {"position_slop_m", solver.position_slop}};
+  return document.dump(2) + "\n";
+}
+
+std::string as_table(const std::vector<experiment::Figure>& figures) {
+  std::string text = fmt::format("{:<34} {:>12} {:<6} {:<10} {}\n", "figure", "value", "unit", "target", "met");
+  for (const experiment::Figure& figure : figures) {
+    text += fmt::format("{:<34} {:>12.4g} {:<6} {:<10} {}\n", figure.name, figure.value, figure.unit, figure.target,
+                        figure.target.empty() ? "" : figure.ok ? "yes" : "NO");
+  }
+  const model::SolverSettings solver;
+  return text + fmt::format("\nsolver of every scenario: tolerance {} m/s, at most {} sweeps, slop {} m\n",
+                            solver.tolerance, solver.max_sweeps, solver.position_slop);
+}
+
+}  // namespace
+
+int run_bench(const BenchOptions& options) {
+  experiment::BenchOptions bench;
+  const std::filesystem::path scenarios = find_scenarios();
+  bench.scenes = scenarios / "bench";
+  bench.scenario = scenarios / "box-demonstrator.yaml";
+  bench.program = scenarios.parent_path() / "../shared/data/waypoints/poses1real.csv";
+  bench.corrections = "seq1";
+  if (!std::filesystem::exists(bench.program)) {
+    bench.program = "out/sequence-1.csv";  // what `make demo` leaves
+    bench.corrections.clear();
+  }
+  bench.only = options.only.value_or("");
+  const std::vector<experiment::Figure> figures = experiment::run_bench(bench);
+  if (figures.empty()) throw InputError("command line", "--only", "'" + bench.only + "'", "the start of a figure's name");
+  std::fputs((options.json ? as_json(figures) : as_table(figures)).c_str(), stdout);
+  const bool all_met = std::all_of(figures.begin(), figures.end(), [](const auto& figure) { return figure.ok; });
+  return all_met ? kSuccess : kRunFailed;
+}
+
+}  // namespace snug::app

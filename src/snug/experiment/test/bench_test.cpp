@@ -1,0 +1,39 @@
+// Tests of the bench: its own overlap test, and the figures that do not depend on the machine.
+#include "snug/experiment/bench.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace snug::experiment {
+namespace {
+
+TEST(BoxOverlap, IsTheDepthOfFacesAndZeroApart) {
+  const Vector3 half(0.1, 0.2, 0.3);
+  EXPECT_NEAR(box_overlap(half, Pose{}, half, Pose{Matrix3::Identity(), Vector3(0.19, 0.0, 0.0)}), 0.01, 1e-15);
+  EXPECT_EQ(box_overlap(half, Pose{}, half, Pose{Matrix3::Identity(), Vector3(0.21, 0.0, 0.0)}), 0.0);
+}
+
+TEST(BoxOverlap, SeesEdgesThatCross) {
+  // Two cubes turned by 45 degrees about x and y, edge over edge: the edges meet at a distance of 2 sqrt(2) h.
+  const Vector3 half = Vector3::Constant(0.1);
+  const double quarter = std::numbers::pi / 4.0;
+  const Pose X_WA{exp_rotation(Vector3(quarter, 0.0, 0.0)), Vector3::Zero()};
+  const Pose X_WB{exp_rotation(Vector3(0.0, quarter, 0.0)), Vector3(0.0, 0.0, 0.2 * std::sqrt(2.0) - 0.001)};
+  EXPECT_NEAR(box_overlap(half, X_WA, half, X_WB), 0.001, 1e-12);
+}
+
+TEST(Bench, MeetsTheTargetsOfSlidingAndBouncing) {
+  BenchOptions options;
+  options.scenes = std::string(SNUG_SOURCE_DIR) + "/scenarios/bench";
+  for (const char* scene : {"s3", "s4"}) {
+    options.only = scene;
+    const std::vector<Figure> figures = run_bench(options);
+    EXPECT_FALSE(figures.empty());
+    for (const Figure& figure : figures) EXPECT_TRUE(figure.ok) << figure.name << " " << figure.value;
+  }
+}
+
+}  // namespace
+}  // namespace snug::experiment
