@@ -43,7 +43,9 @@ std::string as_table(const std::vector<experiment::Figure>& figures) {
   std::string text = fmt::format("{:<34} {:>12} {:<6} {:<10} {}\n", "figure", "value", "unit", "target", "met");
   for (const experiment::Figure& figure : figures) {
     text += fmt::format("{:<34} {:>12.4g} {:<6} {:<10} {}\n", figure.name, figure.value, figure.unit, figure.target,
-                        figure.target.empty() ? "" : figure.ok ? "yes" : "NO");
+                        figure.target.empty() ? ""
+                        : figure.ok           ? "yes"
+                                              : "NO");
   }
   const model::SolverSettings solver;
   return text + fmt::format("\nsolver of every scenario: tolerance {} m/s, at most {} sweeps, slop {} m\n",
@@ -65,7 +67,8 @@ int run_bench(const BenchOptions& options) {
   }
   bench.only = options.only.value_or("");
   const std::vector<experiment::Figure> figures = experiment::run_bench(bench);
-  if (figures.empty()) throw InputError("command line", "--only", "'" + bench.only + "'", "the start of a figure's name");
+  if (figures.empty())
+    throw InputError("command line", "--only", "'" + bench.only + "'", "the start of a figure's name");
   std::fputs((options.json ? as_json(figures) : as_table(figures)).c_str(), stdout);
   const bool all_met = std::all_of(figures.begin(), figures.end(), [](const auto& figure) { return figure.ok; });
   return all_met ? kSuccess : kRunFailed;

@@ -34,7 +34,8 @@ class SnugEngine final : public Engine {
     plane_ = static_cast<int>(model_.bodies.size());
     if (scene.has_plane) {
       constexpr double kHalf = 10.0;
-      BoxBody plane{"plane", Vector3::Constant(kHalf), 0.0, {Matrix3::Identity(), Vector3(0, 0, scene.plane_height - kHalf)}};
+      BoxBody plane{
+          "plane", Vector3::Constant(kHalf), 0.0, {Matrix3::Identity(), Vector3(0, 0, scene.plane_height - kHalf)}};
       model_.bodies.push_back(body_of(plane));
     }
     holder_ = physics::BodyId{static_cast<int>(model_.bodies.size())};
@@ -86,8 +87,8 @@ class SnugEngine final : public Engine {
     const int a = body_a == kPlane ? plane_ : body_a, b = body_b == kPlane ? plane_ : body_b;
     double sum = 0.0;
     for (const physics::ContactReport& contact : work_->contacts()) {
-      const bool is_pair = (contact.a.index == a && contact.b.index == b) ||
-                           (contact.a.index == b && contact.b.index == a);
+      const bool is_pair =
+          (contact.a.index == a && contact.b.index == b) || (contact.a.index == b && contact.b.index == a);
       if (is_pair) sum += contact.n_AB_W.dot(contact.force_W);
     }
     return sum;

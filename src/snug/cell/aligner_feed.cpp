@@ -16,9 +16,12 @@ namespace {
 bool agrees_with_heavy_side(const model::Item& item, const model::Aligner& aligner, const Matrix3& R_AP) {
   if (item.up == model::UpAxis::Z) return true;
   switch (item.heavy_side.value_or(aligner.heavy_side)) {
-    case model::HeavySide::Any: return true;
-    case model::HeavySide::Corner: return model::has_heavy_side_at_corner(R_AP);
-    case model::HeavySide::Away: return !model::has_heavy_side_at_corner(R_AP);
+    case model::HeavySide::Any:
+      return true;
+    case model::HeavySide::Corner:
+      return model::has_heavy_side_at_corner(R_AP);
+    case model::HeavySide::Away:
+      return !model::has_heavy_side_at_corner(R_AP);
   }
   return true;
 }

@@ -10,10 +10,10 @@ namespace snug::cell {
 
 /// Half widths of uniform changes.
 struct Perturbation {
-  double aligner_position = 0.5e-3;  ///< m, along Ax and Ay
+  double aligner_position = 0.5e-3;                           ///< m, along Ax and Ay
   double aligner_yaw = 0.2 * 3.14159265358979323846 / 180.0;  ///< rad
-  double parcel_size = 0.5e-3;       ///< m, each edge of each box
-  double friction = 0.10;            ///< share of each pair's coefficient
+  double parcel_size = 0.5e-3;                                ///< m, each edge of each box
+  double friction = 0.10;                                     ///< share of each pair's coefficient
 };
 
 struct EnsembleOptions {
@@ -27,7 +27,7 @@ struct EnsembleRun {
   int packed = 0;
   int boxes = 0;
   double filling_degree_percent = 0.0;
-  double worst_repick = 0.0;         ///< m
+  double worst_repick = 0.0;  ///< m
   std::uint64_t state_hash = 0;
   std::string failure;
 };

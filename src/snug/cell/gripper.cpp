@@ -62,6 +62,7 @@ void Gripper::try_to_seal(const Target& target, const Pose& X_WE, const cup::Cup
       state.cup.X_PS = seal->X_PS;
       if (mode_ == cup::CupMode::Holding) state.cup.pressure_gauge = params_.vacuum.pressure_gauge_hold;
       state.has_warned = false;
+      state.is_established = false;
       event.kind = GripperEvent::Kind::Seal;
       const Vector3 outward = -seal->X_PS.R.col(2);
       event.offset_P = seal->X_PS.p - outward.cwiseProduct(target.half).cwiseProduct(outward.cwiseAbs());
@@ -84,14 +85,14 @@ void Gripper::let_go(GripperEvent event, GripperState& state, std::vector<Grippe
   state.cup.phase = cup::CupPhase::Free;
   state.cup.body = -1;
   state.cup.length = 0.0;
+  state.cup.leak = 0.0;
   state.cup.bend = 0.0;
   state.F_S = Wrench{};
   if (event.kind == GripperEvent::Kind::HoldLost || mode_ == cup::CupMode::Holding) state.cup.pressure_gauge = 0.0;
 }
 
 void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
-                         const cup::CupCommand& command, GripperState& state,
-                         std::vector<GripperEvent>& events) const {
+                         const cup::CupCommand& command, GripperState& state, std::vector<GripperEvent>& events) const {
   if (!command.vacuum && state.cup.phase == cup::CupPhase::Holding) state.cup.phase = cup::CupPhase::Releasing;
   const physics::ElementQuery query = query_of(*world_, world_state, state.cup.body, X_WE, V_WE);
   const cup::SuctionCup cup = cup::cup_at(params_, state.cup.pressure_gauge, state.cup.X_PS);
@@ -99,20 +100,22 @@ void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_W
   state.cup.bend = cup::bend_angle(X_WE.R.transpose() * query.X_WB.R * state.cup.X_PS.R);
   GripperEvent event;
   event.angle = state.cup.bend;
-  if (state.cup.phase == cup::CupPhase::Releasing && mode_ == cup::CupMode::Holding) {
+  const bool is_holding = state.cup.phase == cup::CupPhase::Holding;
+  if (!is_holding && mode_ == cup::CupMode::Holding) {
     event.kind = GripperEvent::Kind::Released;
     let_go(event, state, events);
     return;
   }
   // While the cup draws a box in that cannot follow yet it pulls harder than the vacuum of the moment holds; the foam
   // of the lip bridges that. Limits count once the vacuum is nearly there.
-  const bool is_established = state.cup.phase == cup::CupPhase::Releasing ||
-                              state.cup.pressure_gauge <= kEstablished * params_.vacuum.pressure_gauge_hold;
-  if (is_established) {
+  state.is_established = state.is_established || !is_holding ||
+                         state.cup.pressure_gauge <= kEstablished * params_.vacuum.pressure_gauge_hold;
+  const bool may_leak = is_holding && state.is_established && mode_ == cup::CupMode::Phases;
+  state.cup.leak = may_leak ? cup::find_leak(params_, state.cup.pressure_gauge, state.F_S) : 0.0;
+  if (state.is_established) {
     event.loss = cup::find_hold_loss(params_, state.cup.pressure_gauge, state.F_S, state.cup.bend);
     if (event.loss != cup::HoldLoss::None) {
-      event.kind = state.cup.phase == cup::CupPhase::Releasing ? GripperEvent::Kind::Released
-                                                               : GripperEvent::Kind::HoldLost;
+      event.kind = is_holding ? GripperEvent::Kind::HoldLost : GripperEvent::Kind::Released;
       let_go(event, state, events);
       return;
     }

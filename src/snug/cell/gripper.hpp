@@ -22,10 +22,11 @@ struct GripperEvent {
 /// Everything of the gripper that changes.
 struct GripperState {
   cup::CupState cup;
-  double vacuum_time = 0.0;   ///< s, since the vacuum was switched on
-  bool has_warned = false;    ///< of too much bending, for the present hold
-  bool has_reported = false;  ///< that no seal was found, for the present vacuum command
-  Wrench F_S;                 ///< on the held box, at the lip, at the start of the step
+  double vacuum_time = 0.0;     ///< s, since the vacuum was switched on
+  bool is_established = false;  ///< the vacuum of the present hold was nearly complete: its limits count
+  bool has_warned = false;      ///< of too much bending, for the present hold
+  bool has_reported = false;    ///< that no seal was found, for the present vacuum command
+  Wrench F_S;                   ///< on the held box, at the lip, at the start of the step
   bool operator==(const GripperState&) const = default;
 };
 

@@ -19,11 +19,16 @@ double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 const char* name_of(BoxState state) {
   switch (state) {
-    case BoxState::Waiting: return "waiting";
-    case BoxState::Held: return "held";
-    case BoxState::Packed: return "packed";
-    case BoxState::Outside: return "outside";
-    case BoxState::Dropped: return "dropped";
+    case BoxState::Waiting:
+      return "waiting";
+    case BoxState::Held:
+      return "held";
+    case BoxState::Packed:
+      return "packed";
+    case BoxState::Outside:
+      return "outside";
+    case BoxState::Dropped:
+      return "dropped";
   }
   return "";
 }
@@ -47,8 +52,7 @@ int Journey::item_of(int body) const {
   return -1;
 }
 
-void Journey::log(double time, std::string kind, int item, std::string text,
-                  std::vector<record::EventNumber> numbers) {
+void Journey::log(double time, std::string kind, int item, std::string text, std::vector<record::EventNumber> numbers) {
   events_.push_back({time, std::move(kind), item >= 0 ? ids_[static_cast<std::size_t>(item)] : std::string(),
                      std::move(text), std::move(numbers)});
 }
@@ -78,8 +82,11 @@ void Journey::add_seal(int item, const GripperEvent& event, double time, const M
                     up == box.up_intended ? "" : ", not as intended"));
   }
   const bool is_repick = box.was_set_down;
-  log(time, is_repick ? "repick" : box.seals > 0 ? "reseal" : "seal", item,
-      fmt::format("{}: sealed {:.1f} mm from the middle of the face", waypoint, 1e3 * offset), numbers);
+  log(time,
+      is_repick       ? "repick"
+      : box.seals > 0 ? "reseal"
+                      : "seal",
+      item, fmt::format("{}: sealed {:.1f} mm from the middle of the face", waypoint, 1e3 * offset), numbers);
   if (is_repick) {
     repicks_.push_back({ids_[static_cast<std::size_t>(item)], offset, axis_letter(box.up_at_seal), axis_letter(up),
                         axis_letter(box.up_intended)});
@@ -144,8 +151,8 @@ std::vector<BoxResult> Journey::results(const physics::WorldState& state, int he
     const Vector3 beyond = result.X_TP.p.cwiseAbs() + reach - 0.5 * inner_size_;
     result.outside = std::max({0.0, beyond.x(), beyond.y()});
     result.above_rim = std::max(0.0, result.X_TP.p.z() + reach.z() - inner_size_.z());
-    const bool is_in = result.outside <= kPackedBeyondWall && result.above_rim <= kPackedAboveRim &&
-                       result.X_TP.p.z() > 0.0;
+    const bool is_in =
+        result.outside <= kPackedBeyondWall && result.above_rim <= kPackedAboveRim && result.X_TP.p.z() > 0.0;
     if (body.index == held_body) {
       result.state = BoxState::Held;
     } else if (!item.was_held || item.was_removed) {

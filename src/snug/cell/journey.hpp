@@ -26,17 +26,17 @@ inline constexpr double kPackedAboveRim = 0.012;
 struct BoxResult {
   std::string id;
   BoxState state = BoxState::Waiting;
-  Pose X_TP;                 ///< in the target container
-  char up = 'Z';             ///< axis of the box nearest to vertical
-  double outside = 0.0;      ///< m, farthest corner beyond the inner walls, 0 inside
-  double above_rim = 0.0;    ///< m, highest corner over the rim, 0 below
+  Pose X_TP;               ///< in the target container
+  char up = 'Z';           ///< axis of the box nearest to vertical
+  double outside = 0.0;    ///< m, farthest corner beyond the inner walls, 0 inside
+  double above_rim = 0.0;  ///< m, highest corner over the rim, 0 below
   std::vector<record::Event> events;
 };
 
 /// A pick of a box that was set down before.
 struct Repick {
   std::string id;
-  double offset = 0.0;       ///< m, from the face's centre to where the waypoint aims
+  double offset = 0.0;  ///< m, from the face's centre to where the waypoint aims
   char up_before = 'Z', up_after = 'Z', up_intended = 'Z';
 };
 
@@ -64,7 +64,7 @@ class Journey {
     bool was_set_down = false;    ///< let go by the program since the last seal
     bool over_container = false;  ///< at the last release
     int up_at_seal = 2;
-    int up_intended = 2;          ///< at the last release, from the tool's pose
+    int up_intended = 2;  ///< at the last release, from the tool's pose
     Matrix3 R_EP = Matrix3::Identity();
     bool operator==(const Item&) const = default;
   };

@@ -25,15 +25,17 @@ record::ShapeInfo shape_info(const physics::Geom& geom) {
 
 record::BodyKind kind_of(physics::BodyKind kind) {
   switch (kind) {
-    case physics::BodyKind::Static: return record::BodyKind::Static;
-    case physics::BodyKind::Kinematic: return record::BodyKind::Kinematic;
-    case physics::BodyKind::Dynamic: break;
+    case physics::BodyKind::Static:
+      return record::BodyKind::Static;
+    case physics::BodyKind::Kinematic:
+      return record::BodyKind::Kinematic;
+    case physics::BodyKind::Dynamic:
+      break;
   }
   return record::BodyKind::Dynamic;
 }
 
-record::RecordingHeader header_of(const model::Scenario& scenario, const CellWorld& world,
-                                  const RecorderSetup& setup) {
+record::RecordingHeader header_of(const model::Scenario& scenario, const CellWorld& world, const RecorderSetup& setup) {
   record::RecordingHeader header;
   header.scenario_text = scenario.source_text;
   header.program_text = setup.program_text;
@@ -71,7 +73,9 @@ record::ContactSample contact_sample(const physics::ContactReport& contact) {
   sample.n_AB_W = contact.n_AB_W;
   sample.force_B_W = contact.force_W;
   sample.phi = contact.phi;
-  sample.state = contact.force_W.isZero(0.0) ? record::ContactState::Open : record::ContactState::Unknown;
+  sample.state = contact.force_W.isZero(0.0) ? record::ContactState::Open
+                 : contact.slides            ? record::ContactState::Sliding
+                                             : record::ContactState::Sticking;
   return sample;
 }
 
@@ -84,9 +88,8 @@ void fill_cup(const CellWorld& world, const physics::WorldState& state, const Fr
   cup.pressure_gauge = input.gripper->cup.pressure_gauge;
   cup.attached_body = input.gripper->cup.body;
   if (cup.attached_body < 0) return;
-  const Pose X_ES = input.X_WE.inverse() *
-                    (physics::pose_of(world.model, state, physics::BodyId{cup.attached_body}) *
-                     input.gripper->cup.X_PS);
+  const Pose X_ES = input.X_WE.inverse() * (physics::pose_of(world.model, state, physics::BodyId{cup.attached_body}) *
+                                            input.gripper->cup.X_PS);
   cup.X_ES = X_ES;
   cup.length = X_ES.p.z();
   cup.bend = cup::bend_angle(X_ES.R);
@@ -133,10 +136,9 @@ void Recorder::add_frame(const CellWorld& world, const physics::WorldState& stat
   }
   frame_.solver.residual = report.residual;
   frame_.solver.iterations = report.sweeps;
-  frame_.solver.status = report.contacts == 0 ? record::SolverStatus::NothingToSolve
-                         : report.status == physics::StepStatus::Converged
-                             ? record::SolverStatus::Converged
-                             : record::SolverStatus::NotConverged;
+  frame_.solver.status = report.contacts == 0                              ? record::SolverStatus::NothingToSolve
+                         : report.status == physics::StepStatus::Converged ? record::SolverStatus::Converged
+                                                                           : record::SolverStatus::NotConverged;
   writer_.append(frame_);
 }
 

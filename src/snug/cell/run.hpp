@@ -20,18 +20,18 @@ struct RunOptions {
   motion::ControllerKind controller = motion::ControllerKind::Faithful;
   /// The report's model predicts the real programs better than the phases do (docs/decisions/0006): the default.
   cup::CupMode cup = cup::CupMode::Holding;
-  std::optional<double> until;             ///< s; absent: to the end of the program, or the scenario's duration
-  std::filesystem::path record_path;       ///< HDF5, or empty
-  std::string version;                     ///< for the recording
+  std::optional<double> until;        ///< s; absent: to the end of the program, or the scenario's duration
+  std::filesystem::path record_path;  ///< HDF5, or empty
+  std::string version;                ///< for the recording
 };
 
 /// How well the contact solver did over a run.
 struct SolverSummary {
   std::int64_t steps = 0;
   std::int64_t not_converged = 0;
-  double worst_residual = 0.0;      ///< m/s
-  double worst_penetration = 0.0;   ///< m, rigid contacts
-  double mean_sweeps = 0.0;         ///< over steps with contacts
+  double worst_residual = 0.0;     ///< m/s
+  double worst_penetration = 0.0;  ///< m, rigid contacts
+  double mean_sweeps = 0.0;        ///< over steps with contacts
 };
 
 struct BodyResult {
@@ -41,17 +41,17 @@ struct BodyResult {
 };
 
 struct RunResult {
-  double duration = 0.0;            ///< s, simulated until the program's end (or `until`)
-  double wall = 0.0;                ///< s
+  double duration = 0.0;  ///< s, simulated until the program's end (or `until`)
+  double wall = 0.0;      ///< s
   double real_time_factor = 0.0;
   double filling_degree_percent = 0.0;
-  std::vector<BoxResult> boxes;     ///< of the sequence
-  std::vector<BodyResult> bodies;   ///< dynamic ones of a scene without a program
+  std::vector<BoxResult> boxes;    ///< of the sequence
+  std::vector<BodyResult> bodies;  ///< dynamic ones of a scene without a program
   std::vector<record::Event> events;
   std::vector<Repick> repicks;
   SolverSummary solver;
   std::uint64_t state_hash = 0;
-  std::string failure;              ///< empty, or why the run had to stop: body, time, last contacts
+  std::string failure;  ///< empty, or why the run had to stop: body, time, last contacts
 };
 
 /// Throws InputError for options that do not fit the scenario (unknown sequence, corrections, waypoint name, tick that

@@ -59,9 +59,12 @@ std::vector<Geom> geoms_of(const std::vector<model::PlacedShape>& shapes, model:
 
 physics::BodyKind kind_of(model::BodyKind kind) {
   switch (kind) {
-    case model::BodyKind::Static: return physics::BodyKind::Static;
-    case model::BodyKind::Kinematic: return physics::BodyKind::Kinematic;
-    case model::BodyKind::Dynamic: break;
+    case model::BodyKind::Static:
+      return physics::BodyKind::Static;
+    case model::BodyKind::Kinematic:
+      return physics::BodyKind::Kinematic;
+    case model::BodyKind::Dynamic:
+      break;
   }
   return physics::BodyKind::Dynamic;
 }
@@ -93,8 +96,8 @@ SpatialInertia uniform_box(double mass, const Vector3& size) {
   SpatialInertia inertia;
   inertia.mass = mass;
   const Vector3 square = size.cwiseAbs2();
-  inertia.inertia = (Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) * mass / 12.0)
-                        .asDiagonal();
+  inertia.inertia =
+      (Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) * mass / 12.0).asDiagonal();
   return inertia;
 }
 
@@ -141,13 +144,13 @@ CellWorld build_world(const model::Scenario& scenario, const WorldOptions& optio
   fill_settings(scenario, world.model);
   fill_laws(scenario, world.model);
   for (const model::Container& container : scenario.containers) {
-    const BodyId id = add(world, static_body(container.name, container.X_WT,
-                                             geoms_of(model::make_walls(container), container.material)));
+    const BodyId id = add(
+        world, static_body(container.name, container.X_WT, geoms_of(model::make_walls(container), container.material)));
     if (container.name == scenario.target) world.container = id;
   }
   if (scenario.aligner && !scenario.aligner->plates.empty()) {
-    add(world, static_body("aligner", scenario.aligner->X_WA,
-                           geoms_of(scenario.aligner->plates, scenario.aligner->material)));
+    add(world,
+        static_body("aligner", scenario.aligner->X_WA, geoms_of(scenario.aligner->plates, scenario.aligner->material)));
   }
   for (const model::Body& from : scenario.bodies) {
     BodyModel body;
@@ -162,10 +165,9 @@ CellWorld build_world(const model::Scenario& scenario, const WorldOptions& optio
   if (options.sequence != nullptr) {
     for (const model::Item& item : options.sequence->items) {
       const model::Parcel& parcel = *model::find_parcel(scenario, item.parcel);
-      world.parcels.push_back(add(world,
-                                  box_body(parcel.id, model::collision_size(scenario, parcel), parcel.inertia,
-                                           parcel.material),
-                                  parcel.type));
+      world.parcels.push_back(
+          add(world, box_body(parcel.id, model::collision_size(scenario, parcel), parcel.inertia, parcel.material),
+              parcel.type));
     }
   }
   const DropPlan drops = plan_drops(scenario);

@@ -13,12 +13,12 @@ namespace snug::cell {
 /// A world and which of its bodies is what. Absent bodies have an invalid id.
 struct CellWorld {
   physics::WorldModel model;
-  physics::BodyId tool;                       ///< kinematic, frame E
-  physics::BodyId container;                  ///< the target container
-  std::vector<physics::BodyId> parcels;       ///< of the sequence's items, in its order; absent at the start
-  std::vector<physics::BodyId> bodies;        ///< of Scenario::bodies, in their order
-  std::vector<physics::BodyId> drops;         ///< boxes of the `drops` block, absent at the start
-  std::vector<std::string> types;             ///< box type of each body of the world, or empty
+  physics::BodyId tool;                  ///< kinematic, frame E
+  physics::BodyId container;             ///< the target container
+  std::vector<physics::BodyId> parcels;  ///< of the sequence's items, in its order; absent at the start
+  std::vector<physics::BodyId> bodies;   ///< of Scenario::bodies, in their order
+  std::vector<physics::BodyId> drops;    ///< boxes of the `drops` block, absent at the start
+  std::vector<std::string> types;        ///< box type of each body of the world, or empty
 };
 
 struct WorldOptions {
@@ -29,7 +29,7 @@ struct WorldOptions {
 /// Boxes to drop: which type and where over the container, drawn from the seed of the block.
 struct DropPlan {
   struct Box {
-    int type = 0;              ///< index into Scenario::parcel_types
+    int type = 0;  ///< index into Scenario::parcel_types
     Vector3 p_TP_xy = Vector3::Zero();
     double yaw = 0.0;
   };

@@ -9,8 +9,8 @@ namespace snug {
 }  // namespace snug
 
 /// Aborts with file, line and message when `condition` is false. For bugs only; bad input throws InputError.
-#define SNUG_CHECK(condition, message)                                     \
-  do {                                                                     \
-    if (!(condition)) [[unlikely]]                                         \
-      ::snug::fail_check(#condition, __FILE__, __LINE__, message);         \
+#define SNUG_CHECK(condition, message)                             \
+  do {                                                             \
+    if (!(condition)) [[unlikely]]                                 \
+      ::snug::fail_check(#condition, __FILE__, __LINE__, message); \
   } while (false)

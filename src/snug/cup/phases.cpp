@@ -10,9 +10,9 @@ namespace snug::cup {
 namespace {
 
 struct FaceHit {
-  int axis = -1;         ///< of the box; -1: the axis of the cup misses it
+  int axis = -1;  ///< of the box; -1: the axis of the cup misses it
   double sign = 1.0;
-  double distance = 0.0; ///< from E along Ez, m
+  double distance = 0.0;  ///< from E along Ez, m
   Vector3 p_P = Vector3::Zero();
 };
 
@@ -51,24 +51,38 @@ Matrix3 lip_axes(const FaceHit& hit, const Matrix3& R_PE) {
   return R;
 }
 
+/// Normal force between lip and face, N: suction on the sealed disc less what pulls the package away.
+double lip_force(const model::CupParams& params, double pressure_gauge, const Wrench& F_S) {
+  const double area = 0.25 * std::numbers::pi * params.effective_diameter * params.effective_diameter;
+  return -pressure_gauge * area + F_S.force.z();
+}
+
 }  // namespace
 
 const char* describe(NoSeal reason) {
   switch (reason) {
-    case NoSeal::OutOfReach: return "no face within reach of the lip";
-    case NoSeal::TooTilted: return "face too tilted for the lip";
-    case NoSeal::OverEdge: return "lip over an edge of the face";
+    case NoSeal::OutOfReach:
+      return "no face within reach of the lip";
+    case NoSeal::TooTilted:
+      return "face too tilted for the lip";
+    case NoSeal::OverEdge:
+      return "lip over an edge of the face";
   }
   return "";
 }
 
 const char* describe(HoldLoss loss) {
   switch (loss) {
-    case HoldLoss::None: return "held";
-    case HoldLoss::Tension: return "pulled off";
-    case HoldLoss::Shear: return "slipped off";
-    case HoldLoss::Peel: return "peeled off";
-    case HoldLoss::Bending: return "bent beyond the cup's capacity";
+    case HoldLoss::None:
+      return "held";
+    case HoldLoss::Tension:
+      return "pulled off";
+    case HoldLoss::Shear:
+      return "slipped off";
+    case HoldLoss::Peel:
+      return "peeled off";
+    case HoldLoss::Bending:
+      return "bent beyond the cup's capacity";
   }
   return "";
 }
@@ -117,7 +131,7 @@ void advance_pressure(const model::CupParams& params, const CupCommand& command,
   const model::VacuumParams& vacuum = params.vacuum;
   double wanted = 0.0;
   if (command.vacuum && state.phase == CupPhase::Holding) {
-    wanted = vacuum.pressure_gauge_hold;
+    wanted = vacuum.pressure_gauge_hold * (1.0 - state.leak);
   } else if (command.blow_off && !command.vacuum) {
     wanted = vacuum.pressure_gauge_blow;
   }
@@ -136,10 +150,16 @@ void follow_length(const model::CupParams& params, double length, CupState& stat
   state.length = state.phase == CupPhase::Free ? 0.0 : std::max(length, 0.0);
 }
 
+double find_leak(const model::CupParams& params, double pressure_gauge, const Wrench& F_S) {
+  const double normal = lip_force(params, pressure_gauge, F_S);
+  if (normal <= 0.0) return 1.0;
+  const double excess = F_S.torque.head<2>().norm() / (normal * params.lip_radius) - params.limits.peel_onset;
+  return std::clamp(params.limits.leak_gain * excess, 0.0, 1.0);
+}
+
 HoldLoss find_hold_loss(const model::CupParams& params, double pressure_gauge, const Wrench& F_S, double bend) {
   if (bend >= params.limits.fail_bend) return HoldLoss::Bending;
-  const double area = 0.25 * std::numbers::pi * params.effective_diameter * params.effective_diameter;
-  const double normal = -pressure_gauge * area + F_S.force.z();  // between lip and face, N
+  const double normal = lip_force(params, pressure_gauge, F_S);
   if (normal <= 0.0) return HoldLoss::Tension;
   const double radius = params.lip_radius;
   if (F_S.torque.head<2>().norm() > params.limits.peel_full * normal * radius) return HoldLoss::Peel;

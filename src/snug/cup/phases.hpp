@@ -27,6 +27,7 @@ struct CupState {
   int body = -1;                ///< sealed to this body of the world
   Pose X_PS;                    ///< lip on it
   double bend = 0.0;            ///< rad, of the last step
+  double leak = 0.0;            ///< share of the vacuum's set point lost because the lip lifts, 0 .. 1
   double length = 0.0;          ///< m, E to lip along Ez when the pressure was last known; 0: not sealed then
   bool operator==(const CupState&) const = default;
 };
@@ -60,12 +61,16 @@ struct Seal {
 /// One step of the pressure, exact for a constant command.
 void advance_pressure(const model::CupParams& params, const CupCommand& command, double dt, CupState& state);
 
-/// The sealed bellows keeps its gas while it changes length (constant temperature): stretching deepens the vacuum, which
-/// pulls the cup in again. Without this the release throws the box instead of pushing it. `length`: E to lip along Ez, m.
+/// The sealed bellows keeps its gas while it changes length (constant temperature): stretching deepens the vacuum,
+/// which pulls the cup in again. Without this the release throws the box instead of pushing it. `length`: E to lip
+/// along Ez, m.
 void follow_length(const model::CupParams& params, double length, CupState& state);
 
 enum class HoldLoss { None, Tension, Shear, Peel, Bending };
 [[nodiscard]] const char* describe(HoldLoss loss);
+
+/// Share of the set point that a sealed lip loses under this wrench: zero below the onset of peeling.
+[[nodiscard]] double find_leak(const model::CupParams& params, double pressure_gauge, const Wrench& F_S);
 
 /// Is this wrench (on the package, in S about the lip) more than the vacuum and the friction of the lip can carry?
 [[nodiscard]] HoldLoss find_hold_loss(const model::CupParams& params, double pressure_gauge, const Wrench& F_S,

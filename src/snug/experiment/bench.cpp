@@ -149,7 +149,8 @@ void measure_slides(const BenchOptions& options, std::vector<Figure>& figures) {
     const char* file;
     const char* name;
     double degrees;
-  } slides[] = {{"s3-slide-0.yaml", "s3.0", 0.0}, {"s3-slide-22.yaml", "s3.22", 22.5}, {"s3-slide-45.yaml", "s3.45", 45.0}};
+  } slides[] = {
+      {"s3-slide-0.yaml", "s3.0", 0.0}, {"s3-slide-22.yaml", "s3.22", 22.5}, {"s3-slide-45.yaml", "s3.45", 45.0}};
   for (const auto& slide : slides) {
     Scene scene(load(options, slide.file));
     const BodyId box{static_cast<int>(scene.world().model.bodies.size()) - 1};
@@ -208,8 +209,8 @@ double swing_peak(const BenchOptions& options, double dt) {
 void measure_swing(const BenchOptions& options, std::vector<Figure>& figures) {
   const double converged = swing_peak(options, 0.25e-3);
   figures.push_back({"s5.converged_peak_mm", kMm * converged, "mm", "", true});
-  figures.push_back(at_most("s5.peak_error_percent_at_4ms",
-                            100.0 * std::abs(swing_peak(options, 4e-3) / converged - 1.0), "%", 3.0));
+  figures.push_back(
+      at_most("s5.peak_error_percent_at_4ms", 100.0 * std::abs(swing_peak(options, 4e-3) / converged - 1.0), "%", 3.0));
   figures.push_back(is_true("s5.stable_at_20ms", swing_peak(options, 20e-3) < 4.0 * converged));
 }
 
@@ -226,14 +227,16 @@ Press press(const BenchOptions& options, const std::string& file) {
   for (int i = step_count(scene, scenario.duration); i > 0; --i) {
     (void)scene.advance();
     result.last_force = pair_force(scene, held);
-    if (scene.state().time(scene.world().model) > 0.1) result.peak_force = std::max(result.peak_force, result.last_force);
+    if (scene.state().time(scene.world().model) > 0.1)
+      result.peak_force = std::max(result.peak_force, result.last_force);
   }
   const Pose X_WB = pose_of(scene, held);
   const Vector3 half = box_of(scene.world().model.bodies[static_cast<std::size_t>(held.index)], 0)->half;
   double highest_lower_corner = -1.0;
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 1.0}) {
-      highest_lower_corner = std::max(highest_lower_corner, (X_WB * Vector3(x * half.x(), y * half.y(), -half.z())).z());
+      highest_lower_corner =
+          std::max(highest_lower_corner, (X_WB * Vector3(x * half.x(), y * half.y(), -half.z())).z());
     }
   }
   result.is_complete = highest_lower_corner < 3e-3 && X_WB.R(2, 2) > std::cos(std::numbers::pi / 180.0);
@@ -246,8 +249,8 @@ void measure_press(const BenchOptions& options, std::vector<Figure>& figures) {
   figures.push_back(is_true("s6a.completes", a.is_complete));
   figures.push_back(at_most("s6b.peak_force_N", b.peak_force, "N", 70.0));
   figures.push_back(is_true("s6b.completes", b.is_complete));
-  figures.push_back({"s6c.jam_force_N", c.last_force, "N", "245 +- 3",
-                     std::abs(c.last_force - 245.0) <= 3.0 && !c.is_complete});
+  figures.push_back(
+      {"s6c.jam_force_N", c.last_force, "N", "245 +- 3", std::abs(c.last_force - 245.0) <= 3.0 && !c.is_complete});
 }
 
 /// Seconds of CPU per box and step in a field of columns, four boxes high, all awake.
@@ -292,10 +295,10 @@ void measure_program(const BenchOptions& options, std::vector<Figure>& figures) 
   run.sequence = "1";
   run.corrections = options.corrections;
   const cell::RunResult result = cell::run(scenario, run);
-  figures.push_back({"program.real_time_factor", result.real_time_factor, "1", ">= 100", result.real_time_factor >= 100.0});
-  const auto packed = std::count_if(result.boxes.begin(), result.boxes.end(), [](const cell::BoxResult& box) {
-    return box.state == cell::BoxState::Packed;
-  });
+  figures.push_back(
+      {"program.real_time_factor", result.real_time_factor, "1", ">= 100", result.real_time_factor >= 100.0});
+  const auto packed = std::count_if(result.boxes.begin(), result.boxes.end(),
+                                    [](const cell::BoxResult& box) { return box.state == cell::BoxState::Packed; });
   figures.push_back({"program.packed", static_cast<double>(packed), "boxes", "", true});
 }
 
@@ -331,9 +334,8 @@ std::vector<Figure> run_bench(const BenchOptions& options) {
     const bool is_wanted = options.only.empty() || scene.starts_with(options.only) || options.only.starts_with(scene);
     if (is_wanted) measure(options, figures);
   }
-  std::erase_if(figures, [&](const Figure& figure) {
-    return figure.name.compare(0, options.only.size(), options.only) != 0;
-  });
+  std::erase_if(figures,
+                [&](const Figure& figure) { return figure.name.compare(0, options.only.size(), options.only) != 0; });
   return figures;
 }
 

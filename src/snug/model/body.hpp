@@ -93,11 +93,11 @@ struct StraightMove {
 
 /// The holder turns about a fixed axis through p_WA; the angle follows a quintic in time.
 struct SwingMove {
-  double start = 0.0;                     ///< s
-  double duration = 1.0;                  ///< s, > 0
-  Vector3 p_WA = Vector3::Zero();         ///< a point of the axis, m
-  Vector3 axis_W = Vector3::UnitZ();      ///< unit
-  double angle = 0.0;                     ///< rad
+  double start = 0.0;                 ///< s
+  double duration = 1.0;              ///< s, > 0
+  Vector3 p_WA = Vector3::Zero();     ///< a point of the axis, m
+  Vector3 axis_W = Vector3::UnitZ();  ///< unit
+  double angle = 0.0;                 ///< rad
   bool operator==(const SwingMove&) const = default;
 };
 
@@ -129,9 +129,9 @@ struct Drops {
   std::string container;
   std::vector<std::string> types;  ///< names of parcel types, drawn with equal chance
   int count = 12;
-  double start = 0.0;              ///< s, first box
-  double interval = 0.5;           ///< s
-  double clearance = 0.05;         ///< m, lower face above the highest corner of all boxes (or the floor)
+  double start = 0.0;       ///< s, first box
+  double interval = 0.5;    ///< s
+  double clearance = 0.05;  ///< m, lower face above the highest corner of all boxes (or the floor)
   std::uint64_t seed = 1;
   MaterialId material;
   bool operator==(const Drops&) const = default;

@@ -65,16 +65,16 @@ std::vector<ScenarioReader::Placed> ScenarioReader::placed_solids() const {
   std::vector<Placed> solids;
   for (std::size_t i = 0; i < scenario_.containers.size(); ++i) {
     const Container& container = scenario_.containers[i];
-    solids.push_back({container.name, container_values_[i], make_walls(container), container.X_WT, BodyKind::Static,
-                      true});
+    solids.push_back(
+        {container.name, container_values_[i], make_walls(container), container.X_WT, BodyKind::Static, true});
   }
   for (std::size_t i = 0; i < scenario_.bodies.size(); ++i) {
     const Body& body = scenario_.bodies[i];
     solids.push_back({body.name, body_values_[i], body.shapes, body.X_WB, body.kind, body.appears_at == 0.0});
   }
   if (scenario_.aligner && !scenario_.aligner->plates.empty())
-    solids.push_back({"aligner", *aligner_value_, scenario_.aligner->plates, scenario_.aligner->X_WA, BodyKind::Static,
-                      true});
+    solids.push_back(
+        {"aligner", *aligner_value_, scenario_.aligner->plates, scenario_.aligner->X_WA, BodyKind::Static, true});
   return solids;
 }
 
@@ -92,10 +92,10 @@ void ScenarioReader::check_overlaps() const {
         for (const PlacedShape& shape_b : b.shapes)
           depth = std::max(depth, overlap_of(shape_a, a.X_WB, shape_b, b.X_WB));
       if (depth <= (are_static ? kStaticOverlap : kStartOverlap)) continue;
-      const std::string got = quote(b.name) + " overlaps " + quote(a.name) + " by " +
-                              to_text(std::round(depth * 1e7) / 1e4) + " mm";
-      b.value.fail(got, are_static ? "static bodies that touch at most"
-                                   : "bodies that start no deeper than 1 mm in another");
+      const std::string got =
+          quote(b.name) + " overlaps " + quote(a.name) + " by " + to_text(std::round(depth * 1e7) / 1e4) + " mm";
+      b.value.fail(
+          got, are_static ? "static bodies that touch at most" : "bodies that start no deeper than 1 mm in another");
     }
   }
 }
@@ -108,8 +108,8 @@ void ScenarioReader::check_parcel_fits(const Value& value, const Parcel& parcel)
   for (std::size_t i = 0; i < 3; ++i)
     if (box[i] > room[i])
       value.fail("parcel " + quote(parcel.id) + " of " + to_millimetres(parcel.size),
-                 "a box that fits into container " + quote(target->name) + " of " +
-                     to_millimetres(target->inner_size) + " in some orientation");
+                 "a box that fits into container " + quote(target->name) + " of " + to_millimetres(target->inner_size) +
+                     " in some orientation");
 }
 
 void ScenarioReader::check_drops_fit(const Value& value, const Drops& drops) const {
@@ -131,8 +131,10 @@ void ScenarioReader::check_materials_meet(const Value& at) const {
     for (const Parcel& parcel : scenario_.parcels) ++moving[parcel.material.index];
   if (scenario_.drops) moving[scenario_.drops->material.index] += scenario_.drops->count;
   for (const Body& body : scenario_.bodies) {
-    if (body.kind == BodyKind::Dynamic) ++moving[body.material.index];
-    else fixed.insert(body.material.index);
+    if (body.kind == BodyKind::Dynamic)
+      ++moving[body.material.index];
+    else
+      fixed.insert(body.material.index);
   }
   for (const Container& container : scenario_.containers) fixed.insert(container.material.index);
   if (scenario_.aligner && !scenario_.aligner->plates.empty()) fixed.insert(scenario_.aligner->material.index);
@@ -153,10 +155,12 @@ void ScenarioReader::check_materials_meet(const Value& at) const {
 }
 
 void ScenarioReader::read() {
-  const MapReader map = root_.map(
-      "scenario", {"name", "gravity", "time_step", "duration", "seed", "solver", "materials", "contacts", "frames",
-                   "parcel_clearance", "parcel_types", "parcels", "containers", "target", "bodies", "aligner", "tool",
-                   "cup", "controller", "sequences", "springs", "drops"});
+  const MapReader map =
+      root_.map("scenario", {"name",         "gravity",   "time_step",  "duration",   "seed",
+                             "solver",       "materials", "contacts",   "frames",     "parcel_clearance",
+                             "parcel_types", "parcels",   "containers", "target",     "bodies",
+                             "aligner",      "tool",      "cup",        "controller", "sequences",
+                             "springs",      "drops"});
   const auto each = [&map](const char* key, auto&& read_one) {
     if (const auto values = map.find(key))
       for (const Value& value : values->list()) read_one(value);

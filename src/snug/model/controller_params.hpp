@@ -14,11 +14,11 @@ namespace snug::model {
 /// Limits of the motion to a waypoint whose name starts with `prefix`. Of all that match, the last in the list counts.
 struct MoveLimits {
   std::string prefix;
-  double precision = 0.005;             ///< m, arrival when |position error| + angle / convergence angle per metre <= it
-  double max_acceleration = 3.0;        ///< m/s^2 (A)
-  double max_speed = 0.5;               ///< m/s (V)
-  double max_turn_speed = 1.5;          ///< rad/s (W)
-  double max_turn_acceleration = 1.5;   ///< rad/s^2 (dW)
+  double precision = 0.005;            ///< m, arrival when |position error| + angle / convergence angle per metre <= it
+  double max_acceleration = 3.0;       ///< m/s^2 (A)
+  double max_speed = 0.5;              ///< m/s (V)
+  double max_turn_speed = 1.5;         ///< rad/s (W)
+  double max_turn_acceleration = 1.5;  ///< rad/s^2 (dW)
 
   template <class Archive>
   void fields(Archive& a) {
@@ -46,11 +46,11 @@ struct CorrectionLayer {
 };
 
 struct ControllerParams {
-  double tick = 0.008;                    ///< s
-  double task_stiffness = 10.0;           ///< 1/s^2; critically damped
-  double vacuum_wait = 0.5;               ///< s, pose held after the vacuum command changed
+  double tick = 0.008;                       ///< s
+  double task_stiffness = 10.0;              ///< 1/s^2; critically damped
+  double vacuum_wait = 0.5;                  ///< s, pose held after the vacuum command changed
   double convergence_deg_per_metre = 500.0;  ///< degrees of orientation error that weigh as much as one metre
-  Pose X_WE_start;                        ///< tool pose at the start
+  Pose X_WE_start;                           ///< tool pose at the start
   std::vector<MoveLimits> limits;
   std::vector<CorrectionLayer> correction_layers;
 

@@ -30,9 +30,9 @@ struct CupElasticity {
 
 /// When a lip that is told to grip finds a seal.
 struct SealParams {
-  double reach = 0.008;                              ///< m, largest gap between the free lip and the face
+  double reach = 0.008;                               ///< m, largest gap between the free lip and the face
   double max_tilt = 15.0 * std::numbers::pi / 180.0;  ///< rad, between the lip plane and the face
-  double max_overhang = 0.015;                       ///< m, how far the lip may stand over an edge of the face
+  double max_overhang = 0.015;                        ///< m, how far the lip may stand over an edge of the face
 
   template <class Archive>
   void fields(Archive& a) {
@@ -93,14 +93,14 @@ struct HoldLimits {
 struct CupParams {
   CupElasticity stiffness{2500.0, 6000.0, 5.0, 3.0, 0.0};
   CupElasticity damping{10.0, 15.0, 0.04, 0.025, 0.0};
-  double hold_length = 0.050;           ///< m, E to S under vacuum
-  double free_length = 0.072;           ///< m, E to S without vacuum
-  double centre_from_lip = 0.025;       ///< m, centre of stiffness before the lip
-  double free_stiffness_ratio = 0.25;   ///< stiffness without vacuum / stiffness under vacuum
-  double free_damping_ratio = 0.25;     ///< damping without vacuum / damping under vacuum
-  double lip_radius = 0.035;            ///< m, unloaded
-  double effective_diameter = 0.060;    ///< m, of the disc on which the vacuum acts
-  double lip_friction = 0.5;            ///< Coulomb coefficient of lip on cardboard
+  double hold_length = 0.050;          ///< m, E to S under vacuum
+  double free_length = 0.072;          ///< m, E to S without vacuum
+  double centre_from_lip = 0.025;      ///< m, centre of stiffness before the lip
+  double free_stiffness_ratio = 0.25;  ///< stiffness without vacuum / stiffness under vacuum
+  double free_damping_ratio = 0.25;    ///< damping without vacuum / damping under vacuum
+  double lip_radius = 0.035;           ///< m, unloaded
+  double effective_diameter = 0.060;   ///< m, of the disc on which the vacuum acts
+  double lip_friction = 0.5;           ///< Coulomb coefficient of lip on cardboard
   VacuumParams vacuum;
   SealParams seal;
   HoldLimits limits;

@@ -30,8 +30,7 @@ SpatialInertia of_shape(const geometry::Capsule& capsule) {
   const double ball = std::numbers::pi * r * r * r * 4.0 / 3.0;
   // A half ball's centre lies 3/8 r from its flat face: 2/5 r^2 about the ball's centre moves to the capsule's.
   const double axial = cylinder * r * r / 2.0 + ball * 0.4 * r * r;
-  const double across =
-      cylinder * (r * r / 4.0 + h * h / 3.0) + ball * (0.4 * r * r + h * h + 0.75 * h * r);
+  const double across = cylinder * (r * r / 4.0 + h * h / 3.0) + ball * (0.4 * r * r + h * h + 0.75 * h * r);
   Matrix3 inertia = Matrix3::Zero();
   inertia.diagonal() << across, across, axial;
   return {cylinder + ball, Vector3::Zero(), inertia};
@@ -85,7 +84,8 @@ SpatialInertia sum_inertias(const std::vector<SpatialInertia>& parts) {
     moment += part.mass * part.com;
   }
   if (total.mass > 0.0) total.com = moment / total.mass;
-  for (const SpatialInertia& part : parts) total.inertia += part.inertia + parallel_axis(part.mass, part.com - total.com);
+  for (const SpatialInertia& part : parts)
+    total.inertia += part.inertia + parallel_axis(part.mass, part.com - total.com);
   return total;
 }
 

@@ -64,9 +64,9 @@ struct Item {
 struct Sequence {
   std::string name;
   std::vector<Item> items;
-  std::optional<double> task_stiffness;             ///< 1/s^2, overrides the controller's
-  std::optional<int> packed_count;                  ///< how many of the first items the report packed
-  std::optional<double> reported_filling_percent;   ///< report Table 7, row I.AM.
+  std::optional<double> task_stiffness;            ///< 1/s^2, overrides the controller's
+  std::optional<int> packed_count;                 ///< how many of the first items the report packed
+  std::optional<double> reported_filling_percent;  ///< report Table 7, row I.AM.
   bool operator==(const Sequence&) const = default;
 };
 

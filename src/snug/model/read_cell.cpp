@@ -10,7 +10,8 @@ namespace snug::model::internal {
 namespace {
 
 void check_inside(const Value& at, const Vector3& size, const Vector3& point, const std::string& what) {
-  if (((point.cwiseAbs() - 0.5 * size).array() > 1e-9).any()) at.fail(what + " inside the box, from its middle, in metres");
+  if (((point.cwiseAbs() - 0.5 * size).array() > 1e-9).any())
+    at.fail(what + " inside the box, from its middle, in metres");
 }
 
 Layer read_layer(const Value& value, const Scenario& scenario, const Vector3& box_size) {
@@ -22,7 +23,8 @@ Layer read_layer(const Value& value, const Scenario& scenario, const Vector3& bo
     const Value name = map.require("material");
     const std::vector<Material>& all = scenario.materials;
     const auto found = std::find_if(all.begin(), all.end(), [&](const Material& m) { return m.name == name.name(); });
-    if (found == all.end()) fail_unknown_name(name, "material", names_of(all, [](const Material& m) { return m.name; }));
+    if (found == all.end())
+      fail_unknown_name(name, "material", names_of(all, [](const Material& m) { return m.name; }));
     if (!found->density) name.fail("a material with a density (key 'density' in materials), or density here");
     layer.density = *found->density;
   }
@@ -40,9 +42,12 @@ Shell read_shell(const MapReader& map, const Vector3& size, double layers_mass, 
   if (!(2.0 * shell.thickness < size.minCoeff())) map.require("thickness").fail("less than half the smallest edge");
   const auto mass = map.find("mass");
   if (mass && total) mass->fail("a mass for the shell and for the box", "one of the two");
-  if (mass) shell.mass = mass->mass();
-  else if (total) shell.mass = *total - layers_mass;
-  else (void)map.require("mass");
+  if (mass)
+    shell.mass = mass->mass();
+  else if (total)
+    shell.mass = *total - layers_mass;
+  else
+    (void)map.require("mass");
   if (!(shell.mass > 0.0))
     map.self().fail("layers of " + to_text(layers_mass) + " kg in a box of " + to_text(total.value_or(0.0)) + " kg",
                     "layers lighter than the box");
@@ -55,8 +60,7 @@ void check_elasticity(const Value& at, const CupElasticity& e, const std::string
   if ((may_be_zero || is_positive) && (room > 0.0 || (may_be_zero && room >= 0.0))) return;
   at.fail("lateral " + to_text(e.lateral) + ", axial " + to_text(e.axial) + ", bend " + to_text(e.bend) + ", torsion " +
               to_text(e.torsion) + ", coupling " + to_text(e.coupling),
-          may_be_zero ? what + " with lateral * bend >= coupling^2"
-                      : what + " > 0 with lateral * bend > coupling^2");
+          may_be_zero ? what + " with lateral * bend >= coupling^2" : what + " > 0 with lateral * bend > coupling^2");
 }
 
 }  // namespace
@@ -197,8 +201,7 @@ void ScenarioReader::read_controller(const Value& value) {
       MoveLimits limit;
       const Value prefix = row.require("prefix");
       limit.prefix = prefix.name();
-      for (const MoveLimits& known : controller.limits)
-        check_new_name(prefix, "limit", known.prefix == limit.prefix);
+      for (const MoveLimits& known : controller.limits) check_new_name(prefix, "limit", known.prefix == limit.prefix);
       for (const std::string& key : field_keys<MoveLimits>()) (void)row.require(key);
       read_fields(row, limit);
       controller.limits.push_back(limit);

@@ -208,8 +208,7 @@ void ScenarioReader::read_body_inertia(const MapReader& map, const Parcel* parce
 }
 
 void ScenarioReader::read_spring(const Value& value) {
-  const MapReader map =
-      value.map("spring", {"name", "body", "attachment", "stiffness", "damping", "holder", "moves"});
+  const MapReader map = value.map("spring", {"name", "body", "attachment", "stiffness", "damping", "holder", "moves"});
   Spring spring;
   const Value name = map.require("name");
   for (const Spring& known : scenario_.springs) check_new_name(name, "spring", known.name == name.name());

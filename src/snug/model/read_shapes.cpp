@@ -134,8 +134,8 @@ Matrix3 read_inertia(const Value& value) {
   Matrix3 inertia;
   inertia << e[0], e[3], e[4], e[3], e[1], e[5], e[4], e[5], e[2];
   const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-  const std::string got = "principal moments " + to_text(moments(0)) + ", " + to_text(moments(1)) + ", " +
-                          to_text(moments(2));
+  const std::string got =
+      "principal moments " + to_text(moments(0)) + ", " + to_text(moments(1)) + ", " + to_text(moments(2));
   // Eigenvalues ascend. A flat plate meets the triangle inequality with equality; 1e-6 leaves room for its rounding.
   if (!(moments(0) > 1e-12 * moments(2))) value.fail(got, "a positive definite inertia");
   if (!(moments(2) <= (moments(0) + moments(1)) * (1.0 + 1e-6)))

@@ -85,7 +85,8 @@ Scenario load_scenario(const std::filesystem::path& path) {
     throw InputError(path.string(), "", "no readable file", "a scenario file (YAML)");
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
-  if (!(text << file.rdbuf())) throw InputError(path.string(), "", "a file that is empty or cannot be read", "YAML text");
+  if (!(text << file.rdbuf()))
+    throw InputError(path.string(), "", "a file that is empty or cannot be read", "YAML text");
   Scenario scenario = parse_scenario(text.str(), path.string());
   if (scenario.name == scenario.source_name) scenario.name = path.stem().string();
   return scenario;

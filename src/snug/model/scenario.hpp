@@ -18,9 +18,9 @@ namespace snug::model {
 
 struct SleepSettings {
   bool enabled = true;
-  double linear_speed = 0.002;   ///< m/s, a body slower than both speeds is calm
-  double angular_speed = 0.02;   ///< rad/s
-  double time = 0.25;            ///< s, calm this long: the island falls asleep
+  double linear_speed = 0.002;  ///< m/s, a body slower than both speeds is calm
+  double angular_speed = 0.02;  ///< rad/s
+  double time = 0.25;           ///< s, calm this long: the island falls asleep
 
   template <class Archive>
   void fields(Archive& a) {
@@ -33,11 +33,11 @@ struct SleepSettings {
 };
 
 struct SolverSettings {
-  double tolerance = 1.0e-5;               ///< m/s, natural-map residual of the contact velocities
-  int max_sweeps = 200;                   ///< Gauss-Seidel sweeps before a step gives up and says so
-  double contact_margin = 0.002;           ///< m, pairs nearer than this are treated as contacts to come
-  double restitution_threshold = 0.05;     ///< m/s, slower approaches do not rebound
-  double position_slop = 1.0e-6;           ///< m, penetration that is left uncorrected
+  double tolerance = 1.0e-5;            ///< m/s, natural-map residual of the contact velocities
+  int max_sweeps = 200;                 ///< Gauss-Seidel sweeps before a step gives up and says so
+  double contact_margin = 0.002;        ///< m, pairs nearer than this are treated as contacts to come
+  double restitution_threshold = 0.05;  ///< m/s, slower approaches do not rebound
+  double position_slop = 1.0e-6;        ///< m, penetration that is left uncorrected
   SleepSettings sleep;
 
   template <class Archive>

@@ -51,10 +51,8 @@ std::vector<PlacedShape> make_walls(const Container& container) {
   const double rim = container.inner_size.z();
   const double x = inner.x() + wall;
   const double y = inner.y() + wall;
-  return {make_slab({-x, -y, bottom}, {x, y, 0.0}),
-          make_slab({-x, -y, 0.0}, {-inner.x(), y, rim}),
-          make_slab({inner.x(), -y, 0.0}, {x, y, rim}),
-          make_slab({-inner.x(), -y, 0.0}, {inner.x(), -inner.y(), rim}),
+  return {make_slab({-x, -y, bottom}, {x, y, 0.0}), make_slab({-x, -y, 0.0}, {-inner.x(), y, rim}),
+          make_slab({inner.x(), -y, 0.0}, {x, y, rim}), make_slab({-inner.x(), -y, 0.0}, {inner.x(), -inner.y(), rim}),
           make_slab({-inner.x(), inner.y(), 0.0}, {inner.x(), y, rim})};
 }
 

@@ -20,20 +20,28 @@ constexpr std::size_t kLongestName = 120;
 
 std::string_view range_text(Range range) {
   switch (range) {
-    case Range::Any: return "a finite number";
-    case Range::Positive: return "a number > 0";
-    case Range::NotNegative: return "a number >= 0";
-    case Range::Fraction: return "a number from 0 to 1";
+    case Range::Any:
+      return "a finite number";
+    case Range::Positive:
+      return "a number > 0";
+    case Range::NotNegative:
+      return "a number >= 0";
+    case Range::Fraction:
+      return "a number from 0 to 1";
   }
   return "";
 }
 
 bool is_within(double x, Range range) {
   switch (range) {
-    case Range::Any: return true;
-    case Range::Positive: return x > 0.0;
-    case Range::NotNegative: return x >= 0.0;
-    case Range::Fraction: return x >= 0.0 && x <= 1.0;
+    case Range::Any:
+      return true;
+    case Range::Positive:
+      return x > 0.0;
+    case Range::NotNegative:
+      return x >= 0.0;
+    case Range::Fraction:
+      return x >= 0.0 && x <= 1.0;
   }
   return false;
 }
@@ -102,9 +110,7 @@ double Value::number_within(double low, double high, const std::string& what) co
 
 double Value::size() const { return number_within(kSmallestSize, kLargestSize, "a size in metres"); }
 
-double Value::mass() const {
-  return number_within(kSmallestMass, kLargestMass, "a mass in kg");
-}
+double Value::mass() const { return number_within(kSmallestMass, kLargestMass, "a mass in kg"); }
 
 double Value::radians_from_degrees(Range range) const {
   const double degrees = number(range);

@@ -7,10 +7,10 @@ namespace snug::physics {
 
 /// Where the carrier (frame E) and the body are, at one instant. World frame W throughout.
 struct ElementQuery {
-  Pose X_WE;      ///< carrier
-  Twist V_WE;     ///< its twist, at E's origin, in W
-  Pose X_WB;      ///< body frame
-  Twist V_WB;     ///< body twist, linear part at the origin of B, in W
+  Pose X_WE;                         ///< carrier
+  Twist V_WE;                        ///< its twist, at E's origin, in W
+  Pose X_WB;                         ///< body frame
+  Twist V_WB;                        ///< body twist, linear part at the origin of B, in W
   Vector3 p_WBcm = Vector3::Zero();  ///< the body's centre of mass, m
 };
 

@@ -44,8 +44,12 @@ void keep_impulses(WorldState& state, Scratch& work, double dt) {
     const Vector3 impulse = row.lambda[0] * patch.n + row.lambda[1] * patch.t1 + row.lambda[2] * patch.t2;
     const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
     state.pairs[patch.pair].points[static_cast<std::size_t>(contact.point)].impulse_A = a.R_WB.transpose() * impulse;
+    const double limit = row.mu * row.lambda[0];
+    const double tangential = row.lambda[1] * row.lambda[1] + row.lambda[2] * row.lambda[2];
+    // Sliding impulses are projected onto the disc: they are on its edge up to rounding.
+    const bool slides = row.lambda[0] > 0.0 && tangential >= limit * limit * (1.0 - 1e-9);
     work.reports[static_cast<std::size_t>(row.contact)] = {
-        BodyId{patch.body_a}, BodyId{patch.body_b}, contact.p_WQ, patch.n, impulse / dt, contact.phi};
+        BodyId{patch.body_a}, BodyId{patch.body_b}, contact.p_WQ, patch.n, impulse / dt, contact.phi, slides};
   }
 }
 
@@ -118,8 +122,8 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
   for (const ElementUse& use : input.elements) wake(state, use.body);
   for (const ExternalWrench& wrench : input.wrenches) wake(state, wrench.body);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    is_anything_moving |= model.bodies[i].kind == BodyKind::Dynamic && state.bodies[i].is_present &&
-                          state.bodies[i].sleep_group < 0;
+    is_anything_moving |=
+        model.bodies[i].kind == BodyKind::Dynamic && state.bodies[i].is_present && state.bodies[i].sleep_group < 0;
   }
   for (const KinematicTarget& target : input.kinematic) {
     const BodyState& body = state.bodies[static_cast<std::size_t>(target.body.index)];
@@ -155,8 +159,7 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
   return true;
 }
 
-void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
-              StepReport& report) {
+void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report) {
   keep_impulses(state, work, model.settings.dt);
   for (int i = 0; i < work.active_count; ++i) {
     const int index = work.active[static_cast<std::size_t>(i)];

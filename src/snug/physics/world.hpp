@@ -26,45 +26,45 @@ enum class BodyKind { Static, Kinematic, Dynamic };
 /// One convex part of a body.
 struct Geom {
   geometry::Shape shape;
-  Pose X_BG;                         ///< in the body frame
-  int material = 0;                  ///< index into WorldModel::laws
-  bool touches_held_body = true;     ///< false: ignores the body named in WorldInput::held
+  Pose X_BG;                      ///< in the body frame
+  int material = 0;               ///< index into WorldModel::laws
+  bool touches_held_body = true;  ///< false: ignores the body named in WorldInput::held
   bool operator==(const Geom&) const = default;
 };
 
 struct BodyModel {
   std::string name;
   BodyKind kind = BodyKind::Dynamic;
-  SpatialInertia inertia;            ///< used by dynamic bodies only
+  SpatialInertia inertia;  ///< used by dynamic bodies only
   std::vector<Geom> geoms;
-  Pose X_WB;                         ///< at the start; static bodies keep it
+  Pose X_WB;  ///< at the start; static bodies keep it
   bool operator==(const BodyModel&) const = default;
 };
 
 /// What happens where two materials touch.
 struct ContactLaw {
-  double friction = 0.3;             ///< Coulomb coefficient, exact disc
-  double restitution = 0.0;          ///< Newton's coefficient, applied above the threshold speed
-  double stiffness = 0.0;            ///< N/m of one contact patch; 0: rigid
-  double damping = 0.0;              ///< N s/m of one contact patch, with stiffness only
+  double friction = 0.3;     ///< Coulomb coefficient, exact disc
+  double restitution = 0.0;  ///< Newton's coefficient, applied above the threshold speed
+  double stiffness = 0.0;    ///< N/m of one contact patch; 0: rigid
+  double damping = 0.0;      ///< N s/m of one contact patch, with stiffness only
   bool operator==(const ContactLaw&) const = default;
 };
 
 struct SleepSettings {
   bool enabled = true;
-  double linear_speed = 1e-3;        ///< m/s, below it a body may fall asleep
-  double angular_speed = 1e-2;       ///< rad/s
-  double time = 0.25;                ///< s, that all bodies of an island must stay below both
+  double linear_speed = 1e-3;   ///< m/s, below it a body may fall asleep
+  double angular_speed = 1e-2;  ///< rad/s
+  double time = 0.25;           ///< s, that all bodies of an island must stay below both
   bool operator==(const SleepSettings&) const = default;
 };
 
 struct StepSettings {
-  double dt = 1e-3;                  ///< s
-  double tolerance = 1e-7;           ///< m/s, natural-map residual at which the contact solver stops
-  int max_sweeps = 400;              ///< a step that needs more says so
+  double dt = 1e-3;                     ///< s
+  double tolerance = 1e-7;              ///< m/s, natural-map residual at which the contact solver stops
+  int max_sweeps = 400;                 ///< a step that needs more says so
   double restitution_threshold = 0.05;  ///< m/s, slower impacts are plastic
-  double position_slop = 1e-7;       ///< m, penetration that is left alone
-  double contact_margin = 1e-3;      ///< m, manifolds are kept from this distance on
+  double position_slop = 1e-7;          ///< m, penetration that is left alone
+  double contact_margin = 1e-3;         ///< m, manifolds are kept from this distance on
   SleepSettings sleep;
   bool operator==(const StepSettings&) const = default;
 };
@@ -90,8 +90,8 @@ struct WorldModel {
     double radius = 0.0;                        ///< m, farthest point from the centre of mass
     bool operator==(const MassProperties&) const = default;
   };
-  std::vector<GeomRef> geoms;        ///< all geoms, by body
-  std::vector<int> first_geom;       ///< of each body, and one past the end
+  std::vector<GeomRef> geoms;   ///< all geoms, by body
+  std::vector<int> first_geom;  ///< of each body, and one past the end
   std::vector<MassProperties> masses;
   std::size_t pair_capacity = 0;
 
@@ -108,16 +108,16 @@ struct BodyState {
   Quaternion quat_WB = Quaternion::Identity();
   Vector3 velocity = Vector3::Zero();
   Vector3 angular_velocity = Vector3::Zero();
-  double slow_time = 0.0;            ///< s, since when the body has been slow
-  int sleep_group = -1;              ///< bodies that fell asleep together; -1: awake
-  bool is_present = true;            ///< absent bodies touch nothing and do not move
+  double slow_time = 0.0;  ///< s, since when the body has been slow
+  int sleep_group = -1;    ///< bodies that fell asleep together; -1: awake
+  bool is_present = true;  ///< absent bodies touch nothing and do not move
   bool operator==(const BodyState& other) const;
 };
 
 /// One touching point of a pair, remembered from step to step.
 struct PairPoint {
-  Vector3 p_A = Vector3::Zero();     ///< on A, in A's body frame
-  Vector3 p_B = Vector3::Zero();     ///< on B, in B's body frame
+  Vector3 p_A = Vector3::Zero();        ///< on A, in A's body frame
+  Vector3 p_B = Vector3::Zero();        ///< on B, in B's body frame
   Vector3 impulse_A = Vector3::Zero();  ///< N s on B in the last step, in A's body frame
   std::uint32_t feature = 0;
   bool operator==(const PairPoint&) const = default;
@@ -128,10 +128,10 @@ struct PairState {
   std::uint32_t geom_a = 0, geom_b = 0;
   geometry::PairCache cache;
   int count = 0;
-  bool is_known = false;             ///< the manifold below belongs to the relative pose below
+  bool is_known = false;  ///< the manifold below belongs to the relative pose below
   Vector3 p_AB = Vector3::Zero();
   Quaternion quat_AB = Quaternion::Identity();
-  Vector3 n_A = Vector3::UnitZ();    ///< from A to B, in A's body frame
+  Vector3 n_A = Vector3::UnitZ();  ///< from A to B, in A's body frame
   std::array<PairPoint, geometry::kMaxManifoldPoints> points;
   bool operator==(const PairState& other) const;
 };
@@ -146,8 +146,8 @@ struct FatBox {
 struct WorldState {
   std::int64_t step_index = 0;
   std::vector<BodyState> bodies;
-  std::vector<FatBox> fat_boxes;                 ///< of each geom
-  BoundedVector<PairState> pairs;                ///< sorted by (geom_a, geom_b)
+  std::vector<FatBox> fat_boxes;   ///< of each geom
+  BoundedVector<PairState> pairs;  ///< sorted by (geom_a, geom_b)
 
   [[nodiscard]] double time(const WorldModel& model) const {
     return static_cast<double>(step_index) * model.settings.dt;
@@ -158,15 +158,15 @@ struct WorldState {
 /// Motion of a kinematic body during one step.
 struct KinematicTarget {
   BodyId body;
-  Pose X_WB_end;                     ///< at the end of the step
+  Pose X_WB_end;  ///< at the end of the step
 };
 
 /// A force element between a kinematic carrier and a dynamic body.
 struct ElementUse {
   const ForceElement* element = nullptr;
-  BodyId carrier;                    ///< kinematic
-  Pose X_CE;                         ///< element's frame E in the carrier
-  BodyId body;                       ///< dynamic
+  BodyId carrier;  ///< kinematic
+  Pose X_CE;       ///< element's frame E in the carrier
+  BodyId body;     ///< dynamic
 };
 
 /// Constant wrench during one step, about the body's centre of mass, in W.
@@ -179,35 +179,36 @@ struct WorldInput {
   std::span<const KinematicTarget> kinematic;
   std::span<const ElementUse> elements;
   std::span<const ExternalWrench> wrenches;
-  BodyId held;                       ///< geoms with touches_held_body == false ignore it
+  BodyId held;  ///< geoms with touches_held_body == false ignore it
 };
 
 enum class StepStatus {
   Converged,
-  NotConverged,   ///< contact solver stopped at max_sweeps; the state is usable, the residual says how good
-  NotFinite,      ///< a body's state is not a number; stop the run
-  LostBody,       ///< a body is farther than 1 km from the origin; stop the run
-  TooManyPairs,   ///< more pairs near each other than pair_capacity; stop the run
+  NotConverged,  ///< contact solver stopped at max_sweeps; the state is usable, the residual says how good
+  NotFinite,     ///< a body's state is not a number; stop the run
+  LostBody,      ///< a body is farther than 1 km from the origin; stop the run
+  TooManyPairs,  ///< more pairs near each other than pair_capacity; stop the run
 };
 
 struct StepReport {
   StepStatus status = StepStatus::Converged;
-  int sweeps = 0;                    ///< largest of all islands
-  double residual = 0.0;             ///< m/s, natural map, worst contact
-  int contacts = 0;                  ///< points given to the solver
-  int awake = 0;                     ///< dynamic bodies that moved
-  double worst_penetration = 0.0;    ///< m, rigid contacts, at the start of the step
-  double element_residual = 0.0;     ///< m/s, of the implicit force elements
-  BodyId culprit;                    ///< with NotFinite and LostBody
+  int sweeps = 0;                  ///< largest of all islands
+  double residual = 0.0;           ///< m/s, natural map of the worst contact, or a bound on it (contact.md, 4)
+  int contacts = 0;                ///< points given to the solver
+  int awake = 0;                   ///< dynamic bodies that moved
+  double worst_penetration = 0.0;  ///< m, rigid contacts, at the start of the step
+  double element_residual = 0.0;   ///< m/s, of the implicit force elements
+  BodyId culprit;                  ///< with NotFinite and LostBody
 };
 
 /// A touching point of the last step, for recordings and measurements.
 struct ContactReport {
   BodyId a, b;
-  Vector3 p_WQ = Vector3::Zero();    ///< m
+  Vector3 p_WQ = Vector3::Zero();  ///< m
   Vector3 n_AB_W = Vector3::UnitZ();
-  Vector3 force_W = Vector3::Zero(); ///< N, on B
-  double phi = 0.0;                  ///< m, at the start of the step
+  Vector3 force_W = Vector3::Zero();  ///< N, on B
+  double phi = 0.0;                   ///< m, at the start of the step
+  bool slides = false;                ///< friction is at its limit
 };
 
 namespace internal {

@@ -22,7 +22,8 @@ const model::Sequence& sequence_of(const model::Scenario& scenario, const std::s
   if (const model::Sequence* sequence = model::find_sequence(scenario, name)) return *sequence;
   std::vector<std::string> names;
   for (const model::Sequence& sequence : scenario.sequences) names.push_back(sequence.name);
-  throw InputError(scenario.source_name, "--sequence", "'" + name + "'", "one of " + fmt::format("{}", fmt::join(names, ", ")));
+  throw InputError(scenario.source_name, "--sequence", "'" + name + "'",
+                   "one of " + fmt::format("{}", fmt::join(names, ", ")));
 }
 
 motion::Program corrected(const model::Scenario& scenario, const RunOptions& options) {
@@ -266,10 +267,10 @@ std::string describe_failure(const CellWorld& world, const physics::WorldState& 
     return fmt::format("t = {:.3f} s: more pairs of bodies near each other than there is room for",
                        state.time(world.model));
   }
-  std::string text = fmt::format(
-      "t = {:.3f} s: {} of body '{}'", state.time(world.model),
-      report.status == physics::StepStatus::NotFinite ? "the state is not a number any more" : "lost track",
-      world.model.bodies[static_cast<std::size_t>(report.culprit.index)].name);
+  std::string text =
+      fmt::format("t = {:.3f} s: {} of body '{}'", state.time(world.model),
+                  report.status == physics::StepStatus::NotFinite ? "the state is not a number any more" : "lost track",
+                  world.model.bodies[static_cast<std::size_t>(report.culprit.index)].name);
   for (const physics::ContactReport& contact : work.contacts()) {
     if (contact.a != report.culprit && contact.b != report.culprit) continue;
     text += fmt::format("; contact {} - {} at ({:.4f}, {:.4f}, {:.4f}), gap {:.3g} m, force {:.3g} N",

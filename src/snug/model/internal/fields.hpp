@@ -44,7 +44,7 @@ class FieldReader {
     if (const auto value = map_.find(key)) field.radians = value->radians_from_degrees(range);
   }
   template <class Settings>
-    requires std::is_class_v<Settings>
+  requires std::is_class_v<Settings>
   void operator()(const char* key, Settings& field) {
     if (const auto value = map_.find(key)) read_fields(*value, key, field);
   }

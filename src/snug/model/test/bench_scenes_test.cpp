@@ -8,7 +8,9 @@
 namespace snug::model {
 namespace {
 
-Scenario bench(const std::string& name) { return load_scenario(test::project_file("scenarios/bench/" + name + ".yaml")); }
+Scenario bench(const std::string& name) {
+  return load_scenario(test::project_file("scenarios/bench/" + name + ".yaml"));
+}
 
 TEST(ShippedScenarios, AllLoad) {
   const auto files = test::shipped_scenarios();
@@ -93,7 +95,8 @@ TEST(BenchScenes, S6PressesABoxIntoGapsOfTheStatedWidth) {
     const double left = find_body(s, "left")->X_WB.p.x() + 0.085;
     const double right = find_body(s, "right")->X_WB.p.x() - 0.085;
     EXPECT_NEAR(right - left, gap, 1e-12);
-    EXPECT_NEAR(find_body(s, "left")->X_WB.p.x() - 0.085 - (find_body(s, "wall-left")->X_WB.p.x() + 0.025), 0.020, 1e-12);
+    EXPECT_NEAR(find_body(s, "left")->X_WB.p.x() - 0.085 - (find_body(s, "wall-left")->X_WB.p.x() + 0.025), 0.020,
+                1e-12);
     const Spring& press = s.springs.at(0);
     // The path ends 2 mm below touching: centre at 45 mm. A box flat on the neighbours is then 96 mm above it, so each
     // of the two carries (5000 * 0.096 + 0.95 * 9.81) / 2 = 244.7 N.

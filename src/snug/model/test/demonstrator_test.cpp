@@ -173,8 +173,8 @@ TEST(Demonstrator, PutsEveryBoxOnTheBeltWithoutTouchingAnythingElse) {
         // And the whole bottom face is over the belt.
         const Body& belt = *find_body(s, "conveyor");
         const Vector3 half_W = 0.5 * (X_WP.R.cwiseAbs() * find_parcel(s, item.parcel)->size);
-        const Vector3 room = std::get<geometry::Box>(belt.shapes[0].shape).half - half_W -
-                             (X_WP.p - belt.X_WB.p).cwiseAbs();
+        const Vector3 room =
+            std::get<geometry::Box>(belt.shapes[0].shape).half - half_W - (X_WP.p - belt.X_WB.p).cwiseAbs();
         EXPECT_GT(std::min(room.x(), room.y()), 0.0) << item.parcel;
       }
 }

@@ -14,12 +14,23 @@ std::string mutated(std::string text, Rng& rng) {
   for (int i = 0; i < changes && !text.empty(); ++i) {
     const std::size_t at = place();
     switch (rng.index(6)) {
-      case 0: text.resize(at); break;
-      case 1: text[at] = kBits[static_cast<std::size_t>(rng.index(static_cast<int>(kBits.size())))]; break;
-      case 2: text[at] = static_cast<char>(rng.index(256)); break;
-      case 3: text.erase(at, 1 + static_cast<std::size_t>(rng.index(40))); break;
-      case 4: text.insert(at, text.substr(place(), static_cast<std::size_t>(rng.index(80)))); break;
-      default: text.insert(at, 1, kBits[static_cast<std::size_t>(rng.index(static_cast<int>(kBits.size())))]);
+      case 0:
+        text.resize(at);
+        break;
+      case 1:
+        text[at] = kBits[static_cast<std::size_t>(rng.index(static_cast<int>(kBits.size())))];
+        break;
+      case 2:
+        text[at] = static_cast<char>(rng.index(256));
+        break;
+      case 3:
+        text.erase(at, 1 + static_cast<std::size_t>(rng.index(40)));
+        break;
+      case 4:
+        text.insert(at, text.substr(place(), static_cast<std::size_t>(rng.index(80))));
+        break;
+      default:
+        text.insert(at, 1, kBits[static_cast<std::size_t>(rng.index(static_cast<int>(kBits.size())))]);
     }
   }
   return text;

@@ -25,7 +25,8 @@ Pose random_pose(Rng& rng) {
 
 TEST(LayeredInertia, OfOneLayerAboutItsOwnCentreIsThatOfACuboid) {
   const Vector3 size(0.2, 0.3, 0.01);
-  const SpatialInertia body = compute_layered_inertia({0.3, 0.4, 0.2}, std::nullopt, {{620.0, size, {0.0, 0.0, -0.05}}});
+  const SpatialInertia body =
+      compute_layered_inertia({0.3, 0.4, 0.2}, std::nullopt, {{620.0, size, {0.0, 0.0, -0.05}}});
   EXPECT_DOUBLE_EQ(body.mass, 620.0 * 0.2 * 0.3 * 0.01);
   EXPECT_NEAR(body.com.z(), -0.05, 1e-15);
   EXPECT_TRUE(body.inertia.isApprox(cuboid_inertia(size, body.mass), 1e-14));

@@ -46,8 +46,8 @@ TEST(StandingPose, PutsTheCornerOfABoxAtTheAlignersOriginForEveryOrientation) {
         Vector3 low_A = Vector3::Constant(1e9);
         double low_W = 1e9;
         for (int i = 0; i < 8; ++i) {
-          const Vector3 corner = 0.5 * Vector3((i & 1 ? 1 : -1) * size.x(), (i & 2 ? 1 : -1) * size.y(),
-                                               (i & 4 ? 1 : -1) * size.z());
+          const Vector3 corner =
+              0.5 * Vector3((i & 1 ? 1 : -1) * size.x(), (i & 2 ? 1 : -1) * size.y(), (i & 4 ? 1 : -1) * size.z());
           low_A = low_A.cwiseMin(X_AP * corner);
           low_W = std::min(low_W, (X_WP * corner).z());
         }

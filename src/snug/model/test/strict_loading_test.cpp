@@ -86,7 +86,8 @@ TEST(StrictLoading, NamesTheNearestKeyWhenAKeyIsUnknown) {
 }
 
 TEST(StrictLoading, RefusesAKeyGivenTwice) {
-  expect_complaint(replaced(kText, "    type: B1\n    material: box\n    inertia", "    type: B1\n    type: B1\n    material: box\n    inertia"),
+  expect_complaint(replaced(kText, "    type: B1\n    material: box\n    inertia",
+                            "    type: B1\n    type: B1\n    material: box\n    inertia"),
                    {"    type: B1\n    material: box\n    inertia", "parcels[0].type", "a second time", "once"});
 }
 
@@ -117,7 +118,8 @@ TEST(StrictLoading, RefusesAWrongTypeOrUnit) {
 TEST(StrictLoading, RefusesNumbersThatAreNotFinite) {
   for (const std::string word : {".nan", "nan", ".inf", "-inf", "1e999", "~"}) {
     SCOPED_TRACE(word);
-    expect_complaint(replaced(kText, "mass: 2\n", "mass: " + word + "\n"), {"mass: " + word, "bodies[1].mass", "", "number"});
+    expect_complaint(replaced(kText, "mass: 2\n", "mass: " + word + "\n"),
+                     {"mass: " + word, "bodies[1].mass", "", "number"});
     expect_complaint(replaced(kText, "com: [0, 0, -0.03]", "com: [0, 0, " + word + "]"),
                      {"com: [0", "parcels[0].com[2]", "", "number"});
   }
@@ -192,7 +194,8 @@ TEST(StrictLoading, RefusesABoxThatFitsTheContainerInNoOrientation) {
 TEST(StrictLoading, RefusesNamesUsedTwice) {
   expect_complaint(replaced(kText, "{name: wood, density", "{name: box, density"),
                    {"density", "materials[1].name", "'box' a second time", "no other material"});
-  expect_complaint(replaced(kText, "  - id: BOX2\n    type", "  - type"), {"  - type", "parcels[1].id", "nothing", "required"});
+  expect_complaint(replaced(kText, "  - id: BOX2\n    type", "  - type"),
+                   {"  - type", "parcels[1].id", "nothing", "required"});
   expect_complaint(replaced(kText, "id: BOX2", "id: BOX1 # again"),
                    {"# again", "parcels[1].id", "'BOX1' a second time", "no other parcel"});
   expect_complaint(replaced(kText, "name: cube", "name: tote # again"),
@@ -273,7 +276,7 @@ TEST(StrictLoading, ReportsWhatIsNotYaml) {
   EXPECT_EQ(error_of("just words").expected, "a mapping");
   EXPECT_EQ(error_of("- 1\n- 2\n").got, "a list of 2");
   EXPECT_EQ(error_of("name: a\n---\nname: b\n").where, "test.yaml:2");
-  EXPECT_EQ(error_of("name: a\n]\nseed: 1\n").where, "test.yaml:2");  // YAML::Load would drop the rest
+  EXPECT_EQ(error_of("name: a\n]\nseed: 1\n").where, "test.yaml:2");            // YAML::Load would drop the rest
   EXPECT_EQ(error_of(",ame: a\nseed: 1\n").where.substr(0, 10), "test.yaml:");  // YAML::LoadAll would not return
   EXPECT_EQ(error_of("? [a, b]\n: 1\n").expected, "a key in words");
 }

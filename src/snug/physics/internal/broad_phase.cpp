@@ -12,9 +12,9 @@ using geometry::Box;
 using geometry::Capsule;
 using geometry::ConvexHull;
 
-constexpr double kFatMargin = 0.008;    ///< m, around the tight box
-constexpr double kLookAhead = 0.03;     ///< s, of motion that the fat box covers
-constexpr std::size_t kBruteForce = 96; ///< geoms; above it pairs are found by a sweep along x
+constexpr double kFatMargin = 0.008;     ///< m, around the tight box
+constexpr double kLookAhead = 0.03;      ///< s, of motion that the fat box covers
+constexpr std::size_t kBruteForce = 96;  ///< geoms; above it pairs are found by a sweep along x
 
 FatBox tight_box(const geometry::Shape& shape, const Matrix3& R_WG, const Vector3& p_WG) {
   if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
@@ -97,9 +97,8 @@ bool add_key(const WorldModel& model, const WorldState& state, Scratch& work, in
 
 bool find_pairs_by_sweep(const WorldModel& model, const WorldState& state, Scratch& work) {
   const auto lower = [&state](int g) { return state.fat_boxes[static_cast<std::size_t>(g)].lower.x(); };
-  std::sort(work.sweep_order.begin(), work.sweep_order.end(), [&lower](int a, int b) {
-    return lower(a) != lower(b) ? lower(a) < lower(b) : a < b;
-  });
+  std::sort(work.sweep_order.begin(), work.sweep_order.end(),
+            [&lower](int a, int b) { return lower(a) != lower(b) ? lower(a) < lower(b) : a < b; });
   for (std::size_t i = 0; i < work.sweep_order.size(); ++i) {
     const int a = work.sweep_order[i];
     const double end = state.fat_boxes[static_cast<std::size_t>(a)].upper.x();
@@ -138,8 +137,8 @@ bool merge_pairs(WorldState& state, Scratch& work) {
   for (const std::uint64_t key : work.keys) {
     const auto a = static_cast<std::uint32_t>(key >> 32);
     const auto b = static_cast<std::uint32_t>(key);
-    while (old < state.pairs.size() && key_of(static_cast<int>(state.pairs[old].geom_a),
-                                              static_cast<int>(state.pairs[old].geom_b)) < key) {
+    while (old < state.pairs.size() &&
+           key_of(static_cast<int>(state.pairs[old].geom_a), static_cast<int>(state.pairs[old].geom_b)) < key) {
       ++old;
     }
     if (old < state.pairs.size() && state.pairs[old].geom_a == a && state.pairs[old].geom_b == b) {

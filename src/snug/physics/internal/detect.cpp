@@ -9,10 +9,10 @@ namespace {
 
 // A manifold is kept while its bodies moved less than this relative to each other since it was found. Its gaps are
 // still followed exactly to first order; the neglected part is angle^2 * size, below 1e-8 m for a 0.3 m box.
-constexpr double kKeepDistance = 5e-5;      ///< m
-constexpr double kKeepHalfAngle = 5e-5;     ///< rad/2
-constexpr double kTouchGap = 1e-5;          ///< m, a pair nearer than this at the end of a step wakes sleepers
-constexpr double kMatchDistance = 4e-3;     ///< m, impulses are handed to a new feature this near to an old one
+constexpr double kKeepDistance = 5e-5;   ///< m
+constexpr double kKeepHalfAngle = 5e-5;  ///< rad/2
+constexpr double kTouchGap = 1e-5;       ///< m, a pair nearer than this at the end of a step wakes sleepers
+constexpr double kMatchDistance = 4e-3;  ///< m, impulses are handed to a new feature this near to an old one
 
 struct PairBodies {
   int a, b;
@@ -111,8 +111,8 @@ void tangents_of(const Vector3& n, Vector3& t1, Vector3& t2) {
 }
 
 /// Adds the pair's points that can matter within this step. Returns whether one of them touches.
-bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32_t index, double reach,
-                  PairState& pair, Scratch& work) {
+bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32_t index, double reach, PairState& pair,
+                  Scratch& work) {
   const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
   const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
   const Vector3 n = a.R_WB * pair.n_A;

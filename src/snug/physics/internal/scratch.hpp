@@ -12,26 +12,26 @@ namespace snug::physics::internal {
 /// Pose and velocity of a body during the step, world frame.
 struct BodyWork {
   Matrix3 R_WB = Matrix3::Identity();
-  Vector3 p_WB = Vector3::Zero();           ///< origin of B
-  Vector3 p_WBcm = Vector3::Zero();         ///< the point its velocity belongs to
-  Vector3 velocity_start = Vector3::Zero(); ///< of that point; kinematic bodies: the mean over the step
+  Vector3 p_WB = Vector3::Zero();            ///< origin of B
+  Vector3 p_WBcm = Vector3::Zero();          ///< the point its velocity belongs to
+  Vector3 velocity_start = Vector3::Zero();  ///< of that point; kinematic bodies: the mean over the step
   Vector3 angular_start = Vector3::Zero();
-  Vector3 velocity = Vector3::Zero();       ///< at the end of the step; before the solver: without contacts
+  Vector3 velocity = Vector3::Zero();  ///< at the end of the step; before the solver: without contacts
   Vector3 angular = Vector3::Zero();
-  double speed = 0.0;                       ///< bound on the speed of any of its points, m/s
-  int active = -1;                          ///< index among the bodies that move in this step
-  bool is_moving = false;                   ///< dynamic and awake, or kinematic with a motion
+  double speed = 0.0;      ///< bound on the speed of any of its points, m/s
+  int active = -1;         ///< index among the bodies that move in this step
+  bool is_moving = false;  ///< dynamic and awake, or kinematic with a motion
   bool has_element = false;
-  bool has_result = false;                  ///< velocity holds the answer of the contact solver
+  bool has_result = false;  ///< velocity holds the answer of the contact solver
 };
 
 /// Maps impulses to velocities of one moving body: v = T u with T T^T = inverse mass, so that every row of the
 /// contact problem is J T and the mass disappears from the sweeps.
 struct Whitening {
   bool is_dense = false;
-  double linear = 0.0;                      ///< 1/sqrt(mass)
-  Matrix3 angular = Matrix3::Zero();        ///< R_WI diag(1/sqrt(I))
-  Matrix6 dense = Matrix6::Zero();          ///< T of a body with an implicit force element
+  double linear = 0.0;                ///< 1/sqrt(mass)
+  Matrix3 angular = Matrix3::Zero();  ///< R_WI diag(1/sqrt(I))
+  Matrix6 dense = Matrix6::Zero();    ///< T of a body with an implicit force element
 };
 
 /// The contacts of one pair: they share bodies, normal and law.
@@ -41,7 +41,7 @@ struct Patch {
   int first_contact = 0;
   int contact_count = 0;
   int island = 0;
-  Vector3 n = Vector3::UnitZ();             ///< from A to B, W
+  Vector3 n = Vector3::UnitZ();  ///< from A to B, W
   Vector3 t1 = Vector3::UnitX(), t2 = Vector3::UnitY();
   const ContactLaw* law = nullptr;
 };
@@ -50,33 +50,33 @@ struct Patch {
 struct Contact {
   Vector3 p_WQ = Vector3::Zero();
   double phi = 0.0;
-  double approach = 0.0;                    ///< normal relative velocity at the start of the step, m/s
+  double approach = 0.0;  ///< normal relative velocity at the start of the step, m/s
   int patch = 0;
-  int point = 0;                            ///< of the pair's manifold
+  int point = 0;  ///< of the pair's manifold
 };
 
 /// One frictional contact in whitened coordinates: rows n, t1, t2.
 struct alignas(16) Row {
-  double a[3][6];                           ///< of body A (zero when A does not move)
+  double a[3][6];  ///< of body A (zero when A does not move)
   double b[3][6];
-  double W[6];                              ///< Delassus block: nn, n1, n2, 11, 12, 22 (with regularisation in nn)
+  double W[6];  ///< Delassus block: nn, n1, n2, 11, 12, 22 (with regularisation in nn)
   double W_inverse[6];
-  double lambda[3];                         ///< impulses, N s
-  double bias[3];                           ///< relative velocity from kinematic bodies, m/s
-  double target;                            ///< least allowed normal velocity (regularised when compliant), m/s
-  double gamma;                             ///< compliance in nn, (m/s)/(N s)
+  double lambda[3];  ///< impulses, N s
+  double bias[3];    ///< relative velocity from kinematic bodies, m/s
+  double target;     ///< least allowed normal velocity (regularised when compliant), m/s
+  double gamma;      ///< compliance in nn, (m/s)/(N s)
   double mu;
-  double step_t;                            ///< 1 / largest eigenvalue of the tangential block
-  double gap_end;                           ///< wanted gap after the step, m
+  double step_t;   ///< 1 / largest eigenvalue of the tangential block
+  double gap_end;  ///< wanted gap after the step, m
   double position_lambda;
-  std::int32_t ia, ib;                      ///< active body or -1
+  std::int32_t ia, ib;  ///< active body or -1
   std::int32_t contact;
   bool is_rigid;
   bool is_bounce;
 };
 
 struct Island {
-  int first_patch = 0;                      ///< in Scratch::patch_order
+  int first_patch = 0;  ///< in Scratch::patch_order
   int end_patch = 0;
   int first_row = 0;
   int end_row = 0;
@@ -88,24 +88,24 @@ struct Scratch {
   explicit Scratch(const WorldModel& model);
 
   std::vector<BodyWork> bodies;
-  std::vector<int> active;                  ///< bodies that move in this step; [0, active_count)
+  std::vector<int> active;  ///< bodies that move in this step; [0, active_count)
   int active_count = 0;
-  std::vector<Whitening> whitening;         ///< by active index
-  std::vector<double> u;                    ///< 6 per active body
-  std::vector<double> shift;                ///< 6 per active body, position correction in whitened coordinates
-  std::vector<int> parent;                  ///< union-find over active bodies
+  std::vector<Whitening> whitening;  ///< by active index
+  std::vector<double> u;             ///< 6 per active body
+  std::vector<double> shift;         ///< 6 per active body, position correction in whitened coordinates
+  std::vector<int> parent;           ///< union-find over active bodies
   std::vector<int> island_of_root;
   BoundedVector<Patch> patches;
-  BoundedVector<Contact> contacts;          ///< by patch
-  std::vector<int> patch_order;             ///< patches by island
+  BoundedVector<Contact> contacts;  ///< by patch
+  std::vector<int> patch_order;     ///< patches by island
   BoundedVector<Row> rows;
   BoundedVector<ContactReport> reports;
   std::vector<Island> islands;
   int island_count = 0;
-  std::vector<int> element_order;           ///< elements by island
+  std::vector<int> element_order;  ///< elements by island
   int element_count = 0;
 
-  BoundedVector<PairState> merged_pairs;    ///< broad phase
+  BoundedVector<PairState> merged_pairs;  ///< broad phase
   std::vector<std::uint64_t> keys;
   std::vector<int> moved;
   std::vector<char> is_moved;

@@ -46,8 +46,8 @@ void unwhiten(const Whitening& whitening, const double* u, Vector3& linear, Vect
 struct Side {
   int active = -1;
   Vector3 p_WBcm;
-  double linear[3][3];                       ///< L_i; unused when dense
-  Eigen::Matrix<double, 9, 3> angular;       ///< G_i stacked: row 3 i + j is (d_i x t_j), t_j columns of the whitening
+  double linear[3][3];                  ///< L_i; unused when dense
+  Eigen::Matrix<double, 9, 3> angular;  ///< G_i stacked: row 3 i + j is (d_i x t_j), t_j columns of the whitening
   const Whitening* whitening = nullptr;
   double sign = 1.0;
 };
@@ -234,8 +234,8 @@ BodyForces evaluate_elements(const WorldModel& model, const WorldInput& input, c
 /// A body with elements in Newton's method: its forces at the middle of the step, linear in the velocity at its end.
 struct ElementBody {
   int body = -1;
-  BodyForces forces;                    ///< at `velocity`
-  Vector6 velocity = Vector6::Zero();   ///< guess of the velocity at the end of the step
+  BodyForces forces;                   ///< at `velocity`
+  Vector6 velocity = Vector6::Zero();  ///< guess of the velocity at the end of the step
 };
 
 /// -d wrench / d velocity at the end of the step: the middle moves by dt/4 and half the velocity of the end.
@@ -251,8 +251,7 @@ double evaluate_body(const WorldModel& model, const WorldInput& input, const Scr
   const BodyForces now = evaluate_elements(model, input, work, island, element.body);
   Vector6 velocity;
   velocity << b.velocity, b.angular;
-  const Vector6 predicted =
-      element.forces.wrench - resistance(element.forces, dt) * (velocity - element.velocity);
+  const Vector6 predicted = element.forces.wrench - resistance(element.forces, dt) * (velocity - element.velocity);
   const Vector6 miss = dt * (now.wrench - predicted);
   element.forces = now;
   element.velocity = velocity;
@@ -372,8 +371,7 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
     report.sweeps = std::max(report.sweeps, result.sweeps);
     for (int i = 0; i < bodies.count; ++i) {
       BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.items[static_cast<std::size_t>(i)].body)];
-      unwhiten(work.whitening[static_cast<std::size_t>(b.active)], work.u.data() + 6 * b.active, b.velocity,
-               b.angular);
+      unwhiten(work.whitening[static_cast<std::size_t>(b.active)], work.u.data() + 6 * b.active, b.velocity, b.angular);
     }
   }
   report.residual = std::max(report.residual, result.residual);

@@ -113,9 +113,9 @@ TEST(Bounce, ReachesTheHeightThatNewtonSays) {
 }
 
 TEST(Stack, RestsWithoutDriftAndCarriesItsWeight) {
-  const WorldModel model = on_plane({0.2, 0.05, 0.0, 0.0}, {box(kB1, 0.55, {0.0, 0.0, 0.0485}),
-                                                            box(kB1, 0.55, {0.02, 0.01, 0.1455}),
-                                                            box(kB1, 0.55, {-0.01, 0.02, 0.2425})});
+  const WorldModel model =
+      on_plane({0.2, 0.05, 0.0, 0.0}, {box(kB1, 0.55, {0.0, 0.0, 0.0485}), box(kB1, 0.55, {0.02, 0.01, 0.1455}),
+                                       box(kB1, 0.55, {-0.01, 0.02, 0.2425})});
   Simulation run(model);
   run.steps(1000);
   const Vector3 before = run.body(3).p_WBcm;
@@ -213,9 +213,9 @@ TEST(Snapshot, ContinuesWithTheSameBytes) {
 }
 
 WorldModel sleeping_pair() {
-  WorldModel model = on_plane({0.2, 0.05, 0.0, 0.0},
-                              {box(kB1, 0.55, {0.0, 0.0, 0.0485}), box(kB1, 0.55, {0.0, 0.0, 0.1455}),
-                               box(kB1, 0.55, {0.01, 0.0, 1.0})});
+  WorldModel model = on_plane(
+      {0.2, 0.05, 0.0, 0.0},
+      {box(kB1, 0.55, {0.0, 0.0, 0.0485}), box(kB1, 0.55, {0.0, 0.0, 0.1455}), box(kB1, 0.55, {0.01, 0.0, 1.0})});
   model.settings.sleep.enabled = true;
   return model;
 }
