@@ -97,7 +97,7 @@ std::span<const ContactReport> Workspace::contacts() const {
   return {scratch_->reports.begin(), scratch_->reports.size()};
 }
 
-internal::Scratch::Scratch(const WorldModel& model) {
+internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size()) {
   const std::size_t n = model.bodies.size();
   const std::size_t geom_count = model.geoms.size();
   // A box touches about ten others with four points each; small worlds get room for every pair.

@@ -7,51 +7,6 @@
 namespace snug::physics::internal {
 namespace {
 
-using Pair = double __attribute__((vector_size(16)));
-
-inline Pair load(const double* p) { return *reinterpret_cast<const Pair*>(p); }
-inline void store(double* p, Pair value) { *reinterpret_cast<Pair*>(p) = value; }
-
-inline Pair dot(const double* row, const double* u) {
-  return load(row) * load(u) + load(row + 2) * load(u + 2) + load(row + 4) * load(u + 4);
-}
-
-inline void add_scaled(double* u, const double (&rows)[3][6], const double (&d)[3]) {
-  const Pair d0{d[0], d[0]}, d1{d[1], d[1]}, d2{d[2], d[2]};
-  for (int k = 0; k < 6; k += 2) {
-    store(u + k, load(u + k) + (load(rows[0] + k) * d0 + load(rows[1] + k) * d1 + load(rows[2] + k) * d2));
-  }
-}
-
-inline void contact_velocity(const Row& row, const double* u, double (&xi)[3]) {
-  Pair s0{}, s1{}, s2{};
-  if (row.ia >= 0) {
-    const double* ua = u + 6 * row.ia;
-    s0 = dot(row.a[0], ua), s1 = dot(row.a[1], ua), s2 = dot(row.a[2], ua);
-  }
-  if (row.ib >= 0) {
-    const double* ub = u + 6 * row.ib;
-    s0 += dot(row.b[0], ub), s1 += dot(row.b[1], ub), s2 += dot(row.b[2], ub);
-  }
-  xi[0] = row.bias[0] + (s0[0] + s0[1]);
-  xi[1] = row.bias[1] + (s1[0] + s1[1]);
-  xi[2] = row.bias[2] + (s2[0] + s2[1]);
-}
-
-inline void apply(const Row& row, const double (&d)[3], double* u) {
-  if (row.ia >= 0) add_scaled(u + 6 * row.ia, row.a, d);
-  if (row.ib >= 0) add_scaled(u + 6 * row.ib, row.b, d);
-}
-
-inline void project_to_disc(double radius, double& x, double& y) {
-  const double square = x * x + y * y;
-  if (square > radius * radius) {
-    const double scale = radius / std::sqrt(square);
-    x *= scale;
-    y *= scale;
-  }
-}
-
 /// Impulses of a sliding contact: a few exact alternations of the normal and the tangential law.
 inline void solve_sliding(const Row& row, const double (&xi)[3], double (&lambda)[3]) {
   const double* W = row.W;
@@ -102,27 +57,7 @@ inline double relax(Row& row, double* u) {
   return std::max({row.W[0] * std::abs(d[0]), row.W[3] * std::abs(d[1]), row.W[5] * std::abs(d[2])});
 }
 
-/// Alart-Curnier natural map of one contact in units of velocity: zero exactly at a solution.
-inline double natural_map(const Row& row, const double* u) {
-  double xi[3];
-  contact_velocity(row, u, xi);
-  const double normal = xi[0] - row.target + row.gamma * row.lambda[0];
-  const double rn = std::abs(row.lambda[0] - std::max(0.0, row.lambda[0] - normal / row.W[0])) * row.W[0];
-  double p1 = row.lambda[1] - row.step_t * xi[1];
-  double p2 = row.lambda[2] - row.step_t * xi[2];
-  project_to_disc(row.mu * row.lambda[0], p1, p2);
-  const double r1 = row.lambda[1] - p1, r2 = row.lambda[2] - p2;
-  return std::max(rn, std::sqrt(r1 * r1 + r2 * r2) / row.step_t);
-}
-
 }  // namespace
-
-double relative_velocity(const Row& row, int axis, const double* u) noexcept {
-  Pair s{};
-  if (row.ia >= 0) s = dot(row.a[axis], u + 6 * row.ia);
-  if (row.ib >= 0) s += dot(row.b[axis], u + 6 * row.ib);
-  return row.bias[axis] + (s[0] + s[1]);
-}
 
 void finish_row(Row& row) noexcept {
   double* W = row.W;
@@ -148,26 +83,30 @@ void finish_row(Row& row) noexcept {
   row.step_t = 1.0 / (mean + std::sqrt(half * half + W[4] * W[4]));
 }
 
-SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, double* u) noexcept {
+SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, double* u, NewtonScratch& newton) noexcept {
+  constexpr int kSweepsBeforeNewton = 20;
   for (Row* row = first; row != end; ++row) apply(*row, row->lambda, u);  // warm start
   SolveResult result;
-  while (result.sweeps < settings.max_sweeps) {
+  while (result.iterations < settings.max_sweeps) {
     double change = 0.0;
-    if (result.sweeps % 2 == 0) {
+    if (result.iterations % 2 == 0) {
       for (Row* row = first; row != end; ++row) change = std::max(change, relax(*row, u));
     } else {
       for (Row* row = end; row != first;) change = std::max(change, relax(*--row, u));
     }
-    ++result.sweeps;
+    ++result.iterations;
     result.residual = change;
-    if (change > settings.tolerance) continue;
-    // A contact satisfies its law right after its visit; later visits moved it by at most the sum of their changes.
-    result.residual = change * static_cast<double>(end - first);
+    if (change <= settings.tolerance) {
+      // A contact satisfies its law right after its visit; later visits moved it by at most the sum of their changes.
+      result.residual = change * static_cast<double>(end - first);
+      if (result.residual <= settings.tolerance) return result;
+      result.residual = worst_residual(first, end, u);
+      if (result.residual <= settings.tolerance) return result;
+    }
+    if (result.iterations != kSweepsBeforeNewton) continue;
+    result.iterations += newton_rows(settings.tolerance, first, end, u, newton);
+    result.residual = worst_residual(first, end, u);
     if (result.residual <= settings.tolerance) return result;
-    double residual = 0.0;
-    for (const Row* row = first; row != end; ++row) residual = std::max(residual, natural_map(*row, u));
-    result.residual = residual;
-    if (residual <= settings.tolerance) return result;
   }
   result.has_converged = false;
   return result;

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "snug/core/bounded_vector.hpp"
+#include "snug/physics/internal/contact_newton.hpp"
+#include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/world.hpp"
 
 namespace snug::physics::internal {
@@ -55,26 +57,6 @@ struct Contact {
   int point = 0;  ///< of the pair's manifold
 };
 
-/// One frictional contact in whitened coordinates: rows n, t1, t2.
-struct alignas(16) Row {
-  double a[3][6];  ///< of body A (zero when A does not move)
-  double b[3][6];
-  double W[6];  ///< Delassus block: nn, n1, n2, 11, 12, 22 (with regularisation in nn)
-  double W_inverse[6];
-  double lambda[3];  ///< impulses, N s
-  double bias[3];    ///< relative velocity from kinematic bodies, m/s
-  double target;     ///< least allowed normal velocity (regularised when compliant), m/s
-  double gamma;      ///< compliance in nn, (m/s)/(N s)
-  double mu;
-  double step_t;   ///< 1 / largest eigenvalue of the tangential block
-  double gap_end;  ///< wanted gap after the step, m
-  double position_lambda;
-  std::int32_t ia, ib;  ///< active body or -1
-  std::int32_t contact;
-  bool is_rigid;
-  bool is_bounce;
-};
-
 struct Island {
   int first_patch = 0;  ///< in Scratch::patch_order
   int end_patch = 0;
@@ -99,6 +81,7 @@ struct Scratch {
   BoundedVector<Contact> contacts;  ///< by patch
   std::vector<int> patch_order;     ///< patches by island
   BoundedVector<Row> rows;
+  NewtonScratch newton;
   BoundedVector<ContactReport> reports;
   std::vector<Island> islands;
   int island_count = 0;
@@ -135,15 +118,14 @@ void end_step(const WorldModel& model, const WorldInput& input, WorldState& stat
 // The contact problem of one island (contact_solver.cpp).
 
 struct SolveResult {
-  int sweeps = 0;
+  int iterations = 0;  ///< sweeps of Gauss-Seidel and steps of Newton's method
   double residual = 0.0;
   bool has_converged = true;
 };
-[[nodiscard]] SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, double* u) noexcept;
+[[nodiscard]] SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, double* u,
+                                     NewtonScratch& newton) noexcept;
 /// Displacements that close the position errors of rigid contacts with the least kinetic measure.
 void correct_positions(const StepSettings& settings, Row* first, Row* end, const Contact* contacts, const double* u,
                        double* shift) noexcept;
-void finish_row(Row& row) noexcept;
-[[nodiscard]] double relative_velocity(const Row& row, int axis, const double* u) noexcept;
 
 }  // namespace snug::physics::internal

@@ -329,8 +329,8 @@ void solve_plain_island(const WorldModel& model, const WorldState& state, Scratc
                         StepReport& report) {
   build_rows(model, state, work, island, true);
   const SolveResult result = solve_rows(model.settings, work.rows.begin() + island.first_row,
-                                        work.rows.begin() + island.end_row, work.u.data());
-  report.sweeps = std::max(report.sweeps, result.sweeps);
+                                        work.rows.begin() + island.end_row, work.u.data(), work.newton);
+  report.sweeps = std::max(report.sweeps, result.iterations);
   report.residual = std::max(report.residual, result.residual);
   if (!result.has_converged) report.status = StepStatus::NotConverged;
 }
@@ -367,8 +367,8 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
     }
     reset_plain_bodies(work, island);
     build_rows(model, state, work, island, iteration == 0);
-    if (first != end) result = solve_rows(model.settings, first, end, work.u.data());
-    report.sweeps = std::max(report.sweeps, result.sweeps);
+    if (first != end) result = solve_rows(model.settings, first, end, work.u.data(), work.newton);
+    report.sweeps = std::max(report.sweeps, result.iterations);
     for (int i = 0; i < bodies.count; ++i) {
       BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.items[static_cast<std::size_t>(i)].body)];
       unwhiten(work.whitening[static_cast<std::size_t>(b.active)], work.u.data() + 6 * b.active, b.velocity, b.angular);

@@ -1,0 +1,105 @@
+// Contact row: one frictional contact in whitened coordinates, and its small kernels.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace snug::physics::internal {
+
+/// One frictional contact in whitened coordinates: rows n, t1, t2.
+struct alignas(16) Row {
+  double a[3][6];  ///< of body A (zero when A does not move)
+  double b[3][6];
+  double W[6];  ///< Delassus block: nn, n1, n2, 11, 12, 22 (with regularisation in nn)
+  double W_inverse[6];
+  double lambda[3];  ///< impulses, N s
+  double bias[3];    ///< relative velocity from kinematic bodies, m/s
+  double target;     ///< least allowed normal velocity (regularised when compliant), m/s
+  double gamma;      ///< compliance in nn, (m/s)/(N s)
+  double mu;
+  double step_t;   ///< 1 / largest eigenvalue of the tangential block
+  double gap_end;  ///< wanted gap after the step, m
+  double position_lambda;
+  std::int32_t ia, ib;  ///< active body or -1
+  std::int32_t contact;
+  bool is_rigid;
+  bool is_bounce;
+};
+
+using Pair = double __attribute__((vector_size(16)));
+
+inline Pair load(const double* p) { return *reinterpret_cast<const Pair*>(p); }
+inline void store(double* p, Pair value) { *reinterpret_cast<Pair*>(p) = value; }
+
+inline Pair dot(const double* row, const double* u) {
+  return load(row) * load(u) + load(row + 2) * load(u + 2) + load(row + 4) * load(u + 4);
+}
+
+inline void add_scaled(double* u, const double (&rows)[3][6], const double (&d)[3]) {
+  const Pair d0{d[0], d[0]}, d1{d[1], d[1]}, d2{d[2], d[2]};
+  for (int k = 0; k < 6; k += 2) {
+    store(u + k, load(u + k) + (load(rows[0] + k) * d0 + load(rows[1] + k) * d1 + load(rows[2] + k) * d2));
+  }
+}
+
+inline void contact_velocity(const Row& row, const double* u, double (&xi)[3]) {
+  Pair s0{}, s1{}, s2{};
+  if (row.ia >= 0) {
+    const double* ua = u + 6 * row.ia;
+    s0 = dot(row.a[0], ua), s1 = dot(row.a[1], ua), s2 = dot(row.a[2], ua);
+  }
+  if (row.ib >= 0) {
+    const double* ub = u + 6 * row.ib;
+    s0 += dot(row.b[0], ub), s1 += dot(row.b[1], ub), s2 += dot(row.b[2], ub);
+  }
+  xi[0] = row.bias[0] + (s0[0] + s0[1]);
+  xi[1] = row.bias[1] + (s1[0] + s1[1]);
+  xi[2] = row.bias[2] + (s2[0] + s2[1]);
+}
+
+inline void apply(const Row& row, const double (&d)[3], double* u) {
+  if (row.ia >= 0) add_scaled(u + 6 * row.ia, row.a, d);
+  if (row.ib >= 0) add_scaled(u + 6 * row.ib, row.b, d);
+}
+
+inline void project_to_disc(double radius, double& x, double& y) {
+  const double square = x * x + y * y;
+  if (square > radius * radius) {
+    const double scale = radius / std::sqrt(square);
+    x *= scale;
+    y *= scale;
+  }
+}
+
+/// Alart-Curnier natural map of one contact in units of velocity: zero exactly at a solution.
+inline double natural_map(const Row& row, const double* u) {
+  double xi[3];
+  contact_velocity(row, u, xi);
+  const double normal = xi[0] - row.target + row.gamma * row.lambda[0];
+  const double rn = std::abs(row.lambda[0] - std::max(0.0, row.lambda[0] - normal / row.W[0])) * row.W[0];
+  double p1 = row.lambda[1] - row.step_t * xi[1];
+  double p2 = row.lambda[2] - row.step_t * xi[2];
+  project_to_disc(row.mu * row.lambda[0], p1, p2);
+  const double r1 = row.lambda[1] - p1, r2 = row.lambda[2] - p2;
+  return std::max(rn, std::sqrt(r1 * r1 + r2 * r2) / row.step_t);
+}
+
+inline double worst_residual(const Row* first, const Row* end, const double* u) {
+  double worst = 0.0;
+  for (const Row* row = first; row != end; ++row) worst = std::max(worst, natural_map(*row, u));
+  return worst;
+}
+
+/// Relative velocity along one axis.
+inline double relative_velocity(const Row& row, int axis, const double* u) {
+  Pair s{};
+  if (row.ia >= 0) s = dot(row.a[axis], u + 6 * row.ia);
+  if (row.ib >= 0) s += dot(row.b[axis], u + 6 * row.ib);
+  return row.bias[axis] + (s[0] + s[1]);
+}
+
+/// Delassus block, its inverse and the tangential step, from a, b and gamma.
+void finish_row(Row& row) noexcept;
+
+}  // namespace snug::physics::internal
