@@ -102,6 +102,22 @@ void edge_ends(const Vector3& half, int e, Vector3& p, Vector3& q) noexcept {
   }
 }
 
+/// An edge almost flat on a face touches along the whole of it: the polygon over the face that is nearly square to the
+/// normal, when there is one and the polygon holds the point that the axis belongs to.
+bool near_face_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& call, Manifold& out) noexcept {
+  const Vector3 n_B = pair.R_AB.transpose() * chosen.n_A;
+  const int axis_A = largest(chosen.n_A), axis_B = largest(n_B);
+  const double cosine_A = std::abs(chosen.n_A[axis_A]), cosine_B = std::abs(n_B[axis_B]);
+  if (std::max(cosine_A, cosine_B) <= kNearFaceCosine) return false;
+  const bool ref_is_A = cosine_A >= cosine_B;
+  const int face = ref_is_A ? box_face(axis_A, chosen.n_A[axis_A] > 0.0) : box_face(axis_B, n_B[axis_B] < 0.0);
+  BoxPolygon polygon;
+  clip(pair, ref_is_A, face, chosen.n_A, call.swapped, polygon);
+  if (polygon.count < 2 || std::abs(polygon.least_phi - chosen.separation) >= kMiss) return false;
+  emit_polygon(call, polygon, ref_is_A, face, ref_is_A ? pair.half_A : pair.half_B, chosen.n_A, out);
+  return true;
+}
+
 /// Two edges that cross. False when the edges do not meet across the axis, unless `forced`.
 bool edge_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& call, bool forced,
                   Manifold& out) noexcept {
@@ -113,17 +129,7 @@ bool edge_contact(const BoxPair& pair, const BoxAxis& chosen, const PairCall& ca
   const SegmentPair crossing = crossing_points(a0, a1, b0, b1, chosen.separation * chosen.n_A);
   const double miss = (crossing.p_b - crossing.p_a - chosen.separation * chosen.n_A).norm();
   if (miss > kMiss && !forced) return false;
-  const Vector3 n_B = pair.R_AB.transpose() * chosen.n_A;
-  const int axis_A = largest(chosen.n_A);
-  if (std::abs(chosen.n_A[axis_A]) > kNearFaceCosine && std::abs(n_B[largest(n_B)]) > kNearFaceCosine) {
-    const int face = box_face(axis_A, chosen.n_A[axis_A] > 0.0);
-    BoxPolygon polygon;
-    clip(pair, true, face, chosen.n_A, call.swapped, polygon);
-    if (polygon.count > 1 && std::abs(polygon.least_phi - chosen.separation) < kMiss) {
-      emit_polygon(call, polygon, true, face, pair.half_A, chosen.n_A, out);
-      return true;
-    }
-  }
+  if (near_face_contact(pair, chosen, call, out)) return true;
   const Vector3 n_W = call.X_WA.R * chosen.n_A;
   const Vector3 p_WA = call.X_WA * crossing.p_a;
   set_normal(call.swapped, n_W, out);

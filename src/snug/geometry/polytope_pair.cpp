@@ -196,18 +196,33 @@ bool face_contact(const PolytopePair& pair, const PolytopeAxis& chosen, double s
   return true;
 }
 
-/// The polygon of two faces nearly square to n, when it holds the point at `distance` that n belongs to.
+/// The polygon over the face nearly square to n, when there is one and it holds the point at `distance` that n belongs
+/// to.
 bool near_face_contact(const PolytopePair& pair, const Vector3& n, double distance, const PairCall& call,
                        Manifold& out) noexcept {
-  const int face = pair.A.face_along(n);
-  if (pair.A.normal(face).dot(n) <= kNearFaceCosine) return false;
+  const int face_A = pair.A.face_along(n);
+  const double cosine_A = pair.A.normal(face_A).dot(n);
+  int face = face_A;
+  bool ref_is_A = true;
+  double cosine = cosine_A;
   if (!pair.B.is_segment()) {
-    if (pair.B.normal(pair.B.face_along(-n)).dot(n) >= -kNearFaceCosine) return false;
+    const int face_B = pair.B.face_along(-n);
+    const double cosine_B = -pair.B.normal(face_B).dot(n);
+    if (cosine_B > cosine_A) {
+      face = face_B;
+      ref_is_A = false;
+      cosine = cosine_B;
+    }
   }
+  if (cosine <= kNearFaceCosine) return false;
   ClipPolygon polygon;
-  clip_faces({pair.A, face, pair.B, n, !call.swapped}, polygon);
+  if (ref_is_A) {
+    clip_faces({pair.A, face, pair.B, n, !call.swapped}, polygon);
+  } else {
+    clip_faces({pair.B, face, pair.A, -n, call.swapped}, polygon);
+  }
   if (polygon.count < 2 || std::abs(polygon.least_phi - distance) > kMiss) return false;
-  emit_polygon(pair, call, n, true, polygon, out);
+  emit_polygon(pair, call, n, ref_is_A, polygon, out);
   return true;
 }
 

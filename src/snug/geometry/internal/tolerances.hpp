@@ -20,7 +20,7 @@ inline constexpr double kSnap = 1e-5;
 /// sin^2 of the angle between two edges below which their cross product is no axis. Skipping it costs at most
 /// 2e-7 times the size of the shape in depth.
 inline constexpr double kParallelSquared = 1e-14;
-/// Both faces within this cosine of an edge-edge normal: the contact keeps the polygon of the faces.
+/// A face within this cosine of an edge-edge normal: the contact keeps the polygon over the face.
 inline constexpr double kNearFaceCosine = 0.99;
 /// Features meet across an axis when their points miss each other by less than this [m], sideways.
 inline constexpr double kMiss = 1e-9;

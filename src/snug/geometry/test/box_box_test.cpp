@@ -121,6 +121,21 @@ TEST(BoxBox, LeaningOverARimByATinyAngleKeepsItsPolygonAndTheDepthOfTheCrossingE
   EXPECT_GT(m.n_AB_W.z(), 0.99999);
 }
 
+TEST(BoxBox, FaceLeaningOnARimKeepsBothEndsOfTheRimWhileItRocks) {
+  const Shape wall = Box{{0.005, 0.2, 0.1}};
+  const double rock = 0.004;
+  for (const double gap : {-1e-4, 5e-4}) {  // overlapping at one end, and apart
+    const Matrix3 R = exp_rotation({0, kPi / 6, 0}) * exp_rotation({rock, 0, 0});
+    const Pose X_WB{R, Vector3(0.005, 0, 0.1) + R * Vector3(0, 0, 0.05 + gap)};
+    const Manifold m = collide_once(wall, at(0, 0, 0), kBox, X_WB, 2e-3);
+    ASSERT_EQ(m.count, 2) << gap;
+    const auto [low, high] = std::minmax(m.points[0].phi, m.points[1].phi);
+    // The rim crosses 2 x 80 mm of the face, which turns away from it; second order in the angle is left out.
+    EXPECT_NEAR(low, gap - 0.08 * rock, 0.08 * rock * rock) << gap;
+    EXPECT_NEAR(high, gap + 0.08 * rock, 2.0 * 0.08 * rock * rock) << gap;
+  }
+}
+
 TEST(BoxBox, AnswersTheSameInAnyFrame) {
   Rng rng(11);
   const test::PairMaker maker(1, 50);
