@@ -69,6 +69,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   if (options.cup) run.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;
   run.version = SNUG_VERSION;
+  run.describe = [](const cell::RunResult& result) { return format_json(result); };
   if (options.record) run.record_path = *options.record;
   return run;
 }

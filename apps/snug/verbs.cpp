@@ -4,6 +4,7 @@
 #include "bench.hpp"
 #include "cup.hpp"
 #include "program.hpp"
+#include "report.hpp"
 #include "simulate.hpp"
 
 namespace snug::app {
@@ -11,6 +12,7 @@ namespace snug::app {
 void add_verbs(CLI::App& app, Action& action) {
   add_simulate(app, action);
   add_program(app, action);
+  add_report(app, action);
   add_cup(app, action);
   add_bench(app, action);
 }

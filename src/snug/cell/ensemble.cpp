@@ -62,6 +62,7 @@ EnsembleResult run_ensemble(const model::Scenario& scenario, const RunOptions& o
                             const EnsembleOptions& ensemble) {
   RunOptions unrecorded = options;
   unrecorded.record_path.clear();
+  unrecorded.observer = nullptr;
   EnsembleResult result;
   result.runs.resize(static_cast<std::size_t>(ensemble.count));
   std::vector<std::exception_ptr> errors(result.runs.size());

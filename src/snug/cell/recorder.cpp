@@ -99,9 +99,22 @@ void fill_cup(const CellWorld& world, const physics::WorldState& state, const Fr
 }  // namespace
 
 Recorder::Recorder(const model::Scenario& scenario, const CellWorld& world, const RecorderSetup& setup)
-    : writer_(setup.path, header_of(scenario, world, setup)) {}
+    : observer_(setup.observer) {
+  const record::RecordingHeader header = header_of(scenario, world, setup);
+  if (!setup.path.empty()) writer_.emplace(setup.path, header);
+  if (observer_ != nullptr) observer_->begin(header);
+}
 
-void Recorder::add_frame(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
+void Recorder::add_event(const record::Event& event) {
+  if (writer_) writer_->append(event);
+  if (observer_ != nullptr) observer_->add(event);
+}
+
+void Recorder::close(const std::string& result_json) {
+  if (writer_) writer_->close(result_json);
+}
+
+bool Recorder::add_frame(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
                          const physics::StepReport& report, const FrameInput& input) {
   frame_.time = state.time(world.model);
   frame_.step = state.step_index;
@@ -139,7 +152,8 @@ void Recorder::add_frame(const CellWorld& world, const physics::WorldState& stat
   frame_.solver.status = report.contacts == 0                              ? record::SolverStatus::NothingToSolve
                          : report.status == physics::StepStatus::Converged ? record::SolverStatus::Converged
                                                                            : record::SolverStatus::NotConverged;
-  writer_.append(frame_);
+  if (writer_) writer_->append(frame_);
+  return observer_ == nullptr || observer_->add(frame_);
 }
 
 }  // namespace snug::cell

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "snug/cell/gripper.hpp"
 #include "snug/motion/controller.hpp"
@@ -10,9 +11,20 @@
 
 namespace snug::cell {
 
+/// Sees a run while it goes on: the same frames and events as a recording of it.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void begin(const record::RecordingHeader& header) = 0;
+  /// May take its time: the run waits. False: the run is to stop here.
+  virtual bool add(const record::Frame& frame) = 0;
+  virtual void add(const record::Event& event) = 0;
+};
+
 struct RecorderSetup {
-  std::filesystem::path path;
-  double period = 0.008;  ///< s between frames
+  std::filesystem::path path;       ///< HDF5, or empty: nothing is written
+  RunObserver* observer = nullptr;  ///< not owned
+  double period = 0.008;            ///< s between frames
   std::string program_text;
   std::string program_name;
   std::string sequence;
@@ -34,13 +46,16 @@ class Recorder {
  public:
   /// Throws InputError when the file cannot be written.
   Recorder(const model::Scenario& scenario, const CellWorld& world, const RecorderSetup& setup);
-  void add_frame(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
-                 const physics::StepReport& report, const FrameInput& input);
-  void add_event(const record::Event& event) { writer_.append(event); }
-  void close() { writer_.close(); }
+  /// False when the observer wants the run to stop.
+  [[nodiscard]] bool add_frame(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
+                               const physics::StepReport& report, const FrameInput& input);
+  void add_event(const record::Event& event);
+  /// `result_json` is kept in the recording.
+  void close(const std::string& result_json);
 
  private:
-  record::RecordingWriter writer_;
+  std::optional<record::RecordingWriter> writer_;
+  RunObserver* observer_ = nullptr;
   record::Frame frame_;
 };
 

@@ -3,14 +3,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "snug/cell/journey.hpp"
+#include "snug/cell/recorder.hpp"
 #include "snug/motion/controller.hpp"
 
 namespace snug::cell {
+
+struct RunResult;
 
 struct RunOptions {
   std::optional<motion::Program> program;  ///< none: bodies alone, for `until` seconds
@@ -23,6 +27,8 @@ struct RunOptions {
   std::optional<double> until;        ///< s; absent: to the end of the program, or the scenario's duration
   std::filesystem::path record_path;  ///< HDF5, or empty
   std::string version;                ///< for the recording
+  std::function<std::string(const RunResult&)> describe;  ///< JSON to keep in the recording, or none
+  RunObserver* observer = nullptr;                        ///< sees each frame and event, may stop the run; not owned
 };
 
 /// How well the contact solver did over a run.

@@ -161,6 +161,7 @@ struct RecordingReader::Impl {
   std::vector<Event> events;
   std::vector<double> times;
   bool is_complete = false;
+  std::string result;
   std::array<Handle, kFrameColumnCount> columns;
   Handle present, pose, twist;  ///< without bodies: not open
   Block block;
@@ -188,6 +189,7 @@ void RecordingReader::Impl::open() {
   }
   find_times();
   events = read_events(file.get());
+  if (has_link(file.get(), kResult)) result = read_text(file.get(), kResult);
 }
 
 /// Counts the frames that all columns have. Times that do not grow end the recording of a killed run, and mean that
@@ -312,6 +314,7 @@ const RecordingHeader& RecordingReader::header() const { return impl_->header; }
 const std::vector<Event>& RecordingReader::events() const { return impl_->events; }
 const std::vector<double>& RecordingReader::times() const { return impl_->times; }
 bool RecordingReader::is_complete() const { return impl_->is_complete; }
+const std::string& RecordingReader::result() const { return impl_->result; }
 
 std::size_t RecordingReader::find_frame(double time) const {
   const std::vector<double>& times = impl_->times;
@@ -327,7 +330,7 @@ void RecordingReader::read_frame(std::size_t index, Frame& frame) {
 
 Recording load_recording(const std::filesystem::path& path) {
   RecordingReader reader(path);
-  Recording recording{reader.header(), {}, reader.events(), reader.is_complete()};
+  Recording recording{reader.header(), {}, reader.events(), reader.is_complete(), reader.result()};
   recording.frames.resize(reader.frame_count());
   for (std::size_t i = 0; i < recording.frames.size(); ++i) reader.read_frame(i, recording.frames[i]);
   return recording;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "snug/record/recording.hpp"
@@ -28,6 +29,8 @@ class RecordingReader {
   [[nodiscard]] std::size_t frame_count() const { return times().size(); }
   /// False for the file of a run that was killed.
   [[nodiscard]] bool is_complete() const;
+  /// What became of the run (docs/formats.md, result), JSON; empty when the recording does not hold it.
+  [[nodiscard]] const std::string& result() const;
 
   /// Index of the last frame at or before `time`; the first frame for earlier times. Needs at least one frame.
   [[nodiscard]] std::size_t find_frame(double time) const;

@@ -170,6 +170,7 @@ struct Recording {
   std::vector<Event> events;
   /// Did the writer end in order? False for the file of a run that was killed.
   bool is_complete = true;
+  std::string result;  ///< what became of the run, JSON; empty when it was not stored
   bool operator==(const Recording&) const = default;
 };
 

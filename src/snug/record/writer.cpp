@@ -148,7 +148,7 @@ struct RecordingWriter::Impl {
   void put_frame(const Frame& frame);
   void put_bodies(const Frame& frame);
   void write();
-  void close(bool is_complete);
+  void close(bool is_complete, const std::string& result_json);
   /// Runs `work` with HDF5 quiet; its errors become InputErrors that name the file.
   template <class Work>
   void guarded(Work work) {
@@ -266,8 +266,9 @@ void RecordingWriter::Impl::write() {
   check(H5Fflush(output.file.get(), H5F_SCOPE_LOCAL), "flush");
 }
 
-void RecordingWriter::Impl::close(bool is_complete) {
+void RecordingWriter::Impl::close(bool is_complete, const std::string& result_json) {
   guarded([&] {
+    if (!result_json.empty()) write_text(output.file.get(), kResult, result_json);
     write();  // commits; only then may the file be called complete
     const auto complete = static_cast<std::uint8_t>(is_complete);
     update_attribute(output.file.get(), "complete", H5T_NATIVE_UINT8, &complete);
@@ -294,7 +295,7 @@ RecordingWriter::~RecordingWriter() {
   if (!impl_) return;
   const QuietErrors quiet;
   try {
-    impl_->close(false);
+    impl_->close(false, {});
   } catch (const InputError&) {  // nobody to tell; the file keeps what was written before
   }
   impl_.reset();
@@ -315,18 +316,18 @@ void RecordingWriter::flush() {
   impl_->guarded([&] { impl_->write(); });
 }
 
-void RecordingWriter::close() {
+void RecordingWriter::close(const std::string& result_json) {
   SNUG_CHECK(impl_ != nullptr, "recording is closed");
   const QuietErrors quiet;
   const std::unique_ptr<Impl> impl = std::move(impl_);
-  impl->close(true);
+  impl->close(true, result_json);
 }
 
 void save_recording(const std::filesystem::path& path, const Recording& recording) {
   RecordingWriter writer(path, recording.header);
   for (const Event& event : recording.events) writer.append(event);
   for (const Frame& frame : recording.frames) writer.append(frame);
-  writer.close();
+  writer.close(recording.result);
 }
 
 }  // namespace snug::record

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "snug/record/recording.hpp"
 
@@ -29,8 +30,9 @@ class RecordingWriter {
   void append(const Event& event);
   /// Writes out what is gathered so far.
   void flush();
-  /// Writes the rest, marks the recording complete and closes the file. Nothing may be appended afterwards.
-  void close();
+  /// Writes the rest and `result_json` (what became of the run; empty: nothing), marks the recording complete and
+  /// closes the file. Nothing may be appended afterwards.
+  void close(const std::string& result_json = {});
 
  private:
   struct Impl;

@@ -82,13 +82,13 @@ class ProgramRun {
         controller_(motion::make_controller_state(scenario.controller.X_WE_start)),
         gripper_(scenario.cup, options.cup, world_),
         journey_(scenario, sequence_, world_) {
-    if (!options.record_path.empty()) start_recording();
+    if (!options.record_path.empty() || options.observer != nullptr) start_recording();
   }
 
   RunResult run() {
     const auto start = std::chrono::steady_clock::now();
     RunResult result;
-    while (result.failure.empty()) {
+    while (result.failure.empty() && !is_stopped_) {
       const bool finished_now = advance_tick(result.failure);
       if (finished_now) break;
       if (options_.until && state_.time(world_.model) >= *options_.until) break;
@@ -96,14 +96,14 @@ class ProgramRun {
     }
     result.duration = state_.time(world_.model);
     const double settled = result.duration + kSettleTime;
-    while (result.failure.empty() && !options_.until && state_.time(world_.model) < settled) {
+    while (result.failure.empty() && !is_stopped_ && !options_.until && state_.time(world_.model) < settled) {
       (void)advance_tick(result.failure);
     }
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     result.wall = wall.count();
     result.real_time_factor = state_.time(world_.model) / result.wall;
-    if (recorder_) recorder_->close();
     fill(result);
+    if (recorder_) recorder_->close(options_.describe ? options_.describe(result) : "");
     return result;
   }
 
@@ -111,6 +111,7 @@ class ProgramRun {
   void start_recording() {
     RecorderSetup setup;
     setup.path = options_.record_path;
+    setup.observer = options_.observer;
     setup.period = scenario_.controller.tick;
     setup.program_text = options_.program_text;
     setup.program_name = options_.program->name;
@@ -169,10 +170,10 @@ class ProgramRun {
     }
     if (recorder_) {
       const FrameInput input{tool.X_WE, tool.V_WE, out.X_WE_reference, out.row, &grip_, command};
-      recorder_->add_frame(world_, state_, work_, report_, input);
       for (; recorded_events_ < journey_.events().size(); ++recorded_events_) {
         recorder_->add_event(journey_.events()[recorded_events_]);
       }
+      if (!recorder_->add_frame(world_, state_, work_, report_, input)) is_stopped_ = true;
     }
     return out.finished_now;
   }
@@ -234,6 +235,7 @@ class ProgramRun {
   Journey journey_;
   std::unique_ptr<Recorder> recorder_;
   std::size_t recorded_events_ = 0;
+  bool is_stopped_ = false;  ///< by the observer
   int waiting_item_ = -1;
   std::vector<GripperEvent> events_;
   physics::StepReport report_;

@@ -18,9 +18,10 @@ RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) 
   Scene scene(scenario);
   const double until = options.until.value_or(scenario.duration);
   std::unique_ptr<Recorder> recorder;
-  if (!options.record_path.empty()) {
+  if (!options.record_path.empty() || options.observer != nullptr) {
     RecorderSetup setup;
     setup.path = options.record_path;
+    setup.observer = options.observer;
     setup.period = std::max(kRecordPeriod, scenario.time_step);
     setup.version = options.version;
     recorder = std::make_unique<Recorder>(scenario, scene.world(), setup);
@@ -29,15 +30,15 @@ RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) 
   const auto steps = static_cast<std::int64_t>(std::ceil(until / scenario.time_step - 1e-9));
   StepMonitor monitor;
   RunResult result;
-  for (std::int64_t i = 0; i < steps && result.failure.empty(); ++i) {
+  bool is_stopped = false;  // by the observer
+  for (std::int64_t i = 0; i < steps && result.failure.empty() && !is_stopped; ++i) {
     const physics::StepReport report = scene.advance();
     monitor.add(report);
     result.failure = describe_failure(scene.world(), scene.state(), scene.work(), report);
     if (recorder && (i + 1) % stride == 0) {
-      recorder->add_frame(scene.world(), scene.state(), scene.work(), report, FrameInput{});
+      is_stopped = !recorder->add_frame(scene.world(), scene.state(), scene.work(), report, FrameInput{});
     }
   }
-  if (recorder) recorder->close();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   result.duration = scene.state().time(scene.world().model);
   result.wall = wall.count();
@@ -51,6 +52,7 @@ RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) 
                              physics::pose_of(scene.world().model, scene.state(), physics::BodyId{static_cast<int>(i)}),
                              scene.state().bodies[i].velocity.norm()});
   }
+  if (recorder) recorder->close(options.describe ? options.describe(result) : "");
   return result;
 }
 

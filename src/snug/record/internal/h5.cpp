@@ -156,6 +156,8 @@ std::string read_text(hid_t file, const char* path) {
   return texts[0];
 }
 
+bool has_link(hid_t file, const char* path) { return H5Lexists(file, path, H5P_DEFAULT) > 0; }
+
 Handle open_dataset(hid_t file, const char* path) { return {H5Dopen2(file, path, H5P_DEFAULT), path}; }
 
 Dims dims_of(hid_t dataset) {

@@ -97,6 +97,8 @@ void write_texts(hid_t file, const char* path, const std::vector<std::string>& t
 [[nodiscard]] std::string read_text(hid_t file, const char* path);
 [[nodiscard]] std::vector<std::string> read_texts(hid_t file, const char* path);
 
+/// Is there anything at this path of the root group?
+[[nodiscard]] bool has_link(hid_t file, const char* path);
 [[nodiscard]] Handle open_dataset(hid_t file, const char* path);
 [[nodiscard]] Dims dims_of(hid_t dataset);
 /// Rows [first, first + count) of the outermost dimension.

@@ -64,6 +64,7 @@ enum ContactColumn : std::size_t {
 // Fixed lengths: HDF5 keeps texts of any length in a heap without checksums, and crashes on a damaged one.
 inline constexpr std::size_t kEventWordBytes = 64;
 inline constexpr std::size_t kEventTextBytes = 1024;
+inline constexpr const char* kResult = "/result";
 inline constexpr const char* kEventTime = "/events/time";
 inline constexpr const char* kEventKind = "/events/kind";
 inline constexpr const char* kEventBody = "/events/body";

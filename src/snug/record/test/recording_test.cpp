@@ -113,6 +113,18 @@ TEST(Recording, RoundsContactsToTheStatedQuanta) {
   }
 }
 
+TEST(Recording, KeepsTheResultOfARunThatClosedAndHasNoneOtherwise) {
+  const ScratchFolder folder;
+  Rng rng = Rng(21).split("result");
+  Recording written = test::random_recording(rng, 2, 3, 1);
+  save_recording(folder / "without.h5", written);
+  EXPECT_EQ(RecordingReader(folder / "without.h5").result(), "");
+  written.result = R"({"boxes": [], "failure": "Käse"})";
+  save_recording(folder / "with.h5", written);
+  EXPECT_EQ(RecordingReader(folder / "with.h5").result(), written.result);
+  EXPECT_EQ(load_recording(folder / "with.h5"), written);
+}
+
 TEST(Recording, KeepsNaNAndHugeValuesWhereTheyStood) {
   const ScratchFolder folder;
   Rng rng = Rng(14).split("attack");

@@ -1,0 +1,31 @@
+// report: recordings as one HTML file that opens anywhere.
+#include "report.hpp"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "snug/core/input_error.hpp"
+#include "snug/replay/page.hpp"
+#include "viewer_page.hpp"
+
+namespace snug::app {
+
+int run_report(const ReportOptions& options) {
+  if (options.recordings.size() > 2) {
+    throw InputError("command line", "recordings", std::to_string(options.recordings.size()) + " of them",
+                     "one, or one and another to lay over it");
+  }
+  const std::string_view page = viewer_page();
+  std::vector<replay::PageRecording> recordings;
+  for (const std::string& path : options.recordings) {
+    record::RecordingReader reader(path);
+    const std::string name = std::filesystem::path(path).filename().string();
+    recordings.push_back({name, replay::encode_recording(reader, name, options.selection)});
+  }
+  const std::string html = replay::assemble_page(page, recordings);
+  replay::write_whole_file(options.output, html);
+  std::fprintf(stderr, "%s: %.2f MB\n", options.output.c_str(), static_cast<double>(html.size()) / 1e6);
+  return kSuccess;
+}
+
+}  // namespace snug::app

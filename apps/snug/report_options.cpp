@@ -1,0 +1,35 @@
+// report: what may be said after the verb.
+#include <memory>
+
+#include "options.hpp"
+#include "report.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  snug report run.h5 -o run.html
+  snug report stiff.h5 soft.h5 -o compare.html       the second is laid over the first
+  snug report long.h5 -o part.html --from 40 --to 60)";
+
+}  // namespace
+
+void add_selection_options(CLI::App& verb, replay::Selection& selection) {
+  verb.add_option("--from", selection.from, "leave out what was before this time")->type_name("SECONDS");
+  verb.add_option("--to", selection.to, "leave out what was after this time")->type_name("SECONDS");
+  verb.add_option("--every", selection.every, "take every Nth frame only")->check(whole(1))->type_name("N");
+}
+
+void add_report(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand("report", "make one HTML file of a recording: replay, journeys, plots");
+  const auto options = std::make_shared<ReportOptions>();
+  verb.add_option("recordings", options->recordings, "a recording, and another one to lay over it")
+      ->required()
+      ->type_name("FILE.h5");
+  verb.add_option("-o,--output", options->output, "the page to write")->required()->type_name("FILE.html");
+  add_selection_options(verb, options->selection);
+  verb.footer(kExamples);
+  verb.callback([options, &action] { action = [options] { return run_report(*options); }; });
+}
+
+}  // namespace snug::app

@@ -1,0 +1,30 @@
+# snug_embed_viewer(target source): builds the page of viewer/ into the build folder and has `source` of `target` embed it.
+#
+# npm only runs the build here; its packages are fetched by the set-up step (`make setup`), never while configuring or
+# building. With SNUG_VIEWER off the program is built without the page and says so when it is needed.
+option(SNUG_VIEWER "Build the viewer's page into the program; needs node 18 and the packages of viewer/" ON)
+
+function(snug_embed_viewer target source)
+  if(NOT SNUG_VIEWER)
+    return()
+  endif()
+  set(viewer ${CMAKE_SOURCE_DIR}/viewer)
+  set(page ${CMAKE_BINARY_DIR}/viewer/index.html)
+  find_program(SNUG_NPM npm)
+  mark_as_advanced(SNUG_NPM)
+  if(NOT SNUG_NPM OR NOT EXISTS ${viewer}/node_modules)
+    message(FATAL_ERROR "The viewer cannot be built: npm or viewer/node_modules is missing. Run `make setup`, "
+                        "or configure with -DSNUG_VIEWER=OFF for a program without reports.")
+  endif()
+  file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${viewer}/src/*)
+  file(GLOB settings CONFIGURE_DEPENDS ${viewer}/*.json ${viewer}/*.html ${viewer}/*.ts ${viewer}/*.mjs)
+  add_custom_command(OUTPUT ${page}
+    COMMAND ${CMAKE_COMMAND} -E env SNUG_VIEWER_OUT=${CMAKE_BINARY_DIR}/viewer ${SNUG_NPM} run --silent build
+    DEPENDS ${inputs} ${settings}
+    WORKING_DIRECTORY ${viewer}
+    COMMENT "Building the viewer's page"
+    VERBATIM)
+  target_sources(${target} PRIVATE ${page})
+  set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${page}
+    COMPILE_DEFINITIONS "SNUG_VIEWER_PAGE=\"${page}\"")
+endfunction()

@@ -1,0 +1,261 @@
+// The header of the replay form: what ran, the bodies, what happened and what became of it.
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "snug/core/input_error.hpp"
+#include "snug/geometry/convex_hull.hpp"
+#include "snug/model/scenario.hpp"
+#include "snug/motion/waypoint.hpp"
+#include "snug/replay/replay.hpp"
+
+namespace snug::replay {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json as_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json as_json(const record::PoseSample& X) {
+  return {X.p.x(), X.p.y(), X.p.z(), X.quat.w(), X.quat.x(), X.quat.y(), X.quat.z()};
+}
+
+/// The text as JSON, or null.
+Json parsed(const std::string& text) {
+  Json value = Json::parse(text, nullptr, false);
+  return value.is_discarded() ? Json() : value;
+}
+
+Json hull_as_json(const std::vector<Vector3>& vertices, Json shape) {
+  const auto hull = geometry::make_convex_hull(vertices);
+  Json points = Json::array(), triangles = Json::array();
+  for (const Vector3& vertex : hull ? hull->vertices : vertices) points.push_back(as_json(vertex));
+  if (hull) {
+    for (const std::vector<int>& face : hull->faces) {
+      for (std::size_t i = 2; i < face.size(); ++i) triangles.push_back({face[0], face[i - 1], face[i]});
+    }
+  }
+  shape["vertices"] = std::move(points);
+  shape["triangles"] = std::move(triangles);
+  return shape;
+}
+
+Json shape_as_json(const record::ShapeInfo& shape) {
+  const Json pose = as_json(shape.X_BG);
+  switch (shape.kind) {
+    case record::ShapeKind::Box:
+      return {{"kind", "box"}, {"pose", pose}, {"half", as_json(shape.half)}};
+    case record::ShapeKind::Capsule:
+      return {{"kind", "capsule"}, {"pose", pose}, {"radius", shape.radius}, {"half_length", shape.half_length}};
+    case record::ShapeKind::Hull:
+      break;
+  }
+  return hull_as_json(shape.vertices, {{"kind", "hull"}, {"pose", pose}});
+}
+
+Json shapes_as_json(const std::vector<record::ShapeInfo>& shapes) {
+  Json list = Json::array();
+  for (const record::ShapeInfo& shape : shapes) list.push_back(shape_as_json(shape));
+  return list;
+}
+
+Json bodies_as_json(const record::RecordingHeader& header) {
+  static constexpr const char* kKinds[] = {"static", "kinematic", "dynamic"};
+  Json list = Json::array();
+  for (const record::BodyInfo& body : header.bodies) {
+    list.push_back({{"name", body.name},
+                    {"type", body.type},
+                    {"kind", kKinds[static_cast<std::size_t>(body.kind)]},
+                    {"mass", body.mass},
+                    {"com", as_json(body.com)},
+                    {"shapes", shapes_as_json(body.shapes)}});
+  }
+  return list;
+}
+
+Json container_as_json(const record::ContainerInfo& container) {
+  if (container.name.empty()) return nullptr;
+  return {{"name", container.name},
+          {"pose", {as_json(container.X_WT), as_json(container.X_TI)}},
+          {"inner_size", as_json(container.inner_size)}};
+}
+
+/// The tool that `cell` puts into each recording of a program is a body of this name.
+constexpr const char* kToolBody = "tool";
+
+Json tool_as_json(const record::RecordingHeader& header) {
+  const int body = record::find_body(header, kToolBody);
+  if (body < 0 || header.bodies[static_cast<std::size_t>(body)].kind != record::BodyKind::Kinematic) return nullptr;
+  return {{"body", body}, {"shapes", shapes_as_json(header.bodies[static_cast<std::size_t>(body)].shapes)}};
+}
+
+Json frames_as_json(const std::optional<model::Scenario>& scenario) {
+  Json list = Json::array({{{"name", "world"}, {"letter", "W"}, {"X_W", as_json(record::PoseSample())}}});
+  if (!scenario) return list;
+  for (const model::Frame& frame : scenario->frames) {
+    const bool is_letter = frame.name.size() == 1;
+    list.push_back({{"name", frame.name},
+                    {"letter", is_letter ? frame.name : ""},
+                    {"X_W", as_json(record::PoseSample(frame.X_WF))}});
+  }
+  return list;
+}
+
+Json program_as_json(const record::RecordingHeader& header) {
+  Json names = Json::array();
+  try {
+    if (!header.program_text.empty()) {
+      const motion::Program program = motion::parse_program(header.program_text, header.program_name);
+      for (const motion::Waypoint& waypoint : program.waypoints) names.push_back(waypoint.name);
+    }
+  } catch (const InputError&) {  // of another version of the format: the rows then have numbers only
+  }
+  return {{"name", header.program_name}, {"names", std::move(names)}};
+}
+
+Json speed_as_json(const Json& result) {
+  if (!result.is_object() || !result.contains("wall_s")) return nullptr;
+  return {{"duration_s", result.value("duration_s", Json())},
+          {"wall_s", result["wall_s"]},
+          {"real_time_factor", result.value("real_time_factor", Json())}};
+}
+
+/// What the public report states for the sequence, beside what its boxes fill as snug counts.
+Json table7_as_json(const std::optional<model::Scenario>& scenario, const std::string& sequence_name) {
+  if (!scenario) return nullptr;
+  const model::Sequence* sequence = model::find_sequence(*scenario, sequence_name);
+  const model::Container* container = model::find_container(*scenario, scenario->target);
+  if (sequence == nullptr || container == nullptr || !sequence->reported_filling_percent) return nullptr;
+  Json table = {
+      {"filling_percent", *sequence->reported_filling_percent}, {"boxes", nullptr}, {"same_boxes_percent", nullptr}};
+  if (sequence->packed_count) {
+    std::vector<std::string> ids;
+    for (const auto& item : sequence->items) {
+      if (static_cast<int>(ids.size()) < *sequence->packed_count) ids.push_back(item.parcel);
+    }
+    table["boxes"] = ids.size();
+    table["same_boxes_percent"] = model::compute_filling_degree_percent(*scenario, *container, ids);
+  }
+  return table;
+}
+
+Json events_as_json(const std::vector<record::Event>& events) {
+  Json list = Json::array();
+  for (const record::Event& event : events) {
+    Json numbers = Json::object();
+    for (const record::EventNumber& number : event.numbers) numbers[number.name] = number.value;
+    list.push_back({{"time", event.time},
+                    {"kind", event.kind},
+                    {"body", event.body},
+                    {"text", event.text},
+                    {"numbers", std::move(numbers)}});
+  }
+  return list;
+}
+
+/// Boxes as the result tells, for a run that ended.
+Json boxes_from_result(const Json& result) {
+  Json list = Json::array();
+  for (const Json& box : result.value("boxes", Json::array())) {
+    Json journey = Json::array();
+    for (const Json& event : box.value("events", Json::array())) {
+      journey.push_back({{"kind", event.value("kind", "")},
+                         {"time", event.value("time_s", Json())},
+                         {"text", event.value("text", "")}});
+    }
+    Json pose;
+    if (const Json X_TP = box.value("X_TP", Json()); X_TP.is_object()) {
+      pose = X_TP.value("p", Json::array());
+      for (const Json& part : X_TP.value("quat_wxyz", Json::array())) pose.push_back(part);
+    }
+    list.push_back({{"id", box.value("id", "")},
+                    {"state", box.value("state", Json())},
+                    {"up", box.value("up", Json())},
+                    {"pose", std::move(pose)},
+                    {"journey", std::move(journey)}});
+  }
+  return list;
+}
+
+/// Boxes as the events tell, for a run that was killed: in the order in which they came.
+Json boxes_from_events(const std::vector<record::Event>& events) {
+  Json list = Json::array();
+  std::map<std::string, std::size_t> place;
+  for (const record::Event& event : events) {
+    if (event.body.empty()) continue;
+    const auto [at, is_new] = place.try_emplace(event.body, list.size());
+    if (is_new) {
+      list.push_back(
+          {{"id", event.body}, {"state", nullptr}, {"up", nullptr}, {"pose", nullptr}, {"journey", Json::array()}});
+    }
+    list[at->second]["journey"].push_back({{"kind", event.kind}, {"time", event.time}, {"text", event.text}});
+  }
+  return list;
+}
+
+Json result_as_json(const HeaderInput& input, const Json& result, const std::optional<model::Scenario>& scenario) {
+  const bool has_ended = result.is_object();
+  Json boxes = has_ended ? boxes_from_result(result) : boxes_from_events(input.events);
+  if (boxes.empty() && !has_ended) return nullptr;
+  Json packed;
+  if (has_ended) {
+    packed = std::count_if(boxes.begin(), boxes.end(), [](const Json& box) { return box["state"] == "packed"; });
+  }
+  return {{"boxes", std::move(boxes)},
+          {"filling_degree_percent", has_ended ? result.value("filling_degree_percent", Json()) : Json()},
+          {"packed", std::move(packed)},
+          {"failure", has_ended ? result.value("failure", "") : ""},
+          {"report_table7", table7_as_json(scenario, input.header->sequence)}};
+}
+
+std::optional<model::Scenario> scenario_of(const record::RecordingHeader& header) {
+  try {
+    return model::parse_scenario(header.scenario_text, "scenario of the recording");
+  } catch (const InputError&) {
+    return std::nullopt;  // made by another version: what only the scenario tells is left out
+  }
+}
+
+}  // namespace
+
+std::string make_header_json(const HeaderInput& input) {
+  const record::RecordingHeader& header = *input.header;
+  const std::optional<model::Scenario> scenario = scenario_of(header);
+  const Json settings = parsed(header.settings);
+  Json json = {{"format", "snug replay"},
+               {"version", kReplayVersion},
+               {"name", input.name},
+               {"snug_version", header.version},
+               {"seed", std::to_string(header.seed)},
+               {"sequence", header.sequence},
+               {"dt", header.dt},
+               {"record_period", header.record_period},
+               {"complete", input.is_complete},
+               {"frames", input.frames},
+               {"scenario", {{"name", scenario ? scenario->name : ""}, {"text", header.scenario_text}}},
+               {"program", program_as_json(header)},
+               {"settings", settings.is_object() ? settings : Json::object()}};
+  Json result = parsed(input.result_json);
+  try {
+    json["speed"] = speed_as_json(result);
+    json["result"] = result_as_json(input, result, scenario);
+  } catch (const Json::exception&) {  // not what snug simulate writes
+    json["speed"] = nullptr;
+    json["result"] = result_as_json(input, Json(), scenario);
+  }
+  json["bodies"] = bodies_as_json(header);
+  json["container"] = container_as_json(header.container);
+  json["tool"] = tool_as_json(header);
+  json["cup"] = nullptr;
+  if (scenario && scenario->tool) {
+    json["cup"] = {{"lip_radius", scenario->cup.lip_radius},
+                   {"free_length", scenario->cup.free_length},
+                   {"hold_length", scenario->cup.hold_length}};
+  }
+  json["frames_named"] = frames_as_json(scenario);
+  json["events"] = events_as_json(input.events);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace snug::replay

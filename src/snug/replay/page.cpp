@@ -1,0 +1,90 @@
+// Page: the report, one HTML file: the page that viewer/ builds with recordings inside.
+#include "snug/replay/page.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::replay {
+
+std::string base64(std::string_view bytes) {
+  static constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t triple = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triple = (triple << 8U) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text.push_back(i + k > bytes.size() ? '=' : kDigits[(triple >> (18U - 6U * k)) & 0x3FU]);
+    }
+  }
+  return text;
+}
+
+std::string escape_markup(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20U ? ' ' : c;
+    }
+  }
+  return out;
+}
+
+std::string assemble_page(std::string_view page, std::span<const PageRecording> recordings) {
+  const std::size_t at = page.find(kRecordingsMark);
+  if (at == std::string_view::npos || page.find(kRecordingsMark, at + 1) != std::string_view::npos) {
+    throw InputError("page", std::string(kRecordingsMark), at == std::string_view::npos ? "none" : "several",
+                     "exactly one in the page that viewer/ builds");
+  }
+  std::string out(page.substr(0, at));
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    out += "<script type=\"application/octet-stream;base64\" id=\"snug-recording-" + std::to_string(i) +
+           "\" data-name=\"" + escape_markup(recordings[i].name) + "\">" + base64(recordings[i].bytes) + "</script>\n";
+  }
+  out += page.substr(at + kRecordingsMark.size());
+  return out;
+}
+
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(path.string(), "", why, "a file that can be written");
+  };
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    refuse("something that is not a regular file");
+  }
+  const std::filesystem::path beside = path.string() + ".part" + std::to_string(::getpid());
+  std::FILE* file = std::fopen(beside.c_str(), "wb");
+  if (file == nullptr) refuse(std::strerror(errno));
+  const bool is_written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const bool is_closed = std::fclose(file) == 0;
+  if (is_written && is_closed) std::filesystem::rename(beside, path, error);
+  if (is_written && is_closed && !error) return;
+  const std::string why = error ? error.message() : std::strerror(errno);
+  std::filesystem::remove(beside, error);
+  refuse(why);
+}
+
+}  // namespace snug::replay

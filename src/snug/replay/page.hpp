@@ -1,0 +1,29 @@
+// Page: the report, one HTML file: the page that viewer/ builds with recordings inside.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace snug::replay {
+
+struct PageRecording {
+  std::string name;   ///< file name, shown to people
+  std::string bytes;  ///< replay form
+};
+
+/// Where the recordings go in the page that viewer/ builds.
+inline constexpr std::string_view kRecordingsMark = "<!--snug:recordings-->";
+
+/// `page` with the recordings in the place of its mark. Throws InputError when `page` does not have exactly one.
+[[nodiscard]] std::string assemble_page(std::string_view page, std::span<const PageRecording> recordings);
+
+[[nodiscard]] std::string base64(std::string_view bytes);
+/// Text for an attribute value in double quotes, or for the inside of an element.
+[[nodiscard]] std::string escape_markup(std::string_view text);
+
+/// Writes beside `path` and renames, so that a file at `path` is always whole. Throws InputError when it cannot.
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace snug::replay
