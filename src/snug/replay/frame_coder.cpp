@@ -15,9 +15,9 @@ constexpr double kPoseQuantum = 1.0e-5;    // m, -: 0.01 mm and 0.02 mrad, below
 constexpr double kTwistQuantum = 1.0e-4;   // m/s, rad/s
 constexpr double kWrenchQuantum = 1.0e-3;  // N, Nm
 constexpr double kPointQuantum = 1.0e-4;   // m
-constexpr double kNormalQuantum = 1.0e-2;  // -
+constexpr double kNormalQuantum = 1.0e-3;  // -
 constexpr double kForceQuantum = 1.0e-2;   // N
-constexpr double kGapQuantum = 1.0e-5;     // m
+constexpr double kGapQuantum = 1.0e-7;     // m: rigid contacts give way by micrometres
 
 const std::vector<std::string> kPoseColumns = {"x", "y", "z", "qw", "qx", "qy", "qz"};
 const std::vector<std::string> kXyz = {"x", "y", "z"};
