@@ -11,9 +11,15 @@ namespace {
 
 constexpr double kFarthest = 1000.0;  ///< m; a body beyond is lost
 
-void start_dynamic(const BodyModel& body, const WorldModel::MassProperties& mass, const BodyState& state,
-                   BodyWork& work) {
-  work.R_WB = state.quat_WB.toRotationMatrix();
+void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, const BodyState& state,
+                BodyMemory& memory, bool knows_state, BodyWork& work) {
+  const bool same = knows_state && memory.p_WBcm == state.p_WBcm && memory.quat_WB.coeffs() == state.quat_WB.coeffs();
+  const Matrix3 R_WB = same ? work.R_WB : state.quat_WB.toRotationMatrix();
+  memory.p_WBcm = state.p_WBcm;
+  memory.quat_WB = state.quat_WB;
+  work = BodyWork{};
+  work.has_same_pose = same;
+  work.R_WB = R_WB;
   work.p_WBcm = state.p_WBcm;
   work.p_WB = state.p_WBcm - work.R_WB * body.inertia.com;
   work.velocity_start = work.velocity = state.velocity;
@@ -36,20 +42,12 @@ bool has_finite(const BodyState& body) {
          body.angular_velocity.allFinite();
 }
 
-void keep_impulses(WorldState& state, Scratch& work, double dt) {
-  work.reports.resize(work.contacts.size());
+void keep_impulses(WorldState& state, Scratch& work) {
   for (const Row& row : work.rows) {
     const Contact& contact = work.contacts[static_cast<std::size_t>(row.contact)];
     const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
-    const Vector3 impulse = row.lambda[0] * patch.n + row.lambda[1] * patch.t1 + row.lambda[2] * patch.t2;
-    const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
-    state.pairs[patch.pair].points[static_cast<std::size_t>(contact.point)].impulse_A = a.R_WB.transpose() * impulse;
-    const double limit = row.mu * row.lambda[0];
-    const double tangential = row.lambda[1] * row.lambda[1] + row.lambda[2] * row.lambda[2];
-    // Sliding impulses are projected onto the disc: they are on its edge up to rounding.
-    const bool slides = row.lambda[0] > 0.0 && tangential >= limit * limit * (1.0 - 1e-9);
-    work.reports[static_cast<std::size_t>(row.contact)] = {
-        BodyId{patch.body_a}, BodyId{patch.body_b}, contact.p_WQ, patch.n, impulse / dt, contact.phi, slides};
+    state.pairs[patch.pair].points[static_cast<std::size_t>(contact.point)].impulse =
+        Vector3(row.lambda[0], row.lambda[1], row.lambda[2]);
   }
 }
 
@@ -71,7 +69,10 @@ void move_body(const WorldModel& model, int index, Scratch& work, BodyState& sta
   }
   state.p_WBcm += 0.5 * dt * (body.velocity_start + body.velocity) + slide;
   const Vector3 rotation = 0.5 * dt * (body.angular_start + body.angular) + turn;
-  if (!rotation.isZero(0.0)) state.quat_WB = (exp_quaternion(rotation) * state.quat_WB).normalized();
+  // Below the rounding of a rotation matrix a body stands still, bit by bit.
+  constexpr double kNoRotation = 1e-16;
+  if (rotation.squaredNorm() > kNoRotation * kNoRotation)
+    state.quat_WB = (exp_quaternion(rotation) * state.quat_WB).normalized();
   state.velocity = body.velocity;
   state.angular_velocity = body.angular;
 }
@@ -135,8 +136,7 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyState& body = state.bodies[i];
     BodyWork& body_work = work.bodies[i];
-    body_work = BodyWork{};
-    start_dynamic(model.bodies[i], model.masses[i], body, body_work);
+    start_body(model.bodies[i], model.masses[i], body, work.memories[i], work.knows_state, body_work);
     if (model.bodies[i].kind != BodyKind::Dynamic) {  // stands still unless it has a target
       body_work.velocity_start.setZero();
       body_work.angular_start.setZero();
@@ -160,7 +160,7 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
 }
 
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report) {
-  keep_impulses(state, work, model.settings.dt);
+  keep_impulses(state, work);
   for (int i = 0; i < work.active_count; ++i) {
     const int index = work.active[static_cast<std::size_t>(i)];
     BodyState& body = state.bodies[static_cast<std::size_t>(index)];
@@ -187,6 +187,22 @@ void end_step(const WorldModel& model, const WorldInput& input, WorldState& stat
   if (model.settings.sleep.enabled) put_to_sleep(model, input, state, work);
 }
 
+void report_contacts(Scratch& work) {
+  work.has_reports = true;
+  work.reports.resize(work.contacts.size());
+  for (const Row& row : work.rows) {
+    const Contact& contact = work.contacts[static_cast<std::size_t>(row.contact)];
+    const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+    const Vector3 impulse = row.lambda[0] * patch.n + row.lambda[1] * patch.t1 + row.lambda[2] * patch.t2;
+    const double limit = row.mu * row.lambda[0];
+    const double tangential = row.lambda[1] * row.lambda[1] + row.lambda[2] * row.lambda[2];
+    // Sliding impulses are projected onto the disc: they are on its edge up to rounding.
+    const bool slides = row.lambda[0] > 0.0 && tangential >= limit * limit * (1.0 - 1e-9);
+    work.reports[static_cast<std::size_t>(row.contact)] = {
+        BodyId{patch.body_a}, BodyId{patch.body_b}, contact.p_WQ, patch.n, impulse / work.dt, contact.phi, slides};
+  }
+}
+
 }  // namespace internal
 
 StepReport step(const WorldModel& model, const WorldInput& input, WorldState& state, Workspace& workspace) noexcept {
@@ -194,7 +210,11 @@ StepReport step(const WorldModel& model, const WorldInput& input, WorldState& st
   StepReport report;
   ++state.step_index;
   work.reports.clear();
+  work.has_reports = true;
+  work.dt = model.settings.dt;
+  work.knows_state = state.stamp.value == work.stamp;
   if (!internal::begin_step(model, input, state, work)) return report;
+  state.stamp = {};
   if (!internal::update_pairs(model, state, work)) {
     report.status = StepStatus::TooManyPairs;
     return report;
@@ -204,6 +224,9 @@ StepReport step(const WorldModel& model, const WorldInput& input, WorldState& st
   internal::build_islands(input, work);
   internal::solve_islands(model, input, state, work, report);
   internal::end_step(model, input, state, work, report);
+  work.has_reports = false;
+  work.last_rows = work.rows.size();
+  state.stamp.value = ++work.stamp;
   return report;
 }
 

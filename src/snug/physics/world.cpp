@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "snug/core/hash.hpp"
@@ -94,6 +95,7 @@ Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
 std::span<const ContactReport> Workspace::contacts() const {
+  if (!scratch_->has_reports) internal::report_contacts(*scratch_);
   return {scratch_->reports.begin(), scratch_->reports.size()};
 }
 
@@ -102,6 +104,10 @@ internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size()
   const std::size_t geom_count = model.geoms.size();
   // A box touches about ten others with four points each; small worlds get room for every pair.
   const std::size_t contact_capacity = std::min<std::size_t>(8 * model.pair_capacity, 4096 + 96 * geom_count);
+  static std::atomic<std::uint64_t> scratches{0};
+  stamp = (++scratches) << 40;
+  memories.resize(n);
+  pair_memories.resize(model.pair_capacity);
   bodies.resize(n);
   active.resize(n);
   whitening.resize(n);
@@ -214,11 +220,12 @@ std::uint64_t hash_of(const WorldState& state) {
     hash.add((static_cast<std::uint64_t>(pair.count) << 33) | (static_cast<std::uint64_t>(pair.is_known) << 32) |
              pair.cache.features);
     add(pair.p_AB);
-    add(pair.n_A);
+    hash.add(pair.margin);
+    add(pair.n_A), add(pair.t_A);
     for (int i = 0; i < 4; ++i) hash.add(pair.quat_AB.coeffs()[i]);
     for (int i = 0; i < pair.count; ++i) {
       const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
-      add(point.p_A), add(point.p_B), add(point.impulse_A);
+      add(point.p_A), add(point.p_B), add(point.impulse);
       hash.add(static_cast<std::uint64_t>(point.feature));
     }
   }

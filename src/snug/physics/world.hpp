@@ -116,9 +116,9 @@ struct BodyState {
 
 /// One touching point of a pair, remembered from step to step.
 struct PairPoint {
-  Vector3 p_A = Vector3::Zero();        ///< on A, in A's body frame
-  Vector3 p_B = Vector3::Zero();        ///< on B, in B's body frame
-  Vector3 impulse_A = Vector3::Zero();  ///< N s on B in the last step, in A's body frame
+  Vector3 p_A = Vector3::Zero();      ///< on A, in A's body frame
+  Vector3 p_B = Vector3::Zero();      ///< on B, in B's body frame
+  Vector3 impulse = Vector3::Zero();  ///< N s on B in the last step, along n_A, t_A and n_A x t_A
   std::uint32_t feature = 0;
   bool operator==(const PairPoint&) const = default;
 };
@@ -131,7 +131,9 @@ struct PairState {
   bool is_known = false;  ///< the manifold below belongs to the relative pose below
   Vector3 p_AB = Vector3::Zero();
   Quaternion quat_AB = Quaternion::Identity();
+  double margin = 0.0;             ///< m, up to which the manifold was looked for
   Vector3 n_A = Vector3::UnitZ();  ///< from A to B, in A's body frame
+  Vector3 t_A = Vector3::UnitX();  ///< first tangent, in A's body frame
   std::array<PairPoint, geometry::kMaxManifoldPoints> points;
   bool operator==(const PairState& other) const;
 };
@@ -142,12 +144,19 @@ struct FatBox {
   bool operator==(const FatBox&) const = default;
 };
 
+/// Names the workspace and step that left a state as it is, so that the workspace may use again what it knows of it.
+struct StepStamp {
+  std::uint64_t value = 0;                                  ///< 0: nobody's
+  bool operator==(const StepStamp&) const { return true; }  ///< says nothing about the world
+};
+
 /// Everything that changes. A copy is a snapshot: stepping it gives the same bytes.
 struct WorldState {
   std::int64_t step_index = 0;
   std::vector<BodyState> bodies;
   std::vector<FatBox> fat_boxes;   ///< of each geom
   BoundedVector<PairState> pairs;  ///< sorted by (geom_a, geom_b)
+  StepStamp stamp;                 ///< only saves time
 
   [[nodiscard]] double time(const WorldModel& model) const {
     return static_cast<double>(step_index) * model.settings.dt;
@@ -215,7 +224,8 @@ namespace internal {
 struct Scratch;
 }
 
-/// Scratch memory of step(); holds no state. One per thread.
+/// Scratch memory of step(); holds no state, at most what it need not compute again. One per thread, and of one model
+/// that does not change.
 class Workspace {
  public:
   explicit Workspace(const WorldModel& model);
@@ -223,7 +233,7 @@ class Workspace {
   Workspace(Workspace&&) noexcept;
   Workspace& operator=(Workspace&&) noexcept;
 
-  /// Contacts of the last step that were near enough to matter, in a fixed order.
+  /// Contacts of the last step that were near enough to matter, in a fixed order. Valid until the next step.
   [[nodiscard]] std::span<const ContactReport> contacts() const;
   internal::Scratch& scratch() { return *scratch_; }
 

@@ -70,7 +70,7 @@ void refresh_fat_boxes(const WorldModel& model, WorldState& state, Scratch& work
         if (!is_valid) continue;
         fat = FatBox();
       } else {
-        if (is_valid && !moving.is_moving) continue;
+        if (is_valid && (!moving.is_moving || moving.has_same_pose)) continue;
         const Geom& geom = model.bodies[i].geoms[static_cast<std::size_t>(g - first)];
         const Matrix3 R_WG = moving.R_WB * geom.X_BG.R;
         const Vector3 p_WG = moving.R_WB * geom.X_BG.p + moving.p_WB;
@@ -132,6 +132,7 @@ bool merge_pairs(WorldState& state, Scratch& work) {
     is_same = key_of(static_cast<int>(state.pairs[i].geom_a), static_cast<int>(state.pairs[i].geom_b)) == work.keys[i];
   }
   if (is_same) return true;
+  work.knows_pairs = false;
   work.merged_pairs.clear();
   std::size_t old = 0;
   for (const std::uint64_t key : work.keys) {
@@ -157,6 +158,7 @@ bool merge_pairs(WorldState& state, Scratch& work) {
 }  // namespace
 
 bool update_pairs(const WorldModel& model, WorldState& state, Scratch& work) {
+  work.knows_pairs = work.knows_state;
   refresh_fat_boxes(model, state, work);
   if (work.moved.empty()) return true;
   work.keys.clear();

@@ -13,10 +13,10 @@ using Block36 = Eigen::Matrix<double, 3, 6, Eigen::RowMajor>;
 
 constexpr double kFirstPenalty = 30.0;  ///< in units of 1 / W of each contact
 constexpr double kLeastPenalty = 0.3;
-constexpr double kLargestPenalty = 1e4;
-constexpr double kGrowth = 4.0;  ///< of the penalty after a solved stage, and its cut after a failed one
-constexpr int kMaxIterations = 100;
-constexpr int kMaxStageIterations = 10;
+constexpr double kLargestPenalty = 1e8;
+constexpr double kGrowth = 3.0;  ///< of the penalty after a solved stage, and its cut after a failed one
+constexpr int kMaxIterations = 300;
+constexpr int kMaxStageIterations = 20;
 constexpr int kMaxHalvings = 6;
 
 /// One island: rows, the bodies they touch, scratch.

@@ -36,8 +36,8 @@ RelativePose relative_pose(const BodyWork& a, const BodyState& state_a, const Bo
   return {a.R_WB.transpose() * (b.p_WB - a.p_WB), state_a.quat_WB.conjugate() * state_b.quat_WB};
 }
 
-bool has_kept(const PairState& pair, const RelativePose& now) {
-  if (!pair.is_known) return false;
+bool has_kept(const PairState& pair, const RelativePose& now, double reach) {
+  if (!pair.is_known || pair.margin < reach) return false;
   if ((now.p - pair.p_AB).squaredNorm() > kKeepDistance * kKeepDistance) return false;
   // |sin(angle/2)|^2 of the rotation between then and now.
   const double along = now.quat.dot(pair.quat_AB);
@@ -45,14 +45,26 @@ bool has_kept(const PairState& pair, const RelativePose& now) {
   return square <= kKeepHalfAngle * kKeepHalfAngle;
 }
 
-/// Impulses of the old manifold for the new points: same feature first, else the nearest old point.
-void hand_on_impulses(const std::array<PairPoint, geometry::kMaxManifoldPoints>& old, int old_count, PairState& pair) {
+/// Two unit vectors that complete n; depends on n alone.
+Vector3 tangent_of(const Vector3& n) {
+  int smallest = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (std::abs(n[i]) < std::abs(n[smallest])) smallest = i;
+  }
+  return n.cross(Vector3::Unit(smallest)).normalized();
+}
+
+using PairPoints = std::array<PairPoint, geometry::kMaxManifoldPoints>;
+
+/// Impulses of the old manifold, turned into the axes of the new one, for the new points: same feature first, else the
+/// nearest old point.
+void hand_on_impulses(const PairPoints& old, int old_count, const Matrix3& R_new_old, PairState& pair) {
   std::uint32_t used = 0;
   for (int i = 0; i < pair.count; ++i) {
     PairPoint& point = pair.points[static_cast<std::size_t>(i)];
     for (int j = 0; j < old_count; ++j) {
       if ((used >> j & 1U) == 0 && old[static_cast<std::size_t>(j)].feature == point.feature) {
-        point.impulse_A = old[static_cast<std::size_t>(j)].impulse_A;
+        point.impulse = R_new_old * old[static_cast<std::size_t>(j)].impulse;
         used |= 1U << j;
         break;
       }
@@ -60,7 +72,7 @@ void hand_on_impulses(const std::array<PairPoint, geometry::kMaxManifoldPoints>&
   }
   for (int i = 0; i < pair.count && used != (1U << old_count) - 1U; ++i) {
     PairPoint& point = pair.points[static_cast<std::size_t>(i)];
-    if (!point.impulse_A.isZero(0.0)) continue;
+    if (!point.impulse.isZero(0.0)) continue;
     int best = -1;
     double best_square = kMatchDistance * kMatchDistance;
     for (int j = 0; j < old_count; ++j) {
@@ -71,9 +83,16 @@ void hand_on_impulses(const std::array<PairPoint, geometry::kMaxManifoldPoints>&
       }
     }
     if (best < 0) continue;
-    point.impulse_A = old[static_cast<std::size_t>(best)].impulse_A;
+    point.impulse = R_new_old * old[static_cast<std::size_t>(best)].impulse;
     used |= 1U << best;
   }
+}
+
+/// Columns n, t1, t2 of a pair, in A.
+Matrix3 axes_of(const PairState& pair) {
+  Matrix3 axes;
+  axes << pair.n_A, pair.t_A, pair.n_A.cross(pair.t_A);
+  return axes;
 }
 
 void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& b, double margin,
@@ -82,12 +101,15 @@ void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& 
   geometry::Manifold manifold;
   geometry::collide(bodies.geom_a.shape, X_WA * bodies.geom_a.X_BG, bodies.geom_b.shape, X_WB * bodies.geom_b.X_BG,
                     margin, pair.cache, manifold);
-  const std::array<PairPoint, geometry::kMaxManifoldPoints> old = pair.points;
+  const PairPoints old = pair.points;
   const int old_count = pair.count;
+  const Matrix3 old_axes = axes_of(pair);
   pair.is_known = true;
   pair.p_AB = now.p;
   pair.quat_AB = now.quat;
+  pair.margin = margin;
   pair.n_A = a.R_WB.transpose() * manifold.n_AB_W;
+  pair.t_A = tangent_of(pair.n_A);
   pair.count = manifold.count;
   for (int i = 0; i < manifold.count; ++i) {
     const geometry::ManifoldPoint& found = manifold.points[static_cast<std::size_t>(i)];
@@ -95,19 +117,45 @@ void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& 
     point.p_A = a.R_WB.transpose() * (found.p_WA - a.p_WB);
     point.p_B = b.R_WB.transpose() * (found.p_WB - b.p_WB);
     point.feature = found.feature;
-    point.impulse_A.setZero();
+    point.impulse.setZero();
   }
-  if (old_count > 0 && pair.count > 0) hand_on_impulses(old, old_count, pair);
+  if (old_count > 0 && pair.count > 0) hand_on_impulses(old, old_count, axes_of(pair).transpose() * old_axes, pair);
 }
 
-/// Two unit vectors that complete n; depends on n alone.
-void tangents_of(const Vector3& n, Vector3& t1, Vector3& t2) {
-  int smallest = 0;
-  for (int i = 1; i < 3; ++i) {
-    if (std::abs(n[i]) < std::abs(n[smallest])) smallest = i;
+double approach_at(const Vector3& p_WQ, const Vector3& n, const BodyWork& a, const BodyWork& b) {
+  const Vector3 v = (b.velocity_start + b.angular_start.cross(p_WQ - b.p_WBcm)) -
+                    (a.velocity_start + a.angular_start.cross(p_WQ - a.p_WBcm));
+  return n.dot(v);
+}
+
+bool is_touching(const Contact& contact, double dt) {
+  return contact.phi + dt * std::min(0.0, contact.approach) <= kTouchGap;
+}
+
+/// Takes over the pair's contacts of the last step as they stand. Only when neither body has moved and the reach asks
+/// for the same points. Returns whether one of them touches.
+bool keep_contacts(PairMemory& memory, double dt, Scratch& work) {
+  ++memory.stamp;
+  const BodyWork& a = work.bodies[static_cast<std::size_t>(memory.body_a)];
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(memory.body_b)];
+  work.patches.resize(work.patches.size() + 1);
+  Patch& patch = work.patches.back();
+  patch.is_kept = true;
+  work.contacts.resize(work.contacts.size() + static_cast<std::size_t>(patch.contact_count));
+  bool touches = false;
+  for (int i = patch.first_contact; i < patch.first_contact + patch.contact_count; ++i) {
+    Contact& contact = work.contacts[static_cast<std::size_t>(i)];
+    contact.approach = approach_at(contact.p_WQ, patch.n, a, b);
+    touches |= is_touching(contact, dt);
   }
-  t1 = n.cross(Vector3::Unit(smallest)).normalized();
-  t2 = n.cross(t1);
+  return touches;
+}
+
+bool can_keep(const PairMemory& memory, double reach, const Scratch& work) {
+  if (memory.patch < 0 || static_cast<std::size_t>(memory.patch) != work.patches.size()) return false;
+  const Patch& patch = *(work.patches.begin() + memory.patch);  // of the last step, still at its place
+  return static_cast<std::size_t>(patch.first_contact) == work.contacts.size() && reach >= patch.reach_from &&
+         reach < patch.reach_to;
 }
 
 /// Adds the pair's points that can matter within this step. Returns whether one of them touches.
@@ -115,37 +163,49 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
                   Scratch& work) {
   const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
   const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
+  PairMemory& memory = work.pair_memories[index];
+  memory = {bodies.a, bodies.b, -1, pair.margin, work.stamp + 1};
   const Vector3 n = a.R_WB * pair.n_A;
   const auto first = static_cast<int>(work.contacts.size());
   bool touches = false;
+  double reach_from = 0.0, reach_to = pair.margin;
   for (int i = 0; i < pair.count; ++i) {
     PairPoint& point = pair.points[static_cast<std::size_t>(i)];
     const Vector3 p_WA = a.R_WB * point.p_A + a.p_WB;
     const Vector3 p_WB = b.R_WB * point.p_B + b.p_WB;
     const double phi = n.dot(p_WB - p_WA);
+    memory.clearance = std::min(memory.clearance, phi);
     if (phi > reach || work.contacts.full()) {
-      point.impulse_A.setZero();
+      point.impulse.setZero();
+      reach_to = std::min(reach_to, phi);
       continue;
     }
+    reach_from = std::max(reach_from, phi);
     const Vector3 p_WQ = 0.5 * (p_WA + p_WB);
-    const Vector3 v = (b.velocity_start + b.angular_start.cross(p_WQ - b.p_WBcm)) -
-                      (a.velocity_start + a.angular_start.cross(p_WQ - a.p_WBcm));
-    const double approach = n.dot(v);
-    work.contacts.push_back({p_WQ, phi, approach, static_cast<int>(work.patches.size()), i});
-    if (phi + model.settings.dt * std::min(0.0, approach) <= kTouchGap) touches = true;
+    const Contact& contact =
+        work.contacts.push_back({p_WQ, phi, approach_at(p_WQ, n, a, b), static_cast<int>(work.patches.size()), i});
+    touches |= is_touching(contact, model.settings.dt);
   }
   const int count = static_cast<int>(work.contacts.size()) - first;
   if (count == 0) return false;
+  memory.patch = static_cast<int>(work.patches.size());
   Patch& patch = work.patches.push_back(Patch{});
   patch.pair = index;
   patch.body_a = bodies.a;
   patch.body_b = bodies.b;
   patch.first_contact = first;
   patch.contact_count = count;
+  patch.reach_from = reach_from;
+  patch.reach_to = reach_to;
   patch.n = n;
-  tangents_of(n, patch.t1, patch.t2);
-  patch.law = &model.law(bodies.geom_a.material, bodies.geom_b.material);
+  patch.t1 = a.R_WB * pair.t_A;
+  patch.t2 = n.cross(patch.t1);
+  patch.law = static_cast<std::size_t>(bodies.geom_a.material * model.material_count + bodies.geom_b.material);
   return touches;
+}
+
+PairMemory memory_of(const WorldModel& model, const PairState& pair) {
+  return {model.geoms[pair.geom_a].body, model.geoms[pair.geom_b].body, -1, -1.0, 0};
 }
 
 bool is_sleeping(const BodyState& state, const BodyModel& body) {
@@ -166,6 +226,31 @@ void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int g
   }
 }
 
+namespace {
+
+/// One pair. Returns whether it touches.
+bool visit_pair(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, std::uint32_t index,
+                double reach, double margin) {
+  PairState& pair = state.pairs[index];
+  const PairBodies bodies = bodies_of(model, pair);
+  const int held = input.held.index;
+  if (held >= 0 && ((bodies.a == held && !bodies.geom_b.touches_held_body) ||
+                    (bodies.b == held && !bodies.geom_a.touches_held_body))) {
+    pair.count = 0;
+    pair.is_known = false;
+    work.pair_memories[index] = {bodies.a, bodies.b, -1, -1.0, 0};
+    return false;
+  }
+  const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
+  const RelativePose now = relative_pose(a, state.bodies[static_cast<std::size_t>(bodies.a)], b,
+                                         state.bodies[static_cast<std::size_t>(bodies.b)]);
+  if (!has_kept(pair, now, reach)) find_manifold(bodies, a, b, margin, now, pair);
+  return add_contacts(model, bodies, index, reach, pair, work);
+}
+
+}  // namespace
+
 void detect_contacts(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
                      StepReport& report) {
   const double dt = model.settings.dt;
@@ -183,27 +268,24 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
     has_woken = false;
     for (std::uint32_t i = 0; i < state.pairs.size(); ++i) {
       if (work.pair_done[i] != 0) continue;
-      PairState& pair = state.pairs[i];
-      const PairBodies bodies = bodies_of(model, pair);
-      const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
-      const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
+      PairMemory& memory = work.pair_memories[i];
+      if (!work.knows_pairs) memory = memory_of(model, state.pairs[i]);
+      const int pair_bodies[2] = {memory.body_a, memory.body_b};
+      const BodyWork& a = work.bodies[static_cast<std::size_t>(memory.body_a)];
+      const BodyWork& b = work.bodies[static_cast<std::size_t>(memory.body_b)];
       if (!a.is_moving && !b.is_moving) continue;
       work.pair_done[i] = 1;
-      const int held = input.held.index;
-      if (held >= 0 && ((bodies.a == held && !bodies.geom_b.touches_held_body) ||
-                        (bodies.b == held && !bodies.geom_a.touches_held_body))) {
-        pair.count = 0;
-        pair.is_known = false;
+      const bool is_held = memory.body_a == input.held.index || memory.body_b == input.held.index;
+      const bool is_same = memory.stamp == work.stamp && a.has_same_pose && b.has_same_pose && !is_held;
+      if (is_same && memory.patch < 0 && memory.clearance > reach) {
+        ++memory.stamp;
         continue;
       }
-      const BodyState& state_a = state.bodies[static_cast<std::size_t>(bodies.a)];
-      const BodyState& state_b = state.bodies[static_cast<std::size_t>(bodies.b)];
-      const RelativePose now = relative_pose(a, state_a, b, state_b);
-      if (!has_kept(pair, now)) find_manifold(bodies, a, b, margin, now, pair);
-      if (pair.count == 0) continue;
-      const bool touches = add_contacts(model, bodies, i, reach, pair, work);
+      const bool touches = is_same && can_keep(memory, reach, work)
+                               ? keep_contacts(memory, dt, work)
+                               : visit_pair(model, input, state, work, i, reach, margin);
       if (!touches) continue;
-      for (const int body : {bodies.a, bodies.b}) {
+      for (const int body : pair_bodies) {
         const auto k = static_cast<std::size_t>(body);
         if (!is_sleeping(state.bodies[k], model.bodies[k])) continue;
         wake_group(model, state, work, state.bodies[k].sleep_group);
@@ -212,7 +294,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
     }
   }
   for (const Contact& contact : work.contacts) {
-    if (work.patches[static_cast<std::size_t>(contact.patch)].law->stiffness > 0.0) continue;
+    if (model.laws[work.patches[static_cast<std::size_t>(contact.patch)].law].stiffness > 0.0) continue;
     report.worst_penetration = std::max(report.worst_penetration, -contact.phi);
   }
 }

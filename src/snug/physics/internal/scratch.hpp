@@ -24,7 +24,25 @@ struct BodyWork {
   int active = -1;         ///< index among the bodies that move in this step
   bool is_moving = false;  ///< dynamic and awake, or kinematic with a motion
   bool has_element = false;
-  bool has_result = false;  ///< velocity holds the answer of the contact solver
+  bool has_same_pose = false;  ///< as in this workspace's last step, bit by bit
+  bool is_steady = false;      ///< and enters the rows of its contacts as it did then
+  bool has_result = false;     ///< velocity holds the answer of the contact solver
+};
+
+/// What a workspace remembers of a body's last step.
+struct BodyMemory {
+  Vector3 p_WBcm = Vector3::Zero();
+  Quaternion quat_WB = Quaternion::Identity();
+  int active = -1;
+  bool is_plain = false;  ///< neither turning, nor with an element, nor a moving kinematic body
+};
+
+/// What a workspace remembers of a pair.
+struct PairMemory {
+  int body_a = 0, body_b = 0;
+  int patch = -1;
+  double clearance = 0.0;   ///< m, no point nearer than this
+  std::uint64_t stamp = 0;  ///< of the step in which this was so
 };
 
 /// Maps impulses to velocities of one moving body: v = T u with T T^T = inverse mass, so that every row of the
@@ -43,9 +61,12 @@ struct Patch {
   int first_contact = 0;
   int contact_count = 0;
   int island = 0;
+  double reach_from = 0.0;       ///< m, has the same contacts for any reach from here
+  double reach_to = 0.0;         ///< m, to below here
+  bool is_kept = false;          ///< the same as in the last step, at the same place
   Vector3 n = Vector3::UnitZ();  ///< from A to B, W
   Vector3 t1 = Vector3::UnitX(), t2 = Vector3::UnitY();
-  const ContactLaw* law = nullptr;
+  std::size_t law = 0;  ///< in WorldModel::laws
 };
 
 /// A touching point that may matter in this step.
@@ -69,6 +90,13 @@ struct Island {
 struct Scratch {
   explicit Scratch(const WorldModel& model);
 
+  std::uint64_t stamp = 0;  ///< of the state that the memories and the arrays below belong to
+  bool knows_state = false;
+  bool knows_pairs = false;  ///< the memories of pairs hold
+  std::vector<BodyMemory> memories;
+  std::vector<PairMemory> pair_memories;
+  std::size_t last_rows = 0;  ///< rows of the last step
+
   std::vector<BodyWork> bodies;
   std::vector<int> active;  ///< bodies that move in this step; [0, active_count)
   int active_count = 0;
@@ -83,6 +111,8 @@ struct Scratch {
   BoundedVector<Row> rows;
   NewtonScratch newton;
   BoundedVector<ContactReport> reports;
+  bool has_reports = false;
+  double dt = 0.0;
   std::vector<Island> islands;
   int island_count = 0;
   std::vector<int> element_order;  ///< elements by island
@@ -114,6 +144,8 @@ void solve_islands(const WorldModel& model, const WorldInput& input, const World
                    StepReport& report);
 /// Positions, penetration, impulses kept for the next step, sleep.
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report);
+/// Fills work.reports, once a step and only when somebody asks.
+void report_contacts(Scratch& work);
 
 // The contact problem of one island (contact_solver.cpp).
 

@@ -101,11 +101,10 @@ void add_bias(const BodyWork& body, const Patch& patch, const Vector3& p_WQ, dou
 }
 
 /// The law of one contact in this step: docs/theory/contact.md, section 3.
-void fill_law(const StepSettings& settings, const Patch& patch, const Contact& contact, double free_velocity,
-              Row& row) {
-  const double dt = settings.dt;
+void fill_law(const WorldModel& model, const Patch& patch, const Contact& contact, double free_velocity, Row& row) {
+  const double dt = model.settings.dt;
   const double mean = 0.5 * (contact.approach + free_velocity);
-  const ContactLaw& law = *patch.law;
+  const ContactLaw& law = model.laws[patch.law];
   row.mu = law.friction;
   row.gamma = 0.0;
   row.gap_end = 0.0;
@@ -126,7 +125,7 @@ void fill_law(const StepSettings& settings, const Patch& patch, const Contact& c
   const double theta = contact.phi > 0.0 ? std::clamp(-contact.phi / (dt * mean), 0.0, 1.0) : 0.0;
   const double impact = contact.approach + theta * (free_velocity - contact.approach);
   row.target = 0.0;
-  if (law.restitution > 0.0 && impact < -settings.restitution_threshold) {
+  if (law.restitution > 0.0 && impact < -model.settings.restitution_threshold) {
     const double rest = (1.0 - theta) * (free_velocity - contact.approach);  // acceleration after the impact
     row.target = std::max(0.0, -law.restitution * impact + rest);
     row.gap_end = std::max(0.0, (1.0 - theta) * dt * (-law.restitution * impact + 0.5 * rest));
@@ -135,10 +134,10 @@ void fill_law(const StepSettings& settings, const Patch& patch, const Contact& c
 }
 
 /// Starts from the impulses of the step before, cut to the cone.
-void warm_start(const Patch& patch, const Vector3& impulse, Row& row) {
-  row.lambda[0] = std::max(0.0, patch.n.dot(impulse));
-  row.lambda[1] = patch.t1.dot(impulse);
-  row.lambda[2] = patch.t2.dot(impulse);
+void warm_start(const Vector3& impulse, Row& row) {
+  row.lambda[0] = std::max(0.0, impulse[0]);
+  row.lambda[1] = impulse[1];
+  row.lambda[2] = impulse[2];
   const double limit = row.mu * row.lambda[0];
   const double square = row.lambda[1] * row.lambda[1] + row.lambda[2] * row.lambda[2];
   if (square <= limit * limit) return;
@@ -155,21 +154,27 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
     const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
     const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
     const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
-    const Side side_a = side_of(work, a, patch, -1.0), side_b = side_of(work, b, patch, 1.0);
     const auto& points = state.pairs[patch.pair].points;
+    const auto row_index = static_cast<std::size_t>(row - work.rows.begin());
+    const bool is_kept = patch.is_kept && a.is_steady && b.is_steady && row->contact == patch.first_contact &&
+                         row_index + static_cast<std::size_t>(patch.contact_count) <= work.last_rows;
+    Side side_a, side_b;
+    if (!is_kept) side_a = side_of(work, a, patch, -1.0), side_b = side_of(work, b, patch, 1.0);
     for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
       const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
-      row->ia = a.active;
-      row->ib = b.active;
-      row->contact = k;
-      std::fill_n(row->bias, 3, 0.0);
-      if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, row->a);
-      if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, row->b);
-      if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ, -1.0, *row);
-      if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ, 1.0, *row);
-      fill_law(model.settings, patch, contact, relative_velocity(*row, 0, work.u.data()), *row);
-      finish_row(*row);
-      if (is_first) warm_start(patch, a.R_WB * points[static_cast<std::size_t>(contact.point)].impulse_A, *row);
+      if (!is_kept) {
+        row->ia = a.active;
+        row->ib = b.active;
+        row->contact = k;
+        std::fill_n(row->bias, 3, 0.0);
+        if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, row->a);
+        if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, row->b);
+        if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ, -1.0, *row);
+        if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ, 1.0, *row);
+      }
+      fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), *row);
+      if (!is_kept) finish_row(*row);
+      if (is_first) warm_start(points[static_cast<std::size_t>(contact.point)].impulse, *row);
     }
   }
 }
@@ -383,6 +388,14 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
 
 void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work) {
   const double dt = model.settings.dt;
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    BodyWork& body = work.bodies[i];
+    if (body.active >= 0) continue;
+    BodyMemory& memory = work.memories[i];
+    body.is_steady = body.has_same_pose && !body.is_moving && memory.is_plain && memory.active < 0;
+    memory.is_plain = !body.is_moving;
+    memory.active = -1;
+  }
   for (int i = 0; i < work.active_count; ++i) {
     const int index = work.active[static_cast<std::size_t>(i)];
     BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
@@ -391,8 +404,15 @@ void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work
     body.angular = body.angular_start;
     // Inertia at the middle of the step: what makes turning under a torque second order.
     const bool turns = dt * dt * body.angular_start.squaredNorm() > 1e-18;
-    const Matrix3 R_WB_mid = turns ? Matrix3(exp_rotation(0.5 * dt * body.angular_start) * body.R_WB) : body.R_WB;
-    work.whitening[static_cast<std::size_t>(i)] = plain_whitening(mass, R_WB_mid);
+    BodyMemory& memory = work.memories[static_cast<std::size_t>(index)];
+    const bool is_plain = !turns && !body.has_element;
+    body.is_steady = body.has_same_pose && is_plain && memory.is_plain && memory.active == i;
+    memory.is_plain = is_plain;
+    memory.active = i;
+    if (!body.is_steady) {
+      const Matrix3 R_WB_mid = turns ? Matrix3(exp_rotation(0.5 * dt * body.angular_start) * body.R_WB) : body.R_WB;
+      work.whitening[static_cast<std::size_t>(i)] = plain_whitening(mass, R_WB_mid);
+    }
     if (body.has_element) {  // first guess of Newton's method
       body.velocity = body.velocity_start;
       continue;
