@@ -10,6 +10,9 @@ namespace internal {
 namespace {
 
 constexpr double kFarthest = 1000.0;  ///< m; a body beyond is lost
+/// m and rad in one step. A body that would move less stands still, bit by bit: rounding keeps nothing awake. At steps
+/// of 1 ms that is 3 mm in a year.
+constexpr double kStill = 1e-13;
 
 void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, const BodyState& state,
                 BodyMemory& memory, bool knows_state, BodyWork& work) {
@@ -42,15 +45,6 @@ bool has_finite(const BodyState& body) {
          body.angular_velocity.allFinite();
 }
 
-void keep_impulses(WorldState& state, Scratch& work) {
-  for (const Row& row : work.rows) {
-    const Contact& contact = work.contacts[static_cast<std::size_t>(row.contact)];
-    const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
-    state.pairs[patch.pair].points[static_cast<std::size_t>(contact.point)].impulse =
-        Vector3(row.lambda[0], row.lambda[1], row.lambda[2]);
-  }
-}
-
 void move_body(const WorldModel& model, int index, Scratch& work, BodyState& state) {
   const BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
   const double dt = model.settings.dt;
@@ -67,12 +61,12 @@ void move_body(const WorldModel& model, int index, Scratch& work, BodyState& sta
       turn = whitening.angular * shift.tail<3>();
     }
   }
-  state.p_WBcm += 0.5 * dt * (body.velocity_start + body.velocity) + slide;
+  const Vector3 way = 0.5 * dt * (body.velocity_start + body.velocity) + slide;
   const Vector3 rotation = 0.5 * dt * (body.angular_start + body.angular) + turn;
-  // Below the rounding of a rotation matrix a body stands still, bit by bit.
-  constexpr double kNoRotation = 1e-16;
-  if (rotation.squaredNorm() > kNoRotation * kNoRotation)
+  if (std::max(way.squaredNorm(), rotation.squaredNorm()) > kStill * kStill) {
+    state.p_WBcm += way;
     state.quat_WB = (exp_quaternion(rotation) * state.quat_WB).normalized();
+  }
   state.velocity = body.velocity;
   state.angular_velocity = body.angular;
 }
@@ -160,7 +154,6 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
 }
 
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report) {
-  keep_impulses(state, work);
   for (int i = 0; i < work.active_count; ++i) {
     const int index = work.active[static_cast<std::size_t>(i)];
     BodyState& body = state.bodies[static_cast<std::size_t>(index)];

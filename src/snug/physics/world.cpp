@@ -56,7 +56,9 @@ bool BodyState::operator==(const BodyState& other) const {
 bool PairState::operator==(const PairState& other) const {
   return geom_a == other.geom_a && geom_b == other.geom_b && cache == other.cache && count == other.count &&
          is_known == other.is_known && p_AB == other.p_AB && quat_AB.coeffs() == other.quat_AB.coeffs() &&
-         n_A == other.n_A && points == other.points;
+         margin == other.margin && n_A == other.n_A && t_A == other.t_A &&
+         std::equal(points.begin(), points.begin() + count, other.points.begin()) &&
+         std::equal(impulses.begin(), impulses.begin() + count, other.impulses.begin());
 }
 
 void WorldModel::finalize() {
@@ -129,6 +131,8 @@ internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size()
   sweep_order.resize(geom_count);
   for (std::size_t i = 0; i < geom_count; ++i) sweep_order[i] = static_cast<int>(i);
   pair_done.resize(model.pair_capacity);
+  is_moving.resize(n);
+  has_same_pose.resize(n);
 }
 
 Pose pose_of(const WorldModel& model, const WorldState& state, BodyId body) {
@@ -225,7 +229,8 @@ std::uint64_t hash_of(const WorldState& state) {
     for (int i = 0; i < 4; ++i) hash.add(pair.quat_AB.coeffs()[i]);
     for (int i = 0; i < pair.count; ++i) {
       const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
-      add(point.p_A), add(point.p_B), add(point.impulse);
+      add(point.p_A), add(point.p_B);
+      for (const double part : pair.impulses[static_cast<std::size_t>(i)]) hash.add(part);
       hash.add(static_cast<std::uint64_t>(point.feature));
     }
   }

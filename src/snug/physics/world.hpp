@@ -116,9 +116,8 @@ struct BodyState {
 
 /// One touching point of a pair, remembered from step to step.
 struct PairPoint {
-  Vector3 p_A = Vector3::Zero();      ///< on A, in A's body frame
-  Vector3 p_B = Vector3::Zero();      ///< on B, in B's body frame
-  Vector3 impulse = Vector3::Zero();  ///< N s on B in the last step, along n_A, t_A and n_A x t_A
+  Vector3 p_A = Vector3::Zero();  ///< on A, in A's body frame
+  Vector3 p_B = Vector3::Zero();  ///< on B, in B's body frame
   std::uint32_t feature = 0;
   bool operator==(const PairPoint&) const = default;
 };
@@ -135,6 +134,8 @@ struct PairState {
   Vector3 n_A = Vector3::UnitZ();  ///< from A to B, in A's body frame
   Vector3 t_A = Vector3::UnitX();  ///< first tangent, in A's body frame
   std::array<PairPoint, geometry::kMaxManifoldPoints> points;
+  /// N s on B in the last step, at each point, along n_A, t_A and n_A x t_A.
+  std::array<std::array<double, 3>, geometry::kMaxManifoldPoints> impulses{};
   bool operator==(const PairState& other) const;
 };
 

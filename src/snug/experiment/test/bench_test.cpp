@@ -35,5 +35,14 @@ TEST(Bench, MeetsTheTargetsOfSlidingAndBouncing) {
   }
 }
 
+TEST(Bench, PressesABoxBetweenTwoOthersWithinTheForcesOfTheTargets) {
+  BenchOptions options;
+  options.scenes = std::string(SNUG_SOURCE_DIR) + "/scenarios/bench";
+  options.only = "s6";
+  const std::vector<Figure> figures = run_bench(options);
+  EXPECT_EQ(figures.size(), 6u);
+  for (const Figure& figure : figures) EXPECT_TRUE(figure.ok) << figure.name << " " << figure.value;
+}
+
 }  // namespace
 }  // namespace snug::experiment

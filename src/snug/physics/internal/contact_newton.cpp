@@ -215,7 +215,8 @@ int newton_rows(double tolerance, Row* first, Row* end, double* u, NewtonScratch
     for (Row* row = first; row != end; ++row) visit(*row, work.rows[static_cast<std::size_t>(row - first)]);
   };
   double mobility = 0.0;  // turns momentum errors into velocities
-  each_row([&](const Row& row, NewtonRow& law) {
+  each_row([&](Row& row, NewtonRow& law) {
+    row.is_changed = true;
     std::copy_n(row.lambda, 3, law.best);
     mobility = std::max({mobility, row.W[0] - row.gamma, row.W[3], row.W[5]});
   });

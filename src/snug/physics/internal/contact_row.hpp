@@ -25,6 +25,7 @@ struct alignas(16) Row {
   std::int32_t contact;
   bool is_rigid;
   bool is_bounce;
+  bool is_changed;  ///< lambda is not what the state remembers
 };
 
 using Pair = double __attribute__((vector_size(16)));

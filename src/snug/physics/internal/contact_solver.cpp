@@ -54,6 +54,7 @@ inline double relax(Row& row, double* u) {
   if (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0) return 0.0;
   apply(row, d, u);
   row.lambda[0] = lambda[0], row.lambda[1] = lambda[1], row.lambda[2] = lambda[2];
+  row.is_changed = true;
   return std::max({row.W[0] * std::abs(d[0]), row.W[3] * std::abs(d[1]), row.W[5] * std::abs(d[2])});
 }
 

@@ -54,36 +54,41 @@ Vector3 tangent_of(const Vector3& n) {
   return n.cross(Vector3::Unit(smallest)).normalized();
 }
 
-using PairPoints = std::array<PairPoint, geometry::kMaxManifoldPoints>;
+using Impulse = std::array<double, 3>;
+
+void turn(const Matrix3& R, const Impulse& from, Impulse& to) {
+  Eigen::Map<Vector3>(to.data()) = R * Eigen::Map<const Vector3>(from.data());
+}
 
 /// Impulses of the old manifold, turned into the axes of the new one, for the new points: same feature first, else the
 /// nearest old point.
-void hand_on_impulses(const PairPoints& old, int old_count, const Matrix3& R_new_old, PairState& pair) {
+void hand_on_impulses(const PairState& old, const Matrix3& R_new_old, PairState& pair) {
+  const int old_count = old.count;
   std::uint32_t used = 0;
   for (int i = 0; i < pair.count; ++i) {
-    PairPoint& point = pair.points[static_cast<std::size_t>(i)];
+    const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
     for (int j = 0; j < old_count; ++j) {
-      if ((used >> j & 1U) == 0 && old[static_cast<std::size_t>(j)].feature == point.feature) {
-        point.impulse = R_new_old * old[static_cast<std::size_t>(j)].impulse;
+      if ((used >> j & 1U) == 0 && old.points[static_cast<std::size_t>(j)].feature == point.feature) {
+        turn(R_new_old, old.impulses[static_cast<std::size_t>(j)], pair.impulses[static_cast<std::size_t>(i)]);
         used |= 1U << j;
         break;
       }
     }
   }
   for (int i = 0; i < pair.count && used != (1U << old_count) - 1U; ++i) {
-    PairPoint& point = pair.points[static_cast<std::size_t>(i)];
-    if (!point.impulse.isZero(0.0)) continue;
+    const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
+    if (pair.impulses[static_cast<std::size_t>(i)] != Impulse{}) continue;
     int best = -1;
     double best_square = kMatchDistance * kMatchDistance;
     for (int j = 0; j < old_count; ++j) {
-      const double square = (old[static_cast<std::size_t>(j)].p_A - point.p_A).squaredNorm();
+      const double square = (old.points[static_cast<std::size_t>(j)].p_A - point.p_A).squaredNorm();
       if ((used >> j & 1U) == 0 && square < best_square) {
         best_square = square;
         best = j;
       }
     }
     if (best < 0) continue;
-    point.impulse = R_new_old * old[static_cast<std::size_t>(best)].impulse;
+    turn(R_new_old, old.impulses[static_cast<std::size_t>(best)], pair.impulses[static_cast<std::size_t>(i)]);
     used |= 1U << best;
   }
 }
@@ -101,9 +106,7 @@ void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& 
   geometry::Manifold manifold;
   geometry::collide(bodies.geom_a.shape, X_WA * bodies.geom_a.X_BG, bodies.geom_b.shape, X_WB * bodies.geom_b.X_BG,
                     margin, pair.cache, manifold);
-  const PairPoints old = pair.points;
-  const int old_count = pair.count;
-  const Matrix3 old_axes = axes_of(pair);
+  const PairState old = pair;
   pair.is_known = true;
   pair.p_AB = now.p;
   pair.quat_AB = now.quat;
@@ -117,9 +120,9 @@ void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& 
     point.p_A = a.R_WB.transpose() * (found.p_WA - a.p_WB);
     point.p_B = b.R_WB.transpose() * (found.p_WB - b.p_WB);
     point.feature = found.feature;
-    point.impulse.setZero();
+    pair.impulses[static_cast<std::size_t>(i)] = {};
   }
-  if (old_count > 0 && pair.count > 0) hand_on_impulses(old, old_count, axes_of(pair).transpose() * old_axes, pair);
+  if (old.count > 0 && pair.count > 0) hand_on_impulses(old, axes_of(pair).transpose() * axes_of(old), pair);
 }
 
 double approach_at(const Vector3& p_WQ, const Vector3& n, const BodyWork& a, const BodyWork& b) {
@@ -170,13 +173,13 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
   bool touches = false;
   double reach_from = 0.0, reach_to = pair.margin;
   for (int i = 0; i < pair.count; ++i) {
-    PairPoint& point = pair.points[static_cast<std::size_t>(i)];
+    const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
     const Vector3 p_WA = a.R_WB * point.p_A + a.p_WB;
     const Vector3 p_WB = b.R_WB * point.p_B + b.p_WB;
     const double phi = n.dot(p_WB - p_WA);
     memory.clearance = std::min(memory.clearance, phi);
     if (phi > reach || work.contacts.full()) {
-      point.impulse.setZero();
+      pair.impulses[static_cast<std::size_t>(i)] = {};
       reach_to = std::min(reach_to, phi);
       continue;
     }
@@ -221,6 +224,7 @@ void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int g
     body.sleep_group = -1;
     body.slow_time = 0.0;
     work.bodies[i].is_moving = true;
+    work.is_moving[i] = 1;
     work.bodies[i].active = work.active_count;
     work.active[static_cast<std::size_t>(work.active_count++)] = static_cast<int>(i);
   }
@@ -255,7 +259,10 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
                      StepReport& report) {
   const double dt = model.settings.dt;
   double fastest = 0.0;
-  for (const BodyWork& body : work.bodies) {
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    const BodyWork& body = work.bodies[i];
+    work.is_moving[i] = body.is_moving ? 1 : 0;
+    work.has_same_pose[i] = body.has_same_pose ? 1 : 0;
     if (body.is_moving) fastest = std::max(fastest, body.speed);
   }
   // A body can be pushed by another one, so the fastest of all bounds what may close a gap in one step.
@@ -270,13 +277,12 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
       if (work.pair_done[i] != 0) continue;
       PairMemory& memory = work.pair_memories[i];
       if (!work.knows_pairs) memory = memory_of(model, state.pairs[i]);
-      const int pair_bodies[2] = {memory.body_a, memory.body_b};
-      const BodyWork& a = work.bodies[static_cast<std::size_t>(memory.body_a)];
-      const BodyWork& b = work.bodies[static_cast<std::size_t>(memory.body_b)];
-      if (!a.is_moving && !b.is_moving) continue;
+      const auto a = static_cast<std::size_t>(memory.body_a), b = static_cast<std::size_t>(memory.body_b);
+      if (work.is_moving[a] == 0 && work.is_moving[b] == 0) continue;
       work.pair_done[i] = 1;
       const bool is_held = memory.body_a == input.held.index || memory.body_b == input.held.index;
-      const bool is_same = memory.stamp == work.stamp && a.has_same_pose && b.has_same_pose && !is_held;
+      const bool is_same =
+          memory.stamp == work.stamp && work.has_same_pose[a] != 0 && work.has_same_pose[b] != 0 && !is_held;
       if (is_same && memory.patch < 0 && memory.clearance > reach) {
         ++memory.stamp;
         continue;
@@ -285,8 +291,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
                                ? keep_contacts(memory, dt, work)
                                : visit_pair(model, input, state, work, i, reach, margin);
       if (!touches) continue;
-      for (const int body : pair_bodies) {
-        const auto k = static_cast<std::size_t>(body);
+      for (const std::size_t k : {a, b}) {
         if (!is_sleeping(state.bodies[k], model.bodies[k])) continue;
         wake_group(model, state, work, state.bodies[k].sleep_group);
         has_woken = true;

@@ -124,6 +124,7 @@ struct Scratch {
   std::vector<char> is_moved;
   std::vector<int> sweep_order;
   std::vector<char> pair_done;
+  std::vector<char> is_moving, has_same_pose;  ///< of each body, side by side for the walk over the pairs
 };
 
 // The stages of a step, in order.
@@ -140,9 +141,10 @@ void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int g
 /// Velocities at the end of the step without contacts (bodies with force elements: done in solve_islands).
 void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work);
 void build_islands(const WorldInput& input, Scratch& work);
-void solve_islands(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work,
+/// Velocities at the end of the step; leaves the impulses in the state.
+void solve_islands(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
                    StepReport& report);
-/// Positions, penetration, impulses kept for the next step, sleep.
+/// Positions, penetration, sleep.
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report);
 /// Fills work.reports, once a step and only when somebody asks.
 void report_contacts(Scratch& work);

@@ -133,14 +133,13 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
   }
 }
 
-/// Starts from the impulses of the step before, cut to the cone.
-void warm_start(const Vector3& impulse, Row& row) {
-  row.lambda[0] = std::max(0.0, impulse[0]);
-  row.lambda[1] = impulse[1];
-  row.lambda[2] = impulse[2];
+/// The impulses of the step before, cut to the cone of this one.
+void cut_to_cone(Row& row) {
+  row.lambda[0] = std::max(0.0, row.lambda[0]);  // negative only when it is new
   const double limit = row.mu * row.lambda[0];
   const double square = row.lambda[1] * row.lambda[1] + row.lambda[2] * row.lambda[2];
   if (square <= limit * limit) return;
+  row.is_changed = true;
   const double scale = limit / std::sqrt(square);
   row.lambda[1] *= scale;
   row.lambda[2] *= scale;
@@ -154,7 +153,6 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
     const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
     const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
     const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
-    const auto& points = state.pairs[patch.pair].points;
     const auto row_index = static_cast<std::size_t>(row - work.rows.begin());
     const bool is_kept = patch.is_kept && a.is_steady && b.is_steady && row->contact == patch.first_contact &&
                          row_index + static_cast<std::size_t>(patch.contact_count) <= work.last_rows;
@@ -174,7 +172,13 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
       }
       fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), *row);
       if (!is_kept) finish_row(*row);
-      if (is_first) warm_start(points[static_cast<std::size_t>(contact.point)].impulse, *row);
+      if (!is_first) continue;
+      if (!is_kept) {
+        const auto& impulse = state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)];
+        std::copy(impulse.begin(), impulse.end(), row->lambda);
+      }
+      row->is_changed = !is_kept;
+      cut_to_cone(*row);
     }
   }
 }
@@ -384,6 +388,17 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
   report.element_residual = std::max(report.element_residual, error);
 }
 
+/// What the next step starts from.
+void keep_impulses(const Row* first, const Row* end, WorldState& state, const Scratch& work) {
+  for (const Row* row = first; row != end; ++row) {
+    if (!row->is_changed) continue;
+    const Contact& contact = work.contacts[static_cast<std::size_t>(row->contact)];
+    const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+    state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)] = {row->lambda[0], row->lambda[1],
+                                                                                 row->lambda[2]};
+  }
+}
+
 }  // namespace
 
 void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work) {
@@ -443,7 +458,7 @@ void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work
   }
 }
 
-void solve_islands(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work,
+void solve_islands(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
                    StepReport& report) {
   for (int i = 0; i < work.active_count; ++i) {
     const BodyWork& body = work.bodies[static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)])];
@@ -461,6 +476,7 @@ void solve_islands(const WorldModel& model, const WorldInput& input, const World
     }
     Row* first = work.rows.begin() + island.first_row;
     Row* end = work.rows.begin() + island.end_row;
+    keep_impulses(first, end, state, work);
     correct_positions(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
     read_velocities(work, island);
   }
