@@ -41,8 +41,8 @@ void start_kinematic(const BodyState& state, const KinematicTarget& target, doub
 }
 
 bool has_finite(const BodyState& body) {
-  return body.p_WBcm.allFinite() && body.quat_WB.coeffs().allFinite() && body.velocity.allFinite() &&
-         body.angular_velocity.allFinite();
+  return std::isfinite(body.p_WBcm.sum() + body.quat_WB.coeffs().sum() + body.velocity.sum() +
+                       body.angular_velocity.sum());
 }
 
 void move_body(const WorldModel& model, int index, Scratch& work, BodyState& state) {
@@ -51,16 +51,7 @@ void move_body(const WorldModel& model, int index, Scratch& work, BodyState& sta
   const Whitening& whitening = work.whitening[static_cast<std::size_t>(body.active)];
   const Eigen::Map<const Vector6> shift(work.shift.data() + 6 * body.active);
   Vector3 slide = Vector3::Zero(), turn = Vector3::Zero();
-  if (!shift.isZero(0.0)) {
-    if (whitening.is_dense) {
-      const Vector6 v = whitening.dense.triangularView<Eigen::Upper>() * shift;
-      slide = v.head<3>();
-      turn = v.tail<3>();
-    } else {
-      slide = whitening.linear * shift.head<3>();
-      turn = whitening.angular * shift.tail<3>();
-    }
-  }
+  if (!shift.isZero(0.0)) unwhiten(whitening, shift.data(), slide, turn);
   const Vector3 way = 0.5 * dt * (body.velocity_start + body.velocity) + slide;
   const Vector3 rotation = 0.5 * dt * (body.angular_start + body.angular) + turn;
   if (std::max(way.squaredNorm(), rotation.squaredNorm()) > kStill * kStill) {
@@ -69,6 +60,20 @@ void move_body(const WorldModel& model, int index, Scratch& work, BodyState& sta
   }
   state.velocity = body.velocity;
   state.angular_velocity = body.angular;
+}
+
+/// The first body whose state or input is not a number.
+BodyId find_not_finite(const WorldInput& input, const WorldState& state) {
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    if (state.bodies[i].is_present && !has_finite(state.bodies[i])) return BodyId{static_cast<int>(i)};
+  }
+  for (const KinematicTarget& target : input.kinematic) {
+    if (!target.X_WB_end.p.allFinite() || !target.X_WB_end.R.allFinite()) return target.body;
+  }
+  for (const ExternalWrench& wrench : input.wrenches) {
+    if (!as_vector(wrench.wrench_W).allFinite()) return wrench.body;
+  }
+  return {};
 }
 
 /// Wake and sleep rules: docs/theory/contact.md, section 6.
@@ -125,16 +130,17 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
     const Matrix3 R_WB = body.quat_WB.toRotationMatrix();
     is_anything_moving |= target.X_WB_end.p != body.p_WBcm || target.X_WB_end.R != R_WB;
   }
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (model.bodies[i].kind == BodyKind::Dynamic) continue;
+    state.bodies[i].velocity.setZero();  // stands still unless it has a target
+    state.bodies[i].angular_velocity.setZero();
+  }
   if (!is_anything_moving) return false;
   work.active_count = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyState& body = state.bodies[i];
     BodyWork& body_work = work.bodies[i];
     start_body(model.bodies[i], model.masses[i], body, work.memories[i], work.knows_state, body_work);
-    if (model.bodies[i].kind != BodyKind::Dynamic) {  // stands still unless it has a target
-      body_work.velocity_start.setZero();
-      body_work.angular_start.setZero();
-    }
     if (model.bodies[i].kind != BodyKind::Dynamic || !body.is_present || body.sleep_group >= 0) continue;
     body_work.is_moving = true;
     body_work.active = work.active_count;
@@ -201,21 +207,26 @@ void report_contacts(Scratch& work) {
 StepReport step(const WorldModel& model, const WorldInput& input, WorldState& state, Workspace& workspace) noexcept {
   internal::Scratch& work = workspace.scratch();
   StepReport report;
-  ++state.step_index;
   work.reports.clear();
   work.has_reports = true;
   work.dt = model.settings.dt;
   work.knows_state = state.stamp.value == work.stamp;
+  const auto stop = [&report](StepStatus status) {
+    report.status = status;
+    return report;
+  };
+  report.culprit = internal::find_not_finite(input, state);
+  if (report.culprit.is_valid()) return stop(StepStatus::NotFinite);
+  ++state.step_index;
   if (!internal::begin_step(model, input, state, work)) return report;
   state.stamp = {};
-  if (!internal::update_pairs(model, state, work)) {
-    report.status = StepStatus::TooManyPairs;
-    return report;
-  }
+  if (!internal::update_pairs(model, state, work)) return stop(StepStatus::TooManyPairs);
   internal::detect_contacts(model, input, state, work, report);
+  if (work.has_too_many_contacts) return stop(StepStatus::TooManyPairs);
   internal::free_motion(model, input, work);
   internal::build_islands(input, work);
   internal::solve_islands(model, input, state, work, report);
+  if (report.culprit.is_valid()) return stop(StepStatus::NotFinite);
   internal::end_step(model, input, state, work, report);
   work.has_reports = false;
   work.last_rows = work.rows.size();

@@ -31,6 +31,9 @@ WorldModel::MassProperties mass_properties_of(const BodyModel& body) {
   WorldModel::MassProperties mass;
   const Vector3 com = body.kind == BodyKind::Dynamic ? body.inertia.com : Vector3(Vector3::Zero());
   for (const Geom& geom : body.geoms) mass.radius = std::max(mass.radius, radius_of(geom, com));
+  if (body.geoms.empty()) {  // nothing to touch with, but its turning still counts in tolerances
+    mass.radius = std::sqrt(body.inertia.inertia.trace() / body.inertia.mass);
+  }
   if (body.kind != BodyKind::Dynamic) return mass;
   mass.inverse_mass = 1.0 / body.inertia.mass;
   const Matrix3& inertia = body.inertia.inertia;
@@ -123,7 +126,7 @@ internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size()
   rows = BoundedVector<Row>(contact_capacity);
   reports = BoundedVector<ContactReport>(contact_capacity);
   islands.resize(n + 1);
-  element_order.resize(std::max<std::size_t>(64, n));
+  element_bodies.reserve(n);
   merged_pairs = BoundedVector<PairState>(model.pair_capacity);
   keys.reserve(model.pair_capacity + 1);
   moved.reserve(geom_count);
@@ -147,19 +150,26 @@ Twist twist_of(const WorldModel& model, const WorldState& state, BodyId body) {
   return {b.velocity - b.angular_velocity.cross(p_BoBcm_W), b.angular_velocity};
 }
 
-void wake(WorldState& state, BodyId body) {
-  BodyState& b = state.bodies[static_cast<std::size_t>(body.index)];
-  if (b.sleep_group < 0) return;
-  const int group = b.sleep_group;
+namespace {
+
+/// Group -1: all.
+void wake_sleepers(WorldState& state, int group) {
   for (BodyState& other : state.bodies) {
-    if (other.sleep_group != group) continue;
+    if (other.sleep_group < 0 || (group >= 0 && other.sleep_group != group)) continue;
     other.sleep_group = -1;
     other.slow_time = 0.0;
   }
 }
 
+}  // namespace
+
+void wake(WorldState& state, BodyId body) {
+  const int group = state.bodies[static_cast<std::size_t>(body.index)].sleep_group;
+  if (group >= 0) wake_sleepers(state, group);
+}
+
 void set_pose(const WorldModel& model, WorldState& state, BodyId body, const Pose& X_WB) {
-  wake(state, body);
+  wake_sleepers(state, state.bodies[static_cast<std::size_t>(body.index)].sleep_group);
   BodyState& b = state.bodies[static_cast<std::size_t>(body.index)];
   b.quat_WB = Quaternion(X_WB.R).normalized();
   b.p_WBcm = X_WB * model.bodies[static_cast<std::size_t>(body.index)].inertia.com;
@@ -180,7 +190,11 @@ void set_twist(const WorldModel& model, WorldState& state, BodyId body, const Tw
 }
 
 void set_present(WorldState& state, BodyId body, bool is_present) {
-  wake(state, body);
+  if (is_present) {
+    wake(state, body);
+  } else {
+    wake_sleepers(state, state.bodies[static_cast<std::size_t>(body.index)].sleep_group);
+  }
   state.bodies[static_cast<std::size_t>(body.index)].is_present = is_present;
 }
 

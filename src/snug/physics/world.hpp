@@ -195,9 +195,9 @@ struct WorldInput {
 enum class StepStatus {
   Converged,
   NotConverged,  ///< contact solver stopped at max_sweeps; the state is usable, the residual says how good
-  NotFinite,     ///< a body's state is not a number; stop the run
+  NotFinite,     ///< the state or the input of a body is not a number; stop the run. Bad input leaves the state alone
   LostBody,      ///< a body is farther than 1 km from the origin; stop the run
-  TooManyPairs,  ///< more pairs near each other than pair_capacity; stop the run
+  TooManyPairs,  ///< more pairs near each other than pair_capacity, or contacts than there is room for; stop the run
 };
 
 struct StepReport {
@@ -252,10 +252,11 @@ class Workspace {
 [[nodiscard]] Pose pose_of(const WorldModel& model, const WorldState& state, BodyId body);
 /// Twist of the body frame: linear part at the origin of B, in W.
 [[nodiscard]] Twist twist_of(const WorldModel& model, const WorldState& state, BodyId body);
-/// Moves a body, keeps its velocity, wakes it and its group.
+/// Moves a body, keeps its velocity, wakes it and its group; a body that does not sleep wakes all: it may carry them.
 void set_pose(const WorldModel& model, WorldState& state, BodyId body, const Pose& X_WB);
 /// Linear part at the origin of B, in W. Wakes the body and its group.
 void set_twist(const WorldModel& model, WorldState& state, BodyId body, const Twist& V_WB);
+/// Absent bodies touch nothing and do not move. Taking a body away wakes its group, or all when it does not sleep.
 void set_present(WorldState& state, BodyId body, bool is_present);
 void wake(WorldState& state, BodyId body);
 

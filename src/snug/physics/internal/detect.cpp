@@ -178,6 +178,7 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
     const Vector3 p_WB = b.R_WB * point.p_B + b.p_WB;
     const double phi = n.dot(p_WB - p_WA);
     memory.clearance = std::min(memory.clearance, phi);
+    work.has_too_many_contacts |= phi <= reach && work.contacts.full();
     if (phi > reach || work.contacts.full()) {
       pair.impulses[static_cast<std::size_t>(i)] = {};
       reach_to = std::min(reach_to, phi);
@@ -270,6 +271,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   const double margin = std::max(model.settings.contact_margin, 1.5 * reach);
   work.patches.clear();
   work.contacts.clear();
+  work.has_too_many_contacts = false;
   std::fill_n(work.pair_done.begin(), state.pairs.size(), char{0});
   for (bool has_woken = true; has_woken;) {  // waking a group brings its pairs in
     has_woken = false;

@@ -49,10 +49,12 @@ void build_islands(const WorldInput& input, Scratch& work) {
     island.end_row += patch.contact_count;
   }
   for (const ElementUse& use : input.elements) {
-    const int active = active_of(work, use.body.index);
-    if (active >= 0) ++work.islands[static_cast<std::size_t>(island_of(work, active))].end_element;
+    BodyWork& body = work.bodies[static_cast<std::size_t>(use.body.index)];
+    if (body.active < 0) continue;
+    body.island = island_of(work, body.active);
+    work.islands[static_cast<std::size_t>(body.island)].has_element = true;
   }
-  int patches = 0, rows = 0, elements = 0;
+  int patches = 0, rows = 0;
   for (int i = 0; i < work.island_count; ++i) {
     Island& island = work.islands[static_cast<std::size_t>(i)];
     island.first_patch = patches;
@@ -61,19 +63,10 @@ void build_islands(const WorldInput& input, Scratch& work) {
     island.first_row = rows;
     rows += island.end_row;
     island.end_row = rows;
-    island.first_element = elements;
-    elements += island.end_element;
-    island.end_element = island.first_element;
   }
   for (std::size_t i = 0; i < work.patches.size(); ++i) {
     Island& island = work.islands[static_cast<std::size_t>(work.patches[i].island)];
     work.patch_order[static_cast<std::size_t>(island.end_patch++)] = static_cast<int>(i);
-  }
-  for (std::size_t i = 0; i < input.elements.size(); ++i) {
-    const int active = active_of(work, input.elements[i].body.index);
-    if (active < 0) continue;
-    Island& island = work.islands[static_cast<std::size_t>(island_of(work, active))];
-    work.element_order[static_cast<std::size_t>(island.end_element++)] = static_cast<int>(i);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "snug/core/bounded_vector.hpp"
 #include "snug/physics/internal/contact_newton.hpp"
 #include "snug/physics/internal/contact_row.hpp"
+#include "snug/physics/internal/element_bodies.hpp"
 #include "snug/physics/world.hpp"
 
 namespace snug::physics::internal {
@@ -22,6 +23,7 @@ struct BodyWork {
   Vector3 angular = Vector3::Zero();
   double speed = 0.0;      ///< bound on the speed of any of its points, m/s
   int active = -1;         ///< index among the bodies that move in this step
+  int island = -1;         ///< of a body with an element
   bool is_moving = false;  ///< dynamic and awake, or kinematic with a motion
   bool has_element = false;
   bool has_same_pose = false;  ///< as in this workspace's last step, bit by bit
@@ -83,8 +85,7 @@ struct Island {
   int end_patch = 0;
   int first_row = 0;
   int end_row = 0;
-  int first_element = 0;
-  int end_element = 0;
+  bool has_element = false;
 };
 
 struct Scratch {
@@ -115,8 +116,8 @@ struct Scratch {
   double dt = 0.0;
   std::vector<Island> islands;
   int island_count = 0;
-  std::vector<int> element_order;  ///< elements by island
-  int element_count = 0;
+  std::vector<ElementBody> element_bodies;  ///< of the island being solved
+  bool has_too_many_contacts = false;
 
   BoundedVector<PairState> merged_pairs;  ///< broad phase
   std::vector<std::uint64_t> keys;
@@ -148,6 +149,16 @@ void solve_islands(const WorldModel& model, const WorldInput& input, WorldState&
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report);
 /// Fills work.reports, once a step and only when somebody asks.
 void report_contacts(Scratch& work);
+
+[[nodiscard]] Whitening plain_whitening(const WorldModel::MassProperties& mass, const Matrix3& R_WB);
+/// u = T^-1 v.
+[[nodiscard]] Vector6 whiten(const Whitening& whitening, const Vector3& linear, const Vector3& angular);
+/// v = T u.
+void unwhiten(const Whitening& whitening, const double* u, Vector3& linear, Vector3& angular);
+
+/// Rows of an island, from the free velocities in work.u. The first time with the impulses of the step before, later
+/// with those of the row.
+void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first);
 
 // The contact problem of one island (contact_solver.cpp).
 

@@ -234,5 +234,30 @@ TEST(Sleep, ChangesAHeapByLessThanItsThresholdsAllow) {
   }
 }
 
+TEST_F(SleepingStacks, LeaveAKinematicBodyThatStopsWithoutVelocity) {
+  for (int i = 1; i <= 10; ++i) (void)step_to(BodyId{5}, Vector3(0.001 * i, 0.0, 3.0));
+  EXPECT_NEAR(twist_of(model_, run_.state, BodyId{5}).linear.x(), 1.0, 1e-12);
+  (void)step_to(BodyId{5}, Vector3(0.01, 0.0, 3.0));  // same pose as before: it stands
+  EXPECT_EQ(twist_of(model_, run_.state, BodyId{5}).linear, Vector3(Vector3::Zero()));
+}
+
+TEST_F(SleepingStacks, LeaveAKinematicBodyWithoutATargetWithoutVelocity) {
+  for (int i = 1; i <= 10; ++i) (void)step_to(BodyId{5}, Vector3(0.001 * i, 0.0, 3.0));
+  (void)run_.step();  // no target: it stands still
+  EXPECT_EQ(twist_of(model_, run_.state, BodyId{5}).linear, Vector3(Vector3::Zero()));
+}
+
+TEST_F(SleepingStacks, FallWhenTheGroundIsRemoved) {
+  set_present(run_.state, BodyId{0}, false);
+  run_.steps(100);
+  EXPECT_LT(run_.body(1).p_WBcm.z(), 0.05 - 0.04);  // 0.5 g t^2 = 49 mm in 0.1 s
+}
+
+TEST_F(SleepingStacks, FallWhenTheGroundIsMovedAway) {
+  set_pose(model_, run_.state, BodyId{0}, {Matrix3::Identity(), Vector3(0.0, 0.0, -1.5)});
+  run_.steps(100);
+  EXPECT_LT(run_.body(1).p_WBcm.z(), 0.05 - 0.04);  // as above
+}
+
 }  // namespace
 }  // namespace snug::physics::test

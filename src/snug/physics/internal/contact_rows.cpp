@@ -1,0 +1,151 @@
+// Contact rows: the contacts of an island as rows J T of the contact problem, with the law of this step.
+#include <algorithm>
+#include <cmath>
+
+#include "snug/physics/internal/scratch.hpp"
+
+namespace snug::physics::internal {
+namespace {
+
+/// How a body enters the rows of a patch: whitened J of axis i at arm r is sign (L_i, G_i r), G_i a 3 x 3 matrix.
+struct Side {
+  int active = -1;
+  Vector3 p_WBcm;
+  double linear[3][3];                  ///< L_i; unused when dense
+  Eigen::Matrix<double, 9, 3> angular;  ///< G_i stacked: row 3 i + j is (d_i x t_j), t_j columns of the whitening
+  const Whitening* whitening = nullptr;
+  double sign = 1.0;
+};
+
+Side side_of(const Scratch& work, const BodyWork& body, const Patch& patch, double sign) {
+  Side side;
+  side.active = body.active;
+  side.sign = sign;
+  if (body.active < 0) return side;
+  side.p_WBcm = body.p_WBcm;
+  side.whitening = &work.whitening[static_cast<std::size_t>(body.active)];
+  if (side.whitening->is_dense) return side;
+  const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 d = sign * *axes[i];
+    for (int j = 0; j < 3; ++j) {
+      side.linear[i][j] = side.whitening->linear * d[j];
+      side.angular.row(3 * i + j) = d.cross(side.whitening->angular.col(j)).transpose();
+    }
+  }
+  return side;
+}
+
+void fill_side(const Side& side, const Patch& patch, const Vector3& p_WQ, double (&out)[3][6]) {
+  const Vector3 arm = p_WQ - side.p_WBcm;
+  if (side.whitening->is_dense) {
+    const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
+    for (int i = 0; i < 3; ++i) {
+      Vector6 j;
+      j << side.sign * *axes[i], arm.cross(side.sign * *axes[i]);
+      Eigen::Map<Vector6> row(out[i]);
+      row = side.whitening->dense.triangularView<Eigen::Upper>().transpose() * j;
+    }
+    return;
+  }
+  const Eigen::Matrix<double, 9, 1> angular = side.angular * arm;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      out[i][j] = side.linear[i][j];
+      out[i][3 + j] = angular[3 * i + j];
+    }
+  }
+}
+
+/// Relative velocity that a moving kinematic body brings in.
+void add_bias(const BodyWork& body, const Patch& patch, const Vector3& p_WQ, double sign, Row& row) {
+  const Vector3 v = sign * (body.velocity_start + body.angular_start.cross(p_WQ - body.p_WBcm));
+  row.bias[0] += patch.n.dot(v);
+  row.bias[1] += patch.t1.dot(v);
+  row.bias[2] += patch.t2.dot(v);
+}
+
+/// The law of one contact in this step: docs/theory/contact.md, section 3.
+void fill_law(const WorldModel& model, const Patch& patch, const Contact& contact, double free_velocity, Row& row) {
+  const double dt = model.settings.dt;
+  const double mean = 0.5 * (contact.approach + free_velocity);
+  const ContactLaw& law = model.laws[patch.law];
+  row.mu = law.friction;
+  row.gamma = 0.0;
+  row.gap_end = 0.0;
+  row.is_bounce = false;
+  row.is_rigid = law.stiffness <= 0.0;
+  if (!row.is_rigid) {
+    const double k = law.stiffness / patch.contact_count, d = law.damping / patch.contact_count;
+    const double s = 0.5 * k * dt + d;
+    row.gamma = 1.0 / (dt * s);
+    row.target = -k * (contact.phi + 0.5 * dt * contact.approach) / s;
+    return;
+  }
+  if (contact.phi + dt * mean > 0.0) {  // does not close by itself: may be pushed as far as closing
+    row.target = std::min(0.0, -2.0 * contact.phi / dt - contact.approach);
+    return;
+  }
+  // Closes at the fraction theta of the step, with this speed.
+  const double theta = contact.phi > 0.0 ? std::clamp(-contact.phi / (dt * mean), 0.0, 1.0) : 0.0;
+  const double impact = contact.approach + theta * (free_velocity - contact.approach);
+  row.target = 0.0;
+  if (law.restitution > 0.0 && impact < -model.settings.restitution_threshold) {
+    const double rest = (1.0 - theta) * (free_velocity - contact.approach);  // acceleration after the impact
+    row.target = std::max(0.0, -law.restitution * impact + rest);
+    row.gap_end = std::max(0.0, (1.0 - theta) * dt * (-law.restitution * impact + 0.5 * rest));
+    row.is_bounce = true;
+  }
+}
+
+/// The impulses of the step before, cut to the cone of this one.
+void cut_to_cone(Row& row) {
+  row.lambda[0] = std::max(0.0, row.lambda[0]);  // negative only when it is new
+  const double limit = row.mu * row.lambda[0];
+  const double square = row.lambda[1] * row.lambda[1] + row.lambda[2] * row.lambda[2];
+  if (square <= limit * limit) return;
+  row.is_changed = true;
+  const double scale = limit / std::sqrt(square);
+  row.lambda[1] *= scale;
+  row.lambda[2] *= scale;
+}
+
+}  // namespace
+
+void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first) {
+  Row* row = work.rows.begin() + island.first_row;
+  for (int i = island.first_patch; i < island.end_patch; ++i) {
+    const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
+    const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
+    const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
+    const auto row_index = static_cast<std::size_t>(row - work.rows.begin());
+    const bool is_kept = patch.is_kept && a.is_steady && b.is_steady && row->contact == patch.first_contact &&
+                         row_index + static_cast<std::size_t>(patch.contact_count) <= work.last_rows;
+    Side side_a, side_b;
+    if (!is_kept) side_a = side_of(work, a, patch, -1.0), side_b = side_of(work, b, patch, 1.0);
+    for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
+      const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
+      if (!is_kept) {
+        row->ia = a.active;
+        row->ib = b.active;
+        row->contact = k;
+        std::fill_n(row->bias, 3, 0.0);
+        if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, row->a);
+        if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, row->b);
+        if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ, -1.0, *row);
+        if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ, 1.0, *row);
+      }
+      fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), *row);
+      if (!is_kept) finish_row(*row);
+      if (!is_first) continue;
+      if (!is_kept) {
+        const auto& impulse = state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)];
+        std::copy(impulse.begin(), impulse.end(), row->lambda);
+      }
+      row->is_changed = !is_kept;
+      cut_to_cone(*row);
+    }
+  }
+}
+
+}  // namespace snug::physics::internal

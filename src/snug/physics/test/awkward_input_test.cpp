@@ -1,0 +1,137 @@
+// Awkward input: what is not a number is traced to the body that brought it in, and numbers of things have no limit.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "scene.hpp"
+
+namespace snug::physics::test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const Vector3 kBox(0.2, 0.2, 0.1);
+
+/// Bodies 1-3: a stack; 4: alone in the air.
+WorldModel stack() {
+  return on_plane({0.2, 0.0, 0.0, 0.0}, {box(kBox, 0.5, {0.0, 0.0, 0.05}), box(kBox, 0.5, {0.0, 0.0, 0.15}),
+                                         box(kBox, 0.5, {0.0, 0.0, 0.25}), box(kBox, 0.5, {2.0, 0.0, 1.0})});
+}
+
+/// Steps until something is wrong, at most 20.
+StepReport run_on(Simulation& run, const WorldInput& input = {}) {
+  StepReport report;
+  for (int i = 0; i < 20; ++i) {
+    report = run.step(input);
+    if (report.status != StepStatus::Converged && report.status != StepStatus::NotConverged) break;
+  }
+  return report;
+}
+
+TEST(NotFinite, NamesTheBodyInAStackThatBroughtItInAndNotAVictim) {
+  const WorldModel model = stack();
+  for (int culprit = 1; culprit <= 3; ++culprit) {
+    for (int part = 0; part < 4; ++part) {
+      SCOPED_TRACE(testing::Message() << "body " << culprit << ", part " << part);
+      Simulation run(model);
+      run.steps(5);
+      if (part == 0) run.body(culprit).velocity.y() = kNaN;
+      if (part == 1) run.body(culprit).angular_velocity.y() = kNaN;
+      if (part == 2) run.body(culprit).p_WBcm.y() = kNaN;
+      if (part == 3) run.body(culprit).quat_WB.x() = kNaN;
+      const StepReport report = run_on(run);
+      EXPECT_EQ(report.status, StepStatus::NotFinite);
+      EXPECT_EQ(report.culprit, BodyId{culprit});
+    }
+  }
+}
+
+TEST(NotFinite, NamesTheBodyThatAWrenchWithoutNumberActsOn) {
+  const WorldModel model = stack();
+  for (const int body : {4, 1, 2, 3}) {
+    for (const bool is_torque : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "body " << body << (is_torque ? " torque" : " force"));
+      Simulation run(model);
+      run.steps(5);
+      ExternalWrench wrench{BodyId{body}, {}};
+      (is_torque ? wrench.wrench_W.torque : wrench.wrench_W.force).z() = kNaN;
+      WorldInput input;
+      input.wrenches = {&wrench, 1};
+      const StepReport report = run_on(run, input);
+      EXPECT_EQ(report.status, StepStatus::NotFinite);
+      EXPECT_EQ(report.culprit, BodyId{body});
+    }
+  }
+}
+
+TEST(NotFinite, NamesAKinematicBodySentNowhere) {
+  WorldModel model = stack();
+  BodyModel pusher = fixed_box({0.1, 0.1, 0.05}, {-0.1501, 0.0, 0.05});  // beside body 1
+  pusher.kind = BodyKind::Kinematic;
+  model.bodies.push_back(pusher);
+  model.finalize();
+  Simulation run(model);
+  run.steps(5);
+  const KinematicTarget target{BodyId{5}, {Matrix3::Identity(), Vector3(kNaN, 0.0, 0.05)}};
+  WorldInput input;
+  input.kinematic = {&target, 1};
+  const StepReport report = run_on(run, input);
+  EXPECT_EQ(report.status, StepStatus::NotFinite);
+  EXPECT_EQ(report.culprit, BodyId{5});
+}
+
+struct NoForce final : ForceElement {
+  [[nodiscard]] ElementResponse evaluate(const ElementQuery&) const noexcept override { return {}; }
+};
+
+WorldModel row_of_boxes(int count) {
+  WorldModel model = world({}, {});
+  BodyModel carrier = fixed_box({0.01, 0.01, 0.01}, {0.0, 0.0, 3.0});
+  carrier.kind = BodyKind::Kinematic;
+  model.bodies = {carrier};
+  for (int i = 0; i < count; ++i) model.bodies.push_back(box({0.1, 0.1, 0.1}, 1.0, {0.1 * i, 0.0, 0.0}));
+  model.finalize();
+  return model;
+}
+
+TEST(ForceElements, OnNineBodiesThatTouchDoNotEndTheProgram) {
+  const NoForce element;
+  const WorldModel model = row_of_boxes(9);
+  Simulation run(model);
+  std::vector<ElementUse> uses;
+  for (int i = 1; i <= 9; ++i) uses.push_back({&element, BodyId{0}, {}, BodyId{i}});
+  WorldInput input;
+  input.elements = uses;
+  EXPECT_EQ(run.step(input).status, StepStatus::Converged);
+}
+
+TEST(ForceElements, MoreThanSixtyFourOfThemStayInsideTheScratchMemory) {
+  const NoForce element;
+  const WorldModel model = row_of_boxes(1);
+  Simulation run(model);
+  const std::vector<ElementUse> uses(100, {&element, BodyId{0}, {}, BodyId{1}});
+  WorldInput input;
+  input.elements = uses;
+  EXPECT_EQ(run.step(input).status, StepStatus::Converged);
+}
+
+TEST(NotFinite, NamesTheBodyWhoseForceElementAnswersWithoutANumber) {
+  struct Broken final : ForceElement {
+    [[nodiscard]] ElementResponse evaluate(const ElementQuery&) const noexcept override {
+      ElementResponse response;
+      response.wrench[1] = kNaN;
+      return response;
+    }
+  };
+  const Broken element;
+  const WorldModel model = row_of_boxes(3);
+  Simulation run(model);
+  const ElementUse use{&element, BodyId{0}, {}, BodyId{2}};
+  WorldInput input;
+  input.elements = {&use, 1};
+  const StepReport report = run.step(input);
+  EXPECT_EQ(report.status, StepStatus::NotFinite);
+  EXPECT_EQ(report.culprit, BodyId{2});
+}
+
+}  // namespace
+}  // namespace snug::physics::test
