@@ -13,17 +13,17 @@ run-tests = ctest --preset $(1) -j $(JOBS)
 help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
 
-setup: ## install the Debian packages that are missing (root or sudo)
-	@scripts/install-deps.sh
+setup: ## install the Debian and npm packages that are missing (root or sudo)
+	@scripts/install-deps.sh && scripts/install-viewer.sh
 setup-lint:
-	@scripts/install-deps.sh lint
+	@scripts/install-deps.sh lint && scripts/install-viewer.sh
 setup-peers:
-	@scripts/install-deps.sh peers
+	@scripts/install-deps.sh peers && scripts/install-viewer.sh
 
 build: setup ## build the program as build/snug
 	@$(call configure-build,release,--log-level=WARNING)
 
-demo: build ## pack sequence 1 of the report with a program of our own
+demo: build ## pack sequence 1 of the report with a program of our own, and write a report
 	@scripts/demo.sh
 
 test: setup ## build and run every test; ROOM=cup for one room's

@@ -10,7 +10,8 @@ set -eu
 
 base="make cmake ninja-build g++ pkg-config ccache python3
   libeigen3-dev libexpected-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libhdf5-dev hdf5-tools libcli11-dev
-  libgtest-dev libbenchmark-dev liborocos-kdl-dev"
+  zlib1g-dev libgtest-dev libbenchmark-dev liborocos-kdl-dev chromium"
+node="nodejs npm"                   # unless there is a node of 18 or newer already
 lint="clang-format clang-tidy"      # make check, fix, tidy
 peers="libbullet-dev libmujoco-dev" # make bench-peers
 
@@ -24,6 +25,10 @@ for argument in "$@"; do
     *) echo "install-deps.sh: unknown group '$argument'; expected lint, peers or --list" >&2; exit 2 ;;
   esac
 done
+node_major="$(node --version 2>/dev/null | sed -n 's/^v\([0-9]*\)\..*/\1/p')"
+if [ "$only_list" = yes ] || [ "${node_major:-0}" -lt 18 ] || ! command -v npm >/dev/null 2>&1; then
+  wanted="$wanted $node"
+fi
 if [ "$only_list" = yes ]; then
   for package in $wanted; do echo "$package"; done
   exit 0

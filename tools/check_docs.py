@@ -10,7 +10,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?[^)]*\)")
-SKIPPED = {".git", "out"}
+SKIPPED = {".git", "out", "node_modules"}
 
 
 def markdown_files(root):

@@ -1,4 +1,4 @@
-// Replay: a recording as the one small file that the report page and the live view draw from.
+// Replay: a recording as the one small file that the report page draws from.
 #pragma once
 
 #include <cstddef>

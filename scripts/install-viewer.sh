@@ -1,0 +1,12 @@
+#!/bin/sh
+# install-viewer.sh: fetches the npm packages that viewer/ is built and tested with, as viewer/package-lock.json lists them.
+#
+# With the right ones there already it takes a few milliseconds. Needs node 18 or newer and npm (scripts/install-deps.sh).
+set -eu
+cd "$(dirname "$0")/../viewer"
+stamp=node_modules/.snug-installed
+cmp -s package-lock.json "$stamp" && exit 0
+command -v npm >/dev/null 2>&1 || { echo "install-viewer.sh: npm is missing: run scripts/install-deps.sh" >&2; exit 1; }
+echo "installing the npm packages of viewer/" >&2
+npm ci --silent --no-audit --no-fund >&2
+cp package-lock.json "$stamp"

@@ -1,0 +1,106 @@
+// Header of the replay form: its types, as docs/formats.md ("Replay form") describes them.
+
+export type PoseRow = [number, number, number, number, number, number, number];
+
+export interface ChannelMeta {
+  name: string;
+  columns: string[];
+  unit: string;
+  frame: string;
+  quantum: number;
+  rows: number;
+  offset: number;
+  bytes: number;
+  encoding: "delta" | "raw";
+}
+
+export type Shape =
+  | { kind: "box"; pose: PoseRow; half: [number, number, number] }
+  | { kind: "capsule"; pose: PoseRow; radius: number; half_length: number }
+  | { kind: "hull"; pose: PoseRow; vertices: [number, number, number][]; triangles: [number, number, number][] };
+
+export interface Body {
+  name: string;
+  type: string;
+  kind: "static" | "kinematic" | "dynamic";
+  mass: number;
+  com: [number, number, number];
+  shapes: Shape[];
+}
+
+export interface ReplayEvent {
+  time: number;
+  kind: string;
+  body: string;
+  text: string;
+  numbers: Record<string, number>;
+}
+
+export interface ResultBox {
+  id: string;
+  state: string | null;
+  up: string;
+  pose: PoseRow | null;
+  journey: { kind: string; time: number; text: string }[];
+}
+
+export interface RunResult {
+  boxes: ResultBox[];
+  filling_degree_percent: number | null;
+  packed: number | null;
+  failure: string | null;
+  report_table7: { filling_percent: number; boxes: number; same_boxes_percent: number | null } | null;
+}
+
+export interface Header {
+  format: string;
+  version: number;
+  name: string;
+  snug_version: string;
+  seed: string;
+  sequence: string;
+  dt: number;
+  record_period: number;
+  complete: boolean;
+  frames: number;
+  scenario: { name: string; text: string };
+  program: { name: string; names: string[] };
+  settings: Record<string, unknown> | null;
+  speed: { duration_s: number; wall_s: number; real_time_factor: number } | null;
+  bodies: Body[];
+  container: { name: string; pose: [PoseRow, PoseRow]; inner_size: [number, number, number] } | null;
+  tool: { body: number; shapes: Shape[] } | null;
+  cup: { lip_radius: number; free_length: number; hold_length: number } | null;
+  frames_named: { name: string; letter: string; X_W: PoseRow }[];
+  events: ReplayEvent[];
+  result: RunResult | null;
+  channels: ChannelMeta[];
+}
+
+/** Fills what a header leaves out, so that readers need no checks. */
+export function completeHeader(h: Partial<Header>): Header {
+  return {
+    format: h.format ?? "",
+    version: h.version ?? 0,
+    name: h.name ?? "",
+    snug_version: h.snug_version ?? "",
+    seed: h.seed ?? "",
+    sequence: h.sequence ?? "",
+    dt: h.dt ?? 0,
+    record_period: h.record_period ?? 0,
+    complete: h.complete ?? true,
+    frames: h.frames ?? 0,
+    scenario: h.scenario ?? { name: "", text: "" },
+    program: h.program ?? { name: "", names: [] },
+    settings: h.settings ?? null,
+    speed: h.speed ?? null,
+    bodies: h.bodies ?? [],
+    container: h.container ?? null,
+    tool: h.tool ?? null,
+    cup: h.cup ?? null,
+    frames_named: h.frames_named ?? [],
+    events: h.events ?? [],
+    result: h.result ?? null,
+    channels: h.channels ?? [],
+  };
+}

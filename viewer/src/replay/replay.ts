@@ -1,0 +1,168 @@
+// Replay: a decoded recording that answers what was where at which frame.
+
+import type { Column, Decoded } from "./decode";
+import { ReplayError } from "./errors";
+import type { Body, Header } from "./header";
+
+/** One named group of columns. */
+export class Channel {
+  constructor(
+    readonly name: string,
+    readonly columnNames: string[],
+    readonly unit: string,
+    readonly frame: string,
+    private readonly columns_: Column[],
+    readonly rows: number,
+  ) {}
+
+  /** Value, NaN when missing or out of range. */
+  at(column: number, row: number): number {
+    return row >= 0 && row < this.rows ? this.columns_[column]![row]! : NaN;
+  }
+
+  column(column: number): Column {
+    return this.columns_[column]!;
+  }
+}
+
+export interface ContactTables {
+  frameFirst: Channel;
+  frameCount: Channel;
+  frameBlock: Channel;
+  blockBody: Channel;
+  blockFirst: Channel;
+  blockCount: Channel;
+  point: Channel;
+  normal: Channel;
+  force: Channel;
+  gap: Channel | undefined;
+  state: Channel | undefined;
+}
+
+export class Replay {
+  readonly header: Header;
+  readonly size: number;
+  readonly warnings: string[] = [];
+  private readonly channels_ = new Map<string, Channel>();
+  private readonly bodyByName_ = new Map<string, number>();
+  private readonly bodyPose_: (Channel | undefined)[];
+  private readonly bodyPresent_: (Channel | undefined)[];
+  private contacts_: ContactTables | null = null;
+
+  constructor(decoded: Decoded) {
+    this.header = decoded.header;
+    this.size = decoded.size;
+    for (const [name, c] of decoded.channels) {
+      this.channels_.set(name, new Channel(name, c.meta.columns, c.meta.unit, c.meta.frame, c.columns, c.meta.rows));
+    }
+    const time = this.channels_.get("time");
+    if (!time) throw new ReplayError("This recording is broken", 'it has no channel "time".');
+    this.header.bodies.forEach((body, k) => this.bodyByName_.set(body.name, k));
+    this.bodyPose_ = this.header.bodies.map((_, k) => this.channels_.get(`body.${k}.pose`));
+    this.bodyPresent_ = this.header.bodies.map((_, k) => this.channels_.get(`body.${k}.present`));
+    this.contacts_ = this.findContacts();
+    if (!this.header.complete) {
+      this.warnings.push("The run did not end in order: it was killed, failed, or was still running.");
+    }
+  }
+
+  private findContacts(): ContactTables | null {
+    const get = (name: string): Channel | undefined => this.channels_.get(`contacts.${name}`);
+    const needed = ["frame_first", "frame_count", "frame_block", "block_body", "block_first", "block_count", "point"];
+    if (needed.some((name) => !get(name)) || !get("normal") || !get("force")) return null;
+    return {
+      frameFirst: get("frame_first")!, frameCount: get("frame_count")!, frameBlock: get("frame_block")!,
+      blockBody: get("block_body")!, blockFirst: get("block_first")!, blockCount: get("block_count")!,
+      point: get("point")!, normal: get("normal")!, force: get("force")!, gap: get("gap"), state: get("state"),
+    };
+  }
+
+  get frames(): number {
+    return this.channels_.get("time")!.rows;
+  }
+
+  get bodies(): Body[] {
+    return this.header.bodies;
+  }
+
+  get contacts(): ContactTables | null {
+    return this.contacts_;
+  }
+
+  channel(name: string): Channel | undefined {
+    const channel = this.channels_.get(name);
+    return channel && channel.rows > 0 ? channel : undefined;
+  }
+
+  bodyIndex(name: string): number {
+    return this.bodyByName_.get(name) ?? -1;
+  }
+
+  timeOf(frame: number): number {
+    return this.channels_.get("time")!.at(0, Math.max(0, Math.min(frame, this.frames - 1)));
+  }
+
+  get start(): number {
+    return this.frames ? this.timeOf(0) : 0;
+  }
+
+  get end(): number {
+    return this.frames ? this.timeOf(this.frames - 1) : 0;
+  }
+
+  /** Last frame at or before `time` (s); 0 before the first. Half a microsecond is forgiven: times are rounded. */
+  frameAt(time: number): number {
+    const times = this.channels_.get("time")!.column(0);
+    let low = 0;
+    let high = times.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (times[middle]! <= time + 1e-6) low = middle;
+      else high = middle - 1;
+    }
+    return Math.max(0, low);
+  }
+
+  /** Reads a pose with normalised quaternion; false when it is missing. Channels of one row hold for all frames. */
+  pose(channel: Channel | undefined, frame: number, out: Float64Array | number[]): boolean {
+    if (!channel || channel.rows === 0) return false;
+    const row = channel.rows === 1 ? 0 : frame;
+    for (let c = 0; c < 7; ++c) out[c] = channel.at(c, row);
+    const norm = Math.hypot(out[3]!, out[4]!, out[5]!, out[6]!);
+    if (!(norm > 0.1) || !Number.isFinite(out[0]! + out[1]! + out[2]!)) return false;
+    for (let c = 3; c < 7; ++c) out[c] = out[c]! / norm;
+    return true;
+  }
+
+  /** X_WB of a body; false while it is not in the cell. */
+  bodyPose(body: number, frame: number, out: Float64Array | number[]): boolean {
+    const present = this.bodyPresent_[body];
+    if (present && present.rows > 1 && present.at(0, frame) !== 1) return false;
+    return this.pose(this.bodyPose_[body], frame, out);
+  }
+
+  poseChannelOfBody(body: number): Channel | undefined {
+    return this.bodyPose_[body];
+  }
+
+  attachedBody(frame: number): number {
+    const value = this.channels_.get("cup.attached_body")?.at(0, frame) ?? -1;
+    return Number.isFinite(value) ? value : -1;
+  }
+
+  /** Calls `visit(point row, body a, body b)` for every contact of the frame. */
+  forEachContact(frame: number, visit: (point: number, a: number, b: number) => void): void {
+    const c = this.contacts_;
+    if (!c) return;
+    const first = c.frameFirst.at(0, frame);
+    const count = c.frameCount.at(0, frame);
+    for (let f = first; f < first + count; ++f) {
+      const block = c.frameBlock.at(0, f);
+      const a = c.blockBody.at(0, block);
+      const b = c.blockBody.at(1, block);
+      const begin = c.blockFirst.at(0, block);
+      const end = Math.min(begin + c.blockCount.at(0, block), c.point.rows);
+      for (let p = begin; p < end; ++p) visit(p, a, b);
+    }
+  }
+}

@@ -1,0 +1,157 @@
+// Contacts: a mark at each point, coloured by its state, and an arrow for its force; three draw calls for all.
+
+import {
+  Color, ConeGeometry, CylinderGeometry, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, OctahedronGeometry,
+  Quaternion, Vector3, type BufferGeometry, type Camera,
+} from "three";
+import type { Replay } from "../replay/replay";
+import type { Palette } from "./palette";
+
+export interface Arrow {
+  at: Vector3;
+  force: Vector3;
+  colour: Color;
+}
+
+/** Size of a pixel at a point, m. */
+export type PixelSize = (point: Vector3) => number;
+
+const UP = new Vector3(0, 1, 0);
+
+/** A pool of instances that grows when more are asked for. */
+class Pool {
+  mesh: InstancedMesh;
+  count = 0;
+  constructor(
+    private readonly parent: Group,
+    private readonly geometry: BufferGeometry,
+    private readonly material: MeshBasicMaterial,
+    private readonly order: number,
+    private capacity: number,
+  ) {
+    this.mesh = this.make();
+  }
+
+  private make(): InstancedMesh {
+    const mesh = new InstancedMesh(this.geometry, this.material, this.capacity);
+    mesh.instanceMatrix.setUsage(DynamicDrawUsage);
+    mesh.setColorAt(0, new Color());
+    mesh.frustumCulled = false;
+    mesh.renderOrder = this.order;
+    this.parent.add(mesh);
+    return mesh;
+  }
+
+  reserve(count: number): void {
+    if (count <= this.capacity) return;
+    this.parent.remove(this.mesh);
+    this.mesh.dispose();
+    this.capacity = Math.max(count, 2 * this.capacity);
+    this.mesh = this.make();
+  }
+
+  add(matrix: Matrix4, colour: Color): void {
+    this.mesh.setMatrixAt(this.count, matrix);
+    this.mesh.setColorAt(this.count, colour);
+    ++this.count;
+  }
+
+  finish(): void {
+    this.mesh.count = this.count;
+    this.mesh.visible = this.count > 0;
+    this.mesh.instanceMatrix.needsUpdate = true;
+    if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
+  }
+}
+
+export interface ContactOptions {
+  points: boolean;
+  forces: boolean;
+  wrenches: boolean;
+  /** Length of arrows, m/N. */
+  scale: number;
+}
+
+export class Contacts {
+  readonly group = new Group();
+  private readonly points_: Pool;
+  private readonly shafts_: Pool;
+  private readonly heads_: Pool;
+  private readonly m_ = new Matrix4();
+  private readonly q_ = new Quaternion();
+  private readonly s_ = new Vector3();
+  private readonly v_ = new Vector3();
+  private stateColours_: Color[] = [];
+
+  constructor(palette: Palette) {
+    const material = (): MeshBasicMaterial => new MeshBasicMaterial({ depthTest: false, depthWrite: false, transparent: true });
+    const shaft = new CylinderGeometry(1, 1, 1, 8, 1, true).translate(0, 0.5, 0);
+    const head = new ConeGeometry(1, 1, 12).translate(0, -0.5, 0);
+    this.points_ = new Pool(this.group, new OctahedronGeometry(1, 1), material(), 12, 128);
+    this.shafts_ = new Pool(this.group, shaft, material(), 10, 128);
+    this.heads_ = new Pool(this.group, head, material(), 11, 128);
+    this.setPalette(palette);
+  }
+
+  setPalette(palette: Palette): void {
+    this.stateColours_ = [palette.unknown, palette.open, palette.sticking, palette.sliding].map((c) => new Color(c));
+  }
+
+  /** Draws the contacts of a frame and the given extra arrows. Sizes follow the camera, so call it for each picture. */
+  update(replay: Replay, frame: number, extra: Arrow[], options: ContactOptions, pixel: PixelSize, _camera: Camera): void {
+    this.points_.count = this.shafts_.count = this.heads_.count = 0;
+    const tables = replay.contacts;
+    if (tables && (options.points || options.forces)) {
+      let total = 0;
+      replay.forEachContact(frame, () => ++total);
+      this.reserve(total + extra.length);
+      const at = new Vector3();
+      const force = new Vector3();
+      replay.forEachContact(frame, (row, a, b) => {
+        at.set(tables.point.at(0, row), tables.point.at(1, row), tables.point.at(2, row));
+        if (!Number.isFinite(at.x)) return;
+        const colour = this.stateColours_[tables.state?.at(0, row) ?? 0] ?? this.stateColours_[0]!;
+        const size = pixel(at);
+        if (options.points) this.addPoint(at, Math.max(0.0025, 2.6 * size), colour);
+        if (options.forces) {
+          force.set(tables.force.at(0, row), tables.force.at(1, row), tables.force.at(2, row));
+          // Shown on the body that moves: b, unless only a does.
+          if (replay.bodies[b]?.kind !== "dynamic" && replay.bodies[a]?.kind === "dynamic") force.negate();
+          this.addArrow(at, force.multiplyScalar(options.scale), colour, size, 1);
+        }
+      });
+    } else {
+      this.reserve(extra.length);
+    }
+    if (options.wrenches) {
+      for (const arrow of extra) {
+        this.addArrow(arrow.at, this.v_.copy(arrow.force).multiplyScalar(options.scale).clone(), arrow.colour, pixel(arrow.at), 1.7);
+      }
+    }
+    this.points_.finish();
+    this.shafts_.finish();
+    this.heads_.finish();
+  }
+
+  private reserve(count: number): void {
+    for (const pool of [this.points_, this.shafts_, this.heads_]) pool.reserve(Math.max(1, count));
+  }
+
+  private addPoint(at: Vector3, radius: number, colour: Color): void {
+    this.m_.makeScale(radius, radius, radius).setPosition(at);
+    this.points_.add(this.m_, colour);
+  }
+
+  private addArrow(at: Vector3, vector: Vector3, colour: Color, size: number, weight: number): void {
+    const length = vector.length();
+    if (!(length > 1.5 * size)) return;
+    const thick = weight * Math.max(0.0012, 1.15 * size);
+    const head = Math.min(0.45 * length, 7 * thick);
+    this.q_.setFromUnitVectors(UP, vector.divideScalar(length));
+    this.m_.compose(at, this.q_, this.s_.set(thick, length - head, thick));
+    this.shafts_.add(this.m_, colour);
+    const tip = this.v_.copy(vector).multiplyScalar(length).add(at);
+    this.m_.compose(tip, this.q_, this.s_.set(2.6 * thick, head, 2.6 * thick));
+    this.heads_.add(this.m_, colour);
+  }
+}

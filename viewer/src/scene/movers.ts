@@ -1,0 +1,73 @@
+// Movers: bodies that move and are no plain boxes (the tool, plungers, hulls), one group each.
+
+import { Group, Matrix4, Mesh, MeshLambertMaterial } from "three";
+import type { Shape } from "../replay/header";
+import type { Replay } from "../replay/replay";
+import { matrixOf } from "./maths";
+import type { BoxColours, Palette } from "./palette";
+import { mergeGeometries, shapeGeometry } from "./shapes";
+
+/** Shapes of the tool without those that only stand in for the cup: the cup is drawn as it is deformed. */
+export function toolShapes(shapes: Shape[], hasCup: boolean): Shape[] {
+  return hasCup ? shapes.filter((s) => s.pose[2] <= 0) : shapes;
+}
+
+export function meshOfShapes(shapes: Shape[], material: MeshLambertMaterial): Mesh | null {
+  if (shapes.length === 0) return null;
+  return new Mesh(mergeGeometries(shapes.map((s) => shapeGeometry(s).faces)), material);
+}
+
+export class Movers {
+  readonly group = new Group();
+  private readonly items_: { body: number; mesh: Mesh; material: MeshLambertMaterial; isTool: boolean }[] = [];
+  private readonly pose_ = new Float64Array(7);
+
+  constructor(replay: Replay, palette: Palette, colours: BoxColours, boxes: number[]) {
+    const toolBody = replay.header.tool?.body ?? -1;
+    const hasCup = replay.header.cup !== null;
+    replay.bodies.forEach((body, k) => {
+      if (body.kind === "static" || boxes.includes(k)) return;
+      const isTool = k === toolBody;
+      const material = new MeshLambertMaterial({ color: isTool ? palette.tool : colours.of(body.type || body.name) });
+      const mesh = meshOfShapes(isTool ? toolShapes(body.shapes, hasCup) : body.shapes, material);
+      if (!mesh) return;
+      mesh.matrixAutoUpdate = false;
+      mesh.castShadow = true;
+      this.items_.push({ body: k, mesh, material, isTool });
+      this.group.add(mesh);
+    });
+    if (toolBody < 0 && replay.header.tool) {
+      const material = new MeshLambertMaterial({ color: palette.tool });
+      const mesh = meshOfShapes(toolShapes(replay.header.tool.shapes, hasCup), material);
+      if (mesh) {
+        mesh.matrixAutoUpdate = false;
+        this.items_.push({ body: -1, mesh, material, isTool: true });
+        this.group.add(mesh);
+      }
+    }
+  }
+
+  setPalette(palette: Palette): void {
+    for (const item of this.items_) if (item.isTool) item.material.color.set(palette.tool);
+  }
+
+  update(replay: Replay, frame: number): void {
+    for (const item of this.items_) {
+      const isThere =
+        item.body >= 0
+          ? replay.bodyPose(item.body, frame, this.pose_)
+          : replay.pose(replay.channel("tool.pose"), frame, this.pose_);
+      item.mesh.visible = isThere;
+      if (isThere) matrixOf(this.pose_, item.mesh.matrix);
+      item.mesh.matrixWorldNeedsUpdate = true;
+    }
+  }
+
+  /** World matrix of a body as drawn, or null. */
+  drawnMatrix(body: number): Matrix4 | null {
+    const item = this.items_.find((x) => x.body === body);
+    if (!item || !item.mesh.visible) return null;
+    item.mesh.updateWorldMatrix(true, false);
+    return item.mesh.matrixWorld.clone();
+  }
+}

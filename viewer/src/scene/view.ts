@@ -1,0 +1,491 @@
+// View: the drawing of one frame of a recording; draws only when something has changed.
+
+import {
+  Color, DirectionalLight, Fog, HemisphereLight, MathUtils, Matrix4, Mesh, MeshLambertMaterial, OrthographicCamera, PerspectiveCamera,
+  Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
+} from "three";
+import type { Replay } from "../replay/replay";
+import { Boxes, CORNERS } from "./boxes";
+import { CAMERA_NAMES, Cameras, containerBox, orthoCamera, type CameraName } from "./cameras";
+import { Contacts, type Arrow } from "./contacts";
+import { Cup } from "./cup";
+import { Labels, type Label } from "./labels";
+import { matrixOf } from "./maths";
+import { meshOfShapes, Movers, toolShapes } from "./movers";
+import { Outlines } from "./outlines";
+import { BoxColours, PALETTES, type Palette, type Theme } from "./palette";
+import { Robot } from "./robot";
+import { Statics } from "./statics";
+import { Trace, type TracePoint } from "./trace";
+import { Triads, type Triad } from "./triads";
+
+export interface ViewOptions {
+  names: boolean;
+  contacts: boolean;
+  forces: boolean;
+  wrenches: boolean;
+  ghost: boolean;
+  frames: boolean;
+  trace: boolean;
+  xray: boolean;
+  robot: boolean;
+  walls: boolean;
+  second: boolean;
+  shadows: boolean;
+}
+export type ViewOption = keyof ViewOptions;
+
+export interface Picked {
+  body: number;
+  corner: number;
+}
+
+export class View {
+  readonly element = document.createElement("div");
+  readonly canvas: HTMLCanvasElement;
+  readonly options: ViewOptions;
+  readonly cameras: Cameras;
+  readonly colours = new BoxColours();
+  readonly isSoftware: boolean;
+  arrowScale = 0.004; // m/N
+  onAfterRender: (() => void) | null = null;
+  private readonly renderer_: WebGLRenderer;
+  private readonly scene_ = new Scene();
+  private readonly labels_ = new Labels();
+  private readonly hemisphere_ = new HemisphereLight();
+  private readonly sun_ = new DirectionalLight();
+  private readonly statics_: Statics;
+  private readonly boxes_: Boxes;
+  private readonly movers_: Movers;
+  private readonly cup_: Cup | null;
+  private readonly robot_: Robot | null;
+  private readonly contacts_: Contacts;
+  private readonly triads_ = new Triads();
+  private readonly ghostBox_: Outlines;
+  private readonly ghostTool_: Mesh | null;
+  private readonly secondBoxes_: Outlines;
+  private readonly trace_: Trace;
+  private tracePoint_: TracePoint | null = null;
+  private palette_: Palette;
+  private frame_ = 0;
+  private selected_ = -1;
+  private isScheduled_ = false;
+  private width_ = 1;
+  private height_ = 1;
+  private readonly pose_ = new Float64Array(7);
+  private readonly X_WE_ = new Matrix4();
+  private readonly X_WS_ = new Matrix4();
+  private readonly X_ES_ = new Matrix4();
+  private hasTool_ = false;
+  private drawn_: number[] = [];
+
+  constructor(
+    readonly replay: Replay,
+    readonly second: Replay | null,
+    theme: Theme,
+    isPicture = false,
+  ) {
+    this.palette_ = PALETTES[theme];
+    this.isSoftware = isSoftwareRenderer();
+    // Smooth edges cost a processor four times the pixels; pictures have them anyway.
+    this.renderer_ = new WebGLRenderer({ antialias: isPicture || !this.isSoftware, powerPreference: "high-performance" });
+    this.canvas = this.renderer_.domElement;
+    this.element.className = "view";
+    this.element.append(this.canvas, this.labels_.host);
+    this.options = {
+      names: true, contacts: true, forces: true, wrenches: false, ghost: true, frames: false, trace: false, xray: false,
+      robot: true, walls: true, second: true, shadows: !this.isSoftware,
+    };
+    const has = (name: string): boolean => replay.channel(name) !== undefined;
+    this.statics_ = new Statics(replay, this.palette_);
+    this.boxes_ = new Boxes(replay, this.palette_, this.colours);
+    this.movers_ = new Movers(replay, this.palette_, this.colours, this.boxes_.bodies);
+    this.cup_ = replay.header.cup && has("tool.pose") ? new Cup(replay, this.palette_) : null;
+    this.robot_ = Robot.make(replay, this.palette_);
+    this.contacts_ = new Contacts(this.palette_);
+    this.ghostBox_ = new Outlines(1, this.palette_.ghost, true, 0.9);
+    this.ghostTool_ = this.makeGhostTool();
+    this.secondBoxes_ = new Outlines(second ? second.bodies.length + 1 : 1, this.palette_.second, false, 0.75);
+    this.trace_ = new Trace(this.palette_.trace);
+    this.scene_.add(
+      this.hemisphere_, this.sun_, this.sun_.target, this.statics_.group, this.boxes_.group, this.movers_.group, this.trace_.group,
+      this.secondBoxes_.lines, this.ghostBox_.lines, this.contacts_.group, this.triads_.group,
+    );
+    if (this.cup_) this.scene_.add(this.cup_.group);
+    if (this.robot_) this.scene_.add(this.robot_.group);
+    if (this.ghostTool_) this.scene_.add(this.ghostTool_);
+    this.boxes_.mesh.castShadow = true;
+    this.boxes_.mesh.receiveShadow = true;
+    this.hemisphere_.position.set(0, 0, 1);
+    this.cameras = new Cameras(replay, this.canvas, () => this.invalidate());
+    this.placeSun();
+    this.setTheme(theme);
+    this.setShadows();
+  }
+
+  /** Toggles that mean something for this recording. */
+  get available(): ViewOption[] {
+    const { replay } = this;
+    const rules: Record<ViewOption, boolean> = {
+      names: this.boxes_.bodies.length > 0,
+      contacts: replay.contacts !== null,
+      forces: replay.contacts !== null,
+      wrenches: replay.channel("cup.wrench") !== undefined || replay.channel("flange.wrench") !== undefined,
+      ghost: replay.channel("tool.pose_command") !== undefined,
+      frames: true,
+      trace: replay.bodies.some((b) => b.kind !== "static"),
+      xray: this.boxes_.bodies.length > 0,
+      robot: this.robot_ !== null,
+      walls: replay.header.container !== null,
+      second: this.second !== null,
+      shadows: true,
+    };
+    return (Object.keys(rules) as ViewOption[]).filter((key) => rules[key]);
+  }
+
+  private makeGhostTool(): Mesh | null {
+    const tool = this.replay.header.tool;
+    if (!tool || !this.replay.channel("tool.pose_command")) return null;
+    const material = new MeshLambertMaterial({ color: this.palette_.ghost, transparent: true, opacity: 0.28, depthWrite: false });
+    const shapes = tool.shapes.length ? tool.shapes : (this.replay.bodies[tool.body]?.shapes ?? []);
+    const mesh = meshOfShapes(toolShapes(shapes, this.cup_ !== null), material);
+    if (!mesh) return null;
+    mesh.matrixAutoUpdate = false;
+    mesh.renderOrder = 3;
+    return mesh;
+  }
+
+  private placeSun(): void {
+    const box = containerBox(this.replay);
+    const centre = box ? box.getCenter(new Vector3()).multiplyScalar(0.5) : new Vector3();
+    this.sun_.target.position.copy(centre);
+    this.sun_.position.copy(centre).add(new Vector3(-0.9, -1.3, 2.6));
+    const camera = this.sun_.shadow.camera;
+    camera.left = camera.bottom = -1.3;
+    camera.right = camera.top = 1.3;
+    camera.near = 0.5;
+    camera.far = 6;
+    this.sun_.shadow.mapSize.set(1024, 1024);
+    this.sun_.shadow.bias = -0.0008;
+    this.sun_.shadow.normalBias = 0.004;
+  }
+
+  private setShadows(): void {
+    this.renderer_.shadowMap.enabled = this.options.shadows;
+    this.sun_.castShadow = this.options.shadows;
+    this.scene_.traverse((object) => {
+      if (object instanceof Mesh && object.material instanceof MeshLambertMaterial) object.material.needsUpdate = true;
+    });
+  }
+
+  get palette(): Palette {
+    return this.palette_;
+  }
+
+  setTheme(theme: Theme): void {
+    const p = (this.palette_ = PALETTES[theme]);
+    const background = new Color(p.background);
+    this.scene_.background = background;
+    this.scene_.fog = new Fog(background, 4, 9);
+    this.hemisphere_.color.set(p.skyLight);
+    this.hemisphere_.groundColor.set(p.groundLight);
+    this.hemisphere_.intensity = p.ambient;
+    this.sun_.intensity = p.sun;
+    for (const part of [this.statics_, this.boxes_, this.movers_, this.cup_, this.contacts_, this.robot_]) part?.setPalette(p);
+    this.ghostBox_.setColour(p.ghost);
+    if (this.ghostTool_) (this.ghostTool_.material as MeshLambertMaterial).color.set(p.ghost);
+    this.secondBoxes_.setColour(p.second);
+    this.trace_.setColour(p.trace);
+    this.invalidate();
+  }
+
+  setOption(option: ViewOption, on: boolean): void {
+    this.options[option] = on;
+    if (option === "names") this.boxes_.setNames(on);
+    if (option === "xray") this.boxes_.setTranslucent(on);
+    if (option === "walls") this.statics_.walls.visible = on;
+    if (option === "shadows") this.setShadows();
+    if (option === "trace" && on && !this.tracePoint_) this.setTracePoint({ kind: "tool" });
+    this.invalidate();
+  }
+
+  setTracePoint(point: TracePoint | null): void {
+    this.tracePoint_ = point;
+    this.trace_.build(this.replay, point);
+    this.invalidate();
+  }
+
+  get tracePoint(): TracePoint | null {
+    return this.tracePoint_;
+  }
+
+  /** The corner of a box as a point to trace. */
+  cornerPoint(body: number, corner: number): TracePoint | null {
+    const half = this.boxes_.halfOf(body);
+    const X = this.boxes_.shapePoseOf(body);
+    const c = CORNERS[corner];
+    if (!half || !X || !c) return null;
+    const local = new Vector3(c[0] * half.x, c[1] * half.y, c[2] * half.z).applyMatrix4(X);
+    const sign = (v: number): string => (v < 0 ? "−" : "+");
+    return { kind: "body", body, local, label: `${this.replay.bodies[body]!.name} corner ${sign(c[0])}x ${sign(c[1])}y ${sign(c[2])}z` };
+  }
+
+  setSelected(body: number): void {
+    this.selected_ = body;
+    this.boxes_.setSelected(body);
+    this.invalidate();
+  }
+
+  /** Moves everything to a frame of the recording, exactly as recorded; draws later. */
+  setFrame(frame: number): void {
+    this.frame_ = frame;
+    const { replay } = this;
+    this.boxes_.update(replay, frame);
+    this.movers_.update(replay, frame);
+    this.robot_?.update(replay, frame);
+    this.hasTool_ = replay.pose(replay.channel("tool.pose"), frame, this.pose_);
+    if (this.hasTool_) matrixOf(this.pose_, this.X_WE_);
+    if (this.cup_) {
+      this.cup_.group.visible = this.hasTool_;
+      if (this.hasTool_) matrixOf(this.cup_.update(frame, this.X_WE_), this.X_ES_);
+    } else {
+      this.X_ES_.identity();
+    }
+    this.X_WS_.copy(this.X_WE_).multiply(this.X_ES_);
+    if (this.hasTool_) this.cameras.follow(new Vector3().setFromMatrixPosition(this.X_WE_));
+    this.invalidate();
+  }
+
+  private updateGhost(): void {
+    const { replay } = this;
+    this.ghostBox_.begin();
+    const isOn = this.options.ghost && replay.pose(replay.channel("tool.pose_command"), this.frame_, this.pose_);
+    if (this.ghostTool_) this.ghostTool_.visible = isOn;
+    if (isOn) {
+      const X_WEc = matrixOf(this.pose_);
+      if (this.ghostTool_) {
+        this.ghostTool_.matrix.copy(X_WEc);
+        this.ghostTool_.matrixWorldNeedsUpdate = true;
+      }
+      const held = replay.attachedBody(this.frame_);
+      const half = this.boxes_.halfOf(held);
+      const cup = replay.header.cup;
+      if (half && cup && this.hasTool_ && replay.bodyPose(held, this.frame_, this.pose_)) {
+        // Where the box would be if the tool were at its command and the cup were not deformed.
+        const X_SP = this.X_WS_.clone().invert().multiply(matrixOf(this.pose_));
+        const X_ES0 = new Matrix4().makeTranslation(0, 0, cup.hold_length);
+        const X_WPc = X_WEc.multiply(X_ES0).multiply(X_SP).multiply(this.boxes_.shapePoseOf(held)!);
+        this.ghostBox_.box(X_WPc, half);
+      }
+    }
+    this.ghostBox_.finish();
+  }
+
+  private updateSecond(): void {
+    this.secondBoxes_.begin();
+    const { second } = this;
+    if (second && this.options.second) {
+      const frame = second.frameAt(this.replay.timeOf(this.frame_));
+      second.bodies.forEach((body, k) => {
+        const shape = body.shapes[0];
+        if (body.kind !== "dynamic" || body.shapes.length !== 1 || shape?.kind !== "box") return;
+        if (!second.bodyPose(k, frame, this.pose_)) return;
+        this.secondBoxes_.box(matrixOf(this.pose_).multiply(matrixOf(shape.pose)), new Vector3(...shape.half));
+      });
+      if (second.pose(second.channel("tool.pose"), frame, this.pose_)) {
+        const X_WE = matrixOf(this.pose_);
+        this.secondBoxes_.line(new Vector3().applyMatrix4(X_WE), new Vector3(0, 0, -0.27).applyMatrix4(X_WE));
+      }
+    }
+    this.secondBoxes_.finish();
+  }
+
+  private wrenchArrows(): Arrow[] {
+    if (!this.options.wrenches || !this.hasTool_) return [];
+    const { replay, palette_: p } = this;
+    const arrows: Arrow[] = [];
+    const add = (name: string, X: Matrix4, colour: string): void => {
+      const channel = replay.channel(name);
+      if (!channel) return;
+      const force = new Vector3(channel.at(0, this.frame_), channel.at(1, this.frame_), channel.at(2, this.frame_));
+      if (!(force.length() > 0)) return;
+      arrows.push({ at: new Vector3().setFromMatrixPosition(X), force: force.transformDirection(X).multiplyScalar(length(channel.at.bind(channel), this.frame_)), colour: new Color(colour) });
+    };
+    add("cup.wrench", this.X_WS_, p.cupWrench);
+    add("flange.wrench", this.X_WE_, p.flangeWrench);
+    return arrows;
+  }
+
+  private triadsAndLabels(): Label[] {
+    const { replay } = this;
+    const triads: Triad[] = [];
+    const labels: Label[] = [];
+    if (this.options.frames) {
+      for (const f of replay.header.frames_named) triads.push({ letter: f.letter || f.name, X_W: matrixOf(f.X_W), size: 0.12 });
+      if (this.hasTool_) triads.push({ letter: "E", X_W: this.X_WE_, size: 0.075 });
+      if (this.hasTool_ && this.cup_) triads.push({ letter: "S", X_W: this.X_WS_, size: 0.06 });
+    }
+    const held = replay.attachedBody(this.frame_);
+    const marked = this.selected_ >= 0 ? this.selected_ : held;
+    if (this.options.frames && marked >= 0 && replay.bodyPose(marked, this.frame_, this.pose_)) {
+      triads.push({ letter: "P", X_W: matrixOf(this.pose_), size: 0.09 });
+    }
+    this.triads_.update(triads);
+    triads.forEach((t, i) => {
+      const at = new Vector3(-0.12, -0.12, -0.12).multiplyScalar(t.size).applyMatrix4(t.X_W);
+      labels.push({ id: `frame ${i}`, text: t.letter, at, kind: "frame" });
+    });
+    for (const body of new Set([held, this.selected_])) {
+      if (!this.options.names || body < 0 || !replay.bodyPose(body, this.frame_, this.pose_)) continue;
+      const half = this.boxes_.halfOf(body);
+      const at = new Vector3(this.pose_[0], this.pose_[1], this.pose_[2]! + (half ? half.length() * 0.85 : 0.05));
+      labels.push({ id: `body ${body}`, text: replay.bodies[body]!.name, at, kind: body === held ? "held" : "box" });
+    }
+    return labels;
+  }
+
+  resize(width: number, height: number): void {
+    this.width_ = Math.max(1, width);
+    this.height_ = Math.max(1, height);
+    this.renderer_.setPixelRatio(this.isSoftware ? 1 : Math.min(2, window.devicePixelRatio || 1));
+    this.renderer_.setSize(this.width_, this.height_);
+    this.cameras.setAspect(this.width_ / this.height_);
+    this.invalidate();
+  }
+
+  useCamera(name: CameraName): void {
+    this.cameras.use(name, this.hasTool_ ? new Vector3().setFromMatrixPosition(this.X_WE_) : null);
+    this.invalidate();
+  }
+
+  invalidate(): void {
+    if (this.isScheduled_) return;
+    this.isScheduled_ = true;
+    requestAnimationFrame(() => {
+      this.isScheduled_ = false;
+      this.render();
+    });
+  }
+
+  private readonly pixelSize_ = (point: Vector3): number => {
+    const camera = this.cameras.active;
+    if (camera instanceof OrthographicCamera) return (camera.top - camera.bottom) / camera.zoom / this.height_;
+    const distance = camera.position.distanceTo(point);
+    return (2 * distance * Math.tan(MathUtils.degToRad((camera as PerspectiveCamera).fov) / 2)) / this.height_;
+  };
+
+  render(): void {
+    const { options } = this;
+    this.updateGhost();
+    this.updateSecond();
+    this.trace_.group.visible = options.trace;
+    if (options.trace) this.trace_.update(this.frame_);
+    if (this.robot_) this.robot_.group.visible = options.robot;
+    this.contacts_.update(
+      this.replay, this.frame_, this.wrenchArrows(),
+      { points: options.contacts, forces: options.forces, wrenches: options.wrenches, scale: this.arrowScale },
+      this.pixelSize_, this.cameras.active,
+    );
+    const labels = this.triadsAndLabels();
+    this.renderer_.render(this.scene_, this.cameras.active);
+    this.labels_.update(labels, this.cameras.active, this.width_, this.height_);
+    const now = performance.now();
+    this.drawn_.push(now);
+    if (this.drawn_.length > 600) this.drawn_.splice(0, 300);
+    this.onAfterRender?.();
+  }
+
+  /** Pictures drawn per second over the last two seconds. */
+  fps(): number {
+    const since = performance.now() - 2000;
+    return this.drawn_.filter((t) => t > since).length / 2;
+  }
+
+  /** Waits until the graphics processor has finished: for measurements and pictures. */
+  finish(): void {
+    const gl = this.renderer_.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
+  get drawCalls(): number {
+    return this.renderer_.info.render.calls;
+  }
+
+  /** The box under a point of the canvas (CSS pixels) and its corner nearest to that point. */
+  pick(x: number, y: number): Picked | null {
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2((2 * x) / this.width_ - 1, 1 - (2 * y) / this.height_), this.cameras.active);
+    this.boxes_.mesh.boundingSphere = null;
+    const [hit] = ray.intersectObject(this.boxes_.mesh);
+    if (!hit || hit.instanceId === undefined) return null;
+    const body = this.boxes_.bodies[hit.instanceId]!;
+    const X = new Matrix4();
+    this.boxes_.mesh.getMatrixAt(hit.instanceId, X);
+    const local = hit.point.clone().applyMatrix4(X.invert());
+    const corner = (local.x > 0 ? 1 : 0) + (local.y > 0 ? 2 : 0) + (local.z > 0 ? 4 : 0);
+    return { body, corner };
+  }
+
+  /** Draws the container at a frame from above or the side (report Figure 20) onto a canvas. */
+  drawContainer(target: HTMLCanvasElement, from: "top" | "side", frame: number): void {
+    const box = containerBox(this.replay);
+    if (!box) return;
+    const { options } = this;
+    const before = { frame: this.frame_, options: { ...options } };
+    const hidden = [this.movers_.group, this.cup_?.group, this.robot_?.group, this.trace_.group, this.contacts_.group, this.triads_.group,
+      this.ghostBox_.lines, this.ghostTool_, this.secondBoxes_.lines].filter((o) => o !== undefined && o !== null);
+    const shown = hidden.map((o) => o.visible);
+    this.boxes_.update(this.replay, frame);
+    hidden.forEach((o) => (o.visible = false));
+    this.boxes_.setSelected(-1);
+    const [width, height, ratio] = [this.width_, this.height_, this.renderer_.getPixelRatio()];
+    this.renderer_.setPixelRatio(1);
+    this.renderer_.setSize(target.width, target.height, false);
+    const fog = this.scene_.fog;
+    this.scene_.fog = null;
+    this.renderer_.render(this.scene_, orthoCamera(box, from, target.width / target.height));
+    target.getContext("2d")!.drawImage(this.canvas, 0, 0);
+    this.scene_.fog = fog;
+    this.renderer_.setPixelRatio(ratio);
+    this.renderer_.setSize(width, height);
+    hidden.forEach((o, i) => (o.visible = shown[i]!));
+    this.boxes_.setSelected(this.selected_);
+    this.boxes_.update(this.replay, before.frame);
+    this.render();
+  }
+
+  /** X_WB as drawn (from the world matrix), or null. */
+  drawnPose(name: string): { p: [number, number, number]; quat_wxyz: [number, number, number, number] } | null {
+    const body = this.replay.bodyIndex(name);
+    const box = this.boxes_.drawnPose(body);
+    if (box) return box;
+    const matrix = this.movers_.drawnMatrix(body);
+    if (!matrix) return null;
+    const p = new Vector3();
+    const q = new (this.cameras.active.quaternion.constructor as typeof import("three").Quaternion)();
+    matrix.decompose(p, q, new Vector3());
+    return { p: [p.x, p.y, p.z], quat_wxyz: [q.w, q.x, q.y, q.z] };
+  }
+
+  /** World positions of what tests compare: cup lip and tool. */
+  get lip(): [number, number, number] {
+    const p = new Vector3().setFromMatrixPosition(this.X_WS_);
+    return [p.x, p.y, p.z];
+  }
+}
+
+function length(at: (column: number, row: number) => number, row: number): number {
+  return Math.hypot(at(0, row), at(1, row), at(2, row));
+}
+
+/** Whether a processor draws instead of a graphics card. */
+function isSoftwareRenderer(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return true;
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+export { CAMERA_NAMES };

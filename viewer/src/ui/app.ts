@@ -1,0 +1,188 @@
+// App: puts the parts of the page together and gives them keys.
+
+import type { Replay } from "../replay/replay";
+import type { CameraName } from "../scene/cameras";
+import type { Theme } from "../scene/palette";
+import { CAMERA_NAMES, View, type ViewOption } from "../scene/view";
+import { button, make } from "./dom";
+import { helpOverlay } from "./help";
+import { Journey } from "./journey";
+import { Player } from "./player";
+import { Plots } from "./plots";
+import { endPanel, headline } from "./summary";
+import { Timeline } from "./timeline";
+
+const OPTION_TEXTS: Record<ViewOption, string> = {
+  names: "names", contacts: "contact points", forces: "contact forces", wrenches: "cup and flange force", ghost: "commanded pose",
+  frames: "frames", trace: "trace", xray: "see-through boxes", robot: "robot", walls: "container walls", second: "second recording",
+  shadows: "shadows",
+};
+
+export class App {
+  readonly element = make("div", "app");
+  readonly player: Player;
+  readonly view: View;
+  readonly plots: Plots;
+  readonly journey: Journey;
+  private readonly timeline_: Timeline;
+  private readonly help_: HTMLElement;
+  private readonly cameraButtons_ = new Map<CameraName, HTMLButtonElement>();
+  private readonly optionBoxes_ = new Map<ViewOption, HTMLInputElement>();
+  private readonly stage_ = make("main", "stage");
+  private readonly end_: HTMLElement | null;
+
+  constructor(
+    readonly replay: Replay,
+    second: Replay | null,
+    private theme_: Theme,
+    isPicture: boolean,
+  ) {
+    document.documentElement.dataset.theme = theme_;
+    this.player = new Player(replay);
+    this.view = new View(replay, second, theme_, isPicture);
+    this.view.colours.learn(replay.bodies.map((body) => body.type).filter((type) => type !== ""));
+    this.plots = new Plots(replay, second, this.player, theme_);
+    this.journey = new Journey(replay, this.player, this.view);
+    this.timeline_ = new Timeline(this.player, replay);
+    this.help_ = helpOverlay(() => this.view.palette);
+    this.end_ = endPanel(replay, this.view);
+    if (this.end_) this.journey.element.append(this.end_);
+    this.journey.onSelect = (box) => this.plots.setBox(box);
+    this.stage_.append(this.view.element, this.toolbar());
+    this.element.append(this.header(), this.journey.element, this.stage_, this.plots.element, this.timeline_.element, this.help_);
+    this.player.onChange(() => this.view.setFrame(this.player.frame));
+    new ResizeObserver(() => this.fit()).observe(this.stage_);
+    this.listen();
+  }
+
+  /** After the element is in the document: the drawing first, plots and the picture of the end when it stands. */
+  start(): void {
+    this.fit();
+    this.useCamera("cell");
+    this.player.setTime(this.replay.start);
+    setTimeout(() => {
+      this.plots.start();
+      this.drawEnd();
+    }, 50);
+  }
+
+  private drawEnd(): void {
+    this.end_?.dispatchEvent(new Event("snug:draw"));
+  }
+
+  private fit(): void {
+    this.view.resize(this.stage_.clientWidth, this.stage_.clientHeight);
+  }
+
+  private header(): HTMLElement {
+    const bar = make("header", "bar", headline(this.replay));
+    bar.append(
+      button("◐", "Light or dark (d)", () => this.setTheme(this.theme_ === "light" ? "dark" : "light")),
+      button("?", "Keys and colours (?)", () => this.showHelp()),
+    );
+    return bar;
+  }
+
+  private toolbar(): HTMLElement {
+    const cameras = make("div", "cameras");
+    for (const name of CAMERA_NAMES) {
+      const choose = button(name, `Camera ${name} (${CAMERA_NAMES.indexOf(name) + 1})`, () => this.useCamera(name));
+      this.cameraButtons_.set(name, choose);
+      cameras.append(choose);
+    }
+    const menu = make("details", "options", make("summary", "", "show"));
+    for (const option of this.view.available) {
+      const box = make("input");
+      box.type = "checkbox";
+      box.checked = this.view.options[option];
+      box.addEventListener("change", () => this.setOption(option, box.checked));
+      this.optionBoxes_.set(option, box);
+      menu.append(make("label", "", box, OPTION_TEXTS[option]));
+    }
+    menu.append(this.arrowScale());
+    return make("nav", "toolbar", cameras, menu);
+  }
+
+  private arrowScale(): HTMLElement {
+    const slider = make("input");
+    slider.type = "range";
+    [slider.min, slider.max, slider.step, slider.value] = ["-1", "1", "0.05", "0"];
+    const text = make("span", "", "arrows 4 mm/N");
+    slider.addEventListener("input", () => {
+      this.view.arrowScale = 0.004 * 10 ** Number(slider.value);
+      text.textContent = `arrows ${(1000 * this.view.arrowScale).toPrecision(2)} mm/N`;
+      this.view.invalidate();
+    });
+    return make("label", "scale", text, slider);
+  }
+
+  setOption(option: ViewOption, on: boolean): void {
+    this.view.setOption(option, on);
+    const box = this.optionBoxes_.get(option);
+    if (box) box.checked = on;
+  }
+
+  useCamera(name: CameraName): void {
+    this.view.useCamera(name);
+    for (const [key, element] of this.cameraButtons_) element.classList.toggle("on", key === name);
+  }
+
+  setTheme(theme: Theme): void {
+    this.theme_ = theme;
+    document.documentElement.dataset.theme = theme;
+    this.view.setTheme(theme);
+    this.plots.setTheme(theme);
+    this.drawEnd();
+  }
+
+  private showHelp(): void {
+    this.help_.dispatchEvent(new Event("snug:show"));
+  }
+
+  private listen(): void {
+    let down: [number, number] = [0, 0];
+    this.view.canvas.addEventListener("pointerdown", (e) => (down = [e.clientX, e.clientY]));
+    this.view.canvas.addEventListener("click", (e) => {
+      if (Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return;
+      this.click(e.offsetX, e.offsetY, e.shiftKey);
+    });
+    window.addEventListener("keydown", (e) => this.key(e));
+  }
+
+  private click(x: number, y: number, isTrace: boolean): void {
+    const picked = this.view.pick(x, y);
+    if (picked && isTrace) {
+      this.view.setTracePoint(this.view.cornerPoint(picked.body, picked.corner));
+      this.setOption("trace", true);
+      return;
+    }
+    const name = picked ? this.replay.bodies[picked.body]!.name : "";
+    this.journey.select(name === this.journey.selected ? "" : name);
+  }
+
+  private key(e: KeyboardEvent): void {
+    const isField = e.target instanceof HTMLSelectElement || (e.target instanceof HTMLInputElement && e.target.type !== "range");
+    if (isField || e.ctrlKey || e.metaKey || e.altKey) return;
+    const { player } = this;
+    const actions: Record<string, () => void> = {
+      " ": () => player.toggle(),
+      ArrowLeft: () => (e.shiftKey ? player.setTime(player.time - 1) : player.step(-1)),
+      ArrowRight: () => (e.shiftKey ? player.setTime(player.time + 1) : player.step(1)),
+      "[": () => this.timeline_.jump(-1),
+      "]": () => this.timeline_.jump(1),
+      "-": () => player.faster(-1),
+      "+": () => player.faster(1),
+      "=": () => player.faster(1),
+      Home: () => player.setTime(this.replay.start),
+      End: () => player.setTime(this.replay.end),
+      d: () => this.setTheme(this.theme_ === "light" ? "dark" : "light"),
+      "?": () => this.showHelp(),
+      Escape: () => (this.help_.hidden = true),
+    };
+    CAMERA_NAMES.forEach((name, k) => (actions[String(k + 1)] = () => this.useCamera(name)));
+    const action = actions[e.key];
+    if (!action) return;
+    e.preventDefault();
+    action();
+  }
+}

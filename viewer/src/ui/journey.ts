@@ -1,0 +1,95 @@
+// Journey: every box of the run with what happened to it; a click goes there.
+
+import type { Replay } from "../replay/replay";
+import type { View } from "../scene/view";
+import { button, make } from "./dom";
+import type { Player } from "./player";
+
+interface Stop {
+  kind: string;
+  time: number;
+  text: string;
+}
+
+/** A seal that is lost and found at every tick is one stop: `lost, 8 times`. */
+function withoutChatter(stops: Stop[]): Stop[] {
+  const kept: (Stop & { count: number; last: number })[] = [];
+  for (const stop of stops) {
+    const same = kept.find((k) => k.kind === stop.kind && stop.time - k.last < 0.5);
+    if (!same) {
+      kept.push({ ...stop, count: 1, last: stop.time });
+      continue;
+    }
+    ++same.count;
+    same.last = stop.time;
+  }
+  return kept.map((k) => ({ ...k, kind: k.count > 1 ? `${k.kind} ${k.count}×` : k.kind }));
+}
+
+export class Journey {
+  readonly element = make("aside", "journey");
+  private readonly rows_ = new Map<string, HTMLElement>();
+  private readonly stops_: { button: HTMLButtonElement; time: number }[] = [];
+  selected = "";
+  onSelect: (box: string) => void = () => {};
+
+  constructor(
+    private readonly replay: Replay,
+    private readonly player: Player,
+    private readonly view: View,
+  ) {
+    this.element.append(make("h2", "", "Boxes"));
+    for (const { id, state, up, stops } of this.boxes()) this.element.append(this.row(id, state, up, stops));
+    player.onSlowChange(() => this.update());
+    this.update();
+  }
+
+  private boxes(): { id: string; state: string; up: string; stops: Stop[] }[] {
+    const { result, events } = this.replay.header;
+    if (result?.boxes.length) {
+      return result.boxes.map((box) => ({ id: box.id, state: box.state ?? "", up: box.up, stops: box.journey }));
+    }
+    return this.replay.bodies
+      .filter((body) => body.kind === "dynamic")
+      .map((body) => ({ id: body.name, state: "", up: "", stops: events.filter((e) => e.body === body.name) }));
+  }
+
+  private row(id: string, state: string, up: string, stops: Stop[]): HTMLElement {
+    const body = this.replay.bodyIndex(id);
+    const swatch = make("i", "swatch");
+    swatch.style.background = this.view.colours.of(this.replay.bodies[body]?.type ?? "");
+    const head = button("", "Select this box (again: none)", () => this.select(this.selected === id ? "" : id), "head");
+    head.append(swatch, make("b", "", id), make("span", "type", this.replay.bodies[body]?.type ?? ""));
+    if (state) head.append(make("span", `state ${state}`, up ? `${state}, ${up} up` : state));
+    const list = make("div", "stops");
+    for (const stop of withoutChatter(stops)) {
+      const go = button(stop.kind, stop.text || stop.kind, () => {
+        this.player.pause();
+        this.player.setTime(stop.time);
+        this.select(id);
+      });
+      go.append(make("time", "", stop.time.toFixed(1)));
+      list.append(go);
+      this.stops_.push({ button: go, time: stop.time });
+    }
+    const row = make("section", "box", head, list);
+    this.rows_.set(id, row);
+    return row;
+  }
+
+  select(id: string): void {
+    this.selected = id;
+    this.view.setSelected(this.replay.bodyIndex(id));
+    this.update();
+    this.onSelect(id);
+  }
+
+  private update(): void {
+    const held = this.replay.bodies[this.replay.attachedBody(this.player.frame)]?.name;
+    for (const [id, row] of this.rows_) {
+      row.classList.toggle("selected", id === this.selected);
+      row.classList.toggle("held", id === held);
+    }
+    for (const { button: go, time } of this.stops_) go.classList.toggle("past", time <= this.player.time + 1e-6);
+  }
+}

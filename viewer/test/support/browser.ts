@@ -1,0 +1,55 @@
+// A real Chromium, without network, and the built page with recordings inside.
+
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium, type Browser, type Page } from "playwright-core";
+
+const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
+const out = join(root, "test/out");
+
+/** Chromium that draws without a graphics card and asks nobody for anything. */
+export async function openBrowser(): Promise<Browser> {
+  const executablePath = process.env.SNUG_CHROMIUM || "/usr/bin/chromium";
+  if (!existsSync(executablePath)) throw new Error(`${executablePath} is missing: install Debian's package chromium`);
+  return chromium.launch({
+    executablePath,
+    args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+}
+
+/** Writes the built page with these recordings and returns its address. */
+export function pageWith(name: string, recordings: Uint8Array[]): string {
+  const built = join(process.env.SNUG_VIEWER_OUT || join(root, "dist"), "index.html");
+  if (!existsSync(built)) throw new Error(`${built} is missing: run \`npm run build\` first`);
+  const scripts = recordings.map(
+    (bytes, k) => `<script type="application/octet-stream;base64" id="snug-recording-${k}" data-name="r">${Buffer.from(bytes).toString("base64")}</script>`,
+  );
+  mkdirSync(out, { recursive: true });
+  const path = join(out, `${name}.html`);
+  writeFileSync(path, readFileSync(built, "utf8").replace("<!--snug:recordings-->", () => scripts.join("\n")));
+  return `file://${path}`;
+}
+
+export interface Opened {
+  page: Page;
+  /** Errors of the console and of scripts. */
+  errors: string[];
+  /** Addresses asked for beside the page itself. */
+  requests: string[];
+  close(): Promise<void>;
+}
+
+export async function open(browser: Browser, url: string, width = 1280, height = 720): Promise<Opened> {
+  const context = await browser.newContext({ viewport: { width, height }, offline: true });
+  const page = await context.newPage();
+  const errors: string[] = [];
+  const requests: string[] = [];
+  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  page.on("pageerror", (error) => errors.push(error.message));
+  page.on("request", (request) => !/^(file|data|blob):/.test(request.url()) && requests.push(request.url()));
+  await page.goto(url);
+  await page.waitForFunction(() => (window as unknown as { snugReady?: boolean }).snugReady === true);
+  return { page, errors, requests, close: () => context.close() };
+}
