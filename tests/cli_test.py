@@ -245,3 +245,45 @@ class Cup(unittest.TestCase):
                          for a, b in zip(got, right, strict=True)]
                 self.assertLessEqual(norm(turns) / 2.0**0.5, 1e-6)  # |R1 - R2| = sqrt(2) x angle, for small angles
                 self.assertEqual(answer["stable"], case["min_tangent_eig"] > 0.0)
+class Views(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = Path(self.folder.name)
+        self.recording = self.path / "drop.h5"
+        result = snug("simulate", DROP, "--until", 1, "-o", self.recording)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_report_is_one_page_without_addresses_to_load_from(self):
+        page = self.path / "drop.html"
+        result = snug("report", self.recording, "-o", page)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        text = page.read_text()
+        self.assertIn('id="snug-recording-0"', text)
+        self.assertNotRegex(text, r"""(?:src|href)=["']https?:""")
+        self.assertEqual([p.name for p in self.path.iterdir() if ".part" in p.name], [])
+
+    def test_report_refuses_what_is_no_recording_and_writes_nothing(self):
+        page = self.path / "page.html"
+        result = snug("report", DROP, "-o", page)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("drop.yaml", result.stderr)
+        self.assertFalse(page.exists())
+
+    def test_picture_is_a_png_of_the_size_asked_for_with_something_on_it(self):
+        picture = self.path / "drop.png"
+        result = snug("picture", self.recording, "--time", 0.5, "--size", "320x200", "-o", picture)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        data = picture.read_bytes()
+        self.assertTrue(data.startswith(b"\x89PNG"))
+        self.assertEqual((int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")), (320, 200))
+        self.assertGreater(len(data), 4000)  # an empty one has 1 kB
+
+    def test_picture_refuses_words_it_does_not_know(self):
+        for words in (["--camera", "sied"], ["--size", "12"], ["--show", "names,ghosts"], ["--time", "nan"]):
+            result = snug("picture", self.recording, "-o", self.path / "x.png", *words)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn(words[0], result.stderr)
+        self.assertFalse((self.path / "x.png").exists())
+
+

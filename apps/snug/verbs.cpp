@@ -3,6 +3,7 @@
 
 #include "bench.hpp"
 #include "cup.hpp"
+#include "picture.hpp"
 #include "plot.hpp"
 #include "program.hpp"
 #include "report.hpp"
@@ -15,6 +16,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_program(app, action);
   add_report(app, action);
   add_plot(app, action);
+  add_picture(app, action);
   add_cup(app, action);
   add_bench(app, action);
 }

@@ -98,8 +98,7 @@ function showPicture(app: App): void {
   const [width, height] = (fragment.get("size") ?? "").split("x").map(Number);
   app.view.resize(width || window.innerWidth, height || window.innerHeight);
   followAddress(app);
-  app.view.render();
-  app.view.finish();
+  app.view.freeze();
 }
 
 function showError(error: unknown): void {

@@ -62,7 +62,6 @@ function letterAtlas(names: string[]): CanvasTexture {
   });
   const texture = new CanvasTexture(canvas);
   texture.minFilter = LinearMipmapLinearFilter;
-  texture.anisotropy = 4;
   texture.flipY = false;
   return texture;
 }
@@ -96,6 +95,7 @@ uniform vec3 ink;
 uniform vec3 edgeInk;
 uniform vec3 markInk;
 uniform float showNames;
+uniform float pixelRatio;
 varying vec2 vFace;
 varying vec2 vExtent;
 varying vec3 vCell;
@@ -122,7 +122,7 @@ if (showNames > 0.5) {
   diffuseColor.rgb = mix(diffuseColor.rgb, ink, max(0.88 * name, 0.6 * axis));
 }
 vec2 rim = (vExtent - abs(metres)) / max(pixel, vec2(1e-6));
-float width = vCell.z > 0.5 ? 3.0 : 1.25;
+float width = (vCell.z > 0.5 ? 3.0 : 1.25) * pixelRatio;
 float line = 1.0 - smoothstep(width - 0.5, width + 0.5, min(rim.x, rim.y));
 diffuseColor.rgb = mix(diffuseColor.rgb, vCell.z > 0.5 ? markInk : edgeInk, line * (vCell.z > 0.5 ? 1.0 : 0.8));
 `;
@@ -159,8 +159,9 @@ export class Boxes {
       edgeInk: { value: new Color(palette.boxEdge) },
       markInk: { value: new Color(palette.select) },
       showNames: { value: 1 },
+      pixelRatio: { value: 1 },
     };
-    this.material_ = new MeshLambertMaterial();
+    this.material_ = new MeshLambertMaterial({ fog: false });
     this.material_.onBeforeCompile = (shader) => this.extendShader(shader);
     const geometry = unitBox();
     const half = new Float32Array(4 * count);
@@ -194,6 +195,11 @@ export class Boxes {
     (this.uniforms_.ink!.value as Color).set(palette.boxInk);
     (this.uniforms_.edgeInk!.value as Color).set(palette.boxEdge);
     (this.uniforms_.markInk!.value as Color).set(palette.select);
+  }
+
+  /** Edges keep their width on the screen. */
+  setPixelRatio(ratio: number): void {
+    this.uniforms_.pixelRatio!.value = ratio;
   }
 
   setNames(on: boolean): void {

@@ -15,7 +15,7 @@ import { meshOfShapes, Movers, toolShapes } from "./movers";
 import { Outlines } from "./outlines";
 import { BoxColours, PALETTES, type Palette, type Theme } from "./palette";
 import { Robot } from "./robot";
-import { Statics } from "./statics";
+import { Statics, SUN } from "./statics";
 import { Trace, type TracePoint } from "./trace";
 import { Triads, type Triad } from "./triads";
 
@@ -70,6 +70,7 @@ export class View {
   private frame_ = 0;
   private selected_ = -1;
   private isScheduled_ = false;
+  private sharpTimer_ = 0;
   private width_ = 1;
   private height_ = 1;
   private readonly pose_ = new Float64Array(7);
@@ -83,7 +84,7 @@ export class View {
     readonly replay: Replay,
     readonly second: Replay | null,
     theme: Theme,
-    isPicture = false,
+    private readonly isPicture = false,
   ) {
     this.palette_ = PALETTES[theme];
     this.isSoftware = isSoftwareRenderer();
@@ -114,6 +115,9 @@ export class View {
     if (this.cup_) this.scene_.add(this.cup_.group);
     if (this.robot_) this.scene_.add(this.robot_.group);
     if (this.ghostTool_) this.scene_.add(this.ghostTool_);
+    // Near things first: what they hide need not be drawn.
+    this.boxes_.mesh.renderOrder = -2;
+    this.movers_.group.traverse((object) => (object.renderOrder = -1));
     this.boxes_.mesh.castShadow = true;
     this.boxes_.mesh.receiveShadow = true;
     this.hemisphere_.position.set(0, 0, 1);
@@ -159,7 +163,7 @@ export class View {
     const box = containerBox(this.replay);
     const centre = box ? box.getCenter(new Vector3()).multiplyScalar(0.5) : new Vector3();
     this.sun_.target.position.copy(centre);
-    this.sun_.position.copy(centre).add(new Vector3(-0.9, -1.3, 2.6));
+    this.sun_.position.copy(centre).addScaledVector(SUN, 3);
     const camera = this.sun_.shadow.camera;
     camera.left = camera.bottom = -1.3;
     camera.right = camera.top = 1.3;
@@ -173,6 +177,7 @@ export class View {
   private setShadows(): void {
     this.renderer_.shadowMap.enabled = this.options.shadows;
     this.sun_.castShadow = this.options.shadows;
+    this.statics_.setShadows(this.options.shadows);
     this.scene_.traverse((object) => {
       if (object instanceof Mesh && object.material instanceof MeshLambertMaterial) object.material.needsUpdate = true;
     });
@@ -347,10 +352,25 @@ export class View {
   resize(width: number, height: number): void {
     this.width_ = Math.max(1, width);
     this.height_ = Math.max(1, height);
-    this.renderer_.setPixelRatio(this.isSoftware ? 1 : Math.min(2, window.devicePixelRatio || 1));
-    this.renderer_.setSize(this.width_, this.height_);
+    this.setRatio(this.isSoftware ? 1 : Math.min(2, window.devicePixelRatio || 1));
     this.cameras.setAspect(this.width_ / this.height_);
     this.invalidate();
+  }
+
+  private setRatio(ratio: number): void {
+    this.renderer_.setPixelRatio(ratio);
+    this.renderer_.setSize(this.width_, this.height_);
+    this.boxes_.setPixelRatio(ratio);
+  }
+
+  /** Where a processor draws, edges are rough while things move: when they stand, one picture has four samples a pixel. */
+  private sharpenWhenStill(): void {
+    if (this.renderer_.getPixelRatio() !== 1) this.setRatio(1);
+    window.clearTimeout(this.sharpTimer_);
+    this.sharpTimer_ = window.setTimeout(() => {
+      this.setRatio(2);
+      this.render();
+    }, 350);
   }
 
   useCamera(name: CameraName): void {
@@ -363,6 +383,7 @@ export class View {
     this.isScheduled_ = true;
     requestAnimationFrame(() => {
       this.isScheduled_ = false;
+      if (this.isSoftware && !this.isPicture) this.sharpenWhenStill();
       this.render();
     });
   }
@@ -401,10 +422,14 @@ export class View {
     return this.drawn_.filter((t) => t > since).length / 2;
   }
 
-  /** Waits until the graphics processor has finished: for measurements and pictures. */
-  finish(): void {
-    const gl = this.renderer_.getContext();
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  /** Draws, and puts a copy that no compositor can lose in the place of the live drawing: for pictures. */
+  freeze(): void {
+    this.render();
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [this.canvas.width, this.canvas.height];
+    copy.style.cssText = this.canvas.style.cssText;
+    copy.getContext("2d")!.drawImage(this.canvas, 0, 0);
+    this.canvas.replaceWith(copy);
   }
 
   get drawCalls(): number {
@@ -440,11 +465,13 @@ export class View {
     this.boxes_.setSelected(-1);
     const [width, height, ratio] = [this.width_, this.height_, this.renderer_.getPixelRatio()];
     this.renderer_.setPixelRatio(1);
-    this.renderer_.setSize(target.width, target.height, false);
+    this.renderer_.setSize(2 * target.width, 2 * target.height, false);
     const fog = this.scene_.fog;
     this.scene_.fog = null;
     this.renderer_.render(this.scene_, orthoCamera(box, from, target.width / target.height));
-    target.getContext("2d")!.drawImage(this.canvas, 0, 0);
+    const pen = target.getContext("2d")!;
+    pen.imageSmoothingQuality = "high";
+    pen.drawImage(this.canvas, 0, 0, target.width, target.height);
     this.scene_.fog = fog;
     this.renderer_.setPixelRatio(ratio);
     this.renderer_.setSize(width, height);

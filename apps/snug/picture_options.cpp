@@ -1,0 +1,52 @@
+// picture: what may be said after the verb.
+#include "picture.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include "options.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  snug picture run.h5 -o end.png --camera top
+  snug picture run.h5 --time 12.3 --size 1920x1080 --show frames,wrenches -o pick.png)";
+
+void read_size(const std::string& text, PictureOptions& options) {
+  char rest = '\0';
+  const int found = std::sscanf(text.c_str(), "%dx%d%c", &options.width, &options.height, &rest);
+  const auto is_fine = [](int pixels) { return pixels >= 16 && pixels <= 8192; };
+  if (found == 2 && is_fine(options.width) && is_fine(options.height)) return;
+  throw InputError("command line", "--size", text, "WIDTHxHEIGHT in pixels, each from 16 to 8192, such as 1280x800");
+}
+
+}  // namespace
+
+void add_picture(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand("picture", "draw one instant of a recording as PNG; needs chromium");
+  const auto options = std::make_shared<PictureOptions>();
+  const auto size = std::make_shared<std::string>("1280x800");
+  verb.add_option("recording", options->recording, "what to draw")->required()->type_name("FILE.h5");
+  verb.add_option("-o,--output", options->output, "the picture to write")->required()->type_name("FILE.png");
+  verb.add_option("--time", options->time, "of the instant; without it the end")->type_name("SECONDS");
+  verb.add_option("--size", *size, "in pixels")->type_name("WxH")->capture_default_str();
+  verb.add_option("--camera", options->camera, "cell, top, side (both of the container) or tool")
+      ->type_name("NAME")
+      ->capture_default_str();
+  verb.add_option("--theme", options->theme, "light or dark")->type_name("NAME")->capture_default_str();
+  verb.add_option("--show", options->show,
+                  "parts to draw: names, contacts, forces, wrenches, ghost, frames, trace, xray, robot, walls, shadows")
+      ->type_name("A,B");
+  verb.add_option("--hide", options->hide, "parts to leave out")->type_name("A,B");
+  verb.footer(kExamples);
+  verb.callback([options, size, &action] {
+    action = [options, size] {
+      read_size(*size, *options);
+      return run_picture(*options);
+    };
+  });
+}
+
+}  // namespace snug::app
