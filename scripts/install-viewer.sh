@@ -8,5 +8,7 @@ stamp=node_modules/.snug-installed
 cmp -s package-lock.json "$stamp" && exit 0
 command -v npm >/dev/null 2>&1 || { echo "install-viewer.sh: npm is missing: run scripts/install-deps.sh" >&2; exit 1; }
 echo "installing the npm packages of viewer/" >&2
-npm ci --silent --no-audit --no-fund >&2
+# npm ci refuses a lock file that lacks optional packages of other platforms, which not every registry offers; npm install
+# takes the locked versions too and changes nothing of ours with --no-save.
+npm ci --silent --no-audit --no-fund >/dev/null 2>&1 || npm install --no-save --silent --no-audit --no-fund >&2
 cp package-lock.json "$stamp"

@@ -131,8 +131,8 @@ export class Cameras {
     const radius = box.getSize(new Vector3()).length() / 2;
     const fov = (this.perspective_.fov * Math.PI) / 180;
     const fit = Math.min(fov, 2 * Math.atan(Math.tan(fov / 2) * this.aspect_));
-    const distance = (0.86 * radius) / Math.sin(fit / 2);
-    const away = new Vector3(0.34, -1, 0.72).normalize();
+    const distance = (0.8 * radius) / Math.sin(fit / 2);
+    const away = new Vector3(0.36, -0.94, 0.88).normalize();
     this.controls.target.copy(centre);
     this.active.position.copy(centre).addScaledVector(away, distance);
   }

@@ -47,7 +47,7 @@ export class View {
   readonly cameras: Cameras;
   readonly colours = new BoxColours();
   readonly isSoftware: boolean;
-  arrowScale = 0.004; // m/N
+  arrowScale = 0.008; // m/N
   onAfterRender: (() => void) | null = null;
   private readonly renderer_: WebGLRenderer;
   private readonly scene_ = new Scene();

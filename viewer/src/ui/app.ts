@@ -107,9 +107,9 @@ export class App {
     const slider = make("input");
     slider.type = "range";
     [slider.min, slider.max, slider.step, slider.value] = ["-1", "1", "0.05", "0"];
-    const text = make("span", "", "arrows 4 mm/N");
+    const text = make("span", "", "arrows 8 mm/N");
     slider.addEventListener("input", () => {
-      this.view.arrowScale = 0.004 * 10 ** Number(slider.value);
+      this.view.arrowScale = 0.008 * 10 ** Number(slider.value);
       text.textContent = `arrows ${(1000 * this.view.arrowScale).toPrecision(2)} mm/N`;
       this.view.invalidate();
     });

@@ -36,7 +36,7 @@ export function helpOverlay(palette: () => Palette): HTMLElement {
       legend.append(make("li", "", swatch, what));
     }
     overlay.replaceChildren(make("div", "card", make("h2", "", "Keys"), keys, make("h2", "", "Colours"), legend,
-      make("p", "", "Drag to turn, right drag to move, wheel to zoom. Click a box to select it. W world, T container, E gripper end, S cup lip, P held or selected box.")));
+      make("p", "", "Drag to turn, right drag to move, wheel to zoom. Click a box to select it and plot its pose. In a plot: click sets the time, drag zooms, double click shows all. W world, T container, E gripper end, S cup lip, P held or selected box.")));
   };
   overlay.addEventListener("click", () => (overlay.hidden = true));
   overlay.addEventListener("snug:show", () => {

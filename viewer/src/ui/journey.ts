@@ -26,6 +26,20 @@ function withoutChatter(stops: Stop[]): Stop[] {
   return kept.map((k) => ({ ...k, kind: k.count > 1 ? `${k.kind} ${k.count}×` : k.kind }));
 }
 
+/** When a body came within 1 mm of where it ends and stayed there; null if it never moved or moves to the end. */
+export function restOf(replay: Replay, body: number): Stop | null {
+  const end = new Float64Array(7);
+  const pose = new Float64Array(7);
+  if (body < 0 || !replay.bodyPose(body, replay.frames - 1, end)) return null;
+  let frame = replay.frames - 2;
+  while (frame >= 0 && replay.bodyPose(body, frame, pose)) {
+    if (Math.hypot(pose[0]! - end[0]!, pose[1]! - end[1]!, pose[2]! - end[2]!) > 1e-3) break;
+    --frame;
+  }
+  if (frame < 0 || frame >= replay.frames - 2 || !replay.bodyPose(body, frame, pose)) return null;
+  return { kind: "rest", time: replay.timeOf(frame + 1), text: "from here on within 1 mm of where it is at the end" };
+}
+
 export class Journey {
   readonly element = make("aside", "journey");
   private readonly rows_ = new Map<string, HTMLElement>();
@@ -62,7 +76,8 @@ export class Journey {
     head.append(swatch, make("b", "", id), make("span", "type", this.replay.bodies[body]?.type ?? ""));
     if (state) head.append(make("span", `state ${state}`, up ? `${state}, ${up} up` : state));
     const list = make("div", "stops");
-    for (const stop of withoutChatter(stops)) {
+    const rest = restOf(this.replay, body);
+    for (const stop of [...withoutChatter(stops), ...(rest ? [rest] : [])]) {
       const go = button(stop.kind, stop.text || stop.kind, () => {
         this.player.pause();
         this.player.setTime(stop.time);

@@ -17,6 +17,9 @@ export class Plots {
   private box_ = "";
   private theme_: Theme;
   private width_ = 0;
+  /** What is shown of the time, s; null is all of it. */
+  private range_: [number, number] | null = null;
+  private zoomTimer_ = 0;
 
   constructor(
     private readonly replay: Replay,
@@ -68,7 +71,8 @@ export class Plots {
       const values = replay ? figure.values(replay) : null;
       if (!replay || !values) continue;
       values.forEach((value, k) => {
-        const [times, numbers] = thin(replay, value, POINTS);
+        const [begin, stop] = this.range_ ? [replay.frameAt(this.range_[0]), replay.frameAt(this.range_[1]) + 1] : [0, replay.frames];
+        const [times, numbers] = thin(replay, value, POINTS, begin, stop);
         if (numbers.every((v) => v === null)) return;
         tables.push([times, numbers]);
         series.push({
@@ -96,12 +100,25 @@ export class Plots {
   private caption(figure: Figure, series: uPlot.Series[]): HTMLElement {
     const caption = make("figcaption", "", make("b", "", figure.title), ` [${figure.unit}] `);
     if (series.length < 3) return caption;
-    for (const s of series.slice(1)) {
+    const firsts = series.slice(1).filter((s) => !s.dash);
+    for (const s of firsts.length > 1 ? firsts : []) {
       const key = make("span", "key", String(s.label));
       key.style.color = String(s.stroke);
       caption.append(key);
     }
+    if (firsts.length < series.length - 1) caption.append(make("span", "dashed", "dashed: 2nd"));
     return caption;
+  }
+
+  /** Shows a stretch of time in all plots, with all frames that fit; null shows the whole run. */
+  zoom(range: [number, number] | null): void {
+    window.clearTimeout(this.zoomTimer_);
+    this.zoomTimer_ = window.setTimeout(() => {
+      this.range_ = range;
+      const scroll = this.element.scrollTop;
+      this.build();
+      this.element.scrollTop = scroll;
+    });
   }
 
   private options(series: uPlot.Series[]): uPlot.Options {
@@ -114,13 +131,30 @@ export class Plots {
       height: HEIGHT,
       series,
       legend: { show: false },
-      cursor: { sync: { key: "snug" }, drag: { x: true, y: false } },
-      scales: { x: { time: false } },
+      cursor: {
+        sync: { key: "snug" },
+        drag: { x: true, y: false, setScale: false },
+        bind: {
+          dblclick: () => () => {
+            this.zoom(null);
+            return null;
+          },
+        },
+      },
+      scales: { x: this.range_ ? { time: false, range: this.range_ } : { time: false } },
       axes: [
         { ...axis, size: 22, gap: 2, values: (_: uPlot, ticks: number[]) => ticks.map((t) => `${t} s`) },
-        { ...axis, size: 44, gap: 3 },
+        { ...axis, size: 44, gap: 3, space: 22 },
       ],
-      hooks: { draw: [(plot: uPlot) => this.drawCursor(plot)] },
+      hooks: {
+        draw: [(plot: uPlot) => this.drawCursor(plot)],
+        setSelect: [
+          (plot: uPlot) => {
+            const { left, width } = plot.select;
+            if (width > 3) this.zoom([plot.posToVal(left, "x"), plot.posToVal(left + width, "x")]);
+          },
+        ],
+      },
     };
   }
 

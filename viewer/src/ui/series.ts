@@ -1,6 +1,7 @@
 // Series: what is plotted, out of the channels of a recording, in the units people read.
 
 import type { Channel, Replay } from "../replay/replay";
+import { rotationVector } from "../scene/maths";
 
 export interface Figure {
   title: string;
@@ -45,21 +46,42 @@ export function figuresOf(box: string): Figure[] {
     { title: "Torque on the flange, about F", unit: "Nm", names: XYZ, values: columns("flange.wrench", 3, 3) },
   ];
   if (box) {
-    figures.unshift({
-      title: `Position of ${box} in W`, unit: "m", names: XYZ,
-      values: (replay) => {
-        const body = replay.bodyIndex(box);
-        const channel = body < 0 ? undefined : replay.poseChannelOfBody(body);
-        if (!channel || channel.rows < 2) return null;
-        return [0, 1, 2].map((k) => (frame: number) => channel.at(k, frame));
+    figures.unshift(
+      {
+        title: `Position of ${box} in W`, unit: "m", names: XYZ,
+        values: (replay) => {
+          const body = replay.bodyIndex(box);
+          const channel = body < 0 ? undefined : replay.poseChannelOfBody(body);
+          if (!channel || channel.rows < 2) return null;
+          return [0, 1, 2].map((k) => (frame: number) => channel.at(k, frame));
+        },
       },
-    });
+      {
+        title: `Rotation vector of ${box} in W`, unit: "deg", names: XYZ,
+        values: (replay) => {
+          const body = replay.bodyIndex(box);
+          const channel = body < 0 ? undefined : replay.poseChannelOfBody(body);
+          if (!channel || channel.rows < 2) return null;
+          const vector = (frame: number): number[] => {
+            const [w, x, y, z] = [3, 4, 5, 6].map((c) => channel.at(c, frame));
+            return Number.isFinite(w) ? rotationVector(w!, x!, y!, z!) : [NaN, NaN, NaN];
+          };
+          return [0, 1, 2].map((k) => (frame: number) => DEGREES * vector(frame)[k]!);
+        },
+      },
+    );
   }
   return figures;
 }
 
-/** At most about `points` points that keep the smallest and largest value of each stretch. */
-export function thin(replay: Replay, value: (frame: number) => number, points: number): [number[], (number | null)[]] {
+/** At most about `points` points of the frames from `begin` to before `stop`; they keep the smallest and largest value of each stretch. */
+export function thin(
+  replay: Replay,
+  value: (frame: number) => number,
+  points: number,
+  begin = 0,
+  stop = replay.frames,
+): [number[], (number | null)[]] {
   const times: number[] = [];
   const values: (number | null)[] = [];
   const add = (frame: number): void => {
@@ -67,9 +89,9 @@ export function thin(replay: Replay, value: (frame: number) => number, points: n
     times.push(replay.timeOf(frame));
     values.push(Number.isFinite(v) ? v : null);
   };
-  const stride = Math.max(1, Math.floor((2 * replay.frames) / points));
-  for (let first = 0; first < replay.frames; first += stride) {
-    const end = Math.min(first + stride, replay.frames);
+  const stride = Math.max(1, Math.floor((2 * (stop - begin)) / points));
+  for (let first = begin; first < stop; first += stride) {
+    const end = Math.min(first + stride, stop);
     let low = -1;
     let high = -1;
     for (let frame = first; frame < end; ++frame) {

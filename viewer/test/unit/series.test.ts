@@ -1,0 +1,60 @@
+// What is plotted and said of a box, against numbers known from how the recording was made.
+
+import { describe, expect, it } from "vitest";
+import { decodeReplay } from "../../src/replay/decode";
+import { Replay } from "../../src/replay/replay";
+import { linkFrames } from "../../src/scene/robot";
+import { restOf } from "../../src/ui/journey";
+import { figuresOf, thin } from "../../src/ui/series";
+import { pose, smallHeader } from "../support/sample";
+
+describe("thin", () => {
+  it("keeps the peaks of every stretch and stays below the number of points asked for", async () => {
+    const replay = new Replay(await decodeReplay(smallHeader(5000)));
+    const spike = (frame: number): number => (frame === 3217 ? 100 : frame === 3218 ? -50 : Math.sin(frame));
+    const [times, values] = thin(replay, spike, 200);
+    expect(values.length).toBeLessThanOrEqual(210);
+    expect(Math.max(...values.map(Number))).toBe(100);
+    expect(Math.min(...values.map(Number))).toBe(-50);
+    times.slice(1).forEach((t, i) => expect(t).toBeGreaterThanOrEqual(times[i]!));
+  });
+
+  it("gives every frame of a stretch that has few", async () => {
+    const replay = new Replay(await decodeReplay(smallHeader(5000)));
+    const [times] = thin(replay, (frame) => frame, 200, 1000, 1040);
+    expect(times).toHaveLength(40);
+    expect(times[0]).toBeCloseTo(10, 6);
+  });
+});
+
+describe("figuresOf", () => {
+  it("plots position and rotation vector of the chosen box, in metres and degrees", async () => {
+    const replay = new Replay(await decodeReplay(smallHeader(200)));
+    const [position, rotation] = figuresOf("box");
+    expect([position!.unit, rotation!.unit]).toEqual(["m", "deg"]);
+    const at = (figure: typeof position): number[] => figure!.values(replay)!.map((f) => f(150));
+    at(position).forEach((v, k) => expect(Math.abs(v - pose(150)[k]!)).toBeLessThan(1e-5));
+    // The box turns 0.8 rad/s about z; a quantum of 1e-5 of the quaternion is 2e-5 rad, about 1e-3 deg.
+    expect(at(rotation)[2]).toBeCloseTo((0.8 * 1.5 * 180) / Math.PI, 2);
+    expect(Math.abs(at(rotation)[0]!)).toBeLessThan(2e-3);
+  });
+});
+
+describe("restOf", () => {
+  it("says when a box stopped, and nothing of one that moves to the end or never did", async () => {
+    const replay = new Replay(await decodeReplay(smallHeader(200)));
+    expect(restOf(replay, replay.bodyIndex("box"))).toBeNull();
+    expect(restOf(replay, replay.bodyIndex("floor"))).toBeNull();
+    expect(restOf(replay, -1)).toBeNull();
+  });
+});
+
+describe("linkFrames", () => {
+  it("has the stretched UR10 reach as far as its data sheet says", () => {
+    const flange = linkFrames([0, 0, 0, 0, 0, 0])[5]!.elements;
+    // Upper arm and forearm lie along -x; the wrist adds d4 + d6 along -y and -d5 + d1 along z.
+    expect(flange[12]).toBeCloseTo(-0.612 - 0.5723, 6);
+    expect(flange[13]).toBeCloseTo(-0.163941 - 0.0922, 6);
+    expect(flange[14]).toBeCloseTo(0.1273 - 0.1157, 6);
+  });
+});
