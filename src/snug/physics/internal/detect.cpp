@@ -208,6 +208,17 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
   return touches;
 }
 
+/// Takes back the contacts that the pair has just added.
+void forget_contacts(std::uint32_t index, Scratch& work) {
+  PairMemory& memory = work.pair_memories[index];
+  work.pair_done[index] = 0;
+  memory.stamp = 0;
+  if (memory.patch < 0) return;
+  memory.patch = -1;
+  work.contacts.resize(static_cast<std::size_t>(work.patches.back().first_contact));
+  work.patches.resize(work.patches.size() - 1);
+}
+
 PairMemory memory_of(const WorldModel& model, const PairState& pair) {
   return {model.geoms[pair.geom_a].body, model.geoms[pair.geom_b].body, -1, -1.0, 0};
 }
@@ -292,7 +303,11 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
       const bool touches = is_same && can_keep(memory, reach, work)
                                ? keep_contacts(memory, dt, work)
                                : visit_pair(model, input, state, work, i, reach, margin);
-      if (!touches) continue;
+      if (!touches) {
+        // A sleeper that a moving kinematic body comes near but does not reach: nothing to solve, unless it is woken.
+        if (work.bodies[a].active < 0 && work.bodies[b].active < 0) forget_contacts(i, work);
+        continue;
+      }
       for (const std::size_t k : {a, b}) {
         if (!is_sleeping(state.bodies[k], model.bodies[k])) continue;
         wake_group(model, state, work, state.bodies[k].sleep_group);
