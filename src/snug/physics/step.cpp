@@ -207,16 +207,16 @@ void report_contacts(Scratch& work) {
 StepReport step(const WorldModel& model, const WorldInput& input, WorldState& state, Workspace& workspace) noexcept {
   internal::Scratch& work = workspace.scratch();
   StepReport report;
-  work.reports.clear();
-  work.has_reports = true;
-  work.dt = model.settings.dt;
-  work.knows_state = state.stamp.value == work.stamp;
   const auto stop = [&report](StepStatus status) {
     report.status = status;
     return report;
   };
   report.culprit = internal::find_not_finite(input, state);
-  if (report.culprit.is_valid()) return stop(StepStatus::NotFinite);
+  if (report.culprit.is_valid()) return stop(StepStatus::NotFinite);  // the contacts of the last step stay readable
+  work.reports.clear();
+  work.has_reports = true;
+  work.dt = model.settings.dt;
+  work.knows_state = state.stamp.value == work.stamp;
   ++state.step_index;
   if (!internal::begin_step(model, input, state, work)) return report;
   state.stamp = {};

@@ -63,6 +63,22 @@ TEST(NotFinite, NamesTheBodyThatAWrenchWithoutNumberActsOn) {
   }
 }
 
+TEST(NotFinite, LeavesTheStateAndTheContactsOfTheLastStepReadable) {
+  const WorldModel model = stack();
+  Simulation run(model);
+  run.steps(5);
+  const std::size_t contacts = run.work.contacts().size();
+  ASSERT_GT(contacts, 0u);
+  ExternalWrench wrench{BodyId{2}, {}};
+  wrench.wrench_W.force.x() = kNaN;
+  WorldInput input;
+  input.wrenches = {&wrench, 1};
+  const std::uint64_t before = hash_of(run.state);
+  EXPECT_EQ(run.step(input).status, StepStatus::NotFinite);
+  EXPECT_EQ(hash_of(run.state), before);
+  EXPECT_EQ(run.work.contacts().size(), contacts);
+}
+
 TEST(NotFinite, NamesAKinematicBodySentNowhere) {
   WorldModel model = stack();
   BodyModel pusher = fixed_box({0.1, 0.1, 0.05}, {-0.1501, 0.0, 0.05});  // beside body 1
