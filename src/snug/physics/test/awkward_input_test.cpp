@@ -9,26 +9,9 @@ namespace snug::physics::test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-const Vector3 kBox(0.2, 0.2, 0.1);
-
-/// Bodies 1-3: a stack; 4: alone in the air.
-WorldModel stack() {
-  return on_plane({0.2, 0.0, 0.0, 0.0}, {box(kBox, 0.5, {0.0, 0.0, 0.05}), box(kBox, 0.5, {0.0, 0.0, 0.15}),
-                                         box(kBox, 0.5, {0.0, 0.0, 0.25}), box(kBox, 0.5, {2.0, 0.0, 1.0})});
-}
-
-/// Steps until something is wrong, at most 20.
-StepReport run_on(Simulation& run, const WorldInput& input = {}) {
-  StepReport report;
-  for (int i = 0; i < 20; ++i) {
-    report = run.step(input);
-    if (report.status != StepStatus::Converged && report.status != StepStatus::NotConverged) break;
-  }
-  return report;
-}
 
 TEST(NotFinite, NamesTheBodyInAStackThatBroughtItInAndNotAVictim) {
-  const WorldModel model = stack();
+  const WorldModel model = tall_stack();
   for (int culprit = 1; culprit <= 3; ++culprit) {
     for (int part = 0; part < 4; ++part) {
       SCOPED_TRACE(testing::Message() << "body " << culprit << ", part " << part);
@@ -38,7 +21,7 @@ TEST(NotFinite, NamesTheBodyInAStackThatBroughtItInAndNotAVictim) {
       if (part == 1) run.body(culprit).angular_velocity.y() = kNaN;
       if (part == 2) run.body(culprit).p_WBcm.y() = kNaN;
       if (part == 3) run.body(culprit).quat_WB.x() = kNaN;
-      const StepReport report = run_on(run);
+      const StepReport report = step_until_wrong(run);
       EXPECT_EQ(report.status, StepStatus::NotFinite);
       EXPECT_EQ(report.culprit, BodyId{culprit});
     }
@@ -46,7 +29,7 @@ TEST(NotFinite, NamesTheBodyInAStackThatBroughtItInAndNotAVictim) {
 }
 
 TEST(NotFinite, NamesTheBodyThatAWrenchWithoutNumberActsOn) {
-  const WorldModel model = stack();
+  const WorldModel model = tall_stack();
   for (const int body : {4, 1, 2, 3}) {
     for (const bool is_torque : {false, true}) {
       SCOPED_TRACE(testing::Message() << "body " << body << (is_torque ? " torque" : " force"));
@@ -56,7 +39,7 @@ TEST(NotFinite, NamesTheBodyThatAWrenchWithoutNumberActsOn) {
       (is_torque ? wrench.wrench_W.torque : wrench.wrench_W.force).z() = kNaN;
       WorldInput input;
       input.wrenches = {&wrench, 1};
-      const StepReport report = run_on(run, input);
+      const StepReport report = step_until_wrong(run, input);
       EXPECT_EQ(report.status, StepStatus::NotFinite);
       EXPECT_EQ(report.culprit, BodyId{body});
     }
@@ -64,7 +47,7 @@ TEST(NotFinite, NamesTheBodyThatAWrenchWithoutNumberActsOn) {
 }
 
 TEST(NotFinite, LeavesTheStateAndTheContactsOfTheLastStepReadable) {
-  const WorldModel model = stack();
+  const WorldModel model = tall_stack();
   Simulation run(model);
   run.steps(5);
   const std::size_t contacts = run.work.contacts().size();
@@ -80,7 +63,7 @@ TEST(NotFinite, LeavesTheStateAndTheContactsOfTheLastStepReadable) {
 }
 
 TEST(NotFinite, NamesAKinematicBodySentNowhere) {
-  WorldModel model = stack();
+  WorldModel model = tall_stack();
   BodyModel pusher = fixed_box({0.1, 0.1, 0.05}, {-0.1501, 0.0, 0.05});  // beside body 1
   pusher.kind = BodyKind::Kinematic;
   model.bodies.push_back(pusher);
@@ -90,7 +73,7 @@ TEST(NotFinite, NamesAKinematicBodySentNowhere) {
   const KinematicTarget target{BodyId{5}, {Matrix3::Identity(), Vector3(kNaN, 0.0, 0.05)}};
   WorldInput input;
   input.kinematic = {&target, 1};
-  const StepReport report = run_on(run, input);
+  const StepReport report = step_until_wrong(run, input);
   EXPECT_EQ(report.status, StepStatus::NotFinite);
   EXPECT_EQ(report.culprit, BodyId{5});
 }

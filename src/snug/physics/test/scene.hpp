@@ -69,4 +69,21 @@ struct Simulation {
   BodyState& body(int i) { return state.bodies[static_cast<std::size_t>(i)]; }
 };
 
+/// Bodies 1-3: a stack; 4: alone in the air.
+inline WorldModel tall_stack() {
+  const Vector3 size(0.2, 0.2, 0.1);
+  return on_plane({0.2, 0.0, 0.0, 0.0}, {box(size, 0.5, {0.0, 0.0, 0.05}), box(size, 0.5, {0.0, 0.0, 0.15}),
+                                         box(size, 0.5, {0.0, 0.0, 0.25}), box(size, 0.5, {2.0, 0.0, 1.0})});
+}
+
+/// Steps until something is wrong, at most 20.
+inline StepReport step_until_wrong(Simulation& run, const WorldInput& input = {}) {
+  StepReport report;
+  for (int i = 0; i < 20; ++i) {
+    report = run.step(input);
+    if (report.status != StepStatus::Converged && report.status != StepStatus::NotConverged) break;
+  }
+  return report;
+}
+
 }  // namespace snug::physics::test
