@@ -261,15 +261,9 @@ void measure_press(const BenchOptions& options, std::vector<Figure>& figures) {
       {"s6c.jam_force_N", c.last_force, "N", "245 +- 3", std::abs(c.last_force - 245.0) <= 3.0 && !c.is_complete});
 }
 
-/// Seconds of CPU per box and step.
-struct PileCost {
-  double settling = 0.0;  ///< while they land and come to rest: the first 0.3 s
-  double resting = 0.0;   ///< after 2 s
-};
-
 /// A field of columns, four boxes high, all awake. Levels are set off by 10 mm, so that boxes of neighbouring columns,
 /// 2 mm apart, stand on each other.
-PileCost pile_cost(const model::Scenario& base, int count) {
+model::Scenario pile_of(const model::Scenario& base, int count) {
   model::Scenario scenario = base;
   const model::Body box = scenario.bodies.back();  // the B1 of S4
   scenario.bodies.pop_back();
@@ -285,26 +279,33 @@ PileCost pile_cost(const model::Scenario& base, int count) {
     scenario.bodies.push_back(copy);
   }
   scenario.solver.sleep.enabled = false;
-  Scene scene(scenario);
-  const auto cost_of = [&](double seconds) {
-    const double start = cpu_seconds();
-    advance(scene, seconds);
-    return (cpu_seconds() - start) / (step_count(scene, seconds) * count);
-  };
-  PileCost cost;
-  cost.settling = cost_of(0.3);
-  advance(scene, 1.7);
-  cost.resting = cost_of(count > 100 ? 0.5 : 10.0);
-  return cost;
+  return scenario;
+}
+
+/// Seconds of CPU per box and step.
+double pile_cost(Scene& scene, int count, double seconds) {
+  const double start = cpu_seconds();
+  advance(scene, seconds);
+  return (cpu_seconds() - start) / (step_count(scene, seconds) * count);
 }
 
 void measure_growth(const BenchOptions& options, std::vector<Figure>& figures) {
   const model::Scenario base = load(options, "s4-bounce.yaml");
-  const PileCost few = pile_cost(base, 10), many = pile_cost(base, 1000);
-  figures.push_back({"growth.10.us_per_box_and_step", 1e6 * few.resting, "us", "", true});
-  figures.push_back({"growth.1000.us_per_box_and_step", 1e6 * many.resting, "us", "", true});
-  figures.push_back(at_most("growth.ratio", many.resting / few.resting, "1", 1.5));
-  figures.push_back({"growth.settling_ratio", many.settling / few.settling, "1", "", true});
+  Scene few(pile_of(base, 10)), many(pile_of(base, 1000));
+  // While they land and come to rest, and then at rest: the best of forty parts in turn, because what else the machine
+  // does with its caches comes and goes.
+  const double settling = pile_cost(many, 1000, 0.3) / pile_cost(few, 10, 0.3);
+  advance(few, 1.7);
+  advance(many, 1.7);
+  double least_few = std::numeric_limits<double>::infinity(), least_many = least_few;
+  for (int part = 0; part < 40; ++part) {
+    least_few = std::min(least_few, pile_cost(few, 10, 0.5));
+    least_many = std::min(least_many, pile_cost(many, 1000, 0.05));
+  }
+  figures.push_back({"growth.10.us_per_box_and_step", 1e6 * least_few, "us", "", true});
+  figures.push_back({"growth.1000.us_per_box_and_step", 1e6 * least_many, "us", "", true});
+  figures.push_back(at_most("growth.ratio", least_many / least_few, "1", 1.5));
+  figures.push_back({"growth.settling_ratio", settling, "1", "", true});
 }
 
 void measure_program(const BenchOptions& options, std::vector<Figure>& figures) {

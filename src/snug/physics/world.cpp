@@ -135,7 +135,7 @@ internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size()
   for (std::size_t i = 0; i < geom_count; ++i) sweep_order[i] = static_cast<int>(i);
   pair_done.resize(model.pair_capacity);
   is_moving.resize(n);
-  has_same_pose.resize(n);
+  still_since.resize(n);
 }
 
 Pose pose_of(const WorldModel& model, const WorldState& state, BodyId body) {

@@ -274,7 +274,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     const BodyWork& body = work.bodies[i];
     work.is_moving[i] = body.is_moving ? 1 : 0;
-    work.has_same_pose[i] = body.has_same_pose ? 1 : 0;
+    if (!body.has_same_pose) work.still_since[i] = work.stamp + 1;
     if (body.is_moving) fastest = std::max(fastest, body.speed);
   }
   // A body can be pushed by another one, so the fastest of all bounds what may close a gap in one step.
@@ -294,13 +294,10 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
       if (work.is_moving[a] == 0 && work.is_moving[b] == 0) continue;
       work.pair_done[i] = 1;
       const bool is_held = memory.body_a == input.held.index || memory.body_b == input.held.index;
-      const bool is_same =
-          memory.stamp == work.stamp && work.has_same_pose[a] != 0 && work.has_same_pose[b] != 0 && !is_held;
-      if (is_same && memory.patch < 0 && memory.clearance > reach) {
-        ++memory.stamp;
-        continue;
-      }
-      const bool touches = is_same && can_keep(memory, reach, work)
+      const bool is_same = memory.stamp >= std::max(work.still_since[a], work.still_since[b]) && !is_held;
+      if (is_same && memory.patch < 0 && memory.clearance > reach) continue;
+      // Contacts can stand where they stood only if they were there in the last step.
+      const bool touches = is_same && memory.stamp == work.stamp && can_keep(memory, reach, work)
                                ? keep_contacts(memory, dt, work)
                                : visit_pair(model, input, state, work, i, reach, margin);
       if (!touches) {

@@ -125,7 +125,8 @@ struct Scratch {
   std::vector<char> is_moved;
   std::vector<int> sweep_order;
   std::vector<char> pair_done;
-  std::vector<char> is_moving, has_same_pose;  ///< of each body, side by side for the walk over the pairs
+  std::vector<char> is_moving;             ///< of each body, side by side for the walk over the pairs
+  std::vector<std::uint64_t> still_since;  ///< of each body: stamp of the first step in its present pose
 };
 
 // The stages of a step, in order.
