@@ -2,9 +2,11 @@
 """cli_test.py: the command line as a user or a script meets it. SNUG names the program."""
 import json
 import os
+import signal
 import subprocess
 import tempfile
 import unittest
+import urllib.request
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -278,6 +280,66 @@ class Views(unittest.TestCase):
         self.assertTrue(data.startswith(b"\x89PNG"))
         self.assertEqual((int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")), (320, 200))
         self.assertGreater(len(data), 4000)  # an empty one has 1 kB
+
+    def view(self, *words):
+        """Starts `snug view`; returns the process and the address it tells."""
+        process = subprocess.Popen([SNUG, "view", "--no-open", *map(str, words)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        line = process.stderr.readline()
+        self.assertRegex(line, r"^snug: showing at http://127\.0\.0\.1:\d+/ ")
+        return process, line.split()[3]
+
+    def get(self, address):
+        with urllib.request.urlopen(address, timeout=20) as response:
+            return response.read()
+
+    def test_view_serves_page_and_recordings_until_it_is_interrupted(self):
+        process, address = self.view(self.recording, self.recording)
+        page = self.get(address)
+        self.assertIn(b"<html", page)
+        self.assertNotIn(b"<!--snug:recordings-->", page)
+        self.assertEqual(json.loads(self.get(address + "recordings.json")),
+                         {"recordings": [{"name": "drop.h5"}, {"name": "drop.h5"}], "live": False})
+        self.assertEqual(self.get(address + "recording/1")[:8], b"SNUGRPL1")
+        process.send_signal(signal.SIGINT)
+        self.assertEqual((process.wait(timeout=10), process.stdout.read()), (0, ""))
+
+    def test_view_live_streams_pauses_and_shows_the_whole_run_at_its_end(self):
+        recording = self.path / "live.h5"
+        process, address = self.view("--live", DROP, "--until", 1, "--speed", 0, "--paused", "-o", recording)
+        self.assertTrue(json.loads(self.get(address + "recordings.json"))["live"])
+        with urllib.request.urlopen(address + "live", timeout=20) as stream:
+            self.assertEqual(stream.readline(), b"event: header\n")
+            command = urllib.request.Request(address + "live/resume", method="POST", headers={"X-Snug": "1"})
+            self.assertEqual(urllib.request.urlopen(command, timeout=20).status, 204)
+            while stream.readline() != b"event: end\n":
+                pass
+            self.assertEqual(stream.readline(), b'data: {"failure":""}\n')
+        self.assertEqual(self.get(address + "recording/0")[:8], b"SNUGRPL1")
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=10), 0)
+        # Being watched changes nothing.
+        told = process.stdout.read().splitlines()[-1]
+        self.assertEqual(told, snug("simulate", DROP, "--until", 1).stdout.splitlines()[-1])
+        self.assertTrue(recording.exists())
+
+    def test_view_live_that_is_interrupted_ends_in_order(self):
+        process, _ = self.view("--live", DROP, "--until", 1000, "--speed", 1)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=10), 0)
+        self.assertIn("state hash", process.stdout.read())
+
+    def test_view_refuses_what_it_cannot_show(self):
+        for words in ([], [self.recording, "--live", DROP], ["--live", "no.yaml"], ["--live", CELL, "--program", "no.csv"],
+                      [DROP], ["no.h5"], [self.recording, "--port", 70000], [self.recording, "--host", "192.0.2.1"],
+                      ["--live", DROP, "--speed", -1], ["--live", DROP, "--sequence", "1"],
+                      ["--live", DROP, "-o", self.path / "no" / "such.h5"], [self.recording, "--program", "x.csv"]):
+            with self.subTest(words=words):
+                result = snug("view", "--no-open", *words)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertTrue(result.stderr.startswith("snug: error: "), result.stderr)
 
     def test_picture_refuses_words_it_does_not_know(self):
         for words in (["--camera", "sied"], ["--size", "12"], ["--show", "names,ghosts"], ["--time", "nan"]):

@@ -47,6 +47,8 @@ std::string list_sequences(const model::Scenario& scenario) {
   return names.empty() ? "a scenario with sequences" : "one of " + names;
 }
 
+}  // namespace
+
 model::Scenario load_with_overrides(const SimulateOptions& options) {
   model::Scenario scenario = model::load_scenario(options.scenario);
   if (options.dt) scenario.time_step = *options.dt;
@@ -73,8 +75,6 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   if (options.record) run.record_path = *options.record;
   return run;
 }
-
-}  // namespace
 
 int run_simulate(const SimulateOptions& options) {
   const model::Scenario scenario = load_with_overrides(options);

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "snug/cell/run.hpp"
+#include "snug/model/scenario.hpp"
 #include "verb.hpp"
 
 namespace snug::app {
@@ -28,6 +30,13 @@ struct SimulateOptions {
 };
 
 void add_simulate(CLI::App& app, Action& action);
+/// What both `simulate` and `view --live` have: the program and the physics.
+void add_program_options(CLI::App& verb, SimulateOptions& options);
+void add_physics_options(CLI::App& verb, SimulateOptions& options);
+
+/// The scenario that the options name, with what they change in it.
+[[nodiscard]] model::Scenario load_with_overrides(const SimulateOptions& options);
+[[nodiscard]] cell::RunOptions make_run_options(const SimulateOptions& options, const model::Scenario& scenario);
 
 /// Prints the result on stdout and returns the exit code. Throws InputError for input that cannot be used.
 [[nodiscard]] int run_simulate(const SimulateOptions& options);

@@ -13,6 +13,8 @@ constexpr const char* kExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --ensemble 20 --seed 7
   snug simulate scenarios/slide.yaml --until 5 --csv slide.csv)";
 
+}  // namespace
+
 void add_program_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--program", options.program, "waypoint file (13 columns) to run; needs --sequence")
       ->type_name("FILE.csv");
@@ -41,8 +43,6 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
       ->check(whole(0))
       ->type_name("N");
 }
-
-}  // namespace
 
 void add_simulate(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("simulate", "run a scenario and say what became of every box");

@@ -8,6 +8,7 @@
 #include "program.hpp"
 #include "report.hpp"
 #include "simulate.hpp"
+#include "view.hpp"
 
 namespace snug::app {
 
@@ -15,6 +16,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_simulate(app, action);
   add_program(app, action);
   add_report(app, action);
+  add_view(app, action);
   add_plot(app, action);
   add_picture(app, action);
   add_cup(app, action);

@@ -1,5 +1,6 @@
 // Main: finds the recordings in the page, decodes them and shows them, or says why not.
 
+import { askServer, followLive } from "./live";
 import { decodeBase64, decodeReplay } from "./replay/decode";
 import { ReplayError } from "./replay/errors";
 import { Replay } from "./replay/replay";
@@ -60,7 +61,9 @@ function handleOf(app: App): Handle {
     get frame() {
       return app.player.frame;
     },
-    frames: app.replay.frames,
+    get frames() {
+      return app.replay.frames;
+    },
     setTime: (time) => {
       app.player.setTime(time);
       app.view.render();
@@ -109,24 +112,34 @@ function showError(error: unknown): void {
   document.getElementById("app")!.replaceChildren(make("div", "error", card));
 }
 
+function show(first: Replay, second: Replay | null): App {
+  const app = new App(first, second, theme(), fragment.has("picture"));
+  document.getElementById("app")!.replaceChildren(app.element);
+  document.title = `snug: ${first.header.name}`;
+  app.start();
+  if (fragment.has("picture")) showPicture(app);
+  else followAddress(app);
+  window.snug = handleOf(app);
+  return app;
+}
+
 async function main(): Promise<void> {
   performance.mark("snug:start");
   document.documentElement.dataset.theme = theme();
-  const replays = await recordingsInPage();
+  let replays = await recordingsInPage();
+  if (replays.length === 0 && location.protocol.startsWith("http")) {
+    const served = await askServer();
+    if (served.isLive) return followLive((replay) => show(replay, null), showError);
+    replays = served.replays;
+  }
   const [first, second] = replays;
   if (!first) {
     throw new ReplayError("There is no recording in this page", "It is the page without a run.", "Make one with `snug report RECORDING.h5 -o report.html`.");
   }
   if (first.frames === 0) throw new ReplayError("This recording is empty", "It has no frame.", "Was the run stopped before its first second?");
   performance.mark("snug:decoded");
-  const app = new App(first, second ?? null, theme(), fragment.has("picture"));
-  document.getElementById("app")!.replaceChildren(app.element);
-  document.title = `snug: ${first.header.name}`;
-  app.start();
+  show(first, second ?? null);
   performance.mark("snug:started");
-  if (fragment.has("picture")) showPicture(app);
-  else followAddress(app);
-  window.snug = handleOf(app);
 }
 
 main()

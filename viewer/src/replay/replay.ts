@@ -11,9 +11,13 @@ export class Channel {
     readonly columnNames: string[],
     readonly unit: string,
     readonly frame: string,
-    private readonly columns_: Column[],
-    readonly rows: number,
+    private columns_: Column[],
+    private rows_: number,
   ) {}
+
+  get rows(): number {
+    return this.rows_;
+  }
 
   /** Value, NaN when missing or out of range. */
   at(column: number, row: number): number {
@@ -21,7 +25,24 @@ export class Channel {
   }
 
   column(column: number): Column {
-    return this.columns_[column]!;
+    const values = this.columns_[column]!;
+    return values.length === this.rows_ ? values : values.subarray(0, this.rows_);
+  }
+
+  /** Adds rows, each value raised by `offset`: references of a later part of a run count from the part's own start. */
+  append(columns: Column[], rows: number, offset = 0): void {
+    const total = this.rows_ + rows;
+    this.columns_ = this.columns_.map((old, c) => {
+      let values = old;
+      if (values.length < total) {
+        values = new (old.constructor as new (length: number) => Column)(Math.max(total, 2 * old.length, 256));
+        values.set(old.subarray(0, this.rows_));
+      }
+      const added = columns[c]!;
+      for (let row = 0; row < rows; ++row) values[this.rows_ + row] = added[row]! + offset;
+      return values;
+    });
+    this.rows_ = total;
   }
 }
 
@@ -75,6 +96,26 @@ export class Replay {
       blockBody: get("block_body")!, blockFirst: get("block_first")!, blockCount: get("block_count")!,
       point: get("point")!, normal: get("normal")!, force: get("force")!, gap: get("gap"), state: get("state"),
     };
+  }
+
+  /** Adds the frames and events of a later part of the same run. */
+  append(part: Decoded): void {
+    const rows = (name: string): number => this.channels_.get(name)?.rows ?? 0;
+    const offsets = new Map([
+      ["contacts.frame_first", rows("contacts.frame_block")],
+      ["contacts.frame_block", rows("contacts.block_body")],
+      ["contacts.block_first", rows("contacts.point")],
+    ]);
+    for (const [name, { meta, columns }] of part.channels) {
+      const channel = this.channels_.get(name);
+      if (!channel || columns.length !== channel.columnNames.length) {
+        throw new ReplayError("The live run is broken", `it has no channel "${name}" of that kind at its beginning.`);
+      }
+      const body = /^body\.(\d+)\.pose$/.exec(name)?.[1];
+      const isStatic = body !== undefined && this.header.bodies[Number(body)]?.kind === "static";
+      if (!isStatic) channel.append(columns, meta.rows, offsets.get(name) ?? 0);
+    }
+    this.header.events.push(...part.header.events);
   }
 
   get frames(): number {

@@ -66,6 +66,20 @@ export class App {
     }, 50);
   }
 
+  /** After a live run has grown: what is drawn from all of it. */
+  refresh(): void {
+    this.element.querySelector(".headline")!.replaceWith(headline(this.replay));
+    this.journey.refresh();
+    this.timeline_.refresh();
+    this.plots.refresh();
+    this.drawEnd();
+  }
+
+  /** Something more to press, beside the cameras. */
+  addTool(element: HTMLElement): void {
+    this.stage_.querySelector(".toolbar")!.append(element);
+  }
+
   private drawEnd(): void {
     this.end_?.dispatchEvent(new Event("snug:draw"));
   }

@@ -43,7 +43,8 @@ export function restOf(replay: Replay, body: number): Stop | null {
 export class Journey {
   readonly element = make("aside", "journey");
   private readonly rows_ = new Map<string, HTMLElement>();
-  private readonly stops_: { button: HTMLButtonElement; time: number }[] = [];
+  private readonly list_ = make("div");
+  private stops_: { button: HTMLButtonElement; time: number }[] = [];
   selected = "";
   onSelect: (box: string) => void = () => {};
 
@@ -52,9 +53,16 @@ export class Journey {
     private readonly player: Player,
     private readonly view: View,
   ) {
-    this.element.append(make("h2", "", "Boxes"));
-    for (const { id, state, up, stops } of this.boxes()) this.element.append(this.row(id, state, up, stops));
+    this.element.append(make("h2", "", "Boxes"), this.list_);
     player.onSlowChange(() => this.update());
+    this.refresh();
+  }
+
+  /** Lists the boxes as they are known now: a live run grows. */
+  refresh(): void {
+    this.rows_.clear();
+    this.stops_ = [];
+    this.list_.replaceChildren(...this.boxes().map(({ id, state, up, stops }) => this.row(id, state, up, stops)));
     this.update();
   }
 

@@ -46,6 +46,11 @@ export class Plots {
     this.build();
   }
 
+  /** Draws all curves again: a live run grows. */
+  refresh(): void {
+    this.zoom(this.range_);
+  }
+
   private fit(): void {
     const width = this.element.clientWidth - 14;
     if (width < 60 || Math.abs(width - this.width_) < 2) return;

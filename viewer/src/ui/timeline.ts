@@ -16,6 +16,7 @@ export class Timeline {
   private readonly play_: HTMLButtonElement;
   private readonly speed_ = make("select", "speed");
   private readonly row_ = make("span", "row");
+  private readonly marks_ = make("div", "marks");
 
   constructor(
     private readonly player: Player,
@@ -34,7 +35,8 @@ export class Timeline {
     for (const speed of SPEEDS) this.speed_.append(new Option(`${speed}×`, String(speed)));
     this.speed_.title = "Speed (- and +)";
     this.speed_.addEventListener("change", () => player.setSpeed(Number(this.speed_.value)));
-    const track = make("div", "track", this.marks(), this.slider_);
+    const track = make("div", "track", this.marks_, this.slider_);
+    this.refresh();
     this.element.append(
       button("«", "Event before ([)", () => this.jump(-1)),
       button("‹", "One frame back (left)", () => player.step(-1)),
@@ -47,17 +49,18 @@ export class Timeline {
     this.update();
   }
 
-  private marks(): HTMLElement {
-    const host = make("div", "marks");
+  /** Puts the marks where they belong now: a live run grows. */
+  refresh(): void {
+    const marks: HTMLElement[] = [];
     const length = Math.max(this.replay.end - this.replay.start, 1e-9);
     for (const event of this.replay.header.events) {
       if (!MARKED.has(event.kind)) continue;
       const mark = make("i", BAD.has(event.kind) ? "bad" : event.kind);
       mark.style.left = `${(100 * (event.time - this.replay.start)) / length}%`;
       mark.title = `${seconds(event.time)} ${event.body} ${event.kind}`;
-      host.append(mark);
+      marks.push(mark);
     }
-    return host;
+    this.marks_.replaceChildren(...marks);
   }
 
   /** To the nearest event before or after now. */

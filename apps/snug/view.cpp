@@ -1,0 +1,172 @@
+// view: the page of the report, served on this machine: for recordings, or for a simulation that goes on.
+#include "view.hpp"
+
+#include <pthread.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "run_report.hpp"
+#include "viewer_page.hpp"
+
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
+
+namespace snug::app {
+namespace {
+
+sigset_t stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+/// Waits for Ctrl-C in a thread of its own, so that stopping may lock and wait like any other code.
+class StopSignal {
+ public:
+  /// Must be made before any other thread: those inherit that the signals are left to this one.
+  explicit StopSignal(std::function<void()> stop) {
+    const sigset_t signals = stop_signals();
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    thread_ = std::thread([signals, stop = std::move(stop)] {
+      int signal = 0;
+      sigwait(&signals, &signal);
+      stop();
+    });
+  }
+  ~StopSignal() {
+    pthread_kill(thread_.native_handle(), SIGTERM);  // harmless when it has ended
+    thread_.join();
+  }
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+ private:
+  std::thread thread_;
+};
+
+void open_browser(const std::string& address) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  std::string program = "xdg-open", word = address;
+  char* words[] = {program.data(), word.data(), nullptr};
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  pid_t child = 0;
+  if (::posix_spawnp(&child, program.c_str(), nullptr, &attributes, words, environ) == 0) {
+    std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
+  }
+  posix_spawnattr_destroy(&attributes);
+}
+
+void announce(const serve::Server& server, const ViewOptions& options) {
+  std::fprintf(stderr, "snug: showing at %s (Ctrl-C ends it)\n", server.address().c_str());
+  if (options.opens_browser) open_browser(server.address());
+}
+
+int view_recordings(const ViewOptions& options) {
+  serve::Content content;
+  content.page = viewer_page();
+  for (const std::string& path : options.recordings) {
+    record::RecordingReader reader(path);
+    const std::string name = std::filesystem::path(path).filename().string();
+    content.recordings.push_back({name, replay::encode_recording(reader, name, options.selection)});
+  }
+  serve::Server server(options.server, std::move(content));
+  const StopSignal signal([&] { server.stop(); });
+  announce(server, options);
+  server.run();
+  return kSuccess;
+}
+
+/// The result without how long it took: a run that is watched waits for its watchers.
+std::string describe_watched(const cell::RunResult& result) {
+  auto json = nlohmann::ordered_json::parse(format_json(result));
+  json.erase("wall_s");
+  json.erase("real_time_factor");
+  return json.dump(2) + "\n";
+}
+
+/// The simulation in a thread of its own; what it throws is thrown again by result().
+class LiveSimulation {
+ public:
+  LiveSimulation(const ViewOptions& options, serve::LiveRun& live) : live_(live) {
+    scenario_ = load_with_overrides(options.run);
+    run_options_ = make_run_options(options.run, scenario_);
+    run_options_.observer = &live;
+    run_options_.describe = describe_watched;
+  }
+  void start(std::function<void()> on_trouble) {
+    thread_ = std::thread([this, on_trouble = std::move(on_trouble)] {
+      try {
+        result_ = cell::run(scenario_, run_options_);
+        live_.finish(describe_watched(*result_), result_->failure);
+      } catch (const std::exception& error) {
+        trouble_ = std::current_exception();
+        live_.finish("", error.what());
+        on_trouble();
+      }
+    });
+  }
+  ~LiveSimulation() { join(); }
+  LiveSimulation(const LiveSimulation&) = delete;
+  LiveSimulation& operator=(const LiveSimulation&) = delete;
+
+  [[nodiscard]] const cell::RunResult& result() {
+    join();
+    if (trouble_) std::rethrow_exception(trouble_);
+    return *result_;
+  }
+
+ private:
+  void join() {
+    live_.stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  serve::LiveRun& live_;
+  model::Scenario scenario_;
+  cell::RunOptions run_options_;
+  std::optional<cell::RunResult> result_;
+  std::exception_ptr trouble_;
+  std::thread thread_;
+};
+
+int view_live(const ViewOptions& options) {
+  serve::LiveRun live(std::filesystem::path(options.run.scenario).stem().string(), options.speed);
+  if (options.is_paused) live.pause();
+  LiveSimulation simulation(options, live);
+  serve::Server server(options.server, {std::string(viewer_page()), {}, &live});
+  const StopSignal signal([&] {
+    live.stop();
+    server.stop();
+  });
+  simulation.start([&] { server.stop(); });
+  while (!live.wait_for(0, std::chrono::milliseconds(200)) && !live.is_over()) continue;  // bad input shows here
+  if (!live.is_over() || live.whole_form()) announce(server, options);
+  server.run();
+  const cell::RunResult& result = simulation.result();
+  std::fputs(format_table(result).c_str(), stdout);
+  if (result.failure.empty()) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());
+  return kRunFailed;
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options) {
+  return options.run.scenario.empty() ? view_recordings(options) : view_live(options);
+}
+
+}  // namespace snug::app

@@ -1,0 +1,28 @@
+// view: the page of the report, served on this machine: for recordings, or for a simulation that goes on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulate.hpp"
+#include "snug/replay/replay.hpp"
+#include "snug/serve/server.hpp"
+#include "verb.hpp"
+
+namespace snug::app {
+
+struct ViewOptions {
+  std::vector<std::string> recordings;  ///< one, or one and a second to lay over it; none with a run
+  SimulateOptions run;                  ///< shown while it goes on, if it has a scenario
+  double speed = 1.0;                   ///< of the run, simulated seconds a second; 0: as fast as it goes
+  bool is_paused = false;               ///< before its first step
+  bool opens_browser = true;
+  serve::ServerSettings server;
+  replay::Selection selection;
+};
+
+void add_view(CLI::App& app, Action& action);
+/// Serves until the program is told to stop (Ctrl-C).
+[[nodiscard]] int run_view(const ViewOptions& options);
+
+}  // namespace snug::app

@@ -1,0 +1,169 @@
+// LiveRun: stands between a simulation and those who watch it: paces it, pauses it, and keeps what they are to be told.
+#include "snug/serve/live_run.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "snug/replay/page.hpp"
+#include "snug/replay/replay.hpp"
+
+namespace snug::serve {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::chrono::milliseconds kFlushPeriod(50);  // twenty pictures a second
+constexpr double kMaxLag = 0.25;                       // s, that the run may be late before its clock is set anew
+
+std::string form_of(const replay::HeaderInput& input, replay::FrameCoder& coder) {
+  return replay::encode_form(replay::make_header_json(input), coder.finish());
+}
+
+}  // namespace
+
+LiveRun::LiveRun(std::string name, double speed) : name_(std::move(name)), speed_(speed) {}
+
+void LiveRun::log(const char* event, const std::string& data) {
+  auto text = std::make_shared<const std::string>(std::string("event: ") + event + "\ndata: " + data + "\n\n");
+  log_bytes_ += text->size();
+  log_.push_back(std::move(text));
+  changed_.notify_all();
+}
+
+void LiveRun::log_state() { log("state", Json({{"paused", is_paused_}, {"time", time_}}).dump()); }
+
+void LiveRun::begin(const record::RecordingHeader& header) {
+  const std::lock_guard lock(mutex_);
+  header_ = header;
+  whole_.emplace(header);
+  batch_.emplace(header);
+}
+
+void LiveRun::add(const record::Event& event) {
+  const std::lock_guard lock(mutex_);
+  events_.push_back(event);
+  batch_events_.push_back(event);
+}
+
+bool LiveRun::add(const record::Frame& frame) {
+  std::unique_lock lock(mutex_);
+  if (log_.empty()) {
+    replay::FrameCoder still(header_);
+    still.set_static(frame);
+    log("header", replay::base64(form_of({name_, &header_, {}, "", false, 0}, still)));
+    origin_ = last_flush_ = Clock::now();
+    if (is_paused_) log_state();
+  }
+  time_ = frame.time;
+  whole_->add(frame);
+  batch_->add(frame);
+  if (Clock::now() - last_flush_ >= kFlushPeriod) flush();
+  return wait_for_turn(lock);
+}
+
+void LiveRun::flush() {
+  last_flush_ = Clock::now();
+  if (batch_->frames() == 0) return;
+  Json events = Json::array();
+  for (const record::Event& event : batch_events_) {
+    Json numbers = Json::object();
+    for (const record::EventNumber& number : event.numbers) numbers[number.name] = number.value;
+    events.push_back({{"time", event.time},
+                      {"kind", event.kind},
+                      {"body", event.body},
+                      {"text", event.text},
+                      {"numbers", std::move(numbers)}});
+  }
+  batch_events_.clear();
+  const Json header = {{"format", "snug replay"},
+                       {"version", replay::kReplayVersion},
+                       {"frames", batch_->frames()},
+                       {"events", std::move(events)}};
+  const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+  log("frames", replay::base64(replay::encode_form(text, batch_->finish())));
+}
+
+bool LiveRun::wait_for_turn(std::unique_lock<std::mutex>& lock) {
+  const auto may_pass = [&] { return is_stopped_ || !is_paused_ || steps_ > 0; };
+  if (!may_pass()) {
+    flush();
+    changed_.wait(lock, may_pass);
+  }
+  if (steps_ > 0) --steps_;
+  if (speed_ > 0.0 && !is_paused_ && !is_stopped_) {
+    const auto due =
+        origin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time_ / speed_));
+    const auto now = Clock::now();
+    if (now - due > std::chrono::duration<double>(kMaxLag)) origin_ += now - due;
+    changed_.wait_until(lock, due, [&] { return is_stopped_ || is_paused_; });
+  }
+  return !is_stopped_ && log_bytes_ < kMaxLogBytes;
+}
+
+void LiveRun::finish(const std::string& result_json, const std::string& failure) {
+  const std::lock_guard lock(mutex_);
+  if (is_over_) return;
+  if (whole_ && whole_->frames() > 0) {
+    flush();
+    const replay::HeaderInput input{name_, &header_, events_, result_json, true, whole_->frames()};
+    whole_form_ = std::make_shared<const std::string>(form_of(input, *whole_));
+  }
+  is_over_ = true;
+  const bool is_full = log_bytes_ >= kMaxLogBytes;
+  log("end", Json({{"failure", is_full ? "the run is too long to be watched to its end" : failure}}).dump());
+}
+
+void LiveRun::pause() {
+  const std::lock_guard lock(mutex_);
+  if (is_paused_ || is_over_) return;
+  is_paused_ = true;
+  if (!log_.empty()) log_state();
+  changed_.notify_all();
+}
+
+void LiveRun::resume() {
+  const std::lock_guard lock(mutex_);
+  if (!is_paused_ || is_over_) return;
+  is_paused_ = false;
+  steps_ = 0;
+  if (speed_ > 0.0) {
+    origin_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time_ / speed_));
+  }
+  if (!log_.empty()) log_state();
+  changed_.notify_all();
+}
+
+void LiveRun::step() {
+  const std::lock_guard lock(mutex_);
+  if (!is_paused_ || is_over_) return;
+  ++steps_;
+  changed_.notify_all();
+}
+
+void LiveRun::stop() {
+  const std::lock_guard lock(mutex_);
+  is_stopped_ = true;
+  changed_.notify_all();
+}
+
+std::shared_ptr<const std::string> LiveRun::wait_for(std::size_t index, std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, patience, [&] { return index < log_.size(); });
+  return index < log_.size() ? log_[index] : nullptr;
+}
+
+bool LiveRun::is_paused() const {
+  const std::lock_guard lock(mutex_);
+  return is_paused_;
+}
+
+bool LiveRun::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return is_over_;
+}
+
+std::shared_ptr<const std::string> LiveRun::whole_form() const {
+  const std::lock_guard lock(mutex_);
+  return whole_form_;
+}
+
+}  // namespace snug::serve

@@ -1,0 +1,204 @@
+// Server: the viewer's page over HTTP, for recordings and for a run that goes on.
+#include "snug/serve/server.hpp"
+
+#include <httplib.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::serve {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kMaxWatchers = 8;  // each holds a thread
+constexpr int kThreads = kMaxWatchers + 4;
+constexpr std::chrono::seconds kPatience(5);          // with slow clients
+constexpr std::chrono::milliseconds kHeartbeat(500);  // how soon a watcher that left is noticed
+
+constexpr std::array kLoopback = {"127.0.0.1", "localhost", "::1"};
+
+bool is_loopback(const std::string& host) {
+  return std::find(kLoopback.begin(), kLoopback.end(), host) != kLoopback.end();
+}
+
+/// "[::1]:80" and "localhost:80" without port and brackets.
+std::string host_of(const std::string& header) {
+  if (header.starts_with('['))
+    return header.substr(1, header.find(']') == std::string::npos ? 0 : header.find(']') - 1);
+  return header.substr(0, header.find(':'));
+}
+
+/// Not set_content: that packs with brotli at its slowest, seconds for a page.
+void answer(httplib::Response& response, std::shared_ptr<const std::string> bytes, const char* type) {
+  const std::size_t size = bytes->size();
+  response.set_content_provider(size, type, [bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+    return sink.write(bytes->data() + offset, length);
+  });
+}
+
+}  // namespace
+
+struct Server::Impl {
+  Impl(const ServerSettings& server_settings, Content server_content);
+  void add_routes();
+  void add_live_routes();
+  void serve_events(const httplib::Request& request, httplib::Response& response);
+  [[nodiscard]] Json recordings_json() const;
+
+  ServerSettings settings;
+  Content content;
+  std::shared_ptr<const std::string> page;
+  std::vector<std::shared_ptr<const std::string>> forms;  ///< of the recordings
+  httplib::Server server;
+  std::atomic<int> watchers = 0;
+  std::atomic<bool> is_stopping = false, is_in_run = false;
+  int port = 0;
+};
+
+Server::Impl::Impl(const ServerSettings& server_settings, Content server_content)
+    : settings(server_settings), content(std::move(server_content)) {
+  page = std::make_shared<const std::string>(replay::assemble_page(content.page, {}));
+  for (replay::PageRecording& recording : content.recordings) {
+    forms.push_back(std::make_shared<const std::string>(std::move(recording.bytes)));
+  }
+  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  server.set_payload_max_length(0);
+  server.set_read_timeout(kPatience);
+  server.set_write_timeout(kPatience);
+  server.set_keep_alive_timeout(2);
+  server.set_tcp_nodelay(true);
+  server.set_socket_options([](socket_t socket) {  // the library's own let two servers share a port
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  server.set_default_headers(
+      {{"X-Content-Type-Options", "nosniff"},
+       {"Cache-Control", "no-store"},
+       {"Referrer-Policy", "no-referrer"},
+       {"Content-Security-Policy", "default-src 'self' 'unsafe-inline' data: blob:; frame-ancestors 'none'"}});
+  add_routes();
+  if (content.live != nullptr) add_live_routes();
+  const bool is_bound = settings.port == 0 ? (port = server.bind_to_any_port(settings.host)) > 0
+                                           : server.bind_to_port(settings.host, port = settings.port);
+  if (!is_bound) {
+    throw InputError("command line", "--host, --port", settings.host + " port " + std::to_string(settings.port),
+                     "an address of this machine and a port that is free");
+  }
+}
+
+Json Server::Impl::recordings_json() const {
+  const bool is_live = content.live != nullptr && !content.live->is_over();
+  Json list = Json::array();
+  for (const replay::PageRecording& recording : content.recordings) list.push_back({{"name", recording.name}});
+  if (content.live != nullptr && !is_live && content.live->whole_form()) list.push_back({{"name", "live"}});
+  return {{"recordings", std::move(list)}, {"live", is_live}};
+}
+
+void Server::Impl::add_routes() {
+  // Nothing that is served takes a body. A page of another site can have its own name resolve to 127.0.0.1; its
+  // requests then carry that name.
+  server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+    if (request.has_header("Transfer-Encoding") || request.get_header_value<std::uint64_t>("Content-Length") > 0) {
+      response.status = 413;
+      response.set_header("Connection", "close");  // what follows is not read
+      return httplib::Server::HandlerResponse::Handled;
+    }
+    if (!is_loopback(settings.host) || is_loopback(host_of(request.get_header_value("Host")))) {
+      return httplib::Server::HandlerResponse::Unhandled;
+    }
+    response.status = 403;
+    response.set_content("This server answers to the names of this machine only.\n", "text/plain");
+    return httplib::Server::HandlerResponse::Handled;
+  });
+  server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
+    answer(response, page, "text/html; charset=utf-8");
+  });
+  server.Get("/recordings.json", [this](const httplib::Request&, httplib::Response& response) {
+    response.set_content(recordings_json().dump(-1, ' ', false, Json::error_handler_t::replace), "application/json");
+  });
+  server.Get(R"(/recording/(\d))", [this](const httplib::Request& request, httplib::Response& response) {
+    const auto index = static_cast<std::size_t>(request.matches[1].str().front() - '0');
+    const std::shared_ptr<const std::string> whole = content.live != nullptr ? content.live->whole_form() : nullptr;
+    if (index < forms.size()) {
+      answer(response, forms[index], "application/octet-stream");
+    } else if (index == 0 && whole) {
+      answer(response, whole, "application/octet-stream");
+    } else {
+      response.status = 404;
+    }
+  });
+}
+
+void Server::Impl::add_live_routes() {
+  server.Get("/live",
+             [this](const httplib::Request& request, httplib::Response& response) { serve_events(request, response); });
+  const auto command = [this](const char* path, void (LiveRun::*act)()) {
+    server.Post(path, [this, act](const httplib::Request& request, httplib::Response& response) {
+      if (request.get_header_value("X-Snug") != "1") {  // other sites' pages cannot send it unasked
+        response.status = 403;
+        return;
+      }
+      (content.live->*act)();
+      response.status = 204;
+    });
+  };
+  command("/live/pause", &LiveRun::pause);
+  command("/live/resume", &LiveRun::resume);
+  command("/live/step", &LiveRun::step);
+}
+
+void Server::Impl::serve_events(const httplib::Request&, httplib::Response& response) {
+  if (watchers.fetch_add(1) >= kMaxWatchers) {
+    watchers.fetch_sub(1);
+    response.status = 503;
+    response.set_content("There are too many watchers.\n", "text/plain");
+    return;
+  }
+  const auto next = std::make_shared<std::size_t>(0);
+  response.set_chunked_content_provider(
+      "text/event-stream",
+      [this, next](std::size_t, httplib::DataSink& sink) {
+        if (is_stopping) return false;
+        const std::shared_ptr<const std::string> text = content.live->wait_for(*next, kHeartbeat);
+        const std::string nothing = ":\n\n";  // a comment; fails when the watcher has left
+        if (text) ++*next;
+        const std::string& out = text ? *text : nothing;
+        return !is_stopping && sink.write(out.data(), out.size());
+      },
+      [this](bool) { watchers.fetch_sub(1); });
+}
+
+Server::Server(const ServerSettings& settings, Content content)
+    : impl_(std::make_unique<Impl>(settings, std::move(content))) {}
+
+Server::~Server() { stop(); }
+
+int Server::port() const { return impl_->port; }
+
+std::string Server::address() const {
+  const std::string& host = impl_->settings.host;
+  return "http://" + (host.find(':') == std::string::npos ? host : "[" + host + "]") + ":" + std::to_string(port()) +
+         "/";
+}
+
+void Server::run() {
+  impl_->is_in_run = true;
+  if (!impl_->is_stopping) impl_->server.listen_after_bind();
+  impl_->is_in_run = false;
+}
+
+void Server::stop() {
+  impl_->is_stopping = true;
+  // The library ignores a stop that comes before its loop runs.
+  while (impl_->is_in_run && !impl_->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  impl_->server.stop();
+}
+
+}  // namespace snug::serve

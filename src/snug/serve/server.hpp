@@ -1,0 +1,48 @@
+// Server: the viewer's page over HTTP, for recordings and for a run that goes on.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "snug/replay/page.hpp"
+#include "snug/serve/live_run.hpp"
+
+namespace snug::serve {
+
+struct ServerSettings {
+  std::string host = "127.0.0.1";  ///< address to listen at; others than loopback let everybody in who reaches it
+  int port = 0;                    ///< 0: any that is free
+};
+
+/// What is shown: recordings, or a run that goes on.
+struct Content {
+  std::string page;                               ///< that viewer/ builds, without recordings
+  std::vector<replay::PageRecording> recordings;  ///< none with `live`
+  LiveRun* live = nullptr;                        ///< not owned; must outlive the server
+};
+
+/// Serves a fixed set of addresses (docs/formats.md, "Over HTTP") from memory. There is no way from a request to a
+/// file.
+class Server {
+ public:
+  /// Starts to listen. Throws InputError when the address cannot be had.
+  Server(const ServerSettings& settings, Content content);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  [[nodiscard]] int port() const;
+  /// "http://127.0.0.1:8080/"
+  [[nodiscard]] std::string address() const;
+  /// Answers requests until stop() is called.
+  void run();
+  /// From any thread; open connections are closed.
+  void stop();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace snug::serve

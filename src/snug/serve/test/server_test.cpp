@@ -1,0 +1,216 @@
+// Tests of the server over loopback: what is there is served, all else is refused, and it stops.
+#include "snug/serve/server.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::serve {
+namespace {
+
+constexpr const char* kPage = "<html><!--snug:recordings--></html>";
+
+/// A plain socket, so that requests can be as wrong as one likes.
+class Client {
+ public:
+  explicit Client(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    timeval patience{3, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    is_connected_ = ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+  }
+  ~Client() { ::close(socket_); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  [[nodiscard]] bool is_connected() const { return is_connected_; }
+  void send(const std::string& text) const { (void)!::send(socket_, text.data(), text.size(), MSG_NOSIGNAL); }
+  void finish_sending() const { ::shutdown(socket_, SHUT_WR); }
+  /// Until `end` was read, the connection closes or nothing comes any more.
+  [[nodiscard]] std::string read(const std::string& end = "") const {
+    std::string text;
+    char buffer[4096];
+    while (end.empty() || text.find(end) == std::string::npos) {
+      const ssize_t got = ::recv(socket_, buffer, sizeof buffer, 0);
+      if (got <= 0) break;
+      text.append(buffer, static_cast<std::size_t>(got));
+    }
+    return text;
+  }
+
+ private:
+  int socket_;
+  bool is_connected_ = false;
+};
+
+class ServerTest : public ::testing::Test {
+ protected:
+  void start(Content content) {
+    server_ = std::make_unique<Server>(ServerSettings{}, std::move(content));
+    thread_ = std::thread([this] { server_->run(); });
+  }
+  void TearDown() override {
+    if (!server_) return;
+    const auto start = std::chrono::steady_clock::now();
+    server_->stop();
+    thread_.join();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    EXPECT_LT(took.count(), 4.0);  // keep-alive of 2 s and a heartbeat of 0.5 s may have to pass
+  }
+  [[nodiscard]] std::string ask(const std::string& method, const std::string& path,
+                                const std::string& more = "Host: localhost\r\n") const {
+    const Client client(server_->port());
+    client.send(method + " " + path + " HTTP/1.1\r\n" + more + "Connection: close\r\n\r\n");
+    return client.read();
+  }
+  static int status(const std::string& answer) { return answer.size() < 12 ? 0 : std::stoi(answer.substr(9, 3)); }
+
+  std::unique_ptr<Server> server_;
+  std::thread thread_;
+};
+
+TEST_F(ServerTest, ServesPageAndRecordings) {
+  start({kPage, {{"a.h5", std::string("\0one", 4)}, {"b.h5", "two"}}, nullptr});
+  EXPECT_NE(ask("GET", "/").find("\r\n\r\n<html></html>"), std::string::npos);
+  EXPECT_NE(ask("GET", "/recordings.json").find(R"({"recordings":[{"name":"a.h5"},{"name":"b.h5"}],"live":false})"),
+            std::string::npos);
+  EXPECT_NE(ask("GET", "/recording/0").find(std::string("\r\n\r\n\0one", 8)), std::string::npos);
+  EXPECT_NE(ask("GET", "/recording/1").find("\r\n\r\ntwo"), std::string::npos);
+  EXPECT_EQ(status(ask("GET", "/recording/2")), 404);
+  EXPECT_EQ(status(ask("GET", "/live")), 404);
+  EXPECT_EQ(status(ask("POST", "/live/pause", "Host: localhost\r\nX-Snug: 1\r\nContent-Length: 0\r\n")), 404);
+}
+
+TEST_F(ServerTest, HasNoWayToFiles) {
+  start({kPage, {{"a.h5", "one"}}, nullptr});
+  for (const char* path :
+       {"/../etc/passwd", "/..%2f..%2fetc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd",
+        "/recording/../../etc/passwd", "/recording/0/../../x", "/recording/00", "/recording/-1", "/recording/a.h5",
+        "/etc/passwd", "/.git/config", "/%00", "/recording/0%00.html", "/\\..\\x"}) {
+    const std::string answer = ask("GET", path);
+    EXPECT_TRUE(status(answer) == 404 || status(answer) == 400) << path << ": " << answer.substr(0, 80);
+    EXPECT_EQ(answer.find("root:"), std::string::npos);
+  }
+}
+
+TEST_F(ServerTest, RefusesRequestsThatAreTooLargeOrBroken) {
+  start({kPage, {}, nullptr});
+  EXPECT_EQ(status(ask("GET", "/" + std::string(100'000, 'a'))), 414);
+  EXPECT_EQ(status(ask("POST", "/", "Host: localhost\r\nContent-Length: 1000000000\r\n")), 413);
+  EXPECT_EQ(status(ask("POST", "/", "Host: localhost\r\nTransfer-Encoding: chunked\r\n")), 413);
+  EXPECT_NE(status(ask("GET", "/", "Host: localhost\r\nX: " + std::string(1'000'000, 'a') + "\r\n")), 200);
+  for (const char* broken : {"\r\n\r\n", "GET\r\n\r\n", "nonsense nonsense nonsense\r\n\r\n", "GET / HTTP/9.9\r\n\r\n",
+                             "\x16\x03\x01\x02"}) {
+    const Client client(server_->port());
+    client.send(broken);
+    client.finish_sending();
+    EXPECT_NE(status(client.read("\r\n\r\n")), 200) << broken;
+  }
+  EXPECT_EQ(status(ask("GET", "/")), 200);  // still there
+}
+
+TEST_F(ServerTest, AnswersToTheNamesOfThisMachineOnly) {
+  start({kPage, {}, nullptr});
+  EXPECT_EQ(server_->address(), "http://127.0.0.1:" + std::to_string(server_->port()) + "/");
+  EXPECT_EQ(status(ask("GET", "/", "Host: 127.0.0.1:80\r\n")), 200);
+  EXPECT_EQ(status(ask("GET", "/", "Host: [::1]:80\r\n")), 200);
+  EXPECT_EQ(status(ask("GET", "/", "Host: evil.example\r\n")), 403);
+  EXPECT_EQ(status(ask("GET", "/", "Host: localhost.evil.example\r\n")), 403);
+  EXPECT_EQ(status(ask("GET", "/", "Host: [\r\n")), 403);
+  EXPECT_EQ(status(ask("GET", "/", "")), 403);
+}
+
+TEST_F(ServerTest, RefusesAnAddressThatItCannotHave) {
+  start({kPage, {}, nullptr});
+  EXPECT_THROW(Server({"127.0.0.1", server_->port()}, {kPage, {}, nullptr}), InputError);
+  EXPECT_THROW(Server({"192.0.2.1", 0}, {kPage, {}, nullptr}), InputError);  // of no machine (RFC 5737)
+  EXPECT_THROW(Server({"127.0.0.1", 0}, {"a page without the mark", {}, nullptr}), InputError);
+}
+
+record::Frame frame_at(int i) {
+  record::Frame frame;
+  frame.time = 0.008 * i;
+  return frame;
+}
+
+TEST_F(ServerTest, StreamsARunToEachWatcherFromItsBeginning) {
+  LiveRun live("run", 0.0);
+  start({kPage, {}, &live});
+  EXPECT_NE(ask("GET", "/recordings.json").find(R"("live":true)"), std::string::npos);
+  EXPECT_EQ(status(ask("GET", "/recording/0")), 404);
+  const Client early(server_->port());
+  early.send("GET /live HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  live.begin({});
+  for (int i = 1; i < 50; ++i) live.add(frame_at(i));
+  live.finish("", "");
+  const std::string end = R"(data: {"failure":""})";
+  const std::string told = early.read(end);
+  EXPECT_NE(told.find("Content-Type: text/event-stream"), std::string::npos);
+  EXPECT_NE(told.find("event: header\n"), std::string::npos);
+  EXPECT_NE(told.find("event: frames\n"), std::string::npos);
+  const Client late(server_->port());
+  late.send("GET /live HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_NE(late.read(end).find("event: header\n"), std::string::npos);
+  EXPECT_NE(ask("GET", "/recordings.json").find(R"("live":false)"), std::string::npos);
+  EXPECT_NE(ask("GET", "/recording/0").find("SNUGRPL1"), std::string::npos);
+}
+
+TEST_F(ServerTest, TakesCommandsFromItsOwnPageOnly) {
+  LiveRun live("run", 0.0);
+  live.begin({});
+  start({kPage, {}, &live});
+  EXPECT_EQ(status(ask("POST", "/live/pause", "Host: localhost\r\nContent-Length: 0\r\n")), 403);
+  EXPECT_FALSE(live.is_paused());
+  EXPECT_EQ(status(ask("GET", "/live/pause", "Host: localhost\r\nX-Snug: 1\r\n")), 404);
+  EXPECT_FALSE(live.is_paused());
+  const std::string own = "Host: localhost\r\nX-Snug: 1\r\nContent-Length: 0\r\n";
+  EXPECT_EQ(status(ask("POST", "/live/pause", own)), 204);
+  EXPECT_TRUE(live.is_paused());
+  EXPECT_EQ(status(ask("POST", "/live/step", own)), 204);
+  EXPECT_EQ(status(ask("POST", "/live/resume", own)), 204);
+  EXPECT_FALSE(live.is_paused());
+  EXPECT_EQ(status(ask("POST", "/live/quit", own)), 404);
+}
+
+TEST_F(ServerTest, RefusesMoreWatchersThanItHasThreadsFor) {
+  LiveRun live("run", 0.0);
+  live.begin({});
+  live.add(frame_at(1));
+  start({kPage, {}, &live});
+  std::vector<std::unique_ptr<Client>> watchers;
+  for (int i = 0; i < 8; ++i) {
+    watchers.push_back(std::make_unique<Client>(server_->port()));
+    watchers.back()->send("GET /live HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_NE(watchers.back()->read("event: header").find("event: header"), std::string::npos);
+  }
+  EXPECT_EQ(status(ask("GET", "/live")), 503);
+  EXPECT_EQ(status(ask("GET", "/")), 200);
+  watchers.clear();  // they leave; within some heartbeats their places are free
+  int last = 0;
+  for (int i = 0; i < 40 && last != 200; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const Client again(server_->port());
+    again.send("GET /live HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    last = status(again.read("\r\n\r\n"));
+  }
+  EXPECT_EQ(last, 200);
+}
+
+TEST(Server, StopsWithoutEverHavingRun) {
+  Server server({}, {kPage, {}, nullptr});
+  server.stop();
+  server.run();  // returns at once
+}
+
+}  // namespace
+}  // namespace snug::serve
