@@ -1,0 +1,57 @@
+// Agent: decides, item by item, where a box goes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "snug/core/expected.hpp"
+#include "snug/packing/container_state.hpp"
+#include "snug/packing/placement.hpp"
+#include "snug/packing/settings.hpp"
+
+namespace snug::packing {
+
+/// What an agent may expect of items to come: kinds and how often each comes.
+struct FutureModel {
+  std::vector<Item> kinds;
+  std::vector<double> weights;  ///< > 0, as many as kinds
+  bool operator==(const FutureModel&) const = default;
+};
+
+/// Every parcel of the scenario, equally likely: types as frequent as the scenario has them, sizes as measured.
+[[nodiscard]] FutureModel make_future_model(const model::Scenario& scenario);
+/// Items seen elsewhere (orders), equally likely each; equal sizes are put together.
+[[nodiscard]] FutureModel learn_future_model(std::span<const Item> items);
+
+struct Decision {
+  std::vector<Candidate> candidates;  ///< best first, never empty
+  std::int64_t roll_outs = 0;
+  bool operator==(const Decision&) const = default;
+};
+
+/// Same state, item and settings: same decision. Knows nothing of later items unless it was made with them.
+class Agent {
+ public:
+  virtual ~Agent() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) = 0;
+};
+
+struct AgentInput {
+  PackingSettings settings;
+  FutureModel future;                                  ///< contact-aware
+  std::vector<Item> sequence;                          ///< offline alone reads it
+  std::function<bool(const Placement&)> is_reachable;  ///< absent: everywhere
+};
+
+/// Names that make_agent knows.
+[[nodiscard]] std::vector<std::string> agent_names();
+/// Throws InputError for an unknown name or for settings that cannot be.
+[[nodiscard]] std::unique_ptr<Agent> make_agent(std::string_view name, AgentInput input);
+
+}  // namespace snug::packing

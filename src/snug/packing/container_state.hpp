@@ -1,0 +1,48 @@
+// ContainerState: what is known about the container that is being packed.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "snug/model/scenario.hpp"
+#include "snug/packing/item.hpp"
+
+namespace snug::packing {
+
+/// A box in the container, where it was seen (or is believed to be).
+struct PlacedBox {
+  Item item;
+  Pose X_TP;  ///< may be turned and tilted a little
+  bool operator==(const PlacedBox&) const = default;
+};
+
+/// Frame T: middle of the inner floor, z up, x and y along the walls.
+struct ContainerState {
+  Vector3 inner_size = Vector3(0.37, 0.57, 0.25);  ///< m, along Tx, Ty, Tz
+  std::vector<PlacedBox> boxes;                    ///< in the order in which they were placed
+  bool operator==(const ContainerState&) const = default;
+};
+
+/// Axis-aligned extent in T, m.
+struct Extent {
+  Vector3 low = Vector3::Zero();
+  Vector3 high = Vector3::Zero();
+  bool operator==(const Extent&) const = default;
+};
+
+/// Empty state of a scenario's container.
+[[nodiscard]] ContainerState make_container_state(const model::Container& container);
+
+/// Smallest axis-aligned extent around a box.
+[[nodiscard]] Extent bounding_extent(const PlacedBox& box);
+/// The extent of the box put upright in its nearest standing orientation at the same centre.
+[[nodiscard]] Extent upright_extent(const PlacedBox& box);
+/// Angle from the nearest standing orientation, rad.
+[[nodiscard]] double tilt(const PlacedBox& box);
+
+/// Percent of the inner volume filled by the boxes (measured sizes), report eq. (1).
+[[nodiscard]] double filling_percent(const ContainerState& state);
+/// Mass in kg that rests on each box, directly and through others, shared by area of contact.
+[[nodiscard]] std::vector<double> compute_loads(const ContainerState& state);
+
+}  // namespace snug::packing
