@@ -67,8 +67,8 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   }
   if (options.sequence) run.sequence = *options.sequence;
   if (options.corrections != "none") run.corrections = options.corrections;
-  if (options.controller == "ideal") run.controller = motion::ControllerKind::Ideal;
-  if (options.cup) run.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
+  if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
+  if (options.cup) run.simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;
   run.version = SNUG_VERSION;
   run.describe = [](const cell::RunResult& result) { return format_json(result); };

@@ -15,6 +15,13 @@ namespace {
 
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
+int item_of(const CellWorld& world, int body) {
+  for (std::size_t i = 0; i < world.parcels.size(); ++i) {
+    if (world.parcels[i].index == body) return static_cast<int>(i);
+  }
+  return -1;
+}
+
 }  // namespace
 
 const char* name_of(BoxState state) {
@@ -33,8 +40,7 @@ const char* name_of(BoxState state) {
   return "";
 }
 
-Journey::Journey(const model::Scenario& scenario, const model::Sequence& sequence, const CellWorld& world)
-    : world_(&world), items_(sequence.items.size()) {
+Journey::Journey(const model::Scenario& scenario, const model::Sequence& sequence) : items_(sequence.items.size()) {
   for (const model::Item& item : sequence.items) {
     ids_.push_back(item.parcel);
     sizes_.push_back(model::collision_size(scenario, *model::find_parcel(scenario, item.parcel)));
@@ -43,13 +49,6 @@ Journey::Journey(const model::Scenario& scenario, const model::Sequence& sequenc
     X_WT_ = container->X_WT;
     inner_size_ = container->inner_size;
   }
-}
-
-int Journey::item_of(int body) const {
-  for (std::size_t i = 0; i < world_->parcels.size(); ++i) {
-    if (world_->parcels[i].index == body) return static_cast<int>(i);
-  }
-  return -1;
 }
 
 void Journey::log(double time, std::string kind, int item, std::string text, std::vector<record::EventNumber> numbers) {
@@ -111,9 +110,9 @@ void Journey::add_release(int item, const GripperEvent& event, double time, cons
   }
 }
 
-void Journey::add(const GripperEvent& event, double time, const physics::WorldState& state, const Pose& X_WE,
-                  const std::string& waypoint) {
-  const int item = event.body >= 0 ? item_of(event.body) : -1;
+void Journey::add(const GripperEvent& event, double time, const CellWorld& world, const physics::WorldState& state,
+                  const Pose& X_WE, const std::string& waypoint) {
+  const int item = event.body >= 0 ? item_of(world, event.body) : -1;
   switch (event.kind) {
     case GripperEvent::Kind::NoSeal:
       log(time, "no seal", item, fmt::format("{}: {}", waypoint, cup::describe(event.no_seal.reason)),
@@ -125,26 +124,26 @@ void Journey::add(const GripperEvent& event, double time, const physics::WorldSt
       log(time, "bend", item, "cup bent beyond the range of its law", {{"bend_deg", degrees(event.angle)}});
       return;
     case GripperEvent::Kind::Seal: {
-      const Pose X_WP = physics::pose_of(world_->model, state, physics::BodyId{event.body});
+      const Pose X_WP = physics::pose_of(world.model, state, physics::BodyId{event.body});
       add_seal(item, event, time, X_WP.R, X_WE.R, waypoint);
       return;
     }
     case GripperEvent::Kind::HoldLost:
     case GripperEvent::Kind::Released:
-      add_release(item, event, time, X_WE, physics::pose_of(world_->model, state, physics::BodyId{event.body}));
+      add_release(item, event, time, X_WE, physics::pose_of(world.model, state, physics::BodyId{event.body}));
       return;
   }
 }
 
-std::vector<BoxResult> Journey::results(const physics::WorldState& state, int held_body) const {
+std::vector<BoxResult> Journey::results(const CellWorld& world, const physics::WorldState& state, int held_body) const {
   std::vector<BoxResult> results;
   for (std::size_t i = 0; i < items_.size(); ++i) {
     const Item& item = items_[i];
     if (!item.has_appeared) continue;
     BoxResult result;
     result.id = ids_[i];
-    const physics::BodyId body = world_->parcels[i];
-    const Pose X_WP = physics::pose_of(world_->model, state, body);
+    const physics::BodyId body = world.parcels[i];
+    const Pose X_WP = physics::pose_of(world.model, state, body);
     result.X_TP = X_WT_.inverse() * X_WP;
     result.up = axis_letter(vertical_axis(X_WP.R));
     const Vector3 reach = 0.5 * (result.X_TP.R.cwiseAbs() * sizes_[i]);

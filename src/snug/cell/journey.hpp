@@ -44,16 +44,17 @@ struct Repick {
 class Journey {
  public:
   Journey() = default;
-  Journey(const model::Scenario& scenario, const model::Sequence& sequence, const CellWorld& world);
+  Journey(const model::Scenario& scenario, const model::Sequence& sequence);
 
   void box_appeared(int item, double time);
   void box_removed(int item, double time);
-  void add(const GripperEvent& event, double time, const physics::WorldState& state, const Pose& X_WE,
-           const std::string& waypoint);
+  void add(const GripperEvent& event, double time, const CellWorld& world, const physics::WorldState& state,
+           const Pose& X_WE, const std::string& waypoint);
   [[nodiscard]] const std::vector<record::Event>& events() const { return events_; }
   [[nodiscard]] const std::vector<Repick>& repicks() const { return repicks_; }
   /// What became of the items, in the order of the sequence; items that never appeared are left out.
-  [[nodiscard]] std::vector<BoxResult> results(const physics::WorldState& state, int held_body) const;
+  [[nodiscard]] std::vector<BoxResult> results(const CellWorld& world, const physics::WorldState& state,
+                                               int held_body) const;
 
  private:
   struct Item {
@@ -68,13 +69,11 @@ class Journey {
     Matrix3 R_EP = Matrix3::Identity();
     bool operator==(const Item&) const = default;
   };
-  [[nodiscard]] int item_of(int body) const;
   void log(double time, std::string kind, int item, std::string text, std::vector<record::EventNumber> numbers = {});
   void add_seal(int item, const GripperEvent& event, double time, const Matrix3& R_WP, const Matrix3& R_WE,
                 const std::string& waypoint);
   void add_release(int item, const GripperEvent& event, double time, const Pose& X_WE, const Pose& X_WP);
 
-  const CellWorld* world_ = nullptr;
   std::vector<std::string> ids_;
   std::vector<Vector3> sizes_;
   Pose X_WT_;

@@ -105,9 +105,12 @@ Recorder::Recorder(const model::Scenario& scenario, const CellWorld& world, cons
   if (observer_ != nullptr) observer_->begin(header);
 }
 
-void Recorder::add_event(const record::Event& event) {
-  if (writer_) writer_->append(event);
-  if (observer_ != nullptr) observer_->add(event);
+void Recorder::add_events(const std::vector<record::Event>& events) {
+  for (; recorded_events_ < events.size(); ++recorded_events_) {
+    const record::Event& event = events[recorded_events_];
+    if (writer_) writer_->append(event);
+    if (observer_ != nullptr) observer_->add(event);
+  }
 }
 
 void Recorder::close(const std::string& result_json) {

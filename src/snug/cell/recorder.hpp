@@ -49,13 +49,15 @@ class Recorder {
   /// False when the observer wants the run to stop.
   [[nodiscard]] bool add_frame(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
                                const physics::StepReport& report, const FrameInput& input);
-  void add_event(const record::Event& event);
+  /// Records those of a growing list that it has not seen.
+  void add_events(const std::vector<record::Event>& events);
   /// `result_json` is kept in the recording.
   void close(const std::string& result_json);
 
  private:
   std::optional<record::RecordingWriter> writer_;
   RunObserver* observer_ = nullptr;
+  std::size_t recorded_events_ = 0;
   record::Frame frame_;
 };
 

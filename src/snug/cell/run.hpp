@@ -10,7 +10,7 @@
 
 #include "snug/cell/journey.hpp"
 #include "snug/cell/recorder.hpp"
-#include "snug/motion/controller.hpp"
+#include "snug/cell/simulation.hpp"
 
 namespace snug::cell {
 
@@ -21,23 +21,12 @@ struct RunOptions {
   std::string program_text;                ///< for the recording
   std::string sequence;                    ///< name; needed with a program
   std::string corrections;                 ///< name of a layer of the scenario, or empty
-  motion::ControllerKind controller = motion::ControllerKind::Faithful;
-  /// The report's model predicts the real programs better than the phases do (docs/decisions/0006): the default.
-  cup::CupMode cup = cup::CupMode::Holding;
+  SimulationOptions simulation;
   std::optional<double> until;        ///< s; absent: to the end of the program, or the scenario's duration
   std::filesystem::path record_path;  ///< HDF5, or empty
   std::string version;                ///< for the recording
   std::function<std::string(const RunResult&)> describe;  ///< JSON to keep in the recording, or none
   RunObserver* observer = nullptr;                        ///< sees each frame and event, may stop the run; not owned
-};
-
-/// How well the contact solver did over a run.
-struct SolverSummary {
-  std::int64_t steps = 0;
-  std::int64_t not_converged = 0;
-  double worst_residual = 0.0;     ///< m/s
-  double worst_penetration = 0.0;  ///< m, rigid contacts
-  double mean_sweeps = 0.0;        ///< over steps with contacts
 };
 
 struct BodyResult {

@@ -159,6 +159,11 @@ ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured, Co
   return output;
 }
 
+bool will_finish(const PreparedProgram& plan, const ToolState& measured, const ControllerState& state) noexcept {
+  return state.phase == ControllerPhase::Moving && state.row + 1 == static_cast<int>(plan.program.waypoints.size()) &&
+         has_reached_row(plan, measured, state);
+}
+
 double convergence_error(const Pose& X_WE, const Pose& X_WE_target, double convergence_deg_per_metre) noexcept {
   const double angle_deg = angle_between(X_WE.R, X_WE_target.R) * 180.0 / std::numbers::pi;
   return (X_WE_target.p - X_WE.p).norm() + angle_deg / convergence_deg_per_metre;

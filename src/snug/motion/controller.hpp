@@ -75,6 +75,10 @@ struct ControllerOutput {
 [[nodiscard]] ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured,
                                     ControllerState& state) noexcept;
 
+/// Whether a tick from here would find the last row reached and end the program.
+[[nodiscard]] bool will_finish(const PreparedProgram& plan, const ToolState& measured,
+                               const ControllerState& state) noexcept;
+
 /// |position error| + angle / (convergence_deg_per_metre), m: what is compared with a row's precision.
 [[nodiscard]] double convergence_error(const Pose& X_WE, const Pose& X_WE_target,
                                        double convergence_deg_per_metre) noexcept;

@@ -28,7 +28,7 @@ RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) 
   }
   const auto stride = static_cast<std::int64_t>(std::max(1.0, std::round(kRecordPeriod / scenario.time_step)));
   const auto steps = static_cast<std::int64_t>(std::ceil(until / scenario.time_step - 1e-9));
-  StepMonitor monitor;
+  SolverMonitor monitor;
   RunResult result;
   bool is_stopped = false;  // by the observer
   for (std::int64_t i = 0; i < steps && result.failure.empty() && !is_stopped; ++i) {

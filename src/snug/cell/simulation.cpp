@@ -1,0 +1,185 @@
+// Simulation: the cell of a scenario under way, tick by tick; any state of it can be kept, copied and gone back to.
+#include "snug/cell/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "snug/cell/aligner_feed.hpp"
+#include "snug/core/hash.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug::cell {
+namespace {
+
+const model::Sequence& sequence_of(const model::Scenario& scenario, const std::string& name) {
+  if (const model::Sequence* sequence = model::find_sequence(scenario, name)) return *sequence;
+  std::vector<std::string> names;
+  for (const model::Sequence& sequence : scenario.sequences) names.push_back(sequence.name);
+  throw InputError(scenario.source_name, "--sequence", "'" + name + "'",
+                   "one of " + fmt::format("{}", fmt::join(names, ", ")));
+}
+
+int substeps_of(const model::Scenario& scenario) {
+  const double ratio = scenario.controller.tick / scenario.time_step;
+  const double whole = std::round(ratio);
+  if (whole < 1.0 || std::abs(ratio - whole) > 1e-9 * ratio) {
+    throw InputError(scenario.source_name, "time_step", fmt::format("{}", scenario.time_step),
+                     fmt::format("a whole fraction of the controller's tick, {} s", scenario.controller.tick));
+  }
+  return static_cast<int>(whole);
+}
+
+/// The scenario itself, once it is known that programs can run in it.
+model::Scenario runnable(model::Scenario scenario) {
+  if (!scenario.tool) throw InputError(scenario.source_name, "tool", "", "a tool, to run a program");
+  if (!scenario.aligner) throw InputError(scenario.source_name, "aligner", "", "an aligner, to run a program");
+  return scenario;
+}
+
+}  // namespace
+
+Simulation::Simulation(model::Scenario scenario, const std::string& sequence, const SimulationOptions& options)
+    : scenario_(runnable(std::move(scenario))),
+      options_(options),
+      sequence_(sequence_of(scenario_, sequence)),
+      substeps_(substeps_of(scenario_)),
+      world_(build_world(scenario_, {&sequence_, true})),
+      gripper_(scenario_.cup, options.cup, world_) {}
+
+CellState Simulation::make_state() const {
+  CellState state;
+  state.world = make_initial_state(scenario_, world_);
+  state.controller = motion::make_controller_state(scenario_.controller.X_WE_start);
+  state.journey = Journey(scenario_, sequence_);
+  return state;
+}
+
+motion::PreparedProgram Simulation::prepare(motion::Program program) const {
+  const model::ControllerParams& params = scenario_.controller;
+  motion::ControllerSettings settings;
+  settings.kind = options_.controller;
+  settings.tick = params.tick;
+  settings.task_stiffness = sequence_.task_stiffness.value_or(params.task_stiffness);
+  settings.vacuum_wait = params.vacuum_wait;
+  settings.convergence_deg_per_metre = params.convergence_deg_per_metre;
+  for (const model::MoveLimits& limits : params.limits) {
+    settings.limits.push_back({limits.prefix,
+                               {limits.precision, limits.max_acceleration, limits.max_speed, limits.max_turn_speed,
+                                limits.max_turn_acceleration}});
+  }
+  return motion::prepare(std::move(program), std::move(settings));
+}
+
+/// Where the cup will be when the vacuum comes on next: the pick that a departure leads to.
+std::optional<Vector3> Simulation::next_pick(const motion::PreparedProgram& plan, int row) const {
+  const auto& rows = plan.program.waypoints;
+  for (auto i = static_cast<std::size_t>(row) + 1; i < rows.size(); ++i) {
+    if (rows[i].io.vacuum) return rows[i - 1].X_WE.p;
+  }
+  return std::nullopt;
+}
+
+/// A box appears when the program starts toward it; one that was left there is taken away.
+void Simulation::depart(const motion::PreparedProgram& plan, int row, CellState& state) const {
+  const std::string& name = plan.program.waypoints[static_cast<std::size_t>(row)].name;
+  const int item = find_item(sequence_, name, "PrePick");
+  if (item < 0) return;
+  const physics::BodyId body = world_.parcels[static_cast<std::size_t>(item)];
+  if (state.world.bodies[static_cast<std::size_t>(body.index)].is_present) return;
+  const double now = time(state);
+  if (state.waiting_item >= 0) {
+    const physics::BodyId waiting = world_.parcels[static_cast<std::size_t>(state.waiting_item)];
+    if (state.gripper.cup.body != waiting.index) {
+      physics::set_present(state.world, waiting, false);
+      state.journey.box_removed(state.waiting_item, now);
+    }
+  }
+  physics::set_present(state.world, body, true);
+  physics::set_pose(world_.model, state.world, body,
+                    pose_at_aligner(scenario_, sequence_.items[static_cast<std::size_t>(item)], next_pick(plan, row)));
+  physics::set_twist(world_.model, state.world, body, Twist{});
+  state.waiting_item = item;
+  state.journey.box_appeared(item, now);
+}
+
+CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& state, CellWorkspace& work) const {
+  const motion::ToolState start = state.controller.command;
+  const motion::ControllerOutput out = motion::tick(plan, start, state.controller);
+  if (out.departed >= 0) depart(plan, out.departed, state);
+  CellTick tick;
+  tick.has_ended = out.finished_now;
+  tick.row = out.row;
+  tick.tool = start;
+  tick.X_WE_reference = out.X_WE_reference;
+  tick.command = {out.io.vacuum, out.io.blow_off};
+  for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
+    const motion::ToolState next =
+        k + 1 == substeps_ ? out.tool
+                           : motion::interpolate(start, out.tool, plan.settings.tick,
+                                                 static_cast<double>(k + 1) / static_cast<double>(substeps_));
+    advance_step(plan, tick.tool, next, state, work, tick);
+    tick.tool = next;
+  }
+  return tick;
+}
+
+void Simulation::advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool,
+                              const motion::ToolState& next, CellState& state, CellWorkspace& work,
+                              CellTick& tick) const {
+  work.events.clear();
+  gripper_.prepare(state.world, tool.X_WE, tool.V_WE, tick.command, world_.model.settings.dt, state.gripper,
+                   work.gripper, work.events);
+  const std::string& waypoint = plan.program.waypoints[static_cast<std::size_t>(std::max(0, tick.row))].name;
+  for (const GripperEvent& event : work.events) {
+    state.journey.add(event, time(state), world_, state.world, tool.X_WE, waypoint);
+    if (state.waiting_item >= 0 && event.kind == GripperEvent::Kind::Seal &&
+        event.body == world_.parcels[static_cast<std::size_t>(state.waiting_item)].index) {
+      state.waiting_item = -1;
+    }
+  }
+  const physics::KinematicTarget target{world_.tool, next.X_WE};
+  const physics::ElementUse use{work.gripper.element, world_.tool, Pose{}, physics::BodyId{work.gripper.body}};
+  physics::WorldInput input;
+  input.kinematic = {&target, 1};
+  if (work.gripper.element != nullptr) input.elements = {&use, 1};
+  input.held = physics::BodyId{work.gripper.ignored};
+  tick.step = physics::step(world_.model, input, state.world, work.physics);
+  work.solver.add(tick.step);
+  tick.failure = describe_failure(world_, state.world, work.physics, tick.step);
+}
+
+bool Simulation::is_at_end(const motion::PreparedProgram& plan, const CellState& state) const {
+  return motion::will_finish(plan, state.controller.command, state.controller);
+}
+
+CellState Simulation::adopt(const Simulation& other, const CellState& state) const {
+  CellState adopted = state;
+  adopted.world.stamp = {};
+  for (std::size_t i = 0; i < world_.model.bodies.size(); ++i) {
+    const physics::BodyModel& mine = world_.model.bodies[i];
+    const physics::BodyModel& theirs = other.world_.model.bodies[i];
+    if (mine == theirs) continue;
+    const physics::BodyId body{static_cast<int>(i)};
+    const Twist V_WB = physics::twist_of(other.world_.model, state.world, body);
+    physics::set_pose(world_.model, adopted.world, body, physics::pose_of(other.world_.model, state.world, body));
+    physics::set_twist(world_.model, adopted.world, body, V_WB);
+  }
+  return adopted;
+}
+
+std::vector<BoxResult> Simulation::boxes(const CellState& state) const {
+  return state.journey.results(world_, state.world, state.gripper.cup.body);
+}
+
+std::uint64_t Simulation::hash(const CellState& state) const {
+  Hash hash;
+  hash.add(physics::hash_of(state.world));
+  hash.add(state.gripper.cup.pressure_gauge);
+  hash.add(static_cast<std::uint64_t>(state.controller.row + 1));
+  return hash.value();
+}
+
+}  // namespace snug::cell

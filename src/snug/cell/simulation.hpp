@@ -1,0 +1,96 @@
+// Simulation: the cell of a scenario under way, tick by tick; any state of it can be kept, copied and gone back to.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "snug/cell/journey.hpp"
+#include "snug/cell/solver_summary.hpp"
+#include "snug/motion/controller.hpp"
+
+namespace snug::cell {
+
+struct SimulationOptions {
+  motion::ControllerKind controller = motion::ControllerKind::Faithful;
+  /// The report's model predicts the real programs better than the phases do (docs/decisions/0006): the default.
+  cup::CupMode cup = cup::CupMode::Holding;
+};
+
+/// Everything of a cell that changes. A copy is a snapshot: going on from it gives the same bytes.
+struct CellState {
+  physics::WorldState world;
+  motion::ControllerState controller;
+  GripperState gripper;
+  Journey journey;
+  int waiting_item = -1;  ///< of the sequence, that stands at the aligner; -1 when none does
+};
+
+/// Scratch memory and what is gathered on the way; one per thread. It has no influence on what happens.
+struct CellWorkspace {
+  explicit CellWorkspace(const physics::WorldModel& model) : physics(model) {}
+  physics::Workspace physics;
+  SolverMonitor solver;
+  GripperStep gripper;
+  std::vector<GripperEvent> events;
+};
+
+/// What one controller tick did.
+struct CellTick {
+  bool has_ended = false;    ///< the last row was found reached at its start
+  int row = -1;              ///< aimed at
+  motion::ToolState tool;    ///< at its end
+  Pose X_WE_reference;       ///< what the tool's task followed
+  cup::CupCommand command;   ///< throughout
+  physics::StepReport step;  ///< of its last physics step
+  std::string failure;       ///< empty, or why the run has to stop: body, time, last contacts
+};
+
+class Simulation {
+ public:
+  /// Throws InputError for a scenario without tool or aligner, an unknown sequence, and a controller tick that is no
+  /// multiple of the time step.
+  Simulation(model::Scenario scenario, const std::string& sequence, const SimulationOptions& options);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  [[nodiscard]] const model::Scenario& scenario() const { return scenario_; }
+  [[nodiscard]] const model::Sequence& sequence() const { return sequence_; }
+  [[nodiscard]] const SimulationOptions& options() const { return options_; }
+  [[nodiscard]] const CellWorld& world() const { return world_; }
+
+  /// At time 0: the tool at its start, no box in the cell.
+  [[nodiscard]] CellState make_state() const;
+  [[nodiscard]] CellWorkspace make_workspace() const { return CellWorkspace(world_.model); }
+  /// The program with the limits and gains of scenario and sequence. Throws as motion::prepare.
+  [[nodiscard]] motion::PreparedProgram prepare(motion::Program program) const;
+
+  /// One controller tick and its physics steps.
+  CellTick advance(const motion::PreparedProgram& plan, CellState& state, CellWorkspace& work) const;
+  /// Whether the coming tick would find the last row reached. A program that goes on instead may be put in the place of
+  /// `plan` now: rows appended at this moment are executed as if they had always been there.
+  [[nodiscard]] bool is_at_end(const motion::PreparedProgram& plan, const CellState& state) const;
+
+  /// `state` of a simulation of the same cell with other sizes, masses or friction, continued here: every body keeps
+  /// its pose and twist.
+  [[nodiscard]] CellState adopt(const Simulation& other, const CellState& state) const;
+
+  [[nodiscard]] double time(const CellState& state) const { return state.world.time(world_.model); }
+  [[nodiscard]] std::vector<BoxResult> boxes(const CellState& state) const;
+  [[nodiscard]] std::uint64_t hash(const CellState& state) const;
+
+ private:
+  [[nodiscard]] std::optional<Vector3> next_pick(const motion::PreparedProgram& plan, int row) const;
+  void depart(const motion::PreparedProgram& plan, int row, CellState& state) const;
+  void advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, const motion::ToolState& next,
+                    CellState& state, CellWorkspace& work, CellTick& tick) const;
+
+  model::Scenario scenario_;
+  SimulationOptions options_;
+  model::Sequence sequence_;
+  int substeps_ = 1;
+  CellWorld world_;
+  Gripper gripper_;
+};
+
+}  // namespace snug::cell
