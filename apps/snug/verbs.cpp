@@ -3,6 +3,7 @@
 
 #include "bench.hpp"
 #include "cup.hpp"
+#include "export.hpp"
 #include "picture.hpp"
 #include "plot.hpp"
 #include "program.hpp"
@@ -19,6 +20,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_view(app, action);
   add_plot(app, action);
   add_picture(app, action);
+  add_export(app, action);
   add_cup(app, action);
   add_bench(app, action);
 }

@@ -90,6 +90,19 @@ Json tool_as_json(const record::RecordingHeader& header) {
   return {{"body", body}, {"shapes", shapes_as_json(header.bodies[static_cast<std::size_t>(body)].shapes)}};
 }
 
+/// Links of a robot are kinematic bodies whose names begin with this.
+constexpr const char* kLinkPrefix = "robot/";
+
+Json robot_as_json(const record::RecordingHeader& header) {
+  Json links = Json::array();
+  for (std::size_t i = 0; i < header.bodies.size(); ++i) {
+    const record::BodyInfo& body = header.bodies[i];
+    if (body.kind != record::BodyKind::Dynamic && body.name.starts_with(kLinkPrefix)) links.push_back(i);
+  }
+  if (links.empty()) return nullptr;
+  return {{"links", std::move(links)}};
+}
+
 Json frames_as_json(const std::optional<model::Scenario>& scenario) {
   Json list = Json::array({{{"name", "world"}, {"letter", "W"}, {"X_W", as_json(record::PoseSample())}}});
   if (!scenario) return list;
@@ -247,6 +260,7 @@ std::string make_header_json(const HeaderInput& input) {
   json["bodies"] = bodies_as_json(header);
   json["container"] = container_as_json(header.container);
   json["tool"] = tool_as_json(header);
+  json["robot"] = robot_as_json(header);
   json["cup"] = nullptr;
   if (scenario && scenario->tool) {
     json["cup"] = {{"lip_radius", scenario->cup.lip_radius},

@@ -196,6 +196,17 @@ TEST(Replay, HeaderTellsWhatRanEvenWhenScenarioAndProgramMakeNoSense) {
   EXPECT_TRUE(header["result"]["boxes"][0]["state"].is_null());
 }
 
+TEST(Replay, HeaderTellsWhichBodiesAreLinksOfARobot) {
+  Rng rng = Rng(9).split("replay");
+  record::Recording recording = test::random_recording(rng, 3);
+  EXPECT_TRUE(nlohmann::json::parse(form_of(recording).header_json)["robot"].is_null());
+  recording.header.bodies[0].name = "robot/base_link";
+  recording.header.bodies[1].name = "robot/forearm_link";
+  recording.header.bodies[2].name = "robot/a box of that name is none";
+  const auto header = nlohmann::json::parse(form_of(recording).header_json);
+  EXPECT_EQ(header["robot"]["links"], nlohmann::json({0, 1}));
+}
+
 TEST(Replay, HeaderTakesTheResultThatTheRunStored) {
   Rng rng = Rng(7).split("replay");
   record::Recording recording = test::random_recording(rng, 3);

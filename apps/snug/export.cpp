@@ -1,0 +1,56 @@
+// export: one function for each format.
+#include "export.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+#include "snug/core/check.hpp"
+#include "snug/record/csv.hpp"
+#include "snug/replay/mcap_export.hpp"
+
+namespace snug::app {
+namespace {
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+int write_mcap(const ExportOptions& options) {
+  record::RecordingReader reader(options.input);
+  const replay::McapTotals totals = replay::export_mcap(reader, file_name(options.input), options.selection,
+                                                        options.output, {.compression = options.compression});
+  std::fprintf(stderr, "%s: %zu frames, %llu messages, %.2f MB\n", options.output.c_str(), totals.frames,
+               static_cast<unsigned long long>(totals.messages), static_cast<double>(totals.bytes) / 1e6);
+  return kSuccess;
+}
+
+int write_csv(const ExportOptions& options) {
+  record::RecordingReader reader(options.input);
+  record::Recording recording;
+  recording.header = reader.header();
+  for (const std::size_t index : replay::select_frames(reader, file_name(options.input), options.selection)) {
+    reader.read_frame(index, recording.frames.emplace_back());
+  }
+  record::write_csv(recording, options.output);
+  return kSuccess;
+}
+
+constexpr std::array kFormats = {
+    ExportFormat{"mcap", "a recording for Foxglove, Lichtblick and other viewers of MCAP", write_mcap},
+    ExportFormat{"csv", "a recording as one table with the column names of mc_rtc logs", write_csv},
+};
+
+}  // namespace
+
+std::span<const ExportFormat> export_formats() { return kFormats; }
+
+int run_export(const ExportOptions& options) {
+  const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const ExportFormat& format) {
+    return std::string_view(format.name) == options.format;
+  });
+  SNUG_CHECK(found != kFormats.end(), "a format that the parser let pass");
+  return found->write(options);
+}
+
+}  // namespace snug::app

@@ -1,0 +1,32 @@
+// export: what snug has in its own formats, for other programs.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "snug/replay/mcap_writer.hpp"
+#include "snug/replay/replay.hpp"
+#include "verb.hpp"
+
+namespace snug::app {
+
+struct ExportOptions {
+  std::string input;   ///< a recording, or what else the format is made from
+  std::string format;  ///< name in export_formats()
+  std::string output;
+  replay::Selection selection;
+  replay::McapCompression compression = replay::McapCompression::Zstd;
+};
+
+/// One format that can be asked for.
+struct ExportFormat {
+  const char* name;
+  const char* description;  ///< for --help: what it is made from and who reads it
+  int (*write)(const ExportOptions&);
+};
+[[nodiscard]] std::span<const ExportFormat> export_formats();
+
+void add_export(CLI::App& app, Action& action);
+[[nodiscard]] int run_export(const ExportOptions& options);
+
+}  // namespace snug::app

@@ -1,0 +1,48 @@
+// export: what may be said after the verb.
+#include <memory>
+
+#include "export.hpp"
+#include "options.hpp"
+#include "report.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  snug export run.h5 --format mcap -o run.mcap
+  snug export run.h5 --format mcap --from 40 --to 60 --every 4 -o part.mcap
+  snug export run.h5 --format csv -o run.csv)";
+
+}  // namespace
+
+void add_export(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand("export", "write a recording in a format of other programs");
+  const auto options = std::make_shared<ExportOptions>();
+  const auto compression = std::make_shared<std::string>("zstd");
+  std::vector<std::string> names;
+  std::string footer = "Formats:\n";
+  for (const ExportFormat& format : export_formats()) {
+    names.emplace_back(format.name);
+    footer += std::string("  ") + format.name + std::string(16 - names.back().size(), ' ') + format.description + "\n";
+  }
+  verb.add_option("input", options->input, "what to export")->required()->type_name("FILE");
+  verb.add_option("--format", options->format, "name of the format, see below")
+      ->required()
+      ->check(one_of(names))
+      ->type_name("NAME");
+  verb.add_option("-o,--output", options->output, "the file to write")->required()->type_name("FILE");
+  add_selection_options(verb, options->selection);
+  verb.add_option("--compression", *compression, "of mcap: zstd, or none for readers that cannot unpack it")
+      ->check(one_of({"zstd", "none"}))
+      ->type_name("NAME")
+      ->capture_default_str();
+  verb.footer(footer + kExamples);
+  verb.callback([options, compression, &action] {
+    action = [options, compression] {
+      options->compression = *compression == "none" ? replay::McapCompression::None : replay::McapCompression::Zstd;
+      return run_export(*options);
+    };
+  });
+}
+
+}  // namespace snug::app

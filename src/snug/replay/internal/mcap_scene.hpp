@@ -1,0 +1,24 @@
+// What a viewer draws of a recording: bodies and cup as foxglove.SceneUpdate. Internal to the room.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "snug/record/recording.hpp"
+
+namespace snug::replay::internal {
+
+/// All bodies that are there in `frame`, each fixed to the frame of its name, in the place of all drawn before.
+[[nodiscard]] std::string scene_message(std::uint64_t ns, const record::RecordingHeader& header,
+                                        const record::Frame& frame);
+
+/// What the drawing of the cup needs beside the frame.
+struct CupLook {
+  double lip_radius = 0.0;   ///< m
+  double free_length = 0.0;  ///< m, E to S when nothing is held
+};
+
+/// The cup from E to its lip, as it is bent and stretched, in E.
+[[nodiscard]] std::string cup_message(std::uint64_t ns, const CupLook& look, const record::CupSample& cup);
+
+}  // namespace snug::replay::internal

@@ -1,0 +1,248 @@
+// McapExport: which message goes where and when.
+#include "snug/replay/mcap_export.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "snug/core/input_error.hpp"
+#include "snug/model/scenario.hpp"
+#include "snug/motion/waypoint.hpp"
+#include "snug/replay/internal/mcap_messages.hpp"
+#include "snug/replay/internal/mcap_scene.hpp"
+#include "snug/replay/mcap_schemas.hpp"
+
+namespace snug::replay {
+namespace {
+
+using internal::JsonText;
+
+/// One topic: times grow strictly, whatever the recording's rounding and coincidences.
+class Topic {
+ public:
+  Topic(McapWriter& writer, const std::string& name, McapSchema schema)
+      : writer_(writer), id_(writer.add_channel(name, schema_name(schema), schema_text(schema))) {}
+  void write(std::uint64_t ns, std::string_view message) {
+    last_ = last_ ? std::max(ns, *last_ + 1) : ns;
+    writer_.write(id_, *last_, message);
+  }
+
+ private:
+  McapWriter& writer_;
+  std::uint16_t id_;
+  std::optional<std::uint64_t> last_;
+};
+
+std::optional<model::Scenario> scenario_of(const record::RecordingHeader& header) {
+  try {
+    return model::parse_scenario(header.scenario_text, "scenario of the recording");
+  } catch (const InputError&) {
+    return std::nullopt;  // made by another version: what only the scenario tells is left out
+  }
+}
+
+std::vector<std::string> row_names(const record::RecordingHeader& header) {
+  std::vector<std::string> names;
+  try {
+    if (header.program_text.empty()) return names;
+    for (const auto& waypoint : motion::parse_program(header.program_text, header.program_name).waypoints) {
+      names.push_back(waypoint.name);
+    }
+  } catch (const InputError&) {  // of another version of the format: the rows then have numbers only
+    names.clear();
+  }
+  return names;
+}
+
+class Exporter {
+ public:
+  Exporter(McapWriter& writer, const record::RecordingHeader& header);
+  void add(const record::Frame& frame);
+  void add(const record::Event& event);
+
+ private:
+  void write_static_frames(std::uint64_t ns, const record::Frame& frame);
+  void write_moving_frames(std::uint64_t ns, const record::Frame& frame);
+  void write_tool(std::uint64_t ns, const record::Frame& frame);
+  void write_scene(std::uint64_t ns, const record::Frame& frame);
+  void write_program(std::uint64_t ns, int row);
+  /// Ends the message and hands it on.
+  void send(Topic& topic, std::uint64_t ns) {
+    topic.write(ns, text_.str());
+    text_.clear();
+  }
+
+  const record::RecordingHeader& header_;
+  std::optional<model::Scenario> scenario_;
+  std::vector<std::string> row_names_;
+  Topic tf_static_, tf_, scene_, cup_scene_, events_, program_;
+  Topic tool_pose_, tool_command_, tool_twist_, cup_state_, cup_wrench_, flange_wrench_, solver_;
+  JsonText text_;
+  bool is_first_ = true;
+  std::vector<bool> present_;
+  std::optional<record::CupSample> drawn_cup_;
+  int row_ = -1;
+};
+
+Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header)
+    : header_(header),
+      scenario_(scenario_of(header)),
+      row_names_(row_names(header)),
+      tf_static_(writer, "/tf_static", McapSchema::FrameTransforms),
+      tf_(writer, "/tf", McapSchema::FrameTransforms),
+      scene_(writer, "/scene", McapSchema::SceneUpdate),
+      cup_scene_(writer, "/cup/scene", McapSchema::SceneUpdate),
+      events_(writer, "/events", McapSchema::Log),
+      program_(writer, "/program", McapSchema::ProgramState),
+      tool_pose_(writer, "/tool/pose", McapSchema::PoseInFrame),
+      tool_command_(writer, "/tool/pose_command", McapSchema::PoseInFrame),
+      tool_twist_(writer, "/tool/twist", McapSchema::TwistStamped),
+      cup_state_(writer, "/cup/state", McapSchema::CupState),
+      cup_wrench_(writer, "/cup/wrench", McapSchema::WrenchStamped),
+      flange_wrench_(writer, "/flange/wrench", McapSchema::WrenchStamped),
+      solver_(writer, "/solver", McapSchema::SolverState) {}
+
+void Exporter::write_static_frames(std::uint64_t ns, const record::Frame& frame) {
+  text_.raw("{\"transforms\":[");
+  bool has_any = false;
+  const auto put = [&](const std::string& name, const record::PoseSample& X) {
+    text_.raw(has_any ? "," : "").transform(ns, internal::kWorldFrame, name, X);
+    has_any = true;
+  };
+  for (std::size_t i = 0; i < header_.bodies.size(); ++i) {
+    if (header_.bodies[i].kind == record::BodyKind::Static) put(header_.bodies[i].name, frame.bodies[i].X_WB);
+  }
+  if (scenario_) {
+    for (const model::Frame& fixed : scenario_->frames) {
+      const bool is_taken = record::find_body(header_, fixed.name) >= 0 || fixed.name == internal::kWorldFrame ||
+                            fixed.name == internal::kToolFrame || fixed.name == internal::kLipFrame ||
+                            fixed.name == internal::kFlangeFrame;
+      put(is_taken ? "frame/" + fixed.name : fixed.name, record::PoseSample(fixed.X_WF));
+    }
+  }
+  // As long as the robot is a moving tool alone, its flange is where the tool is.
+  text_.raw(has_any ? "," : "").transform(ns, internal::kToolFrame, internal::kFlangeFrame, {}).raw("]}");
+  send(tf_static_, ns);
+}
+
+void Exporter::write_moving_frames(std::uint64_t ns, const record::Frame& frame) {
+  text_.raw("{\"transforms\":[").transform(ns, internal::kWorldFrame, internal::kToolFrame, frame.X_WE);
+  if (frame.cup.attached_body >= 0) {
+    text_.raw(",").transform(ns, internal::kToolFrame, internal::kLipFrame, frame.cup.X_ES);
+  }
+  for (std::size_t i = 0; i < header_.bodies.size(); ++i) {
+    if (header_.bodies[i].kind == record::BodyKind::Static || !frame.bodies[i].present) continue;
+    text_.raw(",").transform(ns, internal::kWorldFrame, header_.bodies[i].name, frame.bodies[i].X_WB);
+  }
+  text_.raw("]}");
+  send(tf_, ns);
+}
+
+void Exporter::write_tool(std::uint64_t ns, const record::Frame& frame) {
+  internal::write_pose(text_, ns, internal::kWorldFrame, frame.X_WE);
+  send(tool_pose_, ns);
+  internal::write_pose(text_, ns, internal::kWorldFrame, frame.X_WE_command);
+  send(tool_command_, ns);
+  internal::write_twist(text_, ns, internal::kWorldFrame, frame.V_WE);
+  send(tool_twist_, ns);
+  internal::write_cup(text_, ns, frame.cup, header_);
+  send(cup_state_, ns);
+  internal::write_wrench(text_, ns, internal::kLipFrame, frame.cup.F_PSo_S);
+  send(cup_wrench_, ns);
+  internal::write_wrench(text_, ns, internal::kFlangeFrame, frame.F_flange);
+  send(flange_wrench_, ns);
+  internal::write_solver(text_, ns, frame);
+  send(solver_, ns);
+}
+
+void Exporter::write_scene(std::uint64_t ns, const record::Frame& frame) {
+  std::vector<bool> present;
+  for (const record::BodySample& body : frame.bodies) present.push_back(body.present);
+  if (is_first_ || present != present_) scene_.write(ns, internal::scene_message(ns, header_, frame));
+  present_ = std::move(present);
+  if (!scenario_ || !scenario_->tool) return;
+  const auto looks_alike = [](const record::CupSample& a, const record::CupSample& b) {
+    if ((a.attached_body >= 0) != (b.attached_body >= 0)) return false;
+    return a.attached_body < 0 || a.X_ES == b.X_ES;
+  };
+  if (drawn_cup_ && looks_alike(*drawn_cup_, frame.cup)) return;
+  const internal::CupLook look = {scenario_->cup.lip_radius, scenario_->cup.free_length};
+  cup_scene_.write(ns, internal::cup_message(ns, look, frame.cup));
+  drawn_cup_ = frame.cup;
+}
+
+void Exporter::write_program(std::uint64_t ns, int row) {
+  if (!is_first_ && row == row_) return;
+  row_ = row;
+  const bool is_named = row >= 0 && static_cast<std::size_t>(row) < row_names_.size();
+  text_.raw("{\"timestamp\":").time(ns).raw(",\"row\":").integer(row).raw(",\"name\":");
+  text_.quoted(is_named ? row_names_[static_cast<std::size_t>(row)] : "").raw("}");
+  send(program_, ns);
+}
+
+void Exporter::add(const record::Frame& frame) {
+  const std::uint64_t ns = internal::to_ns(frame.time);
+  if (is_first_) write_static_frames(ns, frame);
+  write_moving_frames(ns, frame);
+  write_scene(ns, frame);
+  write_program(ns, frame.program_row);
+  write_tool(ns, frame);
+  is_first_ = false;
+}
+
+void Exporter::add(const record::Event& event) {
+  const std::uint64_t ns = internal::to_ns(event.time);
+  internal::write_event(text_, ns, event);
+  send(events_, ns);
+}
+
+std::vector<record::Event> events_within(const std::vector<record::Event>& all, double from, double to) {
+  std::vector<record::Event> events;
+  for (const record::Event& event : all) {
+    if (event.time >= from && event.time <= to) events.push_back(event);
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const record::Event& a, const record::Event& b) { return a.time < b.time; });
+  return events;
+}
+
+void attach_sources(McapWriter& writer, const record::RecordingReader& reader, const std::string& name) {
+  const record::RecordingHeader& header = reader.header();
+  writer.add_metadata("snug", {{"recording", name},
+                               {"snug_version", header.version},
+                               {"seed", std::to_string(header.seed)},
+                               {"sequence", header.sequence},
+                               {"program_name", header.program_name},
+                               {"settings", header.settings},
+                               {"complete", reader.is_complete() ? "true" : "false"}});
+  if (!header.scenario_text.empty()) writer.attach("scenario.yaml", "application/yaml", header.scenario_text);
+  if (!header.program_text.empty()) writer.attach("program.csv", "text/csv", header.program_text);
+  if (!reader.result().empty()) writer.attach("result.json", "application/json", reader.result());
+}
+
+}  // namespace
+
+McapTotals export_mcap(record::RecordingReader& reader, const std::string& name, const Selection& selection,
+                       const std::filesystem::path& path, const McapSettings& settings) {
+  const std::vector<std::size_t> frames = select_frames(reader, name, selection);
+  McapWriter writer(path, settings);
+  Exporter exporter(writer, reader.header());
+  const bool is_whole = selection == Selection{};
+  const std::vector<double>& times = reader.times();
+  const std::vector<record::Event> events =
+      is_whole ? events_within(reader.events(), -1e300, 1e300)
+               : events_within(reader.events(), times[frames.front()], times[frames.back()]);
+  std::size_t next = 0;
+  record::Frame frame;
+  for (const std::size_t index : frames) {
+    reader.read_frame(index, frame);
+    for (; next < events.size() && events[next].time <= frame.time; ++next) exporter.add(events[next]);
+    exporter.add(frame);
+  }
+  for (; next < events.size(); ++next) exporter.add(events[next]);
+  attach_sources(writer, reader, name);
+  writer.close();
+  return {writer.size(), writer.message_count(), frames.size()};
+}
+
+}  // namespace snug::replay

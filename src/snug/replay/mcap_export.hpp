@@ -1,0 +1,24 @@
+// McapExport: a recording as MCAP, with the messages that common robotics viewers draw without further setting.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "snug/replay/mcap_writer.hpp"
+#include "snug/replay/replay.hpp"
+
+namespace snug::replay {
+
+struct McapTotals {
+  std::uint64_t bytes = 0;
+  std::uint64_t messages = 0;
+  std::size_t frames = 0;
+};
+
+/// Topics and messages: docs/formats.md, "MCAP". `name` is that of the recording. Throws InputError for a recording
+/// without such frames, and when `path` cannot be written.
+McapTotals export_mcap(record::RecordingReader& reader, const std::string& name, const Selection& selection,
+                       const std::filesystem::path& path, const McapSettings& settings = {});
+
+}  // namespace snug::replay

@@ -1,0 +1,51 @@
+// McapWriter: MCAP files (mcap.dev, version 0): any messages, indexed, in compressed chunks. It knows nothing of
+// robots.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace snug::replay {
+
+enum class McapCompression : std::uint8_t { None, Zstd };
+
+struct McapSettings {
+  McapCompression compression = McapCompression::Zstd;
+  std::size_t chunk_bytes = std::size_t{1} << 20U;  ///< a chunk is closed when it holds as many, before compression
+};
+
+/// Writes beside `path` and renames on close(), so that a file at `path` is always whole. Every checksum that the
+/// format has is there, and the summary with all indices. Throws InputError naming the path when the file cannot be
+/// written.
+///
+/// Called out of order (a channel that does not exist, a time before the channel's last) it stops the program.
+class McapWriter {
+ public:
+  explicit McapWriter(const std::filesystem::path& path, const McapSettings& settings = {});
+  ~McapWriter();  ///< without close() nothing is left
+  McapWriter(const McapWriter&) = delete;
+  McapWriter& operator=(const McapWriter&) = delete;
+
+  /// A channel of JSON messages that follow `schema` (JSON Schema) of that name; equal names share one schema.
+  std::uint16_t add_channel(const std::string& topic, const std::string& schema_name, const std::string& schema);
+  /// Times in ns, strictly increasing within a channel.
+  void write(std::uint16_t channel, std::uint64_t time_ns, std::string_view message);
+  /// A file within the file.
+  void attach(const std::string& name, const std::string& media_type, std::string_view data);
+  void add_metadata(const std::string& name, const std::map<std::string, std::string>& entries);
+  void close();
+
+  /// Bytes of the file so far.
+  [[nodiscard]] std::uint64_t size() const;
+  [[nodiscard]] std::uint64_t message_count() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace snug::replay
