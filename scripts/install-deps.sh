@@ -10,7 +10,8 @@ set -eu
 
 base="make cmake ninja-build g++ pkg-config ccache python3
   libeigen3-dev libexpected-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libhdf5-dev hdf5-tools libcli11-dev
-  zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev libbenchmark-dev liborocos-kdl-dev libsiconos-numerics-dev chromium"
+  zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev libbenchmark-dev liborocos-kdl-dev libsiconos-numerics-dev chromium
+  libtinyxml2-dev libassimp-dev libceres-dev libkdl-parser-dev"
 node="nodejs npm"                   # unless there is a node of 18 or newer already
 lint="clang-format clang-tidy"      # make check, fix, tidy
 peers="libbullet-dev libmujoco-dev" # make bench-peers

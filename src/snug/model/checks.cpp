@@ -160,7 +160,7 @@ void ScenarioReader::read() {
                              "solver",       "materials", "contacts",   "frames",     "parcel_clearance",
                              "parcel_types", "parcels",   "containers", "target",     "bodies",
                              "aligner",      "tool",      "cup",        "controller", "sequences",
-                             "springs",      "drops"});
+                             "springs",      "drops",     "robot"});
   const auto each = [&map](const char* key, auto&& read_one) {
     if (const auto values = map.find(key))
       for (const Value& value : values->list()) read_one(value);
@@ -177,6 +177,7 @@ void ScenarioReader::read() {
   if (const auto tool = map.find("tool")) read_tool(*tool);
   if (const auto cup = map.find("cup")) read_cup(*cup);
   if (const auto controller = map.find("controller")) read_controller(*controller);
+  if (const auto robot = map.find("robot")) read_robot(*robot);
   each("sequences", [this](const Value& value) { read_sequence(value); });
   each("springs", [this](const Value& value) { read_spring(value); });
   if (const auto drops = map.find("drops")) read_drops(*drops);

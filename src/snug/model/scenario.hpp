@@ -13,6 +13,7 @@
 #include "snug/model/cup_params.hpp"
 #include "snug/model/material.hpp"
 #include "snug/model/parcel.hpp"
+#include "snug/model/robot_params.hpp"
 
 namespace snug::model {
 
@@ -85,6 +86,7 @@ struct Scenario {
   std::optional<ToolParams> tool;
   CupParams cup;
   ControllerParams controller;
+  std::optional<RobotParams> robot;
   std::vector<Sequence> sequences;
   std::vector<Spring> springs;
   std::optional<Drops> drops;

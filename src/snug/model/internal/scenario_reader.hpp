@@ -40,6 +40,8 @@ class ScenarioReader {
   void read_controller(const Value& value);
   void read_sequence(const Value& value);
   [[nodiscard]] Item read_item(const Value& value) const;
+  // read_robot.cpp
+  void read_robot(const Value& value);
   // checks.cpp
   void check_parcel_fits(const Value& value, const Parcel& parcel) const;
   void check_drops_fit(const Value& value, const Drops& drops) const;

@@ -1,0 +1,65 @@
+// Elements of a URDF with the file and line they stand in, and the shapes that their geometry becomes.
+#pragma once
+
+#include <tinyxml2.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "snug/robot/arm.hpp"
+
+namespace snug::robot::internal {
+
+/// What is known about the text being read.
+struct UrdfSource {
+  std::string name;              ///< file or label, for messages
+  std::filesystem::path folder;  ///< where relative mesh paths start
+};
+
+/// One XML element that can complain about itself.
+class Element {
+ public:
+  Element(const tinyxml2::XMLElement* node, const UrdfSource& source, std::string path)
+      : node_(node), source_(&source), path_(std::move(path)) {}
+
+  [[nodiscard]] std::string where() const;
+  /// The path of the element, such as "link 'forearm_link'/collision/geometry".
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const UrdfSource& source() const { return *source_; }
+  [[nodiscard]] std::string tag() const { return node_->Name(); }
+  [[noreturn]] void fail(const std::string& got, const std::string& expected) const;
+
+  /// Children with this tag.
+  [[nodiscard]] std::vector<Element> children(const char* tag) const;
+  [[nodiscard]] std::vector<Element> children() const;
+  [[nodiscard]] bool has(const char* tag) const { return node_->FirstChildElement(tag) != nullptr; }
+  /// The one child with this tag; fails when there is none or more than one.
+  [[nodiscard]] Element child(const char* tag) const;
+  /// Fails when a child's tag is none of these but looks like one of them: a slip would drop it in silence.
+  void check_tags(const std::vector<std::string>& known) const;
+
+  [[nodiscard]] bool has_attribute(const char* key) const { return node_->Attribute(key) != nullptr; }
+  [[nodiscard]] std::string text(const char* key) const;
+  /// Finite; fails when absent.
+  [[nodiscard]] double number(const char* key) const;
+  [[nodiscard]] double number_or(const char* key, double fallback) const;
+  [[nodiscard]] std::vector<double> numbers(const char* key, std::size_t count) const;
+  [[nodiscard]] Vector3 vector3_or(const char* key, const Vector3& fallback) const;
+
+ private:
+  const tinyxml2::XMLElement* node_;
+  const UrdfSource* source_;
+  std::string path_;
+};
+
+/// The <origin> of an element, identity without: rpy about the fixed axes x, y, z.
+[[nodiscard]] Pose read_origin(const Element& element);
+/// Collision shapes of a link, in its frame.
+[[nodiscard]] std::vector<model::PlacedShape> read_shapes(const Element& link);
+/// Points of a mesh file's hull, m, at most geometry::kMaxHullVertices of them; scaled.
+[[nodiscard]] geometry::ConvexHull read_mesh_hull(const Element& mesh);
+/// R = Rz(yaw) Ry(pitch) Rx(roll).
+[[nodiscard]] Matrix3 rpy_rotation(const Vector3& rpy);
+
+}  // namespace snug::robot::internal

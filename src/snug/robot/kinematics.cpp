@@ -1,0 +1,118 @@
+// Kinematics: forward chain, Jacobians, and how near to singular they are.
+#include "snug/robot/kinematics.hpp"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace snug::robot {
+namespace {
+
+/// Rotation by `angle` about a unit axis (Rodrigues); turns about z, all of a usual URDF, cost two products.
+Matrix3 turn(const Vector3& axis, double angle) noexcept {
+  const double s = std::sin(angle);
+  const double c = std::cos(angle);
+  const Vector3 u = (1.0 - c) * axis;
+  Matrix3 R;
+  R << c + u.x() * axis.x(), u.x() * axis.y() - s * axis.z(), u.x() * axis.z() + s * axis.y(),
+      u.y() * axis.x() + s * axis.z(), c + u.y() * axis.y(), u.y() * axis.z() - s * axis.x(),
+      u.z() * axis.x() - s * axis.y(), u.z() * axis.y() + s * axis.x(), c + u.z() * axis.z();
+  return R;
+}
+
+}  // namespace
+
+ArmPose forward(const ArmModel& arm, const JointVector& q) noexcept {
+  ArmPose at;
+  at.X_WS[0] = arm.X_WB;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const Joint& joint = arm.joints[i];
+    const double value = q(static_cast<Eigen::Index>(i));
+    const Pose X_WJ = at.X_WS[i] * joint.X_SJ;
+    at.axis_W[i] = X_WJ.R * joint.axis;
+    if (joint.kind == JointKind::Revolute)
+      at.X_WS[i + 1] = {X_WJ.R * turn(joint.axis, value), X_WJ.p};
+    else
+      at.X_WS[i + 1] = {X_WJ.R, X_WJ.p + value * at.axis_W[i]};
+  }
+  at.X_WE = at.X_WS[arm.joints.size()] * arm.X_SE;
+  return at;
+}
+
+Pose forward_tool(const ArmModel& arm, const JointVector& q) noexcept {
+  Pose X_WS = arm.X_WB;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const Joint& joint = arm.joints[i];
+    const double value = q(static_cast<Eigen::Index>(i));
+    X_WS = X_WS * joint.X_SJ;
+    if (joint.kind == JointKind::Revolute)
+      X_WS.R = X_WS.R * turn(joint.axis, value);
+    else
+      X_WS.p += value * (X_WS.R * joint.axis);
+  }
+  return X_WS * arm.X_SE;
+}
+
+Jacobian point_jacobian(const ArmModel& arm, const ArmPose& at, int segment, const Vector3& p_WQ) noexcept {
+  Jacobian J = Jacobian::Zero(6, arm.joint_count());
+  for (int i = 0; i < segment; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Vector3& axis = at.axis_W[k];
+    if (arm.joints[k].kind == JointKind::Revolute) {
+      J.block<3, 1>(0, i) = axis.cross(p_WQ - at.X_WS[k + 1].p);
+      J.block<3, 1>(3, i) = axis;
+    } else {
+      J.block<3, 1>(0, i) = axis;
+    }
+  }
+  return J;
+}
+
+Jacobian tool_jacobian(const ArmModel& arm, const ArmPose& at) noexcept {
+  return point_jacobian(arm, at, arm.joint_count(), at.X_WE.p);
+}
+
+Vector6 tool_bias_acceleration(const ArmModel& arm, const ArmPose& at, const JointVector& qd) noexcept {
+  // Velocities and bias accelerations of the joint origins, outward; then of E.
+  Vector3 w = Vector3::Zero();
+  Vector3 alpha = Vector3::Zero();
+  Vector3 a = Vector3::Zero();
+  Vector3 origin = at.X_WS[0].p;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const Vector3& axis = at.axis_W[i];
+    const double rate = qd(static_cast<Eigen::Index>(i));
+    const Vector3 r = at.X_WS[i + 1].p - origin;
+    a += alpha.cross(r) + w.cross(w.cross(r));
+    origin = at.X_WS[i + 1].p;
+    if (arm.joints[i].kind == JointKind::Revolute) {
+      alpha += w.cross(axis) * rate;
+      w += axis * rate;
+    } else {
+      a += 2.0 * w.cross(axis) * rate;
+    }
+  }
+  const Vector3 r = at.X_WE.p - origin;
+  a += alpha.cross(r) + w.cross(w.cross(r));
+  return (Vector6() << a, alpha).finished();
+}
+
+Twist segment_twist(const ArmModel& arm, const ArmPose& at, const JointVector& qd, int segment) noexcept {
+  const Vector3& p = at.X_WS[static_cast<std::size_t>(segment)].p;
+  return twist_from(point_jacobian(arm, at, segment, p) * qd);
+}
+
+double singularity_measure(const Jacobian& J_WE, double length) noexcept {
+  // The smallest singular value from J J^T (6 x 6, or J^T J for fewer joints): fixed size, so nothing is allocated.
+  Jacobian scaled = J_WE;
+  scaled.topRows<3>() /= length;
+  if (J_WE.cols() < 6) {
+    const JointMatrix gram = scaled.transpose() * scaled;
+    const Eigen::SelfAdjointEigenSolver<JointMatrix> solver(gram, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
+  }
+  const Matrix6 gram = scaled * scaled.transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(gram, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
+}
+
+}  // namespace snug::robot

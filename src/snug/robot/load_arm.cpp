@@ -1,0 +1,70 @@
+// load_arm: the arm that a scenario names, checked against what the scenario says about it.
+#include "snug/robot/load_arm.hpp"
+
+#include <filesystem>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::robot {
+namespace {
+
+/// Complains about something the scenario says of the arm.
+class ScenarioChecks {
+ public:
+  ScenarioChecks(const model::Scenario& scenario, const ArmModel& arm) : scenario_(scenario), arm_(arm) {
+    for (const Link& link : arm.links) names_.push_back(link.name);
+  }
+
+  void check_link(const std::string& key, const std::string& name) const {
+    if (find_link(arm_, name) >= 0) return;
+    const std::string_view nearest = find_nearest(name, names_);
+    throw InputError(scenario_.source_name, "robot." + key, "'" + name + "'",
+                     nearest.empty()
+                         ? "a link of " + scenario_.robot->urdf
+                         : "a link of " + scenario_.robot->urdf + ", nearest is '" + std::string(nearest) + "'");
+  }
+
+  void check_joints(const std::string& key, const std::vector<double>& q) const {
+    if (q.size() != arm_.joints.size())
+      throw InputError(scenario_.source_name, "robot." + key, std::to_string(q.size()) + " numbers",
+                       std::to_string(arm_.joints.size()) + ", one for each joint of " + scenario_.robot->urdf);
+    for (std::size_t i = 0; i < q.size(); ++i)
+      if (!(arm_.joints[i].lower <= q[i] && q[i] <= arm_.joints[i].upper))
+        throw InputError(scenario_.source_name, "robot." + key, std::to_string(q[i]) + " for " + arm_.joints[i].name,
+                         std::to_string(arm_.joints[i].lower) + " to " + std::to_string(arm_.joints[i].upper));
+  }
+
+ private:
+  const model::Scenario& scenario_;
+  const ArmModel& arm_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+ArmModel load_arm(const model::Scenario& scenario) {
+  if (!scenario.robot)
+    throw InputError(scenario.source_name, "robot", "",
+                     "a 'robot' in the scenario, to run through the joints of an arm");
+  const model::RobotParams& robot = *scenario.robot;
+  std::filesystem::path path = robot.urdf;
+  if (path.is_relative()) path = std::filesystem::path(scenario.source_name).parent_path() / path;
+  ArmModel arm = load_urdf(path, robot.tool_frame);
+  arm.X_WB = robot.X_WB;
+  const ScenarioChecks checks(scenario, arm);
+  checks.check_link("flange_frame", robot.flange_frame);
+  checks.check_link("sensor_frame", robot.sensor_frame);
+  checks.check_joints("posture", robot.posture);
+  if (!robot.joints_start.empty()) checks.check_joints("joints_start", robot.joints_start);
+  for (const model::SelfCollisionPair& pair : robot.self_collision) {
+    checks.check_link("self_collision.links", pair.link_a);
+    checks.check_link("self_collision.links", pair.link_b);
+  }
+  return arm;
+}
+
+JointVector joint_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace snug::robot
