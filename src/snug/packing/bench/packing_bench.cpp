@@ -1,0 +1,103 @@
+// packing_bench: counts and filling degrees of the agents on paper, without executing anything.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "snug/core/rng.hpp"
+#include "snug/packing/agent.hpp"
+
+namespace {
+
+using namespace snug;
+using namespace snug::packing;
+
+struct Options {
+  std::string agent = "contact-aware";
+  int random = 0;
+  double noise = 0.0;
+  int seeds = 1;
+  PackingSettings settings;
+};
+
+struct Outcome {
+  int boxes = 0;
+  double percent = 0.0;
+  double seconds = 0.0;
+  double slowest = 0.0;
+};
+
+Outcome pack(const model::Scenario& scenario, const std::vector<Item>& items, const Options& options) {
+  const auto agent = make_agent(options.agent, {options.settings, make_future_model(scenario), items, {}});
+  ContainerState state = make_container_state(*model::find_container(scenario, scenario.target));
+  Rng rng = Rng(options.settings.seed).split("noise");
+  Outcome outcome;
+  for (const Item& item : items) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto decision = agent->decide(state, item);
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    outcome.seconds += took;
+    outcome.slowest = std::max(outcome.slowest, took);
+    if (!decision) break;
+    Pose X_TP = decision->candidates.front().placement.X_TP;
+    X_TP.p.head<2>() += options.noise * Eigen::Vector2d(rng.normal(), rng.normal());
+    state.boxes.push_back({item, X_TP});
+  }
+  outcome.boxes = static_cast<int>(state.boxes.size());
+  outcome.percent = filling_percent(state);
+  outcome.seconds /= std::max(1, outcome.boxes);
+  return outcome;
+}
+
+std::vector<Item> random_sequence(const model::Scenario& scenario, int seed) {
+  Rng rng = Rng(static_cast<std::uint64_t>(seed)).split("random sequence");
+  std::vector<model::Parcel> left = scenario.parcels;
+  std::vector<Item> items;
+  while (!left.empty()) {
+    const int i = rng.index(static_cast<int>(left.size()));
+    model::Item item;
+    item.parcel = left[static_cast<std::size_t>(i)].id;
+    items.push_back(make_item(scenario, item));
+    left.erase(left.begin() + i);
+  }
+  return items;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string_view key = argv[i];
+    const char* value = argv[i + 1];
+    if (key == "--agent") o.agent = value;
+    if (key == "--random") o.random = std::atoi(value);
+    if (key == "--noise") o.noise = std::atof(value);
+    if (key == "--seeds") o.seeds = std::atoi(value);
+    if (key == "--seed") o.settings.seed = static_cast<std::uint64_t>(std::atoll(value));
+    if (key == "--time") o.settings.decision_time = std::atof(value);
+    if (key == "--threads") o.settings.threads = std::atoi(value);
+    if (key == "--squeeze") o.settings.squeeze = std::atof(value);
+    if (key == "--without") o.settings.without_replacement = std::atoi(value) != 0;
+  }
+  const model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+  for (int s = 0; s < o.seeds; ++s, ++o.settings.seed) {
+    double sum = 0.0, slowest = 0.0, mean_time = 0.0;
+    int count = 0;
+    const int runs = o.random > 0 ? o.random : static_cast<int>(scenario.sequences.size());
+    for (int i = 0; i < runs; ++i) {
+      const std::vector<Item> items = o.random > 0
+                                          ? random_sequence(scenario, i + 1)
+                                          : make_items(scenario, scenario.sequences[static_cast<std::size_t>(i)]);
+      const Outcome r = pack(scenario, items, o);
+      std::printf("%d/%.1f ", r.boxes, r.percent);
+      std::fflush(stdout);
+      sum += r.percent;
+      mean_time += r.seconds;
+      slowest = std::max(slowest, r.slowest);
+      ++count;
+    }
+    std::printf(" mean %.2f  time %.3f slowest %.3f\n", sum / count, mean_time / count, slowest);
+  }
+}

@@ -1,0 +1,128 @@
+// Agent contact-aware: no look-ahead, no clearance, flips; candidates race each other in roll-outs over possible
+// futures.
+#include <algorithm>
+
+#include "snug/core/hash.hpp"
+#include "snug/packing/internal/agents.hpp"
+
+namespace snug::packing::internal {
+
+namespace {
+
+/// Places looked at in one second on one core of the reference machine (2.5 GHz), with everything that a roll-out does
+/// around them: turns a decision time into work, so that a decision does not depend on the clock.
+constexpr double kPlacesPerSecond = 4.0e6;
+constexpr int kEntrants = 64;
+
+Prospect make_prospect(const Planning& planning, const FutureModel& future, const ContainerState& state,
+                       const Item& item) {
+  Prospect prospect;
+  for (std::size_t i = 0; i < future.kinds.size(); ++i) {
+    const Item& kind = future.kinds[i];
+    prospect.kinds.push_back(make_choice(planning, kind).piece);
+    prospect.weights.push_back(future.weights[i]);
+    if (!planning.settings.without_replacement) continue;
+    const auto seen = [&](const Item& other) { return other.id == kind.id; };
+    const bool is_gone = seen(item) || std::any_of(state.boxes.begin(), state.boxes.end(),
+                                                   [&](const PlacedBox& box) { return seen(box.item); });
+    prospect.counts.push_back(is_gone ? 0 : 1);
+  }
+  return prospect;
+}
+
+class ContactAwareAgent : public Agent {
+ public:
+  explicit ContactAwareAgent(AgentInput input) : input_(std::move(input)) {}
+  std::string_view name() const override { return "contact-aware"; }
+
+  Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
+    const PackingSettings& settings = input_.settings;
+    const Planning planning{state.inner_size, settings, settings.max_flips, 0.0, settings.squeeze};
+    const Choice choice = make_choice(planning, item);
+    if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
+    std::vector<Item> kinds = input_.future.kinds;
+    kinds.push_back(item);
+    const Layout layout = to_layout(planning, make_rules(planning, kinds), state);
+    std::vector<Spot> spots;
+    Refusal worst = Refusal::None;
+    layout.find_spots(choice.piece, spots, &worst);
+    if (spots.empty()) return tl::unexpected(reason_of(worst));
+    const Policy policy = make_policy(planning, kinds);
+    return rank(planning, state, item, choice, layout, policy, spots);
+  }
+
+ private:
+  Expected<Decision, NoPlace> rank(const Planning& planning, const ContainerState& state, const Item& item,
+                                   const Choice& choice, const Layout& layout, const Policy& policy,
+                                   const std::vector<Spot>& spots) const {
+    std::vector<std::pair<double, Spot>> liked;
+    for (const Spot& spot : spots) liked.emplace_back(cost(layout, policy, choice.piece, spot), spot);
+    std::stable_sort(liked.begin(), liked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Candidate> candidates;
+    std::vector<Layout> entrants;
+    NoPlace reason = NoPlace::NoStablePlace;
+    for (const auto& [dislike, spot] : liked) {
+      if (entrants.size() >= kEntrants) break;
+      auto candidate = place_item(planning, layout, item, choice, spot, input_.is_reachable);
+      if (!candidate) {
+        reason = candidate.error();
+        continue;
+      }
+      candidate->score = -dislike;
+      candidates.push_back(*candidate);
+      entrants.push_back(layout);
+      entrants.back().add(Layout::block_at(choice.piece, spot));
+    }
+    if (candidates.empty()) return tl::unexpected(reason);
+    return settle_race(planning, state, item, policy, candidates, entrants);
+  }
+
+  Decision settle_race(const Planning& planning, const ContainerState& state, const Item& item, const Policy& policy,
+                       const std::vector<Candidate>& candidates, const std::vector<Layout>& entrants) const {
+    Decision decision;
+    const double room = planning.inner_size.prod();
+    const double filled = 0.01 * filling_percent(state) * room + item.size.prod();
+    RaceSettings settings;
+    settings.seed = input_.settings.seed + 1000003U * state.boxes.size();
+    settings.threads = input_.settings.threads;
+    settings.effort = static_cast<std::int64_t>(input_.settings.decision_time * kPlacesPerSecond);
+    const Prospect prospect = make_prospect(planning, input_.future, state, item);
+    const std::vector<Standing> order =
+        race(entrants, policy, prospect, std::max(0.0, room - filled), settings, &decision.roll_outs);
+    for (const Standing& standing : order) {
+      if (static_cast<int>(decision.candidates.size()) >= input_.settings.max_candidates) break;
+      Candidate candidate = candidates[static_cast<std::size_t>(standing.entrant)];
+      candidate.expected_percent = 100.0 * (filled + standing.mean) / room;
+      candidate.score = candidate.expected_percent;
+      decision.candidates.push_back(candidate);
+    }
+    return decision;
+  }
+
+  AgentInput input_;
+};
+
+}  // namespace
+
+NoPlace reason_of(Refusal worst) {
+  if (worst == Refusal::Load) return NoPlace::OverLoad;
+  return worst == Refusal::Support || worst == Refusal::Balance ? NoPlace::NoStablePlace : NoPlace::NoSpace;
+}
+
+Policy make_policy(const Planning& planning, std::span<const Item> kinds) {
+  std::vector<int> along, up;
+  for (const Item& kind : kinds) {
+    for (int axis = 0; axis < 3; ++axis) {
+      along.push_back(to_ticks(kind.size[axis] - planning.squeeze));
+      up.push_back(to_ticks(kind.size[axis]));
+    }
+  }
+  const int longest = to_ticks(planning.inner_size.head<2>().maxCoeff());
+  return {default_weights(), WasteTable(along, longest), WasteTable(up, to_ticks(planning.inner_size.z()))};
+}
+
+std::unique_ptr<Agent> make_contact_aware_agent(AgentInput input) {
+  return std::make_unique<ContactAwareAgent>(std::move(input));
+}
+
+}  // namespace snug::packing::internal

@@ -1,0 +1,21 @@
+// The agents that make_agent chooses from.
+#pragma once
+
+#include <memory>
+
+#include "snug/packing/agent.hpp"
+#include "snug/packing/internal/convert.hpp"
+#include "snug/packing/internal/policy.hpp"
+#include "snug/packing/internal/roll_out.hpp"
+
+namespace snug::packing::internal {
+
+[[nodiscard]] std::unique_ptr<Agent> make_margin_agent(AgentInput input);
+[[nodiscard]] std::unique_ptr<Agent> make_contact_aware_agent(AgentInput input);
+
+/// Policy for these kinds of items in a container of this size.
+[[nodiscard]] Policy make_policy(const Planning& planning, std::span<const Item> kinds);
+/// Reason for an item for which find_spots had nothing.
+[[nodiscard]] NoPlace reason_of(Refusal worst);
+
+}  // namespace snug::packing::internal

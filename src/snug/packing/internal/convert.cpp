@@ -1,0 +1,177 @@
+// Conversions: rounding to ticks, and from spots back to poses.
+#include "snug/packing/internal/convert.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace snug::packing::internal {
+
+namespace {
+
+/// More tilt than this and a box is seen as all the space around it, rad (6 degrees).
+constexpr double kUprightTilt = 0.105;
+/// m: neighbours nearer to the rim of a side than this count for `side_height`.
+constexpr double kBeside = 0.060;
+
+int to_grams(double mass) { return static_cast<int>(std::lround(std::clamp(mass * 1000.0, 0.0, 1.0e9))); }
+
+int capacity(const Item& item) {
+  if (item.no_stack) return 0;
+  return item.max_load ? to_grams(*item.max_load) : Block::kNoLimit;
+}
+
+void look_beside(const Planning& planning, const Layout& layout, const Block& me, Candidate& candidate) {
+  const Rules& rules = layout.rules();
+  std::array<int, 4> gap = {me.x1, rules.size_x - me.x2, me.y1, rules.size_y - me.y2};
+  std::array<int, 4> height{};
+  const int near = to_ticks(kBeside);
+  for (std::size_t side = 0; side < 4; ++side) height[side] = gap[side] <= near ? rules.size_z - me.z1 : 0;
+  for (const Block& b : layout.blocks()) {
+    const int ox = std::min(me.x2, b.x2) - std::max(me.x1, b.x1);
+    const int oy = std::min(me.y2, b.y2) - std::max(me.y1, b.y1);
+    if (b.z2 <= me.z1 || (ox > 0) == (oy > 0)) continue;
+    const std::size_t side = oy > 0 ? (b.x1 < me.x1 ? 0U : 1U) : (b.y1 < me.y1 ? 2U : 3U);
+    const int free = oy > 0 ? -ox : -oy;
+    gap[side] = std::min(gap[side], free);
+    if (free <= near) height[side] = std::max(height[side], b.z2 - me.z1);
+  }
+  // Ticks are of squeezed boxes: the measured ones have half a squeeze less to the wall and a whole one to a box.
+  for (std::size_t side = 0; side < 4; ++side) {
+    candidate.side_gap[side] = gap[side] / kTicksPerMetre - planning.squeeze;
+    candidate.side_height[side] = height[side] / kTicksPerMetre;
+  }
+}
+
+}  // namespace
+
+int to_ticks(double metres) {
+  return static_cast<int>(std::lround(std::clamp(metres, -100.0, 100.0) * kTicksPerMetre));
+}
+
+Rules make_rules(const Planning& planning, std::span<const Item> kinds) {
+  const PackingSettings& s = planning.settings;
+  Rules rules;
+  rules.size_x = to_ticks(planning.inner_size.x());
+  rules.size_y = to_ticks(planning.inner_size.y());
+  rules.size_z = to_ticks(planning.inner_size.z());
+  rules.margin = to_ticks(planning.margin);
+  rules.min_support = s.min_support;
+  rules.com_margin = to_ticks(s.com_margin);
+  rules.level_slack = to_ticks(s.level_slack);
+  int smallest = std::numeric_limits<int>::max();
+  for (const Item& kind : kinds) smallest = std::min(smallest, to_ticks(kind.size.minCoeff() - planning.squeeze));
+  if (!kinds.empty()) {
+    rules.min_side = std::max(1, smallest);
+    rules.min_height = std::max(1, smallest);
+  }
+  return rules;
+}
+
+Block to_block(const Planning& planning, const PlacedBox& box) {
+  const Extent around = bounding_extent(box);
+  Extent seen = around;
+  if (tilt(box) <= kUprightTilt) {
+    // A corner that sticks out by the tilt can be pushed back half of it, and tops are met half way.
+    const Extent upright = upright_extent(box);
+    seen.low = 0.5 * (upright.low + around.low);
+    seen.high = 0.5 * (upright.high + around.high);
+  }
+  const double squeeze = 0.5 * planning.squeeze;
+  Block block;
+  block.x1 = to_ticks(seen.low.x() + 0.5 * planning.inner_size.x() + squeeze);
+  block.y1 = to_ticks(seen.low.y() + 0.5 * planning.inner_size.y() + squeeze);
+  block.z1 = to_ticks(seen.low.z());
+  block.x2 = std::max(block.x1 + 1, to_ticks(seen.high.x() + 0.5 * planning.inner_size.x() - squeeze));
+  block.y2 = std::max(block.y1 + 1, to_ticks(seen.high.y() + 0.5 * planning.inner_size.y() - squeeze));
+  block.z2 = std::max(block.z1 + 1, to_ticks(seen.high.z()));
+  block.mass = to_grams(box.item.mass);
+  block.capacity = capacity(box.item);
+  return block;
+}
+
+Layout to_layout(const Planning& planning, const Rules& rules, const ContainerState& state) {
+  Layout layout(rules);
+  // From below: what rests on a box has to come after it.
+  std::vector<Block> blocks;
+  for (const PlacedBox& box : state.boxes) blocks.push_back(to_block(planning, box));
+  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.z1 < b.z1; });
+  for (const Block& block : blocks) layout.add(block);
+  return layout;
+}
+
+Choice make_choice(const Planning& planning, const Item& item) {
+  const PackingSettings& s = planning.settings;
+  Choice choice;
+  choice.piece.mass = to_grams(item.mass);
+  choice.piece.capacity = capacity(item);
+  choice.piece.volume = item.size.prod();
+  const int squeeze = to_ticks(planning.squeeze);
+  for (const Orientation& orientation : allowed_orientations(item, planning.max_flips, true)) {
+    const Vector3 e = extents(orientation, item.size);
+    const double breadth = std::min(e.x(), e.y());
+    if (breadth < s.min_pick_face || breadth < s.min_slenderness * e.z()) continue;
+    Stance stance;
+    stance.width = std::max(1, to_ticks(e.x()) - squeeze);
+    stance.depth = std::max(1, to_ticks(e.y()) - squeeze);
+    stance.height = to_ticks(e.z());
+    const auto known = std::find(choice.piece.stances.begin(), choice.piece.stances.end(), stance);
+    if (known != choice.piece.stances.end()) {
+      choice.orientations[static_cast<std::size_t>(known - choice.piece.stances.begin())].push_back(orientation);
+    } else {
+      choice.piece.stances.push_back(stance);
+      choice.orientations.push_back({orientation});
+    }
+  }
+  return choice;
+}
+
+std::optional<NoPlace> refuse(const Planning& planning, const Item& item, const Choice& choice) {
+  if (item.mass > planning.settings.max_item_mass) return NoPlace::TooHeavy;
+  const double free_x = planning.inner_size.x() - 2.0 * planning.margin + planning.squeeze;
+  const double free_y = planning.inner_size.y() - 2.0 * planning.margin + planning.squeeze;
+  bool fits = false;
+  for (const Orientation& orientation : allowed_orientations(item, planning.max_flips, true)) {
+    const Vector3 e = extents(orientation, item.size);
+    fits |= e.x() <= free_x && e.y() <= free_y && e.z() <= planning.inner_size.z();
+  }
+  if (!fits) return NoPlace::TooBig;
+  if (choice.piece.stances.empty()) return NoPlace::NotPickable;
+  return std::nullopt;
+}
+
+Expected<Candidate, NoPlace> place_item(const Planning& planning, const Layout& layout, const Item& item,
+                                        const Choice& choice, const Spot& spot,
+                                        const std::function<bool(const Placement&)>& is_reachable) {
+  std::vector<Orientation> ways = choice.orientations[static_cast<std::size_t>(spot.stance)];
+  std::stable_sort(ways.begin(), ways.end(), [&](const Orientation& a, const Orientation& b) {
+    return count_flips(item.arrival, a) < count_flips(item.arrival, b);
+  });
+  Piece piece = choice.piece;
+  Stance& stance = piece.stances[static_cast<std::size_t>(spot.stance)];
+  NoPlace reason = NoPlace::NoStablePlace;
+  for (const Orientation& way : ways) {
+    const Matrix3 R_TP = rotation(way);
+    const Vector3 com = R_TP * item.com;
+    stance.com_x = to_ticks(com.x());
+    stance.com_y = to_ticks(com.y());
+    Spot settled;
+    if (layout.settle(piece, spot.stance, spot.x, spot.y, settled) != Refusal::None) continue;
+    const Block me = Layout::block_at(piece, settled);
+    Candidate candidate;
+    candidate.placement.item = item.id;
+    candidate.placement.orientation = way;
+    candidate.placement.flips = count_flips(item.arrival, way);
+    candidate.placement.X_TP.R = R_TP;
+    candidate.placement.X_TP.p =
+        Vector3(0.5 * (me.x1 + me.x2), 0.5 * (me.y1 + me.y2), 0.5 * (me.z1 + me.z2)) / kTicksPerMetre -
+        Vector3(0.5 * planning.inner_size.x(), 0.5 * planning.inner_size.y(), 0.0);
+    candidate.support = settled.support;
+    look_beside(planning, layout, me, candidate);
+    if (!is_reachable || is_reachable(candidate.placement)) return candidate;
+    reason = NoPlace::NotReachable;
+  }
+  return tl::unexpected(reason);
+}
+
+}  // namespace snug::packing::internal

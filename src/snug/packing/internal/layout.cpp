@@ -1,0 +1,285 @@
+// Layout: maximal spaces open to the top at every level, kept as boxes come in.
+#include "snug/packing/internal/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace snug::packing::internal {
+
+namespace {
+
+bool overlaps(const Rectangle& a, const Rectangle& b) {
+  return a.x1 < b.x2 && b.x1 < a.x2 && a.y1 < b.y2 && b.y1 < a.y2;
+}
+
+bool contains(const Rectangle& outer, const Rectangle& inner) {
+  return outer.x1 <= inner.x1 && outer.y1 <= inner.y1 && outer.x2 >= inner.x2 && outer.y2 >= inner.y2;
+}
+
+Rectangle footprint(const Block& b) { return {b.x1, b.y1, b.x2, b.y2}; }
+
+int shared_area(const Rectangle& a, const Block& b) {
+  const int ox = std::min(a.x2, b.x2) - std::max(a.x1, b.x1);
+  const int oy = std::min(a.y2, b.y2) - std::max(a.y1, b.y1);
+  return ox > 0 && oy > 0 ? ox * oy : 0;
+}
+
+/// Levels are whole millimetres, rounded up: boxes that were looked at stand at any height.
+int level_of(int top) { return (top + kTicksPerMillimetre - 1) / kTicksPerMillimetre * kTicksPerMillimetre; }
+
+struct Point {
+  double x, y;
+};
+
+double turn(const Point& a, const Point& b, const Point& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// Counter-clockwise hull by Andrew's monotone chain.
+std::vector<Point> convex_hull(std::vector<Point> points) {
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
+  std::vector<Point> hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t start = hull.size();
+    for (const Point& p : points) {
+      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), p) <= 0.0) hull.pop_back();
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+}  // namespace
+
+Layout::Layout(const Rules& rules) : rules_(rules) {
+  spaces_.push_back({0, {0, 0, rules.size_x, rules.size_y}, true});
+  levels_.push_back(0);
+}
+
+Block Layout::block_at(const Piece& piece, const Spot& spot) {
+  const Stance& s = piece.stances[static_cast<std::size_t>(spot.stance)];
+  return {spot.x, spot.y, spot.z, spot.x + s.width, spot.y + s.depth, spot.z + s.height, piece.mass, piece.capacity};
+}
+
+void Layout::add(const Block& block) {
+  double below = 0.0;
+  const Rectangle face = footprint(block);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const double area = static_cast<double>(blocks_[i].x2 - blocks_[i].x1) * (blocks_[i].y2 - blocks_[i].y1);
+    below += columns_[i] * shared_area(face, blocks_[i]) / area;
+  }
+  const double area = static_cast<double>(face.x2 - face.x1) * (face.y2 - face.y1);
+  columns_.push_back(std::max(0.0, area * block.z2 - below));
+  blocks_.push_back(block);
+  if (block.capacity != Block::kNoLimit && !has_limits_) {
+    has_limits_ = true;
+    loads_.assign(blocks_.size() - 1, 0.0);
+  }
+  if (has_limits_) {
+    loads_.push_back(0.0);
+    add_load(blocks_.size() - 1, block.mass);
+  }
+  const int margin = rules_.margin;
+  split_spaces({face.x1 - margin, face.y1 - margin, face.x2 + margin, face.y2 + margin}, block.z2);
+  const int level = level_of(block.z2);
+  if (level + rules_.min_height > rules_.size_z) return;
+  for (Space& space : spaces_) {
+    if (space.level >= block.z2 && space.level - block.z2 <= rules_.level_slack && overlaps(space.area, face)) {
+      space.supported = true;
+    }
+  }
+  if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) open_level(level);
+}
+
+void Layout::cut(std::vector<Rectangle>& areas, const Rectangle& hole) const {
+  std::vector<Rectangle> fresh;
+  std::size_t kept = 0;
+  const int side = std::max(1, rules_.min_side);
+  for (const Rectangle& a : areas) {
+    if (!overlaps(a, hole)) {
+      areas[kept++] = a;
+      continue;
+    }
+    if (hole.x1 - a.x1 >= side) fresh.push_back({a.x1, a.y1, hole.x1, a.y2});
+    if (a.x2 - hole.x2 >= side) fresh.push_back({hole.x2, a.y1, a.x2, a.y2});
+    if (hole.y1 - a.y1 >= side) fresh.push_back({a.x1, a.y1, a.x2, hole.y1});
+    if (a.y2 - hole.y2 >= side) fresh.push_back({a.x1, hole.y2, a.x2, a.y2});
+  }
+  areas.resize(kept);
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    bool inside = false;
+    for (std::size_t j = 0; j < kept && !inside; ++j) inside = contains(areas[j], fresh[i]);
+    for (std::size_t j = 0; j < fresh.size() && !inside; ++j) {
+      inside = j != i && contains(fresh[j], fresh[i]) && (fresh[j] != fresh[i] || j < i);
+    }
+    if (!inside) areas.push_back(fresh[i]);
+  }
+}
+
+void Layout::split_spaces(const Rectangle& hole, int top) {
+  // Spaces of one level stand together, in the order of levels_.
+  std::vector<Space> all;
+  all.reserve(spaces_.size() + 8);
+  std::vector<Rectangle> areas;
+  for (std::size_t begin = 0; begin < spaces_.size();) {
+    std::size_t end = begin;
+    bool touched = false;
+    const int level = spaces_[begin].level;
+    for (; end < spaces_.size() && spaces_[end].level == level; ++end) touched |= overlaps(spaces_[end].area, hole);
+    if (level >= top || !touched) {
+      all.insert(all.end(), spaces_.begin() + static_cast<std::ptrdiff_t>(begin),
+                 spaces_.begin() + static_cast<std::ptrdiff_t>(end));
+    } else {
+      areas.clear();
+      for (std::size_t i = begin; i < end; ++i) areas.push_back(spaces_[i].area);
+      cut(areas, hole);
+      for (const Rectangle& area : areas) all.push_back({level, area, is_supported(level, area)});
+    }
+    begin = end;
+  }
+  spaces_.swap(all);
+}
+
+void Layout::open_level(int level) {
+  levels_.push_back(level);
+  std::vector<Rectangle> areas{{0, 0, rules_.size_x, rules_.size_y}};
+  const int m = rules_.margin;
+  for (const Block& b : blocks_) {
+    if (b.z2 > level) cut(areas, {b.x1 - m, b.y1 - m, b.x2 + m, b.y2 + m});
+  }
+  for (const Rectangle& area : areas) spaces_.push_back({level, area, is_supported(level, area)});
+}
+
+bool Layout::is_supported(int level, const Rectangle& area) const {
+  if (level == 0) return true;
+  return std::any_of(blocks_.begin(), blocks_.end(), [&](const Block& b) {
+    return b.z2 <= level && level - b.z2 <= rules_.level_slack && overlaps(area, footprint(b));
+  });
+}
+
+Refusal Layout::settle(const Piece& piece, int stance, int x, int y, Spot& spot) const {
+  const Stance& s = piece.stances[static_cast<std::size_t>(stance)];
+  const Rectangle face{x, y, x + s.width, y + s.depth};
+  const int margin = rules_.margin;
+  if (x < margin || y < margin || face.x2 > rules_.size_x - margin || face.y2 > rules_.size_y - margin)
+    return Refusal::Outside;
+  const Rectangle wide{x - margin, y - margin, face.x2 + margin, face.y2 + margin};
+  int base = 0;
+  for (const Block& b : blocks_) {
+    if (overlaps(wide, footprint(b))) base = std::max(base, b.z2);
+  }
+  if (base + s.height > rules_.size_z) return Refusal::Height;
+  double support = 1.0;
+  if (base > 0) {
+    int held = 0;
+    for (const Block& b : blocks_) {
+      if (b.z2 <= base && base - b.z2 <= rules_.level_slack) held += shared_area(face, b);
+    }
+    support = static_cast<double>(held) / (static_cast<double>(s.width) * s.depth);
+  }
+  spot = {x, y, base, stance, support};
+  if (support < rules_.min_support) return Refusal::Support;
+  if (base > 0 && !is_balanced(face, base, x + s.width / 2 + s.com_x, y + s.depth / 2 + s.com_y))
+    return Refusal::Balance;
+  if (has_limits_ && base > 0 && !carries(face, base, piece.mass)) return Refusal::Load;
+  return Refusal::None;
+}
+
+bool Layout::is_balanced(const Rectangle& face, int base, int com_x, int com_y) const {
+  if (rules_.min_support <= 0.0) return true;
+  const int m = rules_.com_margin;
+  std::vector<Point> corners;
+  for (const Block& b : blocks_) {
+    if (b.z2 > base || base - b.z2 > rules_.level_slack || shared_area(face, b) == 0) continue;
+    const Rectangle r{std::max(face.x1, b.x1), std::max(face.y1, b.y1), std::min(face.x2, b.x2),
+                      std::min(face.y2, b.y2)};
+    if (com_x - m >= r.x1 && com_x + m <= r.x2 && com_y - m >= r.y1 && com_y + m <= r.y2) return true;
+    for (const int cx : {r.x1, r.x2}) {
+      for (const int cy : {r.y1, r.y2}) corners.push_back({static_cast<double>(cx), static_cast<double>(cy)});
+    }
+  }
+  if (corners.size() <= 4) return false;
+  const std::vector<Point> hull = convex_hull(std::move(corners));
+  const Point com{static_cast<double>(com_x), static_cast<double>(com_y)};
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Point& a = hull[i];
+    const Point& b = hull[(i + 1) % hull.size()];
+    if (turn(a, b, com) < m * std::hypot(b.x - a.x, b.y - a.y)) return false;
+  }
+  return true;
+}
+
+bool Layout::carries(const Rectangle& face, int base, int mass) const {
+  // As a block on trial: the loads that it would add, all the way down.
+  Layout trial(rules_);
+  trial.has_limits_ = true;
+  trial.blocks_ = blocks_;
+  trial.loads_ = loads_;
+  trial.blocks_.push_back({face.x1, face.y1, base, face.x2, face.y2, base + 1, mass});
+  trial.loads_.push_back(0.0);
+  trial.add_load(blocks_.size(), mass);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (trial.loads_[i] > loads_[i] && trial.loads_[i] > blocks_[i].capacity) return false;
+  }
+  return true;
+}
+
+void Layout::add_load(std::size_t upper, double mass) {
+  const Block& top = blocks_[upper];
+  const Rectangle face = footprint(top);
+  const auto rests_on = [&](const Block& b) { return b.z2 <= top.z1 && top.z1 - b.z2 <= rules_.level_slack; };
+  double total = 0.0;
+  for (std::size_t i = 0; i < upper; ++i) total += rests_on(blocks_[i]) ? shared_area(face, blocks_[i]) : 0;
+  if (total <= 0.0) return;
+  for (std::size_t i = 0; i < upper; ++i) {
+    const int shared = rests_on(blocks_[i]) ? shared_area(face, blocks_[i]) : 0;
+    if (shared == 0) continue;
+    loads_[i] += mass * shared / total;
+    add_load(i, mass * shared / total);
+  }
+}
+
+int Layout::find_spots(const Piece& piece, std::vector<Spot>& spots, Refusal* worst) const {
+  spots.clear();
+  int looked_at = 0;
+  Spot spot;
+  const auto try_at = [&](int stance, int x, int y) {
+    ++looked_at;
+    const Refusal refusal = settle(piece, stance, x, y, spot);
+    if (worst != nullptr && refusal != Refusal::None) *worst = std::max(*worst, refusal);
+    if (refusal != Refusal::None) return;
+    for (const Spot& known : spots) {
+      if (known.x == x && known.y == y && known.stance == stance) return;
+    }
+    spots.push_back(spot);
+  };
+  const int m = rules_.margin;
+  for (int stance = 0; stance < static_cast<int>(piece.stances.size()); ++stance) {
+    const Stance& s = piece.stances[static_cast<std::size_t>(stance)];
+    for (const Space& space : spaces_) {
+      const Rectangle& a = space.area;
+      if (!space.supported || space.level + s.height > rules_.size_z) continue;
+      // Spaces reach to the walls, boxes have grown by the margin: the margin to walls comes here.
+      const int x1 = std::max(a.x1, m), y1 = std::max(a.y1, m);
+      const int x2 = std::min(a.x2, rules_.size_x - m) - s.width, y2 = std::min(a.y2, rules_.size_y - m) - s.depth;
+      if (x2 < x1 || y2 < y1) continue;
+      try_at(stance, x1, y1);
+      if (y2 > y1) try_at(stance, x1, y2);
+      if (x2 > x1) try_at(stance, x2, y1);
+      if (x2 > x1 && y2 > y1) try_at(stance, x2, y2);
+    }
+    for (const Block& b : blocks_) {
+      if (b.z2 + s.height > rules_.size_z) continue;
+      for (const int x : {b.x1, b.x2 - s.width}) {
+        for (const int y : {b.y1, b.y2 - s.depth}) try_at(stance, x, y);
+      }
+    }
+  }
+  return looked_at;
+}
+
+}  // namespace snug::packing::internal

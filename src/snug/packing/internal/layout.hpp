@@ -1,0 +1,110 @@
+// Layout: exact boxes in a container as integers, and every corner into which the next one can be lowered.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace snug::packing::internal {
+
+/// Lengths are integers in tenths of a millimetre: sums are exact and equal on every machine. Origin: the corner of the
+/// inner floor where Tx and Ty are smallest.
+inline constexpr int kTick = 1;
+inline constexpr int kTicksPerMillimetre = 10;
+inline constexpr double kTicksPerMetre = 10000.0;
+
+struct Rectangle {
+  int x1 = 0, y1 = 0, x2 = 0, y2 = 0;
+  bool operator==(const Rectangle&) const = default;
+};
+
+/// An upright box that stands in the container.
+struct Block {
+  int x1 = 0, y1 = 0, z1 = 0, x2 = 0, y2 = 0, z2 = 0;
+  int mass = 0;             ///< g
+  int capacity = kNoLimit;  ///< g that may rest on it
+  static constexpr int kNoLimit = 1 << 30;
+  bool operator==(const Block&) const = default;
+};
+
+/// One way in which a piece can stand.
+struct Stance {
+  int width = 0, depth = 0, height = 0;  ///< along Tx, Ty, Tz
+  int com_x = 0, com_y = 0;              ///< from the middle
+  int tag = 0;                           ///< the caller's, for example an index of orientations
+  bool operator==(const Stance&) const = default;
+};
+
+struct Piece {
+  std::vector<Stance> stances;
+  int mass = 0;                    ///< g
+  int capacity = Block::kNoLimit;  ///< g that may rest on it
+  double volume = 0.0;             ///< m^3, as measured
+  bool operator==(const Piece&) const = default;
+};
+
+struct Rules {
+  int size_x = 0, size_y = 0, size_z = 0;
+  int margin = 0;            ///< kept to boxes and walls
+  double min_support = 0.6;  ///< part of the lower face
+  int com_margin = 50;
+  int level_slack = 30;  ///< tops that differ by less carry a box together
+  int min_side = 0;      ///< narrower spaces are of no use
+  int min_height = 0;
+  bool operator==(const Rules&) const = default;
+};
+
+/// A piece lowered at a place. Margins are not part of it.
+struct Spot {
+  int x = 0, y = 0, z = 0;
+  int stance = 0;        ///< index
+  double support = 0.0;  ///< part of the lower face
+  bool operator==(const Spot&) const = default;
+};
+
+enum class Refusal { None, Outside, Height, Support, Balance, Load };
+
+class Layout {
+ public:
+  explicit Layout(const Rules& rules);
+
+  void add(const Block& block);
+  /// The block that a piece becomes at a spot.
+  [[nodiscard]] static Block block_at(const Piece& piece, const Spot& spot);
+
+  /// Lowers a stance at (x, y) until it rests. Fills the spot also when it is refused for what comes after Height.
+  [[nodiscard]] Refusal settle(const Piece& piece, int stance, int x, int y, Spot& spot) const;
+
+  /// Corners into which the piece can be lowered, each once, in a fixed order; returns how many were looked at.
+  /// `worst` tells how far the best of the refused ones came.
+  int find_spots(const Piece& piece, std::vector<Spot>& spots, Refusal* worst = nullptr) const;
+
+  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  [[nodiscard]] const Rules& rules() const { return rules_; }
+  /// Volume under each block that nothing can fill any more, ticks^3; parallel to blocks().
+  [[nodiscard]] const std::vector<double>& columns() const { return columns_; }
+
+ private:
+  struct Space {
+    int level = 0;
+    Rectangle area;
+    bool supported = false;
+  };
+
+  void split_spaces(const Rectangle& hole, int top);
+  void open_level(int level);
+  void cut(std::vector<Rectangle>& areas, const Rectangle& hole) const;
+  [[nodiscard]] bool is_supported(int level, const Rectangle& area) const;
+  [[nodiscard]] bool is_balanced(const Rectangle& face, int base, int com_x, int com_y) const;
+  [[nodiscard]] bool carries(const Rectangle& face, int base, int mass) const;
+  void add_load(std::size_t upper, double mass);
+
+  Rules rules_;
+  std::vector<Block> blocks_;
+  std::vector<double> columns_;
+  std::vector<double> loads_;  ///< g on each block; kept only when a block has a limit
+  bool has_limits_ = false;
+  std::vector<Space> spaces_;
+  std::vector<int> levels_;
+};
+
+}  // namespace snug::packing::internal

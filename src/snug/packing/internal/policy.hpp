@@ -1,0 +1,39 @@
+// Policy: a quick opinion on where a piece should go, for roll-outs and for putting candidates in a first order.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "snug/packing/internal/layout.hpp"
+
+namespace snug::packing::internal {
+
+/// What is seen of a piece at a spot, each as a volume in parts of the container's (or a plain ratio).
+enum Feature { Base, Top, Buried, SideWaste, HeightWaste, Contact, Flush, Support, Footprint, Sliver, kFeatureCount };
+using Features = std::array<double, kFeatureCount>;
+/// Added up with these; lower is better. Found as docs/theory/packing.md says.
+using Weights = std::array<double, kFeatureCount>;
+
+[[nodiscard]] Weights default_weights();
+
+/// What is left of a length when it is filled as well as sums of these lengths can: one entry a millimetre.
+class WasteTable {
+ public:
+  WasteTable(const std::vector<int>& lengths, int longest);
+  /// In ticks, for a length in ticks.
+  [[nodiscard]] int waste(int length) const;
+
+ private:
+  std::vector<int> waste_;
+};
+
+struct Policy {
+  Weights weights = default_weights();
+  WasteTable sides;
+  WasteTable heights;
+};
+
+[[nodiscard]] Features see(const Layout& layout, const Policy& policy, const Piece& piece, const Spot& spot);
+[[nodiscard]] double cost(const Layout& layout, const Policy& policy, const Piece& piece, const Spot& spot);
+
+}  // namespace snug::packing::internal

@@ -1,0 +1,153 @@
+// Roll-outs and the race between candidates.
+#include "snug/packing/internal/roll_out.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <string>
+#include <thread>
+
+namespace snug::packing::internal {
+
+namespace {
+
+/// Draws an index by weight; -1 when no weight is left.
+int draw(const std::vector<double>& weights, Rng& rng) {
+  const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (total <= 0.0) return -1;
+  double at = rng.uniform() * total;
+  int last = -1;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] <= 0.0) continue;
+    last = static_cast<int>(i);
+    at -= weights[i];
+    if (at < 0.0) return last;
+  }
+  return last;
+}
+
+/// Calls job(0 .. count-1, thread) on several threads; jobs write to their own slots.
+void share_out(int count, int threads, const std::function<void(int, int)>& job) {
+  if (threads <= 1 || count <= 1) {
+    for (int i = 0; i < count; ++i) job(i, 0);
+    return;
+  }
+  std::atomic<int> next{0};
+  std::vector<std::thread> crew;
+  for (int t = 0; t < threads; ++t) {
+    crew.emplace_back([&, t] {
+      for (int i = next++; i < count; i = next++) job(i, t);
+    });
+  }
+  for (std::thread& worker : crew) worker.join();
+}
+
+/// One heat: every entrant that is left meets the same futures.
+struct Heat {
+  const std::vector<Layout>& entrants;
+  const Policy& policy;
+  const Prospect& prospect;
+  int threads;
+  std::vector<RollOutWork> work;
+
+  void run(std::vector<Standing>& field, const std::vector<Future>& futures) {
+    const int per = static_cast<int>(futures.size());
+    const int count = static_cast<int>(field.size()) * per;
+    std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
+    share_out(count, threads, [&](int job, int thread) {
+      const Standing& standing = field[static_cast<std::size_t>(job / per)];
+      volume[static_cast<std::size_t>(job)] =
+          roll_out(entrants[static_cast<std::size_t>(standing.entrant)], policy, prospect,
+                   futures[static_cast<std::size_t>(job % per)], work[static_cast<std::size_t>(thread)]);
+    });
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      double sum = field[i].mean * field[i].roll_outs;
+      for (int j = 0; j < per; ++j) sum += volume[i * static_cast<std::size_t>(per) + static_cast<std::size_t>(j)];
+      field[i].roll_outs += per;
+      field[i].mean = sum / field[i].roll_outs;
+    }
+  }
+
+  [[nodiscard]] std::int64_t effort() const {
+    return std::accumulate(work.begin(), work.end(), std::int64_t{0},
+                           [](std::int64_t sum, const RollOutWork& w) { return sum + w.looked_at; });
+  }
+};
+
+}  // namespace
+
+Future draw_future(const Prospect& prospect, double volume, Rng& rng) {
+  Future future;
+  std::vector<double> weights = prospect.weights;
+  std::vector<int> left = prospect.counts;
+  while (volume > 0.0 && future.size() < 1000) {
+    for (std::size_t i = 0; i < left.size(); ++i) weights[i] = left[i];
+    const int kind = draw(weights, rng);
+    if (kind < 0) break;
+    if (!left.empty()) --left[static_cast<std::size_t>(kind)];
+    future.push_back(kind);
+    volume -= prospect.kinds[static_cast<std::size_t>(kind)].volume;
+  }
+  return future;
+}
+
+bool choose(const Layout& layout, const Policy& policy, const Piece& piece, RollOutWork& work, Spot& best) {
+  work.looked_at += layout.find_spots(piece, work.spots);
+  double lowest = 0.0;
+  bool found = false;
+  for (const Spot& spot : work.spots) {
+    const double c = cost(layout, policy, piece, spot);
+    if (found && c >= lowest) continue;
+    lowest = c;
+    best = spot;
+    found = true;
+  }
+  return found;
+}
+
+double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future,
+                RollOutWork& work) {
+  double volume = 0.0;
+  Spot spot;
+  for (const int kind : future) {
+    const Piece& piece = prospect.kinds[static_cast<std::size_t>(kind)];
+    if (!choose(layout, policy, piece, work, spot)) break;
+    layout.add(Layout::block_at(piece, spot));
+    volume += piece.volume;
+  }
+  return volume;
+}
+
+std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& policy, const Prospect& prospect,
+                           double free_volume, const RaceSettings& settings, std::int64_t* roll_outs) {
+  std::vector<Standing> field(entrants.size());
+  for (std::size_t i = 0; i < field.size(); ++i) field[i].entrant = static_cast<int>(i);
+  const int threads = std::max(1, settings.threads);
+  Heat heat{entrants, policy, prospect, threads, std::vector<RollOutWork>(static_cast<std::size_t>(threads))};
+  Rng rng = Rng(settings.seed).split("futures");
+  std::size_t left = field.size();
+  int rounds = 1;
+  for (std::size_t n = field.size(); n > 2; n = (n + 1) / 2) ++rounds;
+  int futures = settings.first_futures;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Future> drawn;
+    for (int i = 0; i < futures; ++i) drawn.push_back(draw_future(prospect, free_volume, rng));
+    std::vector<Standing> running(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(left));
+    const std::int64_t before = heat.effort();
+    heat.run(running, drawn);
+    if (roll_outs != nullptr) *roll_outs += static_cast<std::int64_t>(running.size()) * futures;
+    std::stable_sort(running.begin(), running.end(),
+                     [](const Standing& a, const Standing& b) { return a.mean > b.mean; });
+    std::copy(running.begin(), running.end(), field.begin());
+    // What a roll-out costs now decides how many the next round affords.
+    const double each = static_cast<double>(heat.effort() - before) / (static_cast<double>(running.size()) * futures);
+    const double rest = static_cast<double>(settings.effort - heat.effort()) / (rounds - round - 1.0);
+    left = std::max<std::size_t>(2, (left + 1) / 2);
+    left = std::min(left, field.size());
+    if (round + 1 == rounds || rest <= 0.0) break;
+    futures = std::clamp(static_cast<int>(rest / (std::max(1.0, each) * static_cast<double>(left))), 1, 5000);
+  }
+  return field;
+}
+
+}  // namespace snug::packing::internal

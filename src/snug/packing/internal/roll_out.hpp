@@ -1,0 +1,59 @@
+// Roll-outs: what becomes of a layout when the items to come are placed by the policy.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "snug/core/rng.hpp"
+#include "snug/packing/internal/layout.hpp"
+#include "snug/packing/internal/policy.hpp"
+
+namespace snug::packing::internal {
+
+/// What may come.
+struct Prospect {
+  std::vector<Piece> kinds;
+  std::vector<double> weights;
+  std::vector<int> counts;  ///< of each kind that are left, when they are drawn without replacement; else empty
+};
+
+using Future = std::vector<int>;  ///< indices of kinds, in the order in which they come
+
+/// Enough items to fill `volume` m^3; fewer where no more are left.
+[[nodiscard]] Future draw_future(const Prospect& prospect, double volume, Rng& rng);
+
+/// Scratch of one thread.
+struct RollOutWork {
+  std::vector<Spot> spots;
+  std::int64_t looked_at = 0;  ///< places, in all roll-outs: the unit in which effort is counted
+};
+
+/// The spot that the policy likes best; false when there is none.
+[[nodiscard]] bool choose(const Layout& layout, const Policy& policy, const Piece& piece, RollOutWork& work,
+                          Spot& best);
+
+/// Volume in m^3 that gets in before the first item that does not fit.
+[[nodiscard]] double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future,
+                              RollOutWork& work);
+
+struct RaceSettings {
+  std::uint64_t seed = 1;
+  int threads = 1;
+  std::int64_t effort = 0;  ///< places to be looked at, about
+  int first_futures = 8;    ///< of every entrant, whatever the effort
+};
+
+struct Standing {
+  int entrant = 0;
+  double mean = 0.0;  ///< m^3 that got in on average
+  int roll_outs = 0;
+};
+
+/// Successive halving: all entrants meet the same futures, the worse half drops out, the rest meets more of them.
+/// Best first; same result at any number of threads.
+[[nodiscard]] std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& policy,
+                                         const Prospect& prospect, double free_volume, const RaceSettings& settings,
+                                         std::int64_t* roll_outs);
+
+}  // namespace snug::packing::internal

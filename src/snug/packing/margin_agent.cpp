@@ -1,0 +1,54 @@
+// Agent margin: the state of the art of report section 5.1.2: margins all round, yaw only, deepest place first.
+#include <algorithm>
+#include <tuple>
+
+#include "snug/packing/internal/agents.hpp"
+
+namespace snug::packing::internal {
+
+namespace {
+
+class MarginAgent : public Agent {
+ public:
+  explicit MarginAgent(AgentInput input) : input_(std::move(input)) {}
+  std::string_view name() const override { return "margin"; }
+
+  Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
+    const Planning planning{state.inner_size, input_.settings, 0, input_.settings.margin, 0.0};
+    const Choice choice = make_choice(planning, item);
+    if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
+    const Rules rules = make_rules(planning, {});
+    const Layout layout = to_layout(planning, rules, state);
+    std::vector<Spot> spots;
+    Refusal worst = Refusal::None;
+    layout.find_spots(choice.piece, spots, &worst);
+    if (spots.empty()) return tl::unexpected(reason_of(worst));
+    const Policy policy = make_policy(planning, std::span<const Item>(&item, 1));
+    std::vector<std::pair<double, Spot>> liked;
+    for (const Spot& spot : spots) liked.emplace_back(cost(layout, policy, choice.piece, spot), spot);
+    std::stable_sort(liked.begin(), liked.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
+    Decision decision;
+    NoPlace reason = NoPlace::NoStablePlace;
+    for (const auto& [dislike, spot] : liked) {
+      if (static_cast<int>(decision.candidates.size()) >= input_.settings.max_candidates) break;
+      auto candidate = place_item(planning, layout, item, choice, spot, input_.is_reachable);
+      if (!candidate) {
+        reason = candidate.error();
+        continue;
+      }
+      candidate->score = -dislike;
+      decision.candidates.push_back(*candidate);
+    }
+    if (decision.candidates.empty()) return tl::unexpected(reason);
+    return decision;
+  }
+
+ private:
+  AgentInput input_;
+};
+
+}  // namespace
+
+std::unique_ptr<Agent> make_margin_agent(AgentInput input) { return std::make_unique<MarginAgent>(std::move(input)); }
+
+}  // namespace snug::packing::internal

@@ -1,0 +1,118 @@
+// Agents: sound places, reasons for a no, flags, determinism.
+#include "snug/packing/agent.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "snug/core/input_error.hpp"
+#include "snug/packing/test/scene.hpp"
+
+namespace snug::packing {
+namespace {
+
+using test::make_box;
+
+class EveryAgent : public testing::TestWithParam<std::string> {
+ protected:
+  model::Scenario scenario = test::demonstrator();
+
+  std::unique_ptr<Agent> make(std::vector<Item> sequence, PackingSettings settings = {}) {
+    if (settings.decision_time == PackingSettings().decision_time) settings.decision_time = 0.01;
+    return make_agent(GetParam(), {settings, make_future_model(scenario), std::move(sequence), {}});
+  }
+};
+
+std::string test_name(const testing::TestParamInfo<std::string>& agent) {
+  std::string name = agent.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Agents, EveryAgent, testing::ValuesIn(agent_names()), test_name);
+
+TEST_P(EveryAgent, PlansSoundlyOnRandomSequences) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(seed);
+    const std::vector<Item> items = test::shuffled_items(scenario, seed);
+    const ContainerState state = test::pack_all(*make(items), make_container_state(scenario.containers.front()), items);
+    EXPECT_GE(state.boxes.size(), 3U);
+    test::expect_sound(state, PackingSettings().squeeze, PackingSettings().min_support);
+  }
+}
+
+TEST_P(EveryAgent, DecidesTheSameAtAnyNumberOfThreads) {
+  const std::vector<Item> items = test::shuffled_items(scenario, 9);
+  ContainerState one = make_container_state(scenario.containers.front());
+  ContainerState four = one;
+  PackingSettings settings;
+  settings.threads = 4;
+  one = test::pack_all(*make(items), one, items);
+  four = test::pack_all(*make(items, settings), four, items);
+  EXPECT_EQ(one, four);
+}
+
+TEST_P(EveryAgent, SaysWhyNotWhenNothingCanBeDone) {
+  ContainerState state = make_container_state(scenario.containers.front());
+  const auto reason = [&](const Item& item) {
+    const auto decision = make({item})->decide(state, item);
+    return decision ? std::string("placed") : std::string(describe(decision.error()));
+  };
+  EXPECT_EQ(reason(make_box("long", Vector3(0.6, 0.1, 0.1))), describe(NoPlace::TooBig));
+  EXPECT_EQ(reason(make_box("heavy", Vector3(0.1, 0.1, 0.1), 50.0)), describe(NoPlace::TooHeavy));
+  EXPECT_EQ(reason(make_box("tiny", Vector3(0.02, 0.02, 0.02))), describe(NoPlace::NotPickable));
+  state.inner_size.z() = 0.05;
+  EXPECT_EQ(reason(make_box("low container", Vector3(0.1, 0.1, 0.1))), describe(NoPlace::TooBig));
+  state.inner_size = Vector3::Zero();
+  EXPECT_EQ(reason(make_box("no container", Vector3(0.1, 0.1, 0.1))), describe(NoPlace::TooBig));
+}
+
+TEST_P(EveryAgent, PutsNothingOnWhatMustStayFree) {
+  Item base = make_box("base", Vector3(0.36, 0.56, 0.06));
+  base.no_stack = true;
+  ContainerState state = make_container_state(scenario.containers.front());
+  state.inner_size = Vector3(0.40, 0.60, 0.25);
+  PlacedBox placed{base, Pose()};
+  placed.X_TP.p.z() = 0.03;
+  state.boxes.push_back(placed);
+  const Item next = make_box("next", Vector3(0.1, 0.1, 0.1));
+  auto decision = make({next})->decide(state, next);
+  ASSERT_FALSE(decision);
+  state.boxes.front().item.no_stack = false;
+  state.boxes.front().item.max_load = 0.9;
+  EXPECT_FALSE(make({next})->decide(state, next));
+  state.boxes.front().item.max_load = 1.1;
+  EXPECT_TRUE(make({next})->decide(state, next));
+}
+
+TEST_P(EveryAgent, KeepsUprightWhatMustStandUpright) {
+  Item item = make_box("upright", Vector3(0.10, 0.12, 0.20));
+  item.upright_only = true;
+  const auto decision = make({item})->decide(make_container_state(scenario.containers.front()), item);
+  ASSERT_TRUE(decision);
+  for (const Candidate& candidate : decision->candidates) {
+    EXPECT_EQ(candidate.placement.X_TP.R(2, 2), 1.0);
+  }
+}
+
+TEST_P(EveryAgent, AsksWhatCanBeReached) {
+  const Item item = make_box("one", Vector3(0.10, 0.12, 0.20));
+  AgentInput input{{}, make_future_model(scenario), {item}, [](const Placement&) { return false; }};
+  input.settings.decision_time = 0.01;
+  const auto agent = make_agent(GetParam(), std::move(input));
+  const auto decision = agent->decide(make_container_state(scenario.containers.front()), item);
+  ASSERT_FALSE(decision);
+  EXPECT_EQ(decision.error(), NoPlace::NotReachable);
+}
+
+TEST(Agent, UnknownNamesAndSettingsThatCannotBeAreRefused) {
+  EXPECT_THROW((void)make_agent("contact-awar", {}), InputError);
+  for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    AgentInput input;
+    input.settings.decision_time = bad;
+    EXPECT_THROW((void)make_agent("contact-aware", input), InputError);
+  }
+}
+
+}  // namespace
+}  // namespace snug::packing
