@@ -49,7 +49,12 @@ export interface RunResult {
   filling_degree_percent: number | null;
   packed: number | null;
   failure: string | null;
-  report_table7: { filling_percent: number; boxes: number; same_boxes_percent: number | null } | null;
+  report_table7: {
+    filling_percent: number;
+    boxes: number | null;
+    same_boxes_percent: number | null;
+    agents?: { agent: string; filling_percent: number }[];
+  } | null;
 }
 
 export interface Header {
@@ -70,6 +75,7 @@ export interface Header {
   bodies: Body[];
   container: { name: string; pose: [PoseRow, PoseRow]; inner_size: [number, number, number] } | null;
   tool: { body: number; shapes: Shape[] } | null;
+  robot: { links: number[] } | null;
   cup: { lip_radius: number; free_length: number; hold_length: number } | null;
   frames_named: { name: string; letter: string; X_W: PoseRow }[];
   events: ReplayEvent[];
@@ -97,6 +103,7 @@ export function completeHeader(h: Partial<Header>): Header {
     bodies: h.bodies ?? [],
     container: h.container ?? null,
     tool: h.tool ?? null,
+    robot: h.robot ?? null,
     cup: h.cup ?? null,
     frames_named: h.frames_named ?? [],
     events: h.events ?? [],

@@ -197,13 +197,17 @@ export class Replay {
     if (!c) return;
     const first = c.frameFirst.at(0, frame);
     const count = c.frameCount.at(0, frame);
-    for (let f = first; f < first + count; ++f) {
-      const block = c.frameBlock.at(0, f);
-      const a = c.blockBody.at(0, block);
-      const b = c.blockBody.at(1, block);
-      const begin = c.blockFirst.at(0, block);
-      const end = Math.min(begin + c.blockCount.at(0, block), c.point.rows);
-      for (let p = begin; p < end; ++p) visit(p, a, b);
-    }
+    for (let f = first; f < first + count; ++f) this.forEachPoint(c.frameBlock.at(0, f), visit);
+  }
+
+  /** The same for the contacts of one block: one pair of bodies. */
+  forEachPoint(block: number, visit: (point: number, a: number, b: number) => void): void {
+    const c = this.contacts_;
+    if (!c) return;
+    const a = c.blockBody.at(0, block);
+    const b = c.blockBody.at(1, block);
+    const begin = c.blockFirst.at(0, block);
+    const end = Math.min(begin + c.blockCount.at(0, block), c.point.rows);
+    for (let p = begin; p < end; ++p) visit(p, a, b);
   }
 }

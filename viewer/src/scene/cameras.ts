@@ -125,14 +125,25 @@ export class Cameras {
     else this.active.position.x += 1e-4;
   }
 
+  /** All that happens in view: as near as its corners allow. */
   private frameCell(): void {
     const box = interestBox(this.replay);
     const centre = box.getCenter(new Vector3());
-    const radius = box.getSize(new Vector3()).length() / 2;
-    const fov = (this.perspective_.fov * Math.PI) / 180;
-    const fit = Math.min(fov, 2 * Math.atan(Math.tan(fov / 2) * this.aspect_));
-    const distance = (0.8 * radius) / Math.sin(fit / 2);
     const away = new Vector3(0.36, -0.94, 0.88).normalize();
+    const right = new Vector3(0, 0, 1).cross(away).normalize();
+    const up = away.clone().cross(right);
+    const slopeUp = Math.tan((this.perspective_.fov * Math.PI) / 360);
+    const slopeRight = slopeUp * this.aspect_;
+    let distance = 0.1;
+    for (const x of [box.min.x, box.max.x]) {
+      for (const y of [box.min.y, box.max.y]) {
+        for (const z of [box.min.z, box.max.z]) {
+          const d = new Vector3(x, y, z).sub(centre);
+          const near = d.dot(away);
+          distance = Math.max(distance, near + Math.abs(d.dot(right)) / slopeRight, near + Math.abs(d.dot(up)) / slopeUp);
+        }
+      }
+    }
     this.controls.target.copy(centre);
     this.active.position.copy(centre).addScaledVector(away, distance);
   }

@@ -2,9 +2,10 @@
 
 import {
   Color, ConeGeometry, CylinderGeometry, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, OctahedronGeometry,
-  Quaternion, Vector3, type BufferGeometry, type Camera,
+  Quaternion, Vector3, type BufferGeometry,
 } from "three";
 import type { Replay } from "../replay/replay";
+import type { RestingContacts } from "../replay/resting";
 import type { Palette } from "./palette";
 
 export interface Arrow {
@@ -81,7 +82,12 @@ export class Contacts {
   private readonly q_ = new Quaternion();
   private readonly s_ = new Vector3();
   private readonly v_ = new Vector3();
+  private readonly at_ = new Vector3();
+  private readonly force_ = new Vector3();
   private stateColours_: Color[] = [];
+  private restingColours_: Color[] = [];
+  /** Contacts drawn in the last picture: recorded at its frame, and of boxes that sleep. */
+  readonly drawn = { awake: 0, resting: 0 };
 
   constructor(palette: Palette) {
     const material = (): MeshBasicMaterial => new MeshBasicMaterial({ depthTest: false, depthWrite: false, transparent: true });
@@ -95,42 +101,45 @@ export class Contacts {
 
   setPalette(palette: Palette): void {
     this.stateColours_ = [palette.unknown, palette.open, palette.sticking, palette.sliding].map((c) => new Color(c));
+    const pale = new Color(palette.background);
+    this.restingColours_ = this.stateColours_.map((c) => c.clone().lerp(pale, 0.5));
   }
 
   /** Draws the contacts of a frame and the given extra arrows. Sizes follow the camera, so call it for each picture. */
-  update(replay: Replay, frame: number, extra: Arrow[], options: ContactOptions, pixel: PixelSize, _camera: Camera): void {
+  update(replay: Replay, resting: RestingContacts, frame: number, extra: Arrow[], options: ContactOptions, pixel: PixelSize): void {
     this.points_.count = this.shafts_.count = this.heads_.count = 0;
-    const tables = replay.contacts;
-    if (tables && (options.points || options.forces)) {
-      let total = 0;
-      replay.forEachContact(frame, () => ++total);
-      this.reserve(total + extra.length);
-      const at = new Vector3();
-      const force = new Vector3();
-      replay.forEachContact(frame, (row, a, b) => {
-        at.set(tables.point.at(0, row), tables.point.at(1, row), tables.point.at(2, row));
-        if (!Number.isFinite(at.x)) return;
-        const colour = this.stateColours_[tables.state?.at(0, row) ?? 0] ?? this.stateColours_[0]!;
-        const size = pixel(at);
-        if (options.points) this.addPoint(at, Math.max(0.0025, 2.6 * size), colour);
-        if (options.forces) {
-          force.set(tables.force.at(0, row), tables.force.at(1, row), tables.force.at(2, row));
-          // Shown on the body that moves: b, unless only a does.
-          if (replay.bodies[b]?.kind !== "dynamic" && replay.bodies[a]?.kind === "dynamic") force.negate();
-          this.addArrow(at, force.multiplyScalar(options.scale), colour, size, 1);
-        }
-      });
+    this.drawn.awake = this.drawn.resting = 0;
+    if (replay.contacts && (options.points || options.forces)) {
+      replay.forEachContact(frame, () => ++this.drawn.awake);
+      resting.forEach(frame, () => ++this.drawn.resting);
+      this.reserve(this.drawn.awake + this.drawn.resting + extra.length);
+      resting.forEach(frame, (row, a, b) => this.addContact(replay, row, a, b, this.restingColours_, options, pixel));
+      replay.forEachContact(frame, (row, a, b) => this.addContact(replay, row, a, b, this.stateColours_, options, pixel));
     } else {
       this.reserve(extra.length);
     }
     if (options.wrenches) {
       for (const arrow of extra) {
-        this.addArrow(arrow.at, this.v_.copy(arrow.force).multiplyScalar(options.scale).clone(), arrow.colour, pixel(arrow.at), 1.7);
+        this.addArrow(arrow.at, this.force_.copy(arrow.force).multiplyScalar(options.scale), arrow.colour, pixel(arrow.at), 1.7);
       }
     }
     this.points_.finish();
     this.shafts_.finish();
     this.heads_.finish();
+  }
+
+  private addContact(replay: Replay, row: number, a: number, b: number, colours: Color[], options: ContactOptions, pixel: PixelSize): void {
+    const tables = replay.contacts!;
+    const at = this.at_.set(tables.point.at(0, row), tables.point.at(1, row), tables.point.at(2, row));
+    if (!Number.isFinite(at.x)) return;
+    const colour = colours[tables.state?.at(0, row) ?? 0] ?? colours[0]!;
+    const size = pixel(at);
+    if (options.points) this.addPoint(at, Math.max(0.0025, 2.6 * size), colour);
+    if (!options.forces) return;
+    const force = this.force_.set(tables.force.at(0, row), tables.force.at(1, row), tables.force.at(2, row));
+    // Shown on the body that moves: b, unless only a does.
+    if (replay.bodies[b]?.kind !== "dynamic" && replay.bodies[a]?.kind === "dynamic") force.negate();
+    this.addArrow(at, force.multiplyScalar(options.scale), colour, size, 1);
   }
 
   private reserve(count: number): void {

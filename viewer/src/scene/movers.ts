@@ -1,4 +1,4 @@
-// Movers: bodies that move and are no plain boxes (the tool, plungers, hulls), one group each.
+// Movers: bodies that move and are no plain boxes (the tool, links of a robot, plungers, hulls), one mesh each.
 
 import { Group, Matrix4, Mesh, MeshLambertMaterial } from "three";
 import type { Shape } from "../replay/header";
@@ -19,36 +19,42 @@ export function meshOfShapes(shapes: Shape[], material: MeshLambertMaterial): Me
 
 export class Movers {
   readonly group = new Group();
-  private readonly items_: { body: number; mesh: Mesh; material: MeshLambertMaterial; isTool: boolean }[] = [];
+  /** Links of a robot, shown and hidden together. */
+  readonly links = new Group();
+  private readonly items_: { body: number; mesh: Mesh; material: MeshLambertMaterial; role: "tool" | "link" | "body" }[] = [];
   private readonly pose_ = new Float64Array(7);
 
   constructor(replay: Replay, palette: Palette, colours: BoxColours, boxes: number[]) {
     const toolBody = replay.header.tool?.body ?? -1;
     const hasCup = replay.header.cup !== null;
+    const links = new Set(replay.header.robot?.links ?? []);
+    const linkMaterial = new MeshLambertMaterial({ color: palette.link });
+    this.group.add(this.links);
     replay.bodies.forEach((body, k) => {
-      if (body.kind === "static" || boxes.includes(k)) return;
-      const isTool = k === toolBody;
-      const material = new MeshLambertMaterial({ color: isTool ? palette.tool : colours.of(body.type || body.name) });
-      const mesh = meshOfShapes(isTool ? toolShapes(body.shapes, hasCup) : body.shapes, material);
+      const role = k === toolBody ? "tool" : links.has(k) ? "link" : "body";
+      if ((body.kind === "static" && role === "body") || boxes.includes(k)) return;
+      const plain = (): MeshLambertMaterial => new MeshLambertMaterial({ color: role === "tool" ? palette.tool : colours.of(body.type || body.name) });
+      const material = role === "link" ? linkMaterial : plain();
+      const mesh = meshOfShapes(role === "tool" ? toolShapes(body.shapes, hasCup) : body.shapes, material);
       if (!mesh) return;
       mesh.matrixAutoUpdate = false;
       mesh.castShadow = true;
-      this.items_.push({ body: k, mesh, material, isTool });
-      this.group.add(mesh);
+      this.items_.push({ body: k, mesh, material, role });
+      (role === "link" ? this.links : this.group).add(mesh);
     });
     if (toolBody < 0 && replay.header.tool) {
       const material = new MeshLambertMaterial({ color: palette.tool });
       const mesh = meshOfShapes(toolShapes(replay.header.tool.shapes, hasCup), material);
       if (mesh) {
         mesh.matrixAutoUpdate = false;
-        this.items_.push({ body: -1, mesh, material, isTool: true });
+        this.items_.push({ body: -1, mesh, material, role: "tool" });
         this.group.add(mesh);
       }
     }
   }
 
   setPalette(palette: Palette): void {
-    for (const item of this.items_) if (item.isTool) item.material.color.set(palette.tool);
+    for (const { role, material } of this.items_) if (role !== "body") material.color.set(role === "tool" ? palette.tool : palette.link);
   }
 
   update(replay: Replay, frame: number): void {

@@ -18,6 +18,7 @@ export interface Palette {
   boxEdge: string;
   boxInk: string;
   tool: string;
+  link: string;
   cup: string;
   lip: string;
   ghost: string;
@@ -49,6 +50,7 @@ const light: Palette = {
   boxEdge: "#3d3428",
   boxInk: "#2a241c",
   tool: "#59636c",
+  link: "#93a1ad",
   cup: "#39434c",
   lip: "#1f262c",
   ghost: "#4b5d70",
@@ -80,6 +82,7 @@ const dark: Palette = {
   boxEdge: "#1d1812",
   boxInk: "#1d1812",
   tool: "#8f9aa4",
+  link: "#75828d",
   cup: "#5d6a75",
   lip: "#2f383f",
   ghost: "#b9c7d6",

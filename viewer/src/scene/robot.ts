@@ -1,4 +1,5 @@
-// Robot: its links, when the recording has joints. Lengths are those of the maker's data sheet (UR10).
+// Robot: a UR10 drawn from its joints, when the recording has those but no bodies for the links. Lengths are those of the
+// maker's data sheet.
 
 import { CapsuleGeometry, Group, Matrix4, Mesh, MeshLambertMaterial, Quaternion, SphereGeometry, Vector3 } from "three";
 import type { Replay } from "../replay/replay";
@@ -63,13 +64,15 @@ export function linkPoints(q: ArrayLike<number>): [Vector3, Vector3][] {
 
 export class Robot {
   readonly group = new Group();
+  /** Whether the joints are known at the frame. */
+  isThere = false;
   private readonly material_: MeshLambertMaterial;
   private readonly links_: { mesh: Mesh; caps: Mesh[]; radius: number }[] = [];
 
-  /** Null when the recording has no six joints. */
+  /** Null when the recording has no six joints, or has the links themselves. */
   static make(replay: Replay, palette: Palette): Robot | null {
     const joints = replay.channel("joints.position");
-    return joints && joints.columnNames.length === 6 ? new Robot(palette) : null;
+    return !replay.header.robot && joints && joints.columnNames.length === 6 ? new Robot(palette) : null;
   }
 
   private constructor(palette: Palette) {
@@ -91,9 +94,8 @@ export class Robot {
     const joints = replay.channel("joints.position");
     if (!joints) return;
     const q = [0, 1, 2, 3, 4, 5].map((c) => joints.at(c, frame));
-    const isThere = q.every(Number.isFinite);
-    this.group.visible = isThere;
-    if (!isThere) return;
+    this.isThere = q.every(Number.isFinite);
+    if (!this.isThere) return;
     linkPoints(q).forEach(([a, b], i) => {
       const link = this.links_[i]!;
       const along = b.clone().sub(a);

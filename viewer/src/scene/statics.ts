@@ -65,8 +65,9 @@ export class Statics {
     const faces: Record<Role, BufferGeometry[]> = { fixed: [], belt: [], metal: [], wall: [] };
     const edges: Record<Role, BufferGeometry[]> = { fixed: [], belt: [], metal: [], wall: [] };
     const pose = new Float64Array(7);
+    const links = new Set(replay.header.robot?.links ?? []);
     replay.bodies.forEach((body, k) => {
-      if (body.kind !== "static" || !replay.bodyPose(k, 0, pose)) return;
+      if (body.kind !== "static" || links.has(k) || !replay.bodyPose(k, 0, pose)) return;
       const X = matrixOf(pose);
       if (isGround(body)) {
         this.addGround(body.shapes[0] as Shape & { kind: "box" }, pose, palette);

@@ -5,16 +5,18 @@ import {
   Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import type { Replay } from "../replay/replay";
+import { RestingContacts } from "../replay/resting";
 import { Boxes, CORNERS } from "./boxes";
 import { CAMERA_NAMES, Cameras, containerBox, orthoCamera, type CameraName } from "./cameras";
 import { Contacts, type Arrow } from "./contacts";
 import { Cup } from "./cup";
+import { Ghost, Plans } from "./ghost";
 import { Labels, type Label } from "./labels";
 import { matrixOf } from "./maths";
-import { meshOfShapes, Movers, toolShapes } from "./movers";
-import { Outlines } from "./outlines";
+import { Movers } from "./movers";
 import { BoxColours, PALETTES, type Palette, type Theme } from "./palette";
 import { Robot } from "./robot";
+import { Second } from "./second";
 import { Statics, SUN } from "./statics";
 import { Trace, type TracePoint } from "./trace";
 import { Triads, type Triad } from "./triads";
@@ -49,6 +51,7 @@ export class View {
   readonly isSoftware: boolean;
   arrowScale = 0.008; // m/N
   onAfterRender: (() => void) | null = null;
+  readonly plans: Plans;
   private readonly renderer_: WebGLRenderer;
   private readonly scene_ = new Scene();
   private readonly labels_ = new Labels();
@@ -61,9 +64,9 @@ export class View {
   private readonly robot_: Robot | null;
   private readonly contacts_: Contacts;
   private readonly triads_ = new Triads();
-  private readonly ghostBox_: Outlines;
-  private readonly ghostTool_: Mesh | null;
-  private readonly secondBoxes_: Outlines;
+  private readonly resting_: RestingContacts;
+  private readonly ghost_: Ghost;
+  private readonly second_: Second;
   private readonly trace_: Trace;
   private tracePoint_: TracePoint | null = null;
   private palette_: Palette;
@@ -104,17 +107,17 @@ export class View {
     this.cup_ = replay.header.cup && has("tool.pose") ? new Cup(replay, this.palette_) : null;
     this.robot_ = Robot.make(replay, this.palette_);
     this.contacts_ = new Contacts(this.palette_);
-    this.ghostBox_ = new Outlines(1, this.palette_.ghost, true, 0.9);
-    this.ghostTool_ = this.makeGhostTool();
-    this.secondBoxes_ = new Outlines(second ? second.bodies.length + 1 : 1, this.palette_.second, false, 0.75);
+    this.resting_ = new RestingContacts(replay);
+    this.plans = new Plans(replay);
+    this.ghost_ = new Ghost(replay, this.plans, this.palette_);
+    this.second_ = new Second(second, this.palette_);
     this.trace_ = new Trace(this.palette_.trace);
     this.scene_.add(
       this.hemisphere_, this.sun_, this.sun_.target, this.statics_.group, this.boxes_.group, this.movers_.group, this.trace_.group,
-      this.secondBoxes_.lines, this.ghostBox_.lines, this.contacts_.group, this.triads_.group,
+      this.second_.outlines.lines, this.ghost_.group, this.contacts_.group, this.triads_.group,
     );
     if (this.cup_) this.scene_.add(this.cup_.group);
     if (this.robot_) this.scene_.add(this.robot_.group);
-    if (this.ghostTool_) this.scene_.add(this.ghostTool_);
     // Near things first: what they hide need not be drawn.
     this.boxes_.mesh.renderOrder = -2;
     this.movers_.group.traverse((object) => (object.renderOrder = -1));
@@ -139,24 +142,12 @@ export class View {
       frames: true,
       trace: replay.bodies.some((b) => b.kind !== "static"),
       xray: this.boxes_.bodies.length > 0,
-      robot: this.robot_ !== null,
+      robot: this.robot_ !== null || replay.header.robot !== null,
       walls: replay.header.container !== null,
       second: this.second !== null,
       shadows: true,
     };
     return (Object.keys(rules) as ViewOption[]).filter((key) => rules[key]);
-  }
-
-  private makeGhostTool(): Mesh | null {
-    const tool = this.replay.header.tool;
-    if (!tool || !this.replay.channel("tool.pose_command")) return null;
-    const material = new MeshLambertMaterial({ color: this.palette_.ghost, transparent: true, opacity: 0.28, depthWrite: false });
-    const shapes = tool.shapes.length ? tool.shapes : (this.replay.bodies[tool.body]?.shapes ?? []);
-    const mesh = meshOfShapes(toolShapes(shapes, this.cup_ !== null), material);
-    if (!mesh) return null;
-    mesh.matrixAutoUpdate = false;
-    mesh.renderOrder = 3;
-    return mesh;
   }
 
   private placeSun(): void {
@@ -196,10 +187,8 @@ export class View {
     this.hemisphere_.groundColor.set(p.groundLight);
     this.hemisphere_.intensity = p.ambient;
     this.sun_.intensity = p.sun;
-    for (const part of [this.statics_, this.boxes_, this.movers_, this.cup_, this.contacts_, this.robot_]) part?.setPalette(p);
-    this.ghostBox_.setColour(p.ghost);
-    if (this.ghostTool_) (this.ghostTool_.material as MeshLambertMaterial).color.set(p.ghost);
-    this.secondBoxes_.setColour(p.second);
+    for (const part of [this.statics_, this.boxes_, this.movers_, this.cup_, this.contacts_, this.robot_, this.ghost_]) part?.setPalette(p);
+    this.second_.outlines.setColour(p.second);
     this.trace_.setColour(p.trace);
     this.invalidate();
   }
@@ -241,6 +230,11 @@ export class View {
     this.invalidate();
   }
 
+  /** The box that is selected, else the one that the cup holds; -1 for none. */
+  get marked(): number {
+    return this.selected_ >= 0 ? this.selected_ : this.replay.attachedBody(this.frame_);
+  }
+
   /** Moves everything to a frame of the recording, exactly as recorded; draws later. */
   setFrame(frame: number): void {
     this.frame_ = frame;
@@ -259,50 +253,6 @@ export class View {
     this.X_WS_.copy(this.X_WE_).multiply(this.X_ES_);
     if (this.hasTool_) this.cameras.follow(new Vector3().setFromMatrixPosition(this.X_WE_));
     this.invalidate();
-  }
-
-  private updateGhost(): void {
-    const { replay } = this;
-    this.ghostBox_.begin();
-    const isOn = this.options.ghost && replay.pose(replay.channel("tool.pose_command"), this.frame_, this.pose_);
-    if (this.ghostTool_) this.ghostTool_.visible = isOn;
-    if (isOn) {
-      const X_WEc = matrixOf(this.pose_);
-      if (this.ghostTool_) {
-        this.ghostTool_.matrix.copy(X_WEc);
-        this.ghostTool_.matrixWorldNeedsUpdate = true;
-      }
-      const held = replay.attachedBody(this.frame_);
-      const half = this.boxes_.halfOf(held);
-      const cup = replay.header.cup;
-      if (half && cup && this.hasTool_ && replay.bodyPose(held, this.frame_, this.pose_)) {
-        // Where the box would be if the tool were at its command and the cup were not deformed.
-        const X_SP = this.X_WS_.clone().invert().multiply(matrixOf(this.pose_));
-        const X_ES0 = new Matrix4().makeTranslation(0, 0, cup.hold_length);
-        const X_WPc = X_WEc.multiply(X_ES0).multiply(X_SP).multiply(this.boxes_.shapePoseOf(held)!);
-        this.ghostBox_.box(X_WPc, half);
-      }
-    }
-    this.ghostBox_.finish();
-  }
-
-  private updateSecond(): void {
-    this.secondBoxes_.begin();
-    const { second } = this;
-    if (second && this.options.second) {
-      const frame = second.frameAt(this.replay.timeOf(this.frame_));
-      second.bodies.forEach((body, k) => {
-        const shape = body.shapes[0];
-        if (body.kind !== "dynamic" || body.shapes.length !== 1 || shape?.kind !== "box") return;
-        if (!second.bodyPose(k, frame, this.pose_)) return;
-        this.secondBoxes_.box(matrixOf(this.pose_).multiply(matrixOf(shape.pose)), new Vector3(...shape.half));
-      });
-      if (second.pose(second.channel("tool.pose"), frame, this.pose_)) {
-        const X_WE = matrixOf(this.pose_);
-        this.secondBoxes_.line(new Vector3().applyMatrix4(X_WE), new Vector3(0, 0, -0.27).applyMatrix4(X_WE));
-      }
-    }
-    this.secondBoxes_.finish();
   }
 
   private wrenchArrows(): Arrow[] {
@@ -331,7 +281,7 @@ export class View {
       if (this.hasTool_ && this.cup_) triads.push({ letter: "S", X_W: this.X_WS_, size: 0.06 });
     }
     const held = replay.attachedBody(this.frame_);
-    const marked = this.selected_ >= 0 ? this.selected_ : held;
+    const { marked } = this;
     if (this.options.frames && marked >= 0 && replay.bodyPose(marked, this.frame_, this.pose_)) {
       triads.push({ letter: "P", X_W: matrixOf(this.pose_), size: 0.09 });
     }
@@ -397,15 +347,16 @@ export class View {
 
   render(): void {
     const { options } = this;
-    this.updateGhost();
-    this.updateSecond();
+    this.ghost_.update(this.frame_, this.marked, this.boxes_, options.ghost);
+    this.second_.update(this.replay.timeOf(this.frame_), options.second);
     this.trace_.group.visible = options.trace;
     if (options.trace) this.trace_.update(this.frame_);
-    if (this.robot_) this.robot_.group.visible = options.robot;
+    if (this.robot_) this.robot_.group.visible = options.robot && this.robot_.isThere;
+    this.movers_.links.visible = options.robot;
     this.contacts_.update(
-      this.replay, this.frame_, this.wrenchArrows(),
+      this.replay, this.resting_, this.frame_, this.wrenchArrows(),
       { points: options.contacts, forces: options.forces, wrenches: options.wrenches, scale: this.arrowScale },
-      this.pixelSize_, this.cameras.active,
+      this.pixelSize_,
     );
     const labels = this.triadsAndLabels();
     this.renderer_.render(this.scene_, this.cameras.active);
@@ -430,6 +381,24 @@ export class View {
     copy.style.cssText = this.canvas.style.cssText;
     copy.getContext("2d")!.drawImage(this.canvas, 0, 0);
     this.canvas.replaceWith(copy);
+  }
+
+  /** Size of a pixel where the camera looks at, m. */
+  get pixelAtTarget(): number {
+    return this.pixelSize_(this.cameras.controls.target);
+  }
+
+  /** How far the marked box is from where the command would have put it; empty while that is not known. */
+  offsetText(): string {
+    const place = this.marked < 0 ? null : this.plans.placeAt(this.marked, this.replay.timeOf(this.frame_));
+    const offset = place && this.plans.offsetAt(this.marked, this.frame_, place);
+    if (!offset) return "";
+    const [x, y, z] = offset.millimetres.map((v) => v.toFixed(1));
+    return `planned place of ${this.boxes_.shortNameOf(this.marked)}: off by ${x}, ${y}, ${z} mm, ${offset.degrees.toFixed(1)}°`;
+  }
+
+  get contactsDrawn(): { awake: number; resting: number } {
+    return this.contacts_.drawn;
   }
 
   get drawCalls(): number {
@@ -458,7 +427,7 @@ export class View {
     const { options } = this;
     const before = { frame: this.frame_, options: { ...options } };
     const hidden = [this.movers_.group, this.cup_?.group, this.robot_?.group, this.trace_.group, this.contacts_.group, this.triads_.group,
-      this.ghostBox_.lines, this.ghostTool_, this.secondBoxes_.lines].filter((o) => o !== undefined && o !== null);
+      this.ghost_.group, this.second_.outlines.lines].filter((o) => o !== undefined && o !== null);
     const shown = hidden.map((o) => o.visible);
     this.boxes_.update(this.replay, frame);
     hidden.forEach((o) => (o.visible = false));
@@ -468,7 +437,12 @@ export class View {
     this.renderer_.setSize(2 * target.width, 2 * target.height, false);
     const fog = this.scene_.fog;
     this.scene_.fog = null;
-    this.renderer_.render(this.scene_, orthoCamera(box, from, target.width / target.height));
+    const camera = orthoCamera(box, from, target.width / target.height);
+    // Light from where one looks: the sides that are seen are not in the dark.
+    this.sun_.position.copy(this.sun_.target.position).addScaledVector(camera.getWorldDirection(new Vector3()), -3);
+    this.sun_.position.z += 1;
+    this.renderer_.render(this.scene_, camera);
+    this.sun_.position.copy(this.sun_.target.position).addScaledVector(SUN, 3);
     const pen = target.getContext("2d")!;
     pen.imageSmoothingQuality = "high";
     pen.drawImage(this.canvas, 0, 0, target.width, target.height);

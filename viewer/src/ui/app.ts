@@ -4,16 +4,18 @@ import type { Replay } from "../replay/replay";
 import type { CameraName } from "../scene/cameras";
 import type { Theme } from "../scene/palette";
 import { CAMERA_NAMES, View, type ViewOption } from "../scene/view";
+import { About } from "./about";
 import { button, make } from "./dom";
 import { helpOverlay } from "./help";
 import { Journey } from "./journey";
+import { Legend } from "./legend";
 import { Player } from "./player";
 import { Plots } from "./plots";
 import { endPanel, headline } from "./summary";
 import { Timeline } from "./timeline";
 
 const OPTION_TEXTS: Record<ViewOption, string> = {
-  names: "names", contacts: "contact points", forces: "contact forces", wrenches: "cup and flange force", ghost: "commanded pose",
+  names: "names", contacts: "contact points", forces: "contact forces", wrenches: "cup and flange force", ghost: "commanded and planned pose",
   frames: "frames", trace: "trace", xray: "see-through boxes", robot: "robot", walls: "container walls", second: "second recording",
   shadows: "shadows",
 };
@@ -26,6 +28,8 @@ export class App {
   readonly journey: Journey;
   private readonly timeline_: Timeline;
   private readonly help_: HTMLElement;
+  private readonly about_: About;
+  private readonly legend_: Legend;
   private readonly cameraButtons_ = new Map<CameraName, HTMLButtonElement>();
   private readonly optionBoxes_ = new Map<ViewOption, HTMLInputElement>();
   private readonly stage_ = make("main", "stage");
@@ -45,11 +49,13 @@ export class App {
     this.journey = new Journey(replay, this.player, this.view);
     this.timeline_ = new Timeline(this.player, replay);
     this.help_ = helpOverlay(() => this.view.palette);
-    this.end_ = endPanel(replay, this.view);
-    if (this.end_) this.journey.element.append(this.end_);
+    this.about_ = new About(second ? [replay, second] : [replay], this.view, this.player);
+    this.legend_ = new Legend(this.view);
+    this.end_ = endPanel(replay, this.view, () => this.about_.show("container"));
+    const side = make("div", "side", this.journey.element, ...(this.end_ ? [this.end_] : []));
     this.journey.onSelect = (box) => this.plots.setBox(box);
-    this.stage_.append(this.view.element, this.toolbar());
-    this.element.append(this.header(), this.journey.element, this.stage_, this.plots.element, this.timeline_.element, this.help_);
+    this.stage_.append(this.view.element, this.toolbar(), this.legend_.element);
+    this.element.append(this.header(), side, this.stage_, this.plots.element, this.timeline_.element, this.about_.element, this.help_);
     this.player.onChange(() => this.view.setFrame(this.player.frame));
     new ResizeObserver(() => this.fit()).observe(this.stage_);
     this.listen();
@@ -91,6 +97,7 @@ export class App {
   private header(): HTMLElement {
     const bar = make("header", "bar", headline(this.replay));
     bar.append(
+      button("about this run", "What ran: settings, program, scenario, boxes (i)", () => this.about_.toggle()),
       button("◐", "Light or dark (d)", () => this.setTheme(this.theme_ === "light" ? "dark" : "light")),
       button("?", "Keys and colours (?)", () => this.showHelp()),
     );
@@ -145,6 +152,7 @@ export class App {
     this.theme_ = theme;
     document.documentElement.dataset.theme = theme;
     this.view.setTheme(theme);
+    this.legend_.setPalette();
     this.plots.setTheme(theme);
     this.drawEnd();
   }
@@ -191,7 +199,14 @@ export class App {
       End: () => player.setTime(this.replay.end),
       d: () => this.setTheme(this.theme_ === "light" ? "dark" : "light"),
       "?": () => this.showHelp(),
-      Escape: () => (this.help_.hidden = true),
+      i: () => this.about_.toggle(),
+      c: () => this.about_.toggle("container"),
+      g: () => this.timeline_.askTime(),
+      f: () => this.setOption("frames", !this.view.options.frames),
+      Escape: () => {
+        this.help_.hidden = true;
+        this.about_.hide();
+      },
     };
     CAMERA_NAMES.forEach((name, k) => (actions[String(k + 1)] = () => this.useCamera(name)));
     const action = actions[e.key];

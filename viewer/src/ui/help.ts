@@ -8,35 +8,50 @@ const KEYS: [string, string][] = [
   ["← →", "one frame; with shift one second"],
   ["[ ]", "event before, next event"],
   ["- +", "slower, faster"],
-  ["1 2 3 4", "cell, top, side, tool camera"],
   ["home end", "start, end"],
+  ["g", "go to a time"],
+  ["1 2 3 4", "cell, top, side, tool camera"],
+  ["f", "frames with their letters"],
+  ["i", "about this run: settings, program, scenario"],
+  ["c", "container at the end, from above and the side"],
   ["d", "light or dark"],
-  ["?", "this help"],
+  ["p n", "live: pause or resume the run; one frame of it"],
+  ["? esc", "this help; close"],
+];
+
+const MOUSE: [string, string][] = [
+  ["drag", "turn; with the right button move; wheel zooms"],
+  ["click a box", "select it: its plots, its journey, its planned place"],
+  ["shift-click", "trace of the corner of the box"],
+  ["plot", "hover reads numbers, click sets the time, drag zooms, double click shows all"],
 ];
 
 export function helpOverlay(palette: () => Palette): HTMLElement {
-  const overlay = make("div", "help");
+  const overlay = make("div", "overlay help");
   overlay.hidden = true;
   const fill = (): void => {
     const p = palette();
-    const keys = make("dl");
-    for (const [key, what] of KEYS) keys.append(make("dt", "", key), make("dd", "", what));
+    const listOf = (rows: [string, string][]): HTMLElement => make("dl", "", ...rows.flatMap(([key, what]) => [make("dt", "", key), make("dd", "", what)]));
     const legend = make("ul", "legend");
     for (const [colour, what] of [
       [p.sticking, "contact that sticks, and its force"],
       [p.sliding, "contact that slides, and its force"],
-      [p.open, "contact that is open"],
+      [p.open, "contact that separates"],
       [p.cupWrench, "force of the cup on the box"],
       [p.flangeWrench, "force on the flange"],
-      [p.ghost, "where the command has the tool and the held box"],
+      [p.ghost, "dashed: where the command has the tool and the held box"],
+      [p.select, "dashed: where the command at its release would have put the box, the cup undeformed"],
       [p.trace, "trace: shift-click a corner of a box"],
     ] as const) {
       const swatch = make("i", "swatch");
       swatch.style.background = colour;
       legend.append(make("li", "", swatch, what));
     }
-    overlay.replaceChildren(make("div", "card", make("h2", "", "Keys"), keys, make("h2", "", "Colours"), legend,
-      make("p", "", "Drag to turn, right drag to move, wheel to zoom. Click a box to select it and plot its pose. In a plot: click sets the time, drag zooms, double click shows all. W world, T container, E gripper end, S cup lip, P held or selected box.")));
+    const left = make("div", "", make("h2", "", "Keys"), listOf(KEYS));
+    const right = make("div", "", make("h2", "", "Mouse"), listOf(MOUSE), make("h2", "", "Colours"), legend,
+      make("p", "hint", "Contacts of boxes that sleep are not recorded: they are drawn paler, as they were last. An arrow at a contact is the force on the box."),
+      make("h2", "", "Frames"), make("p", "", "W world, T container, A aligner, C conveyor, E end of the gripper, S lip of the cup, P held or selected box."));
+    overlay.replaceChildren(make("div", "card wide", make("div", "columns", left, right)));
   };
   overlay.addEventListener("click", () => (overlay.hidden = true));
   overlay.addEventListener("snug:show", () => {

@@ -40,8 +40,15 @@ export function restOf(replay: Replay, body: number): Stop | null {
   return { kind: "rest", time: replay.timeOf(frame + 1), text: "from here on within 1 mm of where it is at the end" };
 }
 
+/** More stops than this are shown for the selected and the held box only, until all are asked for. */
+const MOST_STOPS = 24;
+const BAD = new Set(["lost", "dropped", "bend", "slip", "outside"]);
+
 export class Journey {
   readonly element = make("aside", "journey");
+  private readonly all_: HTMLButtonElement;
+  private isAll_: boolean | null = null;
+  private held_ = "";
   private readonly rows_ = new Map<string, HTMLElement>();
   private readonly list_ = make("div");
   private stops_: { button: HTMLButtonElement; time: number }[] = [];
@@ -53,7 +60,11 @@ export class Journey {
     private readonly player: Player,
     private readonly view: View,
   ) {
-    this.element.append(make("h2", "", "Boxes"), this.list_);
+    this.all_ = button("", "Show what happened to every box, or to the selected and the held one only", () => {
+      this.isAll_ = !this.list_.classList.contains("all");
+      this.showAll(this.isAll_);
+    });
+    this.element.append(make("div", "title", make("h2", "", "Boxes"), this.all_), this.list_);
     player.onSlowChange(() => this.update());
     this.refresh();
   }
@@ -63,7 +74,13 @@ export class Journey {
     this.rows_.clear();
     this.stops_ = [];
     this.list_.replaceChildren(...this.boxes().map(({ id, state, up, stops }) => this.row(id, state, up, stops)));
+    this.showAll(this.isAll_ ?? this.stops_.length <= MOST_STOPS);
     this.update();
+  }
+
+  private showAll(isAll: boolean): void {
+    this.list_.classList.toggle("all", isAll);
+    this.all_.textContent = isAll ? "fewer" : "all stops";
   }
 
   private boxes(): { id: string; state: string; up: string; stops: Stop[] }[] {
@@ -85,7 +102,9 @@ export class Journey {
     if (state) head.append(make("span", `state ${state}`, up ? `${state}, ${up} up` : state));
     const list = make("div", "stops");
     const rest = restOf(this.replay, body);
+    const life = make("div", "life");
     for (const stop of [...withoutChatter(stops), ...(rest ? [rest] : [])]) {
+      life.append(this.mark(stop));
       const go = button(stop.kind, stop.text || stop.kind, () => {
         this.player.pause();
         this.player.setTime(stop.time);
@@ -95,13 +114,21 @@ export class Journey {
       list.append(go);
       this.stops_.push({ button: go, time: stop.time });
     }
-    const row = make("section", "box", head, list);
+    const row = make("section", "box", head, life, list);
     this.rows_.set(id, row);
     return row;
   }
 
+  /** A stop on the line of the box: where along it, that is when in the run. */
+  private mark(stop: Stop): HTMLElement {
+    const mark = make("i", BAD.has(stop.kind.split(" ")[0]!) ? "bad" : stop.kind);
+    mark.style.left = `${(100 * (stop.time - this.replay.start)) / Math.max(this.replay.end - this.replay.start, 1e-9)}%`;
+    return mark;
+  }
+
   select(id: string): void {
     this.selected = id;
+    if (id) this.rows_.get(id)?.scrollIntoView({ block: "nearest" });
     this.view.setSelected(this.replay.bodyIndex(id));
     this.update();
     this.onSelect(id);
@@ -113,6 +140,8 @@ export class Journey {
       row.classList.toggle("selected", id === this.selected);
       row.classList.toggle("held", id === held);
     }
+    if (held !== undefined && held !== this.held_) this.rows_.get(held)?.scrollIntoView({ block: "nearest" });
+    this.held_ = held ?? "";
     for (const { button: go, time } of this.stops_) go.classList.toggle("past", time <= this.player.time + 1e-6);
   }
 }

@@ -1,4 +1,4 @@
-// Plots: a column of time series under one time cursor; a second recording is drawn dashed.
+// Plots: a column of time series under one time cursor, with what they are at that time; a second recording is drawn dashed.
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -6,20 +6,44 @@ import type { Replay } from "../replay/replay";
 import { SERIES, type Theme } from "../scene/palette";
 import { make } from "./dom";
 import type { Player } from "./player";
-import { figuresOf, thin, type Figure } from "./series";
+import { figuresOf, thin, type Figure, type Group } from "./series";
 
-const HEIGHT = 118;
+const HEIGHT = 116;
 const POINTS = 1600;
+const TITLES: Record<Group, string> = {
+  box: "Box", tool: "Tool", cup: "Cup", flange: "Flange", robot: "Robot", contacts: "Contacts and solver",
+};
+
+/** One curve: where its number stands in the caption, and how to read it at a time. */
+interface Reading {
+  text: HTMLElement;
+  value: (frame: number) => number;
+  replay: Replay;
+}
+
+/** A number as engineers read it, four digits. */
+export function digits(value: number): string {
+  if (!Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e5 || size < 1e-4) return value.toExponential(2);
+  return value.toFixed(Math.min(4, Math.max(0, 3 - Math.floor(Math.log10(size)))));
+}
 
 export class Plots {
   readonly element = make("aside", "plots");
   private plots_: uPlot[] = [];
+  private readings_: Reading[] = [];
+  private readonly when_ = make("p", "when");
   private box_ = "";
   private theme_: Theme;
   private width_ = 0;
   /** What is shown of the time, s; null is all of it. */
   private range_: [number, number] | null = null;
   private zoomTimer_ = 0;
+  /** Time under the mouse, s; null when it is elsewhere. */
+  private hover_: number | null = null;
+  private readonly closed_ = new Set<Group>(["contacts"]);
 
   constructor(
     private readonly replay: Replay,
@@ -29,6 +53,10 @@ export class Plots {
   ) {
     this.theme_ = theme;
     player.onSlowChange(() => this.moveCursor());
+    this.element.addEventListener("mouseleave", () => {
+      this.hover_ = null;
+      this.read();
+    });
   }
 
   /** Makes the plots, and again whenever their column changes its width. */
@@ -44,6 +72,7 @@ export class Plots {
   setBox(box: string): void {
     this.box_ = box;
     this.build();
+    if (box) this.element.scrollTop = 0;
   }
 
   /** Draws all curves again: a live run grows. */
@@ -62,16 +91,33 @@ export class Plots {
   private build(): void {
     for (const plot of this.plots_) plot.destroy();
     this.plots_ = [];
-    this.element.replaceChildren();
+    this.readings_ = [];
+    this.element.replaceChildren(this.when_);
     if (this.width_ === 0) return;
-    for (const figure of figuresOf(this.box_)) this.add(figure);
-    if (this.plots_.length === 0) this.element.append(make("p", "empty", "This recording has no tool and no cup to plot."));
+    const figures = figuresOf(this.box_).filter((figure) => figure.values(this.replay) !== null || (this.second && figure.values(this.second) !== null));
+    for (const group of new Set(figures.map((figure) => figure.group))) this.addGroup(group, figures.filter((figure) => figure.group === group));
+    if (figures.length === 0) this.element.append(make("p", "empty", "This recording has no tool, no cup and no contacts to plot."));
     this.moveCursor();
   }
 
-  private add(figure: Figure): void {
+  private addGroup(group: Group, figures: Figure[]): void {
+    const host = make("details", "group", make("summary", "", group === "box" ? this.box_ : TITLES[group]));
+    host.open = !this.closed_.has(group);
+    host.addEventListener("toggle", () => {
+      const isKnown = host.open !== this.closed_.has(group);
+      if (isKnown) return; // the event of the opening above
+      if (host.open) this.closed_.delete(group);
+      else this.closed_.add(group);
+      this.refresh();
+    });
+    this.element.append(host);
+    if (host.open) for (const figure of figures) this.add(figure, host);
+  }
+
+  private add(figure: Figure, parent: HTMLElement): void {
     const tables: uPlot.AlignedData[] = [];
     const series: uPlot.Series[] = [{ label: "t [s]" }];
+    const readings: Reading[] = [];
     for (const [r, replay] of [this.replay, this.second].entries()) {
       const values = replay ? figure.values(replay) : null;
       if (!replay || !values) continue;
@@ -80,9 +126,10 @@ export class Plots {
         const [times, numbers] = thin(replay, value, POINTS, begin, stop);
         if (numbers.every((v) => v === null)) return;
         tables.push([times, numbers]);
+        readings.push({ text: make("output"), value, replay });
         series.push({
-          label: r === 0 ? figure.names[k]! : `${figure.names[k]} (2nd)`,
-          stroke: SERIES[this.theme_][k]!,
+          label: figure.names[k]!,
+          stroke: SERIES[this.theme_][k % SERIES[this.theme_].length]!,
           width: r === 0 ? 1.25 : 1,
           ...(r === 0 ? {} : { dash: [5, 4] }),
           // Tables of different times are joined with gaps of undefined: those are bridged, nulls are not.
@@ -92,26 +139,30 @@ export class Plots {
       });
     }
     if (tables.length === 0) return;
-    const host = make("figure", "plot", this.caption(figure, series));
-    this.element.append(host);
-    const plot = new uPlot(this.options(series), uPlot.join(tables), host);
+    const host = make("figure", "plot", this.caption(figure, series.slice(1), readings));
+    parent.append(host);
+    const plot = new uPlot(this.options(series, figure.unit), uPlot.join(tables), host);
     plot.over.addEventListener("click", () => {
       const left = plot.cursor.left ?? -1;
       if (left >= 0) this.player.setTime(plot.posToVal(left, "x"));
     });
     this.plots_.push(plot);
+    this.readings_.push(...readings);
   }
 
-  private caption(figure: Figure, series: uPlot.Series[]): HTMLElement {
-    const caption = make("figcaption", "", make("b", "", figure.title), ` [${figure.unit}] `);
-    if (series.length < 3) return caption;
-    const firsts = series.slice(1).filter((s) => !s.dash);
-    for (const s of firsts.length > 1 ? firsts : []) {
-      const key = make("span", "key", String(s.label));
-      key.style.color = String(s.stroke);
-      caption.append(key);
+  /** Title and unit, and for each curve its name in its colour with its number at the time. */
+  private caption(figure: Figure, series: uPlot.Series[], readings: Reading[]): HTMLElement {
+    const caption = make("figcaption", "", make("div", "", make("b", "", figure.title), ` [${figure.unit}]`));
+    for (const isSecond of [false, true]) {
+      const line = make("div", isSecond ? "keys dashed" : "keys");
+      series.forEach((s, k) => {
+        if ((readings[k]!.replay === this.second) !== isSecond) return;
+        const name = make("span", "key", figure.names.length > 1 ? `${String(s.label)} ` : "", readings[k]!.text);
+        name.style.color = String(s.stroke);
+        line.append(name);
+      });
+      if (line.childElementCount) caption.append(line);
     }
-    if (firsts.length < series.length - 1) caption.append(make("span", "dashed", "dashed: 2nd"));
     return caption;
   }
 
@@ -126,7 +177,7 @@ export class Plots {
     });
   }
 
-  private options(series: uPlot.Series[]): uPlot.Options {
+  private options(series: uPlot.Series[], unit: string): uPlot.Options {
     const style = getComputedStyle(document.documentElement);
     const ink = style.getPropertyValue("--ink-soft").trim();
     const line = style.getPropertyValue("--line").trim();
@@ -146,13 +197,25 @@ export class Plots {
           },
         },
       },
-      scales: { x: this.range_ ? { time: false, range: this.range_ } : { time: false } },
+      scales: {
+        x: this.range_ ? { time: false, range: this.range_ } : { time: false },
+        // What does not change at all is drawn in the middle of a stretch that can be read.
+        y: { range: (_, low, high) => (Number.isFinite(low) && high - low < 1e-12 ? [low - 1, high + 1] : uPlot.rangeNum(low ?? 0, high ?? 1, 0.06, false)) },
+      },
       axes: [
         { ...axis, size: 22, gap: 2, values: (_: uPlot, ticks: number[]) => ticks.map((t) => `${t} s`) },
-        { ...axis, size: 44, gap: 3, space: 22 },
+        { ...axis, size: 46, gap: 3, space: 17, values: (_: uPlot, ticks: number[]) => ticks.map((v, i) => (i === ticks.length - 1 && unit !== "1" ? `${tick(v)} ${unit}` : tick(v))) },
       ],
       hooks: {
         draw: [(plot: uPlot) => this.drawCursor(plot)],
+        setCursor: [
+          (plot: uPlot) => {
+            const left = plot.cursor.left ?? -1;
+            if (!plot.over.matches(":hover")) return; // the others only follow
+            this.hover_ = left >= 0 ? plot.posToVal(left, "x") : null;
+            this.read();
+          },
+        ],
         setSelect: [
           (plot: uPlot) => {
             const { left, width } = plot.select;
@@ -174,7 +237,20 @@ export class Plots {
     line.style.transform = `translateX(${x.toFixed(1)}px)`;
   }
 
+  /** Writes the numbers of all curves at the time under the mouse, else at the time cursor. */
+  private read(): void {
+    const time = this.hover_ ?? this.player.time;
+    this.when_.textContent = this.hover_ === null ? `numbers at ${time.toFixed(3)} s` : `numbers under the mouse, at ${time.toFixed(3)} s`;
+    for (const { text, value, replay } of this.readings_) {
+      const shown = digits(value(replay.frameAt(time)));
+      if (text.textContent !== shown) text.textContent = shown;
+    }
+  }
+
   private moveCursor(): void {
     for (const plot of this.plots_) this.drawCursor(plot);
+    this.read();
   }
 }
+
+const tick = (value: number): string => String(Number(value.toPrecision(6)));

@@ -3,7 +3,10 @@
 import type { Channel, Replay } from "../replay/replay";
 import { rotationVector } from "../scene/maths";
 
+export type Group = "box" | "tool" | "cup" | "flange" | "contacts" | "robot";
+
 export interface Figure {
+  group: Group;
   title: string;
   unit: string;
   names: string[];
@@ -26,29 +29,64 @@ function speed(channel: Channel): (frame: number) => number {
   return (frame) => Math.hypot(channel.at(0, frame), channel.at(1, frame), channel.at(2, frame));
 }
 
+const JOINTS = ["1", "2", "3", "4", "5", "6", "7"];
+
+const joints: Figure["values"] = (replay) => {
+  const channel = replay.channel("joints.position");
+  return channel ? channel.columnNames.slice(0, JOINTS.length).map((_, k) => (frame: number) => DEGREES * channel.at(k, frame)) : null;
+};
+
+const contactPoints: Figure["values"] = (replay) => {
+  if (!replay.contacts) return null;
+  return [
+    (frame): number => {
+      let points = 0;
+      replay.forEachContact(frame, () => ++points);
+      return points;
+    },
+  ];
+};
+
+const contactForce: Figure["values"] = (replay) => {
+  const force = replay.contacts?.force;
+  if (!force) return null;
+  return [
+    (frame): number => {
+      let sum = 0;
+      replay.forEachContact(frame, (row) => (sum += Math.hypot(force.at(0, row), force.at(1, row), force.at(2, row))));
+      return sum;
+    },
+  ];
+};
+
 /** Everything that can be plotted, in the order of the column; `box` adds the pose of one box. */
 export function figuresOf(box: string): Figure[] {
   const figures: Figure[] = [
-    { title: "Tool position, E in W", unit: "m", names: XYZ, values: columns("tool.pose", 0, 3) },
+    { group: "tool", title: "Tool position, E in W", unit: "m", names: XYZ, values: columns("tool.pose", 0, 3) },
     {
-      title: "Tool speed", unit: "m/s", names: ["speed"],
+      group: "tool", title: "Tool speed", unit: "m/s", names: ["speed"],
       values: (replay) => {
         const twist = replay.channel("tool.twist");
         return twist ? [speed(twist)] : null;
       },
     },
-    { title: "Cup length, E to S", unit: "mm", names: ["length"], values: columns("cup.deformation", 0, 1, 1000) },
-    { title: "Cup bending", unit: "deg", names: ["bend"], values: columns("cup.deformation", 1, 1, DEGREES) },
-    { title: "Vacuum, gauge", unit: "kPa", names: ["pressure"], values: columns("cup.pressure_gauge", 0, 1, 1e-3) },
-    { title: "Force of the cup on the box, in S", unit: "N", names: XYZ, values: columns("cup.wrench", 0, 3) },
-    { title: "Torque of the cup on the box, about S", unit: "Nm", names: XYZ, values: columns("cup.wrench", 3, 3) },
-    { title: "Force on the flange, in F", unit: "N", names: XYZ, values: columns("flange.wrench", 0, 3) },
-    { title: "Torque on the flange, about F", unit: "Nm", names: XYZ, values: columns("flange.wrench", 3, 3) },
+    { group: "cup", title: "Cup length, E to S", unit: "mm", names: ["length"], values: columns("cup.deformation", 0, 1, 1000) },
+    { group: "cup", title: "Cup bending", unit: "deg", names: ["bend"], values: columns("cup.deformation", 1, 1, DEGREES) },
+    { group: "cup", title: "Vacuum, gauge", unit: "kPa", names: ["pressure"], values: columns("cup.pressure_gauge", 0, 1, 1e-3) },
+    { group: "cup", title: "Force of the cup on the box, in S", unit: "N", names: XYZ, values: columns("cup.wrench", 0, 3) },
+    { group: "cup", title: "Torque of the cup on the box, about S", unit: "Nm", names: XYZ, values: columns("cup.wrench", 3, 3) },
+    { group: "flange", title: "Force on the flange, in F", unit: "N", names: XYZ, values: columns("flange.wrench", 0, 3) },
+    { group: "flange", title: "Torque on the flange, about F", unit: "Nm", names: XYZ, values: columns("flange.wrench", 3, 3) },
+    { group: "robot", title: "Joint positions", unit: "deg", names: JOINTS, values: joints },
+    { group: "contacts", title: "Contact points of boxes that are awake", unit: "1", names: ["points"], values: contactPoints },
+    { group: "contacts", title: "Sum of contact forces", unit: "N", names: ["force"], values: contactForce },
+    { group: "contacts", title: "Residual of the solver", unit: "µm/s", names: ["residual"], values: columns("solver.residual", 0, 1, 1e6) },
+    { group: "contacts", title: "Iterations of the solver", unit: "1", names: ["iterations"], values: columns("solver.iterations", 0, 1) },
   ];
   if (box) {
     figures.unshift(
       {
-        title: `Position of ${box} in W`, unit: "m", names: XYZ,
+        group: "box", title: `Position of ${box} in W`, unit: "m", names: XYZ,
         values: (replay) => {
           const body = replay.bodyIndex(box);
           const channel = body < 0 ? undefined : replay.poseChannelOfBody(body);
@@ -57,7 +95,7 @@ export function figuresOf(box: string): Figure[] {
         },
       },
       {
-        title: `Rotation vector of ${box} in W`, unit: "deg", names: XYZ,
+        group: "box", title: `Rotation vector of ${box} in W`, unit: "deg", names: XYZ,
         values: (replay) => {
           const body = replay.bodyIndex(box);
           const channel = body < 0 ? undefined : replay.poseChannelOfBody(body);
@@ -94,11 +132,12 @@ export function thin(
     const end = Math.min(first + stride, stop);
     let low = -1;
     let high = -1;
+    let [lowest, highest] = [Infinity, -Infinity];
     for (let frame = first; frame < end; ++frame) {
       const v = value(frame);
       if (!Number.isFinite(v)) continue;
-      if (low < 0 || v < value(low)) low = frame;
-      if (high < 0 || v > value(high)) high = frame;
+      if (v < lowest) [low, lowest] = [frame, v];
+      if (v > highest) [high, highest] = [frame, v];
     }
     if (low < 0) add(first);
     else for (const frame of low === high ? [low] : [Math.min(low, high), Math.max(low, high)]) add(frame);

@@ -4,6 +4,9 @@ import type { Replay } from "../replay/replay";
 import type { View } from "../scene/view";
 import { make } from "./dom";
 
+/** A period in ms with the digits that it has: 1, 0.5, 8. */
+export const milliseconds = (period: number): string => String(Number((1000 * period).toPrecision(6)));
+
 export function headline(replay: Replay): HTMLElement {
   const { header: h } = replay;
   const title = h.sequence ? `sequence ${h.sequence}` : h.scenario.name || h.name;
@@ -17,20 +20,16 @@ export function headline(replay: Replay): HTMLElement {
   if (result?.packed !== null && result?.packed !== undefined) add("packed", `${result.packed} of ${result.boxes.length}`);
   if (result?.filling_degree_percent !== null && result?.filling_degree_percent !== undefined) {
     const table = result.report_table7;
-    const beside = table?.same_boxes_percent ?? null;
-    add(
-      "filling degree",
-      `${result.filling_degree_percent.toFixed(2)} %`,
-      table
-        ? `The report's Table 7 states ${table.filling_percent} % for ${table.boxes} boxes` +
-            (beside === null ? "." : `; by sizes and container those boxes fill ${beside.toFixed(2)} %.`)
-        : "Volume of the packed boxes over that of the container (report eq. 1)",
-    );
-    if (table) add("report", `${(beside ?? table.filling_percent).toFixed(2)} %`, `Table 7 states ${table.filling_percent} %`);
+    add("filling degree", `${result.filling_degree_percent.toFixed(2)} %`, "Volume of the packed boxes over that of the container (report eq. 1)");
+    const beside = table?.same_boxes_percent ?? table?.filling_percent ?? null;
+    if (table && beside !== null) {
+      const counted = table.same_boxes_percent === null ? "." : `; counted as here, by sizes and container, its boxes fill ${beside.toFixed(2)} %.`;
+      add("report", `${beside.toFixed(2)} %`, `The report's Table 7 states ${table.filling_percent} %${counted}`);
+    }
   }
   add("simulated", `${(speed?.duration_s ?? replay.end - replay.start).toFixed(1)} s`);
   if (speed) add("speed", `${speed.real_time_factor.toFixed(0)}× real time`, `${speed.wall_s.toFixed(2)} s of computing`);
-  add("step", `${(1000 * h.dt).toFixed(0)} ms`, `recorded every ${(1000 * h.record_period).toFixed(0)} ms, ${replay.frames} frames`);
+  add("step", `${milliseconds(h.dt)} ms`, `recorded every ${milliseconds(h.record_period)} ms, ${replay.frames} frames`);
   add("seed", h.seed || "-");
   add("version", h.snug_version || "-", `${h.name}, scenario ${h.scenario.name}`);
   if (result?.failure) bar.append(make("span", "warning", result.failure));
@@ -38,19 +37,58 @@ export function headline(replay: Replay): HTMLElement {
   return bar;
 }
 
-/** The container at the end, from above and from the side, as in the report's Figure 20. */
-export function endPanel(replay: Replay, view: View): HTMLElement | null {
-  if (!replay.header.container) return null;
-  const panel = make("section", "end", make("h2", "", "Container at the end"));
-  const { top, side } = { top: make("canvas"), side: make("canvas") };
-  top.width = side.width = 232;
-  top.height = 165;
-  side.height = 110;
-  panel.append(make("figure", "", top, make("figcaption", "", "from above")), make("figure", "", side, make("figcaption", "", "from the side")));
-  const draw = (): void => {
+/** Filling degree of this run beside those of the report's Table 7, as bars; null when there is neither. */
+export function fillBars(replay: Replay, isLarge = false): HTMLElement | null {
+  const { result } = replay.header;
+  const ours = result?.filling_degree_percent ?? null;
+  const table = result?.report_table7 ?? null;
+  if (ours === null && !table) return null;
+  const rows: [string, number, string, string][] = [];
+  if (ours !== null) {
+    const boxes = result?.packed === null || result?.packed === undefined ? "" : `, ${result.packed} boxes`;
+    rows.push(["this run", ours, "ours", `Volume of the packed boxes over that of the container (report eq. 1)${boxes}`]);
+  }
+  if (table) {
+    const boxes = table.boxes === null ? "" : `: ${table.boxes} boxes`;
+    const agents = table.agents?.length ? table.agents : [{ agent: "I.AM.", filling_percent: table.filling_percent }];
+    for (const { agent, filling_percent } of agents) {
+      const isSame = agent === "I.AM.";
+      rows.push([agent, filling_percent, "", `As the report's Table 7 states it${isSame ? boxes : ""}`]);
+      if (!isSame || table.same_boxes_percent === null) continue;
+      rows.push([`${agent}, as here`, table.same_boxes_percent, "", "What those boxes fill by their sizes and the container of the scenario, counted as this run is"]);
+    }
+  }
+  const bars = make("div", isLarge ? "fill large" : "fill");
+  for (const [name, percent, kind, hint] of rows) {
+    const bar = make("i", kind);
+    bar.style.width = `${Math.min(100, percent)}%`;
+    const row = make("div", "fill-row", make("span", "name", name), make("span", "gauge", bar), make("span", "value", `${percent.toFixed(2)} %`));
+    row.title = hint;
+    bars.append(row);
+  }
+  if (isLarge && table) {
+    bars.append(make("p", "note", "Rows of the report's Table 7 are as it states them." + (table.same_boxes_percent === null ? "" : " As here: the same boxes counted as those of this run, by their sizes over the inner size of the container.")));
+  }
+  return bars;
+}
+
+/** How full the container got, and how it looks at the end from above and from the side, as in the report's Figure 20. */
+export function endPanel(replay: Replay, view: View, onOpen: () => void): HTMLElement | null {
+  const bars = fillBars(replay);
+  if (!replay.header.container && !bars) return null;
+  const panel = make("section", "end");
+  if (bars) panel.append(make("h2", "", "Filling degree"), bars);
+  if (!replay.header.container) return panel;
+  const [top, side] = [make("canvas"), make("canvas")];
+  [top.width, top.height, side.width, side.height] = [226, 160, 226, 160];
+  const pictures = make("button", "pictures", make("figure", "", top, make("figcaption", "", "from above")), make("figure", "", side, make("figcaption", "", "from the side")));
+  pictures.type = "button";
+  pictures.title = "Container at the end: larger (c)";
+  pictures.addEventListener("click", onOpen);
+  panel.append(make("h2", "", "Container at the end"), pictures);
+  panel.addEventListener("snug:draw", () => {
     view.drawContainer(top, "top", replay.frames - 1);
     view.drawContainer(side, "side", replay.frames - 1);
-  };
-  panel.addEventListener("snug:draw", draw);
+  });
   return panel;
 }

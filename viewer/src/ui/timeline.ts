@@ -13,6 +13,8 @@ export class Timeline {
   readonly element = make("footer", "timeline");
   private readonly slider_ = make("input", "slider");
   private readonly clock_ = make("span", "clock");
+  private readonly now_ = make("input", "now");
+  private readonly end_ = make("span");
   private readonly play_: HTMLButtonElement;
   private readonly speed_ = make("select", "speed");
   private readonly row_ = make("span", "row");
@@ -32,6 +34,22 @@ export class Timeline {
       const part = Number(this.slider_.value) / STEPS_OF_SLIDER;
       player.setTime(replay.start + part * (replay.end - replay.start));
     });
+    this.now_.inputMode = "decimal";
+    this.now_.size = 7;
+    this.now_.title = "Time, s: type one to go there (g)";
+    this.now_.setAttribute("aria-label", "time in seconds");
+    this.now_.addEventListener("focus", () => this.now_.select());
+    this.now_.addEventListener("blur", () => this.update());
+    this.now_.addEventListener("keydown", (e) => {
+      if (e.key === "Escape") this.now_.blur();
+      if (e.key !== "Enter") return;
+      const time = Number(this.now_.value.replace(",", ".").replace("s", ""));
+      this.now_.blur();
+      if (!Number.isFinite(time)) return;
+      player.pause();
+      player.setTime(time);
+    });
+    this.clock_.append(this.now_, this.end_);
     for (const speed of SPEEDS) this.speed_.append(new Option(`${speed}×`, String(speed)));
     this.speed_.title = "Speed (- and +)";
     this.speed_.addEventListener("change", () => player.setSpeed(Number(this.speed_.value)));
@@ -63,6 +81,10 @@ export class Timeline {
     this.marks_.replaceChildren(...marks);
   }
 
+  askTime(): void {
+    this.now_.focus();
+  }
+
   /** To the nearest event before or after now. */
   jump(direction: -1 | 1): void {
     const times = this.replay.header.events.map((e) => e.time);
@@ -77,7 +99,8 @@ export class Timeline {
     const { player, replay } = this;
     const length = Math.max(replay.end - replay.start, 1e-9);
     this.slider_.value = String(Math.round((STEPS_OF_SLIDER * (player.time - replay.start)) / length));
-    this.clock_.textContent = `${seconds(player.time)} / ${seconds(replay.end, 1)}`;
+    if (document.activeElement !== this.now_) this.now_.value = player.time.toFixed(3);
+    this.end_.textContent = ` / ${seconds(replay.end, 1)}`;
     this.play_.textContent = player.isPlaying ? "❚❚" : "▶";
     this.speed_.value = String(player.speed);
     const row = replay.channel("program_row")?.at(0, player.frame) ?? -1;
