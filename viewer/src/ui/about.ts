@@ -102,14 +102,14 @@ function program(replay: Replay, player: Player, close: () => void): HTMLElement
 }
 
 /** The container at the end from above and the side, large, beside what the report states. */
-function container(replay: Replay, view: View): HTMLElement | null {
+function container(replay: Replay, second: Replay | null, view: View): HTMLElement | null {
   if (!replay.header.container) return null;
   const [top, side] = [make("canvas"), make("canvas")];
   [top.width, top.height, side.width, side.height] = [560, 380, 560, 280];
   view.drawContainer(top, "top", replay.frames - 1);
   view.drawContainer(side, "side", replay.frames - 1);
   const pictures = make("div", "pictures", make("figure", "", top, make("figcaption", "", "from above")), make("figure", "", side, make("figcaption", "", "from the side")));
-  const bars = fillBars(replay, true);
+  const bars = fillBars(replay, second, true);
   return make("section", "", make("h3", "", "Container at the end"), ...(bars ? [bars] : []), pictures);
 }
 
@@ -169,7 +169,7 @@ export class About {
   private parts(replay: Replay): (HTMLElement | null)[] {
     switch (this.tab_) {
       case "container":
-        return [container(replay, this.view)];
+        return [container(replay, this.replays[1] ?? null, this.view)];
       case "settings":
         return [settings(replay)];
       case "program":

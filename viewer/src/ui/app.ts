@@ -51,7 +51,7 @@ export class App {
     this.help_ = helpOverlay(() => this.view.palette);
     this.about_ = new About(second ? [replay, second] : [replay], this.view, this.player);
     this.legend_ = new Legend(this.view);
-    this.end_ = endPanel(replay, this.view, () => this.about_.show("container"));
+    this.end_ = endPanel(replay, second, this.view, () => this.about_.show("container"));
     const side = make("div", "side", this.journey.element, ...(this.end_ ? [this.end_] : []));
     this.journey.onSelect = (box) => this.plots.setBox(box);
     this.stage_.append(this.view.element, this.toolbar(), this.legend_.element);

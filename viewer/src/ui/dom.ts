@@ -23,3 +23,12 @@ export function button(text: string, title: string, onClick: () => void, classNa
 }
 
 export const seconds = (t: number, digits = 2): string => `${t.toFixed(digits)} s`;
+
+/** A number as engineers read it, four digits. */
+export function digits(value: number): string {
+  if (!Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e5 || size < 1e-4) return value.toExponential(2);
+  return value.toFixed(Math.min(4, Math.max(0, 3 - Math.floor(Math.log10(size)))));
+}

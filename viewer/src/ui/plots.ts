@@ -4,7 +4,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Replay } from "../replay/replay";
 import { SERIES, type Theme } from "../scene/palette";
-import { make } from "./dom";
+import { digits, make } from "./dom";
 import type { Player } from "./player";
 import { figuresOf, thin, type Figure, type Group } from "./series";
 
@@ -19,15 +19,6 @@ interface Reading {
   text: HTMLElement;
   value: (frame: number) => number;
   replay: Replay;
-}
-
-/** A number as engineers read it, four digits. */
-export function digits(value: number): string {
-  if (!Number.isFinite(value)) return "–";
-  if (value === 0) return "0";
-  const size = Math.abs(value);
-  if (size >= 1e5 || size < 1e-4) return value.toExponential(2);
-  return value.toFixed(Math.min(4, Math.max(0, 3 - Math.floor(Math.log10(size)))));
 }
 
 export class Plots {

@@ -59,6 +59,32 @@ const contactForce: Figure["values"] = (replay) => {
   ];
 };
 
+const turnsOf = new WeakMap<Channel, { rows: number; turns: Float32Array }>();
+
+/** Rotation vectors (rad) of a channel of poses, three a row; of the two that mean the same, the one nearer to the row before. */
+export function continuousTurns(channel: Channel): Float32Array {
+  const known = turnsOf.get(channel);
+  if (known?.rows === channel.rows) return known.turns;
+  const turns = new Float32Array(3 * channel.rows).fill(NaN);
+  let last: number[] | null = null;
+  for (let row = 0; row < channel.rows; ++row) {
+    const [w, x, y, z] = [channel.at(3, row), channel.at(4, row), channel.at(5, row), channel.at(6, row)];
+    if (!Number.isFinite(w)) continue;
+    let v: number[] = rotationVector(w, x, y, z);
+    const angle = Math.hypot(v[0]!, v[1]!, v[2]!);
+    if (last && angle > 1e-6) {
+      const from = last;
+      const before = from.reduce((sum, u, k) => sum + u * v[k]!, 0) / angle; // the last one along this axis
+      const whole = Math.round((before - angle) / (2 * Math.PI));
+      v = v.map((u) => (u * (angle + 2 * Math.PI * whole)) / angle);
+    }
+    last = v;
+    turns.set(v, 3 * row);
+  }
+  turnsOf.set(channel, { rows: channel.rows, turns });
+  return turns;
+}
+
 /** Everything that can be plotted, in the order of the column; `box` adds the pose of one box. */
 export function figuresOf(box: string): Figure[] {
   const figures: Figure[] = [
@@ -100,11 +126,8 @@ export function figuresOf(box: string): Figure[] {
           const body = replay.bodyIndex(box);
           const channel = body < 0 ? undefined : replay.poseChannelOfBody(body);
           if (!channel || channel.rows < 2) return null;
-          const vector = (frame: number): number[] => {
-            const [w, x, y, z] = [3, 4, 5, 6].map((c) => channel.at(c, frame));
-            return Number.isFinite(w) ? rotationVector(w!, x!, y!, z!) : [NaN, NaN, NaN];
-          };
-          return [0, 1, 2].map((k) => (frame: number) => DEGREES * vector(frame)[k]!);
+          const turns = continuousTurns(channel);
+          return [0, 1, 2].map((k) => (frame: number) => DEGREES * (turns[3 * frame + k] ?? NaN));
         },
       },
     );

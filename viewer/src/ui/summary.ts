@@ -38,7 +38,7 @@ export function headline(replay: Replay): HTMLElement {
 }
 
 /** Filling degree of this run beside those of the report's Table 7, as bars; null when there is neither. */
-export function fillBars(replay: Replay, isLarge = false): HTMLElement | null {
+export function fillBars(replay: Replay, second: Replay | null, isLarge = false): HTMLElement | null {
   const { result } = replay.header;
   const ours = result?.filling_degree_percent ?? null;
   const table = result?.report_table7 ?? null;
@@ -48,6 +48,8 @@ export function fillBars(replay: Replay, isLarge = false): HTMLElement | null {
     const boxes = result?.packed === null || result?.packed === undefined ? "" : `, ${result.packed} boxes`;
     rows.push(["this run", ours, "ours", `Volume of the packed boxes over that of the container (report eq. 1)${boxes}`]);
   }
+  const theirs = second?.header.result?.filling_degree_percent ?? null;
+  if (theirs !== null) rows.push(["laid over it", theirs, "ours", `The same of ${second!.header.name}`]);
   if (table) {
     const boxes = table.boxes === null ? "" : `: ${table.boxes} boxes`;
     const agents = table.agents?.length ? table.agents : [{ agent: "I.AM.", filling_percent: table.filling_percent }];
@@ -73,8 +75,8 @@ export function fillBars(replay: Replay, isLarge = false): HTMLElement | null {
 }
 
 /** How full the container got, and how it looks at the end from above and from the side, as in the report's Figure 20. */
-export function endPanel(replay: Replay, view: View, onOpen: () => void): HTMLElement | null {
-  const bars = fillBars(replay);
+export function endPanel(replay: Replay, second: Replay | null, view: View, onOpen: () => void): HTMLElement | null {
+  const bars = fillBars(replay, second);
   if (!replay.header.container && !bars) return null;
   const panel = make("section", "end");
   if (bars) panel.append(make("h2", "", "Filling degree"), bars);

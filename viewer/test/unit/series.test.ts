@@ -4,8 +4,11 @@ import { describe, expect, it } from "vitest";
 import { decodeReplay } from "../../src/replay/decode";
 import { Replay } from "../../src/replay/replay";
 import { linkFrames } from "../../src/scene/robot";
+import { flatten } from "../../src/ui/about";
+import { digits } from "../../src/ui/dom";
 import { restOf } from "../../src/ui/journey";
-import { figuresOf, thin } from "../../src/ui/series";
+import { continuousTurns, figuresOf, thin } from "../../src/ui/series";
+import { encodeReplay } from "../support/encode";
 import { pose, smallHeader } from "../support/sample";
 
 describe("thin", () => {
@@ -56,5 +59,35 @@ describe("linkFrames", () => {
     expect(flange[12]).toBeCloseTo(-0.612 - 0.5723, 6);
     expect(flange[13]).toBeCloseTo(-0.163941 - 0.0922, 6);
     expect(flange[14]).toBeCloseTo(0.1273 - 0.1157, 6);
+  });
+});
+
+describe("continuousTurns", () => {
+  it("goes on past half a turn instead of jumping to the other side", async () => {
+    const turns = Array.from({ length: 400 }, (_, i) => 0.03 * i - 3); // about z, rad: more than a whole turn
+    const channels = [
+      { name: "time", columns: ["t"], quantum: 1e-6, rows: turns.map((_, i) => [0.01 * i]) },
+      {
+        name: "body.0.pose", columns: ["x", "y", "z", "qw", "qx", "qy", "qz"], quantum: 1e-5,
+        rows: turns.map((a) => [0, 0, 0, Math.cos(a / 2), 0, 0, Math.sin(a / 2)]),
+      },
+    ];
+    const body = { name: "box", type: "", kind: "dynamic", mass: 1, com: [0, 0, 0], shapes: [] };
+    const bytes = encodeReplay({ format: "snug replay", version: 1, frames: 400, bodies: [body] }, channels);
+    const found = continuousTurns(new Replay(await decodeReplay(bytes)).poseChannelOfBody(0)!);
+    // Each quaternion is known to half a quantum of 1e-5: 2e-5 rad.
+    turns.forEach((a, i) => expect(Math.abs(found[3 * i + 2]! - a)).toBeLessThan(3e-5));
+  });
+});
+
+describe("digits", () => {
+  it("writes four digits, and no more than can be read", () => {
+    expect([NaN, 0, 0.123456, -12.3456, 4321.6, 1.5e-6, 2e6].map(digits)).toEqual(["–", "0", "0.1235", "-12.35", "4322", "1.50e-6", "2.00e+6"]);
+  });
+});
+
+describe("flatten", () => {
+  it("writes nested settings one a line", () => {
+    expect(flatten({ cup: { model: "holding" }, list: [1, null] })).toEqual([["cup.model", "holding"], ["list.0", "1"], ["list.1", "null"]]);
   });
 });
