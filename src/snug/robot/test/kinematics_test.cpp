@@ -3,25 +3,15 @@
 
 #include <numbers>
 
-#include "snug/core/rng.hpp"
+#include "shipped_arm.hpp"
 #include "snug/robot/dynamics.hpp"
 #include "snug/robot/kinematics.hpp"
-#include "snug/robot/load_arm.hpp"
 
 namespace snug::robot {
 namespace {
 
-const ArmModel& shipped_arm() {
-  static const ArmModel arm =
-      load_arm(model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml"));
-  return arm;
-}
-
-JointVector random_joints(Rng& rng, double size) {
-  JointVector q(6);
-  for (int i = 0; i < 6; ++i) q(i) = rng.uniform(-size, size);
-  return q;
-}
+using test::random_joints;
+using test::shipped_arm;
 
 TEST(Kinematics, GivesTheHomeOrientationAtTheDemonstratorsStance) {
   JointVector q(6);
@@ -35,7 +25,7 @@ TEST(Kinematics, HasTheJacobianThatDifferencesGive) {
   Rng rng = Rng(3).split("jacobian");
   const ArmModel& arm = shipped_arm();
   for (int k = 0; k < 50; ++k) {
-    const JointVector q = random_joints(rng, 3.0);
+    const JointVector q = random_joints(rng, 6, 3.0);
     const ArmPose at = forward(arm, q);
     const Jacobian J = tool_jacobian(arm, at);
     EXPECT_LT((at.X_WE.p - forward_tool(arm, q).p).norm(), 1e-15);
@@ -56,8 +46,9 @@ TEST(Dynamics, HoldsAnExternalWrenchByTheTransposedJacobian) {
   const ArmModel& arm = shipped_arm();
   const JointVector zero = JointVector::Zero(6);
   for (int k = 0; k < 20; ++k) {
-    const JointVector q = random_joints(rng, 3.0);
-    const Wrench F{Vector3(rng.normal(), rng.normal(), rng.normal()), Vector3(rng.normal(), rng.normal(), rng.normal())};
+    const JointVector q = random_joints(rng, 6, 3.0);
+    const Wrench F{Vector3(rng.normal(), rng.normal(), rng.normal()),
+                   Vector3(rng.normal(), rng.normal(), rng.normal())};
     const JointVector tau = inverse_dynamics(arm, {q, zero, zero}, F, Vector3::Zero());
     const JointVector expected = -(tool_jacobian(arm, forward(arm, q)).transpose() * as_vector(F));
     EXPECT_LT((tau - expected).norm(), 1e-12);
