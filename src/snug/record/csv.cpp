@@ -134,6 +134,8 @@ void write_names(Table& table, const RecordingHeader& header) {
   for (const BodyInfo& body : header.bodies)
     if (body.kind != BodyKind::Static) name_pose(table, column_prefix(body.name) + "_FloatingBase");
   if (!header.container.name.empty()) name_pose(table, column_prefix(header.container.name) + "_FloatingBase");
+  for (const char* part : {"qIn", "alphaIn", "tauIn"})
+    for (std::size_t i = 0; i < header.joints.size(); ++i) table.cell(std::string(part) + '_' + std::to_string(i));
   table.end_row();
 }
 
@@ -157,6 +159,8 @@ class FrameRows {
     table.cell(frame.solver.iterations);
     table.cell(static_cast<int>(frame.solver.status));
     write_bodies(table, frame);
+    for (const auto part : {&JointSample::position, &JointSample::velocity, &JointSample::torque})
+      for (const JointSample& joint : frame.joints) table.cell(joint.*part);
     table.end_row();
   }
 

@@ -26,6 +26,7 @@ struct Block {
   std::array<std::vector<unsigned char>, kFrameColumnCount> columns;
   std::vector<std::uint8_t> present;
   std::vector<double> pose, twist;
+  std::array<std::vector<double>, kJointColumnCount> joints;
 };
 
 struct Contacts {
@@ -163,7 +164,8 @@ struct RecordingReader::Impl {
   bool is_complete = false;
   std::string result;
   std::array<Handle, kFrameColumnCount> columns;
-  Handle present, pose, twist;  ///< without bodies: not open
+  Handle present, pose, twist;                   ///< without bodies: not open
+  std::array<Handle, kJointColumnCount> joints;  ///< without a robot: not open
   Block block;
   std::optional<Contacts> contacts;
 };
@@ -186,6 +188,10 @@ void RecordingReader::Impl::open() {
     present = open_dataset(file.get(), body_present_column(bodies).path);
     pose = open_dataset(file.get(), body_pose_column(bodies).path);
     twist = open_dataset(file.get(), body_twist_column(bodies).path);
+  }
+  if (const std::size_t count = header.joints.size(); count > 0) {
+    for (std::size_t i = 0; i < kJointColumnCount; ++i)
+      joints[i] = open_dataset(file.get(), joint_column(i, count).path);
   }
   find_times();
   events = read_events(file.get());
@@ -213,6 +219,9 @@ void RecordingReader::Impl::find_times() {
     look(present, {bodies});
     look(pose, {bodies, 7});
     look(twist, {bodies, 6});
+  }
+  if (!header.joints.empty()) {
+    for (const Handle& column : joints) look(column, {header.joints.size()});
   }
   if (is_complete && longest != count) throw H5Error("the columns differ in length");
   times.resize(count);
@@ -244,6 +253,12 @@ void RecordingReader::Impl::load_block(std::size_t index) {
     read_rows(present.get(), H5T_NATIVE_UINT8, first, count, block.present.data());
     read_rows(pose.get(), H5T_NATIVE_DOUBLE, first, count, block.pose.data());
     read_rows(twist.get(), H5T_NATIVE_DOUBLE, first, count, block.twist.data());
+  }
+  if (const std::size_t width = header.joints.size(); width > 0) {
+    for (std::size_t i = 0; i < kJointColumnCount; ++i) {
+      block.joints[i].resize(count * width);
+      read_rows(joints[i].get(), H5T_NATIVE_DOUBLE, first, count, block.joints[i].data());
+    }
   }
   block.first = first;
   block.count = count;
@@ -291,6 +306,12 @@ void RecordingReader::Impl::read_frame(std::size_t index, Frame& frame) {
     body.present = block.present[k] != 0;
     body.X_WB = pose_from(&block.pose[7 * k]);
     body.V_WB = {vector_from(&block.twist[6 * k]), vector_from(&block.twist[6 * k + 3])};
+  }
+  const std::size_t joint_count = header.joints.size();
+  frame.joints.resize(joint_count);
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const std::size_t k = row * joint_count + i;
+    frame.joints[i] = {block.joints[0][k], block.joints[1][k], block.joints[2][k]};
   }
   read_contacts_of(row, frame);
 }

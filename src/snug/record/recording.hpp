@@ -62,6 +62,14 @@ struct ContainerInfo {
   bool operator==(const ContainerInfo&) const = default;
 };
 
+/// One joint of a robot at one instant.
+struct JointSample {
+  double position = 0.0;  ///< rad, or m of a prismatic joint
+  double velocity = 0.0;  ///< rad/s or m/s
+  double torque = 0.0;    ///< that the drive supplies, Nm or N
+  bool operator==(const JointSample&) const = default;
+};
+
 /// What ran. Fixed when the recording starts.
 struct RecordingHeader {
   std::string scenario_text;  ///< the whole file
@@ -74,6 +82,7 @@ struct RecordingHeader {
   double dt = 0.0;              ///< length of a simulation step, s
   double record_period = 0.0;   ///< time between frames, s, > 0
   std::vector<BodyInfo> bodies;
+  std::vector<std::string> joints;  ///< names, base to tool; empty without a robot
   ContainerInfo container;
   bool operator==(const RecordingHeader&) const = default;
 };
@@ -138,9 +147,10 @@ struct Frame {
   PoseSample X_WE_command;  ///< tool as commanded by the reference
   CupSample cup;
   /// Wrench of the tool and all it carries or touches on the flange, about the flange's origin, in the flange's
-  /// frame F: a hanging load pulls it down.
+  /// frame F: a hanging load pulls it down. With a robot: what its force/torque sensor reads, in the sensor's frame.
   Wrench F_flange;
-  std::vector<BodySample> bodies;  ///< one per RecordingHeader::bodies, in that order
+  std::vector<BodySample> bodies;   ///< one per RecordingHeader::bodies, in that order
+  std::vector<JointSample> joints;  ///< one per RecordingHeader::joints, in that order
   std::vector<ContactSample> contacts;
   SolverSample solver;
   bool operator==(const Frame&) const = default;

@@ -147,6 +147,7 @@ struct RecordingWriter::Impl {
   void append(const Frame& frame);
   void put_frame(const Frame& frame);
   void put_bodies(const Frame& frame);
+  void put_joints(const Frame& frame);
   void write();
   void close(bool is_complete, const std::string& result_json);
   /// Runs `work` with HDF5 quiet; its errors become InputErrors that name the file.
@@ -162,10 +163,13 @@ struct RecordingWriter::Impl {
 
   std::filesystem::path path;
   std::size_t body_count;
+  std::size_t joint_count;
   std::size_t chunk_rows;
   OutputFile output;
-  std::vector<Column> columns;       ///< by FrameColumn
-  std::vector<Column> body_columns;  ///< present, pose, twist; none without bodies
+  std::vector<Column> columns;        ///< by FrameColumn
+  std::vector<Column> body_columns;   ///< present, pose, twist; none without bodies
+  std::vector<Column> joint_columns;  ///< position, velocity, torque; none without a robot
+  std::vector<double> joint_row;
   std::optional<ContactLog> contacts;
   std::optional<EventLog> events;
   std::vector<std::uint8_t> present;
@@ -175,7 +179,7 @@ struct RecordingWriter::Impl {
 };
 
 RecordingWriter::Impl::Impl(const std::filesystem::path& file_path, const RecordingHeader& header)
-    : path(file_path), body_count(header.bodies.size()), chunk_rows(0) {
+    : path(file_path), body_count(header.bodies.size()), joint_count(header.joints.size()), chunk_rows(0) {
   validate(path, header);
   chunk_rows = chunk_rows_for(header.record_period);
   guarded([&] {
@@ -190,6 +194,10 @@ RecordingWriter::Impl::Impl(const std::filesystem::path& file_path, const Record
       body_columns.emplace_back(output.file.get(), body_pose_column(body_count), chunk_rows);
       body_columns.emplace_back(output.file.get(), body_twist_column(body_count), chunk_rows);
     }
+    if (joint_count > 0) {
+      for (std::size_t i = 0; i < kJointColumnCount; ++i)
+        joint_columns.emplace_back(output.file.get(), joint_column(i, joint_count), chunk_rows);
+    }
     for (std::size_t i = 0; i < kFrameColumnCount; ++i)
       columns.emplace_back(output.file.get(), frame_column(static_cast<FrameColumn>(i)), chunk_rows);
     present.resize(body_count);
@@ -200,6 +208,7 @@ RecordingWriter::Impl::Impl(const std::filesystem::path& file_path, const Record
 void RecordingWriter::Impl::append(const Frame& frame) {
   SNUG_CHECK(std::isfinite(frame.time) && frame.time > last_time, "time of a frame must be finite and grow");
   SNUG_CHECK(frame.bodies.size() == body_count, "a frame must have the bodies of the header");
+  SNUG_CHECK(frame.joints.size() == joint_count, "a frame must have the joints of the header");
   const int bodies = static_cast<int>(body_count);
   SNUG_CHECK(frame.cup.attached_body >= -1 && frame.cup.attached_body < bodies, "attached body must exist");
   for (const ContactSample& contact : frame.contacts)
@@ -208,6 +217,7 @@ void RecordingWriter::Impl::append(const Frame& frame) {
   last_time = frame.time;
   put_frame(frame);
   put_bodies(frame);
+  put_joints(frame);
   if (++filled == chunk_rows) guarded([&] { write(); });
 }
 
@@ -251,12 +261,23 @@ void RecordingWriter::Impl::put_bodies(const Frame& frame) {
   body_columns[0].put(filled, present.data());
 }
 
+void RecordingWriter::Impl::put_joints(const Frame& frame) {
+  constexpr double JointSample::*kParts[kJointColumnCount] = {&JointSample::position, &JointSample::velocity,
+                                                              &JointSample::torque};
+  for (std::size_t i = 0; i < joint_columns.size(); ++i) {
+    joint_row.clear();
+    for (const JointSample& joint : frame.joints) joint_row.push_back(joint.*kParts[i]);
+    joint_columns[i].put(filled, joint_row.data());
+  }
+}
+
 /// Writes the chunk as far as it is filled, with all it refers to, and commits.
 void RecordingWriter::Impl::write() {
   events->write();
   contacts->write();
   if (filled > 0) {
     for (Column& column : body_columns) column.write(chunk_first, filled);
+    for (Column& column : joint_columns) column.write(chunk_first, filled);
     for (Column& column : columns) column.write(chunk_first, filled);
   }
   if (filled == chunk_rows) {
@@ -277,6 +298,7 @@ void RecordingWriter::Impl::close(bool is_complete, const std::string& result_js
     events.reset();
     columns.clear();
     body_columns.clear();
+    joint_columns.clear();
     output.file.reset();
   });
 }

@@ -167,6 +167,7 @@ void write_header(hid_t file, const RecordingHeader& header) {
   write_text(file, "/program", header.program_text);
   write_text(file, "/settings", header.settings);
   write_bodies(file, header.bodies);
+  if (!header.joints.empty()) write_texts(file, kJointName, header.joints);
   write_texts(file, "/container/name", {header.container.name});
   std::vector<double> poses;
   push(poses, header.container.X_WT);
@@ -188,6 +189,7 @@ RecordingHeader read_header(hid_t file) {
   header.program_text = read_text(file, "/program");
   header.settings = read_text(file, "/settings");
   header.bodies = read_bodies(file);
+  if (has_link(file, kJointName)) header.joints = read_texts(file, kJointName);
   header.container.name = read_text(file, "/container/name");
   const auto poses = read_rows_of<double>(file, "/container/pose", 2, 7);
   header.container.X_WT = pose_at(poses, 0);

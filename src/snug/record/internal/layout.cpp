@@ -71,6 +71,14 @@ ColumnSpec body_twist_column(std::size_t bodies) {
   return spec;
 }
 
+ColumnSpec joint_column(std::size_t column, std::size_t joints) {
+  static constexpr const char* kPaths[kJointColumnCount] = {"/joints/position", "/joints/velocity", "/joints/torque"};
+  static constexpr const char* kUnits[kJointColumnCount] = {"rad or m", "rad/s or m/s", "Nm or N"};
+  ColumnSpec spec = column_of<double>(kPaths[column], joints, kUnits[column], "", "");
+  spec.is_table = true;
+  return spec;
+}
+
 const ColumnSpec& contact_column(ContactColumn column) {
   using i32 = std::int32_t;
   using i64 = std::int64_t;

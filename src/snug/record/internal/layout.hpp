@@ -45,6 +45,11 @@ enum FrameColumn : std::size_t {
 [[nodiscard]] ColumnSpec body_pose_column(std::size_t bodies);
 [[nodiscard]] ColumnSpec body_twist_column(std::size_t bodies);
 
+/// Datasets with one row per frame and joint; not in the file without a robot.
+inline constexpr const char* kJointName = "/joints/name";
+inline constexpr std::size_t kJointColumnCount = 3;  ///< position, velocity, torque
+[[nodiscard]] ColumnSpec joint_column(std::size_t column, std::size_t joints);
+
 /// Flat datasets of the contacts, what is referred to first: frames point to runs of `frame_block`, which point to
 /// blocks, which point to runs of points.
 enum ContactColumn : std::size_t {

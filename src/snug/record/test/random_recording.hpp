@@ -91,6 +91,7 @@ inline RecordingHeader random_header(Rng& rng, int bodies) {
   header.dt = 0.004;
   header.record_period = 0.008;
   for (int i = 0; i < bodies; ++i) header.bodies.push_back(random_body(rng, i));
+  for (int i = bodies; i > 1; --i) header.joints.push_back("joint " + std::to_string(i));
   header.container = {"tote1", random_pose(rng), random_pose(rng), Vector3(0.37, 0.57, 0.25)};
   return header;
 }
@@ -110,6 +111,8 @@ inline void randomize(Frame& frame, Rng& rng, int index, const RecordingHeader& 
                rng.uniform(),          {random_vector(rng, 50.0), random_vector(rng, 3.0)}};
   frame.F_flange = {random_vector(rng, 50.0), random_vector(rng, 3.0)};
   frame.solver = {rng.uniform(), rng.index(100), static_cast<SolverStatus>(rng.index(4))};
+  frame.joints.resize(header.joints.size());
+  for (JointSample& joint : frame.joints) joint = {rng.normal(), rng.normal(), rng.normal()};
   frame.bodies.resize(header.bodies.size());
   for (int i = 0; i < bodies; ++i) {
     BodySample& body = frame.bodies[static_cast<std::size_t>(i)];
