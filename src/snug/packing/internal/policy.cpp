@@ -52,16 +52,16 @@ Surroundings look_round(const Layout& layout, const Block& me) {
 
 Weights default_weights() {
   Weights w{};
-  w[Base] = 1.0;
-  w[Top] = 0.5;
-  w[Buried] = 1.0;
-  w[SideWaste] = 0.5;
-  w[HeightWaste] = 1.0;
-  w[Contact] = -0.5;
-  w[Flush] = -0.2;
-  w[Support] = -0.1;
-  w[Footprint] = 0.0;
-  w[Sliver] = 0.0;
+  w[Base] = -0.925;
+  w[Top] = -1.510;
+  w[Buried] = -0.391;
+  w[SideWaste] = 0.861;
+  w[HeightWaste] = 0.659;
+  w[Contact] = -1.023;
+  w[Flush] = -0.300;
+  w[Support] = -0.175;
+  w[Footprint] = 2.272;
+  w[Sliver] = -0.112;
   return w;
 }
 
