@@ -1,25 +1,24 @@
 // Server: the viewer's page over HTTP, for recordings and for a run that goes on.
 #include "snug/serve/server.hpp"
 
-#include <httplib.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <thread>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/serve/internal/guarded_server.hpp"
 
 namespace snug::serve {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMaxWatchers = 8;  // each holds a thread
-constexpr int kThreads = kMaxWatchers + 4;
-constexpr std::chrono::seconds kPatience(5);          // with slow clients
+constexpr int kMaxWatchers = 8;                       // each holds a thread
 constexpr std::chrono::milliseconds kHeartbeat(500);  // how soon a watcher that left is noticed
 
 constexpr std::array kLoopback = {"127.0.0.1", "localhost", "::1"};
@@ -48,7 +47,8 @@ void answer(httplib::Response& response, std::shared_ptr<const std::string> byte
 struct Server::Impl {
   Impl(const ServerSettings& server_settings, Content server_content);
   void add_routes();
-  void add_live_routes();
+  [[nodiscard]] bool is_for_us(const httplib::Request& request, httplib::Response& response) const;
+  void command(const httplib::Request& request, httplib::Response& response) const;
   void serve_events(const httplib::Request& request, httplib::Response& response);
   [[nodiscard]] Json recordings_json() const;
 
@@ -56,7 +56,7 @@ struct Server::Impl {
   Content content;
   std::shared_ptr<const std::string> page;
   std::vector<std::shared_ptr<const std::string>> forms;  ///< of the recordings
-  httplib::Server server;
+  internal::GuardedServer server;
   std::atomic<int> watchers = 0;
   std::atomic<bool> is_stopping = false, is_in_run = false;
   int port = 0;
@@ -68,11 +68,7 @@ Server::Impl::Impl(const ServerSettings& server_settings, Content server_content
   for (replay::PageRecording& recording : content.recordings) {
     forms.push_back(std::make_shared<const std::string>(std::move(recording.bytes)));
   }
-  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   server.set_payload_max_length(0);
-  server.set_read_timeout(kPatience);
-  server.set_write_timeout(kPatience);
-  server.set_keep_alive_timeout(2);
   server.set_tcp_nodelay(true);
   server.set_socket_options([](socket_t socket) {  // the library's own let two servers share a port
     const int yes = 1;
@@ -84,13 +80,13 @@ Server::Impl::Impl(const ServerSettings& server_settings, Content server_content
        {"Referrer-Policy", "no-referrer"},
        {"Content-Security-Policy", "default-src 'self' 'unsafe-inline' data: blob:; frame-ancestors 'none'"}});
   add_routes();
-  if (content.live != nullptr) add_live_routes();
   const bool is_bound = settings.port == 0 ? (port = server.bind_to_any_port(settings.host)) > 0
                                            : server.bind_to_port(settings.host, port = settings.port);
   if (!is_bound) {
     throw InputError("command line", "--host, --port", settings.host + " port " + std::to_string(settings.port),
                      "an address of this machine and a port that is free");
   }
+  server.widen_queue();
 }
 
 Json Server::Impl::recordings_json() const {
@@ -101,22 +97,38 @@ Json Server::Impl::recordings_json() const {
   return {{"recordings", std::move(list)}, {"live", is_live}};
 }
 
-void Server::Impl::add_routes() {
-  // Nothing that is served takes a body. A page of another site can have its own name resolve to 127.0.0.1; its
-  // requests then carry that name.
-  server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-    if (request.has_header("Transfer-Encoding") || request.get_header_value<std::uint64_t>("Content-Length") > 0) {
-      response.status = 413;
-      response.set_header("Connection", "close");  // what follows is not read
-      return httplib::Server::HandlerResponse::Handled;
-    }
-    if (!is_loopback(settings.host) || is_loopback(host_of(request.get_header_value("Host")))) {
-      return httplib::Server::HandlerResponse::Unhandled;
-    }
+/// Refuses what is sent by mistake or by others. Nothing that is served takes a body. A page of another site can have
+/// its own name resolve to 127.0.0.1; its requests then carry that name.
+bool Server::Impl::is_for_us(const httplib::Request& request, httplib::Response& response) const {
+  if (request.has_header("Transfer-Encoding") || request.get_header_value<std::uint64_t>("Content-Length") > 0) {
+    response.status = 413;
+    response.set_header("Connection", "close");  // what follows is not read
+    return false;
+  }
+  if (is_loopback(settings.host) && !is_loopback(host_of(request.get_header_value("Host")))) {
     response.status = 403;
     response.set_content("This server answers to the names of this machine only.\n", "text/plain");
-    return httplib::Server::HandlerResponse::Handled;
+    return false;
+  }
+  if (request.method == "GET" || request.method == "HEAD" || request.method == "POST") return true;
+  response.status = 405;
+  response.set_header("Allow", "GET, HEAD, POST");
+  return false;
+}
+
+void Server::Impl::add_routes() {
+  using Answer = httplib::Server::HandlerResponse;
+  server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+    if (!is_for_us(request, response)) return Answer::Handled;
+    if (request.method != "POST") return Answer::Unhandled;
+    command(request, response);  // here, as the library would wait for a body of unknown length
+    return Answer::Handled;
   });
+  if (content.live != nullptr) {
+    server.Get("/live", [this](const httplib::Request& request, httplib::Response& response) {
+      serve_events(request, response);
+    });
+  }
   server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
     answer(response, page, "text/html; charset=utf-8");
   });
@@ -136,22 +148,20 @@ void Server::Impl::add_routes() {
   });
 }
 
-void Server::Impl::add_live_routes() {
-  server.Get("/live",
-             [this](const httplib::Request& request, httplib::Response& response) { serve_events(request, response); });
-  const auto command = [this](const char* path, void (LiveRun::*act)()) {
-    server.Post(path, [this, act](const httplib::Request& request, httplib::Response& response) {
-      if (request.get_header_value("X-Snug") != "1") {  // other sites' pages cannot send it unasked
-        response.status = 403;
-        return;
-      }
-      (content.live->*act)();
-      response.status = 204;
-    });
-  };
-  command("/live/pause", &LiveRun::pause);
-  command("/live/resume", &LiveRun::resume);
-  command("/live/step", &LiveRun::step);
+void Server::Impl::command(const httplib::Request& request, httplib::Response& response) const {
+  using Command = std::pair<std::string_view, void (LiveRun::*)()>;
+  static constexpr std::array<Command, 3> kCommands = {
+      {{"/live/pause", &LiveRun::pause}, {"/live/resume", &LiveRun::resume}, {"/live/step", &LiveRun::step}}};
+  const auto found = std::find_if(kCommands.begin(), kCommands.end(),
+                                  [&](const Command& known) { return known.first == request.path; });
+  if (content.live == nullptr || found == kCommands.end()) {
+    response.status = 404;
+  } else if (request.get_header_value("X-Snug") != "1") {  // other sites' pages cannot send it unasked
+    response.status = 403;
+  } else {
+    (content.live->*found->second)();
+    response.status = 204;
+  }
 }
 
 void Server::Impl::serve_events(const httplib::Request&, httplib::Response& response) {
@@ -199,6 +209,7 @@ void Server::stop() {
   // The library ignores a stop that comes before its loop runs.
   while (impl_->is_in_run && !impl_->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   impl_->server.stop();
+  impl_->server.close_connections();
 }
 
 }  // namespace snug::serve
