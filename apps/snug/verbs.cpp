@@ -2,6 +2,7 @@
 #include "verbs.hpp"
 
 #include "bench.hpp"
+#include "calibrate.hpp"
 #include "cup.hpp"
 #include "export.hpp"
 #include "picture.hpp"
@@ -22,6 +23,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_picture(app, action);
   add_export(app, action);
   add_cup(app, action);
+  add_calibrate(app, action);
   add_bench(app, action);
 }
 
