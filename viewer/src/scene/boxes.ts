@@ -2,9 +2,10 @@
 
 import {
   BufferGeometry, CanvasTexture, Color, DynamicDrawUsage, Float32BufferAttribute, Group, InstancedBufferAttribute, InstancedMesh,
-  LinearMipmapLinearFilter, Matrix4, MeshLambertMaterial, Quaternion, Vector3, type IUniform, type WebGLProgramParametersWithUniforms,
+  LinearMipmapLinearFilter, Matrix4, Quaternion, Vector3, type IUniform, type WebGLProgramParametersWithUniforms,
 } from "three";
 import type { Replay } from "../replay/replay";
+import { Lit } from "./lit";
 import { matrixOf } from "./maths";
 import type { BoxColours, Palette } from "./palette";
 
@@ -136,7 +137,7 @@ export class Boxes {
   private readonly half_: Vector3[] = [];
   private readonly shapePose_: Matrix4[] = [];
   private readonly uniforms_: Record<string, IUniform>;
-  private readonly material_: MeshLambertMaterial;
+  private readonly look_: Lit;
   private readonly mark_: InstancedBufferAttribute;
   private readonly pose_ = new Float64Array(7);
   private readonly matrix_ = new Matrix4();
@@ -161,8 +162,7 @@ export class Boxes {
       showNames: { value: 1 },
       pixelRatio: { value: 1 },
     };
-    this.material_ = new MeshLambertMaterial({ fog: false });
-    this.material_.onBeforeCompile = (shader) => this.extendShader(shader);
+    this.look_ = new Lit({ fog: false }, "boxes", (shader) => this.extendShader(shader));
     const geometry = unitBox();
     const half = new Float32Array(4 * count);
     boxes.forEach((body, i) => {
@@ -176,7 +176,7 @@ export class Boxes {
     geometry.setAttribute("boxHalf", new InstancedBufferAttribute(half, 4));
     this.mark_ = new InstancedBufferAttribute(new Float32Array(count), 1);
     geometry.setAttribute("boxMark", this.mark_);
-    this.mesh = new InstancedMesh(geometry, this.material_, count);
+    this.mesh = new InstancedMesh(geometry, this.look_.of(false), count);
     this.mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     this.mesh.frustumCulled = false;
     boxes.forEach((body, i) => this.mesh.setColorAt(i, new Color(colours.of(body.type))));
@@ -207,10 +207,15 @@ export class Boxes {
   }
 
   setTranslucent(on: boolean): void {
-    this.material_.transparent = on;
-    this.material_.opacity = on ? 0.35 : 1;
-    this.material_.depthWrite = !on;
-    this.material_.needsUpdate = true;
+    this.look_.change((material) => {
+      material.transparent = on;
+      material.opacity = on ? 0.35 : 1;
+      material.depthWrite = !on;
+    });
+  }
+
+  setShadows(on: boolean): void {
+    this.mesh.material = this.look_.of(on);
   }
 
   setSelected(body: number): void {

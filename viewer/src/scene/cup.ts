@@ -1,13 +1,14 @@
 // Cup: a bellows between E and S, bent, sheared, twisted and compressed as the recording says.
 
 import {
-  BufferGeometry, Color, DoubleSide, Float32BufferAttribute, Group, Matrix4, Mesh, MeshLambertMaterial, Quaternion, Vector3,
+  BufferGeometry, Color, DoubleSide, Float32BufferAttribute, Group, Matrix4, Mesh, Quaternion, Vector3,
 } from "three";
 import type { Replay } from "../replay/replay";
+import { Lit } from "./lit";
 import type { Palette } from "./palette";
 
-const RINGS = 56;
-const SEGMENTS = 32;
+const RINGS = 48;
+const SEGMENTS = 24;
 const FOLDS = 3;
 
 /** X_ES at a frame: the recorded deformation while the cup holds, else the free or evacuated cup. */
@@ -56,7 +57,8 @@ export class Cup {
   readonly group = new Group();
   private readonly position_: Float32BufferAttribute;
   private readonly geometry_ = new BufferGeometry();
-  private readonly material_ = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide });
+  private readonly look_ = new Lit({ vertexColors: true, side: DoubleSide });
+  private readonly mesh_: Mesh;
   private readonly ghostlyColour_ = new Color();
   private body_ = new Color();
   private lip_ = new Color();
@@ -82,10 +84,10 @@ export class Cup {
       }
     }
     this.geometry_.setIndex(index);
-    const mesh = new Mesh(this.geometry_, this.material_);
-    mesh.frustumCulled = false;
-    mesh.castShadow = true;
-    this.group.add(mesh);
+    this.mesh_ = new Mesh(this.geometry_, this.look_.of(false));
+    this.mesh_.frustumCulled = false;
+    this.mesh_.castShadow = true;
+    this.group.add(this.mesh_);
     this.group.matrixAutoUpdate = false;
     this.setPalette(palette);
   }
@@ -94,6 +96,10 @@ export class Cup {
     this.body_ = new Color(palette.cup);
     this.lip_ = new Color(palette.lip);
     this.hold_ = new Color(palette.sticking);
+  }
+
+  setShadows(on: boolean): void {
+    this.mesh_.material = this.look_.of(on);
   }
 
   /** X_WE must be set as the group's matrix before; draws X_ES of the frame. Returns X_ES. */

@@ -1,8 +1,9 @@
 // Movers: bodies that move and are no plain boxes (the tool, links of a robot, plungers, hulls), one mesh each.
 
-import { Group, Matrix4, Mesh, MeshLambertMaterial } from "three";
+import { Group, Matrix4, Mesh, type Material } from "three";
 import type { Shape } from "../replay/header";
 import type { Replay } from "../replay/replay";
+import { Lit, useShadows } from "./lit";
 import { matrixOf } from "./maths";
 import type { BoxColours, Palette } from "./palette";
 import { mergeGeometries, shapeGeometry } from "./shapes";
@@ -12,7 +13,7 @@ export function toolShapes(shapes: Shape[], hasCup: boolean): Shape[] {
   return hasCup ? shapes.filter((s) => s.pose[2] <= 0) : shapes;
 }
 
-export function meshOfShapes(shapes: Shape[], material: MeshLambertMaterial): Mesh | null {
+export function meshOfShapes(shapes: Shape[], material: Material): Mesh | null {
   if (shapes.length === 0) return null;
   return new Mesh(mergeGeometries(shapes.map((s) => shapeGeometry(s).faces)), material);
 }
@@ -21,40 +22,43 @@ export class Movers {
   readonly group = new Group();
   /** Links of a robot, shown and hidden together. */
   readonly links = new Group();
-  private readonly items_: { body: number; mesh: Mesh; material: MeshLambertMaterial; role: "tool" | "link" | "body" }[] = [];
+  private readonly items_: { body: number; mesh: Mesh; look: Lit; role: "tool" | "link" | "body" }[] = [];
   private readonly pose_ = new Float64Array(7);
 
   constructor(replay: Replay, palette: Palette, colours: BoxColours, boxes: number[]) {
     const toolBody = replay.header.tool?.body ?? -1;
     const hasCup = replay.header.cup !== null;
     const links = new Set(replay.header.robot?.links ?? []);
-    const linkMaterial = new MeshLambertMaterial({ color: palette.link });
+    const linkLook = new Lit({ color: palette.link });
     this.group.add(this.links);
     replay.bodies.forEach((body, k) => {
       const role = k === toolBody ? "tool" : links.has(k) ? "link" : "body";
       if ((body.kind === "static" && role === "body") || boxes.includes(k)) return;
-      const plain = (): MeshLambertMaterial => new MeshLambertMaterial({ color: role === "tool" ? palette.tool : colours.of(body.type || body.name) });
-      const material = role === "link" ? linkMaterial : plain();
-      const mesh = meshOfShapes(role === "tool" ? toolShapes(body.shapes, hasCup) : body.shapes, material);
+      const look = role === "link" ? linkLook : new Lit({ color: role === "tool" ? palette.tool : colours.of(body.type || body.name) });
+      const mesh = meshOfShapes(role === "tool" ? toolShapes(body.shapes, hasCup) : body.shapes, look.of(false));
       if (!mesh) return;
       mesh.matrixAutoUpdate = false;
       mesh.castShadow = true;
-      this.items_.push({ body: k, mesh, material, role });
+      this.items_.push({ body: k, mesh, look, role });
       (role === "link" ? this.links : this.group).add(mesh);
     });
     if (toolBody < 0 && replay.header.tool) {
-      const material = new MeshLambertMaterial({ color: palette.tool });
-      const mesh = meshOfShapes(toolShapes(replay.header.tool.shapes, hasCup), material);
+      const look = new Lit({ color: palette.tool });
+      const mesh = meshOfShapes(toolShapes(replay.header.tool.shapes, hasCup), look.of(false));
       if (mesh) {
         mesh.matrixAutoUpdate = false;
-        this.items_.push({ body: -1, mesh, material, role: "tool" });
+        this.items_.push({ body: -1, mesh, look, role: "tool" });
         this.group.add(mesh);
       }
     }
   }
 
   setPalette(palette: Palette): void {
-    for (const { role, material } of this.items_) if (role !== "body") material.color.set(role === "tool" ? palette.tool : palette.link);
+    for (const { role, look } of this.items_) if (role !== "body") look.setColour(role === "tool" ? palette.tool : palette.link);
+  }
+
+  setShadows(on: boolean): void {
+    useShadows(this.items_, on);
   }
 
   update(replay: Replay, frame: number): void {

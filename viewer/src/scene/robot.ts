@@ -1,8 +1,9 @@
 // Robot: a UR10 drawn from its joints, when the recording has those but no bodies for the links. Lengths are those of the
 // maker's data sheet.
 
-import { CapsuleGeometry, Group, Matrix4, Mesh, MeshLambertMaterial, Quaternion, SphereGeometry, Vector3 } from "three";
+import { CapsuleGeometry, Group, Matrix4, Mesh, Quaternion, SphereGeometry, Vector3 } from "three";
 import type { Replay } from "../replay/replay";
+import { Lit } from "./lit";
 import type { Palette } from "./palette";
 
 /** Denavit-Hartenberg rows (a, d, alpha) of the UR10, m and rad. */
@@ -66,7 +67,7 @@ export class Robot {
   readonly group = new Group();
   /** Whether the joints are known at the frame. */
   isThere = false;
-  private readonly material_: MeshLambertMaterial;
+  private readonly look_: Lit;
   private readonly links_: { mesh: Mesh; caps: Mesh[]; radius: number }[] = [];
 
   /** Null when the recording has no six joints, or has the links themselves. */
@@ -76,18 +77,22 @@ export class Robot {
   }
 
   private constructor(palette: Palette) {
-    this.material_ = new MeshLambertMaterial({ color: palette.metal });
+    this.look_ = new Lit({ color: palette.metal });
     for (let i = 0; i < 8; ++i) {
       const radius = i < 6 ? RADII[i]! : 0.06;
-      const mesh = new Mesh(new CapsuleGeometry(radius, 1, 6, 20).rotateX(Math.PI / 2), this.material_);
-      const caps = [0, 1].map(() => new Mesh(new SphereGeometry(radius * 1.08, 20, 14), this.material_));
+      const mesh = new Mesh(new CapsuleGeometry(radius, 1, 6, 20).rotateX(Math.PI / 2), this.look_.of(false));
+      const caps = [0, 1].map(() => new Mesh(new SphereGeometry(radius * 1.08, 20, 14), this.look_.of(false)));
       this.group.add(mesh, ...caps);
       this.links_.push({ mesh, caps, radius });
     }
   }
 
   setPalette(palette: Palette): void {
-    this.material_.color.set(palette.metal);
+    this.look_.setColour(palette.metal);
+  }
+
+  setShadows(on: boolean): void {
+    for (const { mesh, caps } of this.links_) for (const part of [mesh, ...caps]) part.material = this.look_.of(on);
   }
 
   update(replay: Replay, frame: number): void {

@@ -15,8 +15,8 @@ export function shapeGeometry(shape: Shape): { faces: BufferGeometry; edges: Buf
     return { faces: faces.applyMatrix4(X), edges: edges.applyMatrix4(X) };
   }
   if (shape.kind === "capsule") {
-    if (shape.half_length < 1e-6) return { faces: new SphereGeometry(shape.radius, 24, 16).applyMatrix4(X), edges: null };
-    const faces = new CapsuleGeometry(shape.radius, 2 * shape.half_length, 8, 24);
+    if (shape.half_length < 1e-6) return { faces: new SphereGeometry(shape.radius, 20, 12).applyMatrix4(X), edges: null };
+    const faces = new CapsuleGeometry(shape.radius, 2 * shape.half_length, 5, 18);
     faces.applyMatrix4(new Matrix4().makeRotationX(Math.PI / 2)); // three's capsule lies along y, ours along z
     return { faces: faces.applyMatrix4(X), edges: null };
   }
@@ -29,18 +29,25 @@ export function shapeGeometry(shape: Shape): { faces: BufferGeometry; edges: Buf
   return { faces: faces.applyMatrix4(X), edges: edges.applyMatrix4(X) };
 }
 
-/** One geometry of all given (positions and normals only). */
+/** One geometry of all given (positions and normals only); what shares corners goes on sharing them: each is computed once. */
 export function mergeGeometries(parts: BufferGeometry[]): BufferGeometry {
   const positions: number[] = [];
   const normals: number[] = [];
+  const index: number[] = [];
+  const isIndexed = parts.some((part) => part.index);
   for (const part of parts) {
-    const flat = part.index ? part.toNonIndexed() : part;
-    positions.push(...flat.getAttribute("position").array);
-    const normal = flat.getAttribute("normal");
-    if (normal) normals.push(...normal.array);
+    const first = positions.length / 3;
+    const position = part.getAttribute("position");
+    for (const value of position.array) positions.push(value);
+    const normal = part.getAttribute("normal");
+    if (normal) for (const value of normal.array) normals.push(value);
+    if (!isIndexed) continue;
+    if (part.index) for (const corner of part.index.array) index.push(first + corner);
+    else for (let corner = 0; corner < position.count; ++corner) index.push(first + corner);
   }
   const merged = new BufferGeometry();
   merged.setAttribute("position", new Float32BufferAttribute(positions, 3));
   if (normals.length === positions.length) merged.setAttribute("normal", new Float32BufferAttribute(normals, 3));
+  if (isIndexed) merged.setIndex(index);
   return merged;
 }

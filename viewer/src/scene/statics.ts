@@ -9,12 +9,10 @@ import type { Replay } from "../replay/replay";
 import { matrixOf } from "./maths";
 import type { Palette } from "./palette";
 import { mergeGeometries, shapeGeometry } from "./shapes";
+import { SUN } from "./sun";
 
 type Role = "fixed" | "belt" | "metal" | "wall";
 const ROLES: Role[] = ["fixed", "belt", "metal", "wall"];
-
-/** Where the sun stands; the view's light shines from there too. */
-export const SUN = new Vector3(0.75, -1.1, 2.4).normalize();
 
 /** A container, or a body of the same make (the demonstrator has a second, empty tote). */
 function isContainer(body: Body, container: Body | undefined): boolean {

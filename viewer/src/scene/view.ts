@@ -12,14 +12,21 @@ import { Contacts, type Arrow } from "./contacts";
 import { Cup } from "./cup";
 import { Ghost, Plans } from "./ghost";
 import { Labels, type Label } from "./labels";
+import { aimLight, setLight } from "./lit";
 import { matrixOf } from "./maths";
 import { Movers } from "./movers";
 import { BoxColours, PALETTES, type Palette, type Theme } from "./palette";
 import { Robot } from "./robot";
 import { Second } from "./second";
-import { Statics, SUN } from "./statics";
+import { Statics } from "./statics";
+import { SUN } from "./sun";
 import { Trace, type TracePoint } from "./trace";
 import { Triads, type Triad } from "./triads";
+
+/** Above SLOW_MS between pictures a processor draws with COARSE samples a pixel's edge until it takes less than FAST_MS. */
+const SLOW_MS = 55;
+const FAST_MS = 22;
+const COARSE = 0.7;
 
 export interface ViewOptions {
   names: boolean;
@@ -74,6 +81,9 @@ export class View {
   private selected_ = -1;
   private isScheduled_ = false;
   private sharpTimer_ = 0;
+  /** Mean time between pictures while things move, ms, and samples a pixel then. */
+  private pace_ = 40;
+  private movingRatio_ = 1;
   private width_ = 1;
   private height_ = 1;
   private readonly pose_ = new Float64Array(7);
@@ -168,7 +178,7 @@ export class View {
   private setShadows(): void {
     this.renderer_.shadowMap.enabled = this.options.shadows;
     this.sun_.castShadow = this.options.shadows;
-    this.statics_.setShadows(this.options.shadows);
+    for (const part of [this.statics_, this.boxes_, this.movers_, this.cup_, this.robot_]) part?.setShadows(this.options.shadows);
     this.scene_.traverse((object) => {
       if (object instanceof Mesh && object.material instanceof MeshLambertMaterial) object.material.needsUpdate = true;
     });
@@ -180,6 +190,7 @@ export class View {
 
   setTheme(theme: Theme): void {
     const p = (this.palette_ = PALETTES[theme]);
+    setLight(p);
     const background = new Color(p.background);
     this.scene_.background = background;
     this.scene_.fog = new Fog(background, 4, 9);
@@ -313,9 +324,17 @@ export class View {
     this.boxes_.setPixelRatio(ratio);
   }
 
-  /** Where a processor draws, edges are rough while things move: when they stand, one picture has four samples a pixel. */
+  /**
+   * Where a processor draws, edges are rough while things move, and rougher where it cannot follow: when they stand, one
+   * picture has four samples a pixel.
+   */
   private sharpenWhenStill(): void {
-    if (this.renderer_.getPixelRatio() !== 1) this.setRatio(1);
+    const now = performance.now();
+    const interval = now - (this.drawn_[this.drawn_.length - 1] ?? 0);
+    if (interval < 300) this.pace_ += 0.1 * (interval - this.pace_);
+    if (this.pace_ > SLOW_MS) this.movingRatio_ = COARSE;
+    else if (this.pace_ < FAST_MS) this.movingRatio_ = 1;
+    if (this.renderer_.getPixelRatio() !== this.movingRatio_) this.setRatio(this.movingRatio_);
     window.clearTimeout(this.sharpTimer_);
     this.sharpTimer_ = window.setTimeout(() => {
       this.setRatio(2);
@@ -439,10 +458,12 @@ export class View {
     this.scene_.fog = null;
     const camera = orthoCamera(box, from, target.width / target.height);
     // Light from where one looks: the sides that are seen are not in the dark.
-    this.sun_.position.copy(this.sun_.target.position).addScaledVector(camera.getWorldDirection(new Vector3()), -3);
-    this.sun_.position.z += 1;
+    const toSun = camera.getWorldDirection(new Vector3()).negate().setZ(0.5).normalize();
+    this.sun_.position.copy(this.sun_.target.position).addScaledVector(toSun, 3);
+    aimLight(toSun);
     this.renderer_.render(this.scene_, camera);
     this.sun_.position.copy(this.sun_.target.position).addScaledVector(SUN, 3);
+    aimLight(SUN);
     const pen = target.getContext("2d")!;
     pen.imageSmoothingQuality = "high";
     pen.drawImage(this.canvas, 0, 0, target.width, target.height);
