@@ -39,6 +39,13 @@ Json box_as_json(const cell::BoxResult& box) {
           {"events", events_as_json(box.events)}};
 }
 
+Json stop_as_json(const cell::ProtectiveStop& stop) {
+  return {
+      {"what", stop.what},         {"where", stop.where},          {"value", stop.value}, {"limit", stop.limit},
+      {"unit", stop.unit},         {"time_s", stop.time},          {"row", stop.row + 1}, {"waypoint", stop.waypoint},
+      {"touching", stop.touching}, {"limited_by", stop.limited_by}};
+}
+
 struct RepickOffsets {
   double mean = 0.0, worst = 0.0;  ///< m
 };
@@ -146,6 +153,7 @@ std::string format_json(const cell::RunResult& result) {
                         {"worst_penetration_mm", result.solver.worst_penetration * kMm},
                         {"mean_sweeps", result.solver.mean_sweeps}};
   document["state_hash"] = fmt::format("{:016x}", result.state_hash);
+  document["protective_stop"] = result.stop ? stop_as_json(*result.stop) : Json(nullptr);
   document["failure"] = result.failure;
   return document.dump(2) + "\n";
 }

@@ -62,11 +62,14 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
     run.program_text = read_text(*options.program);
     run.program = motion::parse_program(run.program_text, *options.program);
     if (!options.sequence) throw InputError("command line", "--sequence", "nothing", list_sequences(scenario));
+  } else if (options.robot) {
+    throw InputError("command line", "--robot", "'" + *options.robot + "' without --program", "both or none");
   } else if (options.sequence) {
     throw InputError("command line", "--sequence", "'" + *options.sequence + "' without --program", "both or none");
   }
   if (options.sequence) run.sequence = *options.sequence;
   if (options.corrections != "none") run.corrections = options.corrections;
+  if (options.robot) run.simulation.robot = *options.robot;
   if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
   if (options.cup) run.simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;

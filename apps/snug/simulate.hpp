@@ -20,6 +20,7 @@ struct SimulateOptions {
   std::optional<double> dt;     ///< s
   std::optional<std::uint64_t> seed;
   std::optional<std::string> controller;  ///< faithful | ideal
+  std::optional<std::string> robot;       ///< name of the scenario's robot
   std::optional<std::string> cup;         ///< holding | phases
   std::string corrections = "none";       ///< none, or the name of a correction layer of the scenario
   std::optional<std::string> record;      ///< HDF5 file to write

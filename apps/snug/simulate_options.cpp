@@ -11,6 +11,7 @@ constexpr const char* kExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug simulate scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --ensemble 20 --seed 7
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --robot ur10 --csv joints.csv
   snug simulate scenarios/slide.yaml --until 5 --csv slide.csv)";
 
 }  // namespace
@@ -24,6 +25,10 @@ void add_program_options(CLI::App& verb, SimulateOptions& options) {
                   "faithful: the demonstrator's timing and lag; ideal: the reference, exactly (default: faithful)")
       ->check(one_of({"faithful", "ideal"}))
       ->type_name("KIND");
+  verb.add_option(
+          "--robot", options.robot,
+          "move the tool with the joints of the scenario's robot, such as ur10; absent: the tool moves by itself")
+      ->type_name("NAME");
   verb.add_option("--corrections", options.corrections,
                   "site corrections: a layer of the scenario such as seq1 or seq2-5, or none")
       ->type_name("LAYER")

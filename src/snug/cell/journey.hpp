@@ -50,6 +50,8 @@ class Journey {
   void box_removed(int item, double time);
   void add(const GripperEvent& event, double time, const CellWorld& world, const physics::WorldState& state,
            const Pose& X_WE, const std::string& waypoint);
+  /// Something that concerns no box.
+  void note(record::Event event) { events_.push_back(std::move(event)); }
   [[nodiscard]] const std::vector<record::Event>& events() const { return events_; }
   [[nodiscard]] const std::vector<Repick>& repicks() const { return repicks_; }
   /// What became of the items, in the order of the sequence; items that never appeared are left out.

@@ -46,6 +46,7 @@ record::RecordingHeader header_of(const model::Scenario& scenario, const CellWor
   header.settings = setup.settings_json;
   header.dt = scenario.time_step;
   header.record_period = setup.period;
+  header.joints = setup.joints;
   for (std::size_t i = 0; i < world.model.bodies.size(); ++i) {
     const physics::BodyModel& body = world.model.bodies[i];
     record::BodyInfo info;
@@ -149,6 +150,12 @@ bool Recorder::add_frame(const CellWorld& world, const physics::WorldState& stat
     const Vector3 force = -(X_ES.R * frame_.cup.F_PSo_S.force);
     frame_.F_flange.force += force;
     frame_.F_flange.torque += X_ES.p.cross(force) - X_ES.R * frame_.cup.F_PSo_S.torque;
+  }
+  if (input.arm != nullptr) {
+    frame_.F_flange = input.arm->F_sensor;
+    frame_.joints = input.arm->joints;
+    for (const physics::ContactReport& contact : input.arm->contacts)
+      frame_.contacts.push_back(contact_sample(contact));
   }
   frame_.solver.residual = report.residual;
   frame_.solver.iterations = report.sweeps;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "snug/cell/cell_arm.hpp"
 #include "snug/cell/gripper.hpp"
 #include "snug/motion/controller.hpp"
 #include "snug/record/writer.hpp"
@@ -30,6 +31,7 @@ struct RecorderSetup {
   std::string sequence;
   std::string settings_json = "{}";
   std::string version;
+  std::vector<std::string> joints;  ///< names, with a robot
 };
 
 /// What a frame shows besides the world.
@@ -40,6 +42,7 @@ struct FrameInput {
   int program_row = -1;
   const GripperState* gripper = nullptr;
   cup::CupCommand command;
+  const ArmReading* arm = nullptr;  ///< with a robot
 };
 
 class Recorder {

@@ -46,7 +46,8 @@ struct RunResult {
   std::vector<Repick> repicks;
   SolverSummary solver;
   std::uint64_t state_hash = 0;
-  std::string failure;  ///< empty, or why the run had to stop: body, time, last contacts
+  std::optional<ProtectiveStop> stop;  ///< with a robot: the limit that ended the run
+  std::string failure;                 ///< empty, or why the run had to stop: body, time, last contacts
 };
 
 /// Throws InputError for options that do not fit the scenario (unknown sequence, corrections, waypoint name, tick that

@@ -32,6 +32,19 @@ int substeps_of(const model::Scenario& scenario) {
   return static_cast<int>(whole);
 }
 
+/// The arm that the options ask for, or none. The tool then starts where the arm's joints put it.
+std::unique_ptr<CellArm> make_arm(model::Scenario& scenario, const model::Sequence& sequence, const std::string& name) {
+  if (name.empty()) return nullptr;
+  if (!scenario.robot || scenario.robot->name != name) {
+    throw InputError(
+        scenario.source_name, "--robot", "'" + name + "'",
+        scenario.robot ? "'" + scenario.robot->name + "', the robot of the scenario" : "a scenario with a robot");
+  }
+  auto arm = std::make_unique<CellArm>(scenario, sequence.task_stiffness.value_or(scenario.controller.task_stiffness));
+  scenario.controller.X_WE_start = robot::forward_tool(arm->model(), arm->start());
+  return arm;
+}
+
 /// The scenario itself, once it is known that programs can run in it.
 model::Scenario runnable(model::Scenario scenario) {
   if (!scenario.tool) throw InputError(scenario.source_name, "tool", "", "a tool, to run a program");
@@ -46,14 +59,19 @@ Simulation::Simulation(model::Scenario scenario, const std::string& sequence, co
       options_(options),
       sequence_(sequence_of(scenario_, sequence)),
       substeps_(substeps_of(scenario_)),
-      world_(build_world(scenario_, {&sequence_, true})),
-      gripper_(scenario_.cup, options.cup, world_) {}
+      arm_(make_arm(scenario_, sequence_, options.robot)),
+      world_(build_world(scenario_, arm_ ? WorldOptions{&sequence_, true, &arm_->model(), arm_->start()}
+                                         : WorldOptions{&sequence_, true, nullptr, {}})),
+      gripper_(scenario_.cup, options.cup, world_) {
+  if (arm_) arm_->attach(world_);
+}
 
 CellState Simulation::make_state() const {
   CellState state;
   state.world = make_initial_state(scenario_, world_);
   state.controller = motion::make_controller_state(scenario_.controller.X_WE_start);
   state.journey = Journey(scenario_, sequence_);
+  if (arm_) state.arm = arm_->make_state(scenario_.seed);
   return state;
 }
 
@@ -106,8 +124,17 @@ void Simulation::depart(const motion::PreparedProgram& plan, int row, CellState&
 }
 
 CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& state, CellWorkspace& work) const {
-  const motion::ToolState start = state.controller.command;
-  const motion::ControllerOutput out = motion::tick(plan, start, state.controller);
+  const motion::ToolState start = arm_ ? state.arm->machine.tool : state.controller.command;
+  control::JointState joints;
+  control::MachineTick machine;
+  motion::ControllerOutput out;
+  if (arm_) {
+    joints = state.arm->machine.joints;
+    machine = arm_->tick(plan, state.controller, *state.arm, work.joints);
+    out = machine.program;
+  } else {
+    out = motion::tick(plan, start, state.controller);
+  }
   if (out.departed >= 0) depart(plan, out.departed, state);
   CellTick tick;
   tick.has_ended = out.finished_now;
@@ -115,20 +142,59 @@ CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& sta
   tick.tool = start;
   tick.X_WE_reference = out.X_WE_reference;
   tick.command = {out.io.vacuum, out.io.blow_off};
-  for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
-    const motion::ToolState next =
-        k + 1 == substeps_ ? out.tool
-                           : motion::interpolate(start, out.tool, plan.settings.tick,
-                                                 static_cast<double>(k + 1) / static_cast<double>(substeps_));
-    advance_step(plan, tick.tool, next, state, work, tick);
-    tick.tool = next;
+  if (arm_) {
+    advance_arm(plan, joints, machine, state, work, tick);
+  } else {
+    advance_tool(plan, start, out.tool, state, work, tick);
   }
   return tick;
 }
 
-void Simulation::advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool,
-                              const motion::ToolState& next, CellState& state, CellWorkspace& work,
+void Simulation::advance_tool(const motion::PreparedProgram& plan, const motion::ToolState& start,
+                              const motion::ToolState& end, CellState& state, CellWorkspace& work,
                               CellTick& tick) const {
+  for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
+    const motion::ToolState next =
+        k + 1 == substeps_ ? end
+                           : motion::interpolate(start, end, plan.settings.tick,
+                                                 static_cast<double>(k + 1) / static_cast<double>(substeps_));
+    work.targets.assign(1, {world_.tool, next.X_WE});
+    advance_step(plan, tick.tool, state, work, tick);
+    tick.tool = next;
+  }
+}
+
+/// The joints' accelerations are constant over the tick: so are the ways of tool and links.
+void Simulation::advance_arm(const motion::PreparedProgram& plan, const control::JointState& start,
+                             const control::MachineTick& machine, CellState& state, CellWorkspace& work,
+                             CellTick& tick) const {
+  const control::JointState& end = state.arm->machine.joints;
+  ArmLoads loads;
+  for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
+    const bool is_last = k + 1 == substeps_;
+    const double elapsed = plan.settings.tick * static_cast<double>(k + 1) / static_cast<double>(substeps_);
+    const robot::JointVector q = is_last ? end.q : arm_->joints_at(start, end.qdd, elapsed);
+    const robot::JointVector qd = is_last ? end.qd : robot::JointVector(start.qd + elapsed * end.qdd);
+    const robot::ArmPose at = robot::forward(arm_->model(), q);
+    arm_->aim(world_, at, work.targets);
+    advance_step(plan, tick.tool, state, work, tick);
+    arm_->add_loads(world_, state.world, work.physics, state.gripper, at, loads);
+    const Vector6 V_WE = robot::tool_jacobian(arm_->model(), at) * qd;
+    tick.tool = {at.X_WE, twist_from(V_WE)};
+  }
+  arm_->read(world_, plan, machine, time(state), loads, *state.arm, work.arm);
+  if (!work.arm.stop || !tick.failure.empty()) return;
+  const ProtectiveStop& stop = *work.arm.stop;
+  tick.failure = describe(stop);
+  state.journey.note({time(state),
+                      "protective_stop",
+                      stop.where,
+                      tick.failure,
+                      {{"value", stop.value}, {"limit", stop.limit}, {"row", static_cast<double>(stop.row)}}});
+}
+
+void Simulation::advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, CellState& state,
+                              CellWorkspace& work, CellTick& tick) const {
   work.events.clear();
   gripper_.prepare(state.world, tool.X_WE, tool.V_WE, tick.command, world_.model.settings.dt, state.gripper,
                    work.gripper, work.events);
@@ -140,10 +206,9 @@ void Simulation::advance_step(const motion::PreparedProgram& plan, const motion:
       state.waiting_item = -1;
     }
   }
-  const physics::KinematicTarget target{world_.tool, next.X_WE};
   const physics::ElementUse use{work.gripper.element, world_.tool, Pose{}, physics::BodyId{work.gripper.body}};
   physics::WorldInput input;
-  input.kinematic = {&target, 1};
+  input.kinematic = work.targets;
   if (work.gripper.element != nullptr) input.elements = {&use, 1};
   input.held = physics::BodyId{work.gripper.ignored};
   tick.step = physics::step(world_.model, input, state.world, work.physics);
@@ -179,6 +244,9 @@ std::uint64_t Simulation::hash(const CellState& state) const {
   hash.add(physics::hash_of(state.world));
   hash.add(state.gripper.cup.pressure_gauge);
   hash.add(static_cast<std::uint64_t>(state.controller.row + 1));
+  if (state.arm) {
+    for (const double q : state.arm->machine.joints.q) hash.add(q);
+  }
   return hash.value();
 }
 

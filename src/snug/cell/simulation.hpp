@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/cell/cell_arm.hpp"
 #include "snug/cell/journey.hpp"
 #include "snug/cell/solver_summary.hpp"
 #include "snug/motion/controller.hpp"
@@ -15,6 +16,7 @@ struct SimulationOptions {
   motion::ControllerKind controller = motion::ControllerKind::Faithful;
   /// The report's model predicts the real programs better than the phases do (docs/decisions/0006): the default.
   cup::CupMode cup = cup::CupMode::Holding;
+  std::string robot;  ///< name of the scenario's robot that moves the tool; empty: the tool moves by itself
 };
 
 /// Everything of a cell that changes. A copy is a snapshot: going on from it gives the same bytes.
@@ -23,7 +25,8 @@ struct CellState {
   motion::ControllerState controller;
   GripperState gripper;
   Journey journey;
-  int waiting_item = -1;  ///< of the sequence, that stands at the aligner; -1 when none does
+  int waiting_item = -1;        ///< of the sequence, that stands at the aligner; -1 when none does
+  std::optional<ArmState> arm;  ///< with a robot
 };
 
 /// Scratch memory and what is gathered on the way; one per thread. It has no influence on what happens.
@@ -33,6 +36,9 @@ struct CellWorkspace {
   SolverMonitor solver;
   GripperStep gripper;
   std::vector<GripperEvent> events;
+  control::JointControllerWork joints;
+  std::vector<physics::KinematicTarget> targets;
+  ArmReading arm;  ///< of the last tick, with a robot
 };
 
 /// What one controller tick did.
@@ -58,6 +64,8 @@ class Simulation {
   [[nodiscard]] const model::Sequence& sequence() const { return sequence_; }
   [[nodiscard]] const SimulationOptions& options() const { return options_; }
   [[nodiscard]] const CellWorld& world() const { return world_; }
+  /// Without a robot: nullptr.
+  [[nodiscard]] const CellArm* arm() const { return arm_.get(); }
 
   /// At time 0: the tool at its start, no box in the cell.
   [[nodiscard]] CellState make_state() const;
@@ -82,13 +90,19 @@ class Simulation {
  private:
   [[nodiscard]] std::optional<Vector3> next_pick(const motion::PreparedProgram& plan, int row) const;
   void depart(const motion::PreparedProgram& plan, int row, CellState& state) const;
-  void advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, const motion::ToolState& next,
+  /// work.targets: where tool and links are at the end of the step.
+  void advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, CellState& state,
+                    CellWorkspace& work, CellTick& tick) const;
+  void advance_tool(const motion::PreparedProgram& plan, const motion::ToolState& start, const motion::ToolState& end,
                     CellState& state, CellWorkspace& work, CellTick& tick) const;
+  void advance_arm(const motion::PreparedProgram& plan, const control::JointState& start,
+                   const control::MachineTick& machine, CellState& state, CellWorkspace& work, CellTick& tick) const;
 
   model::Scenario scenario_;
   SimulationOptions options_;
   model::Sequence sequence_;
   int substeps_ = 1;
+  std::unique_ptr<CellArm> arm_;
   CellWorld world_;
   Gripper gripper_;
 };

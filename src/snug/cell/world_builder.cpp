@@ -114,6 +114,23 @@ void add_tool(const model::Scenario& scenario, CellWorld& world) {
   world.tool = add(world, std::move(body));
 }
 
+/// What hangs behind the sensor is the tool, which add_tool adds.
+void add_arm(const model::Scenario& scenario, const robot::ArmModel& arm, const robot::JointVector& q,
+             CellWorld& world) {
+  const robot::ArmPose at = robot::forward(arm, q);
+  const int sensor = robot::find_link(arm, scenario.robot->sensor_frame);
+  for (int i = 0; i < static_cast<int>(arm.links.size()); ++i) {
+    const robot::Link& link = arm.links[static_cast<std::size_t>(i)];
+    if (link.shapes.empty() || robot::is_behind(arm, i, sensor)) continue;
+    BodyModel body;
+    body.name = "robot/" + link.name;
+    body.kind = link.segment == 0 ? physics::BodyKind::Static : physics::BodyKind::Kinematic;
+    body.X_WB = robot::link_pose(arm, at, i);
+    body.geoms = geoms_of(link.shapes, scenario.tool->rod_material);
+    world.arm.push_back({add(world, std::move(body)), i});
+  }
+}
+
 }  // namespace
 
 DropPlan plan_drops(const model::Scenario& scenario) {
@@ -162,6 +179,7 @@ CellWorld build_world(const model::Scenario& scenario, const WorldOptions& optio
     world.bodies.push_back(add(world, std::move(body)));
   }
   if (options.with_tool) add_tool(scenario, world);
+  if (options.arm != nullptr) add_arm(scenario, *options.arm, options.q, world);
   if (options.sequence != nullptr) {
     for (const model::Item& item : options.sequence->items) {
       const model::Parcel& parcel = *model::find_parcel(scenario, item.parcel);

@@ -7,14 +7,22 @@
 
 #include "snug/model/scenario.hpp"
 #include "snug/physics/world.hpp"
+#include "snug/robot/kinematics.hpp"
 
 namespace snug::cell {
+
+/// A link of the robot as a body: kinematic, or static when it is part of the base.
+struct ArmBody {
+  physics::BodyId body;
+  int link = -1;  ///< of the ArmModel
+};
 
 /// A world and which of its bodies is what. Absent bodies have an invalid id.
 struct CellWorld {
   physics::WorldModel model;
   physics::BodyId tool;                  ///< kinematic, frame E
   physics::BodyId container;             ///< the target container
+  std::vector<ArmBody> arm;              ///< links with shapes that are not part of the tool; named robot/LINK
   std::vector<physics::BodyId> parcels;  ///< of the sequence's items, in its order; absent at the start
   std::vector<physics::BodyId> bodies;   ///< of Scenario::bodies, in their order
   std::vector<physics::BodyId> drops;    ///< boxes of the `drops` block, absent at the start
@@ -24,6 +32,8 @@ struct CellWorld {
 struct WorldOptions {
   const model::Sequence* sequence = nullptr;  ///< whose boxes to add
   bool with_tool = false;                     ///< adds the tool's shapes as a kinematic body
+  const robot::ArmModel* arm = nullptr;       ///< adds its links, at q
+  robot::JointVector q;
 };
 
 /// Boxes to drop: which type and where over the container, drawn from the seed of the block.

@@ -96,7 +96,8 @@ struct RobotParams {
   double velocity_fraction = 0.5;        ///< of the URDF's joint speeds that may be used
   double max_joint_acceleration = 15.0;  ///< rad/s^2 (m/s^2)
   JointDamper damper;
-  double collision_damping = 10.0;  ///< of self_collision, rad/s or m/s scale as the report's controller
+  double contact_stiffness = 5.0e4;  ///< N/m, of the arm where it touches what does not give way
+  double collision_damping = 10.0;   ///< of self_collision, rad/s or m/s scale as the report's controller
   std::vector<SelfCollisionPair> self_collision;
   RobotTasks tasks;
   ProtectiveStop protective_stop;
@@ -107,6 +108,7 @@ struct RobotParams {
     a("velocity_fraction", velocity_fraction, Range::Fraction);
     a("max_joint_acceleration", max_joint_acceleration, Range::Positive);
     a("damper", damper);
+    a("contact_stiffness", contact_stiffness, Range::Positive);
     a("collision_damping", collision_damping, Range::Positive);
     a("tasks", tasks);
     a("protective_stop", protective_stop);

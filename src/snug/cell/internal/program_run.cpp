@@ -75,10 +75,14 @@ class ProgramRun {
     setup.sequence = options_.sequence;
     setup.version = options_.version;
     setup.settings_json =
-        fmt::format(R"({{"cup": "{}", "controller": "{}", "corrections": "{}"}})",
+        fmt::format(R"({{"cup": "{}", "controller": "{}", "corrections": "{}", "robot": "{}"}})",
                     options_.simulation.cup == cup::CupMode::Holding ? "holding" : "phases",
                     options_.simulation.controller == motion::ControllerKind::Faithful ? "faithful" : "ideal",
-                    options_.corrections.empty() ? "none" : options_.corrections);
+                    options_.corrections.empty() ? "none" : options_.corrections,
+                    options_.simulation.robot.empty() ? "none" : options_.simulation.robot);
+    if (const CellArm* arm = simulation_.arm()) {
+      for (const robot::Joint& joint : arm->model().joints) setup.joints.push_back(joint.name);
+    }
     recorder_ = std::make_unique<Recorder>(simulation_.scenario(), simulation_.world(), setup);
   }
 
@@ -92,8 +96,13 @@ class ProgramRun {
 
   void record(const CellTick& tick) {
     recorder_->add_events(state_.journey.events());
-    const FrameInput input{tick.tool.X_WE, tick.tool.V_WE,  tick.X_WE_reference,
-                           tick.row,       &state_.gripper, tick.command};
+    const FrameInput input{tick.tool.X_WE,
+                           tick.tool.V_WE,
+                           tick.X_WE_reference,
+                           tick.row,
+                           &state_.gripper,
+                           tick.command,
+                           simulation_.arm() != nullptr ? &work_.arm : nullptr};
     is_stopped_ = !recorder_->add_frame(simulation_.world(), state_.world, work_.physics, tick.step, input);
   }
 
@@ -111,6 +120,7 @@ class ProgramRun {
       result.filling_degree_percent = model::compute_filling_degree_percent(scenario, *container, packed);
     }
     result.state_hash = simulation_.hash(state_);
+    if (simulation_.arm() != nullptr) result.stop = work_.arm.stop;
   }
 
   const RunOptions& options_;

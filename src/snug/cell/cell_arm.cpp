@@ -1,0 +1,280 @@
+// CellArm: a robot's arm in the cell: its links among the bodies, what its sensor reads, when it stops for protection.
+#include "snug/cell/cell_arm.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "snug/control/pose_solver.hpp"
+#include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/geometry/manifold.hpp"
+#include "snug/robot/load_arm.hpp"
+
+namespace snug::cell {
+namespace {
+
+using robot::JointVector;
+
+const model::RobotParams& params_of(const model::Scenario& scenario) {
+  if (!scenario.robot) throw InputError(scenario.source_name, "robot", "", "a robot, to run a program with its joints");
+  return *scenario.robot;
+}
+
+control::JointController make_controller(const model::Scenario& scenario, double task_stiffness) {
+  return {robot::load_arm(scenario),
+          {scenario.controller.tick, task_stiffness, params_of(scenario), {}, scenario.source_name}};
+}
+
+JointVector start_joints(const model::Scenario& scenario, const robot::ArmModel& arm) {
+  const model::RobotParams& params = params_of(scenario);
+  if (!params.joints_start.empty()) return robot::joint_vector(params.joints_start);
+  const control::PoseSolution solution =
+      control::solve_pose(arm, scenario.controller.X_WE_start, robot::joint_vector(params.posture), 200);
+  if (!solution.is_reached()) {
+    throw InputError(scenario.source_name, "controller.start_pose",
+                     fmt::format("{:.3f} m and {:.2f} rad from where the arm can bring the tool from its posture",
+                                 solution.position_error, solution.angle_error),
+                     "a pose within reach, or robot.joints_start");
+  }
+  return solution.q;
+}
+
+const std::string& name_of(const CellWorld& world, int body) {
+  return world.model.bodies[static_cast<std::size_t>(body)].name;
+}
+
+}  // namespace
+
+std::string describe(const ProtectiveStop& stop) {
+  std::string text =
+      fmt::format("protective stop at {:.3f} s toward {} (row {}): ", stop.time, stop.waypoint, stop.row + 1);
+  text += stop.what == "stuck" ? fmt::format("stuck {:.3f} m from it", stop.value)
+                               : fmt::format("{} of {}: {:.4g} {}, limit {:.4g} {}", stop.what, stop.where, stop.value,
+                                             stop.unit, stop.limit, stop.unit);
+  if (!stop.touching.empty()) text += "; touching " + stop.touching;
+  if (!stop.limited_by.empty()) text += "; " + stop.limited_by;
+  return text;
+}
+
+CellArm::CellArm(const model::Scenario& scenario, double task_stiffness)
+    : params_(params_of(scenario)),
+      gravity_(scenario.gravity),
+      controller_(make_controller(scenario, task_stiffness)),
+      machine_(control::make_demonstrator_machine()),
+      start_(start_joints(scenario, controller_.arm())),
+      sensor_link_(robot::find_link(controller_.arm(), params_.sensor_frame)),
+      load_(robot::distal_inertia(controller_.arm(), sensor_link_)) {}
+
+void CellArm::attach(const CellWorld& world) {
+  obstacles_.clear();
+  shapes_.clear();
+  for (std::size_t i = 0; i < world.model.bodies.size(); ++i) {
+    const physics::BodyModel& body = world.model.bodies[i];
+    if (body.kind != physics::BodyKind::Static) continue;
+    const bool is_base = std::any_of(world.arm.begin(), world.arm.end(),
+                                     [&](const ArmBody& part) { return part.body.index == static_cast<int>(i); });
+    if (is_base) continue;
+    for (const physics::Geom& geom : body.geoms) {
+      const Pose X_WG = body.X_WB * geom.X_BG;
+      obstacles_.push_back({static_cast<int>(i), geom.shape, X_WG, geometry::bounds(geom.shape, X_WG)});
+    }
+  }
+  for (const ArmBody& part : world.arm) {
+    const robot::Link& link = model().links[static_cast<std::size_t>(part.link)];
+    if (link.segment == 0) continue;
+    for (const model::PlacedShape& placed : link.shapes) {
+      shapes_.push_back({part.body.index, {link.segment, link.X_SL * placed.X_BG, placed.shape, 0.0}});
+    }
+  }
+  for (const physics::Geom& geom : world.model.bodies[static_cast<std::size_t>(world.tool.index)].geoms) {
+    if (!geom.touches_held_body) continue;  // the cup gives way: docs/theory/controller.md, section 6
+    shapes_.push_back({world.tool.index, {model().joint_count(), model().X_SE * geom.X_BG, geom.shape, 0.0}});
+  }
+}
+
+ArmState CellArm::make_state(std::uint64_t seed) const {
+  return {machine_.make_state(controller_, start_), Rng(seed).split("force sensor")};
+}
+
+control::MachineTick CellArm::tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
+                                   ArmState& state, control::JointControllerWork& work) const {
+  if (state.machine.state >= 0) state.machine.program = program;
+  const control::MachineTick tick = machine_.tick(plan, controller_, state.machine, work);
+  program = state.machine.program;
+  return tick;
+}
+
+JointVector CellArm::joints_at(const control::JointState& start, const JointVector& qdd, double time) const {
+  return start.q + time * (start.qd + 0.5 * time * qdd);
+}
+
+void CellArm::aim(const CellWorld& world, const robot::ArmPose& at,
+                  std::vector<physics::KinematicTarget>& targets) const {
+  targets.clear();
+  targets.push_back({world.tool, at.X_WE});
+  for (const ArmBody& part : world.arm) {
+    if (model().links[static_cast<std::size_t>(part.link)].segment == 0) continue;
+    targets.push_back({part.body, robot::link_pose(model(), at, part.link)});
+  }
+}
+
+void CellArm::add_force(const CellWorld&, const robot::ArmPose& at, int segment, const Vector3& p_WQ,
+                        const Vector3& force_W, bool is_tool, ArmLoads& loads) const {
+  if (is_tool) {
+    loads.F_Eo_W.force += force_W;
+    loads.F_Eo_W.torque += (p_WQ - at.X_WE.p).cross(force_W);
+    return;
+  }
+  const robot::Jacobian J_WQ = robot::point_jacobian(model(), at, segment, p_WQ);
+  loads.torques += J_WQ.topRows<3>().transpose() * force_W;
+}
+
+void CellArm::add_loads(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
+                        const GripperState& gripper, const robot::ArmPose& at, ArmLoads& loads) const {
+  if (loads.torques.size() == 0) loads.torques.setZero(model().joint_count());
+  ++loads.steps;
+  const auto link_of = [&](physics::BodyId body) {
+    for (const ArmBody& part : world.arm) {
+      if (part.body == body) return part.link;
+    }
+    return -1;
+  };
+  for (const physics::ContactReport& contact : work.contacts()) {
+    for (const bool is_b : {false, true}) {
+      const physics::BodyId body = is_b ? contact.b : contact.a;
+      const bool is_tool = body == world.tool;
+      const int link = is_tool ? -1 : link_of(body);
+      if (!is_tool && link < 0) continue;
+      const Vector3 force_W = is_b ? contact.force_W : Vector3(-contact.force_W);
+      const int segment = is_tool ? model().joint_count() : model().links[static_cast<std::size_t>(link)].segment;
+      add_force(world, at, segment, contact.p_WQ, force_W, is_tool, loads);
+      if (force_W.norm() > loads.worst_force) {
+        loads.worst_force = force_W.norm();
+        loads.touching = fmt::format("{} with {}, {:.0f} N", name_of(world, (is_b ? contact.a : contact.b).index),
+                                     name_of(world, body.index), force_W.norm());
+      }
+    }
+  }
+  if (gripper.cup.body >= 0) {  // the reaction of the cup
+    const Pose X_WS = physics::pose_of(world.model, state, physics::BodyId{gripper.cup.body}) * gripper.cup.X_PS;
+    const Vector3 force_W = -(X_WS.R * gripper.F_S.force);
+    loads.F_Eo_W.force += force_W;
+    loads.F_Eo_W.torque += (X_WS.p - at.X_WE.p).cross(force_W) - X_WS.R * gripper.F_S.torque;
+  }
+}
+
+/// Links and gripper against what never moves: the physics has no forces between bodies that do not give way, so the
+/// arm gives way here, like a spring at the point of contact. Returns the largest joint angle that it yields.
+double CellArm::touch_obstacles(const CellWorld& world, const robot::ArmPose& at, ArmLoads& loads,
+                                ArmReading& reading) const {
+  double yielded = 0.0;
+  for (const MovingShape& moving : shapes_) {
+    const Pose X_WG = at.X_WS[static_cast<std::size_t>(moving.shape.segment)] * moving.shape.X_SG;
+    const geometry::Aabb bounds = geometry::bounds(moving.shape.shape, X_WG);
+    for (const Obstacle& obstacle : obstacles_) {
+      if (!bounds.overlaps(obstacle.bounds)) continue;
+      geometry::PairCache cache;
+      geometry::Manifold manifold;
+      geometry::collide(obstacle.shape, obstacle.X_WG, moving.shape.shape, X_WG, 0.0, cache, manifold);
+      int deepest = -1;
+      for (int i = 0; i < manifold.count; ++i) {
+        const double phi = manifold.points[static_cast<std::size_t>(i)].phi;
+        if (phi < 0.0 && (deepest < 0 || phi < manifold.points[static_cast<std::size_t>(deepest)].phi)) deepest = i;
+      }
+      if (deepest < 0) continue;
+      const geometry::ManifoldPoint& point = manifold.points[static_cast<std::size_t>(deepest)];
+      physics::ContactReport contact;
+      contact.a = physics::BodyId{obstacle.body};
+      contact.b = physics::BodyId{moving.body};
+      contact.p_WQ = point.p_WA;
+      contact.n_AB_W = manifold.n_AB_W;
+      contact.force_W = -point.phi * params_.contact_stiffness * manifold.n_AB_W;
+      contact.phi = point.phi;
+      reading.contacts.push_back(contact);
+      const bool is_tool = moving.body == world.tool.index;
+      add_force(world, at, moving.shape.segment, contact.p_WQ, contact.force_W, is_tool, loads);
+      const JointVector row = (manifold.n_AB_W.transpose() *
+                               robot::point_jacobian(model(), at, moving.shape.segment, contact.p_WQ).topRows<3>())
+                                  .transpose();
+      if (row.squaredNorm() > 0.0) {
+        yielded = std::max(yielded, -point.phi * row.lpNorm<Eigen::Infinity>() / row.squaredNorm());
+      }
+      if (contact.force_W.norm() > loads.worst_force) {
+        loads.worst_force = contact.force_W.norm();
+        loads.touching = fmt::format("{} with {}, {:.0f} N", name_of(world, obstacle.body), name_of(world, moving.body),
+                                     loads.worst_force);
+      }
+    }
+  }
+  return yielded;
+}
+
+Wrench CellArm::disturbed(const Wrench& F, double time, Rng& noise) const {
+  const model::ForceSensorParams& sensor = params_.sensor;
+  Wrench read = F;
+  read.force += sensor.force_bias + time * sensor.force_drift;
+  read.torque += sensor.torque_bias + time * sensor.torque_drift;
+  if (sensor.force_noise > 0.0) {
+    for (double& value : read.force) value += sensor.force_noise * noise.normal();
+  }
+  if (sensor.torque_noise > 0.0) {
+    for (double& value : read.torque) value += sensor.torque_noise * noise.normal();
+  }
+  return read;
+}
+
+void CellArm::read(const CellWorld& world, const motion::PreparedProgram& plan, const control::MachineTick& tick,
+                   double time, ArmLoads& loads, ArmState& state, ArmReading& reading) const {
+  const control::JointState& joints = state.machine.joints;
+  const robot::ArmPose at = robot::forward(model(), joints.q);
+  const double share = 1.0 / std::max(1, loads.steps);
+  loads.F_Eo_W.force *= share;
+  loads.F_Eo_W.torque *= share;
+  if (loads.torques.size() == 0) loads.torques.setZero(model().joint_count());
+  loads.torques *= share;
+  reading.contacts.clear();
+  reading.control = tick.joints;
+  const double yielded = touch_obstacles(world, at, loads, reading);
+
+  const robot::ArmMotion motion{joints.q, joints.qd, joints.qdd};
+  const JointVector zero = JointVector::Zero(joints.q.size());
+  const JointVector torques = robot::inverse_dynamics(model(), motion, loads.F_Eo_W, gravity_) - loads.torques;
+  const Wrench F_sensor = robot::sensor_wrench(model(), motion, sensor_link_, load_, loads.F_Eo_W, gravity_);
+  const Wrench weight = robot::sensor_wrench(model(), {joints.q, zero, zero}, sensor_link_, load_, Wrench{}, gravity_);
+  reading.F_sensor = disturbed(F_sensor, time, state.noise);
+  reading.joints.resize(static_cast<std::size_t>(joints.q.size()));
+  for (Eigen::Index j = 0; j < joints.q.size(); ++j) {
+    reading.joints[static_cast<std::size_t>(j)] = {joints.q[j], joints.qd[j], torques[j]};
+  }
+
+  reading.stop.reset();
+  const auto stop = [&](std::string what, std::string where, double value, double limit, const char* unit) {
+    if (reading.stop || !(value > limit)) return;
+    ProtectiveStop found{std::move(what), std::move(where), value, limit, unit, time, tick.program.row, "", "", ""};
+    if (found.row >= 0) found.waypoint = plan.program.waypoints[static_cast<std::size_t>(found.row)].name;
+    found.touching = loads.touching;
+    for (int i = 0; i < tick.joints.active_count; ++i) {
+      found.limited_by +=
+          (i == 0 ? "limited by " : ", ") + controller_.describe(tick.joints.active[static_cast<std::size_t>(i)]);
+    }
+    reading.stop = std::move(found);
+  };
+  for (Eigen::Index j = 0; j < joints.q.size(); ++j) {
+    const robot::Joint& joint = model().joints[static_cast<std::size_t>(j)];
+    stop("joint torque", joint.name, std::abs(torques[j]), params_.protective_stop.torque_fraction * joint.max_effort,
+         joint.kind == robot::JointKind::Revolute ? "Nm" : "N");
+  }
+  const std::string& sensor = params_.sensor_frame;
+  stop("sensor force", sensor, (F_sensor.force - weight.force).norm(), params_.protective_stop.sensor_force, "N");
+  stop("sensor torque", sensor, (F_sensor.torque - weight.torque).norm(), params_.protective_stop.sensor_torque, "Nm");
+  stop("tracking error", "the joints", yielded, params_.protective_stop.tracking_error, "rad");
+  if (tick.outcome == "Stuck" && tick.program.row >= 0) {
+    const motion::Waypoint& row = plan.program.waypoints[static_cast<std::size_t>(tick.program.row)];
+    stop("stuck", row.name, (row.X_WE.p - at.X_WE.p).norm(), -1.0, "m");
+  }
+}
+
+}  // namespace snug::cell

@@ -1,0 +1,114 @@
+// CellArm: a robot's arm in the cell: its links among the bodies, what its sensor reads, when it stops for protection.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/cell/gripper.hpp"
+#include "snug/control/state_machine.hpp"
+#include "snug/core/rng.hpp"
+#include "snug/geometry/bounds.hpp"
+#include "snug/record/recording.hpp"
+#include "snug/robot/dynamics.hpp"
+
+namespace snug::cell {
+
+/// Everything of the arm that changes. Copying it is a snapshot.
+struct ArmState {
+  control::MachineState machine;
+  Rng noise{0};  ///< of the force sensor
+};
+
+/// Why the arm stopped.
+struct ProtectiveStop {
+  std::string what;   ///< "joint torque", "sensor force", "sensor torque", "tracking error", "stuck"
+  std::string where;  ///< joint, sensor or waypoint
+  double value = 0.0;
+  double limit = 0.0;
+  std::string unit;
+  double time = 0.0;       ///< s
+  int row = -1;            ///< of the program, aimed at
+  std::string waypoint;    ///< its name
+  std::string touching;    ///< what the arm touched, with force, or empty
+  std::string limited_by;  ///< limits of the controller that were active, or empty
+};
+/// One line.
+[[nodiscard]] std::string describe(const ProtectiveStop& stop);
+
+/// What acts on the arm, averaged over a tick.
+struct ArmLoads {
+  Wrench F_Eo_W;               ///< on the tool, about E's origin
+  robot::JointVector torques;  ///< of contacts on the links, at the joints
+  int steps = 0;
+  double worst_force = 0.0;  ///< N, of the contact named
+  std::string touching;      ///< "robot/wrist_3_link - tote1", of the strongest contact
+};
+
+/// What the arm does and feels at the end of a tick.
+struct ArmReading {
+  std::vector<record::JointSample> joints;
+  Wrench F_sensor;                               ///< with noise, bias and drift; in the sensor's frame
+  std::vector<physics::ContactReport> contacts;  ///< of links and gripper with what never moves
+  control::JointTick control;
+  std::optional<ProtectiveStop> stop;
+};
+
+class CellArm {
+ public:
+  /// The robot of the scenario, at its start. Throws InputError as robot::load_arm, and when the start cannot be
+  /// reached.
+  CellArm(const model::Scenario& scenario, double task_stiffness);
+
+  [[nodiscard]] const robot::ArmModel& model() const { return controller_.arm(); }
+  [[nodiscard]] const control::JointController& controller() const { return controller_; }
+  [[nodiscard]] const robot::JointVector& start() const { return start_; }
+  /// To be called once, with the world that the arm's bodies are in.
+  void attach(const CellWorld& world);
+
+  [[nodiscard]] ArmState make_state(std::uint64_t seed) const;
+  /// One tick of the controller. `program` is brought up to date.
+  [[nodiscard]] control::MachineTick tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
+                                          ArmState& state, control::JointControllerWork& work) const;
+  /// The joints `time` s after `start`, on the way to the end of the tick.
+  [[nodiscard]] robot::JointVector joints_at(const control::JointState& start, const robot::JointVector& qdd,
+                                             double time) const;
+  /// Poses of the tool and of the arm's bodies, in the order of CellWorld: targets for one physics step.
+  void aim(const CellWorld& world, const robot::ArmPose& at, std::vector<physics::KinematicTarget>& targets) const;
+  /// Adds what acted on tool and links in one physics step.
+  void add_loads(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
+                 const GripperState& gripper, const robot::ArmPose& at, ArmLoads& loads) const;
+  /// Contacts with what never moves, sensor, torques and limits, at the end of a tick.
+  void read(const CellWorld& world, const motion::PreparedProgram& plan, const control::MachineTick& tick, double time,
+            ArmLoads& loads, ArmState& state, ArmReading& reading) const;
+
+ private:
+  struct Obstacle {
+    int body = -1;
+    geometry::Shape shape;
+    Pose X_WG;
+    geometry::Aabb bounds;
+  };
+  struct MovingShape {
+    int body = -1;  ///< of the world
+    control::ArmShape shape;
+  };
+  [[nodiscard]] double touch_obstacles(const CellWorld& world, const robot::ArmPose& at, ArmLoads& loads,
+                                       ArmReading& reading) const;
+  void add_force(const CellWorld& world, const robot::ArmPose& at, int segment, const Vector3& p_WQ,
+                 const Vector3& force_W, bool is_tool, ArmLoads& loads) const;
+  [[nodiscard]] Wrench disturbed(const Wrench& F, double time, Rng& noise) const;
+
+  model::RobotParams params_;
+  Vector3 gravity_;
+  control::JointController controller_;
+  control::StateMachine machine_;
+  robot::JointVector start_;
+  int sensor_link_ = -1;
+  SpatialInertia load_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<MovingShape> shapes_;
+};
+
+}  // namespace snug::cell
