@@ -121,8 +121,8 @@ void CellArm::aim(const CellWorld& world, const robot::ArmPose& at,
   }
 }
 
-void CellArm::add_force(const CellWorld&, const robot::ArmPose& at, int segment, const Vector3& p_WQ,
-                        const Vector3& force_W, bool is_tool, ArmLoads& loads) const {
+void CellArm::add_force(const robot::ArmPose& at, int segment, const Vector3& p_WQ, const Vector3& force_W,
+                        bool is_tool, ArmLoads& loads) const {
   if (is_tool) {
     loads.F_Eo_W.force += force_W;
     loads.F_Eo_W.torque += (p_WQ - at.X_WE.p).cross(force_W);
@@ -150,11 +150,11 @@ void CellArm::add_loads(const CellWorld& world, const physics::WorldState& state
       if (!is_tool && link < 0) continue;
       const Vector3 force_W = is_b ? contact.force_W : Vector3(-contact.force_W);
       const int segment = is_tool ? model().joint_count() : model().links[static_cast<std::size_t>(link)].segment;
-      add_force(world, at, segment, contact.p_WQ, force_W, is_tool, loads);
+      add_force(at, segment, contact.p_WQ, force_W, is_tool, loads);
       if (force_W.norm() > loads.worst_force) {
         loads.worst_force = force_W.norm();
-        loads.touching = fmt::format("{} with {}, {:.0f} N", name_of(world, (is_b ? contact.a : contact.b).index),
-                                     name_of(world, body.index), force_W.norm());
+        loads.worst_part = body;
+        loads.worst_other = is_b ? contact.a : contact.b;
       }
     }
   }
@@ -195,7 +195,7 @@ double CellArm::touch_obstacles(const CellWorld& world, const robot::ArmPose& at
       contact.phi = point.phi;
       reading.contacts.push_back(contact);
       const bool is_tool = moving.body == world.tool.index;
-      add_force(world, at, moving.shape.segment, contact.p_WQ, contact.force_W, is_tool, loads);
+      add_force(at, moving.shape.segment, contact.p_WQ, contact.force_W, is_tool, loads);
       const JointVector row = (manifold.n_AB_W.transpose() *
                                robot::point_jacobian(model(), at, moving.shape.segment, contact.p_WQ).topRows<3>())
                                   .transpose();
@@ -204,8 +204,8 @@ double CellArm::touch_obstacles(const CellWorld& world, const robot::ArmPose& at
       }
       if (contact.force_W.norm() > loads.worst_force) {
         loads.worst_force = contact.force_W.norm();
-        loads.touching = fmt::format("{} with {}, {:.0f} N", name_of(world, obstacle.body), name_of(world, moving.body),
-                                     loads.worst_force);
+        loads.worst_part = contact.b;
+        loads.worst_other = contact.a;
       }
     }
   }
@@ -255,7 +255,10 @@ void CellArm::read(const CellWorld& world, const motion::PreparedProgram& plan, 
     if (reading.stop || !(value > limit)) return;
     ProtectiveStop found{std::move(what), std::move(where), value, limit, unit, time, tick.program.row, "", "", ""};
     if (found.row >= 0) found.waypoint = plan.program.waypoints[static_cast<std::size_t>(found.row)].name;
-    found.touching = loads.touching;
+    if (loads.worst_force > 0.0) {
+      found.touching = fmt::format("{} with {}, {:.0f} N", name_of(world, loads.worst_other.index),
+                                   name_of(world, loads.worst_part.index), loads.worst_force);
+    }
     for (int i = 0; i < tick.joints.active_count; ++i) {
       found.limited_by +=
           (i == 0 ? "limited by " : ", ") + controller_.describe(tick.joints.active[static_cast<std::size_t>(i)]);

@@ -42,8 +42,9 @@ struct ArmLoads {
   Wrench F_Eo_W;               ///< on the tool, about E's origin
   robot::JointVector torques;  ///< of contacts on the links, at the joints
   int steps = 0;
-  double worst_force = 0.0;  ///< N, of the contact named
-  std::string touching;      ///< "robot/wrist_3_link - tote1", of the strongest contact
+  double worst_force = 0.0;     ///< N, of the strongest contact
+  physics::BodyId worst_part;   ///< link or tool
+  physics::BodyId worst_other;  ///< what it touches
 };
 
 /// What the arm does and feels at the end of a tick.
@@ -96,8 +97,8 @@ class CellArm {
   };
   [[nodiscard]] double touch_obstacles(const CellWorld& world, const robot::ArmPose& at, ArmLoads& loads,
                                        ArmReading& reading) const;
-  void add_force(const CellWorld& world, const robot::ArmPose& at, int segment, const Vector3& p_WQ,
-                 const Vector3& force_W, bool is_tool, ArmLoads& loads) const;
+  void add_force(const robot::ArmPose& at, int segment, const Vector3& p_WQ, const Vector3& force_W, bool is_tool,
+                 ArmLoads& loads) const;
   [[nodiscard]] Wrench disturbed(const Wrench& F, double time, Rng& noise) const;
 
   model::RobotParams params_;
