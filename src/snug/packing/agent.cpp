@@ -32,7 +32,7 @@ void check(const PackingSettings& s) {
 
 }  // namespace
 
-std::vector<std::string> agent_names() { return {"margin", "contact-aware"}; }
+std::vector<std::string> agent_names() { return {"margin", "contact-aware", "manual", "offline"}; }
 
 std::unique_ptr<Agent> make_agent(std::string_view name, AgentInput input) {
   check(input.settings);
@@ -41,6 +41,8 @@ std::unique_ptr<Agent> make_agent(std::string_view name, AgentInput input) {
   }
   if (name == "margin") return internal::make_margin_agent(std::move(input));
   if (name == "contact-aware") return internal::make_contact_aware_agent(std::move(input));
+  if (name == "manual") return internal::make_manual_agent(std::move(input));
+  if (name == "offline") return internal::make_offline_agent(std::move(input));
   const std::vector<std::string> names = agent_names();
   std::string expected = "one of";
   for (const std::string& known : names) expected += " " + known;

@@ -37,7 +37,7 @@ class ContactAwareAgent : public Agent {
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     const PackingSettings& settings = input_.settings;
-    const Planning planning{state.inner_size, settings, settings.max_flips, 0.0, settings.squeeze};
+    const Planning planning = plan_for_contact(state, settings);
     const Choice choice = make_choice(planning, item);
     if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
     std::vector<Item> kinds = input_.future.kinds;
@@ -85,7 +85,7 @@ class ContactAwareAgent : public Agent {
     RaceSettings settings;
     settings.seed = input_.settings.seed + 1000003U * state.boxes.size();
     settings.threads = input_.settings.threads;
-    settings.effort = static_cast<std::int64_t>(input_.settings.decision_time * kPlacesPerSecond);
+    settings.effort = work_for(input_.settings.decision_time);
     const Prospect prospect = make_prospect(planning, input_.future, state, item);
     const std::vector<Standing> order =
         race(entrants, policy, prospect, std::max(0.0, room - filled), settings, &decision.roll_outs);
@@ -103,6 +103,19 @@ class ContactAwareAgent : public Agent {
 };
 
 }  // namespace
+
+Planning plan_for_contact(const ContainerState& state, const PackingSettings& settings) {
+  return {state.inner_size, settings, settings.max_flips, 0.0, settings.squeeze};
+}
+
+std::int64_t work_for(double seconds) { return static_cast<std::int64_t>(seconds * kPlacesPerSecond); }
+
+void order_by_cost(const Layout& layout, const Policy& policy, const Piece& piece, std::vector<Spot>& spots) {
+  std::vector<std::pair<double, Spot>> liked;
+  for (const Spot& spot : spots) liked.emplace_back(cost(layout, policy, piece, spot), spot);
+  std::stable_sort(liked.begin(), liked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < spots.size(); ++i) spots[i] = liked[i].second;
+}
 
 NoPlace reason_of(Refusal worst) {
   if (worst == Refusal::Load) return NoPlace::OverLoad;

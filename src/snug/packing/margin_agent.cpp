@@ -8,6 +8,10 @@ namespace snug::packing::internal {
 
 namespace {
 
+/// As for Policy, found in the same way on random sequences without flips and with 20 mm margins
+/// (docs/theory/packing.md).
+constexpr Weights kWeights = {-0.965, -0.323, 0.419, 0.766, 1.776, -1.630, -0.300, -0.673, 3.795, -0.494};
+
 class MarginAgent : public Agent {
  public:
   explicit MarginAgent(AgentInput input) : input_(std::move(input)) {}
@@ -23,7 +27,8 @@ class MarginAgent : public Agent {
     Refusal worst = Refusal::None;
     layout.find_spots(choice.piece, spots, &worst);
     if (spots.empty()) return tl::unexpected(reason_of(worst));
-    const Policy policy = make_policy(planning, std::span<const Item>(&item, 1));
+    Policy policy = make_policy(planning, std::span<const Item>(&item, 1));
+    policy.weights = kWeights;
     std::vector<std::pair<double, Spot>> liked;
     for (const Spot& spot : spots) liked.emplace_back(cost(layout, policy, choice.piece, spot), spot);
     std::stable_sort(liked.begin(), liked.end(), [](const auto& l, const auto& r) { return l.first < r.first; });

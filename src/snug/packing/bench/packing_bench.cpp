@@ -1,4 +1,5 @@
 // packing_bench: counts and filling degrees of the agents on paper, without executing anything.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -23,6 +24,7 @@ struct Options {
 
 struct Outcome {
   int boxes = 0;
+  int rearranged = 0;
   double percent = 0.0;
   double seconds = 0.0;
   double slowest = 0.0;
@@ -40,6 +42,17 @@ Outcome pack(const model::Scenario& scenario, const std::vector<Item>& items, co
     outcome.seconds += took;
     outcome.slowest = std::max(outcome.slowest, took);
     if (!decision) break;
+    const Candidate& first = decision->candidates.front();
+    if (!first.rearranged.empty()) {
+      std::vector<PlacedBox> anew;
+      for (const Placement& placement : first.rearranged) {
+        const auto same = [&](const Item& i) { return i.id == placement.item; };
+        anew.push_back({*std::find_if(items.begin(), items.end(), same), placement.X_TP});
+      }
+      state.boxes = anew;
+      ++outcome.rearranged;
+      continue;
+    }
     Pose X_TP = decision->candidates.front().placement.X_TP;
     X_TP.p.head<2>() += options.noise * Eigen::Vector2d(rng.normal(), rng.normal());
     state.boxes.push_back({item, X_TP});

@@ -2,10 +2,9 @@
 #include "snug/packing/internal/roll_out.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
-#include <string>
-#include <thread>
+
+#include "snug/packing/internal/parallel.hpp"
 
 namespace snug::packing::internal {
 
@@ -24,22 +23,6 @@ int draw(const std::vector<double>& weights, Rng& rng) {
     if (at < 0.0) return last;
   }
   return last;
-}
-
-/// Calls job(0 .. count-1, thread) on several threads; jobs write to their own slots.
-void share_out(int count, int threads, const std::function<void(int, int)>& job) {
-  if (threads <= 1 || count <= 1) {
-    for (int i = 0; i < count; ++i) job(i, 0);
-    return;
-  }
-  std::atomic<int> next{0};
-  std::vector<std::thread> crew;
-  for (int t = 0; t < threads; ++t) {
-    crew.emplace_back([&, t] {
-      for (int i = next++; i < count; i = next++) job(i, t);
-    });
-  }
-  for (std::thread& worker : crew) worker.join();
 }
 
 /// One heat: every entrant that is left meets the same futures.
