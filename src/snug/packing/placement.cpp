@@ -1,7 +1,26 @@
-// NoPlace: words for the reasons.
+// Candidate, NoPlace: plans on paper, and words for the reasons.
 #include "snug/packing/placement.hpp"
 
+#include <algorithm>
+#include <utility>
+
+#include "snug/core/check.hpp"
+
 namespace snug::packing {
+
+ContainerState with_candidate(ContainerState state, const Item& item, const Candidate& candidate) {
+  state.boxes.push_back({item, candidate.placement.X_TP});
+  if (candidate.rearranged.empty()) return state;
+  std::vector<PlacedBox> anew;
+  for (const Placement& placement : candidate.rearranged) {
+    const auto box = std::find_if(state.boxes.begin(), state.boxes.end(),
+                                  [&](const PlacedBox& known) { return known.item.id == placement.item; });
+    SNUG_CHECK(box != state.boxes.end(), "a re-arrangement names a box that is not there");
+    anew.push_back({box->item, placement.X_TP});
+  }
+  state.boxes = std::move(anew);
+  return state;
+}
 
 std::string_view describe(NoPlace reason) {
   switch (reason) {

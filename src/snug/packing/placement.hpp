@@ -51,6 +51,9 @@ enum class NoPlace {
   NotPlanned,     ///< the plan, made in advance, leaves it out
 };
 
+/// The state as it would be if the candidate's plan came true exactly: what a plan on paper goes on with.
+[[nodiscard]] ContainerState with_candidate(ContainerState state, const Item& item, const Candidate& candidate);
+
 /// "too big" and so on; a sentence's end for tables.
 [[nodiscard]] std::string_view describe(NoPlace reason);
 

@@ -42,20 +42,10 @@ Outcome pack(const model::Scenario& scenario, const std::vector<Item>& items, co
     outcome.seconds += took;
     outcome.slowest = std::max(outcome.slowest, took);
     if (!decision) break;
-    const Candidate& first = decision->candidates.front();
-    if (!first.rearranged.empty()) {
-      std::vector<PlacedBox> anew;
-      for (const Placement& placement : first.rearranged) {
-        const auto same = [&](const Item& i) { return i.id == placement.item; };
-        anew.push_back({*std::find_if(items.begin(), items.end(), same), placement.X_TP});
-      }
-      state.boxes = anew;
-      ++outcome.rearranged;
-      continue;
-    }
-    Pose X_TP = decision->candidates.front().placement.X_TP;
-    X_TP.p.head<2>() += options.noise * Eigen::Vector2d(rng.normal(), rng.normal());
-    state.boxes.push_back({item, X_TP});
+    const bool anew = !decision->candidates.front().rearranged.empty();
+    outcome.rearranged += anew ? 1 : 0;
+    state = with_candidate(state, item, decision->candidates.front());
+    if (!anew) state.boxes.back().X_TP.p.head<2>() += options.noise * Eigen::Vector2d(rng.normal(), rng.normal());
   }
   outcome.boxes = static_cast<int>(state.boxes.size());
   outcome.percent = filling_percent(state);

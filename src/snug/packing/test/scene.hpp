@@ -38,7 +38,7 @@ inline ContainerState pack_all(Agent& agent, ContainerState state, const std::ve
   for (const Item& item : items) {
     const auto decision = agent.decide(state, item);
     if (!decision) break;
-    state.boxes.push_back({item, decision->candidates.front().placement.X_TP});
+    state = with_candidate(state, item, decision->candidates.front());
   }
   return state;
 }
