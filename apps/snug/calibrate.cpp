@@ -1,84 +1,125 @@
-// calibrate kinematics: deviations or origins in, a calibrated URDF out.
+// calibrate kinematics: deviations, origins or measured poses in, a calibrated URDF out.
 #include "calibrate.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
 
+#include "calibrate_files.hpp"
 #include "snug/calibration/exact_arm.hpp"
+#include "snug/calibration/identify.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::app {
 namespace {
 
 using calibration::AngleReading;
+using calibration::FrameShift;
 using nlohmann::ordered_json;
 
-std::filesystem::path nominal_urdf(const std::string& given) {
-  if (!given.empty()) return given;
-  const std::filesystem::path here = "scenarios/robots/ur10.urdf";
-  return std::filesystem::exists(here) ? here : std::filesystem::path(SNUG_SOURCE_DIR) / here;
+void check_one_source(const CalibrateKinematicsOptions& options) {
+  const int count = int{options.deltas.has_value()} + int{options.yaml.has_value()} + int{options.poses.has_value()};
+  if (count != 1)
+    throw InputError("command line", "calibrate kinematics", std::to_string(count) + " sources",
+                     "one of --deltas, --yaml, --poses");
 }
 
-struct Result {
-  robot::ArmModel arm;
-  std::string source;
-};
+calibration::IdentifiedArm identify(const CalibrateKinematicsOptions& options, const robot::ArmModel& nominal) {
+  const calibration::MeasuredFrames frames{require_link(nominal, "--base", options.base),
+                                           require_link(nominal, "--end", options.end)};
+  const auto segment = [&](int link) { return nominal.links[static_cast<std::size_t>(link)].segment; };
+  if (segment(frames.base) != 0) throw InputError("command line", "--base", options.base, "a link that does not move");
+  if (segment(frames.end) != nominal.joint_count() ||
+      nominal.links[static_cast<std::size_t>(frames.end)].X_SL == Pose{})
+    throw InputError("command line", "--end", options.end, "a link fixed behind the last joint's, such as tool0");
+  return calibration::identify_arm(nominal, calibration::load_pose_pairs(*options.poses, nominal), frames);
+}
 
-Result from_deltas(const robot::ArmModel& nominal, const std::string& urdf, const std::string& file) {
-  const calibration::DhTable table = add(calibration::nominal_dh(nominal, urdf), calibration::load_deltas(file));
-  return {calibration::with_frames_near(calibration::arm_from_dh(nominal, table), nominal), file};
+ordered_json describe(const calibration::IdentifiedArm& found, const robot::ArmModel& nominal) {
+  ordered_json json;
+  json["position_noise_m"] = found.position_noise;
+  json["angle_noise_rad"] = found.angle_noise;
+  json["rms_position_before_m"] = found.rms_position_before;
+  json["rms_position_m"] = found.rms_position;
+  json["rms_angle_before_rad"] = found.rms_angle_before;
+  json["rms_angle_rad"] = found.rms_angle;
+  for (int i = 0; i < found.deviations.size(); ++i)
+    json["deviations"].push_back({{"name", calibration::deviation_name(nominal, i)},
+                                  {"value", found.deviations(i)},
+                                  {"standard_deviation", std::sqrt(found.covariance(i, i))}});
+  return json;
+}
+
+/// What is reported is measured on the text that is written, read again.
+void add_shifts(const robot::ArmModel& written, const robot::ArmModel& nominal, ordered_json& json) {
+  const FrameShift origins = calibration::largest_origin_shift(written, nominal);
+  const FrameShift frames = calibration::largest_frame_shift(written, nominal);
+  json["max_frame_shift_m"] = origins.position;
+  json["max_frame_turn_rad"] = origins.angle;
+  json["max_deviation_in_base_m"] = frames.position;
+  json["max_deviation_in_base_rad"] = frames.angle;
+}
+
+void print(const ordered_json& json) {
+  const auto number = [&](const char* key) { return json.at(key).get<double>(); };
+  if (json.contains("max_end_effector_error_m"))
+    std::printf("tool against the deviations: at most %.2g m, %.2g rad apart\n", number("max_end_effector_error_m"),
+                number("max_end_effector_error_rad"));
+  if (json.contains("deviations")) {
+    std::printf("left of the poses: %.3f mm, %.3f mrad rms (%.3f mm, %.3f mrad with the nominal arm)\n",
+                1e3 * number("rms_position_m"), 1e3 * number("rms_angle_rad"), 1e3 * number("rms_position_before_m"),
+                1e3 * number("rms_angle_before_rad"));
+    for (const auto& entry : json["deviations"])
+      std::printf("  %-40s %9.4f +- %.4f %s\n", entry["name"].get<std::string>().c_str(),
+                  1e3 * entry["value"].get<double>(), 1e3 * entry["standard_deviation"].get<double>(),
+                  entry["name"].get<std::string>().find("turn") == std::string::npos ? "mm" : "mrad");
+  }
+  std::printf("joint origins in their parents' frames: at most %.3f mm, %.5f rad from nominal\n",
+              1e3 * number("max_frame_shift_m"), number("max_frame_turn_rad"));
+  std::printf("joint frames in the base: at most %.3f mm, %.5f rad from nominal\n",
+              1e3 * number("max_deviation_in_base_m"), number("max_deviation_in_base_rad"));
 }
 
 }  // namespace
 
 int run_calibrate_kinematics(const CalibrateKinematicsOptions& options) {
-  if (options.deltas.has_value() == options.yaml.has_value())
-    throw InputError("command line", "calibrate kinematics", options.deltas ? "two sources" : "no source",
-                     "one of --deltas, --yaml");
+  check_one_source(options);
   const AngleReading reading = options.angles == "urdf" ? AngleReading::Urdf : AngleReading::EulerXyz;
-  const std::filesystem::path urdf = nominal_urdf(options.urdf);
-  const robot::ArmModel nominal = robot::load_urdf(urdf);
-  const Result result =
-      options.deltas ? from_deltas(nominal, urdf.string(), *options.deltas)
-                     : Result{calibration::load_calibration_yaml(*options.yaml, reading, nominal), *options.yaml};
-  const std::string note = "Calibrated: joint origins from " +
-                           std::filesystem::path(result.source).filename().string() + ", all else from " +
-                           urdf.filename().string();
-  const std::filesystem::path folder =
-      options.output ? std::filesystem::absolute(*options.output).parent_path() : urdf.parent_path();
-  const std::string text = calibration::format_urdf(urdf, nominal, result.arm, note, folder);
-  // What is reported is measured on the text that is written, read again.
-  const robot::ArmModel written = robot::parse_urdf(text, options.output.value_or("calibrated URDF"), "E", folder);
+  const NominalArm nominal = load_nominal(options);
   ordered_json json;
+  robot::ArmModel arm;
+  calibration::DhTable table;
   if (options.deltas) {
-    const calibration::DhTable table =
-        add(calibration::nominal_dh(nominal, urdf.string()), calibration::load_deltas(*options.deltas));
-    const calibration::FrameShift end = calibration::largest_end_error(written, nominal, table);
+    table = add(calibration::nominal_dh(nominal.arm, nominal.path.string()), calibration::load_deltas(*options.deltas));
+    arm = calibration::with_frames_near(calibration::arm_from_dh(nominal.arm, table), nominal.arm);
+  } else if (options.yaml) {
+    arm = calibration::load_calibration_yaml(*options.yaml, reading, nominal.arm);
+  } else {
+    const calibration::IdentifiedArm found = identify(options, nominal.arm);
+    arm = found.arm;
+    json = describe(found, nominal.arm);
+  }
+  const std::string source = options.deltas ? *options.deltas : options.yaml ? *options.yaml : *options.poses;
+  const std::string note = "Calibrated: joint origins from " + std::filesystem::path(source).filename().string() +
+                           ", all else from " + nominal.path.filename().string();
+  const std::string text = calibration::format_urdf(nominal.path, nominal.arm, arm, note, nominal.out_folder);
+  const robot::ArmModel written =
+      robot::parse_urdf(text, options.output.value_or("calibrated URDF"), options.tool_frame, nominal.out_folder);
+  if (options.deltas) {
+    const FrameShift end = calibration::largest_end_error(written, nominal.arm, table);
     json["max_end_effector_error_m"] = end.position;
     json["max_end_effector_error_rad"] = end.angle;
   }
-  const calibration::FrameShift origins = calibration::largest_origin_shift(written, nominal);
-  const calibration::FrameShift frames = calibration::largest_frame_shift(written, nominal);
-  json["max_frame_shift_m"] = origins.position;
-  json["max_frame_turn_rad"] = origins.angle;
-  json["max_deviation_in_base_m"] = frames.position;
-  json["max_deviation_in_base_rad"] = frames.angle;
+  add_shifts(written, nominal.arm, json);
   if (options.output) calibration::write_text(text, *options.output);
   if (options.yaml_output)
     calibration::write_text(calibration::format_calibration_yaml(written, reading), *options.yaml_output);
-  if (options.json) {
+  if (options.json)
     std::printf("%s\n", json.dump(2).c_str());
-    return kSuccess;
-  }
-  if (options.deltas)
-    std::printf("tool against the deviations: at most %.2g m, %.2g rad apart\n",
-                json["max_end_effector_error_m"].get<double>(), json["max_end_effector_error_rad"].get<double>());
-  std::printf("joint origins in their parents' frames: at most %.3f mm, %.5f rad from nominal\n",
-              1e3 * origins.position, origins.angle);
-  std::printf("joint frames in the base: at most %.3f mm, %.5f rad from nominal\n", 1e3 * frames.position,
-              frames.angle);
+  else
+    print(json);
   return kSuccess;
 }
 

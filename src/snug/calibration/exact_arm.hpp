@@ -41,6 +41,15 @@ struct FrameShift {
 [[nodiscard]] std::string format_urdf(const std::filesystem::path& nominal_path, const robot::ArmModel& nominal,
                                       const robot::ArmModel& arm, const std::string& note,
                                       const std::filesystem::path& out_folder);
+/// The text of `path` with E moved (not turned) to the point p_FQ of link `flange`.
+[[nodiscard]] std::string format_urdf_with_tip(const std::filesystem::path& path, const robot::ArmModel& arm,
+                                               int flange, const Vector3& p_FQ, const std::string& note,
+                                               const std::filesystem::path& out_folder);
+/// The text of `path` with mass and centre of mass changed, of the first link with a mass behind link `sensor`, so that
+/// all behind it weighs `mass` [kg] with its centre at com_L [m, frame of `sensor`].
+[[nodiscard]] std::string format_urdf_with_load(const std::filesystem::path& path, const robot::ArmModel& arm,
+                                                int sensor, double mass, const Vector3& com_L, const std::string& note,
+                                                const std::filesystem::path& out_folder);
 /// Writes text beside `path` and renames.
 void write_text(const std::string& text, const std::filesystem::path& path);
 

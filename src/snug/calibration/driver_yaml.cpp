@@ -1,5 +1,4 @@
-// Calibrated arms as files: the URDF with other origins, and the YAML that drivers read.
-#include <tinyxml2.h>
+// Calibrated arms as YAML that drivers read.
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -15,35 +14,6 @@ namespace {
 constexpr std::array<const char*, 6> kYamlJoints = {"shoulder", "upper_arm", "forearm",
                                                     "wrist_1",  "wrist_2",   "wrist_3"};
 constexpr std::array<const char*, 6> kYamlKeys = {"x", "y", "z", "roll", "pitch", "yaw"};
-
-std::string three(const Vector3& v) {
-  return internal::to_text(v.x()) + " " + internal::to_text(v.y()) + " " + internal::to_text(v.z());
-}
-
-void set_origin(tinyxml2::XMLDocument& document, tinyxml2::XMLElement& joint, const Pose& X) {
-  tinyxml2::XMLElement* origin = joint.FirstChildElement("origin");
-  if (origin == nullptr) {
-    origin = document.NewElement("origin");
-    joint.InsertFirstChild(origin);
-  }
-  origin->SetAttribute("xyz", three(X.p).c_str());
-  origin->SetAttribute("rpy", three(internal::urdf_angles(X.R)).c_str());
-}
-
-const char* child_link(const tinyxml2::XMLElement& joint) {
-  return joint.FirstChildElement("child")->Attribute("link");
-}
-
-/// Relative mesh paths start at the URDF's folder: say the same file from another folder.
-void move_meshes(tinyxml2::XMLElement& element, const std::filesystem::path& from, const std::filesystem::path& to) {
-  for (auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
-    const char* name = std::string_view(e->Name()) == "mesh" ? e->Attribute("filename") : nullptr;
-    if (name != nullptr && std::string_view(name).find("://") == std::string_view::npos &&
-        std::filesystem::path(name).is_relative())
-      e->SetAttribute("filename", std::filesystem::relative(from / name, to).generic_string().c_str());
-    move_meshes(*e, from, to);
-  }
-}
 
 [[noreturn]] void refuse(const std::string& name, const YAML::Node& node, const std::string& key,
                          const std::string& got, const std::string& expected) {
@@ -66,31 +36,6 @@ Pose read_yaml_origin(const std::string& name, const YAML::Node& node, const std
 }
 
 }  // namespace
-
-std::string format_urdf(const std::filesystem::path& nominal_path, const robot::ArmModel& nominal,
-                        const robot::ArmModel& arm, const std::string& note, const std::filesystem::path& out_folder) {
-  const std::string text = internal::read_file(nominal_path);
-  tinyxml2::XMLDocument document;
-  document.Parse(text.c_str(), text.size());
-  tinyxml2::XMLElement& root = *document.RootElement();
-  const int end = internal::last_link(arm);
-  for (auto* joint = root.FirstChildElement("joint"); joint != nullptr; joint = joint->NextSiblingElement("joint")) {
-    const int moving = robot::find_joint(arm, joint->Attribute("name"));
-    if (moving >= 0) {
-      set_origin(document, *joint, internal::joint_origin(arm, static_cast<std::size_t>(moving)));
-      continue;
-    }
-    const int child = robot::find_link(arm, child_link(*joint));
-    const auto k = static_cast<std::size_t>(child);
-    if (child >= 0 && arm.links[k].parent == end && !(arm.links[k].X_SL == nominal.links[k].X_SL))
-      set_origin(document, *joint, arm.links[k].X_SL);
-  }
-  move_meshes(root, std::filesystem::absolute(nominal_path).parent_path(), std::filesystem::absolute(out_folder));
-  document.InsertAfterChild(document.FirstChild(), document.NewComment((" " + note + " ").c_str()));
-  tinyxml2::XMLPrinter printer;
-  document.Print(&printer);
-  return printer.CStr();
-}
 
 void write_text(const std::string& text, const std::filesystem::path& path) { internal::write_file(path, text); }
 

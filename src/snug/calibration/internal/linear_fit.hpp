@@ -1,0 +1,29 @@
+// fit_linear: least squares with covariance, and which groups of rows do not belong to the rest.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace snug::calibration::internal {
+
+struct LinearFit {
+  Eigen::VectorXd x;
+  Eigen::MatrixXd covariance;         ///< of x; noise estimated from the residuals
+  double sigma = 0.0;                 ///< standard deviation of one row's residual
+  std::vector<std::size_t> outliers;  ///< groups whose residual no noise of the others explains
+  double spread = 0.0;                ///< smallest singular value of A / sqrt(groups)
+  Eigen::VectorXd weakest;            ///< its direction in x
+};
+
+/// min |A x - b|. Rows come in groups of `group` (one measurement). Outliers are found against a robust fit (absolute
+/// residuals): beyond 6 standard deviations, which are taken from the median.
+[[nodiscard]] LinearFit fit_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::Index group);
+
+/// Groups whose size is beyond 6 standard deviations of the rest, where each is the norm of `degrees` (3 or 6) normal
+/// numbers of equal deviation; estimated from the median.
+[[nodiscard]] std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int degrees, double floor);
+/// That deviation.
+[[nodiscard]] double median_deviation(std::vector<double> sizes, int degrees);
+
+}  // namespace snug::calibration::internal

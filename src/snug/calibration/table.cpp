@@ -1,0 +1,93 @@
+// Table: measured numbers from a CSV with a header.
+#include "snug/calibration/table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "snug/calibration/internal/frames.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug::calibration {
+namespace {
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream parts(line + ",");
+  for (std::string cell; std::getline(parts, cell, ',');) {
+    const auto begin = cell.find_first_not_of(" \t\r\"");
+    cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, cell.find_last_not_of(" \t\r\"") - begin + 1));
+  }
+  return cells;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
+  return text;
+}
+
+/// Where each wanted column stands in the header.
+std::vector<std::size_t> find_columns(const std::vector<std::string>& header, const std::vector<std::string>& wanted,
+                                      const std::string& where) {
+  std::vector<std::size_t> places;
+  for (const std::string& column : wanted) {
+    const auto found = std::find(header.begin(), header.end(), column);
+    if (found == header.end())
+      throw InputError(where, "column '" + column + "'", "a header '" + joined(header) + "'",
+                       "a header with " + joined(wanted));
+    if (std::find(found + 1, header.end(), column) != header.end())
+      throw InputError(where, "column '" + column + "'", "it twice", "each column once");
+    places.push_back(static_cast<std::size_t>(found - header.begin()));
+  }
+  return places;
+}
+
+double read_number(const std::string& cell, const std::string& where, const std::string& column) {
+  double value = 0.0;
+  const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), value);
+  if (cell.empty() || error != std::errc() || end != cell.data() + cell.size() || !(std::abs(value) < 1e9))
+    throw InputError(where, column, "'" + cell + "'", "a finite number in SI units");
+  return value;
+}
+
+}  // namespace
+
+Table parse_table(const std::string& text, const std::string& name, const std::vector<std::string>& columns) {
+  Table table{name, columns, {}, {}};
+  std::vector<std::size_t> places;
+  std::size_t width = 0;
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
+    const std::vector<std::string> cells = split(line);
+    const std::string where = name + ":" + std::to_string(number);
+    if (places.empty()) {
+      places = find_columns(cells, columns, where);
+      width = cells.size();
+      continue;
+    }
+    if (cells.size() != width)
+      throw InputError(where, "", std::to_string(cells.size()) + " cells",
+                       std::to_string(width) + ", as in the header");
+    std::vector<double>& row = table.rows.emplace_back();
+    for (std::size_t i = 0; i < places.size(); ++i) row.push_back(read_number(cells[places[i]], where, columns[i]));
+    table.lines.push_back(number);
+  }
+  if (places.empty()) throw InputError(name + ":1", "", "no header", joined(columns));
+  return table;
+}
+
+Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns) {
+  return parse_table(internal::read_file(path), path.string(), columns);
+}
+
+Pose row_pose(const std::vector<double>& row, std::size_t first) {
+  return {exp_rotation({row[first + 3], row[first + 4], row[first + 5]}), {row[first], row[first + 1], row[first + 2]}};
+}
+
+}  // namespace snug::calibration

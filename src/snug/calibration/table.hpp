@@ -1,0 +1,32 @@
+// Table: measured numbers from a CSV with a header, every complaint with file and line.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "snug/spatial/pose.hpp"
+
+namespace snug::calibration {
+
+/// Rows of numbers under named columns.
+struct Table {
+  std::string name;  ///< file, for messages
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;  ///< each as long as `columns`
+  std::vector<int> lines;                 ///< of the rows in the file
+
+  /// "file:line" of a row.
+  [[nodiscard]] std::string where(std::size_t row) const { return name + ":" + std::to_string(lines[row]); }
+};
+
+/// Reads a CSV: separator comma, first line the column names, lines that start with # and empty lines left out. The
+/// columns named must be there, in any order; others are ignored. Returned in the order of `columns`.
+[[nodiscard]] Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns);
+[[nodiscard]] Table parse_table(const std::string& text, const std::string& name,
+                                const std::vector<std::string>& columns);
+
+/// Pose from six numbers from `first` on: x, y, z [m], rx, ry, rz (rotation vector, rad).
+[[nodiscard]] Pose row_pose(const std::vector<double>& row, std::size_t first);
+
+}  // namespace snug::calibration
