@@ -58,8 +58,10 @@ class LiveBar {
     this.text_.textContent = isPaused ? "live, paused" : "live";
   }
 
-  end(why: string): void {
+  end(why: string, hint = ""): void {
     this.text_.textContent = why;
+    this.element.title = hint;
+    this.element.classList.add("lost");
     this.pause_.disabled = this.step_.disabled = true;
   }
 }
@@ -119,7 +121,8 @@ export async function followLive(show: (replay: Replay) => App, fail: (error: un
     });
     source.addEventListener("error", () => {
       source.close(); // it would come again from the beginning
-      bar.end("connection lost");
+      bar.end("connection lost", "The simulation was ended or its machine is gone. What came until then can be replayed; reload the page when `snug view --live` runs again.");
+      app?.refresh();
     });
   });
 }

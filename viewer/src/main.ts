@@ -17,6 +17,8 @@ interface Handle {
   readonly time: number;
   readonly frame: number;
   readonly frames: number;
+  /** Time of the last frame, s. */
+  readonly end: number;
   setTime(time: number): void;
   bodyPose(name: string): { p: number[]; quat_wxyz: number[] } | null;
   lip(): number[];
@@ -63,6 +65,9 @@ function handleOf(app: App): Handle {
     },
     get frames() {
       return app.replay.frames;
+    },
+    get end() {
+      return app.replay.end;
     },
     setTime: (time) => {
       app.player.setTime(time);

@@ -87,7 +87,7 @@ export function endPanel(replay: Replay, second: Replay | null, view: View, onOp
   pictures.type = "button";
   pictures.title = "Container at the end: larger (c)";
   pictures.addEventListener("click", onOpen);
-  panel.append(make("h2", "", "Container at the end"), pictures);
+  panel.append(make("h2", "", replay.header.complete ? "Container at the end" : "Container so far"), pictures);
   panel.addEventListener("snug:draw", () => {
     view.drawContainer(top, "top", replay.frames - 1);
     view.drawContainer(side, "side", replay.frames - 1);

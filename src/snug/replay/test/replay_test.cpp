@@ -225,7 +225,29 @@ TEST(Replay, HeaderTakesTheResultThatTheRunStored) {
   EXPECT_EQ(header["result"]["report_table7"]["filling_percent"], 75.66);
   // Report eq. 1 with the boxes of Table 9 and the container of 570 x 370 x 250 mm, worked out by hand.
   EXPECT_NEAR(header["result"]["report_table7"]["same_boxes_percent"].get<double>(), 74.22, 0.005);
+  const auto& agents = header["result"]["report_table7"]["agents"];
+  ASSERT_EQ(agents.size(), 3U);
+  EXPECT_EQ(agents[0]["filling_percent"], 32.21);
+  EXPECT_EQ(agents[1]["agent"], "I.AM.");
+  EXPECT_EQ(agents[2]["agent"], "Manual Operator");
   EXPECT_EQ(header["cup"]["lip_radius"], 0.035);
+}
+
+TEST(Replay, HeaderGivesOtherAgentsForTheReportsOwnSequencesOnly) {
+  Rng rng = Rng(10).split("replay");
+  record::Recording recording = test::random_recording(rng, 3);
+  std::ifstream file(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+  std::ostringstream text;
+  text << file.rdbuf();
+  const std::string own = "reported_filling_percent: 75.66";
+  recording.header.scenario_text = text.str();
+  recording.header.scenario_text.replace(recording.header.scenario_text.find(own), own.size(),
+                                         "reported_filling_percent: 50.00");
+  recording.result = R"({"duration_s": 1.0, "wall_s": 1.0, "boxes": []})";
+  const auto header = nlohmann::json::parse(form_of(recording).header_json);
+  const auto& agents = header["result"]["report_table7"]["agents"];
+  ASSERT_EQ(agents.size(), 1U);
+  EXPECT_EQ(agents[0]["filling_percent"], 50.0);
 }
 
 TEST(Replay, KeepsTextThatIsNotUtf8FromSpoilingTheHeader) {
