@@ -8,6 +8,7 @@ import type { Replay } from "../replay/replay";
 import { Lit } from "./lit";
 import { matrixOf } from "./maths";
 import type { BoxColours, Palette } from "./palette";
+import type { TracePoint } from "./trace";
 
 /** Outward normal, right and up of each face as a reader with the box's z up sees it. */
 const FACES: { n: number[]; u: number[]; v: number[] }[] = [
@@ -261,6 +262,14 @@ export class Boxes {
   shapePoseOf(body: number): Matrix4 | null {
     const i = this.instanceOf_.get(body);
     return i === undefined ? null : this.shapePose_[i]!;
+  }
+
+  cornerPoint(body: number, name: string, corner: number): TracePoint | null {
+    const [half, X, c] = [this.halfOf(body), this.shapePoseOf(body), CORNERS[corner]];
+    if (!half || !X || !c) return null;
+    const local = new Vector3(c[0] * half.x, c[1] * half.y, c[2] * half.z).applyMatrix4(X);
+    const sign = (v: number): string => (v < 0 ? "−" : "+");
+    return { kind: "body", body, local, label: `${name} corner ${sign(c[0])}x ${sign(c[1])}y ${sign(c[2])}z` };
   }
 
   shortNameOf(body: number): string {

@@ -14,6 +14,20 @@ export interface Arrow {
   colour: Color;
 }
 
+/** The forces of the cup on the box and on the flange at a frame, as recorded in S and in F, whose axes are those of E. */
+export function wrenchArrows(replay: Replay, frame: number, X_WE: Matrix4, X_WS: Matrix4, palette: Palette): Arrow[] {
+  const arrows: Arrow[] = [];
+  for (const [name, X, colour] of [["cup.wrench", X_WS, palette.cupWrench], ["flange.wrench", X_WE, palette.flangeWrench]] as const) {
+    const channel = replay.channel(name);
+    if (!channel) continue;
+    const force = new Vector3(channel.at(0, frame), channel.at(1, frame), channel.at(2, frame));
+    const size = force.length();
+    if (!(size > 0)) continue;
+    arrows.push({ at: new Vector3().setFromMatrixPosition(X), force: force.transformDirection(X).multiplyScalar(size), colour: new Color(colour) });
+  }
+  return arrows;
+}
+
 /** Size of a pixel at a point, m. */
 export type PixelSize = (point: Vector3) => number;
 

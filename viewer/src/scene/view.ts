@@ -1,48 +1,30 @@
 // View: the drawing of one frame of a recording; draws only when something has changed.
 
 import {
-  Color, DirectionalLight, Fog, HemisphereLight, MathUtils, Matrix4, Mesh, MeshLambertMaterial, OrthographicCamera, PerspectiveCamera,
+  Color, DirectionalLight, Fog, HemisphereLight, MathUtils, Matrix4, Mesh, MeshLambertMaterial, OrthographicCamera, PerspectiveCamera, Quaternion,
   Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import type { Replay } from "../replay/replay";
 import { RestingContacts } from "../replay/resting";
-import { Boxes, CORNERS } from "./boxes";
+import { Boxes } from "./boxes";
 import { CAMERA_NAMES, Cameras, containerBox, orthoCamera, type CameraName } from "./cameras";
-import { Contacts, type Arrow } from "./contacts";
+import { Contacts, wrenchArrows } from "./contacts";
 import { Cup } from "./cup";
 import { Ghost, Plans } from "./ghost";
 import { Labels, type Label } from "./labels";
 import { aimLight, setLight } from "./lit";
+import { labelsOf, triadsOf } from "./marks";
 import { matrixOf } from "./maths";
 import { Movers } from "./movers";
+import { availableOptions, defaultOptions, type ViewOption, type ViewOptions } from "./options";
+import { isSoftwareRenderer, Pace } from "./pace";
 import { BoxColours, PALETTES, type Palette, type Theme } from "./palette";
 import { Robot } from "./robot";
 import { Second } from "./second";
 import { Statics } from "./statics";
-import { SUN } from "./sun";
+import { placeSun, SUN } from "./sun";
 import { Trace, type TracePoint } from "./trace";
-import { Triads, type Triad } from "./triads";
-
-/** Above SLOW_MS between pictures a processor draws with COARSE samples a pixel's edge until it takes less than FAST_MS. */
-const SLOW_MS = 55;
-const FAST_MS = 22;
-const COARSE = 0.7;
-
-export interface ViewOptions {
-  names: boolean;
-  contacts: boolean;
-  forces: boolean;
-  wrenches: boolean;
-  ghost: boolean;
-  frames: boolean;
-  trace: boolean;
-  xray: boolean;
-  robot: boolean;
-  walls: boolean;
-  second: boolean;
-  shadows: boolean;
-}
-export type ViewOption = keyof ViewOptions;
+import { Triads } from "./triads";
 
 export interface Picked {
   body: number;
@@ -81,9 +63,7 @@ export class View {
   private selected_ = -1;
   private isScheduled_ = false;
   private sharpTimer_ = 0;
-  /** Mean time between pictures while things move, ms, and samples a pixel then. */
-  private pace_ = 40;
-  private movingRatio_ = 1;
+  private readonly pace_ = new Pace();
   private width_ = 1;
   private height_ = 1;
   private readonly pose_ = new Float64Array(7);
@@ -106,10 +86,7 @@ export class View {
     this.canvas = this.renderer_.domElement;
     this.element.className = "view";
     this.element.append(this.canvas, this.labels_.host);
-    this.options = {
-      names: true, contacts: true, forces: true, wrenches: false, ghost: true, frames: false, trace: false, xray: false,
-      robot: true, walls: true, second: true, shadows: !this.isSoftware,
-    };
+    this.options = defaultOptions(this.isSoftware);
     const has = (name: string): boolean => replay.channel(name) !== undefined;
     this.statics_ = new Statics(replay, this.palette_);
     this.boxes_ = new Boxes(replay, this.palette_, this.colours);
@@ -135,44 +112,15 @@ export class View {
     this.boxes_.mesh.receiveShadow = true;
     this.hemisphere_.position.set(0, 0, 1);
     this.cameras = new Cameras(replay, this.canvas, () => this.invalidate());
-    this.placeSun();
+    placeSun(this.sun_, containerBox(replay));
     this.setTheme(theme);
     this.setShadows();
   }
 
   /** Toggles that mean something for this recording. */
   get available(): ViewOption[] {
-    const { replay } = this;
-    const rules: Record<ViewOption, boolean> = {
-      names: this.boxes_.bodies.length > 0,
-      contacts: replay.contacts !== null,
-      forces: replay.contacts !== null,
-      wrenches: replay.channel("cup.wrench") !== undefined || replay.channel("flange.wrench") !== undefined,
-      ghost: replay.channel("tool.pose_command") !== undefined,
-      frames: true,
-      trace: replay.bodies.some((b) => b.kind !== "static"),
-      xray: this.boxes_.bodies.length > 0,
-      robot: this.robot_ !== null || replay.header.robot !== null,
-      walls: replay.header.container !== null,
-      second: this.second !== null,
-      shadows: true,
-    };
-    return (Object.keys(rules) as ViewOption[]).filter((key) => rules[key]);
-  }
-
-  private placeSun(): void {
-    const box = containerBox(this.replay);
-    const centre = box ? box.getCenter(new Vector3()).multiplyScalar(0.5) : new Vector3();
-    this.sun_.target.position.copy(centre);
-    this.sun_.position.copy(centre).addScaledVector(SUN, 3);
-    const camera = this.sun_.shadow.camera;
-    camera.left = camera.bottom = -1.3;
-    camera.right = camera.top = 1.3;
-    camera.near = 0.5;
-    camera.far = 6;
-    this.sun_.shadow.mapSize.set(1024, 1024);
-    this.sun_.shadow.bias = -0.0008;
-    this.sun_.shadow.normalBias = 0.004;
+    const hasRobot = this.robot_ !== null || this.replay.header.robot !== null;
+    return availableOptions(this.replay, this.second, this.boxes_.bodies.length > 0, hasRobot);
   }
 
   private setShadows(): void {
@@ -226,13 +174,7 @@ export class View {
 
   /** The corner of a box as a point to trace. */
   cornerPoint(body: number, corner: number): TracePoint | null {
-    const half = this.boxes_.halfOf(body);
-    const X = this.boxes_.shapePoseOf(body);
-    const c = CORNERS[corner];
-    if (!half || !X || !c) return null;
-    const local = new Vector3(c[0] * half.x, c[1] * half.y, c[2] * half.z).applyMatrix4(X);
-    const sign = (v: number): string => (v < 0 ? "−" : "+");
-    return { kind: "body", body, local, label: `${this.replay.bodies[body]!.name} corner ${sign(c[0])}x ${sign(c[1])}y ${sign(c[2])}z` };
+    return this.boxes_.cornerPoint(body, this.replay.bodies[body]?.name ?? "", corner);
   }
 
   setSelected(body: number): void {
@@ -266,48 +208,13 @@ export class View {
     this.invalidate();
   }
 
-  private wrenchArrows(): Arrow[] {
-    if (!this.options.wrenches || !this.hasTool_) return [];
-    const { replay, palette_: p } = this;
-    const arrows: Arrow[] = [];
-    const add = (name: string, X: Matrix4, colour: string): void => {
-      const channel = replay.channel(name);
-      if (!channel) return;
-      const force = new Vector3(channel.at(0, this.frame_), channel.at(1, this.frame_), channel.at(2, this.frame_));
-      if (!(force.length() > 0)) return;
-      arrows.push({ at: new Vector3().setFromMatrixPosition(X), force: force.transformDirection(X).multiplyScalar(length(channel.at.bind(channel), this.frame_)), colour: new Color(colour) });
-    };
-    add("cup.wrench", this.X_WS_, p.cupWrench);
-    add("flange.wrench", this.X_WE_, p.flangeWrench);
-    return arrows;
-  }
-
-  private triadsAndLabels(): Label[] {
-    const { replay } = this;
-    const triads: Triad[] = [];
-    const labels: Label[] = [];
-    if (this.options.frames) {
-      for (const f of replay.header.frames_named) triads.push({ letter: f.letter || f.name, X_W: matrixOf(f.X_W), size: 0.12 });
-      if (this.hasTool_) triads.push({ letter: "E", X_W: this.X_WE_, size: 0.075 });
-      if (this.hasTool_ && this.cup_) triads.push({ letter: "S", X_W: this.X_WS_, size: 0.06 });
-    }
-    const held = replay.attachedBody(this.frame_);
-    const { marked } = this;
-    if (this.options.frames && marked >= 0 && replay.bodyPose(marked, this.frame_, this.pose_)) {
-      triads.push({ letter: "P", X_W: matrixOf(this.pose_), size: 0.09 });
-    }
+  /** Draws the axes that are asked for and tells what to write. */
+  private markFrames(): Label[] {
+    const { replay, options, frame_: frame, selected_: selected, marked } = this;
+    const at = { frame, X_WE: this.hasTool_ ? this.X_WE_ : null, X_WS: this.hasTool_ && this.cup_ ? this.X_WS_ : null, selected, marked };
+    const triads = options.frames ? triadsOf(replay, at) : [];
     this.triads_.update(triads);
-    triads.forEach((t, i) => {
-      const at = new Vector3(-0.12, -0.12, -0.12).multiplyScalar(t.size).applyMatrix4(t.X_W);
-      labels.push({ id: `frame ${i}`, text: t.letter, at, kind: "frame" });
-    });
-    for (const body of new Set([held, this.selected_])) {
-      if (!this.options.names || body < 0 || !replay.bodyPose(body, this.frame_, this.pose_)) continue;
-      const half = this.boxes_.halfOf(body);
-      const at = new Vector3(this.pose_[0], this.pose_[1], this.pose_[2]! + (half ? half.length() * 0.85 : 0.05));
-      labels.push({ id: `body ${body}`, text: replay.bodies[body]!.name, at, kind: body === held ? "held" : "box" });
-    }
-    return labels;
+    return labelsOf(replay, this.boxes_, at, triads, options);
   }
 
   resize(width: number, height: number): void {
@@ -324,17 +231,10 @@ export class View {
     this.boxes_.setPixelRatio(ratio);
   }
 
-  /**
-   * Where a processor draws, edges are rough while things move, and rougher where it cannot follow: when they stand, one
-   * picture has four samples a pixel.
-   */
+  /** Where a processor draws, edges are rough while things move: when they stand, one picture has four samples a pixel. */
   private sharpenWhenStill(): void {
-    const now = performance.now();
-    const interval = now - (this.drawn_[this.drawn_.length - 1] ?? 0);
-    if (interval < 300) this.pace_ += 0.1 * (interval - this.pace_);
-    if (this.pace_ > SLOW_MS) this.movingRatio_ = COARSE;
-    else if (this.pace_ < FAST_MS) this.movingRatio_ = 1;
-    if (this.renderer_.getPixelRatio() !== this.movingRatio_) this.setRatio(this.movingRatio_);
+    const ratio = this.pace_.ratioAfter(performance.now() - (this.drawn_[this.drawn_.length - 1] ?? 0));
+    if (this.renderer_.getPixelRatio() !== ratio) this.setRatio(ratio);
     window.clearTimeout(this.sharpTimer_);
     this.sharpTimer_ = window.setTimeout(() => {
       this.setRatio(2);
@@ -373,11 +273,11 @@ export class View {
     if (this.robot_) this.robot_.group.visible = options.robot && this.robot_.isThere;
     this.movers_.links.visible = options.robot;
     this.contacts_.update(
-      this.replay, this.resting_, this.frame_, this.wrenchArrows(),
+      this.replay, this.resting_, this.frame_, this.options.wrenches && this.hasTool_ ? wrenchArrows(this.replay, this.frame_, this.X_WE_, this.X_WS_, this.palette_) : [],
       { points: options.contacts, forces: options.forces, wrenches: options.wrenches, scale: this.arrowScale },
       this.pixelSize_,
     );
-    const labels = this.triadsAndLabels();
+    const labels = this.markFrames();
     this.renderer_.render(this.scene_, this.cameras.active);
     this.labels_.update(labels, this.cameras.active, this.width_, this.height_);
     const now = performance.now();
@@ -484,7 +384,7 @@ export class View {
     const matrix = this.movers_.drawnMatrix(body);
     if (!matrix) return null;
     const p = new Vector3();
-    const q = new (this.cameras.active.quaternion.constructor as typeof import("three").Quaternion)();
+    const q = new Quaternion();
     matrix.decompose(p, q, new Vector3());
     return { p: [p.x, p.y, p.z], quat_wxyz: [q.w, q.x, q.y, q.z] };
   }
@@ -496,18 +396,4 @@ export class View {
   }
 }
 
-function length(at: (column: number, row: number) => number, row: number): number {
-  return Math.hypot(at(0, row), at(1, row), at(2, row));
-}
-
-/** Whether a processor draws instead of a graphics card. */
-function isSoftwareRenderer(): boolean {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  if (!gl) return true;
-  const info = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-  gl.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software|basic render/i.test(name);
-}
-
-export { CAMERA_NAMES };
+export { CAMERA_NAMES, type ViewOption };

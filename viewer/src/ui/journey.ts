@@ -128,9 +128,9 @@ export class Journey {
 
   select(id: string): void {
     this.selected = id;
-    if (id) this.rows_.get(id)?.scrollIntoView({ block: "nearest" });
     this.view.setSelected(this.replay.bodyIndex(id));
     this.update();
+    if (id) this.rows_.get(id)?.scrollIntoView({ block: "nearest" });
     this.onSelect(id);
   }
 

@@ -8,7 +8,7 @@ import { digits, make } from "./dom";
 import type { Player } from "./player";
 import { figuresOf, thin, type Figure, type Group } from "./series";
 
-const HEIGHT = 116;
+const HEIGHT = 106;
 const POINTS = 1600;
 const TITLES: Record<Group, string> = {
   box: "Box", tool: "Tool", cup: "Cup", flange: "Flange", robot: "Robot", contacts: "Contacts and solver",
@@ -102,7 +102,9 @@ export class Plots {
       this.refresh();
     });
     this.element.append(host);
-    if (host.open) for (const figure of figures) this.add(figure, host);
+    if (!host.open) return;
+    for (const figure of figures) this.add(figure, host);
+    if (host.childElementCount === 1) host.append(make("p", "empty", group === "box" ? "It never was in the cell." : "Nothing was recorded of it."));
   }
 
   private add(figure: Figure, parent: HTMLElement): void {
@@ -177,6 +179,7 @@ export class Plots {
       width: this.width_,
       height: HEIGHT,
       series,
+      padding: [5, 8, 0, 0],
       legend: { show: false },
       cursor: {
         sync: { key: "snug" },
