@@ -341,11 +341,66 @@ class Views(unittest.TestCase):
                 self.assertEqual(result.returncode, 2, result.stderr)
                 self.assertTrue(result.stderr.startswith("snug: error: "), result.stderr)
 
+    def test_video_is_the_pictures_of_its_instants(self):
+        frames = self.path / "frames"
+        looks = ["--size", "160x100", "--camera", "cell"]
+        result = snug("picture", self.recording, "--video", frames, "--fps", 10, "--from", 0.2, "--to", 0.45, *looks)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(sorted(p.name for p in frames.iterdir()), [f"frame-{i:06}.png" for i in range(3)])
+        pictures = [(frames / f"frame-{i:06}.png").read_bytes() for i in range(3)]
+        self.assertEqual(len(set(pictures)), 3, "the box falls")
+        single = self.path / "single.png"
+        result = snug("picture", self.recording, "--time", 0.4, "-o", single, *looks)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(single.read_bytes(), pictures[2])
+
+    def test_video_refuses_what_it_cannot_draw_and_leaves_nothing(self):
+        full = self.path / "full"
+        full.mkdir()
+        (full / "frame-000000.png").write_bytes(b"of another video")
+        for words, text in ((["--video", full], "folder"), (["--video", DROP], "--video"), ([], "--video"),
+                            (["--video", self.path / "v", "-o", "x.png"], "both"),
+                            (["--video", self.path / "v", "--fps", 0], "--fps"),
+                            (["--video", self.path / "v", "--from", 2, "--to", 3], "--from"),
+                            (["--video", self.path / "v", "--speed", 1e-3, "--fps", 1000], "--fps"),
+                            (["--video", self.path / "v", "--time", 1], "--time"), (["-o", "x.png", "--from", 1], "--from")):
+            with self.subTest(words=words):
+                result = snug("picture", self.recording, *words)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn(text, result.stderr)
+        self.assertFalse((self.path / "v").exists())
+        self.assertEqual((full / "frame-000000.png").read_bytes(), b"of another video")
+
+    def test_picture_says_when_the_browser_fails(self):
+        for browser, code in (("/bin/true", 1), ("/bin/cat", 1), ("/no/such", 2)):
+            result = subprocess.run([SNUG, "picture", str(self.recording), "-o", str(self.path / "x.png")], check=False,
+                                    capture_output=True, text=True, env={**os.environ, "SNUG_CHROMIUM": browser}, timeout=60)
+            self.assertEqual(result.returncode, code, result.stderr)
+            self.assertTrue(result.stderr.startswith("snug: "), result.stderr)
+        self.assertFalse((self.path / "x.png").exists())
+
+    def test_export_writes_mcap_and_the_table(self):
+        for name, begin in (("mcap", b"\x89MCAP0\r\n"), ("csv", b"t;")):
+            out = self.path / f"drop.{name}"
+            result = snug("export", self.recording, "--format", name, "-o", out)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertTrue(out.read_bytes().startswith(begin))
+        table = self.path / "direct.csv"
+        snug("simulate", DROP, "--until", 1, "--csv", table)
+        self.assertEqual((self.path / "drop.csv").read_bytes(), table.read_bytes())
+
+    def test_export_refuses_what_it_cannot_write_and_leaves_nothing(self):
+        out = self.path / "x.mcap"
+        for words in ([self.recording, "--format", "mcpa"], [DROP, "--format", "mcap"], ["no.h5", "--format", "mcap"],
+                      [self.recording, "--format", "mcap", "--from", 5], [self.recording]):
+            result = snug("export", *words, "-o", out)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertTrue(result.stderr.startswith("snug: error: "), result.stderr)
+        self.assertEqual([p.name for p in self.path.iterdir() if "x.mcap" in p.name], [])
+
     def test_picture_refuses_words_it_does_not_know(self):
         for words in (["--camera", "sied"], ["--size", "12"], ["--show", "names,ghosts"], ["--time", "nan"]):
             result = snug("picture", self.recording, "-o", self.path / "x.png", *words)
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn(words[0], result.stderr)
         self.assertFalse((self.path / "x.png").exists())
-
-

@@ -2,27 +2,22 @@
 #include "picture.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
+#include "browser.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
 #include "viewer_page.hpp"
-
-extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
 namespace snug::app {
 namespace {
@@ -32,7 +27,8 @@ namespace fs = std::filesystem;
 constexpr std::array kCameras = {"cell", "top", "side", "tool"};
 constexpr std::array kParts = {"names", "contacts", "forces", "wrenches", "ghost",  "frames",
                                "trace", "xray",     "robot",  "walls",    "shadows"};
-constexpr int kPatienceSeconds = 120;
+constexpr std::size_t kMostFrames = 200'000;
+constexpr std::chrono::seconds kPatience(60);  // until the page has drawn for the first time
 
 template <std::size_t N>
 void expect_one_of(const char* option, const std::string& word, const std::array<const char*, N>& words) {
@@ -46,18 +42,6 @@ void expect_parts(const char* option, const std::string& list) {
     expect_one_of(option, list.substr(begin, end - begin), kParts);
     begin = end + 1;
   }
-}
-
-std::string find_browser() {
-  if (const char* chosen = std::getenv("SNUG_CHROMIUM")) {
-    if (::access(chosen, X_OK) == 0) return chosen;
-    throw InputError("environment", "SNUG_CHROMIUM", chosen, "a program that can be run");
-  }
-  for (const char* path : {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"}) {
-    if (::access(path, X_OK) == 0) return path;
-  }
-  throw InputError("snug picture", "chromium", "none",
-                   "Debian's package chromium, or a program like it named by the environment variable SNUG_CHROMIUM");
 }
 
 /// A folder that is gone with the object.
@@ -82,39 +66,94 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// Runs a program with its output thrown away; false when it could not be started, failed, or took too long.
-bool run_quietly(std::vector<std::string> words) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    posix_spawn_file_actions_addopen(&actions, file, "/dev/null", file == STDIN_FILENO ? 0 : 1, 0);
+/// The page with the recording in it, in a browser, as it is drawn for pictures.
+class Studio {
+ public:
+  Studio(const PictureOptions& options, record::RecordingReader& reader)
+      : browser_(find_browser(), folder_.path() / "profile", options.width, options.height) {
+    const std::string name = fs::path(options.recording).filename().string();
+    const replay::PageRecording recording{name, replay::encode_recording(reader, name, {})};
+    const fs::path page = folder_.path() / "page.html";
+    replay::write_whole_file(page, replay::assemble_page(viewer_page(), {&recording, 1}));
+    browser_.open(fmt::format("file://{}#picture=1&t={}&camera={}&theme={}&show={}&hide={}&size={}x{}", page.string(),
+                              options.time.value_or(options.from.value_or(reader.times().back())), options.camera,
+                              options.theme, options.show, options.hide, options.width, options.height));
+    wait_until_drawn();
   }
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // its helpers can be stopped with it
-  pid_t child = 0;
-  const int failed = ::posix_spawn(&child, words[0].c_str(), &actions, &attributes, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  if (failed != 0) return false;
-  int status = 0;
-  for (int waited = 0; ::waitpid(child, &status, WNOHANG) == 0; ++waited) {
-    if (waited == 20 * kPatienceSeconds) {
-      ::kill(-child, SIGKILL);
-      ::waitpid(child, &status, 0);
-      return false;
+  void show(double time) {
+    // The next picture of the browser but one has surely been drawn after the change.
+    (void)browser_.evaluate(fmt::format(
+        "window.snug.setTime({}), new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r(0))))",
+        time));
+  }
+  [[nodiscard]] std::string take_picture() { return browser_.take_picture(); }
+
+ private:
+  void wait_until_drawn() {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (browser_.evaluate("window.snugReady === true") != "true") {
+      if (std::chrono::steady_clock::now() > deadline) throw BrowserError("the page did not draw within a minute");
+      ::usleep(20'000);
     }
-    ::usleep(50'000);
+    const std::string trouble = browser_.evaluate("window.snug.error");
+    if (trouble != "\"\"") throw BrowserError("in the page: " + trouble);
   }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+
+  TemporaryFolder folder_;
+  Browser browser_;
+};
+
+void expect_finite(const char* option, const std::optional<double>& value) {
+  if (!value || std::isfinite(*value)) return;
+  throw InputError("command line", option, fmt::format("{}", *value), "a finite number of seconds");
 }
 
-std::string read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+/// Instants of the frames of a video.
+std::vector<double> video_times(const PictureOptions& options, const record::RecordingReader& reader) {
+  const std::vector<double>& times = reader.times();
+  const double from = std::max(times.front(), options.from.value_or(times.front()));
+  const double to = std::min(times.back(), options.to.value_or(times.back()));
+  if (from > to) {
+    throw InputError("command line", "--from, --to", "nothing between them",
+                     fmt::format("times within {:.3f} s to {:.3f} s", times.front(), times.back()));
+  }
+  const double step = options.speed / options.fps;
+  const double count = std::floor((to - from) / step + 1e-9) + 1.0;
+  if (count > static_cast<double>(kMostFrames)) {
+    throw InputError("command line", "--fps", fmt::format("{:.0f} pictures", count),
+                     fmt::format("at most {}: less of the recording, or a higher --speed", kMostFrames));
+  }
+  std::vector<double> instants;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    instants.push_back(from + static_cast<double>(i) * step);
+  }
+  return instants;
+}
+
+/// Throws unless the folder is empty or can be made: pictures of an earlier video must not get among the new ones.
+void make_empty_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error || !fs::is_directory(path)) {
+    throw InputError(path.string(), "--video", error ? error.message() : "not a folder", "a folder that can be made");
+  }
+  if (!fs::is_empty(path, error) || error) {
+    throw InputError(path.string(), "--video", error ? error.message() : "a folder with something in it",
+                     "a new or empty folder");
+  }
+}
+
+void draw_video(const PictureOptions& options, record::RecordingReader& reader) {
+  const std::vector<double> instants = video_times(options, reader);
+  make_empty_folder(options.video);
+  Studio studio(options, reader);
+  const bool is_watched = ::isatty(STDERR_FILENO) == 1;
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    studio.show(instants[i]);
+    replay::write_whole_file(fs::path(options.video) / fmt::format("frame-{:06}.png", i), studio.take_picture());
+    if (is_watched) std::fprintf(stderr, "\r%zu of %zu pictures", i + 1, instants.size());
+  }
+  std::fprintf(stderr, "%s%s: %zu pictures\n", is_watched ? "\r" : "", options.video.c_str(), instants.size());
 }
 
 }  // namespace
@@ -124,30 +163,23 @@ int run_picture(const PictureOptions& options) {
   expect_one_of("--theme", options.theme, std::array{"light", "dark"});
   expect_parts("--show", options.show);
   expect_parts("--hide", options.hide);
-  if (options.time && !std::isfinite(*options.time)) {
-    throw InputError("command line", "--time", fmt::format("{}", *options.time), "a finite number of seconds");
-  }
-  const std::string browser = find_browser();
+  expect_finite("--time", options.time);
+  expect_finite("--from", options.from);
+  expect_finite("--to", options.to);
   record::RecordingReader reader(options.recording);
-  const std::string name = fs::path(options.recording).filename().string();
-  const replay::PageRecording recording{name, replay::encode_recording(reader, name, {})};
-  const TemporaryFolder folder;
-  const fs::path page = folder.path() / "page.html", picture = folder.path() / "picture.png";
-  replay::write_whole_file(page, replay::assemble_page(viewer_page(), {&recording, 1}));
-  const std::string address = fmt::format("file://{}#picture=1&t={}&camera={}&theme={}&show={}&hide={}&size={}x{}",
-                                          page.string(), options.time.value_or(1e9), options.camera, options.theme,
-                                          options.show, options.hide, options.width, options.height);
-  const bool is_drawn = run_quietly(
-      {browser, "--headless", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic",
-       "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-       "--hide-scrollbars", "--virtual-time-budget=20000", "--user-data-dir=" + (folder.path() / "profile").string(),
-       fmt::format("--window-size={},{}", options.width, options.height), "--screenshot=" + picture.string(), address});
-  const std::string png = read_file(picture);
-  if (!is_drawn || !png.starts_with("\x89PNG")) {
-    std::fprintf(stderr, "snug: %s drew no picture\n", browser.c_str());
+  if (reader.frame_count() == 0) {
+    throw InputError(options.recording, "", "a recording without frames", "at least one frame");
+  }
+  try {
+    if (!options.video.empty()) {
+      draw_video(options, reader);
+    } else {
+      replay::write_whole_file(options.output, Studio(options, reader).take_picture());
+    }
+  } catch (const BrowserError& error) {
+    std::fprintf(stderr, "snug: failed: %s\n", error.what());
     return kRunFailed;
   }
-  replay::write_whole_file(options.output, png);
   return kSuccess;
 }
 

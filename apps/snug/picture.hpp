@@ -1,4 +1,4 @@
-// picture: one instant of a recording as PNG, drawn without a screen.
+// picture: one instant of a recording as PNG, or many for a video, drawn without a screen.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,12 @@ namespace snug::app {
 
 struct PictureOptions {
   std::string recording;
-  std::string output;
-  std::optional<double> time;  ///< s; absent: the end
+  std::string output;              ///< one picture; empty: a video
+  std::optional<double> time;      ///< s; absent: the end
+  std::string video;               ///< folder for numbered pictures; empty: one picture
+  double fps = 25.0;               ///< pictures a second
+  double speed = 1.0;              ///< of the video: recorded seconds a second
+  std::optional<double> from, to;  ///< s; of the video
   int width = 1280, height = 800;
   std::string camera = "cell";
   std::string theme = "light";

@@ -12,7 +12,11 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples:
   snug picture run.h5 -o end.png --camera top
-  snug picture run.h5 --time 12.3 --size 1920x1080 --show frames,wrenches -o pick.png)";
+  snug picture run.h5 --time 12.3 --size 1920x1080 --show frames,wrenches -o pick.png
+  snug picture run.h5 --video frames --fps 25 --from 40 --to 60
+  ffmpeg -framerate 25 -i frames/frame-%06d.png -pix_fmt yuv420p run.mp4      (makes a film of the last))";
+
+constexpr double kFastest = 1000.0;  // pictures a second, and times as fast as it was
 
 void read_size(const std::string& text, PictureOptions& options) {
   char rest = '\0';
@@ -22,15 +26,43 @@ void read_size(const std::string& text, PictureOptions& options) {
   throw InputError("command line", "--size", text, "WIDTHxHEIGHT in pixels, each from 16 to 8192, such as 1280x800");
 }
 
+void check(const PictureOptions& options) {
+  const bool is_video = !options.video.empty();
+  if (is_video == !options.output.empty()) {
+    throw InputError("command line", "-o, --video", is_video ? "both" : "none of them",
+                     "-o FILE.png for one picture, or --video DIR for many");
+  }
+  if (is_video && options.time) throw InputError("command line", "--time", "with --video", "--from and --to");
+  if (!is_video && (options.from || options.to)) {
+    throw InputError("command line", "--from, --to", "without --video", "--time for one picture");
+  }
+  if (options.fps > kFastest || options.speed > kFastest) {
+    throw InputError("command line", "--fps, --speed", "more than 1000", "1000 at most");
+  }
+}
+
 }  // namespace
 
 void add_picture(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("picture", "draw one instant of a recording as PNG; needs chromium");
+  CLI::App& verb =
+      *app.add_subcommand("picture", "draw an instant of a recording as PNG, or the frames of a video; needs chromium");
   const auto options = std::make_shared<PictureOptions>();
   const auto size = std::make_shared<std::string>("1280x800");
   verb.add_option("recording", options->recording, "what to draw")->required()->type_name("FILE.h5");
-  verb.add_option("-o,--output", options->output, "the picture to write")->required()->type_name("FILE.png");
+  verb.add_option("-o,--output", options->output, "the picture to write")->type_name("FILE.png");
   verb.add_option("--time", options->time, "of the instant; without it the end")->type_name("SECONDS");
+  verb.add_option("--video", options->video, "instead of one picture: frame-000000.png ... in this new or empty folder")
+      ->type_name("DIR");
+  verb.add_option("--fps", options->fps, "pictures a second of the video")
+      ->check(positive())
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--speed", options->speed, "of the video, recorded seconds a second")
+      ->check(positive())
+      ->type_name("FACTOR")
+      ->capture_default_str();
+  verb.add_option("--from", options->from, "where the video begins; without it the first frame")->type_name("SECONDS");
+  verb.add_option("--to", options->to, "where the video ends; without it the last frame")->type_name("SECONDS");
   verb.add_option("--size", *size, "in pixels")->type_name("WxH")->capture_default_str();
   verb.add_option("--camera", options->camera, "cell, top, side (both of the container) or tool")
       ->type_name("NAME")
@@ -44,6 +76,7 @@ void add_picture(CLI::App& app, Action& action) {
   verb.callback([options, size, &action] {
     action = [options, size] {
       read_size(*size, *options);
+      check(*options);
       return run_picture(*options);
     };
   });

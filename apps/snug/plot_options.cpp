@@ -23,7 +23,8 @@ void add_plot(CLI::App& app, Action& action) {
       ->type_name("FILE.h5");
   verb.add_option("--what", options->what,
                   "wrench (of the cup), flange (wrench on it), tool (position), error (to the command), speed, cup "
-                  "(deformation), vacuum, contacts, solver, pose:BODY; several are drawn one below the other")
+                  "(length and bend), deformation (pose of the lip), vacuum, contacts, solver, joints (of a robot), "
+                  "pose:BODY; several are drawn one below the other")
       ->required()
       ->take_all()
       ->type_name("WORD");

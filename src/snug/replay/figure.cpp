@@ -23,6 +23,7 @@ constexpr double kPointsPerMm = 72.0 / 25.4;  // the drawing's unit is the typog
 constexpr double kFont = 8.0;
 constexpr double kLeft = 46.0, kRight = 12.0, kBottom = 34.0;
 constexpr double kLegend = 17.0;        // height of the line of labels above a pair of axes
+constexpr double kLegendLine = 10.0;    // of each further one
 constexpr double kGap = 9.0;            // between pairs of axes
 constexpr double kColumnsPerPoint = 2;  // of a curve, beyond which points are thinned
 
@@ -157,25 +158,52 @@ double width_of(std::string_view text) {
   return 0.53 * kFont * static_cast<double>(letters);
 }
 
-std::string draw_legend(const Panel& panel, const Axes& axes) {
-  constexpr double kSwatch = 16.0, kSpace = 4.0, kBetween = 11.0;
-  double width = 0.0;
-  for (const Curve& curve : panel.curves) width += kSwatch + kSpace + width_of(curve.label) + kBetween;
-  const bool has_band = !panel.band_label.empty() && !panel.bands.empty();
-  if (has_band) width += kSwatch + kSpace + width_of(panel.band_label) + kBetween;
-  double x = std::max(axes.left, axes.left + axes.width - width + kBetween);
-  const double y = axes.top - 6.0;
-  std::string out;
-  if (has_band) {
-    out += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"7\" fill=\"#E6E6E6\"/>\n", x, y - 6.0,
-                       kSwatch);
-    out += text_at(x + kSwatch + kSpace, y, panel.band_label, "start");
-    x += kSwatch + kSpace + width_of(panel.band_label) + kBetween;
+constexpr double kSwatch = 16.0, kSpace = 4.0, kBetween = 11.0;
+
+/// A label with its line or band before it, and where it is in the legend.
+struct LegendEntry {
+  std::string_view label;
+  const Curve* curve;  ///< nullptr: the band
+  double x = 0.0;      ///< from the beginning of its line
+  int line = 0;
+};
+
+struct Legend {
+  std::vector<LegendEntry> entries;
+  std::vector<double> widths;  ///< of each line
+  [[nodiscard]] double height() const { return kLegend + kLegendLine * (static_cast<double>(widths.size()) - 1.0); }
+};
+
+Legend lay_out_legend(const Panel& panel, double width) {
+  Legend legend;
+  if (!panel.band_label.empty() && !panel.bands.empty()) legend.entries.push_back({panel.band_label, nullptr});
+  for (const Curve& curve : panel.curves) legend.entries.push_back({curve.label, &curve});
+  legend.widths = {0.0};
+  for (LegendEntry& entry : legend.entries) {
+    const double size = kSwatch + kSpace + width_of(entry.label) + kBetween;
+    if (legend.widths.back() > 0.0 && legend.widths.back() + size - kBetween > width) legend.widths.push_back(0.0);
+    entry.x = legend.widths.back();
+    entry.line = static_cast<int>(legend.widths.size()) - 1;
+    legend.widths.back() += size;
   }
-  for (const Curve& curve : panel.curves) {
-    out += line_at(x, y - 2.6, x + kSwatch, y - 2.6, style_of(curve));
-    out += text_at(x + kSwatch + kSpace, y, curve.label, "start");
-    x += kSwatch + kSpace + width_of(curve.label) + kBetween;
+  return legend;
+}
+
+std::string draw_legend(const Panel& panel, const Axes& axes) {
+  const Legend legend = lay_out_legend(panel, axes.width);
+  std::string out;
+  for (const LegendEntry& entry : legend.entries) {
+    const double width = legend.widths[static_cast<std::size_t>(entry.line)];
+    const double x = std::max(axes.left, axes.left + axes.width - width + kBetween) + entry.x;
+    const auto lines_below = static_cast<double>(legend.widths.size()) - 1.0 - entry.line;
+    const double y = axes.top - 6.0 - kLegendLine * lines_below;
+    if (entry.curve != nullptr) {
+      out += line_at(x, y - 2.6, x + kSwatch, y - 2.6, style_of(*entry.curve));
+    } else {
+      out += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"7\" fill=\"#E6E6E6\"/>\n", x,
+                         y - 6.0, kSwatch);
+    }
+    out += text_at(x + kSwatch + kSpace, y, entry.label, "start");
   }
   return out;
 }
@@ -253,7 +281,8 @@ std::string draw_svg(const Figure& figure) {
   const double width = figure.width_mm * kPointsPerMm;
   const double panel_height = figure.panel_height_mm * kPointsPerMm;
   const auto count = static_cast<double>(figure.panels.size());
-  const double height = count * (panel_height + kLegend) + std::max(0.0, count - 1.0) * kGap + kBottom;
+  double height = count * panel_height + std::max(0.0, count - 1.0) * kGap + kBottom;
+  for (const Panel& panel : figure.panels) height += lay_out_legend(panel, width - kLeft - kRight).height();
   std::string svg = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{:.2f}mm\" height=\"{:.2f}mm\" "
@@ -265,11 +294,11 @@ std::string draw_svg(const Figure& figure) {
   axes.left = kLeft;
   axes.width = width - kLeft - kRight;
   axes.height = panel_height;
-  axes.top = kLegend;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     axes.y = y_range(figure.panels[i]);
+    axes.top += lay_out_legend(figure.panels[i], axes.width).height();
     svg += draw_panel(figure, i, axes);
-    axes.top += panel_height + kGap + kLegend;
+    axes.top += panel_height + kGap;
   }
   return svg + "</svg>\n";
 }

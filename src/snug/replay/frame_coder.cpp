@@ -1,8 +1,10 @@
 // FrameCoder: frames of a recording in, channels of the replay form out.
 #include "snug/replay/frame_coder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "snug/core/check.hpp"
@@ -14,6 +16,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPoseQuantum = 1.0e-5;    // m, -: 0.01 mm and 0.02 mrad, below what anybody sees
 constexpr double kTwistQuantum = 1.0e-4;   // m/s, rad/s
 constexpr double kWrenchQuantum = 1.0e-3;  // N, Nm
+constexpr double kJointQuantum = 1.0e-5;   // rad
+constexpr double kTorqueQuantum = 1.0e-2;  // Nm
 constexpr double kPointQuantum = 1.0e-4;   // m
 constexpr double kNormalQuantum = 1.0e-3;  // -
 constexpr double kForceQuantum = 1.0e-2;   // N
@@ -183,6 +187,11 @@ FrameCoder::FrameCoder(const record::RecordingHeader& header)
     channels_.emplace_back(ChannelSpec{prefix + ".pose", kPoseColumns, "m, -", "W", kPoseQuantum, Encoding::Delta});
     channels_.emplace_back(ChannelSpec{prefix + ".present", {"present"}, "", "", 1.0, Encoding::Delta});
   }
+  first_joint_channel_ = channels_.size();
+  if (header.joints.empty()) return;
+  channels_.emplace_back(ChannelSpec{"joints.position", header.joints, "rad", "", kJointQuantum, Encoding::Delta});
+  channels_.emplace_back(ChannelSpec{"joints.velocity", header.joints, "rad/s", "", kTwistQuantum, Encoding::Delta});
+  channels_.emplace_back(ChannelSpec{"joints.torque", header.joints, "Nm", "", kTorqueQuantum, Encoding::Delta});
 }
 
 void FrameCoder::put_pose(std::size_t channel, const record::PoseSample& X) {
@@ -234,6 +243,17 @@ void FrameCoder::put_bodies(const record::Frame& frame) {
   }
 }
 
+void FrameCoder::put_joints(const record::Frame& frame) {
+  if (first_joint_channel_ == channels_.size()) return;
+  std::vector<double> row(frame.joints.size());
+  std::size_t channel = first_joint_channel_;
+  for (const auto part :
+       {&record::JointSample::position, &record::JointSample::velocity, &record::JointSample::torque}) {
+    std::transform(frame.joints.begin(), frame.joints.end(), row.begin(), std::mem_fn(part));
+    channels_[channel++].put(row);
+  }
+}
+
 void FrameCoder::set_static(const record::Frame& frame) {
   SNUG_CHECK(frame.bodies.size() == kinds_.size(), "a frame must have the bodies of the header");
   if (has_static_) return;
@@ -247,6 +267,7 @@ void FrameCoder::add(const record::Frame& frame) {
   set_static(frame);
   put_tool(frame);
   put_bodies(frame);
+  put_joints(frame);
   contacts_.add(frame.contacts);
   ++frames_;
 }
@@ -254,7 +275,7 @@ void FrameCoder::add(const record::Frame& frame) {
 std::vector<ChannelWriter> FrameCoder::finish() {
   std::vector<ChannelWriter> channels;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const bool is_presence = i >= first_body_channel_ && (i - first_body_channel_) % 2 == 1;
+    const bool is_presence = i >= first_body_channel_ && i < first_joint_channel_ && (i - first_body_channel_) % 2 == 1;
     if (is_presence && kinds_[(i - first_body_channel_) / 2] == record::BodyKind::Static) continue;
     channels.push_back(channels_[i]);
   }

@@ -45,12 +45,13 @@ class FrameCoder {
  private:
   void put_tool(const record::Frame& frame);
   void put_bodies(const record::Frame& frame);
+  void put_joints(const record::Frame& frame);
   void put_pose(std::size_t channel, const record::PoseSample& X);
 
   std::vector<record::BodyKind> kinds_;
   std::vector<ChannelWriter> channels_;
   std::map<std::size_t, Quaternion> last_quat_;  ///< by channel: signs are chosen for continuity
-  std::size_t first_body_channel_ = 0;
+  std::size_t first_body_channel_ = 0, first_joint_channel_ = 0;
   ContactCoder contacts_;
   std::size_t frames_ = 0;
   bool has_static_ = false;

@@ -77,6 +77,7 @@ class Exporter {
   std::vector<std::string> row_names_;
   Topic tf_static_, tf_, scene_, cup_scene_, events_, program_;
   Topic tool_pose_, tool_command_, tool_twist_, cup_state_, cup_wrench_, flange_wrench_, solver_;
+  std::optional<Topic> joints_;
   JsonText text_;
   bool is_first_ = true;
   std::vector<bool> present_;
@@ -100,7 +101,9 @@ Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header)
       cup_state_(writer, "/cup/state", McapSchema::CupState),
       cup_wrench_(writer, "/cup/wrench", McapSchema::WrenchStamped),
       flange_wrench_(writer, "/flange/wrench", McapSchema::WrenchStamped),
-      solver_(writer, "/solver", McapSchema::SolverState) {}
+      solver_(writer, "/solver", McapSchema::SolverState) {
+  if (!header.joints.empty()) joints_.emplace(writer, "/joint_states", McapSchema::JointState);
+}
 
 void Exporter::write_static_frames(std::uint64_t ns, const record::Frame& frame) {
   text_.raw("{\"transforms\":[");
@@ -120,8 +123,13 @@ void Exporter::write_static_frames(std::uint64_t ns, const record::Frame& frame)
       put(is_taken ? "frame/" + fixed.name : fixed.name, record::PoseSample(fixed.X_WF));
     }
   }
-  // As long as the robot is a moving tool alone, its flange is where the tool is.
-  text_.raw(has_any ? "," : "").transform(ns, internal::kToolFrame, internal::kFlangeFrame, {}).raw("]}");
+  // Without a robot its flange is where the tool is; of a robot the recording does not tell where it is.
+  if (header_.joints.empty()) {
+    text_.raw(has_any ? "," : "").transform(ns, internal::kToolFrame, internal::kFlangeFrame, {});
+    has_any = true;
+  }
+  text_.raw("]}");
+  if (!has_any) return text_.clear();
   send(tf_static_, ns);
 }
 
@@ -153,6 +161,9 @@ void Exporter::write_tool(std::uint64_t ns, const record::Frame& frame) {
   send(flange_wrench_, ns);
   internal::write_solver(text_, ns, frame);
   send(solver_, ns);
+  if (!joints_) return;
+  internal::write_joints(text_, ns, header_.joints, frame.joints);
+  send(*joints_, ns);
 }
 
 void Exporter::write_scene(std::uint64_t ns, const record::Frame& frame) {

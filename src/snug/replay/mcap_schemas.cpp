@@ -114,6 +114,8 @@ std::string schema_name(McapSchema schema) {
       return "geometry_msgs/TwistStamped";
     case McapSchema::WrenchStamped:
       return "geometry_msgs/WrenchStamped";
+    case McapSchema::JointState:
+      return "sensor_msgs/JointState";
     case McapSchema::CupState:
       return "snug.CupState";
     case McapSchema::SolverState:
@@ -149,6 +151,12 @@ std::string schema_text(McapSchema schema) {
       return of("m/s, rad/s", vectors_stamped("twist", "linear", "angular"));
     case McapSchema::WrenchStamped:
       return of("N, Nm", vectors_stamped("wrench", "force", "torque"));
+    case McapSchema::JointState:
+      return of("rad, rad/s, Nm", {{"header", header()},
+                                   {"name", list_of(text())},
+                                   {"position", list_of(number())},
+                                   {"velocity", list_of(number())},
+                                   {"effort", list_of(number())}});
     case McapSchema::CupState:
       return of("suction cup: commands, gauge pressure, body held, deformation while it holds", cup_state());
     case McapSchema::SolverState:

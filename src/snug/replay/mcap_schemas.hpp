@@ -12,6 +12,7 @@ enum class McapSchema {
   Log,
   TwistStamped,
   WrenchStamped,
+  JointState,
   CupState,
   SolverState,
   ProgramState,

@@ -77,6 +77,34 @@ std::vector<PanelPlan> cup_panels() {
        {{"between z of E and S", [](const Frame& frame) { return only_attached(frame, kDegrees * frame.cup.bend); }}}}};
 }
 
+/// Pose of the lip in the control point's frame: all six numbers of what `cup` tells two of.
+std::vector<PanelPlan> deformation_panels() {
+  const auto only_held = [](const Frame& frame, const Vector3& v) -> Vector3 {
+    return frame.cup.attached_body < 0 ? Vector3::Constant(kNaN) : v;
+  };
+  return {{"lip in E [mm]", xyz_lines("", kMm, [=](const Frame& frame) { return only_held(frame, frame.cup.X_ES.p); })},
+          {"turn of the lip in E [deg]", xyz_lines("", kDegrees, [=](const Frame& frame) {
+             const Eigen::AngleAxisd turn(frame.cup.X_ES.quat.normalized());
+             return only_held(frame, turn.angle() * turn.axis());
+           })}};
+}
+
+std::vector<PanelPlan> joint_panels(const record::RecordingHeader& header, const std::string& source) {
+  if (header.joints.empty()) {
+    throw InputError(source, "--what", "'joints' of a recording without a robot", "a run with --robot");
+  }
+  const auto lines = [&](double record::JointSample::*part) {
+    std::vector<Line> all;
+    for (std::size_t i = 0; i < header.joints.size(); ++i) {
+      all.push_back({header.joints[i], [i, part](const Frame& frame) { return frame.joints[i].*part; }});
+    }
+    return all;
+  };
+  return {{"joint position [rad]", lines(&record::JointSample::position)},
+          {"joint speed [rad/s]", lines(&record::JointSample::velocity)},
+          {"joint torque [Nm]", lines(&record::JointSample::torque)}};
+}
+
 std::vector<PanelPlan> vacuum_panels() {
   return {{"pressure, gauge [kPa]", {{"cup", [](const Frame& frame) { return 1e-3 * frame.cup.pressure_gauge; }}}},
           {"command [0 or 1]",
@@ -141,7 +169,9 @@ std::vector<PanelPlan> panels_of(const std::string& word, const record::Recordin
   if (word == "error") return error_panels();
   if (word == "speed") return speed_panels();
   if (word == "cup") return cup_panels();
+  if (word == "deformation") return deformation_panels();
   if (word == "vacuum") return vacuum_panels();
+  if (word == "joints") return joint_panels(header, source);
   if (word == "contacts") return contact_panels();
   if (word == "solver") return solver_panels();
   if (word.starts_with(kPosePrefix)) return pose_panels(header, word.substr(std::string(kPosePrefix).size()), source);
@@ -197,8 +227,8 @@ Samples sample(const PlotSource& source, const std::vector<PanelPlan>& plans, co
 }  // namespace
 
 const std::vector<std::string>& plot_words() {
-  static const std::vector<std::string> words = {"wrench", "flange", "tool",     "error", "speed",
-                                                 "cup",    "vacuum", "contacts", "solver"};
+  static const std::vector<std::string> words = {"wrench",      "flange", "tool",     "error",  "speed", "cup",
+                                                 "deformation", "vacuum", "contacts", "solver", "joints"};
   return words;
 }
 

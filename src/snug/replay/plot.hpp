@@ -16,8 +16,8 @@ struct PlotSource {
   record::RecordingReader* reader = nullptr;
 };
 
-/// What can be plotted, in words: "wrench", "flange", "tool", "error", "speed", "cup", "vacuum", "contacts", "solver";
-/// and "pose:NAME" for a body.
+/// What can be plotted, in words: "wrench", "flange", "tool", "error", "speed", "cup", "deformation", "vacuum",
+/// "contacts", "solver", "joints"; and "pose:NAME" for a body.
 [[nodiscard]] const std::vector<std::string>& plot_words();
 
 /// One figure of all the quantities in `what`, one below the other. Curves of a second source are dashed. Throws

@@ -72,6 +72,7 @@ export class View {
   private readonly X_ES_ = new Matrix4();
   private hasTool_ = false;
   private drawn_: number[] = [];
+  private copy_: HTMLCanvasElement | null = null;
 
   constructor(
     readonly replay: Replay,
@@ -279,6 +280,7 @@ export class View {
     );
     const labels = this.markFrames();
     this.renderer_.render(this.scene_, this.cameras.active);
+    this.updateCopy();
     this.labels_.update(labels, this.cameras.active, this.width_, this.height_);
     const now = performance.now();
     this.drawn_.push(now);
@@ -292,14 +294,18 @@ export class View {
     return this.drawn_.filter((t) => t > since).length / 2;
   }
 
-  /** Draws, and puts a copy that no compositor can lose in the place of the live drawing: for pictures. */
+  /** Draws, and from now on shows a copy that no compositor can lose in the place of the live drawing: for pictures. */
   freeze(): void {
     this.render();
-    const copy = document.createElement("canvas");
-    [copy.width, copy.height] = [this.canvas.width, this.canvas.height];
-    copy.style.cssText = this.canvas.style.cssText;
-    copy.getContext("2d")!.drawImage(this.canvas, 0, 0);
-    this.canvas.replaceWith(copy);
+    this.copy_ = document.createElement("canvas");
+    [this.copy_.width, this.copy_.height] = [this.canvas.width, this.canvas.height];
+    this.copy_.style.cssText = this.canvas.style.cssText;
+    this.canvas.replaceWith(this.copy_);
+    this.updateCopy();
+  }
+
+  private updateCopy(): void {
+    this.copy_?.getContext("2d")!.drawImage(this.canvas, 0, 0);
   }
 
   /** Size of a pixel where the camera looks at, m. */

@@ -108,6 +108,24 @@ void write_cup(JsonText& out, std::uint64_t ns, const record::CupSample& cup, co
   out.raw("}");
 }
 
+void write_joints(JsonText& out, std::uint64_t ns, const std::vector<std::string>& names,
+                  const std::vector<record::JointSample>& joints) {
+  put_header(out, ns, "");
+  out.raw(",\"name\":[");
+  for (std::size_t i = 0; i < names.size(); ++i) out.raw(i == 0 ? "" : ",").quoted(names[i]);
+  out.raw("]");
+  using Part = std::pair<std::string_view, double record::JointSample::*>;
+  static constexpr Part kParts[] = {{"position", &record::JointSample::position},
+                                    {"velocity", &record::JointSample::velocity},
+                                    {"effort", &record::JointSample::torque}};
+  for (const auto& [key, part] : kParts) {
+    out.raw(",").quoted(key).raw(":[");
+    for (std::size_t i = 0; i < joints.size(); ++i) out.raw(i == 0 ? "" : ",").number(joints[i].*part);
+    out.raw("]");
+  }
+  out.raw("}");
+}
+
 void write_solver(JsonText& out, std::uint64_t ns, const record::Frame& frame) {
   static constexpr std::string_view kStatus[] = {"converged", "not converged", "nothing to solve", "failed"};
   put_stamp(out, ns);

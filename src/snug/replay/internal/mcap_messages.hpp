@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "snug/record/recording.hpp"
 
@@ -43,6 +44,8 @@ void write_pose(JsonText& out, std::uint64_t ns, std::string_view frame, const r
 void write_twist(JsonText& out, std::uint64_t ns, std::string_view frame, const Twist& V);
 void write_wrench(JsonText& out, std::uint64_t ns, std::string_view frame, const Wrench& F);
 void write_cup(JsonText& out, std::uint64_t ns, const record::CupSample& cup, const record::RecordingHeader& header);
+void write_joints(JsonText& out, std::uint64_t ns, const std::vector<std::string>& names,
+                  const std::vector<record::JointSample>& joints);
 void write_solver(JsonText& out, std::uint64_t ns, const record::Frame& frame);
 void write_event(JsonText& out, std::uint64_t ns, const record::Event& event);
 

@@ -224,6 +224,28 @@ TEST(McapExport, TakesOnlyTheFramesAskedForAndTheEventsAmongThem) {
   for (const auto& [time, event] : messages.at("/events")) EXPECT_TRUE(time >= 100'000'000 && time <= 300'000'000);
 }
 
+TEST(McapExport, TellsTheJointsOfARobotToTheLastBit) {
+  const ScratchFolder folder;
+  Rng rng = Rng(12).split("mcap");
+  const record::Recording recording = test::random_robot_recording(rng, 20);
+  record::save_recording(folder / "run.h5", recording);
+  record::RecordingReader reader(folder / "run.h5");
+  (void)export_mcap(reader, "run.h5", {}, folder / "run.mcap");
+  const auto messages = messages_of(content_of(folder / "run.mcap"));
+  ASSERT_EQ(messages.at("/joint_states").size(), 20u);
+  for (std::size_t i = 0; i < 20; ++i) {
+    const nlohmann::json& message = messages.at("/joint_states")[i].second;
+    EXPECT_EQ(message["name"], nlohmann::json({"shoulder", "elbow"}));
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(message["position"][k].get<double>(), recording.frames[i].joints[k].position);
+      EXPECT_EQ(message["velocity"][k].get<double>(), recording.frames[i].joints[k].velocity);
+      EXPECT_EQ(message["effort"][k].get<double>(), recording.frames[i].joints[k].torque);
+    }
+  }
+  const ScratchFolder other;
+  EXPECT_FALSE(messages_of(random_export(other / "", {})).contains("/joint_states"));
+}
+
 TEST(McapExport, WritesTheSameBytesAgain) {
   const ScratchFolder folder;
   EXPECT_EQ(random_export(folder / "", {}), random_export(folder / "", {}));

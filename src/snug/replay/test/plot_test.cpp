@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <regex>
+#include <set>
 
 #include "snug/core/input_error.hpp"
 #include "snug/record/writer.hpp"
@@ -84,6 +85,27 @@ TEST(Figure, BreaksACurveWhereThereIsNoNumber) {
   EXPECT_EQ(count(svg.substr(path, svg.find("/>", path) - path), "M"), 2);
 }
 
+TEST(Figure, WritesLongLegendsInSeveralLinesWithinTheDrawing) {
+  Figure figure;
+  figure.x_label = "time [s]";
+  figure.width_mm = 85.0;
+  Panel panel = panel_with({0, 1}, {1, 2});
+  for (int i = 0; i < 12; ++i) panel.curves.push_back({"a_rather_long_joint, run.h5", {0, 1}, {1, 2}, i, false});
+  figure.panels = {panel, panel_with({0, 1}, {1, 2})};
+  const std::string svg = draw_svg(figure);
+  expect_sound(svg);
+  const std::regex text("<text x=\"([0-9.]+)\" y=\"([0-9.]+)\" text-anchor=\"start\">([^<]*)");
+  std::set<std::string> lines;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), text), end; at != end; ++at) {
+    lines.insert((*at)[2]);
+    const std::string label = (*at)[3];
+    if (label.front() != 'a') continue;
+    EXPECT_LT(std::stod((*at)[1]) + 4.24 * static_cast<double>(label.size()), 85.0 * 72.0 / 25.4);  // 0.53 of 8 pt each
+    EXPECT_GT(std::stod((*at)[2]), 0.0);
+  }
+  EXPECT_GE(lines.size(), 7u);
+}
+
 TEST(Figure, KeepsTheExtremesOfACurveThatItThins) {
   std::vector<double> x, y;
   for (int i = 0; i < 100'000; ++i) {
@@ -114,7 +136,7 @@ class Plot : public ::testing::Test {
  protected:
   Plot() {
     Rng rng = Rng(2).split("plot");
-    recording_ = test::random_recording(rng, 50);
+    recording_ = test::random_robot_recording(rng, 50);
     record::save_recording(folder_ / "run.h5", recording_);
     reader_ = std::make_unique<record::RecordingReader>(folder_ / "run.h5");
     sources_ = {{"run.h5", reader_.get()}};
@@ -141,6 +163,28 @@ TEST_F(Plot, TakesNumbersFromTheRecording) {
       EXPECT_TRUE(std::isnan(figure.panels[2].curves[0].y[i]));
     }
   }
+}
+
+TEST_F(Plot, DrawsTheLipOnlyWhileSomethingIsHeldAndJointsOnlyOfARobot) {
+  const Figure figure = make_plot(sources_, {"deformation", "joints"}, {});
+  ASSERT_EQ(figure.panels.size(), 5u);
+  for (std::size_t i = 0; i < recording_.frames.size(); ++i) {
+    const record::Frame& frame = recording_.frames[i];
+    const double z = figure.panels[0].curves[2].y[i], turn = figure.panels[1].curves[0].y[i];
+    EXPECT_EQ(figure.panels[3].curves[1].y[i], frame.joints[1].velocity);
+    if (frame.cup.attached_body < 0) {
+      EXPECT_TRUE(std::isnan(z) && std::isnan(turn));
+      continue;
+    }
+    EXPECT_EQ(z, 1e3 * frame.cup.X_ES.p.z());
+    const Eigen::AngleAxisd angle_axis(frame.cup.X_ES.quat);
+    EXPECT_NEAR(turn, 180.0 / M_PI * angle_axis.angle() * angle_axis.axis().x(), 1e-9);  // rounding of degrees
+  }
+  Rng rng = Rng(2).split("plot");
+  record::save_recording(folder_ / "none.h5", test::random_recording(rng, 3));
+  record::RecordingReader none(folder_ / "none.h5");
+  const PlotSource source = {"none.h5", &none};
+  EXPECT_THROW((void)make_plot({&source, 1}, {"joints"}, {}), InputError);
 }
 
 TEST_F(Plot, DrawsEachQuantityWithAUnitOnEachAxis) {

@@ -105,6 +105,23 @@ TEST(Replay, KeepsBodiesWithOneRowForThoseThatNeverMove) {
   }
 }
 
+TEST(Replay, KeepsJointsOfARobotAndHasNoChannelsForThemWithoutOne) {
+  Rng rng = Rng(10).split("replay");
+  const record::Recording recording = test::random_robot_recording(rng, 20);
+  const Form form = form_of(recording);
+  EXPECT_EQ(channel(form, "joints.position").spec.columns, recording.header.joints);
+  EXPECT_EQ(channel(form, "body.3.present").rows, 20u);
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const record::JointSample& joint = recording.frames[i].joints[k];
+      EXPECT_NEAR(channel(form, "joints.position").at(i, k), joint.position, 0.51e-5);
+      EXPECT_NEAR(channel(form, "joints.velocity").at(i, k), joint.velocity, 0.51e-4);
+      EXPECT_NEAR(channel(form, "joints.torque").at(i, k), joint.torque, 0.51e-2);
+    }
+  }
+  EXPECT_EQ(find_channel(form_of(test::random_recording(rng, 5)), "joints.position"), nullptr);
+}
+
 TEST(Replay, NeverFlipsTheSignOfAQuaternionBetweenFrames) {
   Rng rng = Rng(3).split("replay");
   record::Recording recording = test::random_recording(rng, 200);

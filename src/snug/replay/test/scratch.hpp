@@ -110,4 +110,14 @@ inline record::Recording random_recording(Rng& rng, int frames) {
   return recording;
 }
 
+/// The same with the two joints of an arm.
+inline record::Recording random_robot_recording(Rng& rng, int frames) {
+  record::Recording recording = random_recording(rng, frames);
+  recording.header.joints = {"shoulder", "elbow"};
+  for (record::Frame& frame : recording.frames) {
+    for (int i = 0; i < 2; ++i) frame.joints.push_back({rng.normal(), rng.normal(), 100.0 * rng.normal()});
+  }
+  return recording;
+}
+
 }  // namespace snug::replay::test
