@@ -76,7 +76,7 @@ export class Movers {
   /** World matrix of a body as drawn, or null. */
   drawnMatrix(body: number): Matrix4 | null {
     const item = this.items_.find((x) => x.body === body);
-    if (!item || !item.mesh.visible) return null;
+    if (!item || !item.mesh.visible || !item.mesh.parent?.visible) return null;
     item.mesh.updateWorldMatrix(true, false);
     return item.mesh.matrixWorld.clone();
   }

@@ -203,6 +203,8 @@ export class App {
       c: () => this.about_.toggle("container"),
       g: () => this.timeline_.askTime(),
       f: () => this.setOption("frames", !this.view.options.frames),
+      r: () => this.setOption("robot", !this.view.options.robot),
+      x: () => this.setOption("xray", !this.view.options.xray),
       Escape: () => {
         this.help_.hidden = true;
         this.about_.hide();

@@ -12,6 +12,7 @@ const KEYS: [string, string][] = [
   ["g", "go to a time"],
   ["1 2 3 4", "cell, top, side, tool camera"],
   ["f", "frames with their letters"],
+  ["r x", "the robot; see-through boxes"],
   ["i", "about this run: settings, program, scenario"],
   ["c", "container at the end, from above and the side"],
   ["d", "light or dark"],
@@ -49,7 +50,7 @@ export function helpOverlay(palette: () => Palette): HTMLElement {
     }
     const left = make("div", "", make("h2", "", "Keys"), listOf(KEYS));
     const right = make("div", "", make("h2", "", "Mouse"), listOf(MOUSE), make("h2", "", "Colours"), legend,
-      make("p", "hint", "Contacts of boxes that sleep are not recorded: they are drawn paler, as they were last. An arrow at a contact is the force on the box."),
+      make("p", "hint", "Contacts of boxes that sleep are not recorded: they are drawn fainter, as they were last. An arrow at a contact is the force on the box."),
       make("h2", "", "Frames"), make("p", "", "W world, T container, A aligner, C conveyor, E end of the gripper, S lip of the cup, P held or selected box."));
     overlay.replaceChildren(make("div", "card wide", make("div", "columns", left, right)));
   };

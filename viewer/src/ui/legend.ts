@@ -34,7 +34,7 @@ export class Legend {
     const hasState = this.view.replay.contacts?.state !== undefined;
     this.states_.replaceChildren(
       ...(hasState
-        ? [item(p.sticking, "sticking"), item(p.sliding, "sliding"), item(p.open, "separating"), item("", "paler: at rest, as recorded last", "dot pale")]
+        ? [item(p.sticking, "sticking"), item(p.sliding, "sliding"), item(p.open, "separating"), item("", "fainter: at rest, as recorded last", "dot pale")]
         : [item(p.unknown, "contact")]),
     );
     const dashed = make("i", "dashes");

@@ -97,6 +97,21 @@ describe("the page", () => {
     await close();
   });
 
+  it("draws the links of a robot where the recording has them, and hides them together", async () => {
+    const body = (name: string, kind: string, shape: object): object => ({ name, type: "", kind, mass: 1, com: [0, 0, 0], shapes: [shape] });
+    const capsule = { kind: "capsule", pose: [0, 0, 0, 1, 0, 0, 0], radius: 0.05, half_length: 0.2 };
+    const box = { kind: "box", pose: [0, 0, 0, 1, 0, 0, 0], half: [0.1, 0.08, 0.05] };
+    const bodies = [body("robot/base", "static", box), body("robot/arm", "kinematic", capsule), body("late", "dynamic", box)];
+    const { page, errors, close } = await open(browser, pageWith("robot", [smallHeader(100, { bodies, robot: { links: [0, 1] } })]));
+    const drawn = (name: string): Promise<number[] | undefined> => page.evaluate((n) => (window.snug.setTime(0.4), window.snug.bodyPose(n)?.p), name);
+    (await drawn("robot/arm"))!.forEach((v, k) => expect(Math.abs(v - pose(40)[k]!)).toBeLessThan(1.5e-5));
+    (await drawn("robot/base"))!.forEach((v, k) => expect(v).toBeCloseTo([0, 0, -0.05][k]!, 5));
+    expect(await page.evaluate(() => window.snug.toggles("robot", false))).toBe(false);
+    expect(await drawn("robot/arm")).toBeUndefined();
+    expect(errors).toEqual([]);
+    await close();
+  });
+
   it("is the drawing alone when a picture is asked for", async () => {
     const { page, close } = await open(browser, `${pageWith("picture", [smallHeader(100)])}#t=0.5&camera=top&picture=1`, 400, 300);
     expect(await page.isVisible(".timeline")).toBe(false);

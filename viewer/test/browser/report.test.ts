@@ -133,7 +133,7 @@ describe("the report of a real run", () => {
     expect(await page.textContent(".about")).toContain("box-demonstrator");
     await page.click(".about .tabs >> text=Container");
     await expect.poll(() => page.locator(".about canvas").count()).toBe(2);
-    expect(await page.textContent(".about .fill")).toMatch(/this run\d+\.\d\d %.*I\.AM\.\d+\.\d\d %/);
+    expect(await page.textContent(".about .fill")).toMatch(/this run\d+\.\d\d %.*State of the Art32\.21 %.*I\.AM\.75\.66 %.*Manual Operator75\.66 %/);
     await page.click(".about .tabs >> text=Settings");
     expect(await page.textContent(".about table")).toContain("controller");
     await page.click(".about .tabs >> text=Scenario");
