@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "export_program.hpp"
 #include "snug/core/check.hpp"
 #include "snug/record/csv.hpp"
 #include "snug/replay/mcap_export.hpp"
@@ -39,6 +40,12 @@ int write_csv(const ExportOptions& options) {
 constexpr std::array kFormats = {
     ExportFormat{"mcap", "a recording for Foxglove, Lichtblick and other viewers of MCAP", write_mcap},
     ExportFormat{"csv", "a recording as one table with the column names of mc_rtc logs", write_csv},
+    ExportFormat{"urscript", "a program for the controller of a UR robot; needs --scenario", write_urscript},
+    ExportFormat{"ros-trajectory", "a program as trajectory_msgs/JointTrajectory, YAML; needs --scenario",
+                 write_ros_trajectory},
+    ExportFormat{"mc-rtc-csv", "a program through the joints as a log of mc_rtc, CSV; needs --scenario",
+                 write_mc_rtc_csv},
+    ExportFormat{"mc-rtc-flat", "the same in the columnar form that mc_log_ui reads", write_mc_rtc_flat},
 };
 
 }  // namespace

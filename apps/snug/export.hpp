@@ -16,6 +16,13 @@ struct ExportOptions {
   std::string output;
   replay::Selection selection;
   replay::McapCompression compression = replay::McapCompression::Zstd;
+  // of programs
+  std::string scenario;              ///< its robot, limits and gains
+  std::string sequence;              ///< whose gain; empty: the first
+  std::string corrections = "none";  ///< layer of the scenario
+  double period = 0.04;              ///< s, between the points of a trajectory
+  int vacuum_output = 0;             ///< digital output of the robot
+  int blow_off_output = 1;
 };
 
 /// One format that can be asked for.

@@ -11,12 +11,14 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   snug export run.h5 --format mcap -o run.mcap
   snug export run.h5 --format mcap --from 40 --to 60 --every 4 -o part.mcap
-  snug export run.h5 --format csv -o run.csv)";
+  snug export run.h5 --format csv -o run.csv
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml)";
 
 }  // namespace
 
 void add_export(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("export", "write a recording in a format of other programs");
+  CLI::App& verb = *app.add_subcommand("export", "write a recording or a program in a format of other programs");
   const auto options = std::make_shared<ExportOptions>();
   const auto compression = std::make_shared<std::string>("zstd");
   std::vector<std::string> names;
@@ -35,6 +37,24 @@ void add_export(CLI::App& app, Action& action) {
   verb.add_option("--compression", *compression, "of mcap: zstd, or none for readers that cannot unpack it")
       ->check(one_of({"zstd", "none"}))
       ->type_name("NAME")
+      ->capture_default_str();
+  verb.add_option("--scenario", options->scenario, "of a program: scenario file with the robot, its limits and gains")
+      ->type_name("SCENARIO.yaml");
+  verb.add_option("--sequence", options->sequence, "of a program: item sequence whose gain counts")->type_name("NAME");
+  verb.add_option("--corrections", options->corrections, "of a program: a layer of the scenario, or none")
+      ->type_name("LAYER")
+      ->capture_default_str();
+  verb.add_option("--period", options->period, "of ros-trajectory: time between points")
+      ->check(positive())
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  verb.add_option("--vacuum-output", options->vacuum_output, "of urscript: digital output of the vacuum")
+      ->check(whole(0))
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--blow-off-output", options->blow_off_output, "of urscript: digital output of the blow-off")
+      ->check(whole(0))
+      ->type_name("N")
       ->capture_default_str();
   verb.footer(footer + kExamples);
   verb.callback([options, compression, &action] {

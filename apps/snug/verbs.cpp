@@ -3,6 +3,7 @@
 
 #include "bench.hpp"
 #include "calibrate.hpp"
+#include "check.hpp"
 #include "cup.hpp"
 #include "export.hpp"
 #include "picture.hpp"
@@ -17,6 +18,7 @@ namespace snug::app {
 void add_verbs(CLI::App& app, Action& action) {
   add_simulate(app, action);
   add_program(app, action);
+  add_check(app, action);
   add_report(app, action);
   add_view(app, action);
   add_plot(app, action);

@@ -7,8 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "snug/core/input_error.hpp"
-#include "snug/motion/corrections.hpp"
+#include "snug/cell/corrected.hpp"
 
 namespace snug::cell::internal {
 namespace {
@@ -16,28 +15,12 @@ namespace {
 constexpr double kLongestProgram = 7200.0;  ///< s
 constexpr double kSettleTime = 1.0;         ///< s, after the last waypoint, for boxes that still move
 
-motion::Program corrected(const model::Scenario& scenario, const RunOptions& options) {
-  if (options.corrections.empty()) return *options.program;
-  const model::CorrectionLayer* layer = model::find_correction_layer(scenario, options.corrections);
-  if (layer == nullptr) {
-    std::vector<std::string> names{"none"};
-    for (const model::CorrectionLayer& known : scenario.controller.correction_layers) names.push_back(known.name);
-    throw InputError(scenario.source_name, "--corrections", "'" + options.corrections + "'",
-                     "one of " + fmt::format("{}", fmt::join(names, ", ")));
-  }
-  std::vector<motion::Correction> corrections;
-  for (const model::Correction& correction : layer->corrections) {
-    corrections.push_back({correction.prefixes, correction.offset});
-  }
-  return motion::apply_corrections(*options.program, corrections);
-}
-
 class ProgramRun {
  public:
   ProgramRun(const model::Scenario& scenario, const RunOptions& options)
       : options_(options),
         simulation_(scenario, options.sequence, options.simulation),
-        plan_(simulation_.prepare(corrected(scenario, options))),
+        plan_(simulation_.prepare(corrected(scenario, *options.program, options.corrections))),
         state_(simulation_.make_state()),
         work_(simulation_.make_workspace()) {
     if (!options.record_path.empty() || options.observer != nullptr) start_recording();

@@ -1,0 +1,23 @@
+// check: whether the robot can do a program, before anything moves.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "verb.hpp"
+
+namespace snug::app {
+
+struct CheckOptions {
+  std::string scenario;
+  std::string program;
+  std::optional<std::string> sequence;
+  std::optional<std::string> robot;
+  std::string corrections = "none";
+  bool json = false;
+};
+
+void add_check(CLI::App& app, Action& action);
+[[nodiscard]] int run_check(const CheckOptions& options);
+
+}  // namespace snug::app

@@ -1,0 +1,13 @@
+// export of programs: for the controllers of real robots.
+#pragma once
+
+#include "export.hpp"
+
+namespace snug::app {
+
+[[nodiscard]] int write_urscript(const ExportOptions& options);
+[[nodiscard]] int write_ros_trajectory(const ExportOptions& options);
+[[nodiscard]] int write_mc_rtc_csv(const ExportOptions& options);
+[[nodiscard]] int write_mc_rtc_flat(const ExportOptions& options);
+
+}  // namespace snug::app

@@ -1,0 +1,15 @@
+// corrected: a program with the site corrections of a scenario.
+#pragma once
+
+#include <string>
+
+#include "snug/model/scenario.hpp"
+#include "snug/motion/waypoint.hpp"
+
+namespace snug::cell {
+
+/// `layer`: name of a correction layer of the scenario, or empty for none. Throws InputError for an unknown one.
+[[nodiscard]] motion::Program corrected(const model::Scenario& scenario, const motion::Program& program,
+                                        const std::string& layer);
+
+}  // namespace snug::cell

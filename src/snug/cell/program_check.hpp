@@ -1,0 +1,48 @@
+// check_program: whether the arm can do a program, without any contact physics.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snug/model/scenario.hpp"
+#include "snug/motion/waypoint.hpp"
+
+namespace snug::cell {
+
+enum class CheckKind { Reach, JointLimit, JointSpeed, Singularity, Collision, SelfCollision };
+[[nodiscard]] const char* name_of(CheckKind kind);
+
+/// The worst that was found of one kind, for one thing, on the way to one row.
+struct CheckFinding {
+  CheckKind kind = CheckKind::Reach;
+  bool is_error = true;  ///< false: the controller copes, by being slower
+  int row = 0;           ///< of the program, from 0, that the tool was on its way to
+  std::string waypoint;
+  std::string what;     ///< joint, or "part - body"
+  double margin = 0.0;  ///< to the limit; negative: beyond it
+  std::string unit;
+  double time = 0.0;  ///< s, in the timing of the faithful controller
+};
+
+struct CheckOptions {
+  std::string sequence;     ///< whose boxes are held; empty: held boxes are not looked at
+  std::string robot;        ///< name of the scenario's robot; empty: the one that there is
+  double path_step = 0.01;  ///< m, and 1 rad counts as 0.3 m: between two looks
+  double range = 0.05;      ///< m, up to which distances are measured
+  double give = 0.03;       ///< m, that cup and held box may press into something; the demonstrator's flips press 20 mm
+};
+
+struct CheckResult {
+  bool is_ok = true;                   ///< no finding is an error
+  double duration = 0.0;               ///< s, of the program
+  int looks = 0;                       ///< poses that were looked at
+  std::vector<CheckFinding> findings;  ///< in the order of rows
+  std::vector<CheckFinding> margins;   ///< smallest margin of each kind over the whole program
+  double wall = 0.0;                   ///< s
+};
+
+/// Throws InputError as Simulation::prepare and robot::load_arm.
+[[nodiscard]] CheckResult check_program(const model::Scenario& scenario, const motion::Program& program,
+                                        const CheckOptions& options);
+
+}  // namespace snug::cell
