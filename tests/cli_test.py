@@ -176,6 +176,78 @@ def norm(values):
     return sum(value * value for value in values) ** 0.5
 
 
+class Robot(unittest.TestCase):
+    """simulate --robot, check and export of programs."""
+    assert_refused = CommandLine.assert_refused
+    setUp = Simulate.setUp
+    write = Simulate.write
+    NEAR = "-0.1,-0.69,0.2,0,3.14159,0,home,0,0,0,0,0,0\n"
+    FAR = "-0.1,-3.69,0.2,0,3.14159,0,home,0,0,0,0,0,0\n"
+
+    def test_helps_have_examples(self):
+        for verb in ("check", "export"):
+            self.assertIn("Examples:", snug(verb, "--help").stdout)
+
+    def test_unknown_robot_is_refused_and_the_known_is_named(self):
+        path = self.write("near.csv", self.NEAR)
+        words = ("simulate", CELL, "--program", path, "--sequence", "1", "--robot", "ur5")
+        self.assert_refused(snug(*words), "ur5", "ur10")
+
+    def test_robot_without_program_is_refused(self):
+        self.assert_refused(snug("simulate", CELL, "--robot", "ur10"), "--program")
+
+    def test_scenario_without_robot_cannot_be_checked(self):
+        self.assert_refused(snug("check", DROP, "--program", self.write("near.csv", self.NEAR)), "robot")
+
+    def test_csv_has_joints_and_sensor(self):
+        path, table = self.write("near.csv", self.NEAR), self.folder / "near-joints.csv"
+        result = snug("simulate", CELL, "--program", path, "--sequence", "1", "--robot", "ur10", "--csv", table)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        names = table.read_text().splitlines()[0].split(";")
+        for name in ("qIn_0", "alphaIn_5", "tauIn_3", "UR10FTSensor_fz", "UR10FTSensor_cx",
+                     "robot/forearm_link_FloatingBase_position_x"):
+            self.assertIn(name, names)
+
+    def test_check_passes_what_can_be_done(self):
+        result = snug("check", CELL, "--program", self.write("near.csv", self.NEAR), "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue(json.loads(result.stdout)["ok"])
+
+    def test_check_names_row_and_margin_of_what_is_out_of_reach(self):
+        result = snug("check", CELL, "--program", self.write("far.csv", self.NEAR + self.FAR), "--json")
+        self.assertEqual(result.returncode, 1)
+        reach = [f for f in json.loads(result.stdout)["findings"] if f["kind"] == "reach"]
+        self.assertEqual(reach[0]["row"], 2)
+        self.assertLess(reach[0]["margin"], -1.0)
+
+    def test_simulation_stops_there_too(self):
+        path = self.write("far.csv", self.NEAR + self.FAR)
+        result = snug("simulate", CELL, "--program", path, "--sequence", "1", "--robot", "ur10", "--json")
+        self.assertEqual(result.returncode, 1)
+        stop = json.loads(result.stdout)["protective_stop"]
+        self.assertEqual((stop["what"], stop["row"]), ("stuck", 2))
+
+    def test_export_of_a_program_needs_the_scenario(self):
+        path = self.write("near.csv", self.NEAR)
+        self.assert_refused(snug("export", path, "--format", "urscript", "-o", self.folder / "x"), "--scenario")
+
+    def test_export_writes_all_formats_of_programs(self):
+        path = self.write("near.csv", self.NEAR)
+        for name, begins in (("urscript", b"def snug_program"), ("ros-trajectory", b"# trajectory_msgs"),
+                             ("mc-rtc-csv", b"t;qIn_0"), ("mc-rtc-flat", b"")):
+            out = self.folder / name
+            result = snug("export", path, "--scenario", CELL, "--format", name, "-o", out)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertTrue(out.read_bytes().startswith(begins))
+
+    def test_export_refuses_what_the_robot_cannot_do_and_writes_nothing(self):
+        path, out = self.write("far.csv", self.NEAR + self.FAR), self.folder / "far.yaml"
+        result = snug("export", path, "--scenario", CELL, "--format", "ros-trajectory", "-o", out)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("row 2", result.stderr)
+        self.assertFalse(out.exists())
+
+
 class Cup(unittest.TestCase):
     assert_refused = CommandLine.assert_refused
 

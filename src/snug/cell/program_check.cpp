@@ -13,6 +13,7 @@
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/control/pose_solver.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/geometry/manifold.hpp"
 
 namespace snug::cell {
@@ -87,8 +88,7 @@ class Check {
       : options_(options),
         simulation_(scenario, options.sequence.empty() ? any_sequence(scenario) : options.sequence,
                     {motion::ControllerKind::Faithful, cup::CupMode::Holding,
-                     options.robot.empty() && scenario.robot ? scenario.robot->name
-                                                             : (options.robot.empty() ? "?" : options.robot)}),
+                     options.robot.empty() ? scenario.robot->name : options.robot}),
         plan_(simulation_.prepare(program)),
         obstacles_(find_obstacles(scenario)),
         movers_(find_movers(scenario, arm(), options.give)),
@@ -283,6 +283,7 @@ const char* name_of(CheckKind kind) {
 
 CheckResult check_program(const model::Scenario& scenario, const motion::Program& program,
                           const CheckOptions& options) {
+  if (!scenario.robot) throw InputError(scenario.source_name, "robot", "", "a robot, to check what it can do");
   return Check(scenario, program, options).run();
 }
 

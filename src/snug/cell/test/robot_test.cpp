@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
 
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
@@ -58,6 +59,16 @@ std::vector<motion::Waypoint> into_the_wall() {
     return tote.X_WT * Vector3(along, 0.0, tote.inner_size.z() + height);
   };
   return {row_at(at(0.0, 0.1)), row_at(at(0.0, -0.1)), row_at(at(0.5 * tote.inner_size.x() + 0.05, -0.1))};
+}
+
+/// Tool level, down into the container beside its wall, then the wrist against it.
+std::vector<motion::Waypoint> wrist_into_the_wall() {
+  std::vector<motion::Waypoint> rows;
+  for (const Vector3& p : {Vector3(0.505, -0.45, 0.30), Vector3(0.505, -0.55, -0.05), Vector3(0.505, -0.50, -0.05)}) {
+    rows.push_back(row_at(p));
+    rows.back().X_WE.R = exp_rotation(Vector3(0.5 * std::numbers::pi, 0.0, 0.0));
+  }
+  return rows;
 }
 
 TEST(Robot, ReadsTheWeightOfTheGripperWhenNothingIsHeld) {
@@ -119,6 +130,14 @@ TEST(Robot, StopsWhereItDrivesTheGripperIntoTheContainerWall) {
   EXPECT_GT(result.stop->value, result.stop->limit);
   EXPECT_EQ(result.failure, describe(*result.stop));
   EXPECT_EQ(result.events.back().kind, "protective_stop");
+}
+
+TEST(Robot, StopsWhereItDrivesAWristIntoTheWall) {
+  const RunResult result = simulate(demonstrator(), wrist_into_the_wall());
+  ASSERT_TRUE(result.stop) << result.failure;
+  EXPECT_EQ(result.stop->row, 2);
+  EXPECT_EQ(result.stop->what, "joint torque");  // behind the sensor nobody feels a wrist
+  EXPECT_NE(result.stop->touching.find("robot/wrist_2_link"), std::string::npos) << describe(*result.stop);
 }
 
 TEST(Robot, StopsWhenTheSensorIsOverloaded) {
@@ -223,6 +242,16 @@ TEST(Check, FindsTheWallThatTheGripperRunsInto) {
   EXPECT_TRUE(finding->is_error);
   // The rod's axis ends 50 mm beyond the inner face of a wall 10 mm thick; radius 20 mm: it is through.
   EXPECT_LT(finding->margin, -0.005);
+}
+
+TEST(Check, FindsTheWallThatAWristRunsInto) {
+  const CheckResult result = check(wrist_into_the_wall());
+  const auto finding = std::find_if(result.findings.begin(), result.findings.end(), [](const CheckFinding& found) {
+    return found.kind == CheckKind::Collision && found.what == "wrist_2_link - " + demonstrator().target;
+  });
+  ASSERT_NE(finding, result.findings.end());
+  EXPECT_EQ(finding->row, 2);
+  EXPECT_LT(finding->margin, 0.0);
 }
 
 TEST(Check, FindsTheSingularityOnTheWay) {
