@@ -16,7 +16,7 @@ struct SimulationOptions {
   motion::ControllerKind controller = motion::ControllerKind::Faithful;
   /// The report's model predicts the real programs better than the phases do (docs/decisions/0006): the default.
   cup::CupMode cup = cup::CupMode::Holding;
-  std::string robot;  ///< name of the scenario's robot that moves the tool; empty: the tool moves by itself
+  std::string robot = {};  ///< name of the scenario's robot that moves the tool; empty: the tool moves by itself
 };
 
 /// Everything of a cell that changes. A copy is a snapshot: going on from it gives the same bytes.
