@@ -80,6 +80,15 @@ export class Plans {
     const degrees = (Math.atan2(sine, R[0]! + R[5]! + R[10]! - 1) * 180) / Math.PI;
     return { millimetres: [1000 * d.x, 1000 * d.y, 1000 * d.z], degrees };
   }
+
+  /** The same in words; empty while it is not known. */
+  textAt(body: number, name: string, frame: number): string {
+    const place = this.placeAt(body, this.replay.timeOf(frame));
+    const offset = place && this.offsetAt(body, frame, place);
+    if (!offset) return "";
+    const [x, y, z] = offset.millimetres.map((v) => v.toFixed(1).replace(/^-(0\.0)$/, "$1"));
+    return `planned place of ${name}: off by ${x}, ${y}, ${z} mm, ${offset.degrees.toFixed(1)}°`;
+  }
 }
 
 export class Ghost {

@@ -59,8 +59,8 @@ export class Lit {
 
   /** `name` and `extend`: a shader that differs from the usual one. */
   constructor(parameters: MeshBasicMaterialParameters, name = "", extend: Extend = () => {}) {
-    this.plain_ = new MeshBasicMaterial(parameters);
-    this.full_ = new MeshLambertMaterial(parameters);
+    this.plain_ = new MeshBasicMaterial({ fog: false, ...parameters });
+    this.full_ = new MeshLambertMaterial({ fog: false, ...parameters });
     this.plain_.onBeforeCompile = (shader) => {
       extend(shader);
       lightAtCorners(shader);

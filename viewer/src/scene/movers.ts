@@ -22,6 +22,7 @@ export class Movers {
   readonly group = new Group();
   /** Links of a robot, shown and hidden together. */
   readonly links = new Group();
+  private readonly linkLook_: Lit;
   private readonly items_: { body: number; mesh: Mesh; look: Lit; role: "tool" | "link" | "body" }[] = [];
   private readonly pose_ = new Float64Array(7);
 
@@ -29,12 +30,12 @@ export class Movers {
     const toolBody = replay.header.tool?.body ?? -1;
     const hasCup = replay.header.cup !== null;
     const links = new Set(replay.header.robot?.links ?? []);
-    const linkLook = new Lit({ color: palette.link });
+    this.linkLook_ = new Lit({ color: palette.link });
     this.group.add(this.links);
     replay.bodies.forEach((body, k) => {
       const role = k === toolBody ? "tool" : links.has(k) ? "link" : "body";
       if ((body.kind === "static" && role === "body") || boxes.includes(k)) return;
-      const look = role === "link" ? linkLook : new Lit({ color: role === "tool" ? palette.tool : colours.of(body.type || body.name) });
+      const look = role === "link" ? this.linkLook_ : new Lit({ color: role === "tool" ? palette.tool : colours.of(body.type || body.name) });
       const mesh = meshOfShapes(role === "tool" ? toolShapes(body.shapes, hasCup) : body.shapes, look.of(false));
       if (!mesh) return;
       mesh.matrixAutoUpdate = false;
@@ -55,6 +56,15 @@ export class Movers {
 
   setPalette(palette: Palette): void {
     for (const { role, look } of this.items_) if (role !== "body") look.setColour(role === "tool" ? palette.tool : palette.link);
+  }
+
+  /** From above and the side an arm would hide the container. */
+  setLinksTranslucent(on: boolean): void {
+    this.linkLook_.change((material) => {
+      material.transparent = on;
+      material.opacity = on ? 0.3 : 1;
+      material.depthWrite = !on;
+    });
   }
 
   setShadows(on: boolean): void {

@@ -133,6 +133,6 @@ export const colour = (text: string): Color => new Color(text);
 
 /** Series colours of plots: x, y, z, then others. */
 export const SERIES: Record<Theme, string[]> = {
-  light: ["#d55e00", "#009e73", "#0072b2", "#b0468a", "#806000"],
-  dark: ["#ff8a3c", "#2ccf9f", "#56b4e9", "#f07cc4", "#f0e442"],
+  light: ["#d55e00", "#009e73", "#0072b2", "#b0468a", "#806000", "#5b6770", "#7a3fb0"],
+  dark: ["#ff8a3c", "#2ccf9f", "#56b4e9", "#f07cc4", "#f0e442", "#aab6c0", "#c79bff"],
 };

@@ -57,7 +57,7 @@ export class View {
   private readonly ghost_: Ghost;
   private readonly second_: Second;
   private readonly trace_: Trace;
-  private tracePoint_: TracePoint | null = null;
+  tracePoint: TracePoint | null = null;
   private palette_: Palette;
   private frame_ = 0;
   private selected_ = -1;
@@ -159,18 +159,14 @@ export class View {
     if (option === "xray") this.boxes_.setTranslucent(on);
     if (option === "walls") this.statics_.walls.visible = on;
     if (option === "shadows") this.setShadows();
-    if (option === "trace" && on && !this.tracePoint_) this.setTracePoint({ kind: "tool" });
+    if (option === "trace" && on && !this.tracePoint) this.setTracePoint({ kind: "tool" });
     this.invalidate();
   }
 
   setTracePoint(point: TracePoint | null): void {
-    this.tracePoint_ = point;
+    this.tracePoint = point;
     this.trace_.build(this.replay, point);
     this.invalidate();
-  }
-
-  get tracePoint(): TracePoint | null {
-    return this.tracePoint_;
   }
 
   /** The corner of a box as a point to trace. */
@@ -244,6 +240,7 @@ export class View {
   }
 
   useCamera(name: CameraName): void {
+    this.movers_.setLinksTranslucent(name === "top" || name === "side");
     this.cameras.use(name, this.hasTool_ ? new Vector3().setFromMatrixPosition(this.X_WE_) : null);
     this.invalidate();
   }
@@ -315,11 +312,7 @@ export class View {
 
   /** How far the marked box is from where the command would have put it; empty while that is not known. */
   offsetText(): string {
-    const place = this.marked < 0 ? null : this.plans.placeAt(this.marked, this.replay.timeOf(this.frame_));
-    const offset = place && this.plans.offsetAt(this.marked, this.frame_, place);
-    if (!offset) return "";
-    const [x, y, z] = offset.millimetres.map((v) => v.toFixed(1));
-    return `planned place of ${this.boxes_.shortNameOf(this.marked)}: off by ${x}, ${y}, ${z} mm, ${offset.degrees.toFixed(1)}°`;
+    return this.marked < 0 ? "" : this.plans.textAt(this.marked, this.boxes_.shortNameOf(this.marked), this.frame_);
   }
 
   get contactsDrawn(): { awake: number; resting: number } {
@@ -395,10 +388,9 @@ export class View {
     return { p: [p.x, p.y, p.z], quat_wxyz: [q.w, q.x, q.y, q.z] };
   }
 
-  /** World positions of what tests compare: cup lip and tool. */
+  /** Where the lip of the cup is drawn, W. */
   get lip(): [number, number, number] {
-    const p = new Vector3().setFromMatrixPosition(this.X_WS_);
-    return [p.x, p.y, p.z];
+    return new Vector3().setFromMatrixPosition(this.X_WS_).toArray();
   }
 }
 

@@ -31,10 +31,12 @@ function speed(channel: Channel): (frame: number) => number {
 
 const JOINTS = ["1", "2", "3", "4", "5", "6", "7"];
 
-const joints: Figure["values"] = (replay) => {
-  const channel = replay.channel("joints.position");
-  return channel ? channel.columnNames.slice(0, JOINTS.length).map((_, k) => (frame: number) => DEGREES * channel.at(k, frame)) : null;
-};
+const joints =
+  (name: string, scale = 1): Figure["values"] =>
+  (replay) => {
+    const channel = replay.channel(`joints.${name}`);
+    return channel ? channel.columnNames.slice(0, JOINTS.length).map((_, k) => (frame: number) => scale * channel.at(k, frame)) : null;
+  };
 
 const contactPoints: Figure["values"] = (replay) => {
   if (!replay.contacts) return null;
@@ -103,7 +105,9 @@ export function figuresOf(box: string): Figure[] {
     { group: "cup", title: "Torque of the cup on the box, about S", unit: "Nm", names: XYZ, values: columns("cup.wrench", 3, 3) },
     { group: "flange", title: "Force on the flange, in F", unit: "N", names: XYZ, values: columns("flange.wrench", 0, 3) },
     { group: "flange", title: "Torque on the flange, about F", unit: "Nm", names: XYZ, values: columns("flange.wrench", 3, 3) },
-    { group: "robot", title: "Joint positions", unit: "deg", names: JOINTS, values: joints },
+    { group: "robot", title: "Joint positions", unit: "deg", names: JOINTS, values: joints("position", DEGREES) },
+    { group: "robot", title: "Joint velocities", unit: "deg/s", names: JOINTS, values: joints("velocity", DEGREES) },
+    { group: "robot", title: "Joint torques of the drives", unit: "Nm", names: JOINTS, values: joints("torque") },
     { group: "contacts", title: "Contact points of boxes that are awake", unit: "1", names: ["points"], values: contactPoints },
     { group: "contacts", title: "Sum of contact forces", unit: "N", names: ["force"], values: contactForce },
     { group: "contacts", title: "Residual of the solver", unit: "µm/s", names: ["residual"], values: columns("solver.residual", 0, 1, 1e6) },
