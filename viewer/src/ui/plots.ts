@@ -198,7 +198,7 @@ export class Plots {
       },
       axes: [
         { ...axis, size: 22, gap: 2, values: (_: uPlot, ticks: number[]) => ticks.map((t) => `${t} s`) },
-        { ...axis, size: 46, gap: 3, space: 17, values: (_: uPlot, ticks: number[]) => ticks.map((v, i) => (i === ticks.length - 1 && unit !== "1" ? `${tick(v)} ${unit}` : tick(v))) },
+        { ...axis, size: unit.length > 3 ? 58 : 46, gap: 3, space: 17, values: (_: uPlot, ticks: number[]) => ticks.map((v, i) => (i === ticks.length - 1 && unit !== "1" ? `${tick(v)} ${unit}` : tick(v))) },
       ],
       hooks: {
         draw: [(plot: uPlot) => this.drawCursor(plot)],
