@@ -125,23 +125,24 @@ export class Cameras {
     else this.active.position.x += 1e-4;
   }
 
-  /** All that happens in view: as near as its corners allow. */
+  /** All that happens in the middle of the view, as near as its corners allow. */
   private frameCell(): void {
-    const box = interestBox(this.replay);
-    const centre = box.getCenter(new Vector3());
+    const { min, max } = interestBox(this.replay);
+    const corners = [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [min.z, max.z].map((z) => new Vector3(x, y, z))));
     const away = new Vector3(0.36, -0.94, 0.88).normalize();
     const right = new Vector3(0, 0, 1).cross(away).normalize();
     const up = away.clone().cross(right);
     const slopeUp = Math.tan((this.perspective_.fov * Math.PI) / 360);
     const slopeRight = slopeUp * this.aspect_;
+    const centre = min.clone().add(max).multiplyScalar(0.5);
     let distance = 0.1;
-    for (const x of [box.min.x, box.max.x]) {
-      for (const y of [box.min.y, box.max.y]) {
-        for (const z of [box.min.z, box.max.z]) {
-          const d = new Vector3(x, y, z).sub(centre);
-          const near = d.dot(away);
-          distance = Math.max(distance, near + Math.abs(d.dot(right)) / slopeRight, near + Math.abs(d.dot(up)) / slopeUp);
-        }
+    for (let round = 0; round < 4; ++round) {
+      const at = corners.map((corner) => corner.clone().sub(centre));
+      distance = Math.max(0.1, ...at.map((d) => d.dot(away) + Math.max(Math.abs(d.dot(right)) / slopeRight, Math.abs(d.dot(up)) / slopeUp)));
+      // What is near looks larger: the middle of the picture is not the middle of the box.
+      for (const axis of [right, up]) {
+        const seen = at.map((d) => d.dot(axis) / (distance - d.dot(away)));
+        centre.addScaledVector(axis, (distance * (Math.max(...seen) + Math.min(...seen))) / 2);
       }
     }
     this.controls.target.copy(centre);
