@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
 import urllib.request
 from pathlib import Path
@@ -442,6 +443,23 @@ class Views(unittest.TestCase):
                 self.assertIn(text, result.stderr)
         self.assertFalse((self.path / "v").exists())
         self.assertEqual((full / "frame-000000.png").read_bytes(), b"of another video")
+
+    def test_video_that_is_interrupted_ends_in_order(self):
+        frames, temporary = self.path / "frames", self.path / "tmp"
+        temporary.mkdir()
+        process = subprocess.Popen([SNUG, "picture", str(self.recording), "--video", str(frames), "--fps", "1000", "--size",
+                                    "160x100"], stderr=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": str(temporary)})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        for _ in range(600):
+            if frames.is_dir() and any(frames.iterdir()):
+                break
+            time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=30), 1)
+        self.assertIn("interrupted", process.stderr.read())
+        self.assertEqual(list(temporary.glob("snug-picture-*")), [])
+        self.assertEqual([p.name for p in frames.iterdir() if not p.name.endswith(".png")], [])
 
     def test_picture_says_when_the_browser_fails(self):
         for browser, code in (("/bin/true", 1), ("/bin/cat", 1), ("/no/such", 2)):

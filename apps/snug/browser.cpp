@@ -106,6 +106,7 @@ void Browser::start(const std::string& program, const std::filesystem::path& pro
   std::vector<std::string> words = {program,
                                     "--headless",
                                     "--no-sandbox",
+                                    "--disable-dev-shm-usage",
                                     "--disable-gpu",
                                     "--enable-unsafe-swiftshader",
                                     "--disable-quic",
@@ -185,7 +186,7 @@ std::string Browser::receive(Clock::time_point deadline) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     pollfd waiting = {socket_, POLLIN, 0};
     const int ready = left > 0 ? ::poll(&waiting, 1, static_cast<int>(left)) : 0;
-    if (ready < 0 && errno == EINTR) continue;
+    if (ready < 0 && errno == EINTR) throw BrowserError("interrupted");
     if (ready <= 0) throw BrowserError(fmt::format("the browser has not answered for {} s", kPatience.count()));
     std::array<char, 65536> part;
     const ssize_t count = ::recv(socket_, part.data(), part.size(), 0);

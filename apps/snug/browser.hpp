@@ -20,7 +20,8 @@ class BrowserError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The process ends with the object, and with this program however that ends.
+/// The process ends with the object, and with this program however that ends. A signal that is handled while it is
+/// waited for counts as an interruption: BrowserError.
 class Browser {
  public:
   /// `profile`: a folder of its own for what it keeps. Throws BrowserError when it does not start.

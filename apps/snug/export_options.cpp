@@ -8,7 +8,8 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kExamples = R"(
+Examples:
   snug export run.h5 --format mcap -o run.mcap
   snug export run.h5 --format mcap --from 40 --to 60 --every 4 -o part.mcap
   snug export run.h5 --format csv -o run.csv

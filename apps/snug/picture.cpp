@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -143,12 +144,20 @@ void make_empty_folder(const fs::path& path) {
   }
 }
 
+volatile std::sig_atomic_t g_is_interrupted = 0;
+
+/// Lets temporary files and the browser go in order.
+void heed_interruption() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_is_interrupted = 1; });
+}
+
 void draw_video(const PictureOptions& options, record::RecordingReader& reader) {
   const std::vector<double> instants = video_times(options, reader);
   make_empty_folder(options.video);
   Studio studio(options, reader);
   const bool is_watched = ::isatty(STDERR_FILENO) == 1;
   for (std::size_t i = 0; i < instants.size(); ++i) {
+    if (g_is_interrupted != 0) throw BrowserError(fmt::format("interrupted after {} pictures", i));
     studio.show(instants[i]);
     replay::write_whole_file(fs::path(options.video) / fmt::format("frame-{:06}.png", i), studio.take_picture());
     if (is_watched) std::fprintf(stderr, "\r%zu of %zu pictures", i + 1, instants.size());
@@ -170,6 +179,7 @@ int run_picture(const PictureOptions& options) {
   if (reader.frame_count() == 0) {
     throw InputError(options.recording, "", "a recording without frames", "at least one frame");
   }
+  heed_interruption();
   try {
     if (!options.video.empty()) {
       draw_video(options, reader);

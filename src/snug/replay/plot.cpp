@@ -82,7 +82,11 @@ std::vector<PanelPlan> deformation_panels() {
   const auto only_held = [](const Frame& frame, const Vector3& v) -> Vector3 {
     return frame.cup.attached_body < 0 ? Vector3::Constant(kNaN) : v;
   };
-  return {{"lip in E [mm]", xyz_lines("", kMm, [=](const Frame& frame) { return only_held(frame, frame.cup.X_ES.p); })},
+  std::vector<Line> aside = xyz_lines("", kMm, [=](const Frame& frame) { return only_held(frame, frame.cup.X_ES.p); });
+  const std::vector<Line> along = {aside[2]};
+  aside.pop_back();
+  return {{"lip along z of E [mm]", along},
+          {"lip aside in E [mm]", aside},
           {"turn of the lip in E [deg]", xyz_lines("", kDegrees, [=](const Frame& frame) {
              const Eigen::AngleAxisd turn(frame.cup.X_ES.quat.normalized());
              return only_held(frame, turn.angle() * turn.axis());

@@ -167,16 +167,17 @@ TEST_F(Plot, TakesNumbersFromTheRecording) {
 
 TEST_F(Plot, DrawsTheLipOnlyWhileSomethingIsHeldAndJointsOnlyOfARobot) {
   const Figure figure = make_plot(sources_, {"deformation", "joints"}, {});
-  ASSERT_EQ(figure.panels.size(), 5u);
+  ASSERT_EQ(figure.panels.size(), 6u);
   for (std::size_t i = 0; i < recording_.frames.size(); ++i) {
     const record::Frame& frame = recording_.frames[i];
-    const double z = figure.panels[0].curves[2].y[i], turn = figure.panels[1].curves[0].y[i];
-    EXPECT_EQ(figure.panels[3].curves[1].y[i], frame.joints[1].velocity);
+    const double z = figure.panels[0].curves[0].y[i], turn = figure.panels[2].curves[0].y[i];
+    EXPECT_EQ(figure.panels[4].curves[1].y[i], frame.joints[1].velocity);
     if (frame.cup.attached_body < 0) {
       EXPECT_TRUE(std::isnan(z) && std::isnan(turn));
       continue;
     }
     EXPECT_EQ(z, 1e3 * frame.cup.X_ES.p.z());
+    EXPECT_EQ(figure.panels[1].curves[1].y[i], 1e3 * frame.cup.X_ES.p.y());
     const Eigen::AngleAxisd angle_axis(frame.cup.X_ES.quat);
     EXPECT_NEAR(turn, 180.0 / M_PI * angle_axis.angle() * angle_axis.axis().x(), 1e-9);  // rounding of degrees
   }
