@@ -1,7 +1,7 @@
 // view: the page of the report, served on this machine: for recordings, or for a simulation that goes on.
 #include "view.hpp"
 
-#include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -21,35 +21,35 @@ extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leav
 namespace snug::app {
 namespace {
 
-sigset_t stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  return signals;
-}
+sem_t g_stop;  ///< posted by the handler: one of the few things that a handler may do
 
-/// Waits for Ctrl-C in a thread of its own, so that stopping may lock and wait like any other code.
+/// Waits for Ctrl-C in a thread of its own, so that stopping may lock and wait like any other code. A handler, as
+/// libraries have threads of their own that a blocked signal would be given to. The second Ctrl-C ends the program at
+/// once.
 class StopSignal {
  public:
-  /// Must be made before any other thread: those inherit that the signals are left to this one.
   explicit StopSignal(std::function<void()> stop) {
-    const sigset_t signals = stop_signals();
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    thread_ = std::thread([signals, stop = std::move(stop)] {
-      int signal = 0;
-      sigwait(&signals, &signal);
+    ::sem_init(&g_stop, 0, 0);
+    struct sigaction action {};
+    action.sa_handler = [](int) { ::sem_post(&g_stop); };
+    action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
+    for (const int signal : kSignals) ::sigaction(signal, &action, nullptr);
+    thread_ = std::thread([stop = std::move(stop)] {
+      while (::sem_wait(&g_stop) != 0) continue;  // another signal woke it up
       stop();
     });
   }
   ~StopSignal() {
-    pthread_kill(thread_.native_handle(), SIGTERM);  // harmless when it has ended
+    for (const int signal : kSignals) ::signal(signal, SIG_DFL);
+    ::sem_post(&g_stop);  // harmless when the thread has ended
     thread_.join();
+    ::sem_destroy(&g_stop);
   }
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
  private:
+  static constexpr int kSignals[] = {SIGINT, SIGTERM};
   std::thread thread_;
 };
 
@@ -57,17 +57,10 @@ void open_browser(const std::string& address) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   std::string program = "xdg-open", word = address;
   char* words[] = {program.data(), word.data(), nullptr};
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   pid_t child = 0;
-  if (::posix_spawnp(&child, program.c_str(), nullptr, &attributes, words, environ) == 0) {
+  if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, words, environ) == 0) {
     std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
   }
-  posix_spawnattr_destroy(&attributes);
 }
 
 void announce(const serve::Server& server, const ViewOptions& options) {
