@@ -274,7 +274,7 @@ class GripperAtABox : public ::testing::Test {
  protected:
   GripperAtABox()
       : sequence_(*model::find_sequence(demonstrator(), "1")),
-        world_(build_world(demonstrator(), {&sequence_, true})),
+        world_(build_world(demonstrator(), {&sequence_, true, nullptr, {}})),
         state_(make_initial_state(demonstrator(), world_)),
         box_(world_.parcels[0]),
         gripper_(demonstrator().cup, cup::CupMode::Holding, world_) {
