@@ -13,6 +13,7 @@
 #include "snug/cell/run.hpp"
 #include "snug/cell/scene.hpp"
 #include "snug/core/check.hpp"
+#include "snug/experiment/internal/arm_bench.hpp"
 #include "snug/experiment/internal/robot_figures.hpp"
 
 namespace snug::experiment {
@@ -324,6 +325,17 @@ void measure_program(const BenchOptions& options, std::vector<Figure>& figures) 
   figures.push_back({"program.packed", static_cast<double>(packed), "boxes", "", true});
 }
 
+void measure_arm(const BenchOptions& options, std::vector<Figure>& figures) {
+  const model::Scenario scenario = model::load_scenario(options.scenario);
+  if (!scenario.robot) return;
+  const internal::ArmCosts costs = internal::measure_arm_costs(scenario);
+  figures.push_back(at_most("arm.forward_us", costs.forward_us, "us", 5.0));
+  figures.push_back({"arm.jacobian_us", costs.jacobian_us, "us", "", true});
+  figures.push_back({"arm.inverse_dynamics_us", costs.dynamics_us, "us", "", true});
+  figures.push_back(at_most("arm.inverse_us", costs.inverse_us, "us", 20.0));
+  figures.push_back({"arm.calibrated_inverse_us", costs.calibrated_inverse_us, "us", "", true});
+}
+
 }  // namespace
 
 double box_overlap(const Vector3& half_a, const Pose& X_WA, const Vector3& half_b, const Pose& X_WB) {
@@ -350,7 +362,8 @@ std::vector<Figure> run_bench(const BenchOptions& options) {
   const std::pair<const char*, Measure> scenes[] = {
       {"s1", measure_stack},      {"s2", measure_drops},        {"s3", measure_slides},
       {"s4", measure_bounce},     {"s5", measure_swing},        {"s6", measure_press},
-      {"growth", measure_growth}, {"program", measure_program}, {"robot", internal::measure_robot}};
+      {"growth", measure_growth}, {"program", measure_program}, {"robot", internal::measure_robot},
+      {"arm", measure_arm}};
   std::vector<Figure> figures;
   for (const auto& [name, measure] : scenes) {
     const std::string scene(name);

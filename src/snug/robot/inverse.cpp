@@ -133,7 +133,7 @@ std::optional<JointVector> InverseKinematics::refine(const Pose& X_WE, const Joi
   ArmPose at = forward(arm_, q);
   Vector6 error = pose_error(at.X_WE, X_WE);
   // One step beyond the tolerance costs little and squares the error; a start that is exact takes none.
-  bool is_last = error.norm() <= 1e-13;
+  bool is_last = error.norm() <= 1e-12;
   for (int k = 0; k < kNewtonSteps && !is_last; ++k) {
     is_last = error.norm() <= 1e-7;
     q += newton_step(tool_jacobian(arm_, at), error);

@@ -1,0 +1,173 @@
+// Reading URDF: what is understood, and how everything else is refused: file, line, element, what would do.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <variant>
+
+#include "shipped_arm.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/robot/kinematics.hpp"
+
+namespace snug::robot {
+namespace {
+
+/// Two joints and a tool; `more` stands inside the second link, `last` before the end.
+std::string small_arm(const std::string& more = "", const std::string& last = "") {
+  return "<robot name=\"small\">\n"  // 1
+         "<link name=\"base\"/>\n"   // 2
+         "<link name=\"upper\">" +
+         more +
+         "</link>\n"                                                                                       // 3
+         "<link name=\"slider\"/>\n"                                                                       // 4
+         "<link name=\"E\"/>\n"                                                                            // 5
+         "<joint name=\"turn\" type=\"revolute\"><parent link=\"base\"/><child link=\"upper\"/>\n"         // 6
+         "<origin xyz=\"0 0 1\"/><axis xyz=\"0 0 2\"/>\n"                                                  // 7
+         "<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/></joint>\n"                        // 8
+         "<joint name=\"slide\" type=\"prismatic\"><parent link=\"upper\"/><child link=\"slider\"/>\n"     // 9
+         "<axis xyz=\"1 0 0\"/><limit lower=\"0\" upper=\"0.5\" effort=\"10\" velocity=\"1\"/></joint>\n"  // 10
+         "<joint name=\"tip\" type=\"fixed\"><parent link=\"slider\"/><child link=\"E\"/>\n"               // 11
+         "<origin xyz=\"0.1 0 0\" rpy=\"0 1.5707963267948966 0\"/></joint>\n" +                            // 12
+         last +
+         "</robot>\n";  // 13
+}
+
+void expect_refused(const std::string& text, const std::string& part, const std::string& where = "") {
+  try {
+    (void)parse_urdf(text, "arm.urdf", "E", SNUG_SOURCE_DIR "/scenarios/robots");
+    ADD_FAILURE() << "accepted; expected a complaint with '" << part << "'";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    EXPECT_TRUE(std::string(error.what()).starts_with("arm.urdf:" + where)) << error.what();
+  }
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Urdf, ReadsTurningAndSlidingJoints) {
+  const ArmModel arm = parse_urdf(small_arm(), "arm.urdf");
+  ASSERT_EQ(arm.joint_count(), 2);
+  EXPECT_EQ(arm.joints[1].kind, JointKind::Prismatic);
+  JointVector q(2);
+  q << 0.5, 0.3;
+  const Pose X_WE = forward_tool(arm, q);
+  EXPECT_LT((X_WE.p - Vector3(0.4 * std::cos(0.5), 0.4 * std::sin(0.5), 1.0)).norm(), 1e-15);
+  EXPECT_LT((X_WE.R.col(2) - Vector3(std::cos(0.5), std::sin(0.5), 0.0)).norm(), 1e-15);
+}
+
+TEST(Urdf, HasTheMassesAndShapesOfTheShippedArm) {
+  const ArmModel& arm = test::shipped_arm();
+  double mass = 0.0;
+  for (const SpatialInertia& segment : arm.segments) mass += segment.mass;
+  EXPECT_NEAR(mass, 28.435 + 4.0 + 0.22 + 1.0, 1e-12);  // links, base, sensor, gripper with cup
+  int capsules = 0;
+  for (const Link& link : arm.links)
+    for (const model::PlacedShape& shape : link.shapes)
+      capsules += std::holds_alternative<geometry::Capsule>(shape.shape);
+  EXPECT_EQ(capsules, 9);  // cylinders with two balls, and the cup's ball
+  EXPECT_TRUE(is_behind(arm, find_link(arm, "E"), find_link(arm, "flange")));
+  EXPECT_FALSE(is_behind(arm, find_link(arm, "flange"), find_link(arm, "E")));
+}
+
+TEST(Urdf, WrapsACylinderInAPrismThatContainsIt) {
+  const ArmModel arm = parse_urdf(
+      small_arm("<collision><geometry><cylinder radius=\"0.1\" length=\"0.4\"/></geometry></collision>"), "arm.urdf");
+  const auto& hull = std::get<geometry::ConvexHull>(arm.links[1].shapes.at(0).shape);
+  for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    const Vector3 corner = hull.vertices[static_cast<std::size_t>(hull.faces[f][0])];
+    const double offset = hull.normals[f].dot(corner);
+    const double support = 0.1 * hull.normals[f].head<2>().norm() + 0.2 * std::abs(hull.normals[f].z());
+    EXPECT_GE(offset, support - 1e-12);
+    EXPECT_LE(offset, support * 1.01);
+  }
+}
+
+TEST(Urdf, RefusesWhatItCannotUseWithLineAndElement) {
+  expect_refused("", "XML that can be parsed");
+  expect_refused("<robot>\n<link name=\"a\">\n</robot>", "XML that can be parsed");
+  expect_refused("<sdf/>", "this is SDF", "1");
+  expect_refused("<robot name=\"x\"/>", "no <link>", "1");
+  expect_refused(small_arm("<colision/>"), "<collision>", "3");
+  expect_refused(small_arm("<inertial><mass value=\"-1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>"),
+                 "a mass in kg", "3");
+  expect_refused(small_arm("<inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"5\"/></inertial>"),
+                 "no distribution of mass", "3");
+  expect_refused(small_arm("<collision><geometry><cone/></geometry></collision>"), "<cylinder>", "3");
+  expect_refused(small_arm("<collision><geometry><box size=\"1 2\"/></geometry></collision>"), "3 finite numbers", "3");
+  expect_refused(small_arm("<collision><geometry><sphere radius=\"nan\"/></geometry></collision>"), "a finite number");
+  expect_refused(small_arm("<collision><geometry><mesh filename=\"no.stl\"/></geometry></collision>"), "not there",
+                 "3");
+  expect_refused(
+      small_arm("<collision><geometry><mesh filename=\"package://nothing_here/m.stl\"/></geometry></collision>"),
+      "ROS workspace", "3");
+  expect_refused(replaced(small_arm(), "upper=\"1\"", "upper=\"-2\""), "lower < upper", "8");
+  expect_refused(replaced(small_arm(), "0 0 2", "0 0 0"), "a direction", "7");
+  expect_refused(replaced(small_arm(), "0 0 2", "0 0 inf"), "3 finite numbers", "7");
+  expect_refused(replaced(small_arm(), "velocity=\"2\"", "velocity=\"0\""), "velocity > 0", "8");
+  expect_refused(replaced(small_arm(), "type=\"prismatic\"", "type=\"planar\""), "revolute, continuous", "9");
+  expect_refused(replaced(small_arm(), "<child link=\"upper\"/>", "<child link=\"uper\"/>"), "'upper' perhaps", "6");
+  expect_refused(replaced(small_arm(), "link name=\"slider\"", "link name=\"upper\""), "a second link", "4");
+  expect_refused(replaced(small_arm(), "<parent link=\"base\"/>", "<parent link=\"E\"/>"), "circle");
+  expect_refused(small_arm("", "<link name=\"other\"/>"), "one root");
+  expect_refused(small_arm("",
+                           "<link name=\"f\"/><joint name=\"turn\" type=\"fixed\"><parent link=\"E\"/><child "
+                           "link=\"f\"/></joint>"),
+                 "a second joint", "13");
+  expect_refused(small_arm("",
+                           "<link name=\"f\"/><joint name=\"f\" type=\"continuous\"><parent link=\"base\"/><child "
+                           "link=\"f\"/><limit effort=\"1\" velocity=\"1\"/></joint>"),
+                 "a serial arm", "13");
+  expect_refused(
+      replaced(replaced(small_arm(), "link name=\"E\"", "link name=\"e\""), "child link=\"E\"", "child link=\"e\""),
+      "tool frame");
+}
+
+TEST(Urdf, MakesHullsOfMeshesBesideIt) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "snug_urdf_test";
+  std::filesystem::create_directories(folder / "arm_description" / "meshes");
+  {  // a ball of 2000 points: more corners than a hull may have
+    std::ofstream obj(folder / "arm_description" / "meshes" / "ball.obj");
+    int count = 0;
+    for (int i = 1; i < 40; ++i)
+      for (int j = 0; j < 50; ++j, ++count) {
+        const double a = 3.14159265358979 * i / 40, b = 2 * 3.14159265358979 * j / 50;
+        obj << "v " << 100 * std::sin(a) * std::cos(b) << " " << 100 * std::sin(a) * std::sin(b) << " "
+            << 100 * std::cos(a) << "\n";
+      }
+    for (int k = 1; k + 2 <= count; k += 3) obj << "f " << k << " " << k + 1 << " " << k + 2 << "\n";
+  }
+  const auto with_mesh = [](const std::string& name) {
+    return small_arm("<collision><geometry><mesh filename=\"" + name +
+                     "\" scale=\"0.001 0.001 0.001\"/></geometry></collision>");
+  };
+  for (const char* name : {"meshes/ball.obj", "package://arm_description/meshes/ball.obj"}) {
+    const ArmModel arm = parse_urdf(with_mesh(name), "arm.urdf", "E", folder / "arm_description");
+    const auto& hull = std::get<geometry::ConvexHull>(arm.links[1].shapes.at(0).shape);
+    EXPECT_LE(hull.vertices.size(), 64u);
+    EXPECT_GT(hull.vertices.size(), 30u);
+    for (const Vector3& v : hull.vertices) EXPECT_NEAR(v.norm(), 0.1, 1e-5);
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(LoadArm, RefusesWhatTheScenarioSaysOfLinksThatAreNotThere) {
+  model::Scenario scenario = test::demonstrator();
+  scenario.robot->sensor_frame = "ft_senser";
+  EXPECT_THROW((void)load_arm(scenario), InputError);
+  scenario = test::demonstrator();
+  scenario.robot->posture.pop_back();
+  EXPECT_THROW((void)load_arm(scenario), InputError);
+  scenario = test::demonstrator();
+  scenario.robot->posture[2] = 4.0;  // beyond the elbow's limit
+  EXPECT_THROW((void)load_arm(scenario), InputError);
+  scenario.robot.reset();
+  EXPECT_THROW((void)load_arm(scenario), InputError);
+}
+
+}  // namespace
+}  // namespace snug::robot
