@@ -494,3 +494,84 @@ class Views(unittest.TestCase):
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn(words[0], result.stderr)
         self.assertFalse((self.path / "x.png").exists())
+
+
+
+UR10_DATA = ROOT.parent / "shared" / "data" / "ur10"
+
+
+class Calibrate(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name)
+
+    def write(self, name, text):
+        (self.path / name).write_text(text)
+        return self.path / name
+
+    @unittest.skipUnless(UR10_DATA.exists(), f"no reference data at {UR10_DATA}")
+    def test_deltas_give_the_same_tool_and_frames_near_nominal(self):
+        for name in ("real", "large_delta"):
+            out = self.path / "out.urdf"
+            result = snug("calibrate", "kinematics", "--deltas", UR10_DATA / f"ur10_{name}_calibration.conf", "-o", out, "--json")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            found = json.loads(result.stdout)
+            self.assertLessEqual(found["max_end_effector_error_m"], 1e-9)
+            self.assertLessEqual(found["max_end_effector_error_rad"], 1e-9)
+            self.assertLessEqual(found["max_frame_shift_m"], 5e-3)
+            # What is written is an arm: calibrating it by its own YAML changes nothing.
+            yaml = self.path / "out.yaml"
+            again = snug("calibrate", "kinematics", "--deltas", UR10_DATA / f"ur10_{name}_calibration.conf", "--write-yaml", yaml)
+            self.assertEqual(again.returncode, 0, again.stderr)
+            result = snug("calibrate", "kinematics", "--yaml", yaml, "--urdf", out, "--json")
+            self.assertLess(json.loads(result.stdout)["max_frame_shift_m"], 1e-12)
+
+    def test_tool_tip_is_found_and_written(self):
+        # Touches of (0.5, 0, 0) with a tip at (0, 0, 0.3): turned by quarter turns, written by hand.
+        quarter = 1.5707963267948966
+        touches = self.write("touches.csv", "x,y,z,rx,ry,rz\n0.5,0,-0.3,0,0,0\n0.5,0.3,0," + f"{quarter},0,0\n"
+                             f"0.5,-0.3,0,{-quarter},0,0\n0.2,0,0,0,{quarter},0\n0.8,0,0,0,{-quarter},0\n")
+        out = self.path / "bent.urdf"
+        result = snug("calibrate", "tool", touches, "-o", out, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = json.loads(result.stdout)
+        for value, expected in zip(found["tip_m"] + found["point_m"], [0, 0, 0.3, 0.5, 0, 0]):
+            self.assertAlmostEqual(value, expected, places=12)
+        self.assertAlmostEqual(found["tool_shift_m"][2], 0.3 - 0.335, places=12)
+        again = json.loads(snug("calibrate", "tool", touches, "--urdf", out, "--json").stdout)
+        self.assertLess(max(map(abs, again["tool_shift_m"])), 1e-12)
+
+    def test_force_sensor_is_found_and_its_load_written(self):
+        quarter, half = 1.5707963267948966, 3.141592653589793
+        weight, lever = 1.2 * 9.81, 0.1  # N, m along z
+        rows = [(0, 0, 0, 0, 0, -weight), (half, 0, 0, 0, 0, weight), (quarter, 0, 0, 0, -weight, 0),
+                (-quarter, 0, 0, 0, weight, 0), (0, quarter, 0, weight, 0, 0), (0, -quarter, 0, -weight, 0, 0)]
+        text = "rx,ry,rz,fx,fy,fz,tx,ty,tz\n"
+        for rx, ry, rz, fx, fy, fz in rows:
+            text += ",".join(str(v) for v in (rx, ry, rz, fx + 1, fy + 2, fz + 3, -lever * fy, lever * fx, 0.5)) + "\n"
+        out = self.path / "weighed.urdf"
+        result = snug("calibrate", "ft", self.write("ft.csv", text), "-o", out, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = json.loads(result.stdout)
+        self.assertAlmostEqual(found["mass_kg"], 1.2, places=9)
+        for value, expected in zip(found["com_m"] + found["force_offset_N"] + found["torque_offset_Nm"],
+                                   [0, 0, lever, 1, 2, 3, 0, 0, 0.5]):
+            self.assertAlmostEqual(value, expected, places=9)
+        self.assertIn("Calibrated: load of the sensor from ft.csv", out.read_text())
+
+    def test_what_cannot_be_used_is_refused(self):
+        short = self.write("short.csv", "x,y,z,rx,ry,rz\n0,0,0,0,0,0\n")
+        for words, part in ((["kinematics"], "--deltas, --yaml, --poses"),
+                            (["kinematics", "--deltas", self.path / "no.conf"], "no.conf"),
+                            (["kinematics", "--yaml", short], "kinematics"),
+                            (["kinematics", "--poses", short], "column 'q1'"),
+                            (["kinematics", "--poses", short, "--end", "tol0"], "tool0"),
+                            (["kinematics", "--deltas", short, "--angles", "rpy"], "euler-xyz"),
+                            (["tool", short], "4 or more"), (["tool", short, "--flange", "base_link"], "behind the last joint"),
+                            (["ft", short], "column 'fx'"), (["ft", short, "--mass", -1], "--mass")):
+            with self.subTest(words=words):
+                result = snug("calibrate", *words)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertTrue(result.stderr.startswith("snug: error: "), result.stderr)
+                self.assertIn(part, result.stderr)
