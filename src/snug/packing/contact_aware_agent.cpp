@@ -11,7 +11,7 @@ namespace {
 
 /// Places looked at in one second on one core of the reference machine (2.5 GHz), with everything that a roll-out does
 /// around them: turns a decision time into work, so that a decision does not depend on the clock.
-constexpr double kPlacesPerSecond = 4.0e6;
+constexpr double kPlacesPerSecond = 6.0e6;
 constexpr int kEntrants = 64;
 
 Prospect make_prospect(const Planning& planning, const FutureModel& future, const ContainerState& state,
@@ -43,9 +43,10 @@ class ContactAwareAgent : public Agent {
     std::vector<Item> kinds = input_.future.kinds;
     kinds.push_back(item);
     const Layout layout = to_layout(planning, make_rules(planning, kinds), state);
-    std::vector<Spot> spots;
+    SpotList list;
     Refusal worst = Refusal::None;
-    layout.find_spots(choice.piece, spots, &worst);
+    layout.find_spots(choice.piece, list, &worst);
+    std::vector<Spot>& spots = list.spots;
     if (spots.empty()) return tl::unexpected(reason_of(worst));
     const Policy policy = make_policy(planning, kinds);
     return rank(planning, state, item, choice, layout, policy, spots);

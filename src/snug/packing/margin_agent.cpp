@@ -33,9 +33,10 @@ class MarginAgent : public Agent {
     if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
     const Rules rules = make_rules(planning, {});
     const Layout layout = to_layout(planning, rules, state);
-    std::vector<Spot> spots;
+    SpotList list;
     Refusal worst = Refusal::None;
-    layout.find_spots(choice.piece, spots, &worst);
+    layout.find_spots(choice.piece, list, &worst);
+    std::vector<Spot>& spots = list.spots;
     if (spots.empty()) return tl::unexpected(reason_of(worst));
     Policy policy = make_policy(planning, std::span<const Item>(&item, 1));
     policy.weights = kWeights;

@@ -76,9 +76,10 @@ class OfflineAgent : public Agent {
   /// The planned place first, then what the policy likes.
   [[nodiscard]] Expected<Decision, NoPlace> propose(const Planning& planning, const Layout& layout, const Item& item,
                                                     const Choice& choice) const {
-    std::vector<Spot> spots;
+    SpotList list;
     Refusal worst = Refusal::None;
-    layout.find_spots(choice.piece, spots, &worst);
+    layout.find_spots(choice.piece, list, &worst);
+    std::vector<Spot>& spots = list.spots;
     std::vector<Item> kinds = input_.future.kinds;
     kinds.push_back(item);
     order_by_cost(layout, make_policy(planning, kinds), choice.piece, spots);

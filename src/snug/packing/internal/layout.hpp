@@ -63,6 +63,22 @@ struct Spot {
 
 enum class Refusal { None, Outside, Height, Support, Balance, Load };
 
+/// Spots found, each once, with the memory that finding them takes.
+class SpotList {
+ public:
+  std::vector<Spot> spots;
+  void clear();
+  /// False when this place has been seen since clear().
+  bool is_new(int stance, int x, int y);
+
+ private:
+  std::vector<std::uint64_t> table_ = std::vector<std::uint64_t>(512, 0);  ///< open addressing; size a power of two
+  std::size_t used_ = 0;
+  std::uint64_t round_ = 1;
+
+  bool insert(std::uint64_t key);
+};
+
 class Layout {
  public:
   explicit Layout(const Rules& rules);
@@ -76,11 +92,12 @@ class Layout {
 
   /// Corners into which the piece can be lowered, each once, in a fixed order; returns how many were looked at.
   /// `worst` tells how far the best of the refused ones came.
-  int find_spots(const Piece& piece, std::vector<Spot>& spots, Refusal* worst = nullptr) const;
+  int find_spots(const Piece& piece, SpotList& list, Refusal* worst = nullptr) const;
 
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   [[nodiscard]] const Rules& rules() const { return rules_; }
-  /// Volume under each block that nothing can fill any more, ticks^3; parallel to blocks().
+  /// Mean height under the top of each block that is filled or lost and not under a block below it, ticks; parallel to
+  /// blocks(): what a footprint covers of each, added up, is what is filled under it.
   [[nodiscard]] const std::vector<double>& columns() const { return columns_; }
 
  private:
@@ -90,6 +107,7 @@ class Layout {
     bool supported = false;
   };
 
+  [[nodiscard]] int highest_under(const Rectangle& area) const;
   void split_spaces(const Rectangle& hole, int top);
   void open_level(int level);
   void cut(std::vector<Rectangle>& areas, const Rectangle& hole) const;
@@ -100,6 +118,9 @@ class Layout {
 
   Rules rules_;
   std::vector<Block> blocks_;
+  struct Columns {  ///< the same by coordinate, for the innermost loop
+    std::vector<int> x1, y1, x2, y2, z2;
+  } by_axis_;
   std::vector<double> columns_;
   std::vector<double> loads_;  ///< g on each block; kept only when a block has a limit
   bool has_limits_ = false;

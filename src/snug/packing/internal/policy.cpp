@@ -31,8 +31,7 @@ Surroundings look_round(const Layout& layout, const Block& me) {
     const int ox = std::min(me.x2, b.x2) - std::max(me.x1, b.x1);
     const int oy = std::min(me.y2, b.y2) - std::max(me.y1, b.y1);
     if (ox > 0 && oy > 0) {
-      const double area = static_cast<double>(b.x2 - b.x1) * (b.y2 - b.y1);
-      s.below += layout.columns()[i] * (static_cast<double>(ox) * oy / area);
+      s.below += layout.columns()[i] * ox * oy;
       continue;
     }
     const int over = b.z2 - me.z1;

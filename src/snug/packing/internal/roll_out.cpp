@@ -75,10 +75,10 @@ Future draw_future(const Prospect& prospect, double volume, Rng& rng) {
 }
 
 bool choose(const Layout& layout, const Policy& policy, const Piece& piece, RollOutWork& work, Spot& best) {
-  work.looked_at += layout.find_spots(piece, work.spots);
+  work.looked_at += layout.find_spots(piece, work.list);
   double lowest = 0.0;
   bool found = false;
-  for (const Spot& spot : work.spots) {
+  for (const Spot& spot : work.list.spots) {
     const double c = cost(layout, policy, piece, spot);
     if (found && c >= lowest) continue;
     lowest = c;

@@ -25,7 +25,7 @@ using Future = std::vector<int>;  ///< indices of kinds, in the order in which t
 
 /// Scratch of one thread.
 struct RollOutWork {
-  std::vector<Spot> spots;
+  SpotList list;
   std::int64_t looked_at = 0;  ///< places, in all roll-outs: the unit in which effort is counted
 };
 

@@ -57,9 +57,10 @@ class Beam {
     share_out(static_cast<int>(nodes.size()), settings_.threads, [&](int n, int thread) {
       RollOutWork& work = work_[static_cast<std::size_t>(thread)];
       const Layout& layout = nodes[static_cast<std::size_t>(n)].layout;
-      work.looked_at += layout.find_spots(piece, work.spots);
+      work.looked_at += layout.find_spots(piece, work.list);
       std::vector<Child>& litter = litters[static_cast<std::size_t>(n)];
-      for (const Spot& spot : work.spots) litter.push_back({n, spot, cost(layout, opinions_.front(), piece, spot)});
+      for (const Spot& spot : work.list.spots)
+        litter.push_back({n, spot, cost(layout, opinions_.front(), piece, spot)});
       std::stable_sort(litter.begin(), litter.end(),
                        [](const Child& a, const Child& b) { return a.dislike < b.dislike; });
       std::size_t kept = 0;
