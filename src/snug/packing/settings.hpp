@@ -6,7 +6,7 @@
 namespace snug::packing {
 
 struct PackingSettings {
-  double decision_time = 1.0;  ///< s an item on one core of the reference machine: turned into a number of roll-outs
+  double decision_time = 0.5;  ///< s an item on one core of the reference machine: turned into a number of roll-outs
   std::uint64_t seed = 1;
   int threads = 1;          ///< results do not depend on it
   int max_candidates = 24;  ///< returned at most

@@ -1,0 +1,174 @@
+// Layout: lowering and corners against a height map in cells and against trying every cell.
+#include "snug/packing/internal/layout.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+#include "snug/core/rng.hpp"
+
+namespace snug::packing::internal {
+namespace {
+
+constexpr int kCell = 100;  ///< ticks; everything here is a multiple, so the map is exact
+
+Rules small_rules(double min_support) {
+  Rules rules;
+  rules.size_x = 12 * kCell;
+  rules.size_y = 9 * kCell;
+  rules.size_z = 8 * kCell;
+  rules.min_support = min_support;
+  rules.com_margin = 0;
+  return rules;
+}
+
+Piece random_piece(Rng& rng) {
+  Piece piece;
+  piece.stances.push_back(
+      {(1 + rng.index(5)) * kCell, (1 + rng.index(5)) * kCell, (1 + rng.index(4)) * kCell, 0, 0, 0});
+  return piece;
+}
+
+/// Some pieces lowered at random cells.
+Layout random_layout(double min_support, int count, Rng& rng) {
+  Layout layout(small_rules(min_support));
+  for (int i = 0; i < count; ++i) {
+    const Piece piece = random_piece(rng);
+    Spot spot;
+    if (layout.settle(piece, 0, rng.index(12) * kCell, rng.index(9) * kCell, spot) != Refusal::None) continue;
+    layout.add(Layout::block_at(piece, spot));
+  }
+  return layout;
+}
+
+int top_of_cell(const Layout& layout, int cx, int cy) {
+  int top = 0;
+  for (const Block& b : layout.blocks()) {
+    const bool covers = b.x1 <= cx * kCell && cx * kCell < b.x2 && b.y1 <= cy * kCell && cy * kCell < b.y2;
+    if (covers) top = std::max(top, b.z2);
+  }
+  return top;
+}
+
+TEST(Layout, LowersAsAHeightMapDoes) {
+  Rng rng = Rng(3).split("height map");
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(i);
+    const Layout layout = random_layout(0.0, 8, rng);
+    const Piece piece = random_piece(rng);
+    const int x = rng.index(12), y = rng.index(9);
+    const Stance& s = piece.stances.front();
+    Spot spot;
+    const Refusal refusal = layout.settle(piece, 0, x * kCell, y * kCell, spot);
+    if (x * kCell + s.width > 12 * kCell || y * kCell + s.depth > 9 * kCell) {
+      EXPECT_EQ(refusal, Refusal::Outside);
+      continue;
+    }
+    int base = 0, cells = 0, held = 0;
+    for (int pass = 0; pass < 2; ++pass) {
+      for (int cx = x; cx < x + s.width / kCell; ++cx) {
+        for (int cy = y; cy < y + s.depth / kCell; ++cy) {
+          const int top = top_of_cell(layout, cx, cy);
+          if (pass == 0) base = std::max(base, top);
+          cells += pass;
+          held += pass == 1 && top == base ? 1 : 0;
+        }
+      }
+    }
+    if (base + s.height > 8 * kCell) {
+      EXPECT_EQ(refusal, Refusal::Height);
+      continue;
+    }
+    EXPECT_EQ(spot.z, base);
+    EXPECT_DOUBLE_EQ(spot.support, static_cast<double>(held) / cells);
+  }
+}
+
+TEST(Layout, FindsACornerWheneverAnyCellWouldDo) {
+  Rng rng = Rng(5).split("corners");
+  int full = 0;
+  for (int i = 0; i < 400; ++i) {
+    SCOPED_TRACE(i);
+    const Layout layout = random_layout(0.0, 30, rng);
+    const Piece piece = random_piece(rng);
+    bool fits = false;
+    Spot spot;
+    for (int x = 0; x < 12 && !fits; ++x) {
+      for (int y = 0; y < 9 && !fits; ++y) fits = layout.settle(piece, 0, x * kCell, y * kCell, spot) == Refusal::None;
+    }
+    SpotList list;
+    (void)layout.find_spots(piece, list);
+    EXPECT_EQ(list.spots.empty(), !fits);
+    full += fits ? 0 : 1;
+  }
+  EXPECT_GT(full, 20);  // both answers have to occur for the test to mean anything
+}
+
+TEST(Layout, MirroredContainerHasMirroredCorners) {
+  Rng rng = Rng(6).split("mirror");
+  for (int i = 0; i < 100; ++i) {
+    SCOPED_TRACE(i);
+    const Layout layout = random_layout(0.6, 10, rng);
+    const Piece piece = random_piece(rng);
+    Layout mirrored(layout.rules());
+    for (Block b : layout.blocks()) {
+      std::tie(b.x1, b.x2) = std::pair(layout.rules().size_x - b.x2, layout.rules().size_x - b.x1);
+      mirrored.add(b);
+    }
+    SpotList here, there;
+    (void)layout.find_spots(piece, here);
+    (void)mirrored.find_spots(piece, there);
+    using Key = std::tuple<int, int, int>;
+    std::set<Key> expected, found;
+    const int width = piece.stances.front().width;
+    for (const Spot& s : here.spots) expected.insert({layout.rules().size_x - s.x - width, s.y, s.z});
+    for (const Spot& s : there.spots) found.insert({s.x, s.y, s.z});
+    EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(Layout, KeepsTheMarginToWallsAndBoxes) {
+  Rules rules = small_rules(0.6);
+  rules.margin = kCell;
+  Layout layout(rules);
+  layout.add({kCell, kCell, 0, 4 * kCell, 4 * kCell, 4 * kCell});
+  Piece piece;
+  piece.stances.push_back({2 * kCell, 2 * kCell, 3 * kCell, 0, 0, 0});
+  SpotList list;
+  (void)layout.find_spots(piece, list);
+  ASSERT_FALSE(list.spots.empty());
+  for (const Spot& s : list.spots) {
+    EXPECT_GE(s.x, kCell);
+    EXPECT_LE(s.x + 2 * kCell, 11 * kCell);
+    EXPECT_TRUE(s.z == 4 * kCell || s.x >= 5 * kCell || s.y >= 5 * kCell);
+  }
+}
+
+TEST(Layout, BalanceAsksForTheCentreOfMassAboveTheSupport) {
+  Layout layout(small_rules(0.6));
+  layout.add({0, 0, 0, 3 * kCell, 2 * kCell, 2 * kCell});
+  Piece piece;
+  piece.stances.push_back({4 * kCell, 2 * kCell, 2 * kCell, 0, 0, 0});  // three quarters supported
+  Spot spot;
+  EXPECT_EQ(layout.settle(piece, 0, 0, 0, spot), Refusal::None);
+  piece.stances.front().com_x = 3 * kCell / 2;  // 3.5 cells from the left, 0.5 beyond the edge
+  EXPECT_EQ(layout.settle(piece, 0, 0, 0, spot), Refusal::Balance);
+  layout.add({7 * kCell / 2, 0, 0, 5 * kCell, 2 * kCell, 2 * kCell});  // a second box bridges the gap
+  EXPECT_EQ(layout.settle(piece, 0, 0, 0, spot), Refusal::None);
+}
+
+TEST(SpotList, RemembersOnlyThisRoundHoweverManyThereWere) {
+  SpotList list;
+  for (int round = 0; round < 70000; ++round) {
+    list.clear();
+    ASSERT_TRUE(list.is_new(1, 30, 40)) << round;
+    ASSERT_FALSE(list.is_new(1, 30, 40)) << round;
+  }
+  for (int x = 0; x < 3000; ++x) ASSERT_TRUE(list.is_new(0, x, x));
+  for (int x = 0; x < 3000; ++x) ASSERT_FALSE(list.is_new(0, x, x));
+}
+
+}  // namespace
+}  // namespace snug::packing::internal
