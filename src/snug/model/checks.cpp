@@ -189,4 +189,18 @@ void ScenarioReader::read() {
   check_overlaps();
 }
 
+void ScenarioReader::read_items() {
+  const MapReader map = root_.map("items", {"parcel_types", "parcels", "sequences"});
+  const std::size_t known = scenario_.parcels.size();
+  const auto each = [&map](const char* key, auto&& read_one) {
+    if (const auto values = map.find(key))
+      for (const Value& value : values->list()) read_one(value);
+  };
+  each("parcel_types", [this](const Value& value) { read_parcel_type(value); });
+  each("parcels", [this](const Value& value) { read_parcel(value); });
+  each("sequences", [this](const Value& value) { read_sequence(value); });
+  for (std::size_t i = known; i < scenario_.parcels.size(); ++i)
+    check_parcel_fits(parcel_values_[i - known], scenario_.parcels[i]);
+}
+
 }  // namespace snug::model::internal

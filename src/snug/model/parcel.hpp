@@ -19,6 +19,14 @@ struct ParcelType {
   bool operator==(const ParcelType&) const = default;
 };
 
+/// What may be done to a box.
+struct Handling {
+  bool upright_only = false;       ///< only with +Pz up
+  bool no_stack = false;           ///< nothing may stand on it
+  std::optional<double> max_load;  ///< kg that may rest on it; absent: any
+  bool operator==(const Handling&) const = default;
+};
+
 /// One individual box. Frame P: geometric centre, axes along the edges.
 struct Parcel {
   std::string id;
@@ -26,6 +34,7 @@ struct Parcel {
   Vector3 size = Vector3::Constant(0.1);  ///< m, along Px, Py, Pz, as measured (before parcel_clearance)
   SpatialInertia inertia;                 ///< mass; com in P; inertia about the com, axes of P
   MaterialId material;
+  Handling handling;
   bool operator==(const Parcel&) const = default;
 };
 

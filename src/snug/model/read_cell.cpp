@@ -74,7 +74,8 @@ void ScenarioReader::read_parcel_type(const Value& value) {
 
 void ScenarioReader::read_parcel(const Value& value) {
   const MapReader map =
-      value.map("parcel", {"id", "type", "size", "mass", "inertia", "com", "layers", "shell", "material"});
+      value.map("parcel", {"id", "type", "size", "mass", "inertia", "com", "layers", "shell", "material",
+                           "upright_only", "no_stack", "max_load"});
   Parcel parcel;
   const Value id = map.require("id");
   check_new_name(id, "parcel", find_parcel(scenario_, id.name()) != nullptr);
@@ -91,6 +92,9 @@ void ScenarioReader::read_parcel(const Value& value) {
     (size ? *size : value).fail("a size of " + to_text(parcel.size.minCoeff()), "edges larger than parcel_clearance");
   parcel.inertia = read_parcel_inertia(map, *type, parcel.size);
   parcel.material = read_material(map.require("material"));
+  if (const auto flag = map.find("upright_only")) parcel.handling.upright_only = flag->boolean();
+  if (const auto flag = map.find("no_stack")) parcel.handling.no_stack = flag->boolean();
+  if (const auto load = map.find("max_load")) parcel.handling.max_load = load->number_within(0.0, 1e6, "a mass in kg");
   scenario_.parcels.push_back(parcel);
   parcel_values_.push_back(value);
 }

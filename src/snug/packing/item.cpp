@@ -71,6 +71,9 @@ Item make_item(const model::Scenario& scenario, const model::Item& item) {
   made.size = parcel->size;
   made.mass = parcel->inertia.mass;
   made.com = parcel->inertia.com;
+  made.upright_only = parcel->handling.upright_only;
+  made.no_stack = parcel->handling.no_stack;
+  made.max_load = parcel->handling.max_load;
   made.arrival = {item.up, item.up_sign, 0};
   if (item.yaw) {
     const double quarters = std::round(*item.yaw / (std::numbers::pi / 2.0));

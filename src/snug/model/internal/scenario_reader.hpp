@@ -17,6 +17,8 @@ class ScenarioReader {
   ScenarioReader(const Value& root, Scenario& scenario) : root_(root), scenario_(scenario) {}
   /// Everything; order matters because later parts name earlier ones.
   void read();
+  /// Only more parcel types, parcels and sequences, for a scenario that is complete without them.
+  void read_items();
 
  private:
   // read_scene.cpp

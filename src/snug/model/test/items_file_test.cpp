@@ -1,0 +1,121 @@
+// Items files: orders as CSV and JSON, more boxes and sequences as YAML, and what is wrong with broken ones.
+#include "snug/model/items_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::model {
+namespace {
+
+const std::filesystem::path kSource = SNUG_SOURCE_DIR;
+
+Scenario demonstrator() { return load_scenario(kSource / "scenarios/box-demonstrator.yaml"); }
+
+std::string where_of_error(std::string_view csv) {
+  try {
+    (void)parse_orders_csv(csv, "orders.csv");
+  } catch (const InputError& error) {
+    return error.where + " " + error.key;
+  }
+  return "";
+}
+
+TEST(OrdersCsv, ReadsColumnsInAnyOrderWithDefaults) {
+  const auto lines = parse_orders_csv(
+      "mass_kg,length_mm,width_mm,height_mm,count,upright_only,max_load_kg,order\r\n"
+      "0.5, 200,150,100,2,1,,A\r\n\r\n1.5,300,150,100,,,4.5,B",
+      "orders.csv");
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].size, Vector3(0.2, 0.15, 0.1));
+  EXPECT_EQ(lines[0].count, 2);
+  EXPECT_TRUE(lines[0].handling.upright_only);
+  EXPECT_FALSE(lines[0].handling.max_load.has_value());
+  EXPECT_EQ(lines[1].count, 1);
+  EXPECT_EQ(lines[1].handling.max_load, 4.5);
+  EXPECT_EQ(lines[1].order, "B");
+  EXPECT_EQ(lines[1].line, 4);
+}
+
+TEST(OrdersCsv, NamesLineAndColumnOfWhatIsWrong) {
+  const std::string header = "length_mm,width_mm,height_mm,mass_kg\n";
+  EXPECT_EQ(where_of_error(""), "orders.csv ");
+  EXPECT_EQ(where_of_error(header), "orders.csv ");
+  EXPECT_EQ(where_of_error("length_mm,width_mm,height_mm\n"), "orders.csv:1 mass_kg");
+  EXPECT_EQ(where_of_error("length_mm,widht_mm,height_mm,mass_kg\n1,1,1,1"), "orders.csv:1 widht_mm");
+  EXPECT_EQ(where_of_error(header + "1,2,3\n"), "orders.csv:2 ");
+  EXPECT_EQ(where_of_error(header + "100,200,nan,1\n"), "orders.csv:2 height_mm");
+  EXPECT_EQ(where_of_error(header + "100,200,50,1\n100,-5,50,1\n"), "orders.csv:3 width_mm");
+  EXPECT_EQ(where_of_error(header + "100,200,50,0\n"), "orders.csv:2 mass_kg");
+  EXPECT_EQ(where_of_error(header + "100,200,50,1e999\n"), "orders.csv:2 mass_kg");
+  EXPECT_EQ(where_of_error(header + "100,200,50,1kg\n"), "orders.csv:2 mass_kg");
+}
+
+TEST(OrdersJson, ReadsItemsInTheOrderOfTheirNumbers) {
+  const auto lines = parse_orders_json(
+      R"({"7": {"item_sequence": {"10": {"id": "b", "length/mm": 100, "width/mm": 80, "height/mm": 60, "weight/kg": 1},
+                                  "2": {"id": "a", "length/mm": 200, "width/mm": 80, "height/mm": 60, "weight/kg": 2}}}})",
+      "x.json");
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].article, "a");
+  EXPECT_EQ(lines[1].article, "b");
+  EXPECT_THROW((void)parse_orders_json("{", "x.json"), InputError);
+  EXPECT_THROW((void)parse_orders_json("[]", "x.json"), InputError);
+  EXPECT_THROW((void)parse_orders_json(R"({"7": 3})", "x.json"), InputError);
+  EXPECT_THROW((void)parse_orders_json(R"({"7": {"item_sequence": {"1": {"id": "a"}}}})", "x.json"), InputError);
+}
+
+TEST(OrdersJson, ReadsThePublicOrders) {
+  const auto path = kSource / "../shared/data/packing/bed_bpp_5_orders.json";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no folder ../shared beside the project: public orders not read";
+  const auto lines = load_orders(path);
+  std::set<std::string> orders;
+  for (const OrderLine& line : lines) orders.insert(line.order);
+  EXPECT_EQ(orders.size(), 5U);
+  EXPECT_EQ(lines.size(), 200U);  // 26 + 44 + 38 + 34 + 58
+}
+
+TEST(AddOrders, MakesParcelsAndOneSequenceForEachOrder) {
+  Scenario scenario = demonstrator();
+  const std::size_t before = scenario.parcels.size();
+  add_orders(scenario,
+             parse_orders_csv("order,length_mm,width_mm,height_mm,mass_kg,count,no_stack\n"
+                              "A,200,150,100,0.5,3,1\nA,100,100,100,1,1,0\nB,50,50,50,0.1,2,0\n",
+                              "orders.csv"),
+             "orders.csv");
+  EXPECT_EQ(scenario.parcels.size(), before + 6);
+  ASSERT_NE(find_sequence(scenario, "A"), nullptr);
+  EXPECT_EQ(find_sequence(scenario, "A")->items.size(), 4U);
+  EXPECT_EQ(find_sequence(scenario, "B")->items.size(), 2U);
+  const Parcel& parcel = *find_parcel(scenario, find_sequence(scenario, "A")->items[0].parcel);
+  EXPECT_TRUE(parcel.handling.no_stack);
+  // Cuboid of uniform density: Ixx = m (w^2 + h^2) / 12.
+  EXPECT_NEAR(parcel.inertia.inertia(0, 0), 0.5 * (0.15 * 0.15 + 0.1 * 0.1) / 12.0, 1e-15);
+  EXPECT_THROW(
+      add_orders(scenario, parse_orders_csv("order,length_mm,width_mm,height_mm,mass_kg\nA,1,1,1,1\n", "o"), "o"),
+      InputError);
+}
+
+TEST(AddItems, ReadsMoreBoxesAndSequencesAsInAScenario) {
+  const auto path = std::filesystem::temp_directory_path() / "snug_items_file_test.yaml";
+  std::ofstream(path) << "parcels:\n  - {id: BOX900, type: B1, material: box, upright_only: true, max_load: 2.5}\n"
+                         "sequences:\n  - name: mine\n    items: [{parcel: BOX900, up: Z}, {parcel: BOX013, up: X}]\n";
+  Scenario scenario = demonstrator();
+  add_items(scenario, path);
+  EXPECT_EQ(find_sequence(scenario, "mine")->items.size(), 2U);
+  EXPECT_TRUE(find_parcel(scenario, "BOX900")->handling.upright_only);
+  EXPECT_EQ(find_parcel(scenario, "BOX900")->handling.max_load, 2.5);
+  std::ofstream(path) << "sequences:\n  - name: wrong\n    items: [{parcel: BOX999, up: Z}]\n";
+  const std::size_t sequences = scenario.sequences.size();
+  EXPECT_THROW(add_items(scenario, path), InputError);
+  EXPECT_EQ(scenario.sequences.size(), sequences);  // nothing half added
+  std::filesystem::remove(path);
+  EXPECT_THROW(add_items(scenario, path), InputError);
+}
+
+}  // namespace
+}  // namespace snug::model
