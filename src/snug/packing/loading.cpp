@@ -83,7 +83,7 @@ class Search {
       const int beam = static_cast<int>(std::lround(width));
       if (!search(root, beam, budget)) break;
       beam_width_ = beam;
-      if (best_.volume == total_volume()) break;
+      if (best_.volume == total_volume() || !is_cut_) break;
     }
     return result();
   }
@@ -269,6 +269,7 @@ class Search {
         node.spaces.erase(node.spaces.begin() + static_cast<std::ptrdiff_t>(space));
         continue;
       }
+      is_cut_ = is_cut_ || ranked.size() == static_cast<std::size_t>(width);
       for (const auto& [value, block] : ranked) {
         children.push_back({node, {}, 0});
         place(children.back().node, space, block);
@@ -293,6 +294,7 @@ class Search {
 
   /// One beam search. False: the work was used up before its end.
   bool search(const Node& root, int width, double budget) {
+    is_cut_ = false;
     std::vector<Node> beam{root};
     while (!beam.empty()) {
       if (static_cast<double>(work_) >= budget) return false;
@@ -302,6 +304,7 @@ class Search {
       std::stable_sort(children.begin(), children.end(),
                        [](const Child& a, const Child& b) { return a.complete.volume > b.complete.volume; });
       beam.clear();
+      is_cut_ = is_cut_ || children.size() > static_cast<std::size_t>(width);
       for (const Child& child : children) work_ += child.work;
       if (!children.empty() && children.front().complete.volume > best_.volume) best_ = children.front().complete;
       for (std::size_t i = 0; i < children.size() && beam.size() < static_cast<std::size_t>(width); ++i) {
@@ -332,6 +335,7 @@ class Search {
   Node best_;
   std::int64_t work_ = 0;
   int beam_width_ = 0;
+  bool is_cut_ = false;  ///< the last search left continuations out: a wider one may find more
 };
 
 void require(bool holds, const LoadProblem& problem, const std::string& key, const std::string& got,

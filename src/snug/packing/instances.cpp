@@ -1,0 +1,124 @@
+// Instances: problems of loading a container, read from the public text form and from orders.
+#include "snug/packing/instances.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::packing {
+namespace {
+
+constexpr int kMostProblems = 100000;
+
+/// Whole numbers separated by blanks, and the line each stands in.
+class Numbers {
+ public:
+  Numbers(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {}
+
+  int next(const char* what, int low, int high) {
+    skip_blanks();
+    if (text_.empty()) throw InputError(where(), what, "the end of the file", "a whole number");
+    const std::size_t end = std::min(text_.find_first_of(" \t\r\n"), text_.size());
+    const std::string_view word = text_.substr(0, end);
+    text_.remove_prefix(end);
+    long long value = 0;
+    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || stop != word.data() + word.size() || value < low || value > high) {
+      throw InputError(where(), what, "'" + std::string(word.substr(0, 40)) + "'",
+                       "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    }
+    return static_cast<int>(value);
+  }
+  void expect_end() {
+    skip_blanks();
+    if (!text_.empty()) throw InputError(where(), "", "more numbers", "the end of the file");
+  }
+
+ private:
+  [[nodiscard]] std::string where() const { return name_ + ":" + std::to_string(line_); }
+  void skip_blanks() {
+    while (!text_.empty() &&
+           (text_.front() == ' ' || text_.front() == '\t' || text_.front() == '\r' || text_.front() == '\n')) {
+      if (text_.front() == '\n') ++line_;
+      text_.remove_prefix(1);
+    }
+  }
+  std::string_view text_;
+  std::string name_;
+  int line_ = 1;
+};
+
+constexpr int kLongest = 1000000;
+
+}  // namespace
+
+std::vector<LoadProblem> parse_instances(std::string_view text, const std::string& name) {
+  Numbers numbers(text, name);
+  const int count = numbers.next("number of problems", 1, kMostProblems);
+  std::vector<LoadProblem> problems;
+  for (int i = 0; i < count; ++i) {
+    LoadProblem problem;
+    const int index = numbers.next("problem", 0, kMostProblems);
+    problem.name = std::filesystem::path(name).stem().string() + " " + std::to_string(index);
+    (void)numbers.next("seed", 0, 2000000000);
+    for (int& edge : problem.container) edge = numbers.next("edge of the container", 1, kLongest);
+    const int types = numbers.next("number of box types", 1, 64);
+    for (int t = 0; t < types; ++t) {
+      CargoType type;
+      type.name = std::to_string(numbers.next("box type", 0, kMostProblems));
+      for (std::size_t d = 0; d < 3; ++d) {
+        type.size[d] = numbers.next("edge of a box", 1, kLongest);
+        type.may_be_vertical[d] = numbers.next("whether it may stand upright", 0, 1) == 1;
+      }
+      type.count = numbers.next("number of boxes", 0, 10000);
+      problem.types.push_back(type);
+    }
+    problems.push_back(problem);
+  }
+  numbers.expect_end();
+  return problems;
+}
+
+std::vector<LoadProblem> load_instances(const std::filesystem::path& path) {
+  std::error_code error;
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!std::filesystem::is_regular_file(path, error) || !(text << file.rdbuf())) {
+    throw InputError(path.string(), "", "no readable file", "instances in the thpack form");
+  }
+  return parse_instances(text.str(), path.string());
+}
+
+std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines, const Vector3& container) {
+  const auto millimetres = [](double metres) { return static_cast<int>(std::lround(1e3 * metres)); };
+  std::vector<LoadProblem> problems;
+  for (const model::OrderLine& line : lines) {
+    auto problem = std::find_if(problems.begin(), problems.end(),
+                                [&](const LoadProblem& known) { return known.name == line.order; });
+    if (problem == problems.end()) {
+      problems.push_back({line.order, {}, {}});
+      problem = problems.end() - 1;
+      for (int d = 0; d < 3; ++d) problem->container[static_cast<std::size_t>(d)] = millimetres(container[d]);
+    }
+    CargoType type;
+    type.name = line.article;
+    for (int d = 0; d < 3; ++d) type.size[static_cast<std::size_t>(d)] = millimetres(line.size[d]);
+    if (line.handling.upright_only) type.may_be_vertical = {false, false, true};
+    const auto twin = std::find_if(problem->types.begin(), problem->types.end(), [&](const CargoType& known) {
+      return known.size == type.size && known.may_be_vertical == type.may_be_vertical && known.name == type.name;
+    });
+    if (twin != problem->types.end()) {
+      twin->count += line.count;
+    } else {
+      type.count = line.count;
+      problem->types.push_back(type);
+    }
+  }
+  return problems;
+}
+
+}  // namespace snug::packing
