@@ -16,6 +16,7 @@
 
 #include "browser.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 #include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
 #include "viewer_page.hpp"
@@ -75,7 +76,7 @@ class Studio {
     const std::string name = fs::path(options.recording).filename().string();
     const replay::PageRecording recording{name, replay::encode_recording(reader, name, {})};
     const fs::path page = folder_.path() / "page.html";
-    replay::write_whole_file(page, replay::assemble_page(viewer_page(), {&recording, 1}));
+    write_file(page, replay::assemble_page(viewer_page(), {&recording, 1}));
     browser_.open(fmt::format("file://{}#picture=1&t={}&camera={}&theme={}&show={}&hide={}&size={}x{}", page.string(),
                               options.time.value_or(options.from.value_or(reader.times().back())), options.camera,
                               options.theme, options.show, options.hide, options.width, options.height));
@@ -159,7 +160,7 @@ void draw_video(const PictureOptions& options, record::RecordingReader& reader) 
   for (std::size_t i = 0; i < instants.size(); ++i) {
     if (g_is_interrupted != 0) throw BrowserError(fmt::format("interrupted after {} pictures", i));
     studio.show(instants[i]);
-    replay::write_whole_file(fs::path(options.video) / fmt::format("frame-{:06}.png", i), studio.take_picture());
+    write_file(fs::path(options.video) / fmt::format("frame-{:06}.png", i), studio.take_picture());
     if (is_watched) std::fprintf(stderr, "\r%zu of %zu pictures", i + 1, instants.size());
   }
   std::fprintf(stderr, "%s%s: %zu pictures\n", is_watched ? "\r" : "", options.video.c_str(), instants.size());
@@ -184,7 +185,7 @@ int run_picture(const PictureOptions& options) {
     if (!options.video.empty()) {
       draw_video(options, reader);
     } else {
-      replay::write_whole_file(options.output, Studio(options, reader).take_picture());
+      write_file(options.output, Studio(options, reader).take_picture());
     }
   } catch (const BrowserError& error) {
     std::fprintf(stderr, "snug: failed: %s\n", error.what());

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 #include "snug/replay/page.hpp"
 #include "snug/replay/plot.hpp"
 
@@ -28,7 +29,7 @@ int run_plot(const PlotOptions& options) {
   replay::Figure figure = replay::make_plot(sources, options.what, options.selection);
   figure.width_mm = options.width_mm;
   figure.panel_height_mm = options.height_mm;
-  replay::write_whole_file(options.output, replay::draw_svg(figure));
+  write_file(options.output, replay::draw_svg(figure));
   return kSuccess;
 }
 

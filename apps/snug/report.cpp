@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 #include "snug/replay/page.hpp"
 #include "viewer_page.hpp"
 
@@ -23,7 +24,7 @@ int run_report(const ReportOptions& options) {
     recordings.push_back({name, replay::encode_recording(reader, name, options.selection)});
   }
   const std::string html = replay::assemble_page(page, recordings);
-  replay::write_whole_file(options.output, html);
+  write_file(options.output, html);
   std::fprintf(stderr, "%s: %.2f MB\n", options.output.c_str(), static_cast<double>(html.size()) / 1e6);
   return kSuccess;
 }

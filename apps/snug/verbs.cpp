@@ -6,6 +6,8 @@
 #include "check.hpp"
 #include "cup.hpp"
 #include "export.hpp"
+#include "items.hpp"
+#include "load.hpp"
 #include "picture.hpp"
 #include "plot.hpp"
 #include "program.hpp"
@@ -24,6 +26,8 @@ void add_verbs(CLI::App& app, Action& action) {
   add_plot(app, action);
   add_picture(app, action);
   add_export(app, action);
+  add_items(app, action);
+  add_load(app, action);
   add_cup(app, action);
   add_calibrate(app, action);
   add_bench(app, action);

@@ -72,7 +72,14 @@ class Row {
     }
     return value;
   }
-  [[nodiscard]] bool flag(const std::string& key) const { return number(key, 0.0, 1.0, 0.0) != 0.0; }
+  [[nodiscard]] int whole(const std::string& key, int low, int high, int otherwise) const {
+    const double value = number(key, low, high, otherwise);
+    if (value != std::floor(value)) {
+      throw InputError(where_, key, "'" + std::string(text(key)) + "'", "a whole number");
+    }
+    return static_cast<int>(value);
+  }
+  [[nodiscard]] bool flag(const std::string& key) const { return whole(key, 0, 1, 0) != 0; }
 
  private:
   const std::vector<std::string>& header_;
@@ -89,7 +96,7 @@ OrderLine read_row(const Row& row, const std::string& name, int line) {
                                      row.number("width_mm", 1.0, kLongestMm, required),
                                      row.number("height_mm", 1.0, kLongestMm, required));
   entry.mass = row.number("mass_kg", 1e-3, kHeaviest, required);
-  entry.count = static_cast<int>(row.number("count", 1.0, 1e4, 1.0));
+  entry.count = row.whole("count", 1, 5000, 1);
   entry.handling = {row.flag("upright_only"), row.flag("no_stack"), std::nullopt};
   if (!row.text("max_load_kg").empty()) entry.handling.max_load = row.number("max_load_kg", 0.0, 1e6, required);
   entry.line = line;
@@ -150,6 +157,17 @@ void add_items_text(Scenario& scenario, const std::string& text, const std::stri
   scenario = std::move(extended);
 }
 
+/// The type of a line's boxes: by article, with a number behind it where other boxes have that name.
+std::string type_for(Scenario& scenario, const OrderLine& line) {
+  const std::string article = line.article.empty() ? "box" : line.article;
+  for (int i = 1;; ++i) {
+    const std::string name = i == 1 ? article : article + "-" + std::to_string(i);
+    const ParcelType* type = find_parcel_type(scenario, name);
+    if (type == nullptr) scenario.parcel_types.push_back({name, line.size, line.mass});
+    if (type == nullptr || (type->size == line.size && type->mass == line.mass)) return name;
+  }
+}
+
 }  // namespace
 
 std::vector<OrderLine> parse_orders_csv(std::string_view text, const std::string& name) {
@@ -191,7 +209,9 @@ std::vector<OrderLine> parse_orders_json(std::string_view text, const std::strin
       if (error != std::errc{} || end != number.data() + number.size()) {
         throw InputError(where, number, "no number", "items counted from 1");
       }
-      by_number[position] = read_json_item(item, order, where);
+      if (!by_number.emplace(position, read_json_item(item, order, where)).second) {
+        throw InputError(where, number, "a second time", "each number once");
+      }
     }
     for (auto& [number, line] : by_number) lines.push_back(std::move(line));
     if (lines.size() > kMostBoxes) throw InputError(name, "", "more than 100000 boxes", "fewer");
@@ -212,17 +232,19 @@ void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const s
     throw InputError(scenario.source_name, "parcels", "none", "at least one parcel, whose surface others get");
   }
   const MaterialId material = scenario.parcels.front().material;
+  const std::size_t known = scenario.sequences.size();
   int number = 0;
   for (const OrderLine& line : lines) {
-    const std::string type = line.article.empty() ? "box" : line.article;
-    if (find_parcel_type(scenario, type) == nullptr) scenario.parcel_types.push_back({type, line.size, line.mass});
-    if (scenario.sequences.empty() || scenario.sequences.back().name != line.order) {
-      if (find_sequence(scenario, line.order) != nullptr) {
-        throw InputError(name, "order", "'" + line.order + "'", "a name that is not taken");
-      }
+    auto sequence = std::find_if(scenario.sequences.begin(), scenario.sequences.end(),
+                                 [&](const Sequence& s) { return s.name == line.order; });
+    if (sequence == scenario.sequences.end()) {
       scenario.sequences.push_back({});
-      scenario.sequences.back().name = line.order;
+      sequence = scenario.sequences.end() - 1;
+      sequence->name = line.order;
+    } else if (sequence < scenario.sequences.begin() + static_cast<std::ptrdiff_t>(known)) {
+      throw InputError(name, "order", "'" + line.order + "'", "a name that is not taken");
     }
+    const std::string type = type_for(scenario, line);
     for (int i = 0; i < line.count; ++i) {
       char id[32];
       do {
@@ -231,8 +253,8 @@ void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const s
       Parcel parcel{id, type, line.size, {}, material, line.handling};
       parcel.inertia = {line.mass, Vector3::Zero(), internal::cuboid_inertia(line.size, line.mass)};
       scenario.parcels.push_back(parcel);
-      scenario.sequences.back().items.push_back({});
-      scenario.sequences.back().items.back().parcel = id;
+      sequence->items.push_back({});
+      sequence->items.back().parcel = id;
     }
   }
 }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 
 namespace snug::motion {
 namespace {
@@ -163,19 +164,7 @@ std::string format_program(const Program& program) {
 }
 
 void write_program(const Program& program, const std::filesystem::path& path) {
-  const std::string text = format_program(program);
-  std::filesystem::path beside = path;
-  beside += ".part";
-  std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(beside, path, error);
-  if (!file || error) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw InputError(path.string(), "", error ? error.message() : "a write error", "a file that can be written");
-  }
+  write_file(path, format_program(program));
 }
 
 }  // namespace snug::motion

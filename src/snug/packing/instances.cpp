@@ -52,7 +52,7 @@ class Numbers {
   int line_ = 1;
 };
 
-constexpr int kLongest = 1000000;
+constexpr int kLongest = 100000;
 
 }  // namespace
 
@@ -66,7 +66,7 @@ std::vector<LoadProblem> parse_instances(std::string_view text, const std::strin
     problem.name = std::filesystem::path(name).stem().string() + " " + std::to_string(index);
     (void)numbers.next("seed", 0, 2000000000);
     for (int& edge : problem.container) edge = numbers.next("edge of the container", 1, kLongest);
-    const int types = numbers.next("number of box types", 1, 64);
+    const int types = numbers.next("number of box types", 1, 1000);
     for (int t = 0; t < types; ++t) {
       CargoType type;
       type.name = std::to_string(numbers.next("box type", 0, kMostProblems));
@@ -74,7 +74,7 @@ std::vector<LoadProblem> parse_instances(std::string_view text, const std::strin
         type.size[d] = numbers.next("edge of a box", 1, kLongest);
         type.may_be_vertical[d] = numbers.next("whether it may stand upright", 0, 1) == 1;
       }
-      type.count = numbers.next("number of boxes", 0, 10000);
+      type.count = numbers.next("number of boxes", 0, 5000);
       problem.types.push_back(type);
     }
     problems.push_back(problem);
@@ -94,7 +94,13 @@ std::vector<LoadProblem> load_instances(const std::filesystem::path& path) {
 }
 
 std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines, const Vector3& container) {
-  const auto millimetres = [](double metres) { return static_cast<int>(std::lround(1e3 * metres)); };
+  // What is measured in parts of a millimetre must still fit: boxes count as larger, the container as smaller.
+  constexpr double kRounding = 1e-6;  // mm, of the conversion from metres
+  const auto up = [](double metres) { return static_cast<int>(std::ceil(1e3 * metres - kRounding)); };
+  const auto down = [](double metres) { return static_cast<int>(std::floor(1e3 * metres + kRounding)); };
+  if (!(container.minCoeff() > 0.0 && container.maxCoeff() <= 1e-3 * kLongest)) {
+    throw InputError("command line", "--container", "a length out of range", "lengths above 0, at most 1 km");
+  }
   std::vector<LoadProblem> problems;
   for (const model::OrderLine& line : lines) {
     auto problem = std::find_if(problems.begin(), problems.end(),
@@ -102,11 +108,15 @@ std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines,
     if (problem == problems.end()) {
       problems.push_back({line.order, {}, {}});
       problem = problems.end() - 1;
-      for (int d = 0; d < 3; ++d) problem->container[static_cast<std::size_t>(d)] = millimetres(container[d]);
+      for (int d = 0; d < 3; ++d) problem->container[static_cast<std::size_t>(d)] = down(container[d]);
+    }
+    if (line.handling.no_stack || line.handling.max_load) {
+      throw InputError(line.order, line.article, "a box that must not carry any load",
+                       "boxes without no_stack and max_load_kg: loads are not looked at here (snug pack does)");
     }
     CargoType type;
     type.name = line.article;
-    for (int d = 0; d < 3; ++d) type.size[static_cast<std::size_t>(d)] = millimetres(line.size[d]);
+    for (int d = 0; d < 3; ++d) type.size[static_cast<std::size_t>(d)] = up(line.size[d]);
     if (line.handling.upright_only) type.may_be_vertical = {false, false, true};
     const auto twin = std::find_if(problem->types.begin(), problem->types.end(), [&](const CargoType& known) {
       return known.size == type.size && known.may_be_vertical == type.may_be_vertical && known.name == type.name;

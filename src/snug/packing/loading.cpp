@@ -20,8 +20,9 @@ using internal::Size3;
 
 constexpr std::size_t kMaxBlocks = 10000;
 constexpr double kMinFill = 0.98;
-constexpr int kLongest = 1000000;
-constexpr int kMostTypes = 64;
+constexpr int kLongest = 100000;  // the volume of a container stays below 2^63
+constexpr int kMostTypes = 1000;
+constexpr int kMostBoxes = 5000;  // of one type
 /// Blocks looked at in one second, with all that a search does around them: measured on the reference machine.
 constexpr double kBlocksPerSecond = 6.0e7;
 /// Weights of a block's value, volume * usable^kLossPower * boxes^-kCountPower: the form of Araya and Riff's evaluation
@@ -83,7 +84,7 @@ class Search {
       const int beam = static_cast<int>(std::lround(width));
       if (!search(root, beam, budget)) break;
       beam_width_ = beam;
-      if (best_.volume == total_volume() || !is_cut_) break;
+      if (is_all_loaded() || !is_cut_) break;
     }
     return result();
   }
@@ -117,12 +118,8 @@ class Search {
     }
   }
 
-  [[nodiscard]] std::int64_t total_volume() const {
-    std::int64_t volume = 0;
-    for (const CargoType& type : problem_.types) {
-      volume += std::int64_t{type.count} * type.size[0] * type.size[1] * type.size[2];
-    }
-    return volume;
+  [[nodiscard]] bool is_all_loaded() const {
+    return std::all_of(best_.left.begin(), best_.left.end(), [](int left) { return left == 0; });
   }
 
   /// The corner of a space that is nearest to a corner of the container, by the sum of distances along the axes.
@@ -346,16 +343,16 @@ void require(bool holds, const LoadProblem& problem, const std::string& key, con
 void check(const LoadProblem& problem, const LoadSettings& settings) {
   const auto is_length = [](int length) { return length > 0 && length <= kLongest; };
   for (const int length : problem.container) {
-    require(is_length(length), problem, "container", std::to_string(length), "lengths of 1 .. 1000000");
+    require(is_length(length), problem, "container", std::to_string(length), "lengths of 1 .. 100000");
   }
   require(problem.types.size() <= static_cast<std::size_t>(kMostTypes), problem, "types",
-          std::to_string(problem.types.size()), "at most 64 kinds of boxes");
+          std::to_string(problem.types.size()), "at most 1000 kinds of boxes");
   for (const CargoType& type : problem.types) {
     for (const int length : type.size) {
-      require(is_length(length), problem, type.name, std::to_string(length), "edges of 1 .. 1000000");
+      require(is_length(length), problem, type.name, std::to_string(length), "edges of 1 .. 100000");
     }
-    require(type.count >= 0 && type.count <= 10000, problem, type.name, std::to_string(type.count),
-            "a count of 0 .. 10000");
+    require(type.count >= 0 && type.count <= kMostBoxes, problem, type.name, std::to_string(type.count),
+            "a count of 0 .. 5000");
   }
   require(std::isfinite(settings.time) && settings.time >= 0.0 && settings.time <= 86400.0, problem, "time",
           std::to_string(settings.time), "0 .. 86400 s");
@@ -376,6 +373,10 @@ std::vector<std::string> check_load(const LoadProblem& problem, const LoadResult
   for (std::size_t i = 0; i < result.boxes.size(); ++i) {
     const LoadedBox& box = result.boxes[i];
     const std::string name = "box " + std::to_string(i);
+    if (box.type < 0 || static_cast<std::size_t>(box.type) >= problem.types.size()) {
+      wrong.push_back(name + ": of no known type");
+      continue;
+    }
     const CargoType& type = problem.types[static_cast<std::size_t>(box.type)];
     if (++counts[static_cast<std::size_t>(box.type)] > type.count) wrong.push_back(name + ": more than there are");
     const std::vector<Size3> sizes = internal::standing_sizes(type);

@@ -23,7 +23,4 @@ inline constexpr std::string_view kRecordingsMark = "<!--snug:recordings-->";
 /// Text for an attribute value in double quotes, or for the inside of an element.
 [[nodiscard]] std::string escape_markup(std::string_view text);
 
-/// Writes beside `path` and renames, so that a file at `path` is always whole. Throws InputError when it cannot.
-void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
-
 }  // namespace snug::replay

@@ -53,6 +53,9 @@ TEST(OrdersCsv, NamesLineAndColumnOfWhatIsWrong) {
   EXPECT_EQ(where_of_error(header + "100,200,50,0\n"), "orders.csv:2 mass_kg");
   EXPECT_EQ(where_of_error(header + "100,200,50,1e999\n"), "orders.csv:2 mass_kg");
   EXPECT_EQ(where_of_error(header + "100,200,50,1kg\n"), "orders.csv:2 mass_kg");
+  const std::string more = "count,no_stack,length_mm,width_mm,height_mm,mass_kg\n";
+  EXPECT_EQ(where_of_error(more + "2.7,0,100,200,50,1\n"), "orders.csv:2 count");
+  EXPECT_EQ(where_of_error(more + "2,0.5,100,200,50,1\n"), "orders.csv:2 no_stack");
 }
 
 TEST(OrdersJson, ReadsItemsInTheOrderOfTheirNumbers) {
@@ -84,7 +87,7 @@ TEST(AddOrders, MakesParcelsAndOneSequenceForEachOrder) {
   const std::size_t before = scenario.parcels.size();
   add_orders(scenario,
              parse_orders_csv("order,length_mm,width_mm,height_mm,mass_kg,count,no_stack\n"
-                              "A,200,150,100,0.5,3,1\nA,100,100,100,1,1,0\nB,50,50,50,0.1,2,0\n",
+                              "A,200,150,100,0.5,3,1\nB,50,50,50,0.1,2,0\nA,100,100,100,1,1,0\n",
                               "orders.csv"),
              "orders.csv");
   EXPECT_EQ(scenario.parcels.size(), before + 6);

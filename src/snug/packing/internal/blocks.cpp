@@ -25,6 +25,7 @@ class Builder {
 
   BlockList build() {
     for (std::size_t type = 0; type < types_; ++type) add_grids(static_cast<int>(type));
+    if (list_.blocks.size() > max_blocks_ / 2) keep_largest(max_blocks_ / 2);
     std::size_t old = 0;
     while (old < list_.blocks.size() && !is_full()) {
       const std::size_t end = list_.blocks.size();
@@ -45,12 +46,32 @@ class Builder {
     list_.counts.insert(list_.counts.end(), counts.begin(), counts.end());
   }
 
+  /// Of very many grids the single boxes and the largest ones.
+  void keep_largest(std::size_t count) {
+    std::vector<std::size_t> order(list_.blocks.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      const Block &x = list_.blocks[a], &y = list_.blocks[b];
+      return (x.boxes == 1) != (y.boxes == 1) ? x.boxes == 1 : x.volume > y.volume;
+    });
+    order.resize(std::min(order.size(), count));
+    BlockList kept;
+    kept.types = list_.types;
+    for (const std::size_t i : order) {
+      kept.blocks.push_back(list_.blocks[i]);
+      kept.counts.insert(kept.counts.end(), list_.counts_of(i), list_.counts_of(i) + types_);
+    }
+    list_ = std::move(kept);
+  }
+
   void add_grids(int type) {
     const CargoType& cargo = problem_.types[static_cast<std::size_t>(type)];
+    const std::size_t limit = list_.blocks.size() + 4 * max_blocks_;
     for (const Size3& box : standing_sizes(cargo)) {
       for (int nx = 1; nx * box[0] <= problem_.container[0] && nx <= cargo.count; ++nx) {
         for (int ny = 1; ny * box[1] <= problem_.container[1] && nx * ny <= cargo.count; ++ny) {
           for (int nz = 1; nz * box[2] <= problem_.container[2] && nx * ny * nz <= cargo.count; ++nz) {
+            if (list_.blocks.size() >= limit) return;
             Block block;
             block.size = {nx * box[0], ny * box[1], nz * box[2]};
             block.volume = volume_of(block.size);
@@ -68,17 +89,11 @@ class Builder {
   }
 
   void add_pairs(std::size_t i, std::size_t j) {
-    std::vector<std::uint16_t> counts(types_);
-    for (std::size_t t = 0; t < types_; ++t) {
-      const int sum = list_.counts_of(i)[t] + list_.counts_of(j)[t];
-      if (sum > problem_.types[t].count) return;
-      counts[t] = static_cast<std::uint16_t>(sum);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3 && !is_full(); ++axis) {
       const Block &a = list_.blocks[i], &b = list_.blocks[j];
       Block block;
       for (std::size_t d = 0; d < 3; ++d) {
-        block.size[d] = static_cast<int>(d) == axis ? a.size[d] + b.size[d] : std::max(a.size[d], b.size[d]);
+        block.size[d] = d == axis ? a.size[d] + b.size[d] : std::max(a.size[d], b.size[d]);
       }
       if (!fits(block.size, problem_.container)) continue;
       block.volume = a.volume + b.volume;
@@ -86,9 +101,14 @@ class Builder {
       block.boxes = a.boxes + b.boxes;
       block.first = static_cast<int>(i);
       block.second = static_cast<int>(j);
-      block.axis = axis;
+      block.axis = static_cast<int>(axis);
+      std::vector<std::uint16_t> counts(types_);
+      for (std::size_t t = 0; t < types_; ++t) {
+        const int sum = list_.counts_of(i)[t] + list_.counts_of(j)[t];
+        if (sum > problem_.types[t].count) return;
+        counts[t] = static_cast<std::uint16_t>(sum);
+      }
       add(block, counts);
-      if (is_full()) return;
     }
   }
 

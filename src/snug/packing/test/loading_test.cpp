@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -10,6 +11,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/packing/instances.hpp"
+#include "snug/packing/internal/blocks.hpp"
 #include "snug/packing/representatives.hpp"
 
 namespace snug::packing {
@@ -82,12 +84,66 @@ TEST(LoadContainer, GivesTheSameLoadWithAnyNumberOfThreads) {
 
 TEST(LoadContainer, RefusesWhatCannotBeAndTakesNothing) {
   EXPECT_THROW((void)load_container({"", {0, 10, 10}, {}}, kQuick), InputError);
-  EXPECT_THROW((void)load_container({"", {10, 10, 2000000}, {}}, kQuick), InputError);
+  EXPECT_THROW((void)load_container({"", {10, 10, 200000}, {}}, kQuick), InputError);
   EXPECT_THROW((void)load_container({"", {10, 10, 10}, {{"a", {1, -1, 1}, {true, true, true}, 1}}}, kQuick),
                InputError);
   EXPECT_THROW((void)load_container({"", {10, 10, 10}, {}}, {std::nan(""), 1}), InputError);
   EXPECT_TRUE(load_container({"", {10, 10, 10}, {}}, kQuick).boxes.empty());
   EXPECT_TRUE(load_container({"", {10, 10, 10}, {{"big", {11, 1, 11}, {true, true, true}, 3}}}, kQuick).boxes.empty());
+}
+
+TEST(LoadContainer, CopesWithVeryManyBoxesOfOneKind) {
+  const LoadProblem problem{
+      "many", {40, 40, 40}, {{"a", {1, 1, 1}, {true, true, true}, 5000}, {"b", {2, 1, 3}, {true, true, true}, 5000}}};
+  const LoadResult result = load_container(problem, {0.02, 1});
+  EXPECT_TRUE(check_load(problem, result).empty());
+  EXPECT_GT(result.boxes.size(), 5000U);  // 35 000 of the 64 000 units of volume are there
+}
+
+/// Two to four boxes in every order, standing in every way, at every corner of what lies already: small enough to try.
+std::int64_t best_by_trying(const LoadProblem& problem, std::vector<LoadedBox>& placed, std::vector<int>& left) {
+  std::int64_t best = 0;
+  for (const LoadedBox& box : placed) best += std::int64_t{box.size[0]} * box.size[1] * box.size[2];
+  std::array<std::vector<int>, 3> starts{std::vector<int>{0}, std::vector<int>{0}, std::vector<int>{0}};
+  for (const LoadedBox& box : placed) {
+    for (std::size_t d = 0; d < 3; ++d) starts[d].push_back(box.low[d] + box.size[d]);
+  }
+  for (std::size_t t = 0; t < problem.types.size(); ++t) {
+    if (left[t] == 0) continue;
+    for (const std::array<int, 3>& size : internal::standing_sizes(problem.types[t])) {
+      for (const int x : starts[0]) {
+        for (const int y : starts[1]) {
+          for (const int z : starts[2]) {
+            placed.push_back({static_cast<int>(t), {x, y, z}, size});
+            --left[t];
+            if (check_load(problem, {placed, 0.0, 0, 0}).empty()) {
+              best = std::max(best, best_by_trying(problem, placed, left));
+            }
+            ++left[t];
+            placed.pop_back();
+          }
+        }
+      }
+    }
+  }
+  return best;
+}
+
+TEST(LoadContainer, IsAsGoodAsTryingEverythingOnTinyProblems) {
+  Rng rng = Rng(13).split("tiny");
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    LoadProblem problem;
+    for (int& edge : problem.container) edge = 4 + rng.index(4);
+    for (int t = 0; t < 3; ++t) {
+      problem.types.push_back({"t", {1 + rng.index(5), 1 + rng.index(5), 1 + rng.index(5)}, {true, true, true}, 1});
+    }
+    std::vector<LoadedBox> placed;
+    std::vector<int> left(3, 1);
+    const double volume = problem.container[0] * problem.container[1] * problem.container[2];
+    const double best = 100.0 * static_cast<double>(best_by_trying(problem, placed, left)) / volume;
+    EXPECT_GE(load_container(problem, kQuick).percent, best - 1e-9);  // rounding
+  }
 }
 
 TEST(CheckLoad, FindsEachKindOfMistake) {
@@ -96,6 +152,21 @@ TEST(CheckLoad, FindsEachKindOfMistake) {
   EXPECT_EQ(check_load(problem, {{{0, {0, 0, 0}, {4, 6, 5}}}, 0.0, 0, 0}).size(), 1U);  // 5 stands upright
   EXPECT_EQ(check_load(problem, {{{0, {7, 0, 0}, {4, 5, 6}}}, 0.0, 0, 0}).size(), 1U);  // outside
   EXPECT_EQ(check_load(problem, {{{0, {0, 0, 0}, {4, 5, 6}}, {0, {3, 0, 0}, {4, 5, 6}}}, 0.0, 0, 0}).size(), 2U);
+}
+
+TEST(Instances, OfOrdersRoundSoThatWhatIsLoadedFits) {
+  model::OrderLine line;
+  line.order = "o";
+  line.size = Vector3(0.1004, 0.1, 0.1);
+  line.count = 8;
+  const auto problems = problems_of({line}, Vector3(0.2009, 0.2, 0.2));
+  EXPECT_EQ(problems[0].types[0].size[0], 101);
+  EXPECT_EQ(problems[0].types[0].size[1], 100);
+  EXPECT_EQ(problems[0].container[0], 200);
+  line.handling.no_stack = true;
+  EXPECT_THROW((void)problems_of({line}, Vector3(0.2, 0.2, 0.2)), InputError);
+  line.handling.no_stack = false;
+  EXPECT_THROW((void)problems_of({line}, Vector3(1e12, 0.2, 0.2)), InputError);
 }
 
 TEST(Instances, ReadTheTextFormAndNameTheLineOfWhatIsWrong) {

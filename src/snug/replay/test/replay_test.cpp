@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 #include "snug/record/writer.hpp"
 #include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
@@ -298,16 +299,16 @@ TEST(Page, CodesBase64AsRfc4648Does) {
 
 TEST(Page, WritesWholeFilesOrNone) {
   const ScratchFolder folder;
-  write_whole_file(folder / "a.html", "first");
-  write_whole_file(folder / "a.html", "second");
+  write_file(folder / "a.html", "first");
+  write_file(folder / "a.html", "second");
   std::ifstream file(folder / "a.html");
   std::string text;
   std::getline(file, text);
   EXPECT_EQ(text, "second");
-  EXPECT_NE(complaint([&] { write_whole_file(folder / "no/such/a.html", "x"); }), "");
-  EXPECT_NE(complaint([&] { write_whole_file(folder / "", "x"); }), "");
+  EXPECT_NE(complaint([&] { write_file(folder / "no/such/a.html", "x"); }), "");
+  EXPECT_NE(complaint([&] { write_file(folder / "", "x"); }), "");
   std::filesystem::create_directory(folder / "b.html");
-  EXPECT_NE(complaint([&] { write_whole_file(folder / "b.html", "x"); }), "");
+  EXPECT_NE(complaint([&] { write_file(folder / "b.html", "x"); }), "");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}), 2);  // nothing half-written is left
 }
 

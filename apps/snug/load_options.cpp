@@ -1,0 +1,42 @@
+// load: what may be said after the verb.
+#include <memory>
+
+#include "load.hpp"
+#include "options.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kHelp =
+    R"(Boxes may stand on each other in any way that does not overlap: no support, weight or order of loading is asked for.
+FILE is one of
+  .txt   instances of Bischoff and Ratcliff in the OR-Library's form (thpack): containers and boxes
+  .csv   orders with a header, .json orders in the BED-BPP form: one problem for each order, with --container
+The time is turned into a fixed amount of work: the same input gives the same load, on any machine and any number of threads.
+Examples:
+  snug load BR1.txt --first 10 --time 30
+  snug load orders.json --container 1200 800 1450 --json -o loads.json)";
+
+}  // namespace
+
+void add_load(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand("load", "fill a container from a list of boxes, by geometry alone");
+  const auto options = std::make_shared<LoadOptions>();
+  verb.add_option("file", options->file, "instances or orders")->required()->type_name("FILE");
+  verb.add_option("--container", options->container_mm, "inner length, width and height of the container of orders")
+      ->expected(3)
+      ->check(positive())
+      ->type_name("MM");
+  verb.add_option("--time", options->time, "seconds on one core of 2.5 GHz for each problem")
+      ->capture_default_str()
+      ->check(positive())
+      ->type_name("S");
+  verb.add_option("--first", options->first, "only the first N problems")->check(whole(1))->type_name("N");
+  verb.add_option("--threads", options->threads, "")->capture_default_str()->check(whole(1))->type_name("N");
+  verb.add_flag("--json", options->json, "print JSON: every box, where it lies");
+  verb.add_option("-o,--output", options->output, "file to write instead of stdout")->type_name("FILE");
+  verb.footer(kHelp);
+  verb.callback([options, &action] { action = [options] { return run_load(*options); }; });
+}
+
+}  // namespace snug::app
