@@ -4,10 +4,12 @@
 #include "bench.hpp"
 #include "calibrate.hpp"
 #include "check.hpp"
+#include "compare.hpp"
 #include "cup.hpp"
 #include "export.hpp"
 #include "items.hpp"
 #include "load.hpp"
+#include "pack.hpp"
 #include "picture.hpp"
 #include "plot.hpp"
 #include "program.hpp"
@@ -19,6 +21,8 @@ namespace snug::app {
 
 void add_verbs(CLI::App& app, Action& action) {
   add_simulate(app, action);
+  add_pack(app, action);
+  add_compare(app, action);
   add_program(app, action);
   add_check(app, action);
   add_report(app, action);

@@ -228,6 +228,10 @@ CellState Simulation::adopt(const Simulation& other, const CellState& state) con
     const physics::BodyModel& theirs = other.world_.model.bodies[i];
     if (mine == theirs) continue;
     const physics::BodyId body{static_cast<int>(i)};
+    if (mine.kind == physics::BodyKind::Static) {  // stands where it stands here
+      physics::set_pose(world_.model, adopted.world, body, mine.X_WB);
+      continue;
+    }
     const Twist V_WB = physics::twist_of(other.world_.model, state.world, body);
     physics::set_pose(world_.model, adopted.world, body, physics::pose_of(other.world_.model, state.world, body));
     physics::set_twist(world_.model, adopted.world, body, V_WB);

@@ -80,7 +80,7 @@ class Simulation {
   [[nodiscard]] bool is_at_end(const motion::PreparedProgram& plan, const CellState& state) const;
 
   /// `state` of a simulation of the same cell with other sizes, masses or friction, continued here: every body keeps
-  /// its pose and twist.
+  /// its pose and twist; static ones stand where they stand in this cell.
   [[nodiscard]] CellState adopt(const Simulation& other, const CellState& state) const;
 
   [[nodiscard]] double time(const CellState& state) const { return state.world.time(world_.model); }

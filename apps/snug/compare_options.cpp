@@ -1,0 +1,34 @@
+// compare: what may be said after the verb.
+#include <memory>
+
+#include "compare.hpp"
+#include "options.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  snug compare scenarios/box-demonstrator.yaml
+  snug compare scenarios/box-demonstrator.yaml --sequences 1,3 --agents margin,contact-aware --json
+  snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --csv > rows.csv)";
+
+}  // namespace
+
+void add_compare(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand("compare", "agents side by side on the sequences, planned and executed");
+  const auto options = std::make_shared<CompareOptions>();
+  verb.add_option("scenario", options->pack.scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("--sequences", options->sequences, "all, or names separated by commas")
+      ->type_name("NAMES")
+      ->capture_default_str();
+  verb.add_option("--agents", options->agents, "all, or names separated by commas")
+      ->type_name("NAMES")
+      ->capture_default_str();
+  add_packing_options(verb, options->pack);
+  CLI::Option* json = verb.add_flag("--json", options->json, "print rows as JSON");
+  verb.add_flag("--csv", options->csv, "print rows as CSV")->excludes(json);
+  verb.footer(kExamples);
+  verb.callback([options, &action] { action = [options] { return run_compare(*options); }; });
+}
+
+}  // namespace snug::app

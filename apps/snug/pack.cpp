@@ -1,0 +1,92 @@
+// pack: packs a sequence, item by item, and says how that went.
+#include "pack.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include "pack_report.hpp"
+#include "run_report.hpp"
+#include "snug/cell/run.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/task/executions.hpp"
+
+namespace snug::app {
+namespace {
+
+void write_text(const std::string& path, const std::string& text) {
+  const std::string part = path + ".part";
+  {
+    std::ofstream file(part, std::ios::binary);
+    file << text;
+    if (!file.flush()) throw InputError(path, "", "", "a file that can be written");
+  }
+  if (std::rename(part.c_str(), path.c_str()) != 0) throw InputError(path, "", "", "a file that can be written");
+}
+
+/// The finished program once more, recorded.
+void record(const PackOptions& options, const model::Scenario& scenario, const task::SessionResult& result,
+            const task::SessionOptions& session) {
+  cell::RunOptions run;
+  run.program = result.program;
+  run.program_text = motion::format_program(result.program);
+  run.sequence = options.sequence;
+  run.simulation = session.simulation;
+  run.record_path = *options.record;
+  run.version = SNUG_VERSION;
+  run.describe = [](const cell::RunResult& one) { return format_json(one); };
+  (void)cell::run(scenario, run);
+}
+
+}  // namespace
+
+task::SessionOptions make_session_options(const PackOptions& options, const model::Scenario& scenario) {
+  task::SessionOptions session;
+  session.agent = options.agent;
+  session.packing.seed = options.seed.value_or(scenario.seed);
+  session.packing.decision_time = options.decision_time;
+  session.threads = options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  session.packing.threads = session.threads;
+  session.samples = options.samples;
+  if (options.look == "noisy") session.perception = task::Perception::Noisy;
+  if (options.look == "dead-reckoning") session.perception = task::Perception::DeadReckoning;
+  return session;
+}
+
+task::Progress make_progress_line(const std::string& label) {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [label](const task::SessionResult& so_far, int item, int items) {
+    const bool is_last = item == items || !so_far.stopped.empty();
+    const std::string line = fmt::format("{}: item {} of {}, {} packed, {:.1f} %", label, item, items,
+                                         so_far.executed_boxes, so_far.executed_percent);
+    std::fprintf(stderr, "\r%-78s%s", line.c_str(), is_last ? "\r\033[K" : "");
+    std::fflush(stderr);
+  };
+}
+
+int run_pack(const PackOptions& options) {
+  const model::Scenario scenario = model::load_scenario(options.scenario);
+  const task::SessionOptions session = make_session_options(options, scenario);
+  const task::SessionResult result =
+      task::pack(scenario, options.sequence, session, make_progress_line("sequence " + options.sequence));
+  task::ExecutionResult executions;
+  if (options.executions) {
+    task::ExecutionOptions repeated;
+    repeated.count = *options.executions;
+    repeated.seed = session.packing.seed;
+    repeated.threads = session.threads;
+    executions = task::repeat(scenario, result, repeated);
+  }
+  if (options.program && !result.program.waypoints.empty()) motion::write_program(result.program, *options.program);
+  if (options.plan) write_text(*options.plan, format_plan(result));
+  if (options.record && !result.program.waypoints.empty()) record(options, scenario, result, session);
+  const std::string text = options.json ? format_json(result, executions) : format_table(result, executions);
+  std::fputs(text.c_str(), stdout);
+  return kSuccess;
+}
+
+}  // namespace snug::app

@@ -1,0 +1,66 @@
+// pack: what may be said after the verb.
+#include <memory>
+
+#include "options.hpp"
+#include "pack.hpp"
+#include "snug/packing/agent.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  snug pack scenarios/box-demonstrator.yaml --sequence 1
+  snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --json
+  snug pack scenarios/box-demonstrator.yaml --sequence 2 --executions 20 --threads 2
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --program out.csv --plan out.json -o out.h5
+  snug simulate scenarios/box-demonstrator.yaml --program out.csv --sequence 1 --cup phases)";
+
+}  // namespace
+
+void add_packing_options(CLI::App& verb, PackOptions& options) {
+  verb.add_option("--seed", options.seed, "seed of roll-outs and samples (default: the scenario's)")
+      ->check(whole(0))
+      ->type_name("N");
+  verb.add_option("--decision-time", options.decision_time, "for deciding where an item goes, on one core")
+      ->check(positive())
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  verb.add_option("--threads", options.threads, "threads; the result does not depend on it (default: all cores)")
+      ->check(whole(1))
+      ->type_name("N");
+  verb.add_option("--samples", options.samples,
+                  "courses of events with uncertain sizes, friction, poses, masses and cup in which every motion is "
+                  "tried before it is done; 0: none")
+      ->check(whole(0))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_pack(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand("pack", "decide, item by item, where boxes go, and simulate the robot doing it");
+  const auto options = std::make_shared<PackOptions>();
+  verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("--sequence", options->sequence, "item sequence of the scenario")->required()->type_name("NAME");
+  verb.add_option("--agent", options->agent, "who decides")
+      ->check(one_of(packing::agent_names()))
+      ->type_name("NAME")
+      ->capture_default_str();
+  add_packing_options(verb, *options);
+  verb.add_option("--look", options->look,
+                  "what is known of packed boxes: exact poses, noisy poses (2 mm), or none (dead-reckoning)")
+      ->check(one_of({"exact", "noisy", "dead-reckoning"}))
+      ->type_name("HOW")
+      ->capture_default_str();
+  verb.add_option("--executions", options->executions,
+                  "repeat the finished program N times, open loop, under sampled uncertainty")
+      ->check(whole(1))
+      ->type_name("N");
+  verb.add_option("--program", options->program, "write the waypoint program")->type_name("FILE.csv");
+  verb.add_option("--plan", options->plan, "write the placements as JSON")->type_name("FILE.json");
+  verb.add_option("-o,--record", options->record, "write a recording of the program's run")->type_name("FILE.h5");
+  verb.add_flag("--json", options->json, "print the result as JSON");
+  verb.footer(kExamples);
+  verb.callback([options, &action] { action = [options] { return run_pack(*options); }; });
+}
+
+}  // namespace snug::app

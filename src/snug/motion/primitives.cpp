@@ -1,0 +1,171 @@
+// Motion primitives: pick, flip and place as waypoints with switches, from what shall happen to the box.
+#include "snug/motion/primitives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "snug/core/check.hpp"
+
+namespace snug::motion {
+namespace {
+
+constexpr IO kHold{.vacuum = true};
+constexpr IO kRelease{.blow_off = true};
+constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
+
+int vertical_axis_of(const Matrix3& R_WP) {
+  int axis = 0;
+  R_WP.row(2).cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
+
+Matrix3 turn(const Vector3& axis, double angle) { return exp_rotation(angle * axis); }
+
+Pose shifted(Pose X, const Vector3& by) {
+  X.p += by;
+  return X;
+}
+
+Pose at_height(Pose X, double z) {
+  X.p.z() = z;
+  return X;
+}
+
+/// Collects the rows of one box.
+class Rows {
+ public:
+  explicit Rows(std::string number) : number_(std::move(number)) {}
+  void add(const char* name, const Pose& X_WE, const IO& io, const char* suffix = "") {
+    rows_.push_back({X_WE, name + number_ + suffix, io, 0});
+  }
+  std::vector<Waypoint> take() { return std::move(rows_); }
+
+ private:
+  std::string number_;
+  std::vector<Waypoint> rows_;
+};
+
+/// The box of `intent`, tilted so that its low side leads, with its lowest corner at height `z`, shifted by `by`.
+Pose tilted_pose(const PlaceIntent& intent, const TiltedEntry& entry, double z, const Vector3& by) {
+  const Vector3 axis = Vector3::UnitZ().cross(entry.low_side);  // takes low_side down
+  Pose X_WP{turn(axis, entry.angle) * intent.X_WP.R, intent.X_WP.p};
+  // The corner that leads stays where it will be when the box is level.
+  const double breadth = 0.5 * (intent.X_WP.R.cwiseAbs() * intent.size).dot(entry.low_side.cwiseAbs());
+  const double height = -lowest_corner(intent.X_WP.R, intent.size);
+  const Vector3 corner = breadth * entry.low_side - height * Vector3::UnitZ();
+  X_WP.p += corner - turn(axis, entry.angle) * corner;
+  X_WP.p += by;
+  X_WP.p.z() += z - (X_WP.p.z() + lowest_corner(X_WP.R, intent.size));
+  return X_WP;
+}
+
+void add_tilted_entry(const PlaceIntent& intent, const TiltedEntry& entry, Rows& rows) {
+  const char* place = intent.gentle ? "PlaceSlow" : "Place";
+  const double height = -lowest_corner(intent.X_WP.R, intent.size);
+  const double low = entry.edge_height - entry.depth;
+  const auto tool = [&](const Pose& X_WP) { return intent.tool_for(X_WP); };
+  rows.add("PrePlace", tool(tilted_pose(intent, entry, entry.edge_height + 0.012, intent.come_from)), kHold, "_2");
+  rows.add(place, tool(tilted_pose(intent, entry, entry.edge_height + 0.006, entry.push)), kHold, "_tilted");
+  rows.add(place, tool(tilted_pose(intent, entry, low, entry.push)), kHold, "_in");
+  rows.add(place, tool(shifted(at_height(intent.X_WP, low + height), entry.push)), kHold, "_level");
+}
+
+}  // namespace
+
+double lowest_corner(const Matrix3& R_WP, const Vector3& size) {
+  return -0.5 * R_WP.row(2).cwiseAbs().dot(size.transpose());
+}
+
+Vector3 choose_cup_offset(const Matrix3& R_WP, const Vector3& size, const Vector3& com_P, double lip_radius) {
+  const int up = vertical_axis_of(R_WP);
+  Vector3 offset = com_P;
+  for (int i = 0; i < 3; ++i) {
+    const double room = i == up ? 0.0 : std::max(0.0, 0.5 * size[i] - lip_radius);
+    offset[i] = std::clamp(offset[i], -room, room);
+  }
+  return offset;
+}
+
+std::vector<Waypoint> pick_rows(const PickIntent& intent) {
+  const int up = vertical_axis_of(intent.X_WP.R);
+  const double sign = intent.X_WP.R(2, up) > 0.0 ? 1.0 : -1.0;
+  const Vector3 touched = intent.X_WP * (intent.cup_offset_P + 0.5 * sign * intent.size[up] * Vector3::Unit(up));
+  const Pose X_WE_pick{turn(Vector3::UnitZ(), intent.tool_yaw) * turn(Vector3::UnitY(), std::numbers::pi),
+                       touched + Vector3(0.0, 0.0, intent.length)};
+  Rows rows(intent.number);
+  rows.add(intent.again ? "PreRePick" : "PrePick", at_height(X_WE_pick, intent.approach_height), {});
+  rows.add(intent.again ? "RePick" : "Box", X_WE_pick, {});
+  rows.add(intent.again ? "PostRePick" : "PostPick", at_height(X_WE_pick, intent.lift_height), kHold);
+  return rows.take();
+}
+
+Matrix3 flipped(const Matrix3& R_WP, const Vector3& direction) {
+  return turn(-Vector3::UnitZ().cross(direction), kQuarterTurn) * R_WP;
+}
+
+std::vector<Waypoint> flip_rows(const FlipIntent& intent) {
+  SNUG_CHECK(std::abs(intent.direction.z()) < 1e-9, "a flip goes about a level edge");
+  const Vector3 axis = -Vector3::UnitZ().cross(intent.direction);  // turns down toward `direction`
+  const Vector3 half = 0.5 * (intent.R_WP.cwiseAbs() * intent.size);
+  const double along = half.dot(intent.direction.cwiseAbs());
+  // The edge about which the box turns, from the middle of the box: below, on the side away from `direction`.
+  const Vector3 edge = -along * intent.direction - half.z() * Vector3::UnitZ();
+  // Where that edge lies before the box is dragged.
+  const Vector3 p_WEdge = intent.p_WF + (half.z() + intent.dragged) * intent.direction;
+  const auto tool = [&](double angle, double height) {
+    const Matrix3 R = turn(axis, angle);
+    return intent.tool_for({R * intent.R_WP, p_WEdge + Vector3(0.0, 0.0, height) - R * edge});
+  };
+  Rows rows(intent.number);
+  const double above = intent.travel_bottom - intent.p_WF.z();
+  rows.add("PreTwist", tool(0.0, above), kHold);
+  rows.add("PreTwist", tool(0.6 * intent.tilt, 0.03), kHold, "_2");
+  rows.add("Twist", tool(intent.tilt - 0.15, -intent.press), kHold);
+  // From here on the surface carries the box: the cup is commanded without sag, so that it neither lifts the box nor
+  // turns it when it lets go.
+  const Matrix3 R_end = turn(axis, intent.tilt);
+  const Pose X_WE_end =
+      Pose{R_end * intent.R_WP, p_WEdge + Vector3(0.0, 0.0, -intent.press) - R_end * edge} * intent.X_PE;
+  rows.add("Twist", X_WE_end, kHold);
+  const Pose X_WE_back = shifted(X_WE_end, -intent.drag * intent.direction);
+  rows.add("TwistDrag", X_WE_back, kHold);
+  rows.add("TwistDrag", X_WE_back, kRelease);
+  // Up and upright again before the cup comes over the box.
+  const double over = intent.p_WF.z() + 2.0 * along + (intent.X_PE.p.norm() - half.z()) + 0.06;
+  rows.add("PreTwist", {intent.R_WP * intent.X_PE.R, Vector3(X_WE_back.p.x(), X_WE_back.p.y(), over)}, {}, "_back");
+  return rows.take();
+}
+
+std::vector<Waypoint> place_rows(const PlaceIntent& intent) {
+  const char* place = intent.gentle ? "PlaceSlow" : "Place";
+  const double height = -lowest_corner(intent.X_WP.R, intent.size);
+  const double rest = intent.X_WP.p.z() - height;  // z of the lower face
+  const auto tool = [&](double bottom, const Vector3& by) {
+    return intent.tool_for(shifted(at_height(intent.X_WP, bottom + height), by));
+  };
+  Rows rows(intent.number);
+  const Vector3& from = intent.come_from;
+  rows.add("PrePlace", tool(std::max(intent.travel_bottom, rest + 0.02), from), kHold);
+  Vector3 last = Vector3::Zero();
+  if (intent.tilted) {
+    add_tilted_entry(intent, *intent.tilted, rows);
+    last = intent.tilted->push;
+  } else {
+    if (intent.entry_bottom > rest + 0.01) rows.add("PrePlace", tool(intent.entry_bottom, from), kHold, "_2");
+    const bool slides = !(intent.overtravel.isZero() && from.isZero());
+    if (slides) {
+      rows.add(place, tool(rest + intent.slide_gap, from), kHold, "_down");
+      rows.add("PlaceSlow", tool(rest + intent.slide_gap, intent.overtravel), kHold, "_push");
+    }
+    last = intent.overtravel;
+  }
+  const Pose X_WE_end = tool(rest - intent.press, 0.5 * last);
+  rows.add(place, X_WE_end, kHold);
+  rows.add(place, X_WE_end, kRelease);
+  rows.add("PostPlace", at_height(X_WE_end, std::max(intent.travel_bottom, X_WE_end.p.z()) + 0.08), {});
+  return rows.take();
+}
+
+}  // namespace snug::motion

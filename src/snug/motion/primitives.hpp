@@ -1,0 +1,87 @@
+// Motion primitives: pick, flip and place as waypoints with switches, from what shall happen to the box.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/motion/waypoint.hpp"
+
+namespace snug::motion {
+
+/// The pose of the tool with which the box, hanging still from the cup, stands as asked (the cup's sag made up for).
+using ToolFor = std::function<Pose(const Pose& X_WP)>;
+
+/// Box as it stands, tool above it. Rows approach, press, lift with vacuum.
+struct PickIntent {
+  std::string number;                      ///< ends the rows' names
+  Pose X_WP;                               ///< of the standing box; may be turned and tilted a little
+  Vector3 size = Vector3::Constant(0.1);   ///< m, along Px, Py, Pz
+  Vector3 cup_offset_P = Vector3::Zero();  ///< m, in P, from the middle of the upper face to where the cup presses
+  double tool_yaw = 0.0;                   ///< rad, R_WE = Rz(yaw) Ry(pi)
+  double length = 0.058;                   ///< m, from E to the face when pressing
+  double approach_height = 0.2;            ///< m, z of E in W, before
+  double lift_height = 0.3;                ///< m, z of E in W, after
+  bool again = false;                      ///< the box was set down before: names PreRePick, RePick, PostRePick
+};
+[[nodiscard]] std::vector<Waypoint> pick_rows(const PickIntent& intent);
+
+/// Where on the upper face the cup should press, in P from the middle of that face: over the centre of mass, as far as
+/// a disc of `lip_radius` stays on the face.
+[[nodiscard]] Vector3 choose_cup_offset(const Matrix3& R_WP, const Vector3& size, const Vector3& com_P,
+                                        double lip_radius);
+
+/// Turn of a hanging box about its lower edge over a flat surface until the side that faced against `direction` is
+/// its lower face (report Figure 13), let go, tool drawn back and up.
+struct FlipIntent {
+  std::string number;
+  Matrix3 R_WP = Matrix3::Identity();     ///< of the hanging box before, standing on a face
+  Vector3 size = Vector3::Constant(0.1);  ///< m
+  Vector3 p_WF = Vector3::Zero();         ///< m, on the surface: under the middle of the box when it lies
+  Vector3 direction = Vector3::UnitX();   ///< unit, level: where the tool points at the end
+  double tilt = 1.5708;                   ///< rad, of the box before it is let go: a little less than a quarter turn
+  /// m, how far the tool is sent back along the surface with the box; it is let go on the way, where the precision of
+  /// TwistDrag is reached, at a speed that takes most of the push away that the cup gives when it lengthens.
+  double drag = 0.32;
+  double dragged = 0.12;        ///< m, of that before the box is let go
+  double press = 0.003;         ///< m, the edge is commanded below the surface
+  double travel_bottom = 0.08;  ///< m, z in W of the lower edge on the way in
+  Pose X_PE;                    ///< tool on the box, the cup not deformed
+  ToolFor tool_for;
+};
+[[nodiscard]] std::vector<Waypoint> flip_rows(const FlipIntent& intent);
+/// R_WP of the box that lies after this flip.
+[[nodiscard]] Matrix3 flipped(const Matrix3& R_WP, const Vector3& direction);
+
+/// A tight slot: the box enters tilted and is levelled while it is pushed.
+struct TiltedEntry {
+  Vector3 low_side = Vector3::UnitX();  ///< unit, level: the side that goes in first
+  Vector3 push = Vector3::Zero();       ///< m, level: how far the box is pushed beyond its place while it is levelled
+  double angle = 0.17;                  ///< rad
+  double edge_height = 0.0;             ///< m, z in W of the upper edge of the slot
+  double depth = 0.015;                 ///< m, how deep the low side goes in before the box is levelled
+};
+
+/// A box that hangs from the cup comes to rest in the container.
+struct PlaceIntent {
+  std::string number;
+  Pose X_WP;                              ///< at rest, level
+  Vector3 size = Vector3::Constant(0.1);  ///< m
+  ToolFor tool_for;
+  double travel_bottom = 0.1;            ///< m, z in W of the lower face when it crosses over things
+  double entry_bottom = 0.0;             ///< m, z of the lower face where it stops before it goes down
+  Vector3 come_from = Vector3::Zero();   ///< m, level: shift of the box on its way down, away from its neighbours
+  Vector3 overtravel = Vector3::Zero();  ///< m, level: how far it is pushed beyond its place, against neighbours
+  double slide_gap = 0.003;              ///< m, above its support while it slides
+  double press = 0.004;                  ///< m, commanded below its support before it is let go
+  std::optional<TiltedEntry> tilted;
+  bool gentle = false;  ///< slow rows (PlaceSlow) instead of quick ones
+};
+/// Rows PrePlace, PrePlace_2, Place ..., Place with vacuum off and blow-off on, PostPlace straight up.
+[[nodiscard]] std::vector<Waypoint> place_rows(const PlaceIntent& intent);
+
+/// z of the lowest corner of a box relative to its middle (negative).
+[[nodiscard]] double lowest_corner(const Matrix3& R_WP, const Vector3& size);
+
+}  // namespace snug::motion

@@ -1,0 +1,84 @@
+// Executions: a finished program repeated open loop under what nobody knows exactly.
+#include "snug/task/executions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snug::task {
+namespace {
+
+constexpr double kRest = 1.0;  ///< s, after the program
+
+struct Run {
+  std::vector<cell::BoxResult> boxes;
+  double percent = 0.0;
+};
+
+Run run_once(const model::Scenario& scenario, const SessionResult& session, const ExecutionOptions& options,
+             int index) {
+  const Rng rng = Rng(options.seed).split("execution " + std::to_string(index));
+  const model::Scenario changed = sample(scenario, session.sequence, options.uncertainty, rng);
+  Lane lane(changed, session.sequence, options.simulation);
+  (void)lane.run(session.program);
+  (void)lane.settle(session.program, kRest);
+  Run run;
+  run.boxes = lane.simulation().boxes(lane.state());
+  std::vector<std::string> packed;
+  for (const cell::BoxResult& box : run.boxes) {
+    if (box.state == cell::BoxState::Packed) packed.push_back(box.id);
+  }
+  run.percent =
+      model::compute_filling_degree_percent(scenario, *model::find_container(scenario, scenario.target), packed);
+  return run;
+}
+
+const cell::BoxResult* find_packed(const std::vector<cell::BoxResult>& boxes, const std::string& id) {
+  const auto box = std::ranges::find(boxes, id, &cell::BoxResult::id);
+  return box != boxes.end() && box->state == cell::BoxState::Packed ? &*box : nullptr;
+}
+
+ItemSpread spread_of(const std::string& id, const Pose& X_TP, const std::vector<Run>& runs) {
+  ItemSpread spread;
+  spread.id = id;
+  Vector3 sum = Vector3::Zero(), square = Vector3::Zero();
+  for (const Run& run : runs) {
+    const cell::BoxResult* box = find_packed(run.boxes, id);
+    if (box == nullptr) continue;
+    ++spread.succeeded;
+    const Vector3 off = box->X_TP.p - X_TP.p;
+    sum += off;
+    square += off.cwiseProduct(off);
+    spread.worst_distance = std::max(spread.worst_distance, off.norm());
+  }
+  if (spread.succeeded == 0) return spread;
+  const Vector3 mean = sum / spread.succeeded;
+  spread.deviation = (square / spread.succeeded - mean.cwiseProduct(mean)).cwiseMax(0.0).cwiseSqrt();
+  return spread;
+}
+
+}  // namespace
+
+ExecutionResult repeat(const model::Scenario& scenario, const SessionResult& session, const ExecutionOptions& options) {
+  ExecutionResult result;
+  result.count = options.count;
+  if (session.program.waypoints.empty() || options.count <= 0) return result;
+  std::vector<Run> runs(static_cast<std::size_t>(options.count));
+  for_each_parallel(options.count, options.threads,
+                    [&](int i) { runs[static_cast<std::size_t>(i)] = run_once(scenario, session, options, i); });
+  int good = 0;
+  for (const packing::Placement& placement : session.plan) {
+    const auto box = std::ranges::find(session.boxes, placement.item, &cell::BoxResult::id);
+    result.items.push_back(spread_of(placement.item, box != session.boxes.end() ? box->X_TP : placement.X_TP, runs));
+    good += result.items.back().succeeded;
+  }
+  result.success_percent =
+      100.0 * good / (static_cast<double>(result.items.size()) * static_cast<double>(options.count));
+  result.lowest_filling_percent = runs[0].percent;
+  for (const Run& run : runs) {
+    result.mean_filling_percent += run.percent / static_cast<double>(options.count);
+    result.lowest_filling_percent = std::min(result.lowest_filling_percent, run.percent);
+  }
+  return result;
+}
+
+}  // namespace snug::task

@@ -1,0 +1,270 @@
+// Executor: tries to bring a box to its place, in the course of events that counts and in those that could be.
+#include "snug/task/executor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace snug::task {
+namespace {
+
+constexpr double kRest = 0.4;      ///< s, after the last row, before the result is looked at
+constexpr double kUpright = 0.26;  ///< rad, a flipped box may lie this far from level to be picked again
+
+void append(motion::Program& program, std::vector<motion::Waypoint> rows) {
+  for (motion::Waypoint& row : rows) program.waypoints.push_back(std::move(row));
+}
+
+void merge(Episode& into, const Episode& episode) {
+  into.peak_force = std::max(into.peak_force, episode.peak_force);
+  into.peak_torque = std::max(into.peak_torque, episode.peak_torque);
+  into.duration += episode.duration;
+  if (into.failure.empty()) into.failure = episode.failure;
+}
+
+Vector3 up_axis(const packing::Orientation& orientation) {
+  return orientation.up_sign * Vector3::Unit(static_cast<int>(orientation.up));
+}
+
+/// Level distance and angle from where a box was planned. A turn about the vertical counts like a tilt.
+double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
+
+}  // namespace
+
+Executor::Executor(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options)
+    : scenario_(scenario), options_(options), layout_(make_layout(scenario)) {
+  lanes_.push_back(std::make_unique<Lane>(scenario, sequence, options.simulation));
+  const Rng rng(options.packing.seed);
+  for (int i = 0; i < options.samples; ++i) {
+    const Rng own = rng.split("sample " + std::to_string(i));
+    lanes_.push_back(
+        std::make_unique<Lane>(sample(scenario, sequence, options.uncertainty, own), sequence, options.simulation));
+  }
+  for (const auto& lane : lanes_) states_.push_back(lane->state());
+  program_.name = "pack";
+}
+
+void Executor::begin(int item) {
+  box_ = make_planned_box(scenario_, lanes_[0]->simulation().sequence(), item);
+  prefixes_.clear();
+}
+
+std::vector<std::optional<Pose>> Executor::poses(const Lane& lane) const {
+  std::vector<std::optional<Pose>> poses;
+  const auto count = lane.simulation().sequence().items.size();
+  for (std::size_t i = 0; i < count; ++i) poses.push_back(lane.pose_of(static_cast<int>(i)));
+  return poses;
+}
+
+void Executor::run_samples(const motion::Program& program, std::vector<Episode>& episodes) {
+  for_each_parallel(options_.samples, options_.threads, [&](int i) {
+    const auto slot = static_cast<std::size_t>(i) + 1;
+    merge(episodes[slot], lanes_[slot]->run(program));
+  });
+}
+
+/// Rows and their execution, in the lane that counts, for one quarter turn over an edge and the new pick.
+void Executor::flip(Prefix& prefix, Lane& lane, const Vector3& up_P, const Matrix3& R_WP, double travel) {
+  if (!layout_.flip_place) {
+    prefix.problem = "nothing flat to flip it on";
+    return;
+  }
+  motion::FlipIntent intent;
+  intent.number = box_.number;
+  intent.size = box_.size;
+  intent.p_WF = layout_.flip_place->p_WF;
+  intent.direction = layout_.flip_place->direction;
+  intent.R_WP = orientation_before_flip(R_WP, up_P, intent.direction);
+  intent.travel_bottom = travel;
+  const Pose& X_PS = lane.state().gripper.cup.X_PS;
+  intent.tool_for = make_tool_for(scenario_, box_, X_PS);
+  intent.X_PE = X_PS * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -scenario_.cup.hold_length)};
+  append(prefix.program, motion::flip_rows(intent));
+  merge(prefix.episodes[0], lane.run(prefix.program));
+}
+
+const Executor::Prefix& Executor::prefix_for(const packing::Placement& placement, double packed_top) {
+  for (const Prefix& known : prefixes_) {
+    if (known.orientation == placement.orientation) return known;
+  }
+  Prefix& prefix = prefixes_.emplace_back();
+  prefix.orientation = placement.orientation;
+  prefix.program = program_;
+  prefix.episodes.resize(lanes_.size());
+  for (std::size_t i = 0; i < lanes_.size(); ++i) lanes_[i]->restore(states_[i]);
+  Lane& lane = *lanes_[0];
+  const double travel = travel_bottom(layout_, packed_top);
+  const Matrix3 R_WP_goal = layout_.X_WT.R * packing::rotation(placement.orientation);
+  const Vector3 up_P = up_axis(placement.orientation);
+
+  Pose X_WP = arrival_pose(scenario_, lane.simulation().sequence().items[static_cast<std::size_t>(box_.item)]);
+  for (int round = 0; round < 4 && prefix.problem.empty(); ++round) {
+    const bool stands = (X_WP.R * up_P).z() > std::cos(kUpright);
+    // Upside down: any other axis first.
+    Vector3 next_up = up_P;
+    if ((X_WP.R * up_P).z() < -std::cos(kUpright)) {
+      int axis = 0;
+      X_WP.R.row(2).cwiseAbs().minCoeff(&axis);
+      next_up = Vector3::Unit(axis);
+    }
+    const Matrix3 R_next = stands || !layout_.flip_place
+                               ? R_WP_goal
+                               : orientation_before_flip(X_WP.R, next_up, layout_.flip_place->direction);
+    append(prefix.program, plan_pick(scenario_, box_, X_WP, R_next, travel, round > 0));
+    merge(prefix.episodes[0], lane.run(prefix.program));
+    if (!lane.is_held(box_.item)) {
+      prefix.problem = round > 0 ? "the cup did not hold it after the flip" : "the cup did not hold it";
+      break;
+    }
+    if (stands) break;
+    if (round >= 2) {
+      prefix.problem = "it did not come to lie on the side that was wanted";
+      break;
+    }
+    flip(prefix, lane, next_up, X_WP.R, travel);
+    if (const std::optional<Pose> seen = lane.pose_of(box_.item); seen && prefix.problem.empty()) X_WP = *seen;
+    const double level = X_WP.R.row(2).cwiseAbs().maxCoeff();
+    if (level < std::cos(kUpright)) prefix.problem = "it did not come to lie flat after the flip";
+  }
+  if (!prefix.problem.empty()) return prefix;
+  prefix.X_PS = lane.state().gripper.cup.X_PS;
+  if (!prefix.episodes[0].failure.empty()) prefix.problem = prefix.episodes[0].failure;
+  run_samples(prefix.program, prefix.episodes);
+  for (const auto& each : lanes_) prefix.states.push_back(each->state());
+  return prefix;
+}
+
+Executor::Outcome Executor::judge(const Lane& lane, const std::vector<std::optional<Pose>>& before,
+                                  const Pose& X_TP) const {
+  Outcome outcome;
+  const std::string& id = lane.simulation().sequence().items[static_cast<std::size_t>(box_.item)].parcel;
+  const std::optional<Pose> X_WP = lane.pose_of(box_.item);
+  if (!X_WP) {
+    outcome.reason = "it is gone";
+    return outcome;
+  }
+  const Pose X_TP_is = layout_.X_WT.inverse() * *X_WP;
+  outcome.position_error = level_distance(X_TP_is, X_TP);
+  outcome.angle_error = angle_between(X_TP_is.R, X_TP.R);
+  bool all_in = true, is_in = false;
+  const std::vector<cell::BoxResult> boxes = lane.simulation().boxes(lane.state());
+  for (const cell::BoxResult& box : boxes) {
+    const bool packed = box.state == cell::BoxState::Packed;
+    if (box.id == id) {
+      is_in = packed;
+      if (!packed) {
+        outcome.reason = fmt::format("{} ({:.0f} mm beyond a wall, {:.0f} mm over the rim)", cell::name_of(box.state),
+                                     1e3 * box.outside, 1e3 * box.above_rim);
+      }
+    } else if (!packed && box.state != cell::BoxState::Waiting) {
+      all_in = false;
+    }
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (!before[i] || static_cast<int>(i) == box_.item) continue;
+    const std::optional<Pose> after = lane.pose_of(static_cast<int>(i));
+    if (after) outcome.forces.displacement = std::max(outcome.forces.displacement, (after->p - before[i]->p).norm());
+  }
+  const PlaceLimits& limits = options_.limits;
+  if (is_in && outcome.position_error > limits.position) {
+    outcome.reason = fmt::format("{:.0f} mm from its place", 1e3 * outcome.position_error);
+  } else if (is_in && outcome.angle_error > limits.tilt) {
+    outcome.reason = fmt::format("{:.0f} degrees from its place", outcome.angle_error * 180.0 / std::numbers::pi);
+  } else if (is_in && outcome.forces.displacement > limits.displacement) {
+    outcome.reason = fmt::format("another box moved {:.0f} mm", 1e3 * outcome.forces.displacement);
+  } else if (is_in && !all_in) {
+    outcome.reason = "another box came out of the container";
+  }
+  outcome.succeeded = outcome.reason.empty();
+  return outcome;
+}
+
+Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVariant& variant, double packed_top) {
+  Attempt attempt;
+  attempt.planned = candidate.placement;
+  attempt.manner = variant.manner;
+  const std::size_t known = prefixes_.size();
+  const Prefix& prefix = prefix_for(candidate.placement, packed_top);
+  attempt.was_simulated = prefix.problem.empty() || prefixes_.size() > known;
+  if (!prefix.problem.empty()) {
+    attempt.reason = prefix.problem;
+    return attempt;
+  }
+  attempt.program = prefix.program;
+  PlaceRequest request{box_, prefix.X_PS, candidate.placement.X_TP, variant, packed_top};
+  append(attempt.program, plan_place(scenario_, layout_, request));
+  const std::size_t count = lanes_.size();
+  std::vector<Outcome> outcomes(count);
+  const auto execute = [&](int lane_index) {
+    const auto i = static_cast<std::size_t>(lane_index);
+    Lane& lane = *lanes_[i];
+    lane.restore(states_[i]);
+    const auto before = poses(lane);
+    lane.restore(prefix.states[i]);
+    Episode episode = prefix.episodes[i];
+    merge(episode, lane.run(attempt.program));
+    const cell::CellState end = lane.state();
+    merge(episode, lane.settle(attempt.program, kRest));
+    outcomes[i] = judge(lane, before, candidate.placement.X_TP);
+    outcomes[i].forces.force = episode.peak_force;
+    outcomes[i].forces.torque = episode.peak_torque;
+    if (!episode.failure.empty()) outcomes[i].reason = episode.failure;
+    if (outcomes[i].reason.empty() && episode.peak_force > options_.limits.force) {
+      outcomes[i].reason = fmt::format("{:.0f} N on the box", episode.peak_force);
+    }
+    outcomes[i].succeeded = outcomes[i].reason.empty();
+    lane.restore(end);
+  };
+  execute(0);
+  attempt.succeeded = outcomes[0].succeeded;
+  attempt.reason = outcomes[0].reason;
+  attempt.happened = outcomes[0].forces;
+  attempt.position_error = outcomes[0].position_error;
+  attempt.angle_error = outcomes[0].angle_error;
+  if (!attempt.succeeded) return attempt;
+  for_each_parallel(static_cast<int>(count) - 1, options_.threads, [&](int i) { execute(i + 1); });
+  int good = 0;
+  for (std::size_t i = 1; i < count; ++i) {
+    good += outcomes[i].succeeded ? 1 : 0;
+    if (attempt.reason.empty()) attempt.reason = outcomes[i].reason;
+    attempt.predicted.force = std::max(attempt.predicted.force, outcomes[i].forces.force);
+    attempt.predicted.torque = std::max(attempt.predicted.torque, outcomes[i].forces.torque);
+    attempt.predicted.displacement = std::max(attempt.predicted.displacement, outcomes[i].forces.displacement);
+  }
+  attempt.share = count > 1 ? static_cast<double>(good) / static_cast<double>(count - 1) : 1.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    attempt.states.push_back(lanes_[i]->state());
+    attempt.is_sound.push_back(outcomes[i].succeeded);
+  }
+  return attempt;
+}
+
+void Executor::take(Attempt attempt) {
+  program_ = std::move(attempt.program);
+  states_ = std::move(attempt.states);
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    // A course of events in which this box was lost says nothing about the next ones: it goes on as if it had not been.
+    if (i > 0 && !attempt.is_sound[i]) {
+      states_[i] = lanes_[i]->simulation().adopt(lanes_[0]->simulation(), states_[0]);
+    }
+    lanes_[i]->restore(states_[i]);
+  }
+}
+
+void Executor::finish() {
+  if (!program_.waypoints.empty()) {
+    motion::Waypoint home;
+    home.X_WE = scenario_.controller.X_WE_start;
+    home.name = "home";
+    program_.waypoints.push_back(home);
+    lanes_[0]->restore(states_[0]);
+    (void)lanes_[0]->run(program_);
+    // As a run of the whole program does: one second after the tick in which it ends.
+    (void)lanes_[0]->settle(program_, 0.5 * scenario_.controller.tick);
+    (void)lanes_[0]->settle(program_, 1.0);
+  }
+}
+
+}  // namespace snug::task

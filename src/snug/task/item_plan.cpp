@@ -1,0 +1,247 @@
+// ItemPlan: from a box and the place it shall have to the rows that bring it there.
+#include "snug/task/item_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "snug/core/input_error.hpp"
+#include "snug/cup/statics.hpp"
+
+namespace snug::task {
+namespace {
+
+constexpr double kTravelClearance = 0.06;  ///< m, more than the precision of rows that are passed on the fly
+constexpr double kEntryClearance = 0.01;   ///< m, where the box stops before it goes in
+constexpr double kFlipRoom = 0.16;         ///< m, from the middle of a lying box to the edges of its surface
+
+struct Top {
+  Vector3 low, high;  ///< corners in W
+};
+
+std::vector<Top> static_tops(const model::Scenario& scenario) {
+  std::vector<Top> tops;
+  for (const model::Body& body : scenario.bodies) {
+    if (body.kind != model::BodyKind::Static) continue;
+    for (const model::PlacedShape& shape : body.shapes) {
+      const auto* box = std::get_if<geometry::Box>(&shape.shape);
+      if (box == nullptr) continue;
+      const Pose X_WG = body.X_WB * shape.X_BG;
+      const Vector3 reach = X_WG.R.cwiseAbs() * box->half;
+      tops.push_back({X_WG.p - reach, X_WG.p + reach});
+    }
+  }
+  return tops;
+}
+
+/// The highest surface that is large enough, near the way from aligner to container.
+std::optional<FlipPlace> find_flip_place(const std::vector<Top>& tops, const Vector3& from, const Vector3& to) {
+  const Vector3 middle = 0.5 * (from + to);
+  std::optional<FlipPlace> best;
+  double best_distance = 0.0;
+  for (const Top& top : tops) {
+    const Vector3 low = top.low + Vector3::Constant(kFlipRoom), high = top.high - Vector3::Constant(kFlipRoom + 0.08);
+    if (low.x() > high.x() || low.y() > high.y()) continue;
+    const Vector3 spot(std::clamp(middle.x(), low.x(), high.x()), std::clamp(middle.y(), low.y(), high.y()),
+                       top.high.z());
+    const double distance = (spot - middle).head<2>().norm();
+    const bool is_higher = best && spot.z() > best->p_WF.z() + 1e-6;
+    const bool is_as_high = best && std::abs(spot.z() - best->p_WF.z()) <= 1e-6;
+    if (best && !is_higher && !(is_as_high && distance < best_distance)) continue;
+    const Vector3 way = to - from;
+    const bool along_x = std::abs(way.x()) >= std::abs(way.y());
+    best = FlipPlace{spot, along_x ? Vector3(std::copysign(1.0, way.x()), 0.0, 0.0)
+                                   : Vector3(0.0, std::copysign(1.0, way.y()), 0.0)};
+    best_distance = distance;
+  }
+  return best;
+}
+
+double yaw_between(const Matrix3& R_from, const Matrix3& R_to) {
+  const Matrix3 R = R_to * R_from.transpose();
+  return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+}
+
+/// Length beside the box that is free of neighbours is at least this where it can come down and slide.
+constexpr double kSlideRoom = 0.008;       ///< m
+constexpr double kTight = 0.007;           ///< m, a neighbour nearer than this is met on the way down
+constexpr double kOvertravel = 0.005;      ///< m
+constexpr double kLeastNeighbour = 0.012;  ///< m, lower things beside the box do not guide it
+
+struct AxisView {
+  double low = 1.0, high = 1.0;          ///< m, gaps
+  double low_top = 0.0, high_top = 0.0;  ///< m, of the neighbours over the lower face
+  [[nodiscard]] bool low_near() const { return low < kTight && low_top > kLeastNeighbour; }
+  [[nodiscard]] bool high_near() const { return high < kTight && high_top > kLeastNeighbour; }
+};
+
+AxisView view(const packing::Candidate& candidate, int axis) {
+  const auto low = static_cast<std::size_t>(2 * axis), high = low + 1;
+  return {candidate.side_gap[low], candidate.side_gap[high], candidate.side_height[low], candidate.side_height[high]};
+}
+
+}  // namespace
+
+const char* name_of(PlaceManner manner) {
+  switch (manner) {
+    case PlaceManner::Straight:
+      return "straight";
+    case PlaceManner::Slide:
+      return "slide";
+    case PlaceManner::Tilted:
+      return "tilted";
+  }
+  return "";
+}
+
+CellLayout make_layout(const model::Scenario& scenario) {
+  const model::Container* container = model::find_container(scenario, scenario.target);
+  if (!scenario.aligner || !scenario.tool || container == nullptr) {
+    throw InputError(scenario.source_name, "", "", "a cell with an aligner, a tool and a target container");
+  }
+  CellLayout layout;
+  layout.X_WT = container->X_WT;
+  layout.inner_size = container->inner_size;
+  layout.fixed_top = std::max(scenario.aligner->X_WA.p.z(), scenario.aligner->support_height);
+  const std::vector<Top> tops = static_tops(scenario);
+  for (const Top& top : tops) layout.fixed_top = std::max(layout.fixed_top, top.high.z());
+  layout.flip_place = find_flip_place(tops, scenario.aligner->X_WA.p, container->X_WT.p);
+  return layout;
+}
+
+double travel_bottom(const CellLayout& layout, double packed_top) {
+  const double rim = layout.X_WT.p.z() + std::max(layout.inner_size.z(), packed_top);
+  return std::max(rim, layout.fixed_top) + kTravelClearance;
+}
+
+std::vector<PlaceVariant> choose_variants(const packing::Candidate& candidate, const Vector3& size) {
+  PlaceVariant base;
+  int tight_axis = -1;
+  bool slides = false;
+  for (int axis = 0; axis < 2; ++axis) {
+    const AxisView v = view(candidate, axis);
+    if (v.low_near() && v.high_near()) {
+      if (tight_axis < 0 || view(candidate, tight_axis).low + view(candidate, tight_axis).high > v.low + v.high) {
+        tight_axis = axis;
+      }
+    } else if (v.low_near() && v.high > kSlideRoom) {
+      base.come_from_T[axis] = std::min(0.010, v.high - 0.003);
+      base.overtravel_T[axis] = -kOvertravel;
+      slides = true;
+    } else if (v.high_near() && v.low > kSlideRoom) {
+      base.come_from_T[axis] = -std::min(0.010, v.low - 0.003);
+      base.overtravel_T[axis] = kOvertravel;
+      slides = true;
+    }
+  }
+  base.manner = slides ? PlaceManner::Slide : PlaceManner::Straight;
+  std::vector<PlaceVariant> variants{base};
+  if (tight_axis >= 0) {
+    const AxisView v = view(candidate, tight_axis);
+    const double bottom = candidate.placement.X_TP.p.z() + motion::lowest_corner(candidate.placement.X_TP.R, size);
+    PlaceVariant tilted = base;
+    tilted.manner = PlaceManner::Tilted;
+    tilted.edge_height_T = bottom + std::min(v.low_top, v.high_top);
+    const double low_side = v.low_top > v.high_top ? 1.0 : -1.0;
+    tilted.low_side_T[tight_axis] = low_side;
+    // A taller neighbour is what the box is pushed against; among equals the side that goes in first.
+    const double taller = std::abs(v.low_top - v.high_top) > 0.03 ? -low_side : low_side;
+    tilted.push_T = base.overtravel_T;
+    tilted.push_T[tight_axis] = taller * 0.004;
+    tilted.come_from_T[tight_axis] = -taller * 0.004;
+    variants.push_back(tilted);
+    tilted.low_side_T = -tilted.low_side_T;
+    tilted.push_T[tight_axis] = -tilted.push_T[tight_axis];
+    tilted.come_from_T[tight_axis] = -tilted.come_from_T[tight_axis];
+    variants.push_back(tilted);
+  } else if (slides) {
+    PlaceVariant gentle = base;
+    gentle.overtravel_T *= 0.4;
+    gentle.gentle = true;
+    variants.push_back(gentle);
+  }
+  return variants;
+}
+
+PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item) {
+  const std::string& id = sequence.items[static_cast<std::size_t>(item)].parcel;
+  const model::Parcel& parcel = *model::find_parcel(scenario, id);
+  const bool has_prefix = id.size() > 3 && (id.starts_with("BOX") || id.starts_with("Box"));
+  return {item, has_prefix ? id.substr(3) : id, model::collision_size(scenario, parcel), parcel.inertia};
+}
+
+std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
+                                        const Matrix3& R_WP_next, double travel, bool again) {
+  motion::PickIntent intent;
+  intent.number = box.number;
+  intent.X_WP = X_WP;
+  intent.size = box.size;
+  const double radius = 0.5 * scenario.cup.effective_diameter + 0.001;
+  intent.cup_offset_P = motion::choose_cup_offset(X_WP.R, box.size, box.inertia.com, radius);
+  intent.tool_yaw = -0.5 * yaw_between(X_WP.R, R_WP_next);
+  intent.length = scenario.cup.hold_length + 0.35 * (scenario.cup.free_length - scenario.cup.hold_length);
+  intent.again = again;
+  const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);
+  const double top = X_WP.p.z() + 0.5 * height;
+  intent.approach_height = std::max(travel + 0.02, top + (again ? 0.03 : kTravelClearance)) + scenario.cup.free_length;
+  if (again) intent.approach_height = top + 0.03 + scenario.cup.free_length;
+  intent.lift_height = travel + height + scenario.cup.hold_length;
+  return motion::pick_rows(intent);
+}
+
+Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction) {
+  const Vector3 now = R_WP * up_P;
+  const double yaw = std::atan2(direction.y(), direction.x()) - std::atan2(now.y(), now.x());
+  return exp_rotation(Vector3(0.0, 0.0, yaw)) * R_WP;
+}
+
+motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS) {
+  const model::CupParams& params = scenario.cup;
+  cup::HeldLoad load;
+  load.mass = box.inertia.mass;
+  load.p_SScm = X_PS.inverse() * box.inertia.com;
+  load.stiffness = cup::as_matrix(params.stiffness);
+  load.X_ES2 = Pose{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length - params.centre_from_lip)};
+  load.X_SS1 = Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -params.centre_from_lip)};
+  load.gravity_W = scenario.gravity;
+  const Pose X_ES_rest{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length)};
+  return [load, X_PS, X_ES_rest](const Pose& X_WP) {
+    // The sag depends on how the tool is turned, and that on the sag: a few rounds settle it to below 0.01 degrees.
+    Pose X_ES = X_ES_rest;
+    for (int i = 0; i < 4; ++i) {
+      cup::HeldLoad turned = load;
+      turned.R_WE = X_WP.R * X_PS.R * X_ES.R.transpose();
+      const cup::SettleResult result = cup::settle(turned);
+      if (result.status != cup::SettleStatus::Converged) break;
+      X_ES = result.X_ES;
+    }
+    return X_WP * X_PS * X_ES.inverse();
+  };
+}
+
+std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
+                                         const PlaceRequest& request) {
+  const Matrix3& R_WT = layout.X_WT.R;
+  motion::PlaceIntent intent;
+  intent.number = request.box.number;
+  intent.X_WP = layout.X_WT * request.X_TP;
+  intent.size = request.box.size;
+  intent.tool_for = make_tool_for(scenario, request.box, request.X_PS);
+  intent.travel_bottom = travel_bottom(layout, request.packed_top);
+  const double rim = std::max(layout.inner_size.z(), request.packed_top);
+  intent.entry_bottom = layout.X_WT.p.z() + rim + kEntryClearance;
+  intent.come_from = R_WT * request.variant.come_from_T;
+  intent.overtravel = R_WT * request.variant.overtravel_T;
+  intent.gentle = request.variant.gentle;
+  intent.press = 0.005;
+  if (request.variant.manner == PlaceManner::Tilted) {
+    motion::TiltedEntry entry;
+    entry.low_side = R_WT * request.variant.low_side_T;
+    entry.push = R_WT * request.variant.push_T;
+    entry.edge_height = layout.X_WT.p.z() + request.variant.edge_height_T;
+    intent.tilted = entry;
+  }
+  return motion::place_rows(intent);
+}
+
+}  // namespace snug::task

@@ -1,0 +1,83 @@
+// ItemPlan: from a box and the place it shall have to the rows that bring it there.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/motion/primitives.hpp"
+#include "snug/packing/placement.hpp"
+#include "snug/task/lane.hpp"
+
+namespace snug::task {
+
+/// The flat surface on which boxes are flipped.
+struct FlipPlace {
+  Vector3 p_WF = Vector3::Zero();        ///< m, under the middle of the box
+  Vector3 direction = Vector3::UnitX();  ///< unit, where the tool points when it lets go
+};
+
+/// What the plans of all items have in common.
+struct CellLayout {
+  Pose X_WT;                             ///< target container
+  Vector3 inner_size = Vector3::Zero();  ///< m
+  double fixed_top = 0.0;                ///< m, z in W of the highest fixed thing that the tool passes
+  std::optional<FlipPlace> flip_place;   ///< absent: nothing flat is large enough
+};
+/// Throws InputError for a scenario without aligner, tool or target container.
+[[nodiscard]] CellLayout make_layout(const model::Scenario& scenario);
+
+/// How a box is brought to its place.
+enum class PlaceManner {
+  Straight,  ///< from above
+  Slide,     ///< beside its place, then pushed against its neighbours
+  Tilted,    ///< one side first, levelled while it is pushed
+};
+[[nodiscard]] const char* name_of(PlaceManner manner);
+
+/// A manner and how much of it.
+struct PlaceVariant {
+  PlaceManner manner = PlaceManner::Straight;
+  Vector3 come_from_T = Vector3::Zero();   ///< m
+  Vector3 overtravel_T = Vector3::Zero();  ///< m
+  Vector3 low_side_T = Vector3::Zero();    ///< Tilted: unit
+  Vector3 push_T = Vector3::Zero();        ///< Tilted: m
+  double edge_height_T = 0.0;              ///< Tilted: m
+  bool gentle = false;
+};
+/// Manners worth trying for a candidate, the most promising first; never empty.
+[[nodiscard]] std::vector<PlaceVariant> choose_variants(const packing::Candidate& candidate, const Vector3& size);
+
+/// A box of the plan: as the scenario has it.
+struct PlannedBox {
+  int item = 0;  ///< of the sequence
+  std::string number;
+  Vector3 size = Vector3::Constant(0.1);  ///< m, collision size
+  SpatialInertia inertia;
+};
+[[nodiscard]] PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item);
+
+/// Rows that pick the box where it stands, so that it can be brought to stand like `R_WP_next` next.
+[[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const PlannedBox& box,
+                                                      const Pose& X_WP, const Matrix3& R_WP_next, double travel_bottom,
+                                                      bool again);
+/// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.
+[[nodiscard]] Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction);
+
+/// Tool over a box that hangs still from the cup where `X_PS` is the lip on it.
+[[nodiscard]] motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS);
+
+struct PlaceRequest {
+  PlannedBox box;
+  Pose X_PS;  ///< lip on the held box
+  Pose X_TP;  ///< where it shall rest
+  PlaceVariant variant;
+  double packed_top = 0.0;  ///< m, z in T of the highest box in the container
+};
+[[nodiscard]] std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
+                                                       const PlaceRequest& request);
+
+/// z in W below which nothing passes that crosses the cell: over fixed things, rim and packed boxes.
+[[nodiscard]] double travel_bottom(const CellLayout& layout, double packed_top);
+
+}  // namespace snug::task

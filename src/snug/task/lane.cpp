@@ -1,0 +1,85 @@
+// Lane: one course of events of a cell: the one that counts, or one that could be; runs rows, can go back.
+#include "snug/task/lane.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+
+namespace snug::task {
+namespace {
+
+constexpr double kLongestEpisode = 7200.0;  ///< s
+
+}  // namespace
+
+Lane::Lane(const model::Scenario& scenario, const std::string& sequence, const cell::SimulationOptions& options)
+    : simulation_(std::make_unique<cell::Simulation>(scenario, sequence, options)),
+      state_(simulation_->make_state()),
+      work_(simulation_->make_workspace()) {}
+
+bool Lane::advance(const motion::PreparedProgram& plan, Episode& episode) {
+  const cell::CellTick tick = simulation_->advance(plan, state_, work_);
+  episode.failure = tick.failure;
+  episode.peak_force = std::max(episode.peak_force, state_.gripper.F_S.force.norm());
+  episode.peak_torque = std::max(episode.peak_torque, state_.gripper.F_S.torque.norm());
+  return tick.failure.empty();
+}
+
+Episode Lane::run(const motion::Program& program) {
+  Episode episode;
+  const motion::PreparedProgram plan = simulation_->prepare(program);
+  const double start = time();
+  while (!simulation_->is_at_end(plan, state_)) {
+    if (!advance(plan, episode)) break;
+    if (time() - start > kLongestEpisode) {
+      episode.failure = "the rows did not end within two hours";
+      break;
+    }
+  }
+  episode.duration = time() - start;
+  return episode;
+}
+
+Episode Lane::settle(const motion::Program& program, double seconds) {
+  Episode episode;
+  const motion::PreparedProgram plan = simulation_->prepare(program);
+  const double start = time();
+  while (time() - start < seconds && advance(plan, episode)) {
+  }
+  episode.duration = time() - start;
+  return episode;
+}
+
+std::optional<Pose> Lane::pose_of(int item) const {
+  const physics::BodyId body = simulation_->world().parcels[static_cast<std::size_t>(item)];
+  if (!state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) return std::nullopt;
+  return physics::pose_of(simulation_->world().model, state_.world, body);
+}
+
+bool Lane::is_held(int item) const {
+  return state_.gripper.cup.body == simulation_->world().parcels[static_cast<std::size_t>(item)].index;
+}
+
+void for_each_parallel(int count, int threads, const std::function<void(int)>& work) {
+  std::vector<std::exception_ptr> errors(static_cast<std::size_t>(std::max(0, count)));
+  std::atomic<int> next{0};
+  const auto loop = [&] {
+    for (int i = next++; i < count; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        errors[static_cast<std::size_t>(i)] = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (int i = 1; i < std::min(threads, count); ++i) helpers.emplace_back(loop);
+  loop();
+  for (std::thread& helper : helpers) helper.join();
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+}  // namespace snug::task

@@ -1,0 +1,51 @@
+// Lane: one course of events of a cell: the one that counts, or one that could be; runs rows, can go back.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/cell/simulation.hpp"
+#include "snug/motion/waypoint.hpp"
+
+namespace snug::task {
+
+/// What happened while rows were executed.
+struct Episode {
+  double peak_force = 0.0;   ///< N, of the cup on the held box
+  double peak_torque = 0.0;  ///< Nm, about the lip
+  double duration = 0.0;     ///< s, simulated
+  std::string failure;       ///< empty, or why the simulation had to stop
+};
+
+class Lane {
+ public:
+  Lane(const model::Scenario& scenario, const std::string& sequence, const cell::SimulationOptions& options);
+
+  /// Executes the rows of `program` that were not executed yet, up to the moment when more can be appended.
+  Episode run(const motion::Program& program);
+  /// Goes on at the end of `program` for this long: boxes come to rest.
+  Episode settle(const motion::Program& program, double seconds);
+
+  [[nodiscard]] const cell::CellState& state() const { return state_; }
+  void restore(const cell::CellState& state) { state_ = state; }
+  [[nodiscard]] const cell::Simulation& simulation() const { return *simulation_; }
+  [[nodiscard]] double time() const { return simulation_->time(state_); }
+  /// X_WP of an item of the sequence; none when it is not in the cell.
+  [[nodiscard]] std::optional<Pose> pose_of(int item) const;
+  [[nodiscard]] bool is_held(int item) const;
+
+ private:
+  bool advance(const motion::PreparedProgram& plan, Episode& episode);
+
+  std::unique_ptr<cell::Simulation> simulation_;
+  cell::CellState state_;
+  cell::CellWorkspace work_;
+};
+
+/// Calls `work(i)` for 0 .. count-1 on as many threads; the first exception is thrown again.
+void for_each_parallel(int count, int threads, const std::function<void(int)>& work);
+
+}  // namespace snug::task

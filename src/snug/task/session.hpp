@@ -1,0 +1,98 @@
+// PackingSession: item after item, decide, try in what could be, do it, look, go on.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/packing/agent.hpp"
+#include "snug/task/item_plan.hpp"
+#include "snug/task/uncertainty.hpp"
+
+namespace snug::task {
+
+/// How the session learns where boxes came to rest.
+enum class Perception {
+  Exact,          ///< the poses of the simulation
+  Noisy,          ///< those with noise
+  DeadReckoning,  ///< never: boxes are believed to be where they were planned
+};
+
+/// When an item counts as placed.
+struct PlaceLimits {
+  double position = 0.020;                       ///< m, level distance from where it was planned
+  double tilt = 6.0 * std::numbers::pi / 180.0;  ///< rad, from how it was planned
+  double displacement = 0.020;                   ///< m, of a box that was there before
+  double force = 200.0;                          ///< N, of the cup on the box
+};
+
+struct SessionOptions {
+  std::string agent = "contact-aware";
+  packing::PackingSettings packing;
+  int threads = 1;              ///< results do not depend on it
+  int samples = 4;              ///< courses of events that could be, executed beside the one that counts; 0: none
+  double accepted_share = 1.0;  ///< of the samples that have to succeed for an attempt to be taken at once
+  double least_share = 0.0;     ///< of the samples, below which not even the best attempt is taken
+  int max_attempts = 6;         ///< for an item: candidates times manners
+  Uncertainty uncertainty;
+  PlaceLimits limits;
+  Perception perception = Perception::Exact;
+  double perception_noise = 0.002;  ///< m, half width (Noisy); angles: this many rad per 100 mm
+  cell::SimulationOptions simulation{motion::ControllerKind::Faithful, cup::CupMode::Phases, {}};
+};
+
+struct AttemptForces {
+  double force = 0.0;         ///< N
+  double torque = 0.0;        ///< Nm
+  double displacement = 0.0;  ///< m, of the other boxes, the largest
+};
+
+struct ItemReport {
+  std::string id;
+  bool is_placed = false;
+  std::string reason;  ///< why not
+  packing::Placement planned;
+  PlaceManner manner = PlaceManner::Straight;
+  int flips = 0;
+  int attempts = 0;         ///< simulated for this item
+  double share = 0.0;       ///< of the samples that succeeded
+  AttemptForces predicted;  ///< largest of the samples
+  AttemptForces happened;
+  double position_error = 0.0;    ///< m
+  double angle_error = 0.0;       ///< rad
+  double decision_seconds = 0.0;  ///< wall clock, of the agent alone
+  double prediction_seconds = 0.0;
+};
+
+struct SessionResult {
+  std::string sequence;
+  std::string agent;
+  std::vector<ItemReport> items;
+  motion::Program program;
+  std::vector<packing::Placement> plan;  ///< in the order of packing
+  int planned_boxes = 0, executed_boxes = 0;
+  double planned_percent = 0.0, executed_percent = 0.0;
+  double decision_seconds_median = 0.0;
+  double duration = 0.0;  ///< s, simulated
+  std::vector<cell::BoxResult> boxes;
+  std::uint64_t state_hash = 0;
+  std::string stopped;  ///< why the session ended
+};
+
+/// Called after every item.
+using Progress = std::function<void(const SessionResult& so_far, int item, int items)>;
+
+/// Packs a sequence. Agents that re-arrange or know the sequence (manual, offline) make their plan first, and its boxes
+/// are executed in its order. Throws InputError for an unknown sequence, agent, or a scenario that cannot be packed.
+[[nodiscard]] SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
+                                 const SessionOptions& options, const Progress& progress = {});
+
+/// The same with the decisions made: each placement is executed in the best manner; boxes that do not
+/// come to their place are left out.
+[[nodiscard]] SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
+                                    const std::vector<packing::Placement>& plan, const SessionOptions& options,
+                                    const Progress& progress = {});
+
+}  // namespace snug::task

@@ -1,0 +1,102 @@
+// Packing on the demonstrator's cell: what a session promises.
+#include <gtest/gtest.h>
+
+#include "snug/cell/run.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/task/executions.hpp"
+#include "snug/task/surroundings.hpp"
+
+namespace snug::task {
+namespace {
+
+model::Scenario demonstrator() { return model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml"); }
+
+/// The first `count` items of sequence 1 alone.
+model::Scenario shortened(std::size_t count) {
+  model::Scenario scenario = demonstrator();
+  scenario.sequences.front().items.resize(count);
+  return scenario;
+}
+
+SessionOptions quick() {
+  SessionOptions options;
+  options.packing.decision_time = 0.05;
+  options.samples = 2;
+  return options;
+}
+
+TEST(Sample, KeepsTheTurnOfBoxesAndStaysWithinTheWidths) {
+  const model::Scenario scenario = demonstrator();
+  const Uncertainty uncertainty;
+  const model::Scenario changed = sample(scenario, "1", uncertainty, Rng(3));
+  for (std::size_t i = 0; i < scenario.parcels.size(); ++i) {
+    const Vector3 off = changed.parcels[i].size - scenario.parcels[i].size;
+    EXPECT_LE(off.cwiseAbs().maxCoeff(), uncertainty.size);
+  }
+  for (std::size_t i = 0; i < scenario.sequences[0].items.size(); ++i) {
+    const Pose before = arrival_pose(scenario, scenario.sequences[0].items[i]);
+    const Pose after = arrival_pose(changed, changed.sequences[0].items[i]);
+    EXPECT_LE(angle_between(before.R, after.R), uncertainty.yaw + 1e-9) << i;
+  }
+}
+
+TEST(Measured, SeesWallsAndNeighboursAndStandsOnWhatCarries) {
+  packing::ContainerState state;
+  packing::PlacedBox box;
+  box.item.size = Vector3(0.1, 0.1, 0.1);
+  box.X_TP.p = Vector3(-0.135, 0.0, 0.05);
+  state.boxes.push_back(box);
+  packing::Candidate candidate;
+  candidate.placement.X_TP.p = Vector3(-0.030, 0.0, 0.06);
+  const packing::Candidate seen = measured(state, candidate, box.item.size, 0.0);
+  EXPECT_NEAR(seen.placement.X_TP.p.z(), 0.05, 1e-12);
+  EXPECT_NEAR(seen.side_gap[0], 0.005, 1e-12);
+  EXPECT_NEAR(seen.side_height[0], 0.1, 1e-12);
+  EXPECT_NEAR(seen.side_gap[1], 0.5 * state.inner_size.x() - 0.02, 1e-12);
+}
+
+TEST(Pack, GivesTheSameWithAnyNumberOfThreadsAndWhenItsProgramIsRunAgain) {
+  const model::Scenario scenario = shortened(2);
+  SessionOptions options = quick();
+  const SessionResult one = pack(scenario, "1", options);
+  EXPECT_EQ(one.executed_boxes, 2) << one.stopped;
+  options.threads = 2;
+  options.packing.threads = 2;
+  const SessionResult two = pack(scenario, "1", options);
+  EXPECT_EQ(motion::format_program(one.program), motion::format_program(two.program));
+  EXPECT_EQ(one.state_hash, two.state_hash);
+  cell::RunOptions again;
+  again.program = motion::parse_program(motion::format_program(one.program), "again");
+  again.sequence = "1";
+  again.simulation = options.simulation;
+  EXPECT_EQ(cell::run(scenario, again).state_hash, one.state_hash);
+}
+
+TEST(Pack, SaysWhyWhenThereIsNothingToDo) {
+  const SessionResult nothing = pack(shortened(0), "1", quick());
+  EXPECT_EQ(nothing.stopped, "no items");
+  EXPECT_TRUE(nothing.program.waypoints.empty());
+  EXPECT_EQ(repeat(shortened(0), nothing, {}).items.size(), 0u);
+
+  model::Scenario tiny = shortened(1);
+  for (model::Container& container : tiny.containers) container.inner_size = Vector3(0.05, 0.05, 0.05);
+  const SessionResult none = pack(tiny, "1", quick());
+  EXPECT_EQ(none.executed_boxes, 0);
+  EXPECT_FALSE(none.stopped.empty());
+
+  model::Scenario heavy = shortened(1);
+  for (model::Parcel& parcel : heavy.parcels) parcel.inertia.mass = 50.0;
+  const SessionResult lifted = pack(heavy, "1", quick());
+  ASSERT_EQ(lifted.items.size(), 1u);
+  EXPECT_FALSE(lifted.items[0].reason.empty());
+}
+
+TEST(Pack, RefusesAnUnknownSequenceAndAgent) {
+  EXPECT_THROW((void)pack(demonstrator(), "nine", quick()), InputError);
+  SessionOptions options = quick();
+  options.agent = "nobody";
+  EXPECT_THROW((void)pack(shortened(1), "1", options), InputError);
+}
+
+}  // namespace
+}  // namespace snug::task
