@@ -13,8 +13,21 @@ namespace {
 constexpr double kRest = 0.4;      ///< s, after the last row, before the result is looked at
 constexpr double kUpright = 0.26;  ///< rad, a flipped box may lie this far from level to be picked again
 
-void append(motion::Program& program, std::vector<motion::Waypoint> rows) {
-  for (motion::Waypoint& row : rows) program.waypoints.push_back(std::move(row));
+/// A row as it reads back from a file: a program that was written runs like the one that was planned.
+motion::Waypoint as_written(const motion::Waypoint& row) {
+  motion::Waypoint written = row;
+  for (int i = 0; i < 8; ++i) {  // log and exp of a rotation come to a fixed point within a few rounds
+    motion::Program one;
+    one.waypoints.push_back(written);
+    const Pose X_WE = motion::parse_program(motion::format_program(one), "row").waypoints[0].X_WE;
+    if (X_WE == written.X_WE) break;
+    written.X_WE = X_WE;
+  }
+  return written;
+}
+
+void append(motion::Program& program, const std::vector<motion::Waypoint>& rows) {
+  for (const motion::Waypoint& row : rows) program.waypoints.push_back(as_written(row));
 }
 
 void merge(Episode& into, const Episode& episode) {
@@ -258,7 +271,7 @@ void Executor::finish() {
     motion::Waypoint home;
     home.X_WE = scenario_.controller.X_WE_start;
     home.name = "home";
-    program_.waypoints.push_back(home);
+    append(program_, {home});
     lanes_[0]->restore(states_[0]);
     (void)lanes_[0]->run(program_);
     // As a run of the whole program does: one second after the tick in which it ends.
