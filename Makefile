@@ -23,7 +23,7 @@ setup-peers:
 build: setup ## build the program as build/snug
 	@$(call configure-build,release,--log-level=WARNING)
 
-demo: build ## pack sequence 1 of the report with a program of our own, and write a report
+demo: build ## pack the five sequences of the report as they come, and write a report of each
 	@scripts/demo.sh
 
 test: setup ## build and run every test; ROOM=cup for one room's

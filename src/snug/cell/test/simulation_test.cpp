@@ -18,13 +18,13 @@ const model::Scenario& demonstrator() {
   return scenario;
 }
 
-motion::Program demo_program() {
+motion::Program demo_program(std::size_t rows = 16) {
   const auto file = kSource / "scenarios/demo-placements.yaml";
   const auto program = make_program(demonstrator(), "1", model::load_placements(file, demonstrator()), file.string());
   EXPECT_TRUE(program.has_value());
-  motion::Program two_boxes = *program;
-  two_boxes.waypoints.resize(16);
-  return two_boxes;
+  motion::Program first_rows = *program;
+  first_rows.waypoints.resize(rows);
+  return first_rows;
 }
 
 /// Runs up to the tick that would end the program.
@@ -68,6 +68,23 @@ TEST(Simulation, GoesOnFromASnapshotWithTheSameBytes) {
   run_to_end(simulation, plan, snapshot, other);
   EXPECT_EQ(simulation.hash(state), simulation.hash(snapshot));
   EXPECT_EQ(state.journey.events().size(), snapshot.journey.events().size());
+}
+
+TEST(Simulation, GoesOnWithTheSameBytesWhenItsWorkspaceIsReplacedAgainAndAgain) {
+  // Boxes that rest, sleep and are touched again: whatever a workspace remembers must not be seen in the state.
+  const Simulation simulation(demonstrator(), "1", {motion::ControllerKind::Faithful, cup::CupMode::Phases});
+  const motion::PreparedProgram plan = simulation.prepare(demo_program(64));
+  CellState state = simulation.make_state();
+  CellState restarted = state;
+  CellWorkspace work = simulation.make_workspace();
+  for (int part = 0; part < 40 && !simulation.is_at_end(plan, state); ++part) {
+    CellWorkspace fresh = simulation.make_workspace();
+    for (int i = 0; i < 333 && !simulation.is_at_end(plan, state); ++i) {
+      (void)simulation.advance(plan, state, work);
+      (void)simulation.advance(plan, restarted, fresh);
+    }
+    ASSERT_EQ(simulation.hash(state), simulation.hash(restarted)) << "at " << simulation.time(state) << " s";
+  }
 }
 
 TEST(Simulation, AdoptsAStateOfTheSameCellUnchangedAndKeepsPosesInAnotherOne) {
