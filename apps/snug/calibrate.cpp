@@ -11,6 +11,7 @@
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/calibration/identify.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 
 namespace snug::app {
 namespace {
@@ -113,9 +114,8 @@ int run_calibrate_kinematics(const CalibrateKinematicsOptions& options) {
     json["max_end_effector_error_rad"] = end.angle;
   }
   add_shifts(written, nominal.arm, json);
-  if (options.output) calibration::write_text(text, *options.output);
-  if (options.yaml_output)
-    calibration::write_text(calibration::format_calibration_yaml(written, reading), *options.yaml_output);
+  if (options.output) write_file(*options.output, text);
+  if (options.yaml_output) write_file(*options.yaml_output, calibration::format_calibration_yaml(written, reading));
   if (options.json)
     std::printf("%s\n", json.dump(2).c_str());
   else

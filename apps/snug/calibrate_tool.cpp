@@ -11,6 +11,7 @@
 #include "snug/calibration/force_sensor.hpp"
 #include "snug/calibration/tool_tip.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 
 namespace snug::app {
 namespace {
@@ -49,10 +50,9 @@ int run_calibrate_tool(const CalibrateToolOptions& options) {
   const Vector3 p_FE = tip.p_FQ - X_FE.R * tip_in_tool;
   const Vector3 shift = p_FE - X_FE.p;
   if (options.output)
-    calibration::write_text(
-        calibration::format_urdf_with_tip(nominal.path, nominal.arm, flange, p_FE,
-                                          note_of("tool frame", options.input, nominal), nominal.out_folder),
-        *options.output);
+    write_file(*options.output,
+               calibration::format_urdf_with_tip(nominal.path, nominal.arm, flange, p_FE,
+                                                 note_of("tool frame", options.input, nominal), nominal.out_folder));
   if (options.json) {
     ordered_json json;
     json["tip_m"] = numbers(tip.p_FQ);
@@ -78,10 +78,9 @@ int run_calibrate_sensor(const CalibrateSensorOptions& options) {
   const calibration::ForceSensorFit fit = calibration::fit_force_sensor(
       calibration::load_table(options.input, calibration::force_sensor_columns()), options.mass);
   if (options.output)
-    calibration::write_text(
-        calibration::format_urdf_with_load(nominal.path, nominal.arm, sensor, fit.mass, fit.com,
-                                           note_of("load of the sensor", options.input, nominal), nominal.out_folder),
-        *options.output);
+    write_file(*options.output, calibration::format_urdf_with_load(
+                                    nominal.path, nominal.arm, sensor, fit.mass, fit.com,
+                                    note_of("load of the sensor", options.input, nominal), nominal.out_folder));
   if (options.json) {
     ordered_json json;
     json["mass_kg"] = fit.mass;

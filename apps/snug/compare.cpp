@@ -118,7 +118,7 @@ std::string format_table(const model::Scenario& scenario, const std::vector<Row>
 }  // namespace
 
 int run_compare(const CompareOptions& options) {
-  const model::Scenario scenario = model::load_scenario(options.pack.scenario);
+  const model::Scenario scenario = load_packing_scenario(options.pack);
   std::vector<std::string> known;
   for (const model::Sequence& sequence : scenario.sequences) known.push_back(sequence.name);
   const std::vector<std::string> sequences = choose(options.sequences, known, "--sequences");

@@ -13,20 +13,12 @@
 #include "run_report.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
+#include "snug/model/items_file.hpp"
 #include "snug/task/executions.hpp"
 
 namespace snug::app {
 namespace {
-
-void write_text(const std::string& path, const std::string& text) {
-  const std::string part = path + ".part";
-  {
-    std::ofstream file(part, std::ios::binary);
-    file << text;
-    if (!file.flush()) throw InputError(path, "", "", "a file that can be written");
-  }
-  if (std::rename(part.c_str(), path.c_str()) != 0) throw InputError(path, "", "", "a file that can be written");
-}
 
 /// The finished program once more, recorded.
 void record(const PackOptions& options, const model::Scenario& scenario, const task::SessionResult& result,
@@ -57,6 +49,12 @@ task::SessionOptions make_session_options(const PackOptions& options, const mode
   return session;
 }
 
+model::Scenario load_packing_scenario(const PackOptions& options) {
+  model::Scenario scenario = model::load_scenario(options.scenario);
+  for (const std::string& file : options.items) model::add_items(scenario, file);
+  return scenario;
+}
+
 task::Progress make_progress_line(const std::string& label) {
   if (isatty(STDERR_FILENO) == 0) return {};
   return [label](const task::SessionResult& so_far, int item, int items) {
@@ -69,7 +67,7 @@ task::Progress make_progress_line(const std::string& label) {
 }
 
 int run_pack(const PackOptions& options) {
-  const model::Scenario scenario = model::load_scenario(options.scenario);
+  const model::Scenario scenario = load_packing_scenario(options);
   const task::SessionOptions session = make_session_options(options, scenario);
   const task::SessionResult result =
       task::pack(scenario, options.sequence, session, make_progress_line("sequence " + options.sequence));
@@ -82,7 +80,7 @@ int run_pack(const PackOptions& options) {
     executions = task::repeat(scenario, result, repeated);
   }
   if (options.program && !result.program.waypoints.empty()) motion::write_program(result.program, *options.program);
-  if (options.plan) write_text(*options.plan, format_plan(result));
+  if (options.plan) write_file(*options.plan, format_plan(result));
   if (options.record && !result.program.waypoints.empty()) record(options, scenario, result, session);
   const std::string text = options.json ? format_json(result, executions) : format_table(result, executions);
   std::fputs(text.c_str(), stdout);

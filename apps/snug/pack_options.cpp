@@ -12,12 +12,15 @@ constexpr const char* kExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --json
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --executions 20 --threads 2
+  snug pack scenarios/box-demonstrator.yaml --items orders.csv --sequence order-7
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --program out.csv --plan out.json -o out.h5
   snug simulate scenarios/box-demonstrator.yaml --program out.csv --sequence 1 --cup phases)";
 
 }  // namespace
 
 void add_packing_options(CLI::App& verb, PackOptions& options) {
+  verb.add_option("--items", options.items, "more boxes and sequences: orders (.csv, .json) or items (.yaml)")
+      ->type_name("FILE");
   verb.add_option("--seed", options.seed, "seed of roll-outs and samples (default: the scenario's)")
       ->check(whole(0))
       ->type_name("N");

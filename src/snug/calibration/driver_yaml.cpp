@@ -37,8 +37,6 @@ Pose read_yaml_origin(const std::string& name, const YAML::Node& node, const std
 
 }  // namespace
 
-void write_text(const std::string& text, const std::filesystem::path& path) { internal::write_file(path, text); }
-
 robot::ArmModel load_calibration_yaml(const std::filesystem::path& path, AngleReading reading,
                                       const robot::ArmModel& nominal) {
   const std::string name = path.string();

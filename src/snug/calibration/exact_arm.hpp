@@ -50,8 +50,6 @@ struct FrameShift {
 [[nodiscard]] std::string format_urdf_with_load(const std::filesystem::path& path, const robot::ArmModel& arm,
                                                 int sensor, double mass, const Vector3& com_L, const std::string& note,
                                                 const std::filesystem::path& out_folder);
-/// Writes text beside `path` and renames.
-void write_text(const std::string& text, const std::filesystem::path& path);
 
 /// How roll, pitch, yaw of a calibration YAML are meant.
 enum class AngleReading {

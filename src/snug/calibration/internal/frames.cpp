@@ -84,19 +84,4 @@ std::string read_file(const std::filesystem::path& path) {
   return text.str();
 }
 
-void write_file(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path beside = path.string() + ".part";
-  std::ofstream file(beside, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(beside, path, error);
-  if (!file || error) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw InputError(path.string(), "", "a file that cannot be written",
-                     "a folder that is there and may be written to");
-  }
-}
-
 }  // namespace snug::calibration::internal

@@ -31,7 +31,5 @@ void move_end(robot::ArmModel& arm, const Pose& move);
 [[nodiscard]] std::string to_text(double value);
 /// Whole file; InputError when it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
-/// Written beside and renamed; InputError when it cannot be written.
-void write_file(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace snug::calibration::internal

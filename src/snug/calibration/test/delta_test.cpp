@@ -6,6 +6,7 @@
 
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/robot/kinematics.hpp"
 
@@ -140,7 +141,7 @@ TEST(CalibrationYaml, WrittenInEitherReadingReadsBack) {
   }
   const std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_calibration_test.yaml";
   for (const AngleReading reading : {AngleReading::Urdf, AngleReading::EulerXyz}) {
-    write_text(format_calibration_yaml(arm, reading), path);
+    write_file(path, format_calibration_yaml(arm, reading));
     EXPECT_LT(largest_frame_shift(load_calibration_yaml(path, reading, nominal()), arm).position, 1e-12);
   }
   std::filesystem::remove(path);
