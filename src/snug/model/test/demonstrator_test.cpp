@@ -133,7 +133,7 @@ TEST(Demonstrator, HasTheFillingDegreesOfThePackedBoxes) {
 
 TEST(Demonstrator, HasTheControllersTableInItsOrder) {
   const ControllerParams& c = demonstrator().controller;
-  ASSERT_EQ(c.limits.size(), 16u);
+  ASSERT_EQ(c.limits.size(), 18u);  // the demonstrator's 16, then two of our own motions
   EXPECT_EQ(c.tick, 0.008);
   EXPECT_EQ(c.vacuum_wait, 0.5);
   EXPECT_EQ(c.limits.front(), (MoveLimits{"PrePick", 0.01, 3.0, 0.35, 2.0, 2.0}));
@@ -141,7 +141,9 @@ TEST(Demonstrator, HasTheControllersTableInItsOrder) {
   EXPECT_EQ(c.limits[11], (MoveLimits{"PrePlace018", 0.005, 0.8, 0.2, 1.0, 1.5}));
   EXPECT_EQ(c.limits[12], (MoveLimits{"home", 0.005, 3.0, 0.5, 1.5, 0.5}));
   EXPECT_EQ(c.limits[14], (MoveLimits{"midpoint", 0.2, 2.0, 0.5, 1.5, 2.0}));
-  EXPECT_EQ(c.limits.back(), (MoveLimits{"PrePlace017_seq3", 0.005, 0.8, 0.2, 1.0, 1.5}));
+  EXPECT_EQ(c.limits[15], (MoveLimits{"PrePlace017_seq3", 0.005, 0.8, 0.2, 1.0, 1.5}));
+  EXPECT_EQ(c.limits[16].prefix, "PlaceSlow");
+  EXPECT_EQ(c.limits[17].prefix, "TwistDrag");
   EXPECT_LT(angle_between(c.X_WE_start.R, exp_rotation({0.0, -3.14159, 0.0})), 1e-5);
   ASSERT_EQ(c.correction_layers.size(), 2u);
   EXPECT_EQ(c.correction_layers[0].corrections[2].offset, Vector3(0.030, 0.010, 0.0));
