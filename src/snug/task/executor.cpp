@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/motion/unwinding.hpp"
+
 namespace snug::task {
 namespace {
 
@@ -26,8 +28,13 @@ motion::Waypoint as_written(const motion::Waypoint& row) {
   return written;
 }
 
-void append(motion::Program& program, const std::vector<motion::Waypoint>& rows) {
-  for (const motion::Waypoint& row : rows) program.waypoints.push_back(as_written(row));
+/// `layout` says over which side the tool turns.
+void append(motion::Program& program, const std::vector<motion::Waypoint>& rows, const CellLayout& layout) {
+  if (rows.empty()) return;
+  const motion::Waypoint before = program.waypoints.empty() ? rows.front() : program.waypoints.back();
+  for (const motion::Waypoint& row : motion::with_turns(before, rows, layout.neutral_yaw)) {
+    program.waypoints.push_back(as_written(row));
+  }
 }
 
 void merge(Episode& into, const Episode& episode) {
@@ -94,7 +101,7 @@ void Executor::flip(Prefix& prefix, Lane& lane, const Vector3& up_P, const Matri
   const Pose& X_PS = lane.state().gripper.cup.X_PS;
   intent.tool_for = make_tool_for(scenario_, box_, X_PS);
   intent.X_PE = X_PS * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -scenario_.cup.hold_length)};
-  append(prefix.program, motion::flip_rows(intent));
+  append(prefix.program, motion::flip_rows(intent), layout_);
   merge(prefix.episodes[0], lane.run(prefix.program));
 }
 
@@ -125,7 +132,7 @@ const Executor::Prefix& Executor::prefix_for(const packing::Placement& placement
     const Matrix3 R_next = stands || !layout_.flip_place
                                ? R_WP_goal
                                : orientation_before_flip(X_WP.R, next_up, layout_.flip_place->direction);
-    append(prefix.program, plan_pick(scenario_, box_, X_WP, R_next, travel, round > 0));
+    append(prefix.program, plan_pick(scenario_, layout_, box_, X_WP, R_next, travel, round > 0), layout_);
     merge(prefix.episodes[0], lane.run(prefix.program));
     if (!lane.is_held(box_.item)) {
       prefix.problem = round > 0 ? "the cup did not hold it after the flip" : "the cup did not hold it";
@@ -207,7 +214,7 @@ Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVarian
   }
   attempt.program = prefix.program;
   PlaceRequest request{box_, prefix.X_PS, candidate.placement.X_TP, variant, packed_top};
-  append(attempt.program, plan_place(scenario_, layout_, request));
+  append(attempt.program, plan_place(scenario_, layout_, request), layout_);
   const std::size_t count = lanes_.size();
   std::vector<Outcome> outcomes(count);
   const auto execute = [&](int lane_index) {
@@ -271,7 +278,7 @@ void Executor::finish() {
     motion::Waypoint home;
     home.X_WE = scenario_.controller.X_WE_start;
     home.name = "home";
-    append(program_, {home});
+    append(program_, {home}, layout_);
     lanes_[0]->restore(states_[0]);
     (void)lanes_[0]->run(program_);
     // As a run of the whole program does: one second after the tick in which it ends.

@@ -7,6 +7,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/cup/statics.hpp"
+#include "snug/motion/unwinding.hpp"
 
 namespace snug::task {
 namespace {
@@ -106,6 +107,7 @@ CellLayout make_layout(const model::Scenario& scenario) {
   const std::vector<Top> tops = static_tops(scenario);
   for (const Top& top : tops) layout.fixed_top = std::max(layout.fixed_top, top.high.z());
   layout.flip_place = find_flip_place(tops, scenario.aligner->X_WA.p, container->X_WT.p);
+  layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
   return layout;
 }
 
@@ -170,15 +172,16 @@ PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequen
   return {item, has_prefix ? id.substr(3) : id, model::collision_size(scenario, parcel), parcel.inertia};
 }
 
-std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
-                                        const Matrix3& R_WP_next, double travel, bool again) {
+std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                        const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
+                                        double travel, bool again) {
   motion::PickIntent intent;
   intent.number = box.number;
   intent.X_WP = X_WP;
   intent.size = box.size;
   const double radius = 0.5 * scenario.cup.effective_diameter + 0.001;
   intent.cup_offset_P = motion::choose_cup_offset(X_WP.R, box.size, box.inertia.com, radius);
-  intent.tool_yaw = -0.5 * yaw_between(X_WP.R, R_WP_next);
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(X_WP.R, R_WP_next);
   intent.length = scenario.cup.hold_length + 0.35 * (scenario.cup.free_length - scenario.cup.hold_length);
   intent.again = again;
   const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);

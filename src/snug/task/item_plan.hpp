@@ -23,6 +23,7 @@ struct CellLayout {
   Vector3 inner_size = Vector3::Zero();  ///< m
   double fixed_top = 0.0;                ///< m, z in W of the highest fixed thing that the tool passes
   std::optional<FlipPlace> flip_place;   ///< absent: nothing flat is large enough
+  double neutral_yaw = 0.0;              ///< rad, of the tool at its start: half a turn to either side of it is used
 };
 /// Throws InputError for a scenario without aligner, tool or target container.
 [[nodiscard]] CellLayout make_layout(const model::Scenario& scenario);
@@ -57,10 +58,12 @@ struct PlannedBox {
 };
 [[nodiscard]] PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item);
 
-/// Rows that pick the box where it stands, so that it can be brought to stand like `R_WP_next` next.
-[[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const PlannedBox& box,
-                                                      const Pose& X_WP, const Matrix3& R_WP_next, double travel_bottom,
-                                                      bool again);
+/// Rows that pick the box where it stands, so that it can be brought to stand like `R_WP_next` next. The turn between
+/// both is shared: at the pick the tool is turned from `layout.neutral_yaw` to one side by half of it, then to the
+/// other.
+[[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                                      const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
+                                                      double travel_bottom, bool again);
 /// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.
 [[nodiscard]] Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction);
 

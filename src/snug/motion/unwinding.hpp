@@ -1,0 +1,22 @@
+// Unwinding: which way a tool turns that points down, so that the wrist of a robot never winds up.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "snug/motion/waypoint.hpp"
+
+namespace snug::motion {
+
+/// Yaw [rad, in (-pi, pi]] of a tool that points down: R_WE = Rz(yaw) Ry(pi), whatever little it is tilted. Nothing
+/// where it is tilted by more than 30 degrees.
+[[nodiscard]] std::optional<double> yaw_of(const Matrix3& R_WE);
+
+/// Rows say where the tool shall be and not which way it turns: the shorter one. Where that would take it to the far
+/// side of `neutral_yaw`, or could because the turn is nearly half a turn, rows are put in between that turn it on the
+/// spot over the neutral side, with the switches of the row before and its name followed by "_turn". So the yaw never
+/// leaves (neutral - pi, neutral + pi], however long the program. `before`: the row before the first of `rows`.
+[[nodiscard]] std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypoint>& rows,
+                                               double neutral_yaw);
+
+}  // namespace snug::motion
