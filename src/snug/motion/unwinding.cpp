@@ -1,6 +1,7 @@
-// Unwinding: which way a tool turns that points down, so that the wrist of a robot never winds up.
+// Unwinding: rows in between that keep a robot's wrist from winding up and its tool from its own base.
 #include "snug/motion/unwinding.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,6 +40,31 @@ std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypo
     last = &row;
   }
   return turned;
+}
+
+std::vector<Waypoint> with_detours(const Waypoint& before, const std::vector<Waypoint>& rows, const Vector3& p_WB,
+                                   double least, double room) {
+  std::vector<Waypoint> led;
+  const Waypoint* last = &before;
+  for (const Waypoint& row : rows) {
+    const Vector3 from = last->X_WE.p, way = row.X_WE.p - from;
+    const double length = way.head<2>().norm();
+    const double share = length > 0.0 ? way.head<2>().dot((p_WB - from).head<2>()) / (length * length) : 0.0;
+    const Vector3 off = from + share * way - p_WB;
+    const double distance = off.head<2>().norm();
+    const bool points_down = yaw_of(last->X_WE.R) && yaw_of(row.X_WE.R);
+    if (points_down && length > least && share > 0.0 && share < 1.0 && distance < least && distance > 1e-6) {
+      Waypoint between = *last;
+      between.X_WE.p.head<2>() = p_WB.head<2>() + (room / distance) * off.head<2>();
+      between.X_WE.p.z() = std::max(from.z(), row.X_WE.p.z());
+      between.X_WE.R = exp_rotation(share * log_rotation(row.X_WE.R * last->X_WE.R.transpose())) * last->X_WE.R;
+      between.name += "_around";
+      led.push_back(between);
+    }
+    led.push_back(row);
+    last = &row;
+  }
+  return led;
 }
 
 }  // namespace snug::motion

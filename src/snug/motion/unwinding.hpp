@@ -1,4 +1,4 @@
-// Unwinding: which way a tool turns that points down, so that the wrist of a robot never winds up.
+// Unwinding: rows in between that keep a robot's wrist from winding up and its tool from its own base.
 #pragma once
 
 #include <optional>
@@ -18,5 +18,12 @@ namespace snug::motion {
 /// leaves (neutral - pi, neutral + pi], however long the program. `before`: the row before the first of `rows`.
 [[nodiscard]] std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypoint>& rows,
                                                double neutral_yaw);
+
+/// Straight ways of a tool that points down, longer than `least` [m] and nearer than that to the robot's first axis at
+/// `p_WB`, get a row in between that
+/// leads around it, `room` [m] away, at the height of the higher end. Its name is that of the row before, and
+/// "_around". There the tool would meet the upper arm, and the first joints would have to turn fast.
+[[nodiscard]] std::vector<Waypoint> with_detours(const Waypoint& before, const std::vector<Waypoint>& rows,
+                                                 const Vector3& p_WB, double least, double room);
 
 }  // namespace snug::motion

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "snug/motion/unwinding.hpp"
-
 namespace snug::task {
 namespace {
 
@@ -28,13 +26,8 @@ motion::Waypoint as_written(const motion::Waypoint& row) {
   return written;
 }
 
-/// `layout` says over which side the tool turns.
 void append(motion::Program& program, const std::vector<motion::Waypoint>& rows, const CellLayout& layout) {
-  if (rows.empty()) return;
-  const motion::Waypoint before = program.waypoints.empty() ? rows.front() : program.waypoints.back();
-  for (const motion::Waypoint& row : motion::with_turns(before, rows, layout.neutral_yaw)) {
-    program.waypoints.push_back(as_written(row));
-  }
+  for (const motion::Waypoint& row : drivable(layout, program, rows)) program.waypoints.push_back(as_written(row));
 }
 
 void merge(Episode& into, const Episode& episode) {

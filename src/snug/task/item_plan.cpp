@@ -14,7 +14,11 @@ namespace {
 
 constexpr double kTravelClearance = 0.06;  ///< m, more than the precision of rows that are passed on the fly
 constexpr double kEntryClearance = 0.01;   ///< m, where the box stops before it goes in
-constexpr double kFlipRoom = 0.16;         ///< m, from the middle of a lying box to the edges of its surface
+// The gripper of the demonstrator comes within 0.1 m of the upper arm when the tool is 0.25 m from the first axis, and
+// the arm begins to give way 0.1 m before.
+constexpr double kNearBase = 0.34;  ///< m
+constexpr double kBaseRoom = 0.42;  ///< m
+constexpr double kFlipRoom = 0.16;  ///< m, from the middle of a lying box to the edges of its surface
 
 struct Top {
   Vector3 low, high;  ///< corners in W
@@ -107,6 +111,7 @@ CellLayout make_layout(const model::Scenario& scenario) {
   const std::vector<Top> tops = static_tops(scenario);
   for (const Top& top : tops) layout.fixed_top = std::max(layout.fixed_top, top.high.z());
   layout.flip_place = find_flip_place(tops, scenario.aligner->X_WA.p, container->X_WT.p);
+  if (scenario.robot) layout.p_WB = scenario.robot->X_WB.p;
   layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
   return layout;
 }
@@ -190,6 +195,14 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
   if (again) intent.approach_height = top + 0.03 + scenario.cup.free_length;
   intent.lift_height = travel + height + scenario.cup.hold_length;
   return motion::pick_rows(intent);
+}
+
+std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Program& before,
+                                       const std::vector<motion::Waypoint>& rows) {
+  if (rows.empty()) return rows;
+  const motion::Waypoint last = before.waypoints.empty() ? rows.front() : before.waypoints.back();
+  const std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw);
+  return layout.p_WB ? motion::with_detours(last, turned, *layout.p_WB, kNearBase, kBaseRoom) : turned;
 }
 
 Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction) {

@@ -23,6 +23,7 @@ struct CellLayout {
   Vector3 inner_size = Vector3::Zero();  ///< m
   double fixed_top = 0.0;                ///< m, z in W of the highest fixed thing that the tool passes
   std::optional<FlipPlace> flip_place;   ///< absent: nothing flat is large enough
+  std::optional<Vector3> p_WB;           ///< m, where the robot stands
   double neutral_yaw = 0.0;              ///< rad, of the tool at its start: half a turn to either side of it is used
 };
 /// Throws InputError for a scenario without aligner, tool or target container.
@@ -64,6 +65,9 @@ struct PlannedBox {
 [[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                       const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
                                                       double travel_bottom, bool again);
+/// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.
+[[nodiscard]] std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Program& before,
+                                                     const std::vector<motion::Waypoint>& rows);
 /// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.
 [[nodiscard]] Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction);
 

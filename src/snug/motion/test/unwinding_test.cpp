@@ -81,5 +81,23 @@ TEST(WithTurns, KeepsTheToolUnwoundOverAnyProgram) {
   }
 }
 
+Waypoint row_over(double x, double y, double z) { return {{pointing_down(0.0), Vector3(x, y, z)}, "Row", {}, 0}; }
+
+TEST(WithDetours, LeadsAroundTheBaseOnTheSideOfTheStraightWay) {
+  const Vector3 p_WB(0.1, 0.0, 0.0);
+  const auto rows = with_detours(row_over(0.5, -0.2, 0.3), {row_over(-0.4, -0.2, 0.2)}, p_WB, 0.3, 0.4);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].name, "Row_around");
+  EXPECT_TRUE(rows[0].X_WE.p.isApprox(Vector3(0.1, -0.4, 0.3), 1e-12));
+  // Far enough, too short, and with the tool tilted: as they are.
+  EXPECT_EQ(with_detours(row_over(0.5, -0.35, 0.3), {row_over(-0.4, -0.35, 0.2)}, p_WB, 0.3, 0.4).size(), 1u);
+  EXPECT_EQ(with_detours(row_over(0.2, -0.2, 0.3), {row_over(0.0, -0.2, 0.2)}, p_WB, 0.3, 0.4).size(), 1u);
+  Waypoint tilted = row_over(-0.4, -0.2, 0.2);
+  tilted.X_WE.R = pointing_down(0.0, 1.2);
+  EXPECT_EQ(with_detours(row_over(0.5, -0.2, 0.3), {tilted}, p_WB, 0.3, 0.4).size(), 1u);
+  // Straight over the axis there is no better side.
+  EXPECT_EQ(with_detours(row_over(0.5, 0.0, 0.3), {row_over(-0.4, 0.0, 0.2)}, p_WB, 0.3, 0.4).size(), 1u);
+}
+
 }  // namespace
 }  // namespace snug::motion
