@@ -41,7 +41,8 @@ struct Body {
   bool operator==(const Body&) const = default;
 };
 
-/// Open box made of a floor and four walls. Frame T: centre of the inner floor, z up, x and y along the inner edges.
+/// Open box made of a floor and four walls, or a pallet: the floor alone. Frame T: centre of the inner floor, z up, x
+/// and y along the inner edges.
 struct Container {
   std::string name;
   Pose X_WT;
@@ -49,11 +50,14 @@ struct Container {
   double wall_thickness = 0.010;                   ///< m
   double floor_thickness = 0.010;                  ///< m
   MaterialId material;
+  bool has_walls = true;  ///< false: a slab of inner_size; inner_size.z is how high boxes may stand
+  bool holds_all = true;  ///< false: parcels that fit in no orientation are no error; packing says why it leaves them
   bool operator==(const Container&) const = default;
 };
 
 /// Floor and four walls of a container in T, disjoint inside and flush at their faces: the floor and the two walls
-/// across x run the full outer width, the walls across y stand between those.
+/// across x run the full outer width, the walls across y stand between those. Without walls: the floor, as wide as
+/// inside.
 [[nodiscard]] std::vector<PlacedShape> make_walls(const Container& container);
 
 /// Inner volume, m^3.

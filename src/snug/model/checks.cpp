@@ -4,6 +4,7 @@
 #include <map>
 
 #include "snug/geometry/manifold.hpp"
+#include "snug/model/internal/overlap.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
 
 namespace snug::model::internal {
@@ -27,19 +28,6 @@ double bounding_radius(const geometry::Shape& shape) {
   return std::visit(Radius{}, shape);
 }
 
-/// Depth of overlap of two shapes, m; 0 when they are apart.
-double overlap_of(const PlacedShape& a, const Pose& X_WA, const PlacedShape& b, const Pose& X_WB) {
-  const Pose X_WG = X_WA * a.X_BG;
-  const Pose X_WH = X_WB * b.X_BG;
-  if ((X_WG.p - X_WH.p).norm() > bounding_radius(a.shape) + bounding_radius(b.shape)) return 0.0;
-  geometry::PairCache cache;
-  geometry::Manifold manifold;
-  geometry::collide(a.shape, X_WG, b.shape, X_WH, 0.0, cache, manifold);
-  double depth = 0.0;
-  for (int i = 0; i < manifold.count; ++i) depth = std::max(depth, -manifold.points[static_cast<std::size_t>(i)].phi);
-  return depth;
-}
-
 std::array<double, 3> sorted(const Vector3& size) {
   std::array<double, 3> edges{size.x(), size.y(), size.z()};
   std::sort(edges.begin(), edges.end());
@@ -51,6 +39,18 @@ std::string to_millimetres(const Vector3& size) {
 }
 
 }  // namespace
+
+double overlap_of(const PlacedShape& a, const Pose& X_WA, const PlacedShape& b, const Pose& X_WB) {
+  const Pose X_WG = X_WA * a.X_BG;
+  const Pose X_WH = X_WB * b.X_BG;
+  if ((X_WG.p - X_WH.p).norm() > bounding_radius(a.shape) + bounding_radius(b.shape)) return 0.0;
+  geometry::PairCache cache;
+  geometry::Manifold manifold;
+  geometry::collide(a.shape, X_WG, b.shape, X_WH, 0.0, cache, manifold);
+  double depth = 0.0;
+  for (int i = 0; i < manifold.count; ++i) depth = std::max(depth, -manifold.points[static_cast<std::size_t>(i)].phi);
+  return depth;
+}
 
 struct ScenarioReader::Placed {
   std::string name;
@@ -102,7 +102,7 @@ void ScenarioReader::check_overlaps() const {
 
 void ScenarioReader::check_parcel_fits(const Value& value, const Parcel& parcel) const {
   const Container* target = find_container(scenario_, scenario_.target);
-  if (target == nullptr) return;
+  if (target == nullptr || !target->holds_all) return;
   const auto box = sorted(collision_size(scenario_, parcel));
   const auto room = sorted(target->inner_size);
   for (std::size_t i = 0; i < 3; ++i)

@@ -8,11 +8,13 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "snug/model/internal/mass_properties.hpp"
 #include "snug/model/internal/parse.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
+#include "snug/model/internal/scenario_text.hpp"
 
 namespace snug::model {
 namespace {
@@ -150,11 +152,58 @@ void add_items_text(Scenario& scenario, const std::string& text, const std::stri
   internal::Document document{name, {}};
   Scenario extended = scenario;
   try {
-    internal::ScenarioReader(internal::Value(YAML::Load(text), "", document, 1), extended).read_items();
+    const YAML::Node items = YAML::Load(text);
+    internal::ScenarioReader(internal::Value(items, "", document, 1), extended).read_items();
+    if (!scenario.source_text.empty())
+      extended.source_text = internal::text_with_items(scenario.source_text, items, "--items " + name);
   } catch (const YAML::Exception& error) {
     throw InputError(name + ":" + std::to_string(error.mark.line + 1), "", error.msg, "YAML that can be parsed");
   }
   scenario = std::move(extended);
+}
+
+std::string where_of(const std::string& name, const OrderLine& line) {
+  return line.line > 0 ? name + ":" + std::to_string(line.line) : name;
+}
+
+/// What a scenario could not say of a box, an order cannot ask for either.
+void check_line(const Scenario& scenario, const OrderLine& line, const std::string& name) {
+  const auto check_name = [&](const char* key, const std::string& text) {
+    const bool is_printable = std::all_of(text.begin(), text.end(),
+                                          [](char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; });
+    if (text.size() > 100 || !is_printable) {
+      throw InputError(where_of(name, line), key, internal::quote(text), "at most 100 printable characters");
+    }
+  };
+  check_name("order", line.order);
+  check_name("article", line.article);
+  const double least = line.size.minCoeff();
+  if (!(least - scenario.parcel_clearance >= internal::kSmallestSize)) {
+    throw InputError(where_of(name, line), "", "an edge of " + internal::to_text(1e3 * least) + " mm",
+                     "edges larger than the scenario's parcel_clearance of " +
+                         internal::to_text(1e3 * scenario.parcel_clearance) + " mm");
+  }
+}
+
+/// Everything from these positions on is written behind the scenario's text. Boxes of orders may be too large for the
+/// container: that is for packing to say.
+void write_down(Scenario& scenario, std::size_t types, std::size_t parcels, std::size_t sequences,
+                const std::string& name) {
+  for (Container& container : scenario.containers) {
+    if (container.name != scenario.target || !container.holds_all) continue;
+    container.holds_all = false;
+    if (!scenario.source_text.empty())
+      scenario.source_text = internal::text_with_target(scenario.source_text, container, "--items " + name);
+  }
+  if (scenario.source_text.empty()) return;
+  YAML::Node items;
+  for (std::size_t i = types; i < scenario.parcel_types.size(); ++i)
+    items["parcel_types"].push_back(internal::as_yaml(scenario.parcel_types[i]));
+  for (std::size_t i = parcels; i < scenario.parcels.size(); ++i)
+    items["parcels"].push_back(internal::as_yaml(scenario, scenario.parcels[i]));
+  for (std::size_t i = sequences; i < scenario.sequences.size(); ++i)
+    items["sequences"].push_back(internal::as_yaml(scenario.sequences[i]));
+  scenario.source_text = internal::text_with_items(scenario.source_text, items, "--items " + name);
 }
 
 /// The type of a line's boxes: by article, with a number behind it where other boxes have that name.
@@ -232,9 +281,13 @@ void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const s
     throw InputError(scenario.source_name, "parcels", "none", "at least one parcel, whose surface others get");
   }
   const MaterialId material = scenario.parcels.front().material;
-  const std::size_t known = scenario.sequences.size();
+  const std::size_t known = scenario.sequences.size(), types = scenario.parcel_types.size();
+  const std::size_t parcels = scenario.parcels.size();
+  std::set<std::string> ids;
+  for (const Parcel& parcel : scenario.parcels) ids.insert(parcel.id);
   int number = 0;
   for (const OrderLine& line : lines) {
+    check_line(scenario, line, name);
     auto sequence = std::find_if(scenario.sequences.begin(), scenario.sequences.end(),
                                  [&](const Sequence& s) { return s.name == line.order; });
     if (sequence == scenario.sequences.end()) {
@@ -242,14 +295,14 @@ void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const s
       sequence = scenario.sequences.end() - 1;
       sequence->name = line.order;
     } else if (sequence < scenario.sequences.begin() + static_cast<std::ptrdiff_t>(known)) {
-      throw InputError(name, "order", "'" + line.order + "'", "a name that is not taken");
+      throw InputError(where_of(name, line), "order", "'" + line.order + "'", "a name that is not taken");
     }
     const std::string type = type_for(scenario, line);
     for (int i = 0; i < line.count; ++i) {
       char id[32];
       do {
         std::snprintf(id, sizeof id, "ITEM%06d", ++number);
-      } while (find_parcel(scenario, id) != nullptr);
+      } while (!ids.insert(id).second);
       Parcel parcel{id, type, line.size, {}, material, line.handling};
       parcel.inertia = {line.mass, Vector3::Zero(), internal::cuboid_inertia(line.size, line.mass)};
       scenario.parcels.push_back(parcel);
@@ -257,6 +310,7 @@ void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const s
       sequence->items.back().parcel = id;
     }
   }
+  write_down(scenario, types, parcels, known, name);
 }
 
 void add_items(Scenario& scenario, const std::filesystem::path& path) {

@@ -30,8 +30,9 @@ struct OrderLine {
 [[nodiscard]] std::vector<OrderLine> parse_orders_json(std::string_view text, const std::string& name);
 
 /// Adds the boxes of orders as parcels (uniform density, surface of the scenario's first parcel) and each order as a
-/// sequence of its name. Throws InputError for a scenario without parcels (whose material could be used) and for names
-/// that are taken.
+/// sequence of its name; the scenario's text then holds them too. They may be too large for the target container.
+/// Throws InputError for a scenario without parcels (whose material could be used), for names that are taken or cannot
+/// be written, and for boxes smaller than parcel_clearance.
 void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const std::string& name);
 
 /// Adds what a file holds: .csv and .json as orders; .yaml as `parcel_types`, `parcels` and `sequences` written as in a

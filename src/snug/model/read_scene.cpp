@@ -129,8 +129,8 @@ void ScenarioReader::read_containers(const MapReader& map) {
   const auto values = map.find("containers");
   if (values) container_values_ = values->list();
   for (const Value& value : container_values_) {
-    const MapReader entry =
-        value.map("container", {"name", "pose", "inner_size", "wall_thickness", "floor_thickness", "material"});
+    const MapReader entry = value.map("container", {"name", "pose", "inner_size", "wall_thickness", "floor_thickness",
+                                                    "material", "walls", "holds_all"});
     const Value name = entry.require("name");
     check_new_name(name, "container", find_container(scenario_, name.name()) != nullptr);
     Container container;
@@ -140,6 +140,8 @@ void ScenarioReader::read_containers(const MapReader& map) {
     if (const auto wall = entry.find("wall_thickness")) container.wall_thickness = wall->size();
     if (const auto floor = entry.find("floor_thickness")) container.floor_thickness = floor->size();
     container.material = read_material(entry.require("material"));
+    if (const auto walls = entry.find("walls")) container.has_walls = walls->boolean();
+    if (const auto holds_all = entry.find("holds_all")) container.holds_all = holds_all->boolean();
     scenario_.containers.push_back(container);
   }
   const auto target = map.find("target");

@@ -46,13 +46,15 @@ HolderState state_within(const SwingMove& move, const Pose& X_WH_before, double 
 
 std::vector<PlacedShape> make_walls(const Container& container) {
   const Vector3 inner = 0.5 * container.inner_size;
-  const double wall = container.wall_thickness;
+  const double wall = container.has_walls ? container.wall_thickness : 0.0;
   const double bottom = -container.floor_thickness;
   const double rim = container.inner_size.z();
   const double x = inner.x() + wall;
   const double y = inner.y() + wall;
-  return {make_slab({-x, -y, bottom}, {x, y, 0.0}), make_slab({-x, -y, 0.0}, {-inner.x(), y, rim}),
-          make_slab({inner.x(), -y, 0.0}, {x, y, rim}), make_slab({-inner.x(), -y, 0.0}, {inner.x(), -inner.y(), rim}),
+  const PlacedShape floor = make_slab({-x, -y, bottom}, {x, y, 0.0});
+  if (!container.has_walls) return {floor};
+  return {floor, make_slab({-x, -y, 0.0}, {-inner.x(), y, rim}), make_slab({inner.x(), -y, 0.0}, {x, y, rim}),
+          make_slab({-inner.x(), -y, 0.0}, {inner.x(), -inner.y(), rim}),
           make_slab({-inner.x(), inner.y(), 0.0}, {inner.x(), y, rim})};
 }
 
