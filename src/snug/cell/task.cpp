@@ -60,7 +60,7 @@ Expected<motion::Program, motion::NoProgramReason> make_program(const model::Sce
   }
   motion::PlacementSettings settings;
   settings.X_WT = container->X_WT;
-  settings.rim_height = container->inner_size.z();
+  settings.rim_height = container->has_walls ? container->inner_size.z() : 0.0;
   settings.obstacle_top = obstacle_top(scenario);
   settings.pick_length = scenario.cup.hold_length;
   settings.hold_length = scenario.cup.hold_length;

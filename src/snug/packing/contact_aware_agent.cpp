@@ -106,7 +106,8 @@ class ContactAwareAgent : public Agent {
 }  // namespace
 
 Planning plan_for_contact(const ContainerState& state, const PackingSettings& settings) {
-  return {state.inner_size, settings, settings.max_flips, 0.0, settings.squeeze};
+  // What is squeezed between walls would stick out beyond the edge of a pallet.
+  return {state.inner_size, settings, settings.max_flips, 0.0, state.has_walls ? settings.squeeze : 0.0};
 }
 
 std::int64_t work_for(double seconds) { return static_cast<std::int64_t>(seconds * kPlacesPerSecond); }

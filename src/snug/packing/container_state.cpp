@@ -24,7 +24,9 @@ double contact_area(const Extent& upper, const Extent& lower) {
 
 }  // namespace
 
-ContainerState make_container_state(const model::Container& container) { return {container.inner_size, {}}; }
+ContainerState make_container_state(const model::Container& container) {
+  return {container.inner_size, {}, container.has_walls};
+}
 
 Extent bounding_extent(const PlacedBox& box) {
   const Vector3 half = 0.5 * (box.X_TP.R.cwiseAbs() * box.item.size);

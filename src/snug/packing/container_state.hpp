@@ -20,6 +20,7 @@ struct PlacedBox {
 struct ContainerState {
   Vector3 inner_size = Vector3(0.37, 0.57, 0.25);  ///< m, along Tx, Ty, Tz
   std::vector<PlacedBox> boxes;                    ///< in the order in which they were placed
+  bool has_walls = true;                           ///< false: a pallet, beside which nothing stands
   bool operator==(const ContainerState&) const = default;
 };
 

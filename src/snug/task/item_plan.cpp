@@ -106,7 +106,7 @@ CellLayout make_layout(const model::Scenario& scenario) {
   }
   CellLayout layout;
   layout.X_WT = container->X_WT;
-  layout.inner_size = container->inner_size;
+  layout.rim = container->has_walls ? container->inner_size.z() : 0.0;
   layout.fixed_top = std::max(scenario.aligner->X_WA.p.z(), scenario.aligner->support_height);
   const std::vector<Top> tops = static_tops(scenario);
   for (const Top& top : tops) layout.fixed_top = std::max(layout.fixed_top, top.high.z());
@@ -117,7 +117,7 @@ CellLayout make_layout(const model::Scenario& scenario) {
 }
 
 double travel_bottom(const CellLayout& layout, double packed_top) {
-  const double rim = layout.X_WT.p.z() + std::max(layout.inner_size.z(), packed_top);
+  const double rim = layout.X_WT.p.z() + std::max(layout.rim, packed_top);
   return std::max(rim, layout.fixed_top) + kTravelClearance;
 }
 
@@ -244,7 +244,7 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
   intent.size = request.box.size;
   intent.tool_for = make_tool_for(scenario, request.box, request.X_PS);
   intent.travel_bottom = travel_bottom(layout, request.packed_top);
-  const double rim = std::max(layout.inner_size.z(), request.packed_top);
+  const double rim = std::max(layout.rim, request.packed_top);
   intent.entry_bottom = layout.X_WT.p.z() + rim + kEntryClearance;
   intent.come_from = R_WT * request.variant.come_from_T;
   intent.overtravel = R_WT * request.variant.overtravel_T;

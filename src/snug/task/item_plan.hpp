@@ -19,12 +19,12 @@ struct FlipPlace {
 
 /// What the plans of all items have in common.
 struct CellLayout {
-  Pose X_WT;                             ///< target container
-  Vector3 inner_size = Vector3::Zero();  ///< m
-  double fixed_top = 0.0;                ///< m, z in W of the highest fixed thing that the tool passes
-  std::optional<FlipPlace> flip_place;   ///< absent: nothing flat is large enough
-  std::optional<Vector3> p_WB;           ///< m, where the robot stands
-  double neutral_yaw = 0.0;              ///< rad, of the tool at its start: half a turn to either side of it is used
+  Pose X_WT;                            ///< target container
+  double rim = 0.0;                     ///< m, z in T of the upper edges of its walls; 0 without walls
+  double fixed_top = 0.0;               ///< m, z in W of the highest fixed thing that the tool passes
+  std::optional<FlipPlace> flip_place;  ///< absent: nothing flat is large enough
+  std::optional<Vector3> p_WB;          ///< m, where the robot stands
+  double neutral_yaw = 0.0;             ///< rad, of the tool at its start: half a turn to either side of it is used
 };
 /// Throws InputError for a scenario without aligner, tool or target container.
 [[nodiscard]] CellLayout make_layout(const model::Scenario& scenario);

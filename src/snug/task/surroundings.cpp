@@ -6,8 +6,9 @@
 namespace snug::task {
 namespace {
 
-constexpr double kGraze = 0.004;    ///< m, boxes that overlap by less in plan view neither carry nor stand beside
-constexpr double kOverlap = 0.010;  ///< m, a neighbour's side may be believed this far inside the box
+constexpr double kGraze = 0.004;        ///< m, boxes that overlap by less in plan view neither carry nor stand beside
+constexpr double kNothingBeside = 1.0;  ///< m, side gap of a box at the edge of a pallet
+constexpr double kOverlap = 0.010;      ///< m, a neighbour's side may be believed this far inside the box
 
 packing::Extent extent_of(const packing::PlacedBox& box, double shrink) {
   packing::Extent extent = packing::bounding_extent(box);
@@ -62,6 +63,9 @@ packing::Candidate measured(const packing::ContainerState& state, packing::Candi
     candidate.side_gap[low] = 0.5 * state.inner_size[axis] + box.low[axis];
     candidate.side_gap[high] = 0.5 * state.inner_size[axis] - box.high[axis];
     candidate.side_height[low] = candidate.side_height[high] = state.inner_size.z() - box.low.z();
+    if (state.has_walls) continue;
+    candidate.side_gap[low] = candidate.side_gap[high] = kNothingBeside;
+    candidate.side_height[low] = candidate.side_height[high] = 0.0;
   }
   for (const packing::PlacedBox& other : state.boxes) add_neighbour(extent_of(other, shrink), box, candidate);
   return candidate;

@@ -41,6 +41,15 @@ TEST_P(EveryAgent, PlansSoundlyOnRandomSequences) {
   }
 }
 
+TEST_P(EveryAgent, StaysOverTheSlabOfAPallet) {
+  model::Container pallet = scenario.containers.front();
+  pallet.has_walls = false;
+  const std::vector<Item> items = test::shuffled_items(scenario, 4);
+  const ContainerState state = test::pack_all(*make(items), make_container_state(pallet), items);
+  EXPECT_GE(state.boxes.size(), 3U);
+  test::expect_sound(state, 0.0, PackingSettings().min_support);  // nothing gives way: nothing holds it from the side
+}
+
 TEST_P(EveryAgent, DecidesTheSameAtAnyNumberOfThreads) {
   const std::vector<Item> items = test::shuffled_items(scenario, 9);
   ContainerState one = make_container_state(scenario.containers.front());

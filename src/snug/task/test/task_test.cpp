@@ -3,6 +3,7 @@
 
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/model/other_container.hpp"
 #include "snug/task/executions.hpp"
 #include "snug/task/surroundings.hpp"
 
@@ -53,6 +54,43 @@ TEST(Measured, SeesWallsAndNeighboursAndStandsOnWhatCarries) {
   EXPECT_NEAR(seen.side_gap[0], 0.005, 1e-12);
   EXPECT_NEAR(seen.side_height[0], 0.1, 1e-12);
   EXPECT_NEAR(seen.side_gap[1], 0.5 * state.inner_size.x() - 0.02, 1e-12);
+}
+
+TEST(Measured, SeesNothingBesideTheEdgeOfAPallet) {
+  packing::ContainerState state;
+  state.has_walls = false;
+  packing::PlacedBox box;
+  box.item.size = Vector3(0.1, 0.1, 0.1);
+  box.X_TP.p = Vector3(-0.135, 0.0, 0.05);
+  state.boxes.push_back(box);
+  packing::Candidate candidate;
+  candidate.placement.X_TP.p = Vector3(-0.030, 0.0, 0.06);
+  const packing::Candidate seen = measured(state, candidate, box.item.size, 0.0);
+  EXPECT_NEAR(seen.side_gap[0], 0.005, 1e-12);
+  EXPECT_NEAR(seen.side_height[0], 0.1, 1e-12);
+  for (const std::size_t side : {1U, 2U, 3U}) {
+    EXPECT_GT(seen.side_gap[side], 0.5) << side;
+    EXPECT_EQ(seen.side_height[side], 0.0) << side;
+  }
+  // At the corner of the slab nothing is there to slide against, and a way is free.
+  packing::ContainerState empty;
+  empty.has_walls = false;
+  candidate.placement.X_TP.p = Vector3(-0.135, -0.235, 0.05);
+  const auto variants = choose_variants(measured(empty, candidate, box.item.size, 0.0), box.item.size);
+  ASSERT_EQ(variants.size(), 1U);
+  EXPECT_EQ(variants[0].manner, PlaceManner::Straight);
+}
+
+TEST(Layout, HasNoRimWhereThereAreNoWalls) {
+  const model::Scenario scenario = demonstrator();
+  EXPECT_NEAR(make_layout(scenario).rim, 0.25, 1e-12);
+  EXPECT_EQ(make_layout(model::with_pallet(scenario, "600x400x900")).rim, 0.0);
+}
+
+TEST(Pack, LeavesABoxThatIsTooBigForTheContainerWithAReason) {
+  const SessionResult result = pack(model::with_container(demonstrator(), "150x150x60"), "1", quick());
+  EXPECT_EQ(result.planned_boxes, 0);
+  EXPECT_EQ(result.stopped, "BOX027: too big for the container");
 }
 
 TEST(Pack, GivesTheSameWithAnyNumberOfThreadsAndWhenItsProgramIsRunAgain) {
