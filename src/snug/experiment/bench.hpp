@@ -13,16 +13,18 @@ struct Figure {
   std::string name;
   double value = 0.0;
   std::string unit;
-  std::string target;  ///< as text, e.g. "<= 20"; empty: for information
-  bool ok = true;      ///< meets the target
+  std::string target;        ///< as text, e.g. "<= 20"; empty: for information
+  bool ok = true;            ///< meets the target
+  std::string skipped = {};  ///< why it was not measured, or empty
 };
 
 struct BenchOptions {
-  std::filesystem::path scenes;    ///< folder of the scene files
-  std::filesystem::path scenario;  ///< the demonstrator's cell, for the program
-  std::filesystem::path program;   ///< a program of the demonstrator's sequence 1; left out when absent
-  std::string corrections;         ///< for that program, or empty
-  std::string only;                ///< figures whose scene starts so; empty: all
+  std::filesystem::path scenes;     ///< folder of the scene files
+  std::filesystem::path scenario;   ///< the demonstrator's cell, for the program
+  std::filesystem::path program;    ///< a program of the demonstrator's sequence 1; left out when absent
+  std::filesystem::path instances;  ///< folder of public loading instances, BR1.txt ...; said to be skipped when absent
+  std::string corrections;          ///< for that program, or empty
+  std::string only;                 ///< figures whose scene starts so; empty: all
 };
 
 /// Largest overlap of two boxes by the fifteen axes of the separating-axis test, m; 0 when apart. Independent of the

@@ -44,5 +44,15 @@ TEST(Bench, PressesABoxBetweenTwoOthersWithinTheForcesOfTheTargets) {
   for (const Figure& figure : figures) EXPECT_TRUE(figure.ok) << figure.name << " " << figure.value;
 }
 
+TEST(Bench, SaysThatInstancesAreSkippedWhenTheyAreNotThere) {
+  BenchOptions options;
+  options.instances = "no such folder";
+  options.only = "packing.load";
+  const std::vector<Figure> figures = run_bench(options);
+  ASSERT_EQ(figures.size(), 1U);
+  EXPECT_FALSE(figures[0].skipped.empty());
+  EXPECT_TRUE(figures[0].ok);
+}
+
 }  // namespace
 }  // namespace snug::experiment
