@@ -575,3 +575,83 @@ class Calibrate(unittest.TestCase):
                 self.assertEqual(result.returncode, 2, result.stderr)
                 self.assertTrue(result.stderr.startswith("snug: error: "), result.stderr)
                 self.assertIn(part, result.stderr)
+
+
+class OtherCells(unittest.TestCase):
+    """Other boxes and other containers: pack, and everything that goes on with what it leaves."""
+    assert_refused = CommandLine.assert_refused
+
+    ORDERS = ("order,article,length_mm,width_mm,height_mm,mass_kg,count,upright_only,no_stack,max_load_kg\n"
+              "two,cup,120,110,105,0.3,1,1,0,1.0\ntwo,tray,180,150,60,0.5,1,0,1,\nhuge,crate,800,700,650,6,1,0,0,\n")
+    QUICK = ("--samples", 0, "--decision-time", 0.02)
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.orders = self.folder / "orders.csv"
+        self.orders.write_text(self.ORDERS)
+
+    def pack(self, *words):
+        result = snug("pack", CELL, "--items", self.orders, *self.QUICK, "--json", *words)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def test_order_is_packed_into_another_container_and_its_program_and_recording_go_on(self):
+        program, plan, recording = (self.folder / name for name in ("out.csv", "plan.json", "out.h5"))
+        cell = ("--items", self.orders, "--container", "400x300x200")
+        packed = self.pack("--container", "400x300x200", "--sequence", "two", "--program", program, "--plan", plan,
+                           "-o", recording)
+        self.assertEqual((packed["planned_boxes"], packed["executed_boxes"]), (2, 2))
+        volume = 0.120 * 0.110 * 0.105 + 0.180 * 0.150 * 0.060
+        self.assertAlmostEqual(packed["executed_percent"], 100 * volume / (0.4 * 0.3 * 0.2), places=6)
+        run = json.loads(snug("simulate", CELL, *cell, "--program", program, "--sequence", "two", "--cup", "phases",
+                              "--json").stdout)
+        self.assertEqual(run["state_hash"], packed["state_hash"])
+        self.assertEqual(snug("simulate", CELL, "--program", program, "--sequence", "two").returncode, 2)
+        self.assertIn(snug("check", CELL, *cell, "--program", program, "--sequence", "two").returncode, (0, 1))
+        self.assertEqual(snug("report", recording, "-o", self.folder / "out.html").returncode, 0)
+        for placement in json.loads(plan.read_text())["placements"]:
+            for number in placement["position"]:
+                self.assertEqual(number, round(number, 6))
+
+    def test_flags_of_an_order_are_kept(self):
+        packed = self.pack("--sequence", "two")
+        first, second = packed["items"]
+        self.assertEqual((first["planned"]["up"], first["planned"]["up_sign"]), ("Z", 1))
+        self.assertLess(second["planned"]["position"][2], 0.1, "0.5 kg may stand on the cup, but the floor is free")
+
+    def test_box_that_fits_nowhere_is_a_reason(self):
+        packed = self.pack("--sequence", "huge")
+        self.assertEqual(packed["planned_boxes"], 0)
+        self.assertIn("too big for the container", packed["stopped"])
+
+    def test_container_too_small_for_anything_is_a_reason(self):
+        packed = self.pack("--sequence", "two", "--container", "60x60x60")
+        self.assertEqual(packed["executed_boxes"], 0)
+        self.assertIn("too big for the container", packed["stopped"])
+
+    def test_pallet_is_packed_within_its_edges(self):
+        packed = self.pack("--sequence", "two", "--pallet", "250x200x300")
+        self.assertEqual(packed["executed_boxes"], 2)
+
+    def test_containers_that_cannot_be_are_refused(self):
+        for words, parts in ((["--container", "1x1x1"], ["--container", "10 to 10000 mm"]),
+                             (["--container", "100000x100000x100000"], ["10 to 10000 mm"]),
+                             (["--container", "700x400x200"], ["workbench"]),
+                             (["--container", "tote9"], ["tote1, tote2"]), (["--pallet", "600"], ["LxW"]),
+                             (["--pallet", "600x400", "--container", "tote2"], ["--container"]),
+                             (["--samples", 65], ["--samples", "0 to 64"])):
+            with self.subTest(words=words):
+                self.assert_refused(snug("pack", CELL, "--sequence", "1", *words), *parts)
+
+    def test_random_sequences_are_compared_with_their_mean(self):
+        small = ("--container", "220x220x120")
+        words = ("compare", CELL, *small, "--random", 2, "--random-seed", 3, "--agents", "contact-aware", *self.QUICK)
+        table, rows = snug(*words), json.loads(snug(*words, "--json").stdout)
+        self.assertEqual([row["sequence"] for row in rows["rows"]], ["random-1", "random-2"])
+        mean = sum(row["executed_percent"] for row in rows["rows"]) / 2
+        self.assertAlmostEqual(rows["means"][0]["executed_percent"], mean, places=9)
+        self.assertIn(f"{mean:.2f}", table.stdout.splitlines()[-1])
+        drawn = snug("items", "sequence", CELL, "--all", "--name", "random", "--sequences", 1, "--seed", 3)
+        self.assertEqual(drawn.stdout.count("parcel:"), 18)

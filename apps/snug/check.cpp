@@ -63,7 +63,7 @@ std::string format_table(const cell::CheckResult& result) {
 }  // namespace
 
 int run_check(const CheckOptions& options) {
-  const model::Scenario scenario = model::load_scenario(options.scenario);
+  const model::Scenario scenario = load_changed(options.scenario, options.changes);
   cell::CheckOptions check;
   if (options.sequence) check.sequence = *options.sequence;
   if (options.robot) check.robot = *options.robot;

@@ -4,12 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "scenario_options.hpp"
 #include "verb.hpp"
 
 namespace snug::app {
 
 struct CheckOptions {
   std::string scenario;
+  ScenarioChanges changes;
   std::string program;
   std::optional<std::string> sequence;
   std::optional<std::string> robot;

@@ -1,8 +1,9 @@
 // compare: the agents side by side on the sequences of a scenario, planned and executed.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "pack.hpp"
 
@@ -10,9 +11,12 @@ namespace snug::app {
 
 /// The words of `snug compare`.
 struct CompareOptions {
-  PackOptions pack;               ///< scenario, seed, decision time, threads, samples
-  std::string sequences = "all";  ///< or names, separated by commas
-  std::string agents = "all";     ///< or names, separated by commas
+  PackOptions pack;  ///< scenario, seed, decision time, threads, samples
+  std::optional<std::string>
+      sequences;               ///< "all", or names, separated by commas; absent: all, or the random ones alone
+  std::string agents = "all";  ///< or names, separated by commas
+  int random = 0;              ///< so many random sequences beside them
+  std::uint64_t random_seed = 1;
   bool json = false;
   bool csv = false;
 };

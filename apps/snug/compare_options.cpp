@@ -10,7 +10,9 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   snug compare scenarios/box-demonstrator.yaml
   snug compare scenarios/box-demonstrator.yaml --sequences 1,3 --agents margin,contact-aware --json
-  snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --csv > rows.csv)";
+  snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --csv > rows.csv
+  snug compare scenarios/box-demonstrator.yaml --random 50 --agents contact-aware
+  snug compare scenarios/box-demonstrator.yaml --container 400x300x200 --agents contact-aware)";
 
 }  // namespace
 
@@ -18,8 +20,18 @@ void add_compare(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("compare", "agents side by side on the sequences, planned and executed");
   const auto options = std::make_shared<CompareOptions>();
   verb.add_option("scenario", options->pack.scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
-  verb.add_option("--sequences", options->sequences, "all, or names separated by commas")
-      ->type_name("NAMES")
+  verb.add_option("--sequences", options->sequences,
+                  "all, or names separated by commas (default: all; with --random none but the random ones)")
+      ->type_name("NAMES");
+  CLI::Option* random =
+      verb.add_option("--random", options->random,
+                      "so many more sequences, random-1, ...: every box of the scenario in random order")
+          ->check(whole(1, 10000))
+          ->type_name("N");
+  verb.add_option("--random-seed", options->random_seed, "seed of their order")
+      ->check(whole(0))
+      ->needs(random)
+      ->type_name("N")
       ->capture_default_str();
   verb.add_option("--agents", options->agents, "all, or names separated by commas")
       ->type_name("NAMES")

@@ -9,6 +9,7 @@
 
 #include "export_program.hpp"
 #include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/record/csv.hpp"
 #include "snug/replay/mcap_export.hpp"
 
@@ -57,6 +58,9 @@ int run_export(const ExportOptions& options) {
     return std::string_view(format.name) == options.format;
   });
   SNUG_CHECK(found != kFormats.end(), "a format that the parser let pass");
+  if (options.scenario.empty() && options.changes.any()) {
+    throw InputError("command line", "--items, --container, --pallet", "without --scenario", "a scenario to change");
+  }
   return found->write(options);
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "scenario_options.hpp"
 #include "snug/replay/mcap_writer.hpp"
 #include "snug/replay/replay.hpp"
 #include "verb.hpp"
@@ -17,7 +18,8 @@ struct ExportOptions {
   replay::Selection selection;
   replay::McapCompression compression = replay::McapCompression::Zstd;
   // of programs
-  std::string scenario;              ///< its robot, limits and gains
+  std::string scenario;  ///< its robot, limits and gains
+  ScenarioChanges changes;
   std::string sequence;              ///< whose gain; empty: the first
   std::string corrections = "none";  ///< layer of the scenario
   double period = 0.04;              ///< s, between the points of a trajectory

@@ -28,7 +28,7 @@ RobotProgram load(const ExportOptions& options) {
   if (options.scenario.empty()) {
     throw InputError("command line", "--scenario", "nothing", "the scenario file with the robot that does the program");
   }
-  const model::Scenario scenario = model::load_scenario(options.scenario);
+  const model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (!scenario.robot) throw InputError(options.scenario, "robot", "", "a scenario with a robot");
   std::string sequence = options.sequence;
   if (sequence.empty() && !scenario.sequences.empty()) sequence = scenario.sequences.front().name;

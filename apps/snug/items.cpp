@@ -129,15 +129,17 @@ int run_items_reduce(const ItemsReduceOptions& options) {
 int run_items_sequence(const ItemsSequenceOptions& options) {
   const model::Scenario scenario = model::load_scenario(options.scenario);
   const model::Scenario drawn_from = options.types ? with_new_boxes(scenario, options) : scenario;
-  const packing::SequenceSettings settings{options.fill_percent, options.repeat, options.any_side_up};
+  const packing::SequenceSettings settings{options.fill_percent, options.all ? 0.0 : options.repeat,
+                                           options.any_side_up, options.all};
   std::vector<model::Sequence> sequences;
   for (int i = 1; i <= options.sequences; ++i) {
     const std::string name = options.name + "-" + std::to_string(i);
     const Rng rng = Rng(options.seed).split("sequence " + name);
     sequences.push_back(packing::draw_sequence(drawn_from, name, settings, rng));
   }
-  std::string text = fmt::format("# boxes of {} to {:g} % of its container, seed {}\n", scenario.name,
-                                 options.fill_percent, options.seed);
+  std::string text = options.all ? fmt::format("# all boxes of {}, seed {}\n", scenario.name, options.seed)
+                                 : fmt::format("# boxes of {} to {:g} % of its container, seed {}\n", scenario.name,
+                                               options.fill_percent, options.seed);
   if (options.types) {
     const auto material = static_cast<std::size_t>(scenario.parcels.front().material.index);
     text += boxes_as_yaml(drawn_from, sequences, scenario.materials[material].name);

@@ -26,6 +26,7 @@ struct ItemsSequenceOptions {
   double fill_percent = 90.0;
   double repeat = 0.4;
   bool any_side_up = false;
+  bool all = false;  ///< every box of the scenario once
   std::uint64_t seed = 1;
   std::optional<std::string> output;
 };

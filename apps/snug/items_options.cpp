@@ -18,7 +18,8 @@ constexpr const char* kSequenceHelp =
 Example:
   snug items sequence scenarios/box-demonstrator.yaml --fill 90 --sequences 5 --seed 7 -o sequences.yaml
   snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
-  snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1)";
+  snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
+  snug items sequence scenarios/box-demonstrator.yaml --all --name random --sequences 50 -o random.yaml)";
 
 void add_reduce(CLI::App& parent, Action& action) {
   CLI::App& verb = *parent.add_subcommand("reduce", "few boxes that stand for those of many orders");
@@ -51,9 +52,14 @@ void add_sequence(CLI::App& parent, Action& action) {
       ->capture_default_str()
       ->check(positive())
       ->type_name("PERCENT");
-  verb.add_option("--types", options->types,
-                  "draw new boxes of these types (as written by items reduce) instead of the scenario's boxes")
-      ->type_name("FILE.yaml");
+  CLI::Option* all = verb.add_flag("--all", options->all,
+                                   "every box of the scenario once, whatever they fill: the sequences that compare "
+                                   "--random draws with the same seed and --name random");
+  CLI::Option* types =
+      verb.add_option("--types", options->types,
+                      "draw new boxes of these types (as written by items reduce) instead of the scenario's boxes")
+          ->type_name("FILE.yaml");
+  all->excludes(types);
   verb.add_option("--sequences", options->sequences, "how many")
       ->capture_default_str()
       ->check(whole(1))

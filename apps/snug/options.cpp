@@ -54,4 +54,16 @@ CLI::Validator whole(std::uint64_t least) {
       "");
 }
 
+CLI::Validator whole(std::uint64_t least, std::uint64_t most) {
+  return CLI::Validator(
+      [least, most](const std::string& text) {
+        std::uint64_t value = 0;
+        const bool fits = reads_as(text, value) && value >= least && value <= most;
+        return fits ? std::string()
+                    : "got '" + text + "'; expected a whole number from " + std::to_string(least) + " to " +
+                          std::to_string(most);
+      },
+      "");
+}
+
 }  // namespace snug::app

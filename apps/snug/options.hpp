@@ -14,5 +14,7 @@ namespace snug::app {
 [[nodiscard]] CLI::Validator positive();
 /// A whole number that fits into 64 bits, `least` or more.
 [[nodiscard]] CLI::Validator whole(std::uint64_t least);
+/// A whole number from `least` to `most`.
+[[nodiscard]] CLI::Validator whole(std::uint64_t least, std::uint64_t most);
 
 }  // namespace snug::app

@@ -14,7 +14,6 @@
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/model/items_file.hpp"
 #include "snug/task/executions.hpp"
 
 namespace snug::app {
@@ -49,12 +48,6 @@ task::SessionOptions make_session_options(const PackOptions& options, const mode
   return session;
 }
 
-model::Scenario load_packing_scenario(const PackOptions& options) {
-  model::Scenario scenario = model::load_scenario(options.scenario);
-  for (const std::string& file : options.items) model::add_items(scenario, file);
-  return scenario;
-}
-
 task::Progress make_progress_line(const std::string& label) {
   if (isatty(STDERR_FILENO) == 0) return {};
   return [label](const task::SessionResult& so_far, int item, int items) {
@@ -67,7 +60,7 @@ task::Progress make_progress_line(const std::string& label) {
 }
 
 int run_pack(const PackOptions& options) {
-  const model::Scenario scenario = load_packing_scenario(options);
+  const model::Scenario scenario = load_changed(options.scenario, options.changes);
   const task::SessionOptions session = make_session_options(options, scenario);
   const task::SessionResult result =
       task::pack(scenario, options.sequence, session, make_progress_line("sequence " + options.sequence));

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "scenario_options.hpp"
 #include "snug/task/session.hpp"
 #include "verb.hpp"
 
@@ -15,7 +15,7 @@ namespace snug::app {
 struct PackOptions {
   std::string scenario;
   std::string sequence;
-  std::vector<std::string> items;  ///< files with more boxes and sequences
+  ScenarioChanges changes;
   std::string agent = "contact-aware";
   std::optional<std::uint64_t> seed;
   double decision_time = packing::PackingSettings{}.decision_time;  ///< s
@@ -31,8 +31,6 @@ void add_pack(CLI::App& app, Action& action);
 /// What `pack` and `compare` have in common.
 void add_packing_options(CLI::App& verb, PackOptions& options);
 [[nodiscard]] task::SessionOptions make_session_options(const PackOptions& options, const model::Scenario& scenario);
-/// The scenario with the boxes and sequences of the items files.
-[[nodiscard]] model::Scenario load_packing_scenario(const PackOptions& options);
 /// A line on a terminal that is written over again, or nothing.
 [[nodiscard]] task::Progress make_progress_line(const std::string& label);
 

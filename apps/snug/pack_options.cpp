@@ -12,15 +12,17 @@ constexpr const char* kExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --json
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --executions 20 --threads 2
-  snug pack scenarios/box-demonstrator.yaml --items orders.csv --sequence order-7
+  snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200 -o run.h5
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --program out.csv --plan out.json -o out.h5
-  snug simulate scenarios/box-demonstrator.yaml --program out.csv --sequence 1 --cup phases)";
+  snug simulate scenarios/box-demonstrator.yaml --program out.csv --sequence 1 --cup phases
+Programs of such a run need the same --items, --container and --pallet in simulate, check and export; recordings hold them.)";
 
 }  // namespace
 
 void add_packing_options(CLI::App& verb, PackOptions& options) {
-  verb.add_option("--items", options.items, "more boxes and sequences: orders (.csv, .json) or items (.yaml)")
-      ->type_name("FILE");
+  add_scenario_changes(verb, options.changes);
   verb.add_option("--seed", options.seed, "seed of roll-outs and samples (default: the scenario's)")
       ->check(whole(0))
       ->type_name("N");
@@ -33,8 +35,8 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
       ->type_name("N");
   verb.add_option("--samples", options.samples,
                   "courses of events with uncertain sizes, friction, poses, masses and cup in which every motion is "
-                  "tried before it is done; 0: none")
-      ->check(whole(0))
+                  "tried before it is done, at most 64; 0: none")
+      ->check(whole(0, 64))
       ->type_name("N")
       ->capture_default_str();
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace snug::app {
@@ -11,16 +12,28 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
+/// To so many decimals, and no negative zero: digits beyond what is meant do not help people who compare files.
+double rounded(double value, double decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale + 0.0;
+}
+
 Json as_json(const Vector3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+/// m, to a micrometre.
+Json position_as_json(const Vector3& p) {
+  return Json::array({rounded(p.x(), 6), rounded(p.y(), 6), rounded(p.z(), 6)});
+}
 
 Json as_json(const packing::Placement& placement) {
   const Quaternion q(placement.X_TP.R);
-  return {{"box", placement.item},
-          {"position", as_json(placement.X_TP.p)},
-          {"quaternion_wxyz", Json::array({q.w(), q.x(), q.y(), q.z()})},
-          {"up", std::string(1, static_cast<char>('X' + static_cast<int>(placement.orientation.up)))},
-          {"up_sign", placement.orientation.up_sign},
-          {"yaw_quarter", placement.orientation.yaw_quarter}};
+  return {
+      {"box", placement.item},
+      {"position", position_as_json(placement.X_TP.p)},
+      {"quaternion_wxyz", Json::array({rounded(q.w(), 9), rounded(q.x(), 9), rounded(q.y(), 9), rounded(q.z(), 9)})},
+      {"up", std::string(1, static_cast<char>('X' + static_cast<int>(placement.orientation.up)))},
+      {"up_sign", placement.orientation.up_sign},
+      {"yaw_quarter", placement.orientation.yaw_quarter}};
 }
 
 Json as_json(const task::AttemptForces& forces) {

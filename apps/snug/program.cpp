@@ -10,7 +10,7 @@
 namespace snug::app {
 
 int run_program(const ProgramOptions& options) {
-  const model::Scenario scenario = model::load_scenario(options.scenario);
+  const model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (!options.sequence) throw InputError("command line", "--sequence", "nothing", "a sequence of the scenario");
   const auto placements = model::load_placements(options.placements, scenario);
   const auto program = cell::make_program(scenario, *options.sequence, placements, options.placements);

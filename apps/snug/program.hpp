@@ -4,12 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "scenario_options.hpp"
 #include "verb.hpp"
 
 namespace snug::app {
 
 struct ProgramOptions {
   std::string scenario;
+  ScenarioChanges changes;
   std::string placements;
   std::optional<std::string> sequence;  ///< required: how each box stands at the aligner
   std::optional<std::string> output;    ///< absent: stdout

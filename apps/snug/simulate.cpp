@@ -50,7 +50,7 @@ std::string list_sequences(const model::Scenario& scenario) {
 }  // namespace
 
 model::Scenario load_with_overrides(const SimulateOptions& options) {
-  model::Scenario scenario = model::load_scenario(options.scenario);
+  model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (options.dt) scenario.time_step = *options.dt;
   if (options.seed) scenario.seed = *options.seed;
   return scenario;

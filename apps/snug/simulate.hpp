@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "scenario_options.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/model/scenario.hpp"
 #include "verb.hpp"
@@ -14,6 +15,7 @@ namespace snug::app {
 /// The words of `snug simulate`. An absent option leaves the choice to the scenario or to the cell.
 struct SimulateOptions {
   std::string scenario;
+  ScenarioChanges changes;
   std::optional<std::string> program;
   std::optional<std::string> sequence;
   std::optional<double> until;  ///< s

@@ -12,11 +12,13 @@ constexpr const char* kExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --ensemble 20 --seed 7
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --robot ur10 --csv joints.csv
+  snug simulate scenarios/box-demonstrator.yaml --container 400x300x200 --program out.csv --sequence 1 --cup phases
   snug simulate scenarios/slide.yaml --until 5 --csv slide.csv)";
 
 }  // namespace
 
 void add_program_options(CLI::App& verb, SimulateOptions& options) {
+  add_scenario_changes(verb, options.changes);
   verb.add_option("--program", options.program, "waypoint file (13 columns) to run; needs --sequence")
       ->type_name("FILE.csv");
   verb.add_option("--sequence", options.sequence, "item sequence of the scenario that the program packs")

@@ -22,8 +22,9 @@ void check(const ViewOptions& options) {
     throw InputError("command line", "view", is_live ? "a recording and --live" : "",
                      "one or two recordings, or --live");
   }
-  if (!is_live && (options.run.program || options.run.sequence || options.run.record)) {
-    throw InputError("command line", "--program, --sequence, -o", "with a recording", "--live SCENARIO.yaml");
+  if (!is_live && (options.run.program || options.run.sequence || options.run.record || options.run.changes.any())) {
+    throw InputError("command line", "--program, --sequence, --items, --container, --pallet, -o", "with a recording",
+                     "--live SCENARIO.yaml");
   }
   if (!(options.speed >= 0.0 && options.speed <= 1e6)) {
     throw InputError("command line", "--speed", std::to_string(options.speed), "0 to 1000000");

@@ -130,7 +130,7 @@ model::Sequence draw_sequence(const model::Scenario& scenario, const std::string
   sequence.name = name;
   double volume = 0.0;
   std::string last;
-  while (volume < 0.01 * settings.fill_percent * container->inner_size.prod()) {
+  while (settings.all ? !left.empty() : volume < 0.01 * settings.fill_percent * container->inner_size.prod()) {
     if (left.empty()) {
       throw InputError(scenario.source_name, "fill", std::to_string(settings.fill_percent) + " percent",
                        "at most what all boxes together fill, " +

@@ -37,11 +37,13 @@ struct ReductionSettings {
 
 /// Draws boxes of the scenario, each at most once and equally likely, as few as reach `fill_percent` of the container;
 /// with probability `repeat` the next is one of the same type as the last, as in real orders. All stand with Z up
-/// unless `any_side_up`. Throws InputError when all boxes together do not reach it.
+/// unless `any_side_up`. With `all` it goes on until every box is taken. Throws InputError when all boxes together do
+/// not reach the filling.
 struct SequenceSettings {
   double fill_percent = 90.0;
   double repeat = 0.4;
   bool any_side_up = false;
+  bool all = false;
 };
 [[nodiscard]] model::Sequence draw_sequence(const model::Scenario& scenario, const std::string& name,
                                             const SequenceSettings& settings, Rng rng);

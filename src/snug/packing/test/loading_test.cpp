@@ -237,5 +237,21 @@ TEST(DrawSequence, TakesAsFewBoxesAsReachTheFillAndNoneTwice) {
   EXPECT_THROW((void)draw_sequence(scenario, "s", {99.0, 0.4, true}, Rng(1)), InputError);
 }
 
+TEST(DrawSequence, TakesEveryBoxOnceWhenAskedForAll) {
+  const model::Scenario scenario = model::load_scenario(kSource / "scenarios/box-demonstrator.yaml");
+  SequenceSettings settings;
+  settings.repeat = 0.0;
+  settings.all = true;
+  std::set<std::vector<std::string>> orders;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    std::vector<std::string> order;
+    for (const model::Item& item : draw_sequence(scenario, "s", settings, Rng(seed)).items) order.push_back(item.parcel);
+    EXPECT_EQ(std::set<std::string>(order.begin(), order.end()).size(), scenario.parcels.size());
+    EXPECT_EQ(order.size(), scenario.parcels.size());
+    orders.insert(order);
+  }
+  EXPECT_EQ(orders.size(), 20U);
+}
+
 }  // namespace
 }  // namespace snug::packing

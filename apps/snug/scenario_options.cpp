@@ -1,0 +1,31 @@
+// The words with which several verbs change a scenario: more boxes, another container, a pallet.
+#include "scenario_options.hpp"
+
+#include "snug/model/items_file.hpp"
+#include "snug/model/other_container.hpp"
+
+namespace snug::app {
+
+void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes) {
+  verb.add_option("--items", changes.items, "more boxes and sequences: orders (.csv, .json) or items (.yaml)")
+      ->type_name("FILE");
+  CLI::Option* container =
+      verb.add_option("--container", changes.container,
+                      "what is packed: another container of the scenario, or an open box of these inner sizes in mm "
+                      "in the place of its target")
+          ->type_name("NAME|LxWxH");
+  verb.add_option("--pallet", changes.pallet,
+                  "pack a slab without walls, sizes in mm, boxes up to H high (default: the depth of the target)")
+      ->type_name("LxW[xH]")
+      ->excludes(container);
+}
+
+model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes) {
+  model::Scenario scenario = model::load_scenario(file);
+  if (changes.container) scenario = model::with_container(scenario, *changes.container);
+  if (changes.pallet) scenario = model::with_pallet(scenario, *changes.pallet);
+  for (const std::string& items : changes.items) model::add_items(scenario, items);
+  return scenario;
+}
+
+}  // namespace snug::app

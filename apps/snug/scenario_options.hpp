@@ -1,0 +1,25 @@
+// The words with which several verbs change a scenario: more boxes, another container, a pallet.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/model/scenario.hpp"
+
+namespace snug::app {
+
+struct ScenarioChanges {
+  std::vector<std::string> items;        ///< files with more boxes and sequences
+  std::optional<std::string> container;  ///< name, or LxWxH in mm
+  std::optional<std::string> pallet;     ///< LxW or LxWxH in mm
+  [[nodiscard]] bool any() const { return !items.empty() || container || pallet; }
+};
+
+/// --items, --container and --pallet.
+void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes);
+/// The scenario of a file, changed so; its text says the same. Throws InputError for what cannot be used.
+[[nodiscard]] model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes);
+
+}  // namespace snug::app
