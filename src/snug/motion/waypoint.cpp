@@ -104,6 +104,17 @@ Waypoint parse_row(std::string_view text, std::string_view file, int line) {
   return waypoint;
 }
 
+constexpr double kGrid = 0x1p-40;  ///< rad, far above the rounding of log_rotation
+
+Vector3 on_grid(const Vector3& r) { return (r / kGrid).array().round().matrix() * kGrid; }
+
+/// Logarithm and exponential together do not give a matrix back to the last bit. Where a vector on the grid does, it is
+/// that one.
+Vector3 rotation_vector(const Matrix3& R) {
+  const Vector3 r = log_rotation(R), rounded = on_grid(r);
+  return exp_rotation(rounded) == R ? rounded : r;
+}
+
 void check_writable(const Program& program, std::size_t row) {
   const Waypoint& waypoint = program.waypoints[row];
   const std::string& name = waypoint.name;
@@ -154,13 +165,25 @@ std::string format_program(const Program& program) {
   for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
     check_writable(program, row);
     const Waypoint& w = program.waypoints[row];
-    const Vector3 r = log_rotation(w.X_WE.R);
+    const Vector3 r = rotation_vector(w.X_WE.R);
     const Vector3& p = w.X_WE.p;
     text += fmt::format("{}, {}, {}, {}, {}, {},{},{:d},{:d},{:d},{:d},{:d},{:d}\n", p.x(), p.y(), p.z(), r.x(), r.y(),
                         r.z(), w.name, w.io.vacuum, w.io.blow_off, w.io.conveyor_cw, w.io.conveyor_ccw, w.io.optitrack,
                         w.io.reserved);
   }
   return text;
+}
+
+Waypoint as_written(const Waypoint& row) {
+  constexpr int kNudges = 16;
+  Waypoint written = row;
+  const Vector3 r = log_rotation(row.X_WE.R);
+  // Within rounding of half a turn a rotation vector may come back with the other sign: then a little less of a turn.
+  for (int nudge = 0; nudge < kNudges; ++nudge) {
+    written.X_WE.R = exp_rotation(on_grid((1.0 - kGrid * nudge) * r));
+    if (exp_rotation(rotation_vector(written.X_WE.R)) == written.X_WE.R) break;
+  }
+  return written;
 }
 
 void write_program(const Program& program, const std::filesystem::path& path) {

@@ -205,5 +205,25 @@ TEST(Program, ReadsEveryFileOfTheDemonstrator) {
   }
 }
 
+TEST(AsWritten, ReadsBackExactlyWhateverTheRotation) {
+  Rng rng(8);
+  for (int i = 0; i < 2000; ++i) {
+    Waypoint row;
+    row.name = "Row";
+    Vector3 axis(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
+    const double angle = i % 3 == 0 ? std::numbers::pi : i % 3 == 1 ? rng.uniform(0.0, 3.1) : 0.5 * std::numbers::pi;
+    if (i % 4 == 0) axis.z() = 0.0;  // tools that point straight down
+    if (i % 20 == 0) axis.x() = 0.0;
+    if (i % 28 == 0) axis.y() = 0.0;
+    row.X_WE = {exp_rotation(angle * axis.normalized()), Vector3(0.1, -0.2, 1.0 / 3.0)};
+    const Waypoint written = as_written(row);
+    EXPECT_LT((written.X_WE.R - row.X_WE.R).norm(), 1e-10);
+    const Program program{"row", {written}};
+    const Program read = parse_program(format_program(program), "row");
+    ASSERT_EQ(read.waypoints[0].X_WE, written.X_WE) << i;
+    ASSERT_EQ(format_program(read), format_program(program));
+  }
+}
+
 }  // namespace
 }  // namespace snug::motion
