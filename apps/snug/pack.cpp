@@ -45,6 +45,7 @@ task::SessionOptions make_session_options(const PackOptions& options, const mode
   session.samples = options.samples;
   if (options.look == "noisy") session.perception = task::Perception::Noisy;
   if (options.look == "dead-reckoning") session.perception = task::Perception::DeadReckoning;
+  session.simulation.robot = options.robot.value_or("");
   return session;
 }
 
@@ -70,6 +71,7 @@ int run_pack(const PackOptions& options) {
     repeated.count = *options.executions;
     repeated.seed = session.packing.seed;
     repeated.threads = session.threads;
+    repeated.simulation = session.simulation;
     executions = task::repeat(scenario, result, repeated);
   }
   if (options.program && !result.program.waypoints.empty()) motion::write_program(result.program, *options.program);

@@ -22,6 +22,7 @@ struct PackOptions {
   std::optional<int> threads;                                       ///< absent: all cores
   int samples = task::SessionOptions{}.samples;
   std::string look = "exact";
+  std::optional<std::string> robot;
   std::optional<int> executions;
   std::optional<std::string> program, plan, record;
   bool json = false;

@@ -15,6 +15,7 @@ constexpr const char* kExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200 -o run.h5
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --robot ur10 --samples 0
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --program out.csv --plan out.json -o out.h5
   snug simulate scenarios/box-demonstrator.yaml --program out.csv --sequence 1 --cup phases
 Programs of such a run need the same --items, --container and --pallet in simulate, check and export; recordings hold them.)";
@@ -56,6 +57,11 @@ void add_pack(CLI::App& app, Action& action) {
       ->check(one_of({"exact", "noisy", "dead-reckoning"}))
       ->type_name("HOW")
       ->capture_default_str();
+  verb.add_option("--robot", options->robot,
+                  "move the tool with the joints of the scenario's robot, such as ur10, in all that is simulated: a "
+                  "protective stop "
+                  "is a failed attempt; absent: the tool moves by itself")
+      ->type_name("NAME");
   verb.add_option("--executions", options->executions,
                   "repeat the finished program N times, open loop, under sampled uncertainty")
       ->check(whole(1))

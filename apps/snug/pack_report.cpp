@@ -54,6 +54,7 @@ Json as_json(const task::ItemReport& item) {
     json["happened"] = as_json(item.happened);
   }
   json["attempts"] = item.attempts;
+  json["protective_stops"] = item.stops;
   json["decision_seconds"] = item.decision_seconds;
   json["prediction_seconds"] = item.prediction_seconds;
   return json;
@@ -102,6 +103,9 @@ std::string format_table(const task::SessionResult& result, const task::Executio
   text += fmt::format("\nstopped            {}\n", result.stopped);
   text += fmt::format("planned            {} boxes, {:.2f} %\n", result.planned_boxes, result.planned_percent);
   text += fmt::format("executed           {} boxes, {:.2f} %\n", result.executed_boxes, result.executed_percent);
+  int stops = 0;
+  for (const task::ItemReport& item : result.items) stops += item.stops;
+  if (stops > 0) text += fmt::format("protective stops   {} attempts that were given up\n", stops);
   text += fmt::format("decision           {:.2f} s an item (median), agent {}\n", result.decision_seconds_median,
                       result.agent);
   text += fmt::format("simulated          {:.1f} s, {} rows\n", result.duration, result.program.waypoints.size());

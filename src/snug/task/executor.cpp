@@ -13,21 +13,9 @@ namespace {
 constexpr double kRest = 0.4;      ///< s, after the last row, before the result is looked at
 constexpr double kUpright = 0.26;  ///< rad, a flipped box may lie this far from level to be picked again
 
-/// A row as it reads back from a file: a program that was written runs like the one that was planned.
-motion::Waypoint as_written(const motion::Waypoint& row) {
-  motion::Waypoint written = row;
-  for (int i = 0; i < 8; ++i) {  // log and exp of a rotation come to a fixed point within a few rounds
-    motion::Program one;
-    one.waypoints.push_back(written);
-    const Pose X_WE = motion::parse_program(motion::format_program(one), "row").waypoints[0].X_WE;
-    if (X_WE == written.X_WE) break;
-    written.X_WE = X_WE;
-  }
-  return written;
-}
-
 void append(motion::Program& program, const std::vector<motion::Waypoint>& rows, const CellLayout& layout) {
-  for (const motion::Waypoint& row : drivable(layout, program, rows)) program.waypoints.push_back(as_written(row));
+  for (const motion::Waypoint& row : drivable(layout, program, rows))
+    program.waypoints.push_back(motion::as_written(row));
 }
 
 void merge(Episode& into, const Episode& episode) {
@@ -127,6 +115,7 @@ const Executor::Prefix& Executor::prefix_for(const packing::Placement& placement
                                : orientation_before_flip(X_WP.R, next_up, layout_.flip_place->direction);
     append(prefix.program, plan_pick(scenario_, layout_, box_, X_WP, R_next, travel, round > 0), layout_);
     merge(prefix.episodes[0], lane.run(prefix.program));
+    if (!prefix.episodes[0].failure.empty()) break;
     if (!lane.is_held(box_.item)) {
       prefix.problem = round > 0 ? "the cup did not hold it after the flip" : "the cup did not hold it";
       break;
@@ -138,12 +127,13 @@ const Executor::Prefix& Executor::prefix_for(const packing::Placement& placement
     }
     flip(prefix, lane, next_up, X_WP.R, travel);
     if (const std::optional<Pose> seen = lane.pose_of(box_.item); seen && prefix.problem.empty()) X_WP = *seen;
+    if (!prefix.episodes[0].failure.empty()) break;
     const double level = X_WP.R.row(2).cwiseAbs().maxCoeff();
     if (level < std::cos(kUpright)) prefix.problem = "it did not come to lie flat after the flip";
   }
+  if (!prefix.episodes[0].failure.empty()) prefix.problem = prefix.episodes[0].failure;
   if (!prefix.problem.empty()) return prefix;
   prefix.X_PS = lane.state().gripper.cup.X_PS;
-  if (!prefix.episodes[0].failure.empty()) prefix.problem = prefix.episodes[0].failure;
   run_samples(prefix.program, prefix.episodes);
   for (const auto& each : lanes_) prefix.states.push_back(each->state());
   return prefix;
@@ -266,18 +256,20 @@ void Executor::take(Attempt attempt) {
   }
 }
 
-void Executor::finish() {
-  if (!program_.waypoints.empty()) {
-    motion::Waypoint home;
-    home.X_WE = scenario_.controller.X_WE_start;
-    home.name = "home";
-    append(program_, {home}, layout_);
-    lanes_[0]->restore(states_[0]);
-    (void)lanes_[0]->run(program_);
-    // As a run of the whole program does: one second after the tick in which it ends.
-    (void)lanes_[0]->settle(program_, 0.5 * scenario_.controller.tick);
-    (void)lanes_[0]->settle(program_, 1.0);
-  }
+Episode Executor::finish() {
+  if (program_.waypoints.empty()) return {};
+  motion::Waypoint home;
+  home.X_WE = lanes_[0]->simulation().scenario().controller.X_WE_start;  // of the arm, where there is one
+  home.name = "home";
+  append(program_, {home}, layout_);
+  Lane& lane = *lanes_[0];
+  lane.restore(states_[0]);
+  Episode episode = lane.run(program_);
+  // As a run of the whole program does: one second after the tick in which it ends.
+  if (episode.failure.empty()) merge(episode, lane.settle(program_, 0.5 * scenario_.controller.tick));
+  episode.duration = lane.time();
+  if (episode.failure.empty()) (void)lane.settle(program_, 1.0);
+  return episode;
 }
 
 }  // namespace snug::task

@@ -33,8 +33,8 @@ class Executor {
   [[nodiscard]] Attempt attempt(const packing::Candidate& candidate, const PlaceVariant& variant, double packed_top);
   /// What was attempted has happened.
   void take(Attempt attempt);
-  /// Home row and time to rest.
-  void finish();
+  /// Home row and time to rest. Returns when the program ended [s] and whether something went wrong on the last way.
+  Episode finish();
 
   [[nodiscard]] const Lane& real() const { return *lanes_[0]; }
   [[nodiscard]] const motion::Program& program() const { return program_; }

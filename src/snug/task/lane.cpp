@@ -45,7 +45,7 @@ Episode Lane::settle(const motion::Program& program, double seconds) {
   Episode episode;
   const motion::PreparedProgram plan = simulation_->prepare(program);
   const double start = time();
-  while (time() - start < seconds && advance(plan, episode)) {
+  while (time() < start + seconds && advance(plan, episode)) {
   }
   episode.duration = time() - start;
   return episode;

@@ -7,9 +7,9 @@
 #include <chrono>
 #include <utility>
 
-#include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/task/executor.hpp"
+#include "snug/task/reach.hpp"
 #include "snug/task/surroundings.hpp"
 
 namespace snug::task {
@@ -55,6 +55,7 @@ class PackingSession {
     input.settings = options_.packing;
     input.future = packing::make_future_model(scenario_);
     input.sequence = items_;
+    input.is_reachable = make_reach(scenario_, executor_.layout(), executor_.real().simulation().sequence());
     const std::unique_ptr<packing::Agent> agent = packing::make_agent(options_.agent, std::move(input));
     if (options_.agent == "manual" || options_.agent == "offline") return execute(plan_on_paper(*agent), progress);
     for (std::size_t i = 0; i < items_.size() && result_.stopped.empty(); ++i) {
@@ -136,6 +137,8 @@ class PackingSession {
         if (report.attempts >= options_.max_attempts) break;
         Attempt attempt = executor_.attempt(placed, variant, top);
         report.attempts += attempt.was_simulated ? 1 : 0;
+        const bool has_stopped = !attempt.succeeded && attempt.reason.starts_with("protective stop");
+        report.stops += attempt.was_simulated && has_stopped ? 1 : 0;
         if (!attempt.was_simulated) break;
         if (report.reason.empty()) report.reason = attempt.reason;
         if (!attempt.succeeded) continue;
@@ -211,27 +214,15 @@ class PackingSession {
     result_.executed_percent = percent(packed);
   }
 
-  /// What counts in the end is what the written program does, run from the start without looking at anything.
-  void run_again() {
-    if (executor_.program().waypoints.empty()) return;
-    cell::RunOptions run;
-    run.program = motion::parse_program(motion::format_program(executor_.program()), "pack");
-    run.sequence = result_.sequence;
-    run.simulation = options_.simulation;
-    const cell::RunResult again = cell::run(scenario_, run);
-    result_.boxes = again.boxes;
-    result_.executed_boxes =
-        static_cast<int>(std::ranges::count(again.boxes, cell::BoxState::Packed, &cell::BoxResult::state));
-    result_.executed_percent = again.filling_degree_percent;
-    result_.duration = again.duration;
-    result_.state_hash = again.state_hash;
-  }
-
   SessionResult finish() {
     if (result_.stopped.empty()) result_.stopped = items_.empty() ? "no items" : "all items are packed";
-    executor_.finish();
+    const Episode last = executor_.finish();
+    if (!last.failure.empty()) result_.stopped += "; on the way home: " + last.failure;
     count();
-    run_again();
+    result_.duration = last.duration;
+    if (!executor_.program().waypoints.empty()) {
+      result_.state_hash = executor_.real().simulation().hash(executor_.real().state());
+    }
     std::vector<double> seconds = std::move(paper_seconds_);
     if (!is_planned_)
       for (const ItemReport& item : result_.items) seconds.push_back(item.decision_seconds);

@@ -57,6 +57,7 @@ struct ItemReport {
   PlaceManner manner = PlaceManner::Straight;
   int flips = 0;
   int attempts = 0;         ///< simulated for this item
+  int stops = 0;            ///< of them that ended with a protective stop of the robot, in the course that counts
   double share = 0.0;       ///< of the samples that succeeded
   AttemptForces predicted;  ///< largest of the samples
   AttemptForces happened;

@@ -1,0 +1,131 @@
+// Packing with a robot: reach, programs that its wrist can do, and the same bytes item by item as in one run.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "snug/cell/program_check.hpp"
+#include "snug/cell/run.hpp"
+#include "snug/task/reach.hpp"
+#include "snug/task/session.hpp"
+
+namespace snug::task {
+namespace {
+
+model::Scenario shortened(std::size_t count) {
+  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+  scenario.sequences.front().items.resize(count);
+  return scenario;
+}
+
+SessionOptions quick(const std::string& robot = {}) {
+  SessionOptions options;
+  options.packing.decision_time = 0.05;
+  options.samples = 0;
+  options.simulation.robot = robot;
+  return options;
+}
+
+packing::Placement placement_of(const model::Scenario& scenario, const Vector3& p_TP) {
+  packing::Placement placement;
+  placement.item = scenario.sequences.front().items.front().parcel;
+  placement.X_TP.p = p_TP;
+  return placement;
+}
+
+TEST(OrientationBeforePlace, HasTheWantedSideUp) {
+  const CellLayout layout = make_layout(shortened(1));
+  const Matrix3 R_WP = exp_rotation(Vector3(0.0, 0.0, 0.7));
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int sign : {-1, 1}) {
+      const packing::Orientation orientation{static_cast<model::UpAxis>(axis), sign, 0};
+      const Matrix3 R = orientation_before_place(layout, R_WP, orientation);
+      EXPECT_NEAR(sign * R(2, axis), 1.0, 1e-9) << axis << sign;
+      for (double yaw = -3.0; yaw < 3.1; yaw += 0.5) {
+        const Matrix3 R_WE = tool_at_place(layout, R, exp_rotation(Vector3(0.0, 0.0, yaw)) * R);
+        EXPECT_NEAR(R_WE(2, 2), -1.0, 1e-9);
+        EXPECT_GE(-R_WE(0, 0), -1e-9) << "more than a quarter turn from the start";
+      }
+    }
+  }
+}
+
+TEST(Reach, IsInTheContainerAndNotFarBehindIt) {
+  const model::Scenario scenario = shortened(1);
+  const CellLayout layout = make_layout(scenario);
+  const auto can = make_reach(scenario, layout, scenario.sequences.front());
+  ASSERT_TRUE(can);
+  for (const double x : {-0.12, 0.0, 0.12}) {
+    for (const double y : {-0.22, 0.0, 0.22}) EXPECT_TRUE(can(placement_of(scenario, Vector3(x, y, 0.05))));
+  }
+  EXPECT_FALSE(can(placement_of(scenario, Vector3(1.0, 0.0, 0.05)))) << "1.5 m from the robot";
+  EXPECT_FALSE(can(placement_of(scenario, Vector3(-0.505, 0.350, 0.3)))) << "in the robot's base";
+}
+
+TEST(Reach, IsNotAskedWithoutARobot) {
+  model::Scenario scenario = shortened(1);
+  scenario.robot->urdf = "nowhere.urdf";
+  EXPECT_FALSE(make_reach(scenario, make_layout(scenario), scenario.sequences.front()));
+  scenario.robot.reset();
+  EXPECT_FALSE(make_reach(scenario, make_layout(scenario), scenario.sequences.front()));
+}
+
+/// Rows of `program` up to the next pick or place after `rows`.
+std::size_t next_part(const motion::Program& program, std::size_t rows) {
+  const auto begins = [&](std::size_t row) {
+    const std::string& name = program.waypoints[row].name;
+    return name.starts_with("PrePick") || name.starts_with("PrePlace");
+  };
+  for (++rows; rows < program.waypoints.size() && !begins(rows);) ++rows;
+  return rows;
+}
+
+TEST(Lane, ComesToTheSameBytesPartByPartWithRestoresAsInOneRun) {
+  const model::Scenario scenario = shortened(2);
+  const SessionOptions options = quick();
+  const motion::Program program = pack(scenario, "1", options).program;
+  ASSERT_FALSE(program.waypoints.empty());
+  Lane whole(scenario, "1", options.simulation), parts(scenario, "1", options.simulation);
+  (void)whole.run(program);
+  motion::Program begun{program.name, {}};
+  for (std::size_t rows = 0; rows < program.waypoints.size();) {
+    rows = next_part(program, rows);
+    begun.waypoints.assign(program.waypoints.begin(), program.waypoints.begin() + static_cast<std::ptrdiff_t>(rows));
+    const cell::CellState before = parts.state();
+    (void)parts.run(begun);
+    (void)parts.settle(begun, 0.2);  // an attempt that is not taken
+    parts.restore(before);
+    (void)parts.run(begun);
+  }
+  EXPECT_EQ(parts.simulation().hash(parts.state()), whole.simulation().hash(whole.state()));
+  EXPECT_EQ(parts.state().controller, whole.state().controller);
+}
+
+TEST(Pack, WritesProgramsThatTheArmCanDo) {
+  const model::Scenario scenario = shortened(3);
+  const SessionResult packed = pack(scenario, "1", quick());
+  EXPECT_EQ(packed.executed_boxes, 3) << packed.stopped;
+  cell::CheckOptions check;
+  check.sequence = "1";
+  for (const cell::CheckFinding& finding : cell::check_program(scenario, packed.program, check).findings) {
+    EXPECT_TRUE(finding.kind == cell::CheckKind::JointSpeed || finding.kind == cell::CheckKind::Collision)
+        << cell::name_of(finding.kind) << " " << finding.what << " toward " << finding.waypoint;
+  }
+}
+
+TEST(Pack, PacksWithTheArmAndLeavesAProgramThatRepeatsIt) {
+  const model::Scenario scenario = shortened(1);
+  const SessionOptions options = quick("ur10");
+  const SessionResult packed = pack(scenario, "1", options);
+  EXPECT_EQ(packed.executed_boxes, 1) << packed.stopped;
+  cell::RunOptions again;
+  again.program = motion::parse_program(motion::format_program(packed.program), "again");
+  again.sequence = "1";
+  again.simulation = options.simulation;
+  const cell::RunResult repeated = cell::run(scenario, again);
+  EXPECT_EQ(repeated.state_hash, packed.state_hash);
+  EXPECT_EQ(repeated.duration, packed.duration);
+}
+
+}  // namespace
+}  // namespace snug::task
