@@ -655,3 +655,10 @@ class OtherCells(unittest.TestCase):
         self.assertIn(f"{mean:.2f}", table.stdout.splitlines()[-1])
         drawn = snug("items", "sequence", CELL, "--all", "--name", "random", "--sequences", 1, "--seed", 3)
         self.assertEqual(drawn.stdout.count("parcel:"), 18)
+
+    def test_nothing_packed_leaves_no_program_and_says_so(self):
+        program = self.folder / "out.csv"
+        result = snug("pack", CELL, "--items", self.orders, "--sequence", "huge", *self.QUICK, "--program", program)
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("no program, no recording", result.stderr)
+        self.assertFalse(program.exists())

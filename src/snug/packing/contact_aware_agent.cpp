@@ -14,14 +14,19 @@ namespace {
 constexpr double kPlacesPerSecond = 6.0e6;
 constexpr int kEntrants = 64;
 
-Prospect make_prospect(const Planning& planning, const FutureModel& future, const ContainerState& state,
-                       const Item& item) {
+std::vector<Piece> pieces_of(const Planning& planning, const FutureModel& future) {
+  std::vector<Piece> pieces;
+  for (const Item& kind : future.kinds) pieces.push_back(make_choice(planning, kind).piece);
+  return pieces;
+}
+
+Prospect make_prospect(const Planning& planning, const FutureModel& future, std::vector<Piece> pieces,
+                       const ContainerState& state, const Item& item) {
   Prospect prospect;
-  for (std::size_t i = 0; i < future.kinds.size(); ++i) {
-    const Item& kind = future.kinds[i];
-    prospect.kinds.push_back(make_choice(planning, kind).piece);
-    prospect.weights.push_back(future.weights[i]);
-    if (!planning.settings.without_replacement) continue;
+  prospect.kinds = std::move(pieces);
+  prospect.weights = future.weights;
+  if (!planning.settings.without_replacement) return prospect;
+  for (const Item& kind : future.kinds) {
     const auto seen = [&](const Item& other) { return other.id == kind.id; };
     const bool is_gone = seen(item) || std::any_of(state.boxes.begin(), state.boxes.end(),
                                                    [&](const PlacedBox& box) { return seen(box.item); });
@@ -55,7 +60,7 @@ class ContactAwareAgent : public Agent {
  private:
   Expected<Decision, NoPlace> rank(const Planning& planning, const ContainerState& state, const Item& item,
                                    const Choice& choice, const Layout& layout, const Policy& policy,
-                                   const std::vector<Spot>& spots) const {
+                                   const std::vector<Spot>& spots) {
     std::vector<std::pair<double, Spot>> liked;
     for (const Spot& spot : spots) liked.emplace_back(cost(layout, policy, choice.piece, spot), spot);
     std::stable_sort(liked.begin(), liked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -79,7 +84,7 @@ class ContactAwareAgent : public Agent {
   }
 
   Decision settle_race(const Planning& planning, const ContainerState& state, const Item& item, const Policy& policy,
-                       const std::vector<Candidate>& candidates, const std::vector<Layout>& entrants) const {
+                       const std::vector<Candidate>& candidates, const std::vector<Layout>& entrants) {
     Decision decision;
     const double room = planning.inner_size.prod();
     const double filled = 0.01 * filling_percent(state) * room + item.size.prod();
@@ -87,7 +92,7 @@ class ContactAwareAgent : public Agent {
     settings.seed = input_.settings.seed + 1000003U * state.boxes.size();
     settings.threads = input_.settings.threads;
     settings.effort = work_for(input_.settings.decision_time);
-    const Prospect prospect = make_prospect(planning, input_.future, state, item);
+    const Prospect prospect = make_prospect(planning, input_.future, pieces(planning), state, item);
     const std::vector<Standing> order =
         race(entrants, policy, prospect, std::max(0.0, room - filled), settings, &decision.roll_outs);
     for (const Standing& standing : order) {
@@ -100,7 +105,16 @@ class ContactAwareAgent : public Agent {
     return decision;
   }
 
+  /// Of the future's kinds: made once, as orders may bring thousands of them.
+  const std::vector<Piece>& pieces(const Planning& planning) {
+    if (pieces_.empty() || squeeze_ != planning.squeeze) pieces_ = pieces_of(planning, input_.future);
+    squeeze_ = planning.squeeze;
+    return pieces_;
+  }
+
   AgentInput input_;
+  std::vector<Piece> pieces_;
+  double squeeze_ = 0.0;  ///< with which they were made
 };
 
 }  // namespace

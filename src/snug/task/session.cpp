@@ -215,7 +215,7 @@ class PackingSession {
   }
 
   SessionResult finish() {
-    if (result_.stopped.empty()) result_.stopped = items_.empty() ? "no items" : "all items are packed";
+    if (result_.stopped.empty()) result_.stopped = items_.empty() ? "no items" : no_more_items();
     const Episode last = executor_.finish();
     if (!last.failure.empty()) result_.stopped += "; on the way home: " + last.failure;
     count();
@@ -229,6 +229,11 @@ class PackingSession {
     result_.decision_seconds_median = median(std::move(seconds));
     result_.program = executor_.program();
     return std::move(result_);
+  }
+
+  [[nodiscard]] std::string no_more_items() const {
+    const auto left = std::ranges::count(result_.items, false, &ItemReport::is_placed);
+    return left == 0 ? "all items are packed" : fmt::format("no more items, {} not packed", left);
   }
 
   const model::Scenario& scenario_;

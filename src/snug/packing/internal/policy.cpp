@@ -67,12 +67,15 @@ Weights default_weights() {
 WasteTable::WasteTable(const std::vector<int>& lengths, int longest) {
   const int last = longest / kTicksPerMillimetre;
   std::vector<char> reached(static_cast<std::size_t>(last) + 1, 0);
+  std::vector<int> steps;  // whole millimetres: thousands of boxes have a few hundred different ones
+  for (const int length : lengths) steps.push_back((length + kTicksPerMillimetre - 1) / kTicksPerMillimetre);
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
   reached[0] = 1;
   waste_.resize(reached.size());
   int best = 0;
   for (int mm = 0; mm <= last; ++mm) {
-    for (const int length : lengths) {
-      const int step = (length + kTicksPerMillimetre - 1) / kTicksPerMillimetre;
+    for (const int step : steps) {
       if (step > 0 && step <= mm && reached[static_cast<std::size_t>(mm - step)] != 0)
         reached[static_cast<std::size_t>(mm)] = 1;
     }
