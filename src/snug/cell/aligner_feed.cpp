@@ -26,10 +26,8 @@ bool agrees_with_heavy_side(const model::Item& item, const model::Aligner& align
   return true;
 }
 
-}  // namespace
-
-Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
-                     const std::optional<Vector3>& p_WE_pick) {
+Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item,
+                    const std::optional<Vector3>& p_WE_pick) {
   SNUG_CHECK(scenario.aligner.has_value(), "a sequence needs an aligner");
   const model::Aligner& aligner = *scenario.aligner;
   const Vector3 size = model::collision_size(scenario, *model::find_parcel(scenario, item.parcel));
@@ -50,6 +48,16 @@ Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
     }
   }
   return best;
+}
+
+}  // namespace
+
+Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
+                     const std::optional<Vector3>& p_WE_pick) {
+  Pose X_WP = pose_in_corner(scenario, item, p_WE_pick);
+  if (item.turn != 0.0) X_WP.R = exp_rotation(Vector3(0.0, 0.0, item.turn)) * X_WP.R;
+  X_WP.p += scenario.aligner->X_WA.R * item.shift_A;
+  return X_WP;
 }
 
 int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view prefix) {

@@ -67,6 +67,8 @@ struct Item {
   int up_sign = 1;                      ///< +1 or -1: which end of that axis is up
   std::optional<double> yaw;            ///< rad, multiple of pi/2, about Az; absent: the aligner's rule decides
   std::optional<HeavySide> heavy_side;  ///< absent: the aligner's
+  Vector3 shift_A = Vector3::Zero();    ///< m, in A: how far it stands from where the aligner's corner puts it
+  double turn = 0.0;                    ///< rad, about the vertical through its middle: the same
   bool operator==(const Item&) const = default;
 };
 

@@ -11,6 +11,8 @@
 namespace snug::task {
 namespace {
 
+constexpr double kLongestEdge = 0.3;  ///< m, of boxes
+
 void fix_arrival(const model::Scenario& scenario, model::Item& item) {
   if (item.yaw) return;
   const Matrix3 R_AP = scenario.aligner->X_WA.R.transpose() * arrival_pose(scenario, item).R;
@@ -46,10 +48,16 @@ model::Scenario sample(const model::Scenario& scenario, const std::string& seque
   const auto draw = [&rng](double half_width) { return rng.uniform(-half_width, half_width); };
   for (model::Sequence& one : changed.sequences) {
     if (one.name != sequence) continue;
-    for (model::Item& item : one.items) fix_arrival(scenario, item);
+    for (model::Item& item : one.items) {
+      fix_arrival(scenario, item);
+      item.shift_A.x() = draw(uncertainty.position);
+      item.shift_A.y() = draw(uncertainty.position);
+      item.turn = draw(uncertainty.yaw);
+    }
   }
-  const double x = draw(uncertainty.position), y = draw(uncertainty.position), yaw = draw(uncertainty.yaw);
-  changed.aligner->X_WA = scenario.aligner->X_WA * Pose{exp_rotation(Vector3(0.0, 0.0, yaw)), Vector3(x, y, 0.0)};
+  // The plates stand back, so that no box begins inside them.
+  const double back = uncertainty.position + kLongestEdge * uncertainty.yaw;
+  for (model::PlacedShape& plate : changed.aligner->plates) plate.X_BG.p -= Vector3(back, back, 0.0);
   for (model::Parcel& parcel : changed.parcels) {
     for (int i = 0; i < 3; ++i)
       parcel.size[i] = std::max(0.5 * parcel.size[i], parcel.size[i] + draw(uncertainty.size));

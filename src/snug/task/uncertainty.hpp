@@ -12,8 +12,8 @@ namespace snug::task {
 struct Uncertainty {
   double size = 1.0e-3;                         ///< m, each edge of each box
   double friction = 0.20;                       ///< share of each pair's coefficient
-  double position = 3.0e-3;                     ///< m, of the boxes at the aligner, along Ax and Ay
-  double yaw = 1.0 * std::numbers::pi / 180.0;  ///< rad, of the boxes at the aligner
+  double position = 3.0e-3;                     ///< m, of each box at the aligner, along Ax and Ay
+  double yaw = 1.0 * std::numbers::pi / 180.0;  ///< rad, of each box at the aligner
   double com = 5.0e-3;                          ///< m, each coordinate of each centre of mass
   double cup = 0.10;                            ///< share of the cup's stiffness and damping
   bool operator==(const Uncertainty&) const = default;
