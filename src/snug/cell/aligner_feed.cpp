@@ -26,12 +26,22 @@ bool agrees_with_heavy_side(const model::Item& item, const model::Aligner& align
   return true;
 }
 
+/// Of the face that a tool pointing along `direction` comes to, seen from above.
+Vector3 face_middle(const Pose& X_WP, const Vector3& size, const Vector3& direction) {
+  int axis = 0;
+  const double along = (X_WP.R.transpose() * direction).cwiseAbs().maxCoeff(&axis);
+  const bool from_above = std::abs(direction.z()) > along - 1e-6;
+  if (from_above) return X_WP.p;
+  const double sign = X_WP.R.col(axis).dot(direction) > 0.0 ? -1.0 : 1.0;
+  return X_WP.p + 0.5 * sign * size[axis] * X_WP.R.col(axis);
+}
+
 Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item,
-                    const std::optional<Vector3>& p_WE_pick) {
+                    const std::optional<Pose>& X_WE_pick) {
   SNUG_CHECK(scenario.aligner.has_value(), "a sequence needs an aligner");
   const model::Aligner& aligner = *scenario.aligner;
   const Vector3 size = model::collision_size(scenario, *model::find_parcel(scenario, item.parcel));
-  const bool by_pick = !item.yaw && aligner.yaw_rule == model::YawRule::NearestPick && p_WE_pick;
+  const bool by_pick = !item.yaw && aligner.yaw_rule == model::YawRule::NearestPick && X_WE_pick;
   if (!by_pick) {
     return model::standing_pose(aligner, size, model::standing_rotation(item.up, item.up_sign, item.yaw.value_or(0.0)));
   }
@@ -41,7 +51,7 @@ Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item,
     const Matrix3 R_AP = model::standing_rotation(item.up, item.up_sign, turn * 0.5 * std::numbers::pi);
     if (!agrees_with_heavy_side(item, aligner, R_AP)) continue;
     const Pose X_WP = model::standing_pose(aligner, size, R_AP);
-    const double distance = (X_WP.p - *p_WE_pick).head<2>().norm();
+    const double distance = (face_middle(X_WP, size, X_WE_pick->R.col(2)) - X_WE_pick->p).head<2>().norm();
     if (distance < best_distance - 1e-9) {
       best_distance = distance;
       best = X_WP;
@@ -53,8 +63,8 @@ Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item,
 }  // namespace
 
 Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
-                     const std::optional<Vector3>& p_WE_pick) {
-  Pose X_WP = pose_in_corner(scenario, item, p_WE_pick);
+                     const std::optional<Pose>& X_WE_pick) {
+  Pose X_WP = pose_in_corner(scenario, item, X_WE_pick);
   if (item.turn != 0.0) X_WP.R = exp_rotation(Vector3(0.0, 0.0, item.turn)) * X_WP.R;
   X_WP.p += scenario.aligner->X_WA.R * item.shift_A;
   return X_WP;

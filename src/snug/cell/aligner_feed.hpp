@@ -9,10 +9,10 @@
 namespace snug::cell {
 
 /// X_WP of an item at the aligner: in its corner, the axis up that the sequence says; the quarter turn from the
-/// sequence, or by the aligner's rule from `p_WE_pick`, the point that the pick waypoint aims at.
-/// The scenario must have an aligner (checked).
+/// sequence, or by the aligner's rule from `X_WE_pick`, the waypoint of the pick: the middle of the face that the tool
+/// points at is as near to the tool as can be. The scenario must have an aligner (checked).
 [[nodiscard]] Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
-                                   const std::optional<Vector3>& p_WE_pick);
+                                   const std::optional<Pose>& X_WE_pick);
 
 /// Index of the item whose box id ends with the number that follows `prefix` in a waypoint's name
 /// ("PrePick027" -> the box whose id ends in 027), or -1.

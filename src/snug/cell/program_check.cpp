@@ -234,11 +234,12 @@ class Check {
       held_name_ = fed.parcel;
       held_half_ =
           0.5 * model::collision_size(simulation_.scenario(), *model::find_parcel(simulation_.scenario(), fed.parcel));
-      X_WP = pose_at_aligner(simulation_.scenario(), fed, X_WE.p);
-    } else if (X_WP_released_) {  // picked up again: it has settled on its nearest face, right below the tool
+      X_WP = pose_at_aligner(simulation_.scenario(), fed, X_WE);
+    } else if (X_WP_released_) {  // picked up again: it has settled on its nearest face
       X_WP.R = upright(X_WP_released_->R);
-      const double half_height = held_half_[vertical_axis(X_WP.R)];
-      X_WP.p = Vector3(X_WP_released_->p.x(), X_WP_released_->p.y(), X_WE.p.z() - kPickLength - half_height);
+      X_WP.p = X_WP_released_->p;
+      const bool from_above = X_WE.R(2, 2) < -0.5;
+      if (from_above) X_WP.p.z() = X_WE.p.z() - kPickLength - held_half_[vertical_axis(X_WP.R)];
     } else {
       return;
     }

@@ -92,10 +92,10 @@ motion::PreparedProgram Simulation::prepare(motion::Program program) const {
 }
 
 /// Where the cup will be when the vacuum comes on next: the pick that a departure leads to.
-std::optional<Vector3> Simulation::next_pick(const motion::PreparedProgram& plan, int row) const {
+std::optional<Pose> Simulation::next_pick(const motion::PreparedProgram& plan, int row) const {
   const auto& rows = plan.program.waypoints;
   for (auto i = static_cast<std::size_t>(row) + 1; i < rows.size(); ++i) {
-    if (rows[i].io.vacuum) return rows[i - 1].X_WE.p;
+    if (rows[i].io.vacuum) return rows[i - 1].X_WE;
   }
   return std::nullopt;
 }

@@ -88,7 +88,7 @@ class Simulation {
   [[nodiscard]] std::uint64_t hash(const CellState& state) const;
 
  private:
-  [[nodiscard]] std::optional<Vector3> next_pick(const motion::PreparedProgram& plan, int row) const;
+  [[nodiscard]] std::optional<Pose> next_pick(const motion::PreparedProgram& plan, int row) const;
   void depart(const motion::PreparedProgram& plan, int row, CellState& state) const;
   /// work.targets: where tool and links are at the end of the step.
   void advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, CellState& state,

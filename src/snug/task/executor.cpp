@@ -11,23 +11,6 @@ namespace snug::task {
 namespace {
 
 constexpr double kRest = 0.4;      ///< s, after the last row, before the result is looked at
-constexpr double kUpright = 0.26;  ///< rad, a flipped box may lie this far from level to be picked again
-
-void append(motion::Program& program, const std::vector<motion::Waypoint>& rows, const CellLayout& layout) {
-  for (const motion::Waypoint& row : drivable(layout, program, rows))
-    program.waypoints.push_back(motion::as_written(row));
-}
-
-void merge(Episode& into, const Episode& episode) {
-  into.peak_force = std::max(into.peak_force, episode.peak_force);
-  into.peak_torque = std::max(into.peak_torque, episode.peak_torque);
-  into.duration += episode.duration;
-  if (into.failure.empty()) into.failure = episode.failure;
-}
-
-Vector3 up_axis(const packing::Orientation& orientation) {
-  return orientation.up_sign * Vector3::Unit(static_cast<int>(orientation.up));
-}
 
 /// Level distance and angle from where a box was planned. A turn about the vertical counts like a tilt.
 double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
@@ -49,7 +32,7 @@ Executor::Executor(const model::Scenario& scenario, const std::string& sequence,
 
 void Executor::begin(int item) {
   box_ = make_planned_box(scenario_, lanes_[0]->simulation().sequence(), item);
-  prefixes_.clear();
+  grasps_.clear();
 }
 
 std::vector<std::optional<Pose>> Executor::poses(const Lane& lane) const {
@@ -57,86 +40,6 @@ std::vector<std::optional<Pose>> Executor::poses(const Lane& lane) const {
   const auto count = lane.simulation().sequence().items.size();
   for (std::size_t i = 0; i < count; ++i) poses.push_back(lane.pose_of(static_cast<int>(i)));
   return poses;
-}
-
-void Executor::run_samples(const motion::Program& program, std::vector<Episode>& episodes) {
-  for_each_parallel(options_.samples, options_.threads, [&](int i) {
-    const auto slot = static_cast<std::size_t>(i) + 1;
-    merge(episodes[slot], lanes_[slot]->run(program));
-  });
-}
-
-/// Rows and their execution, in the lane that counts, for one quarter turn over an edge and the new pick.
-void Executor::flip(Prefix& prefix, Lane& lane, const Vector3& up_P, const Matrix3& R_WP, double travel) {
-  if (!layout_.flip_place) {
-    prefix.problem = "nothing flat to flip it on";
-    return;
-  }
-  motion::FlipIntent intent;
-  intent.number = box_.number;
-  intent.size = box_.size;
-  intent.p_WF = layout_.flip_place->p_WF;
-  intent.direction = layout_.flip_place->direction;
-  intent.R_WP = orientation_before_flip(R_WP, up_P, intent.direction);
-  intent.travel_bottom = travel;
-  const Pose& X_PS = lane.state().gripper.cup.X_PS;
-  intent.tool_for = make_tool_for(scenario_, box_, X_PS);
-  intent.X_PE = X_PS * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -scenario_.cup.hold_length)};
-  append(prefix.program, motion::flip_rows(intent), layout_);
-  merge(prefix.episodes[0], lane.run(prefix.program));
-}
-
-const Executor::Prefix& Executor::prefix_for(const packing::Placement& placement, double packed_top) {
-  for (const Prefix& known : prefixes_) {
-    if (known.orientation == placement.orientation) return known;
-  }
-  Prefix& prefix = prefixes_.emplace_back();
-  prefix.orientation = placement.orientation;
-  prefix.program = program_;
-  prefix.episodes.resize(lanes_.size());
-  for (std::size_t i = 0; i < lanes_.size(); ++i) lanes_[i]->restore(states_[i]);
-  Lane& lane = *lanes_[0];
-  const double travel = travel_bottom(layout_, packed_top);
-  const Matrix3 R_WP_goal = layout_.X_WT.R * packing::rotation(placement.orientation);
-  const Vector3 up_P = up_axis(placement.orientation);
-
-  Pose X_WP = arrival_pose(scenario_, lane.simulation().sequence().items[static_cast<std::size_t>(box_.item)]);
-  for (int round = 0; round < 4 && prefix.problem.empty(); ++round) {
-    const bool stands = (X_WP.R * up_P).z() > std::cos(kUpright);
-    // Upside down: any other axis first.
-    Vector3 next_up = up_P;
-    if ((X_WP.R * up_P).z() < -std::cos(kUpright)) {
-      int axis = 0;
-      X_WP.R.row(2).cwiseAbs().minCoeff(&axis);
-      next_up = Vector3::Unit(axis);
-    }
-    const Matrix3 R_next = stands || !layout_.flip_place
-                               ? R_WP_goal
-                               : orientation_before_flip(X_WP.R, next_up, layout_.flip_place->direction);
-    append(prefix.program, plan_pick(scenario_, layout_, box_, X_WP, R_next, travel, round > 0), layout_);
-    merge(prefix.episodes[0], lane.run(prefix.program));
-    if (!prefix.episodes[0].failure.empty()) break;
-    if (!lane.is_held(box_.item)) {
-      prefix.problem = round > 0 ? "the cup did not hold it after the flip" : "the cup did not hold it";
-      break;
-    }
-    if (stands) break;
-    if (round >= 2) {
-      prefix.problem = "it did not come to lie on the side that was wanted";
-      break;
-    }
-    flip(prefix, lane, next_up, X_WP.R, travel);
-    if (const std::optional<Pose> seen = lane.pose_of(box_.item); seen && prefix.problem.empty()) X_WP = *seen;
-    if (!prefix.episodes[0].failure.empty()) break;
-    const double level = X_WP.R.row(2).cwiseAbs().maxCoeff();
-    if (level < std::cos(kUpright)) prefix.problem = "it did not come to lie flat after the flip";
-  }
-  if (!prefix.episodes[0].failure.empty()) prefix.problem = prefix.episodes[0].failure;
-  if (!prefix.problem.empty()) return prefix;
-  prefix.X_PS = lane.state().gripper.cup.X_PS;
-  run_samples(prefix.program, prefix.episodes);
-  for (const auto& each : lanes_) prefix.states.push_back(each->state());
-  return prefix;
 }
 
 Executor::Outcome Executor::judge(const Lane& lane, const std::vector<std::optional<Pose>>& before,
@@ -184,20 +87,32 @@ Executor::Outcome Executor::judge(const Lane& lane, const std::vector<std::optio
   return outcome;
 }
 
+const Grasp& Executor::grasp_for(const packing::Placement& placement, double packed_top) {
+  for (const Grasp& known : grasps_) {
+    if (known.orientation == placement.orientation) return known;
+  }
+  grasps_.push_back(plan_grasp({scenario_, layout_, lanes_, states_, program_, box_, packed_top, options_.threads},
+                               placement.orientation));
+  return grasps_.back();
+}
+
 Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVariant& variant, double packed_top) {
   Attempt attempt;
   attempt.planned = candidate.placement;
   attempt.manner = variant.manner;
-  const std::size_t known = prefixes_.size();
-  const Prefix& prefix = prefix_for(candidate.placement, packed_top);
-  attempt.was_simulated = prefix.problem.empty() || prefixes_.size() > known;
-  if (!prefix.problem.empty()) {
-    attempt.reason = prefix.problem;
+  const std::size_t known = grasps_.size();
+  const Grasp& grasp = grasp_for(candidate.placement, packed_top);
+  attempt.was_simulated = grasp.problem.empty() || grasps_.size() > known;
+  if (!grasp.problem.empty()) {
+    attempt.reason = grasp.problem;
     return attempt;
   }
-  attempt.program = prefix.program;
-  PlaceRequest request{box_, prefix.X_PS, candidate.placement.X_TP, variant, packed_top};
-  append(attempt.program, plan_place(scenario_, layout_, request), layout_);
+  attempt.turn = grasp.turn;
+  attempt.planned.orientation = grasp.held_as;
+  attempt.planned.X_TP.R = packing::rotation(grasp.held_as);
+  attempt.program = grasp.program;
+  const PlaceRequest request{box_, grasp.X_PS, attempt.planned.X_TP, variant, packed_top};
+  append(attempt.program, drivable(layout_, attempt.program, plan_place(scenario_, layout_, request)));
   const std::size_t count = lanes_.size();
   std::vector<Outcome> outcomes(count);
   const auto execute = [&](int lane_index) {
@@ -205,12 +120,12 @@ Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVarian
     Lane& lane = *lanes_[i];
     lane.restore(states_[i]);
     const auto before = poses(lane);
-    lane.restore(prefix.states[i]);
-    Episode episode = prefix.episodes[i];
+    lane.restore(grasp.states[i]);
+    Episode episode = grasp.episodes[i];
     merge(episode, lane.run(attempt.program));
     const cell::CellState end = lane.state();
     merge(episode, lane.settle(attempt.program, kRest));
-    outcomes[i] = judge(lane, before, candidate.placement.X_TP);
+    outcomes[i] = judge(lane, before, attempt.planned.X_TP);
     outcomes[i].forces.force = episode.peak_force;
     outcomes[i].forces.torque = episode.peak_torque;
     if (!episode.failure.empty()) outcomes[i].reason = episode.failure;
@@ -261,7 +176,7 @@ Episode Executor::finish() {
   motion::Waypoint home;
   home.X_WE = lanes_[0]->simulation().scenario().controller.X_WE_start;  // of the arm, where there is one
   home.name = "home";
-  append(program_, {home}, layout_);
+  append(program_, drivable(layout_, program_, {home}));
   Lane& lane = *lanes_[0];
   lane.restore(states_[0]);
   Episode episode = lane.run(program_);

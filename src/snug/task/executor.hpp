@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "snug/task/grasp.hpp"
 #include "snug/task/session.hpp"
 
 namespace snug::task {
@@ -15,6 +16,7 @@ struct Attempt {
   bool succeeded = false;     ///< in the course that counts
   double share = 0.0;         ///< of the samples that succeeded
   std::string reason;         ///< why it did not succeed
+  TurnManner turn = TurnManner::None;
   PlaceManner manner = PlaceManner::Straight;
   packing::Placement planned;
   AttemptForces predicted, happened;
@@ -41,26 +43,15 @@ class Executor {
   [[nodiscard]] const CellLayout& layout() const { return layout_; }
 
  private:
-  /// The box picked, flipped if need be, held.
-  struct Prefix {
-    packing::Orientation orientation;
-    std::string problem;  ///< empty, or why it cannot be held so
-    motion::Program program;
-    Pose X_PS;
-    std::vector<cell::CellState> states;
-    std::vector<Episode> episodes;
-  };
   struct Outcome {
     bool succeeded = false;
     std::string reason;
     AttemptForces forces;
     double position_error = 0.0, angle_error = 0.0;
   };
-  const Prefix& prefix_for(const packing::Placement& placement, double packed_top);
-  void flip(Prefix& prefix, Lane& lane, const Vector3& up_P, const Matrix3& R_WP, double travel);
+  const Grasp& grasp_for(const packing::Placement& placement, double packed_top);
   Outcome judge(const Lane& lane, const std::vector<std::optional<Pose>>& before, const Pose& X_TP) const;
   [[nodiscard]] std::vector<std::optional<Pose>> poses(const Lane& lane) const;
-  void run_samples(const motion::Program& program, std::vector<Episode>& episodes);
 
   model::Scenario scenario_;
   SessionOptions options_;
@@ -69,7 +60,7 @@ class Executor {
   std::vector<cell::CellState> states_;  ///< of the lanes, as far as things have happened
   motion::Program program_;
   PlannedBox box_;
-  std::vector<Prefix> prefixes_;
+  std::vector<Grasp> grasps_;  ///< of this box
 };
 
 }  // namespace snug::task

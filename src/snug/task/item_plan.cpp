@@ -18,6 +18,8 @@ constexpr double kEntryClearance = 0.01;   ///< m, where the box stops before it
 // the arm begins to give way 0.1 m before.
 constexpr double kNearBase = 0.34;  ///< m
 constexpr double kBaseRoom = 0.42;  ///< m
+constexpr double kTurnClearance = 0.03;  ///< m, more, where a box turns in the air
+constexpr double kLipClearance = 0.002;  ///< m
 constexpr double kFlipRoom = 0.16;  ///< m, from the middle of a lying box to the edges of its surface
 
 struct Top {
@@ -214,6 +216,71 @@ Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const 
   const Vector3 now = R_WP * up_P;
   const double yaw = std::atan2(direction.y(), direction.x()) - std::atan2(now.y(), now.x());
   return exp_rotation(Vector3(0.0, 0.0, yaw)) * R_WP;
+}
+
+std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                             const PlannedBox& box, const Pose& X_WP, const Vector3& face,
+                                             const Matrix3& R_WP_next, double travel, bool again) {
+  const model::CupParams& cup = scenario.cup;
+  motion::SidePickIntent intent;
+  intent.number = box.number;
+  intent.X_WP = X_WP;
+  intent.size = box.size;
+  intent.face = face;
+  intent.again = again;
+  const Matrix3 R_WP_up = motion::face_up(X_WP.R, face);
+  const double radius = 0.5 * cup.effective_diameter + 0.001;
+  intent.cup_offset_P = motion::choose_cup_offset(R_WP_up, box.size, box.inertia.com, radius);
+  // The lip stays off what the box stands on; where the side is too low for that it reaches over its upper edge.
+  const double half_height = -motion::lowest_corner(X_WP.R, box.size);
+  const double low = cup.lip_radius + kLipClearance - half_height;
+  const double offset = (X_WP.R * intent.cup_offset_P).z();
+  if (offset < low) intent.cup_offset_P += (low - offset) * X_WP.R.transpose() * Vector3::UnitZ();
+  if (low + cup.lip_radius - half_height > cup.seal.max_overhang - kLipClearance) return {};
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(R_WP_up, R_WP_next);
+  // At the aligner the plates hold the box against the cup. Elsewhere the lip just touches, and pulls the box to itself.
+  intent.length = again ? cup.free_length : cup.hold_length + 0.35 * (cup.free_length - cup.hold_length);
+  intent.lift = std::max(0.02, travel - (X_WP.p.z() - half_height));
+  intent.approach_height = travel + half_height;
+  return motion::side_pick_rows(intent);
+}
+
+motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
+                              const Pose& X_PS, const Vector3& face, double travel, bool again) {
+  const Matrix3 R_WP = motion::face_up(X_WP.R, face);
+  Pose X_WP_up{R_WP, X_WP.p};
+  X_WP_up.p.z() = travel + kTurnClearance - motion::lowest_corner(R_WP, box.size);
+  motion::Waypoint row;
+  row.X_WE = make_tool_for(scenario, box, X_PS)(X_WP_up);
+  row.name = (again ? "PostRePick" : "PostPick") + box.number + "_turn";
+  row.io.vacuum = true;
+  return row;
+}
+
+std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, const PlannedBox& box,
+                                            const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                            double travel) {
+  motion::SetDownIntent intent;
+  intent.number = box.number;
+  intent.size = box.size;
+  intent.X_WP = {R_WP, place.p_WF - motion::lowest_corner(R_WP, box.size) * Vector3::UnitZ()};
+  intent.travel_bottom = travel;
+  intent.tool_for = make_tool_for(scenario, box, X_PS);
+  return motion::set_down_rows(intent);
+}
+
+std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box, const FlipPlace& place,
+                                        const Matrix3& R_WP, const Pose& X_PS, double travel) {
+  motion::FlipIntent intent;
+  intent.number = box.number;
+  intent.size = box.size;
+  intent.p_WF = place.p_WF;
+  intent.direction = place.direction;
+  intent.R_WP = R_WP;
+  intent.travel_bottom = travel;
+  intent.tool_for = make_tool_for(scenario, box, X_PS);
+  intent.X_PE = X_PS * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -scenario.cup.hold_length)};
+  return motion::flip_rows(intent);
 }
 
 motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "snug/motion/primitives.hpp"
+#include "snug/motion/side_pick.hpp"
 #include "snug/packing/placement.hpp"
 #include "snug/task/lane.hpp"
 
@@ -72,6 +72,23 @@ struct PlannedBox {
                                                      const std::vector<motion::Waypoint>& rows);
 /// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.
 [[nodiscard]] Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction);
+
+/// Rows that pick the box by the side that looks along `face` (unit, level, in W) and lift it as it stood; `again`: it
+/// was set down before. Empty where the cup would touch what the box stands on or reach too far over its upper edge.
+[[nodiscard]] std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                                           const PlannedBox& box, const Pose& X_WP, const Vector3& face,
+                                                           const Matrix3& R_WP_next, double travel_bottom, bool again);
+/// Row that turns that side up, in the air.
+[[nodiscard]] motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
+                                            const Pose& X_PS, const Vector3& face, double travel_bottom, bool again);
+/// Rows that put the held box on the flat surface, its orientation R_WP, and let go.
+[[nodiscard]] std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, const PlannedBox& box,
+                                                          const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                                          double travel_bottom);
+/// Rows that turn the held box over its lower edge there and let go.
+[[nodiscard]] std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box,
+                                                      const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                                      double travel_bottom);
 
 /// Tool over a box that hangs still from the cup where `X_PS` is the lip on it.
 [[nodiscard]] motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS);

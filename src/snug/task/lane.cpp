@@ -13,6 +13,17 @@ constexpr double kLongestEpisode = 7200.0;  ///< s
 
 }  // namespace
 
+void merge(Episode& into, const Episode& episode) {
+  into.peak_force = std::max(into.peak_force, episode.peak_force);
+  into.peak_torque = std::max(into.peak_torque, episode.peak_torque);
+  into.duration += episode.duration;
+  if (into.failure.empty()) into.failure = episode.failure;
+}
+
+void append(motion::Program& program, const std::vector<motion::Waypoint>& rows) {
+  for (const motion::Waypoint& row : rows) program.waypoints.push_back(motion::as_written(row));
+}
+
 Lane::Lane(const model::Scenario& scenario, const std::string& sequence, const cell::SimulationOptions& options)
     : simulation_(std::make_unique<cell::Simulation>(scenario, sequence, options)),
       state_(simulation_->make_state()),

@@ -20,6 +20,11 @@ struct Episode {
   std::string failure;       ///< empty, or why the simulation had to stop
 };
 
+/// The larger peaks, both durations, the first failure.
+void merge(Episode& into, const Episode& episode);
+/// Appends rows as they read back from a file: a program that was written runs like the one that was planned.
+void append(motion::Program& program, const std::vector<motion::Waypoint>& rows);
+
 class Lane {
  public:
   Lane(const model::Scenario& scenario, const std::string& sequence, const cell::SimulationOptions& options);

@@ -39,7 +39,7 @@ void scale(model::CupElasticity& elasticity, double by) {
 Pose arrival_pose(const model::Scenario& scenario, const model::Item& item) {
   SNUG_CHECK(scenario.aligner.has_value(), "boxes arrive at an aligner");
   const Pose first = cell::pose_at_aligner(scenario, item, std::nullopt);
-  return cell::pose_at_aligner(scenario, item, first.p);
+  return cell::pose_at_aligner(scenario, item, Pose{exp_rotation(Vector3(0.0, std::numbers::pi, 0.0)), first.p});
 }
 
 model::Scenario sample(const model::Scenario& scenario, const std::string& sequence, const Uncertainty& uncertainty,

@@ -220,11 +220,11 @@ TEST(PoseAtAligner, StandsInTheCornerOnTheBeltWithTheWantedAxisUp) {
 }
 
 /// Where the cup is when the vacuum comes on for a box: the row before the first with vacuum after its PrePick.
-std::optional<Vector3> pick_point(const motion::Program& program, const std::string& number) {
+std::optional<Pose> pick_pose(const motion::Program& program, const std::string& number) {
   bool approaches = false;
   for (std::size_t i = 0; i < program.waypoints.size(); ++i) {
     approaches = approaches || program.waypoints[i].name.starts_with("PrePick" + number);
-    if (approaches && program.waypoints[i].io.vacuum) return program.waypoints[i - 1].X_WE.p;
+    if (approaches && program.waypoints[i].io.vacuum) return program.waypoints[i - 1].X_WE;
   }
   return std::nullopt;
 }
@@ -251,9 +251,9 @@ TEST(PoseAtAligner, TurnsEachBoxAsThePicksOfTheRealProgramsSay) {
     const model::Sequence& sequence = *model::find_sequence(scenario, cells[0]);
     const std::string number = "0" + cells[1];
     const int index = find_item(sequence, "PrePick" + number, "PrePick");
-    const auto p_WE = pick_point(program, number);
-    ASSERT_TRUE(index >= 0 && p_WE);
-    const Pose X_WP = pose_at_aligner(scenario, sequence.items[static_cast<std::size_t>(index)], p_WE);
+    const auto X_WE = pick_pose(program, number);
+    ASSERT_TRUE(index >= 0 && X_WE);
+    const Pose X_WP = pose_at_aligner(scenario, sequence.items[static_cast<std::size_t>(index)], X_WE);
     const Matrix3 R_AP = scenario.aligner->X_WA.R.transpose() * X_WP.R;
     EXPECT_EQ(axis_letter(vertical_axis(X_WP.R)), cells[2][0]);
     int along_x = 0;

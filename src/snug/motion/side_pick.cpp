@@ -1,0 +1,82 @@
+// Side pick and set down as waypoints with switches.
+#include "snug/motion/side_pick.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "snug/core/check.hpp"
+
+namespace snug::motion {
+namespace {
+
+constexpr IO kHold{.vacuum = true};
+constexpr IO kRelease{.blow_off = true};
+
+/// R_WE of a tool that points down.
+Matrix3 upright(double tool_yaw) {
+  return exp_rotation(Vector3(0.0, 0.0, tool_yaw)) * exp_rotation(Vector3(0.0, std::numbers::pi, 0.0));
+}
+
+/// The axis of the box that is nearest to `direction`, with its sign, in W.
+Vector3 nearest_normal(const Matrix3& R_WP, const Vector3& direction, int* axis) {
+  (R_WP.transpose() * direction).cwiseAbs().maxCoeff(axis);
+  const Vector3 normal = R_WP.col(*axis);
+  return normal.dot(direction) > 0.0 ? normal : Vector3(-normal);
+}
+
+}  // namespace
+
+Matrix3 side_pick_rotation(const Vector3& face, double tool_yaw, double incline) {
+  const Vector3 axis = (-Vector3::UnitZ()).cross(-face).normalized();  // takes down to the way in
+  return exp_rotation((0.5 * std::numbers::pi - incline) * axis) * upright(tool_yaw);
+}
+
+Matrix3 face_up(const Matrix3& R_WP, const Vector3& face) {
+  const Vector3 axis = Vector3::UnitZ().cross(-face).normalized();  // takes the face up
+  return exp_rotation(0.5 * std::numbers::pi * axis) * R_WP;
+}
+
+std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent) {
+  SNUG_CHECK(std::abs(intent.face.z()) < 1e-9, "a side looks level");
+  int axis = 0;
+  const Vector3 normal = nearest_normal(intent.X_WP.R, intent.face, &axis);
+  const Matrix3 R_WE = side_pick_rotation(normal, intent.tool_yaw, intent.incline);
+  const Vector3 touched = intent.X_WP * intent.cup_offset_P + 0.5 * intent.size[axis] * normal;
+  const Pose X_WE_pick{R_WE, touched - intent.length * R_WE.col(2)};
+  const Pose X_WE_before{R_WE, X_WE_pick.p + intent.stand_off * normal};
+  Pose X_WE_high = X_WE_before;
+  X_WE_high.p.z() = std::max(intent.approach_height, X_WE_before.p.z() + 0.01);
+  Pose X_WE_lifted = X_WE_pick;
+  X_WE_lifted.p.z() += intent.lift;
+  const auto name = [&](const char* stage) {
+    const std::string pick = std::string(stage) == "" ? "Box" : "Pick";
+    return (intent.again ? (std::string(stage) + "RePick") : std::string(stage) + pick) + intent.number;
+  };
+  const Pose X_WE_upright{upright(intent.tool_yaw), X_WE_high.p};
+  return {{X_WE_upright, name("Pre"), {}, 0},
+          {X_WE_high, name("Pre") + "_level", {}, 0},
+          {X_WE_before, name("Pre") + "_side", {}, 0},
+          {X_WE_pick, name(""), {}, 0},
+          {X_WE_lifted, name("Post"), kHold, 0}};
+}
+
+std::vector<Waypoint> set_down_rows(const SetDownIntent& intent) {
+  const double height = -lowest_corner(intent.X_WP.R, intent.size);
+  const double rest = intent.X_WP.p.z() - height;
+  const auto tool = [&](double bottom) {
+    Pose X_WP = intent.X_WP;
+    X_WP.p.z() = bottom + height;
+    return intent.tool_for(X_WP);
+  };
+  const Pose X_WE_high = tool(intent.travel_bottom), X_WE_down = tool(rest - intent.press);
+  Pose X_WE_back = X_WE_down;
+  X_WE_back.p.z() = X_WE_high.p.z() + 0.03;
+  return {{X_WE_high, "PreTwist" + intent.number, kHold, 0},
+          {tool(rest + 0.01), "PreTwist" + intent.number + "_low", kHold, 0},
+          {X_WE_down, "Twist" + intent.number, kHold, 0},
+          {X_WE_down, "Twist" + intent.number, kRelease, 0},
+          {X_WE_back, "PreTwist" + intent.number + "_back", {}, 0}};
+}
+
+}  // namespace snug::motion
