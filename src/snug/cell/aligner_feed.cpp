@@ -45,13 +45,17 @@ Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item,
   if (!by_pick) {
     return model::standing_pose(aligner, size, model::standing_rotation(item.up, item.up_sign, item.yaw.value_or(0.0)));
   }
+  // Where the tool touches, as far as its waypoint tells: the lip pressed by a third of what it loses under vacuum.
+  const model::CupParams& cup = scenario.cup;
+  const Vector3 direction = X_WE_pick->R.col(2);
+  const Vector3 touched = X_WE_pick->p + (cup.hold_length + 0.35 * (cup.free_length - cup.hold_length)) * direction;
   Pose best;
   double best_distance = std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < 4; ++turn) {
     const Matrix3 R_AP = model::standing_rotation(item.up, item.up_sign, turn * 0.5 * std::numbers::pi);
     if (!agrees_with_heavy_side(item, aligner, R_AP)) continue;
     const Pose X_WP = model::standing_pose(aligner, size, R_AP);
-    const double distance = (face_middle(X_WP, size, X_WE_pick->R.col(2)) - X_WE_pick->p).head<2>().norm();
+    const double distance = (face_middle(X_WP, size, direction) - touched).head<2>().norm();
     if (distance < best_distance - 1e-9) {
       best_distance = distance;
       best = X_WP;

@@ -10,7 +10,7 @@ namespace snug::cell {
 
 /// X_WP of an item at the aligner: in its corner, the axis up that the sequence says; the quarter turn from the
 /// sequence, or by the aligner's rule from `X_WE_pick`, the waypoint of the pick: the middle of the face that the tool
-/// points at is as near to the tool as can be. The scenario must have an aligner (checked).
+/// points at is as near to where it touches as can be. The scenario must have an aligner (checked).
 [[nodiscard]] Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
                                    const std::optional<Pose>& X_WE_pick);
 
