@@ -252,7 +252,7 @@ motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox&
   X_WP_up.p.z() = travel + kTurnClearance - motion::lowest_corner(R_WP, box.size);
   motion::Waypoint row;
   row.X_WE = make_tool_for(scenario, box, X_PS)(X_WP_up);
-  row.name = (again ? "PostRePick" : "PostPick") + box.number + "_turn";
+  row.name = (again ? "PostRePick" : "PostPick") + box.number + "_up";
   row.io.vacuum = true;
   return row;
 }
