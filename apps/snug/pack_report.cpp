@@ -47,6 +47,7 @@ Json as_json(const task::ItemReport& item) {
     json["planned"] = as_json(item.planned);
     json["manner"] = task::name_of(item.manner);
     json["flips"] = item.flips;
+    json["turned"] = task::name_of(item.turn);
     json["position_error_mm"] = 1e3 * item.position_error;
     json["angle_error_deg"] = item.angle_error / kDegree;
     json["samples_succeeded"] = item.share;
@@ -82,22 +83,22 @@ std::string item_line(const task::ItemReport& item) {
   }
   const Vector3 p = 1e3 * item.planned.X_TP.p;
   return fmt::format(
-      "{:<8} {:7.1f} {:7.1f} {:7.1f}  {}{} {:>5} {:>9} {:8.1f} {:6.1f} {:8.2f} {:>6.2f} {:5} {:5.0f}% "
+      "{:<8} {:7.1f} {:7.1f} {:7.1f}  {}{}  {:<9}  {:<8} {:6.1f} {:6.1f} {:8.2f} {:>6.2f} {:5} {:5.0f}% "
       "{:5.0f} {:5.0f} {:6.1f} {:6.1f}\n",
       item.id, p.x(), p.y(), p.z(), item.planned.orientation.up_sign > 0 ? '+' : '-',
-      static_cast<char>('X' + static_cast<int>(item.planned.orientation.up)), item.flips, task::name_of(item.manner),
-      1e3 * item.position_error, item.angle_error / kDegree, item.decision_seconds, item.prediction_seconds,
-      item.attempts, 100.0 * item.share, item.predicted.force, item.happened.force, 1e3 * item.predicted.displacement,
-      1e3 * item.happened.displacement);
+      static_cast<char>('X' + static_cast<int>(item.planned.orientation.up)), task::name_of(item.turn),
+      task::name_of(item.manner), 1e3 * item.position_error, item.angle_error / kDegree, item.decision_seconds,
+      item.prediction_seconds, item.attempts, 100.0 * item.share, item.predicted.force, item.happened.force,
+      1e3 * item.predicted.displacement, 1e3 * item.happened.displacement);
 }
 
 }  // namespace
 
 std::string format_table(const task::SessionResult& result, const task::ExecutionResult& executions) {
   std::string text =
-      "                 planned place, mm        flips  manner     error, of pose   decided  tried        samples "
+      "                 planned place, mm       turned     placed   error, of pose   decided  tried        samples "
       "peak force, N  moved, mm\n"
-      "box          x_T     y_T     z_T  up                       mm    deg        s      s  times   good "
+      "box          x_T     y_T     z_T  up                           mm    deg        s      s  times   good "
       "pred. happ.  pred.  happ.\n";
   for (const task::ItemReport& item : result.items) text += item_line(item);
   text += fmt::format("\nstopped            {}\n", result.stopped);

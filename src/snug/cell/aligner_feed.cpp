@@ -36,8 +36,7 @@ Vector3 face_middle(const Pose& X_WP, const Vector3& size, const Vector3& direct
   return X_WP.p + 0.5 * sign * size[axis] * X_WP.R.col(axis);
 }
 
-Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item,
-                    const std::optional<Pose>& X_WE_pick) {
+Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item, const std::optional<Pose>& X_WE_pick) {
   SNUG_CHECK(scenario.aligner.has_value(), "a sequence needs an aligner");
   const model::Aligner& aligner = *scenario.aligner;
   const Vector3 size = model::collision_size(scenario, *model::find_parcel(scenario, item.parcel));
@@ -66,8 +65,7 @@ Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item,
 
 }  // namespace
 
-Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
-                     const std::optional<Pose>& X_WE_pick) {
+Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item, const std::optional<Pose>& X_WE_pick) {
   Pose X_WP = pose_in_corner(scenario, item, X_WE_pick);
   if (item.turn != 0.0) X_WP.R = exp_rotation(Vector3(0.0, 0.0, item.turn)) * X_WP.R;
   X_WP.p += scenario.aligner->X_WA.R * item.shift_A;

@@ -1,4 +1,5 @@
-// Side pick and set down: a face that looks sideways is picked and turned up in the air, so that a box need not be flipped.
+// Side pick and set down: a face that looks sideways is picked and turned up in the air, so that a box need not be
+// flipped.
 #pragma once
 
 #include "snug/motion/primitives.hpp"
@@ -20,8 +21,8 @@ struct SidePickIntent {
   double lift = 0.2;                       ///< m, the box is lifted by this, still as it stood
   bool again = false;                      ///< as of PickIntent
 };
-/// Rows PrePick (high and upright, high and level, low before the face), Box, PostPick with vacuum: the box as it stood, lifted. With `again`:
-/// PreRePick, RePick, PostRePick.
+/// Rows PrePick (high and upright, high and level, low before the face), Box, PostPick with vacuum: the box as it
+/// stood, lifted. With `again`: PreRePick, RePick, PostRePick.
 [[nodiscard]] std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent);
 /// R_WE of a tool that points at `face`, and comes from above by `incline`; upright again it has `tool_yaw`.
 [[nodiscard]] Matrix3 side_pick_rotation(const Vector3& face, double tool_yaw, double incline);

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/task/reach.hpp"
+
 namespace snug::task {
 namespace {
 
-constexpr double kRest = 0.4;      ///< s, after the last row, before the result is looked at
+constexpr double kRest = 0.4;  ///< s, after the last row, before the result is looked at
 
 /// Level distance and angle from where a box was planned. A turn about the vertical counts like a tilt.
 double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
@@ -18,13 +20,13 @@ double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_pl
 }  // namespace
 
 Executor::Executor(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options)
-    : scenario_(scenario), options_(options), layout_(make_layout(scenario)) {
+    : scenario_(scenario), options_(options), layout_(make_layout(scenario)), reaches_(make_tool_reach(scenario)) {
   lanes_.push_back(std::make_unique<Lane>(scenario, sequence, options.simulation));
   const Rng rng(options.packing.seed);
   for (int i = 0; i < options.samples; ++i) {
     const Rng own = rng.split("sample " + std::to_string(i));
-    lanes_.push_back(
-        std::make_unique<Lane>(sample(scenario, sequence, options.uncertainty, own), sequence, options.simulation));
+    lanes_.push_back(std::make_unique<Lane>(
+        sample(scenario, sequence, widened(options.uncertainty, options.margin), own), sequence, options.simulation));
   }
   for (const auto& lane : lanes_) states_.push_back(lane->state());
   program_.name = "pack";
@@ -91,8 +93,9 @@ const Grasp& Executor::grasp_for(const packing::Placement& placement, double pac
   for (const Grasp& known : grasps_) {
     if (known.orientation == placement.orientation) return known;
   }
-  grasps_.push_back(plan_grasp({scenario_, layout_, lanes_, states_, program_, box_, packed_top, options_.threads},
-                               placement.orientation));
+  grasps_.push_back(
+      plan_grasp({scenario_, layout_, lanes_, states_, program_, box_, packed_top, options_.threads, reaches_},
+                 placement.orientation));
   return grasps_.back();
 }
 
@@ -122,16 +125,13 @@ Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVarian
     const auto before = poses(lane);
     lane.restore(grasp.states[i]);
     Episode episode = grasp.episodes[i];
-    merge(episode, lane.run(attempt.program));
+    merge(episode, lane.run(attempt.program, options_.limits.force));
     const cell::CellState end = lane.state();
-    merge(episode, lane.settle(attempt.program, kRest));
+    if (episode.failure.empty()) merge(episode, lane.settle(attempt.program, kRest));
     outcomes[i] = judge(lane, before, attempt.planned.X_TP);
     outcomes[i].forces.force = episode.peak_force;
     outcomes[i].forces.torque = episode.peak_torque;
     if (!episode.failure.empty()) outcomes[i].reason = episode.failure;
-    if (outcomes[i].reason.empty() && episode.peak_force > options_.limits.force) {
-      outcomes[i].reason = fmt::format("{:.0f} N on the box", episode.peak_force);
-    }
     outcomes[i].succeeded = outcomes[i].reason.empty();
     lane.restore(end);
   };

@@ -60,6 +60,7 @@ class Executor {
   std::vector<cell::CellState> states_;  ///< of the lanes, as far as things have happened
   motion::Program program_;
   PlannedBox box_;
+  std::function<bool(const Pose& X_WE)> reaches_;
   std::vector<Grasp> grasps_;  ///< of this box
 };
 

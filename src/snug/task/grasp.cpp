@@ -16,7 +16,8 @@ Vector3 up_axis(const packing::Orientation& orientation) {
   return orientation.up_sign * Vector3::Unit(static_cast<int>(orientation.up));
 }
 
-/// The orientation that takes the same space with the other end up, and of the two the one whose centre of mass is nearer.
+/// The orientation that takes the same space with the other end up, and of the two the one whose centre of mass is
+/// nearer.
 packing::Orientation mirrored(const packing::Orientation& orientation, const Vector3& com) {
   packing::Orientation best = orientation;
   double nearest = 0.0;
@@ -25,7 +26,8 @@ packing::Orientation mirrored(const packing::Orientation& orientation, const Vec
     other.up_sign = -orientation.up_sign;
     // Quarter turns count from different directions when the other end is up: the parity is settled by the extents.
     other.yaw_quarter = (orientation.yaw_quarter + turn) % 4;
-    if (!packing::extents(other, Vector3(1.0, 2.0, 3.0)).isApprox(packing::extents(orientation, Vector3(1.0, 2.0, 3.0)))) {
+    if (!packing::extents(other, Vector3(1.0, 2.0, 3.0))
+             .isApprox(packing::extents(orientation, Vector3(1.0, 2.0, 3.0)))) {
       other.yaw_quarter = (other.yaw_quarter + 1) % 4;
     }
     const Vector3 off = packing::rotation(other) * com - packing::rotation(orientation) * com;
@@ -45,8 +47,8 @@ class GraspPlanner {
     grasp_.orientation = grasp_.held_as = orientation;
     grasp_.program = request.program;
     grasp_.episodes.resize(request.lanes.size());
-    X_WP_ = arrival_pose(request.scenario,
-                         lane_.simulation().sequence().items[static_cast<std::size_t>(request.box.item)]);
+    X_WP_ =
+        arrival_pose(request.scenario, lane_.simulation().sequence().items[static_cast<std::size_t>(request.box.item)]);
     for (std::size_t i = 0; i < request.lanes.size(); ++i) request.lanes[i]->restore(request.states[i]);
   }
 
@@ -100,9 +102,17 @@ class GraspPlanner {
 
   /// By the side that looks along `face`, which is then turned up.
   void pick_side(const Vector3& face, bool again) {
-    const auto rows = plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
+    const auto rows =
+        plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
     if (rows.empty()) {
       grasp_.problem = "its side is too low for the cup";
+      return;
+    }
+    const auto is_out_of_reach = [&](const motion::Waypoint& row) {
+      return request_.reaches && !request_.reaches(row.X_WE);
+    };
+    if (std::ranges::any_of(rows, is_out_of_reach)) {
+      grasp_.problem = "its side is out of reach";
       return;
     }
     execute(rows);
@@ -200,20 +210,6 @@ class GraspPlanner {
 };
 
 }  // namespace
-
-const char* name_of(TurnManner manner) {
-  switch (manner) {
-    case TurnManner::None:
-      return "";
-    case TurnManner::SidePick:
-      return "side pick";
-    case TurnManner::SetAside:
-      return "set aside";
-    case TurnManner::Flip:
-      return "flip";
-  }
-  return "";
-}
 
 Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation) {
   const GraspPlanner first(request, orientation);

@@ -1,6 +1,7 @@
 // Grasp: a box taken from the aligner and turned so that it hangs from the cup as it shall stand.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,15 +13,6 @@
 
 namespace snug::task {
 
-/// How another face of a box is brought up.
-enum class TurnManner {
-  None,      ///< it is up already
-  SidePick,  ///< picked by that face at the aligner
-  SetAside,  ///< put on a flat surface, then picked by that face
-  Flip,      ///< turned over its lower edge on a flat surface, let go, picked again (report Figure 13)
-};
-[[nodiscard]] const char* name_of(TurnManner manner);
-
 /// Executed in all lanes, but not yet taken.
 struct Grasp {
   packing::Orientation orientation;  ///< asked for
@@ -29,10 +21,10 @@ struct Grasp {
   TurnManner turn = TurnManner::None;
   std::string problem;  ///< empty, or why it cannot be held so
   motion::Program program;
-  Pose X_PS;                             ///< lip on the box
-  std::vector<cell::CellState> states;   ///< lane by lane
-  std::vector<Episode> episodes;         ///< lane by lane
-  double share = 0.0;                    ///< of the samples in which it is held
+  Pose X_PS;                            ///< lip on the box
+  std::vector<cell::CellState> states;  ///< lane by lane
+  std::vector<Episode> episodes;        ///< lane by lane
+  double share = 0.0;                   ///< of the samples in which it is held
 };
 
 struct GraspRequest {
@@ -44,6 +36,7 @@ struct GraspRequest {
   const PlannedBox& box;
   double packed_top = 0.0;  ///< m, z in T of the highest box in the container
   int threads = 1;
+  const std::function<bool(const Pose& X_WE)>& reaches;  ///< the tool's poses; empty: all
 };
 /// The first manner in which the box is held in every lane, or the one that does so in most.
 [[nodiscard]] Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation);

@@ -16,11 +16,11 @@ constexpr double kTravelClearance = 0.06;  ///< m, more than the precision of ro
 constexpr double kEntryClearance = 0.01;   ///< m, where the box stops before it goes in
 // The gripper of the demonstrator comes within 0.1 m of the upper arm when the tool is 0.25 m from the first axis, and
 // the arm begins to give way 0.1 m before.
-constexpr double kNearBase = 0.34;  ///< m
-constexpr double kBaseRoom = 0.42;  ///< m
+constexpr double kNearBase = 0.34;       ///< m
+constexpr double kBaseRoom = 0.42;       ///< m
 constexpr double kTurnClearance = 0.03;  ///< m, more, where a box turns in the air
 constexpr double kLipClearance = 0.002;  ///< m
-constexpr double kFlipRoom = 0.16;  ///< m, from the middle of a lying box to the edges of its surface
+constexpr double kFlipRoom = 0.16;       ///< m, from the middle of a lying box to the edges of its surface
 
 struct Top {
   Vector3 low, high;  ///< corners in W
@@ -97,6 +97,20 @@ const char* name_of(PlaceManner manner) {
       return "slide";
     case PlaceManner::Tilted:
       return "tilted";
+  }
+  return "";
+}
+
+const char* name_of(TurnManner manner) {
+  switch (manner) {
+    case TurnManner::None:
+      return "";
+    case TurnManner::SidePick:
+      return "side pick";
+    case TurnManner::SetAside:
+      return "set aside";
+    case TurnManner::Flip:
+      return "flip";
   }
   return "";
 }
@@ -238,7 +252,8 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   if (offset < low) intent.cup_offset_P += (low - offset) * X_WP.R.transpose() * Vector3::UnitZ();
   if (low + cup.lip_radius - half_height > cup.seal.max_overhang - kLipClearance) return {};
   intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(R_WP_up, R_WP_next);
-  // At the aligner the plates hold the box against the cup. Elsewhere the lip just touches, and pulls the box to itself.
+  // At the aligner the plates hold the box against the cup. Elsewhere the lip just touches, and pulls the box to
+  // itself.
   intent.length = again ? cup.free_length : cup.hold_length + 0.35 * (cup.free_length - cup.hold_length);
   intent.lift = std::max(0.02, travel - (X_WP.p.z() - half_height));
   intent.approach_height = travel + half_height;

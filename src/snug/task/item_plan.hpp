@@ -29,6 +29,15 @@ struct CellLayout {
 /// Throws InputError for a scenario without aligner, tool or target container.
 [[nodiscard]] CellLayout make_layout(const model::Scenario& scenario);
 
+/// How another face of a box is brought up.
+enum class TurnManner {
+  None,      ///< it is up already
+  SidePick,  ///< picked by that face at the aligner
+  SetAside,  ///< put on a flat surface, then picked by that face
+  Flip,      ///< turned over its lower edge on a flat surface, let go, picked again (report Figure 13)
+};
+[[nodiscard]] const char* name_of(TurnManner manner);
+
 /// How a box is brought to its place.
 enum class PlaceManner {
   Straight,  ///< from above

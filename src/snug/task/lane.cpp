@@ -1,6 +1,8 @@
 // Lane: one course of events of a cell: the one that counts, or one that could be; runs rows, can go back.
 #include "snug/task/lane.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -37,12 +39,16 @@ bool Lane::advance(const motion::PreparedProgram& plan, Episode& episode) {
   return tick.failure.empty();
 }
 
-Episode Lane::run(const motion::Program& program) {
+Episode Lane::run(const motion::Program& program, double most_force) {
   Episode episode;
   const motion::PreparedProgram plan = simulation_->prepare(program);
   const double start = time();
   while (!simulation_->is_at_end(plan, state_)) {
     if (!advance(plan, episode)) break;
+    if (episode.peak_force > most_force) {
+      episode.failure = fmt::format("{:.0f} N on the box", episode.peak_force);
+      break;
+    }
     if (time() - start > kLongestEpisode) {
       episode.failure = "the rows did not end within two hours";
       break;

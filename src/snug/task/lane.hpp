@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,8 +30,9 @@ class Lane {
  public:
   Lane(const model::Scenario& scenario, const std::string& sequence, const cell::SimulationOptions& options);
 
-  /// Executes the rows of `program` that were not executed yet, up to the moment when more can be appended.
-  Episode run(const motion::Program& program);
+  /// Executes the rows of `program` that were not executed yet, up to the moment when more can be appended, or until
+  /// the cup pulls or pushes the held box with more than `most_force` [N]: that is a failure.
+  Episode run(const motion::Program& program, double most_force = std::numeric_limits<double>::infinity());
   /// Goes on at the end of `program` for this long: boxes come to rest.
   Episode settle(const motion::Program& program, double seconds);
 

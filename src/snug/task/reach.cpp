@@ -61,6 +61,14 @@ class Reach {
   std::map<std::string, Known> boxes_;
 };
 
+bool has_arm(const model::Scenario& scenario) {
+  if (!scenario.robot) return false;
+  const std::filesystem::path urdf = scenario.robot->urdf;
+  const std::filesystem::path folder = std::filesystem::path(scenario.source_name).parent_path();
+  std::error_code error;
+  return std::filesystem::exists(urdf.is_relative() ? folder / urdf : urdf, error);
+}
+
 }  // namespace
 
 Matrix3 orientation_before_place(const CellLayout& layout, const Matrix3& R_WP,
@@ -80,13 +88,16 @@ Matrix3 orientation_before_place(const CellLayout& layout, const Matrix3& R_WP,
   return R;
 }
 
+std::function<bool(const Pose&)> make_tool_reach(const model::Scenario& scenario) {
+  if (!has_arm(scenario)) return {};
+  const auto inverse = std::make_shared<const robot::InverseKinematics>(robot::load_arm(scenario));
+  const robot::JointVector posture = robot::joint_vector(scenario.robot->posture);
+  return [inverse, posture](const Pose& X_WE) { return inverse->nearest(X_WE, posture).has_value(); };
+}
+
 std::function<bool(const packing::Placement&)> make_reach(const model::Scenario& scenario, const CellLayout& layout,
                                                           const model::Sequence& sequence) {
-  if (!scenario.robot) return {};
-  const std::filesystem::path urdf = scenario.robot->urdf;
-  const std::filesystem::path folder = std::filesystem::path(scenario.source_name).parent_path();
-  std::error_code error;
-  if (!std::filesystem::exists(urdf.is_relative() ? folder / urdf : urdf, error)) return {};
+  if (!has_arm(scenario)) return {};
   const auto reach = std::make_shared<const Reach>(scenario, layout, sequence);
   return [reach](const packing::Placement& placement) { return reach->can(placement); };
 }

@@ -124,6 +124,13 @@ class PackingSession {
   }
 
  private:
+  /// The best attempt so far is taken, or nothing is.
+  [[nodiscard]] bool is_enough(const std::optional<Attempt>& best, int attempts) const {
+    const double share = best ? best->share : -1.0;
+    return share >= options_.accepted_share || attempts >= options_.most_attempts ||
+           (attempts >= options_.max_attempts && share >= options_.good_share);
+  }
+
   void place(int index, const std::vector<packing::Candidate>& candidates, ItemReport& report) {
     const auto start = std::chrono::steady_clock::now();
     const packing::Item& item = items_[static_cast<std::size_t>(index)];
@@ -134,7 +141,7 @@ class PackingSession {
       const packing::Candidate placed = measured(state_, candidate, item.size, scenario_.parcel_clearance);
       const Vector3 collision = item.size - Vector3::Constant(scenario_.parcel_clearance);
       for (const PlaceVariant& variant : choose_variants(placed, collision)) {
-        if (report.attempts >= options_.max_attempts) break;
+        if (is_enough(best, report.attempts)) break;
         Attempt attempt = executor_.attempt(placed, variant, top);
         report.attempts += attempt.was_simulated ? 1 : 0;
         const bool has_stopped = !attempt.succeeded && attempt.reason.starts_with("protective stop");
@@ -144,9 +151,8 @@ class PackingSession {
         if (!attempt.succeeded) continue;
         const bool is_better = !best || attempt.share > best->share + 1e-9;
         if (is_better) best = std::move(attempt);
-        if (best->share >= options_.accepted_share) break;
       }
-      if (best && best->share >= options_.accepted_share) break;
+      if (is_enough(best, report.attempts)) break;
     }
     report.prediction_seconds = seconds_since(start);
     if (!best || best->share < options_.least_share) {
@@ -157,6 +163,7 @@ class PackingSession {
     report.is_placed = true;
     report.reason.clear();
     report.planned = best->planned;
+    report.turn = best->turn;
     report.manner = best->manner;
     report.flips = packing::count_flips(item.arrival, best->planned.orientation);
     report.share = best->share;

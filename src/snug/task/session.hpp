@@ -25,18 +25,21 @@ struct PlaceLimits {
   double position = 0.020;                       ///< m, level distance from where it was planned
   double tilt = 6.0 * std::numbers::pi / 180.0;  ///< rad, from how it was planned
   double displacement = 0.020;                   ///< m, of a box that was there before
-  double force = 200.0;                          ///< N, of the cup on the box
+  double force = 150.0;                          ///< N, of the cup on the box: an attempt is given up
 };
 
 struct SessionOptions {
   std::string agent = "contact-aware";
   packing::PackingSettings packing;
   int threads = 1;              ///< results do not depend on it
-  int samples = 4;              ///< courses of events that could be, executed beside the one that counts; 0: none
+  int samples = 8;              ///< courses of events that could be, executed beside the one that counts; 0: none
   double accepted_share = 1.0;  ///< of the samples that have to succeed for an attempt to be taken at once
-  double least_share = 0.0;     ///< of the samples, below which not even the best attempt is taken
-  int max_attempts = 6;         ///< for an item: candidates times manners
+  double good_share = 0.8;      ///< of the samples, for an attempt to be taken after `max_attempts`
+  double least_share = 0.5;     ///< of the samples, below which not even the best attempt is taken
+  int max_attempts = 10;        ///< for an item: candidates times manners
+  int most_attempts = 24;       ///< where none was good
   Uncertainty uncertainty;
+  double margin = 1.3;  ///< samples are drawn from half widths this many times as large
   PlaceLimits limits;
   Perception perception = Perception::Exact;
   double perception_noise = 0.002;  ///< m, half width (Noisy); angles: this many rad per 100 mm
@@ -54,6 +57,7 @@ struct ItemReport {
   bool is_placed = false;
   std::string reason;  ///< why not
   packing::Placement planned;
+  TurnManner turn = TurnManner::None;
   PlaceManner manner = PlaceManner::Straight;
   int flips = 0;
   int attempts = 0;         ///< simulated for this item
