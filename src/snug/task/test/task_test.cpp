@@ -1,10 +1,14 @@
 // Packing on the demonstrator's cell: what a session promises.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/model/other_container.hpp"
 #include "snug/task/executions.hpp"
+#include "snug/task/grasp.hpp"
 #include "snug/task/surroundings.hpp"
 
 namespace snug::task {
@@ -38,7 +42,53 @@ TEST(Sample, KeepsTheTurnOfBoxesAndStaysWithinTheWidths) {
     const Pose before = arrival_pose(scenario, scenario.sequences[0].items[i]);
     const Pose after = arrival_pose(changed, changed.sequences[0].items[i]);
     EXPECT_LE(angle_between(before.R, after.R), uncertainty.yaw + 1e-9) << i;
+    // Sizes move the middle, too: by half a millimetre for each of both.
+    EXPECT_LE((before.p - after.p).cwiseAbs().maxCoeff(), 1.5 * uncertainty.position + uncertainty.size) << i;
+    EXPECT_GT((before.p - after.p).norm(), 0.0) << i;
   }
+}
+
+/// Every box of sequence 1 in every orientation that needs one turn, in cells that are all a little different: the
+/// grasp says how it got there, and the box hangs as asked in nearly all of them.
+TEST(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
+  const model::Scenario scenario = demonstrator();
+  const CellLayout layout = make_layout(scenario);
+  const cell::SimulationOptions options{motion::ControllerKind::Faithful, cup::CupMode::Phases, {}};
+  std::vector<std::unique_ptr<Lane>> lanes;
+  std::vector<cell::CellState> states;
+  lanes.push_back(std::make_unique<Lane>(scenario, "1", options));
+  for (int i = 0; i < 4; ++i) {
+    lanes.push_back(std::make_unique<Lane>(sample(scenario, "1", {}, Rng(9).split(std::to_string(i))), "1", options));
+  }
+  for (const auto& lane : lanes) states.push_back(lane->state());
+  const motion::Program nothing;
+  const std::function<bool(const Pose&)> everywhere;
+  const auto& items = scenario.sequences[0].items;
+  double share = 0.0;
+  int grasps = 0;
+  for (const char* id : {"BOX013", "BOX017", "BOX027", "BOX023"}) {  // one of each type
+    const auto item = std::ranges::find(items, id, &model::Item::parcel);
+    ASSERT_NE(item, items.end());
+    const PlannedBox box = make_planned_box(scenario, scenario.sequences[0], static_cast<int>(item - items.begin()));
+    const Matrix3 R_AP = scenario.aligner->X_WA.R.transpose() * arrival_pose(scenario, *item).R;
+    for (int axis = 0; axis < 3; ++axis) {
+      packing::Orientation orientation = packing::nearest_orientation(R_AP);
+      if (static_cast<int>(orientation.up) == axis) continue;
+      orientation.up = static_cast<model::UpAxis>(axis);
+      const Grasp grasp = plan_grasp({scenario, layout, lanes, states, nothing, box, 0.0, 1, everywhere}, orientation);
+      SCOPED_TRACE(std::string(id) + " axis " + std::to_string(axis));
+      EXPECT_EQ(grasp.problem, "");
+      EXPECT_NE(grasp.turn, TurnManner::None);
+      EXPECT_TRUE(packing::extents(grasp.held_as, box.size).isApprox(packing::extents(orientation, box.size)));
+      lanes[0]->restore(grasp.states[0]);
+      const Matrix3 R_WP = lanes[0]->pose_of(box.item)->R;
+      // Hanging, perhaps still swinging: within the 15 degrees that the grasp itself asks of the samples.
+      EXPECT_GT(std::abs(R_WP(2, axis)), std::cos(0.26));
+      share += grasp.share;
+      ++grasps;
+    }
+  }
+  EXPECT_GE(share / grasps, 0.9);
 }
 
 TEST(Measured, SeesWallsAndNeighboursAndStandsOnWhatCarries) {

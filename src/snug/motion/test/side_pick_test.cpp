@@ -1,0 +1,94 @@
+// Side pick and set down: rows, switches and poses against what they promise.
+#include "snug/motion/side_pick.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "snug/core/rng.hpp"
+#include "snug/motion/unwinding.hpp"
+
+namespace snug::motion {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kRounding = 1e-12;  // a few operations on numbers near 1
+
+TEST(SidePickRotation, PointsAtTheFaceAndIsUprightAgainWhenTheFaceIsUp) {
+  Rng rng(2);
+  for (int i = 0; i < 50; ++i) {
+    const double heading = rng.uniform(-kPi, kPi), yaw = rng.uniform(-kPi, kPi), incline = rng.uniform(0.0, 0.3);
+    const Vector3 face(std::cos(heading), std::sin(heading), 0.0);
+    const Matrix3 R_WE = side_pick_rotation(face, yaw, incline);
+    EXPECT_NEAR(R_WE.col(2).dot(-face), std::cos(incline), kRounding);
+    EXPECT_NEAR(R_WE(2, 2), -std::sin(incline), kRounding) << "it comes from above";
+    // The turn that brings the face up brings the tool, pressed squarely, upright to the yaw asked for.
+    const Matrix3 R_WE_up = face_up(side_pick_rotation(face, yaw, 0.0), face);
+    ASSERT_TRUE(yaw_of(R_WE_up));
+    EXPECT_NEAR(std::remainder(*yaw_of(R_WE_up) - yaw, 2.0 * kPi), 0.0, 1e-9);
+    EXPECT_NEAR((face_up(Matrix3::Identity(), face) * face).z(), 1.0, kRounding);
+  }
+}
+
+TEST(SidePickRows, ComeLowBeforeTheFaceTouchItAndLiftTheBoxAsItStood) {
+  SidePickIntent intent;
+  intent.number = "013";
+  intent.size = Vector3(0.2, 0.12, 0.1);
+  intent.X_WP = {Matrix3::Identity(), Vector3(0.3, 0.1, 0.05)};
+  intent.face = -Vector3::UnitY();
+  const auto rows = side_pick_rows(intent);
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[0].name, "PrePick013");
+  EXPECT_EQ(rows[3].name, "Box013");
+  EXPECT_EQ(rows[4].name, "PostPick013");
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(rows[i].io.vacuum) << i;
+  EXPECT_TRUE(rows[4].io.vacuum);
+  const Vector3 touched = rows[3].X_WE.p + intent.length * rows[3].X_WE.R.col(2);
+  EXPECT_TRUE(touched.isApprox(Vector3(0.3, 0.04, 0.05), kRounding));
+  EXPECT_TRUE((rows[2].X_WE.p - rows[3].X_WE.p).isApprox(Vector3(0.0, -intent.stand_off, 0.0), kRounding));
+  EXPECT_TRUE((rows[4].X_WE.p - rows[3].X_WE.p).isApprox(Vector3(0.0, 0.0, intent.lift), kRounding));
+  EXPECT_EQ(rows[4].X_WE.R, rows[3].X_WE.R);
+  // Only the first row is upright, so that yaw and tilt are turned one after the other.
+  EXPECT_TRUE(yaw_of(rows[0].X_WE.R));
+  EXPECT_FALSE(yaw_of(rows[1].X_WE.R));
+  EXPECT_EQ(rows[0].X_WE.p, rows[1].X_WE.p);
+  intent.again = true;
+  const auto again = side_pick_rows(intent);
+  EXPECT_EQ(again[0].name, "PreRePick013");
+  EXPECT_EQ(again[3].name, "RePick013");
+  EXPECT_EQ(again[4].name, "PostRePick013");
+}
+
+TEST(SidePickRows, FollowABoxThatStandsALittleTurned) {
+  SidePickIntent intent;
+  intent.size = Vector3(0.2, 0.12, 0.1);
+  const double yaw = 0.05;
+  intent.X_WP = {exp_rotation(Vector3(0.0, 0.0, yaw)), Vector3(0.3, 0.1, 0.05)};
+  intent.face = Vector3::UnitX();
+  const auto rows = side_pick_rows(intent);
+  EXPECT_NEAR(rows[3].X_WE.R.col(2).head<2>().normalized().dot(-Vector3(std::cos(yaw), std::sin(yaw), 0.0).head<2>()),
+              1.0, kRounding);
+}
+
+TEST(SetDownRows, PutTheBoxOnTheSurfaceAndLetGo) {
+  SetDownIntent intent;
+  intent.number = "030";
+  intent.size = Vector3(0.2, 0.12, 0.1);
+  intent.X_WP = {Matrix3::Identity(), Vector3(0.3, 0.1, 0.05)};
+  intent.tool_for = [](const Pose& X_WP) {
+    return X_WP * Pose{exp_rotation(Vector3(0.0, kPi, 0.0)), Vector3(0.0, 0.0, 0.1)};
+  };
+  const auto rows = set_down_rows(intent);
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_NEAR(rows[0].X_WE.p.z(), intent.travel_bottom + 0.05 + 0.1, kRounding);
+  EXPECT_NEAR(rows[2].X_WE.p.z(), 0.15 - intent.press, kRounding);
+  EXPECT_TRUE(rows[2].io.vacuum);
+  EXPECT_FALSE(rows[3].io.vacuum);
+  EXPECT_TRUE(rows[3].io.blow_off);
+  EXPECT_EQ(rows[2].X_WE, rows[3].X_WE);
+  EXPECT_GT(rows[4].X_WE.p.z(), rows[0].X_WE.p.z());
+}
+
+}  // namespace
+}  // namespace snug::motion
