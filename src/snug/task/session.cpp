@@ -124,7 +124,12 @@ class PackingSession {
   }
 
  private:
-  /// The best attempt so far is taken, or nothing is.
+  /// Percent in the end, on average, when this share of the courses of events goes well and the others end here.
+  [[nodiscard]] double worth_of(const packing::Candidate& candidate, double share) const {
+    const double expected = candidate.expected_percent > 0.0 ? candidate.expected_percent : 100.0;
+    return share * expected + (1.0 - share) * packing::filling_percent(state_);
+  }
+
   [[nodiscard]] bool is_enough(const std::optional<Attempt>& best, int attempts) const {
     const double share = best ? best->share : -1.0;
     return share >= options_.accepted_share || attempts >= options_.most_attempts ||
@@ -136,8 +141,10 @@ class PackingSession {
     const packing::Item& item = items_[static_cast<std::size_t>(index)];
     const double top = highest_top(state_);
     std::optional<Attempt> best;
+    double best_worth = 0.0;
     executor_.begin(index);
     for (const packing::Candidate& candidate : candidates) {
+      if (best && best_worth >= worth_of(candidate, 1.0)) break;
       const packing::Candidate placed = measured(state_, candidate, item.size, scenario_.parcel_clearance);
       const Vector3 collision = item.size - Vector3::Constant(scenario_.parcel_clearance);
       for (const PlaceVariant& variant : choose_variants(placed, collision)) {
@@ -149,8 +156,10 @@ class PackingSession {
         if (!attempt.was_simulated) break;
         if (report.reason.empty()) report.reason = attempt.reason;
         if (!attempt.succeeded) continue;
-        const bool is_better = !best || attempt.share > best->share + 1e-9;
-        if (is_better) best = std::move(attempt);
+        const double worth = worth_of(placed, attempt.share);
+        if (best && worth <= best_worth + 1e-9) continue;
+        best_worth = worth;
+        best = std::move(attempt);
       }
       if (is_enough(best, report.attempts)) break;
     }
