@@ -25,8 +25,8 @@ Executor::Executor(const model::Scenario& scenario, const std::string& sequence,
   const Rng rng(options.packing.seed);
   for (int i = 0; i < options.samples; ++i) {
     const Rng own = rng.split("sample " + std::to_string(i));
-    lanes_.push_back(std::make_unique<Lane>(
-        sample(scenario, sequence, widened(options.uncertainty, options.margin), own), sequence, options.simulation));
+    lanes_.push_back(
+        std::make_unique<Lane>(sample(scenario, sequence, options.uncertainty, own), sequence, options.simulation));
   }
   for (const auto& lane : lanes_) states_.push_back(lane->state());
   program_.name = "pack";

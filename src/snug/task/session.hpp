@@ -39,7 +39,6 @@ struct SessionOptions {
   int max_attempts = 10;        ///< for an item: candidates times manners
   int most_attempts = 24;       ///< where none was good
   Uncertainty uncertainty;
-  double margin = 1.3;  ///< samples are drawn from half widths this many times as large
   PlaceLimits limits;
   Perception perception = Perception::Exact;
   double perception_noise = 0.002;  ///< m, half width (Noisy); angles: this many rad per 100 mm

@@ -42,14 +42,6 @@ Pose arrival_pose(const model::Scenario& scenario, const model::Item& item) {
   return cell::pose_at_aligner(scenario, item, Pose{exp_rotation(Vector3(0.0, std::numbers::pi, 0.0)), first.p});
 }
 
-Uncertainty widened(Uncertainty uncertainty, double by) {
-  for (double* width : {&uncertainty.size, &uncertainty.friction, &uncertainty.position, &uncertainty.yaw,
-                        &uncertainty.com, &uncertainty.cup}) {
-    *width *= by;
-  }
-  return uncertainty;
-}
-
 model::Scenario sample(const model::Scenario& scenario, const std::string& sequence, const Uncertainty& uncertainty,
                        Rng rng) {
   model::Scenario changed = scenario;

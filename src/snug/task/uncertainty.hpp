@@ -19,9 +19,6 @@ struct Uncertainty {
   bool operator==(const Uncertainty&) const = default;
 };
 
-/// All half widths so many times as large.
-[[nodiscard]] Uncertainty widened(Uncertainty uncertainty, double by);
-
 /// The scenario with every change drawn from `rng`. The boxes of the sequence keep the quarter turn at the aligner that
 /// they have in the scenario as it is: sizes that differ by a millimetre do not turn a square box.
 [[nodiscard]] model::Scenario sample(const model::Scenario& scenario, const std::string& sequence,
