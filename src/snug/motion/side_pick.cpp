@@ -49,16 +49,14 @@ std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent) {
   X_WE_high.p.z() = std::max(intent.approach_height, X_WE_before.p.z() + 0.01);
   Pose X_WE_lifted = X_WE_pick;
   X_WE_lifted.p.z() += intent.lift;
-  const auto name = [&](const char* stage) {
-    const std::string pick = std::string(stage) == "" ? "Box" : "Pick";
-    return (intent.again ? (std::string(stage) + "RePick") : std::string(stage) + pick) + intent.number;
-  };
+  const std::string pick = (intent.again ? "RePick" : "Pick") + intent.number;
+  const std::string press = (intent.again ? "RePick" : "Box") + intent.number;
   const Pose X_WE_upright{upright(intent.tool_yaw), X_WE_high.p};
-  return {{X_WE_upright, name("Pre"), {}, 0},
-          {X_WE_high, name("Pre") + "_level", {}, 0},
-          {X_WE_before, name("Pre") + "_side", {}, 0},
-          {X_WE_pick, name(""), {}, 0},
-          {X_WE_lifted, name("Post"), kHold, 0}};
+  return {{X_WE_upright, "Pre" + pick, {}, 0},
+          {X_WE_high, "Pre" + pick + "_level", {}, 0},
+          {X_WE_before, "Pre" + pick + "_side", {}, 0},
+          {X_WE_pick, press, {}, 0},
+          {X_WE_lifted, "Post" + pick, kHold, 0}};
 }
 
 std::vector<Waypoint> set_down_rows(const SetDownIntent& intent) {
