@@ -2,23 +2,17 @@
 #include "snug/experiment/internal/arm_bench.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <limits>
 #include <vector>
 
 #include "snug/core/rng.hpp"
+#include "snug/experiment/internal/cpu_time.hpp"
 #include "snug/robot/dynamics.hpp"
 #include "snug/robot/inverse.hpp"
 #include "snug/robot/load_arm.hpp"
 
 namespace snug::experiment::internal {
 namespace {
-
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// Microseconds of one call, the least of some rounds over the same inputs: what else runs on the machine adds only.
 template <class Work>

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -14,6 +13,7 @@
 #include "snug/cell/scene.hpp"
 #include "snug/core/check.hpp"
 #include "snug/experiment/internal/arm_bench.hpp"
+#include "snug/experiment/internal/cpu_time.hpp"
 #include "snug/experiment/internal/packing_bench.hpp"
 #include "snug/experiment/internal/robot_figures.hpp"
 
@@ -21,15 +21,10 @@ namespace snug::experiment {
 namespace {
 
 using cell::Scene;
+using internal::cpu_seconds;
 using physics::BodyId;
 
 constexpr double kMm = 1e3;
-
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 Figure at_most(std::string name, double value, std::string unit, double limit) {
   return {std::move(name), value, std::move(unit), fmt::format("<= {}", limit), value <= limit};

@@ -2,19 +2,13 @@
 #include "snug/experiment/internal/packing_bench.hpp"
 
 #include <algorithm>
-#include <ctime>
 
+#include "snug/experiment/internal/cpu_time.hpp"
 #include "snug/packing/agent.hpp"
 #include "snug/packing/instances.hpp"
 
 namespace snug::experiment::internal {
 namespace {
-
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// Percent of the container that is filled when an item has no place, or all have one.
 double plan_sequence(const model::Scenario& scenario, const model::Sequence& sequence, std::vector<double>& seconds) {

@@ -73,9 +73,8 @@ void ScenarioReader::read_parcel_type(const Value& value) {
 }
 
 void ScenarioReader::read_parcel(const Value& value) {
-  const MapReader map =
-      value.map("parcel", {"id", "type", "size", "mass", "inertia", "com", "layers", "shell", "material",
-                           "upright_only", "no_stack", "max_load"});
+  const MapReader map = value.map("parcel", {"id", "type", "size", "mass", "inertia", "com", "layers", "shell",
+                                             "material", "upright_only", "no_stack", "max_load"});
   Parcel parcel;
   const Value id = map.require("id");
   check_new_name(id, "parcel", find_parcel(scenario_, id.name()) != nullptr);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "snug/core/check.hpp"
+#include "snug/motion/unwinding.hpp"
 
 namespace snug::motion {
 namespace {
@@ -92,8 +93,7 @@ std::vector<Waypoint> pick_rows(const PickIntent& intent) {
   const int up = vertical_axis_of(intent.X_WP.R);
   const double sign = intent.X_WP.R(2, up) > 0.0 ? 1.0 : -1.0;
   const Vector3 touched = intent.X_WP * (intent.cup_offset_P + 0.5 * sign * intent.size[up] * Vector3::Unit(up));
-  const Pose X_WE_pick{turn(Vector3::UnitZ(), intent.tool_yaw) * turn(Vector3::UnitY(), std::numbers::pi),
-                       touched + Vector3(0.0, 0.0, intent.length)};
+  const Pose X_WE_pick{upright_tool(intent.tool_yaw), touched + Vector3(0.0, 0.0, intent.length)};
   Rows rows(intent.number);
   rows.add(intent.again ? "PreRePick" : "PrePick", at_height(X_WE_pick, intent.approach_height), {});
   rows.add(intent.again ? "RePick" : "Box", X_WE_pick, {});

@@ -6,17 +6,13 @@
 #include <numbers>
 
 #include "snug/core/check.hpp"
+#include "snug/motion/unwinding.hpp"
 
 namespace snug::motion {
 namespace {
 
 constexpr IO kHold{.vacuum = true};
 constexpr IO kRelease{.blow_off = true};
-
-/// R_WE of a tool that points down.
-Matrix3 upright(double tool_yaw) {
-  return exp_rotation(Vector3(0.0, 0.0, tool_yaw)) * exp_rotation(Vector3(0.0, std::numbers::pi, 0.0));
-}
 
 /// The axis of the box that is nearest to `direction`, with its sign, in W.
 Vector3 nearest_normal(const Matrix3& R_WP, const Vector3& direction, int* axis) {
@@ -29,7 +25,7 @@ Vector3 nearest_normal(const Matrix3& R_WP, const Vector3& direction, int* axis)
 
 Matrix3 side_pick_rotation(const Vector3& face, double tool_yaw, double incline) {
   const Vector3 axis = (-Vector3::UnitZ()).cross(-face).normalized();  // takes down to the way in
-  return exp_rotation((0.5 * std::numbers::pi - incline) * axis) * upright(tool_yaw);
+  return exp_rotation((0.5 * std::numbers::pi - incline) * axis) * upright_tool(tool_yaw);
 }
 
 Matrix3 face_up(const Matrix3& R_WP, const Vector3& face) {
@@ -51,7 +47,7 @@ std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent) {
   X_WE_lifted.p.z() += intent.lift;
   const std::string pick = (intent.again ? "RePick" : "Pick") + intent.number;
   const std::string press = (intent.again ? "RePick" : "Box") + intent.number;
-  const Pose X_WE_upright{upright(intent.tool_yaw), X_WE_high.p};
+  const Pose X_WE_upright{upright_tool(intent.tool_yaw), X_WE_high.p};
   return {{X_WE_upright, "Pre" + pick, {}, 0},
           {X_WE_high, "Pre" + pick + "_level", {}, 0},
           {X_WE_before, "Pre" + pick + "_side", {}, 0},

@@ -21,6 +21,10 @@ std::optional<double> yaw_of(const Matrix3& R_WE) {
   return std::atan2(-R_WE(1, 0) - R_WE(0, 1), R_WE(1, 1) - R_WE(0, 0));
 }
 
+Matrix3 upright_tool(double yaw) {
+  return exp_rotation(Vector3(0.0, 0.0, yaw)) * exp_rotation(Vector3(0.0, std::numbers::pi, 0.0));
+}
+
 std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypoint>& rows, double neutral_yaw) {
   std::vector<Waypoint> turned;
   const Waypoint* last = &before;

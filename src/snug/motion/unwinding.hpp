@@ -12,6 +12,9 @@ namespace snug::motion {
 /// where it is tilted by more than 30 degrees.
 [[nodiscard]] std::optional<double> yaw_of(const Matrix3& R_WE);
 
+/// R_WE of a tool that points straight down: Rz(yaw) Ry(pi).
+[[nodiscard]] Matrix3 upright_tool(double yaw);
+
 /// Rows say where the tool shall be and not which way it turns: the shorter one. Where that would take it to the far
 /// side of `neutral_yaw`, or could because the turn is nearly half a turn, rows are put in between that turn it on the
 /// spot over the neutral side, with the switches of the row before and its name followed by "_turn". So the yaw never

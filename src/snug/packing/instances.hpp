@@ -16,8 +16,8 @@ namespace snug::packing {
 [[nodiscard]] std::vector<LoadProblem> load_instances(const std::filesystem::path& path);
 [[nodiscard]] std::vector<LoadProblem> parse_instances(std::string_view text, const std::string& name);
 
-/// One problem for each order, in whole millimetres (boxes rounded up, the container down): equal boxes become one type.
-/// `container` in m. Throws InputError for boxes with limits of load, which loading does not look at.
+/// One problem for each order, in whole millimetres (boxes rounded up, the container down): equal boxes become one
+/// type. `container` in m. Throws InputError for boxes with limits of load, which loading does not look at.
 [[nodiscard]] std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines,
                                                    const Vector3& container);
 

@@ -48,7 +48,8 @@ struct LoadResult {
 
 /// Beam search over blocks of boxes put into corners of maximal free spaces; every partial load is judged by the load
 /// that a greedy completion makes of it (docs/theory/packing.md, loading). No support is asked for: boxes may hang
-/// over. Throws InputError for lengths that are not positive or beyond 1e5, a count beyond 0 .. 5000, more than 1000 types.
+/// over. Throws InputError for lengths that are not positive or beyond 1e5, a count beyond 0 .. 5000, more than 1000
+/// types.
 [[nodiscard]] LoadResult load_container(const LoadProblem& problem, const LoadSettings& settings);
 
 /// Problems of a list that a box violates: outside, overlap, more than there are, an edge upright that must not be.

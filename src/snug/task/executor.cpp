@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRest = 0.4;  ///< s, after the last row, before the result is looked at
 
-/// Level distance and angle from where a box was planned. A turn about the vertical counts like a tilt.
+/// From where a box was planned, along the floor.
 double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
 
 }  // namespace

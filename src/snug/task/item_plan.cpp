@@ -213,11 +213,6 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
   return motion::pick_rows(intent);
 }
 
-Matrix3 tool_at_place(const CellLayout& layout, const Matrix3& R_WP, const Matrix3& R_WP_next) {
-  const double yaw = layout.neutral_yaw + 0.5 * yaw_between(R_WP, R_WP_next);
-  return exp_rotation(Vector3(0.0, 0.0, yaw)) * exp_rotation(Vector3(0.0, std::numbers::pi, 0.0));
-}
-
 std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Program& before,
                                        const std::vector<motion::Waypoint>& rows) {
   if (rows.empty()) return rows;

@@ -74,8 +74,6 @@ struct PlannedBox {
 [[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                       const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
                                                       double travel_bottom, bool again);
-/// R_WE of a tool that sets a box down as `R_WP_next` which it picked where the box stood as `R_WP`, without sag.
-[[nodiscard]] Matrix3 tool_at_place(const CellLayout& layout, const Matrix3& R_WP, const Matrix3& R_WP_next);
 /// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.
 [[nodiscard]] std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Program& before,
                                                      const std::vector<motion::Waypoint>& rows);

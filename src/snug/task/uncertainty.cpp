@@ -7,6 +7,7 @@
 
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/core/check.hpp"
+#include "snug/motion/unwinding.hpp"
 
 namespace snug::task {
 namespace {
@@ -39,7 +40,7 @@ void scale(model::CupElasticity& elasticity, double by) {
 Pose arrival_pose(const model::Scenario& scenario, const model::Item& item) {
   SNUG_CHECK(scenario.aligner.has_value(), "boxes arrive at an aligner");
   const Pose first = cell::pose_at_aligner(scenario, item, std::nullopt);
-  return cell::pose_at_aligner(scenario, item, Pose{exp_rotation(Vector3(0.0, std::numbers::pi, 0.0)), first.p});
+  return cell::pose_at_aligner(scenario, item, Pose{motion::upright_tool(0.0), first.p});
 }
 
 model::Scenario sample(const model::Scenario& scenario, const std::string& sequence, const Uncertainty& uncertainty,

@@ -6,8 +6,8 @@
 
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/core/write_file.hpp"
 #include "snug/core/rng.hpp"
+#include "snug/core/write_file.hpp"
 #include "snug/robot/kinematics.hpp"
 
 namespace snug::calibration {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "snug/core/hash.hpp"
-#include "snug/motion/test/allocation_count.hpp"
+#include "snug/core/test/allocation_count.hpp"
 #include "snug/motion/test/demonstrator.hpp"
 
 namespace snug::motion {
@@ -159,9 +159,9 @@ TEST_P(BothControllers, DoNotAllocateInATick) {
   const PreparedProgram plan = prepare(program, settings_of(GetParam()));
   ControllerState state = make_controller_state(Pose{});
   ToolState measured = state.command;
-  const long before = allocation_count();
+  const long before = test::allocation_count();
   for (int i = 0; i < 3000; ++i) measured = tick(plan, measured, state).tool;
-  EXPECT_EQ(allocation_count(), before);
+  EXPECT_EQ(test::allocation_count(), before);
   EXPECT_EQ(state.phase, ControllerPhase::Finished);
 }
 

@@ -31,6 +31,7 @@ TEST(YawOf, IsThatOfAToolThatPointsDownAndNothingElse) {
   for (double yaw = -3.1; yaw < 3.1; yaw += 0.1) {
     ASSERT_TRUE(yaw_of(pointing_down(yaw)));
     EXPECT_NEAR(*yaw_of(pointing_down(yaw)), yaw, 1e-12);
+    EXPECT_TRUE(upright_tool(yaw).isApprox(pointing_down(yaw), 1e-12));
     EXPECT_NEAR(*yaw_of(pointing_down(yaw, 0.2)), yaw, 0.011) << "tilted a little";  // up to (1 - cos 0.2) / 2
   }
   EXPECT_FALSE(yaw_of(pointing_down(0.3, 0.5 * kPi)));

@@ -245,7 +245,8 @@ TEST(DrawSequence, TakesEveryBoxOnceWhenAskedForAll) {
   std::set<std::vector<std::string>> orders;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     std::vector<std::string> order;
-    for (const model::Item& item : draw_sequence(scenario, "s", settings, Rng(seed)).items) order.push_back(item.parcel);
+    for (const model::Item& item : draw_sequence(scenario, "s", settings, Rng(seed)).items)
+      order.push_back(item.parcel);
     EXPECT_EQ(std::set<std::string>(order.begin(), order.end()).size(), scenario.parcels.size());
     EXPECT_EQ(order.size(), scenario.parcels.size());
     orders.insert(order);

@@ -1,32 +1,12 @@
 // Kinematics, dynamics and the closed-form inverse never allocate: global new is counted.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include <cmath>
 
 #include "shipped_arm.hpp"
+#include "snug/core/test/allocation_count.hpp"
 #include "snug/robot/dynamics.hpp"
 #include "snug/robot/inverse.hpp"
-
-namespace {
-
-std::atomic<long long> allocations{0};
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace snug::robot {
 namespace {
@@ -38,7 +18,7 @@ TEST(Robot, NeverAllocatesOnceAnArmIsLoaded) {
   const SpatialInertia load = distal_inertia(arm, find_link(arm, "ft_sensor"));
   const int sensor = find_link(arm, "ft_sensor");
   double sum = 0.0;
-  const long long before = allocations;
+  const long before = snug::test::allocation_count();
   for (int k = 0; k < 100; ++k) {
     const JointVector q = test::random_joints(rng, 6, 3.0);
     const ArmPose at = forward(arm, q);
@@ -50,7 +30,7 @@ TEST(Robot, NeverAllocatesOnceAnArmIsLoaded) {
     const auto found = inverse.nearest(at.X_WE, q);
     sum += found ? (*found)(0) : 0.0;
   }
-  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(snug::test::allocation_count(), before);
   EXPECT_TRUE(std::isfinite(sum));
 }
 

@@ -33,23 +33,6 @@ packing::Placement placement_of(const model::Scenario& scenario, const Vector3& 
   return placement;
 }
 
-TEST(OrientationBeforePlace, HasTheWantedSideUp) {
-  const CellLayout layout = make_layout(shortened(1));
-  const Matrix3 R_WP = exp_rotation(Vector3(0.0, 0.0, 0.7));
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const int sign : {-1, 1}) {
-      const packing::Orientation orientation{static_cast<model::UpAxis>(axis), sign, 0};
-      const Matrix3 R = orientation_before_place(layout, R_WP, orientation);
-      EXPECT_NEAR(sign * R(2, axis), 1.0, 1e-9) << axis << sign;
-      for (double yaw = -3.0; yaw < 3.1; yaw += 0.5) {
-        const Matrix3 R_WE = tool_at_place(layout, R, exp_rotation(Vector3(0.0, 0.0, yaw)) * R);
-        EXPECT_NEAR(R_WE(2, 2), -1.0, 1e-9);
-        EXPECT_GE(-R_WE(0, 0), -1e-9) << "more than a quarter turn from the start";
-      }
-    }
-  }
-}
-
 TEST(Reach, IsInTheContainerAndNotFarBehindIt) {
   const model::Scenario scenario = shortened(1);
   const CellLayout layout = make_layout(scenario);

@@ -1,5 +1,5 @@
 // allocation_count: how often this program has asked for memory, for tests that forbid it.
-#include "snug/motion/test/allocation_count.hpp"
+#include "snug/core/test/allocation_count.hpp"
 
 #include <atomic>
 #include <cstdlib>
@@ -17,8 +17,8 @@ void* operator new(std::size_t size) {
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace snug::motion {
+namespace snug::test {
 
 long allocation_count() { return count; }
 
-}  // namespace snug::motion
+}  // namespace snug::test
