@@ -22,6 +22,7 @@ void check(const PackingSettings& s) {
   require(within(s.max_flips, 0, 2), "max_flips", s.max_flips, "0, 1 or 2");
   require(within(s.margin, 0.0, 1.0), "margin", s.margin, "0 .. 1 m");
   require(within(s.squeeze, 0.0, 0.010), "squeeze", s.squeeze, "0 .. 0.01 m");
+  require(within(s.last_squeeze, 0.0, 0.010), "last_squeeze", s.last_squeeze, "0 .. 0.01 m");
   require(within(s.min_support, 0.0, 1.0), "min_support", s.min_support, "0 .. 1");
   require(within(s.com_margin, 0.0, 0.1), "com_margin", s.com_margin, "0 .. 0.1 m");
   require(within(s.level_slack, 0.0, 0.05), "level_slack", s.level_slack, "0 .. 0.05 m");

@@ -41,8 +41,18 @@ class ContactAwareAgent : public Agent {
   std::string_view name() const override { return "contact-aware"; }
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
-    const PackingSettings& settings = input_.settings;
-    const Planning planning = plan_for_contact(state, settings);
+    PackingSettings settings = input_.settings;
+    const Expected<Decision, NoPlace> decision = decide(state, item, plan_for_contact(state, settings));
+    const bool is_full =
+        !decision && (decision.error() == NoPlace::NoSpace || decision.error() == NoPlace::NoStablePlace);
+    if (!is_full || settings.last_squeeze <= settings.squeeze) return decision;
+    settings.squeeze = settings.last_squeeze;
+    const Expected<Decision, NoPlace> pressed = decide(state, item, plan_for_contact(state, settings));
+    return pressed ? pressed : decision;
+  }
+
+ private:
+  Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item, const Planning& planning) {
     const Choice choice = make_choice(planning, item);
     if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
     std::vector<Item> kinds = input_.future.kinds;
@@ -57,7 +67,6 @@ class ContactAwareAgent : public Agent {
     return rank(planning, state, item, choice, layout, policy, spots);
   }
 
- private:
   Expected<Decision, NoPlace> rank(const Planning& planning, const ContainerState& state, const Item& item,
                                    const Choice& choice, const Layout& layout, const Policy& policy,
                                    const std::vector<Spot>& spots) {

@@ -14,6 +14,9 @@ struct PackingSettings {
   double margin = 0.020;    ///< m, agent `margin`: to boxes and walls
   /// m, each box is planned this much smaller than measured along Tx and Ty: boxes give way when pressed together.
   double squeeze = 0.001;
+  /// m, agent `contact-aware`: the same for a box that fits nowhere otherwise. Not more than `squeeze`: it is given up.
+  /// For callers that try a place before they count on it.
+  double last_squeeze = 0.0;
   double min_support = 0.6;    ///< part of the lower face that has to rest on something
   double com_margin = 0.005;   ///< m, the centre of mass stays inside the support polygon by this
   double level_slack = 0.003;  ///< m, tops that differ by less carry a box together
@@ -32,6 +35,7 @@ struct PackingSettings {
     a("max_flips", max_flips);
     a("margin", margin);
     a("squeeze", squeeze);
+    a("last_squeeze", last_squeeze);
     a("min_support", min_support);
     a("com_margin", com_margin);
     a("level_slack", level_slack);

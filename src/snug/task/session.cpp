@@ -53,11 +53,13 @@ class PackingSession {
   SessionResult pack(const Progress& progress) {
     packing::AgentInput input;
     input.settings = options_.packing;
+    // Plans that are made on paper first have no other place to try.
+    if (!plans_on_paper()) input.settings.last_squeeze = options_.last_squeeze;
     input.future = packing::make_future_model(scenario_);
     input.sequence = items_;
     input.is_reachable = make_reach(scenario_, executor_.layout(), executor_.real().simulation().sequence());
     const std::unique_ptr<packing::Agent> agent = packing::make_agent(options_.agent, std::move(input));
-    if (options_.agent == "manual" || options_.agent == "offline") return execute(plan_on_paper(*agent), progress);
+    if (plans_on_paper()) return execute(plan_on_paper(*agent), progress);
     for (std::size_t i = 0; i < items_.size() && result_.stopped.empty(); ++i) {
       ItemReport report;
       report.id = items_[i].id;
@@ -124,6 +126,8 @@ class PackingSession {
   }
 
  private:
+  [[nodiscard]] bool plans_on_paper() const { return options_.agent == "manual" || options_.agent == "offline"; }
+
   /// Percent in the end, on average, when this share of the courses of events goes well and the others end here.
   [[nodiscard]] double worth_of(const packing::Candidate& candidate, double share) const {
     const double expected = candidate.expected_percent > 0.0 ? candidate.expected_percent : 100.0;

@@ -114,6 +114,33 @@ TEST_P(EveryAgent, AsksWhatCanBeReached) {
   EXPECT_EQ(decision.error(), NoPlace::NotReachable);
 }
 
+TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
+  // A slot of 100 mm, as high as the container, between boxes that nothing fits on.
+  ContainerState state = make_container_state(test::demonstrator().containers.front());
+  state.inner_size = Vector3(0.3, 0.2, 0.2);
+  for (const double side : {-1.0, 1.0}) {
+    PlacedBox wall{make_box(side < 0.0 ? "low" : "high", Vector3(0.1, 0.2, 0.2)), Pose()};
+    wall.X_TP.p = Vector3(0.1 * side, 0.0, 0.1);
+    state.boxes.push_back(wall);
+  }
+  const auto is_placed = [&](double width, double last_squeeze) {
+    AgentInput input;
+    input.settings.decision_time = 0.01;
+    input.settings.last_squeeze = last_squeeze;
+    const Item item = make_box("tight", Vector3(width, 0.15, 0.19));
+    const auto decision = make_agent("contact-aware", std::move(input))->decide(state, item);
+    EXPECT_TRUE(decision || decision.error() == NoPlace::NoSpace);
+    return decision.has_value();
+  };
+  // Both neighbours are squeezed, too: there is room for twice the squeeze of one box more than the slot.
+  const double squeeze = PackingSettings().squeeze;
+  EXPECT_TRUE(is_placed(0.1 + 2.0 * squeeze, 0.0));
+  EXPECT_FALSE(is_placed(0.1 + 2.0 * squeeze + 0.001, 0.0));
+  EXPECT_TRUE(is_placed(0.1 + 2.0 * squeeze + 0.001, 0.003));
+  EXPECT_TRUE(is_placed(0.1 + 2.0 * 0.003, 0.003));
+  EXPECT_FALSE(is_placed(0.1 + 2.0 * 0.003 + 0.001, 0.003));
+}
+
 TEST(Agent, UnknownNamesAndSettingsThatCannotBeAreRefused) {
   EXPECT_THROW((void)make_agent("contact-awar", {}), InputError);
   for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
