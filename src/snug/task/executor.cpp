@@ -108,6 +108,7 @@ Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVarian
   attempt.was_simulated = grasp.problem.empty() || grasps_.size() > known;
   if (!grasp.problem.empty()) {
     attempt.reason = grasp.problem;
+    attempt.was_stopped = grasp.episodes[0].was_stopped;
     return attempt;
   }
   attempt.turn = grasp.turn;
@@ -131,6 +132,7 @@ Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVarian
     outcomes[i] = judge(lane, before, attempt.planned.X_TP);
     outcomes[i].forces.force = episode.peak_force;
     outcomes[i].forces.torque = episode.peak_torque;
+    outcomes[i].was_stopped = episode.was_stopped;
     if (!episode.failure.empty()) outcomes[i].reason = episode.failure;
     outcomes[i].succeeded = outcomes[i].reason.empty();
     lane.restore(end);
@@ -138,6 +140,7 @@ Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVarian
   execute(0);
   attempt.succeeded = outcomes[0].succeeded;
   attempt.reason = outcomes[0].reason;
+  attempt.was_stopped = outcomes[0].was_stopped;
   attempt.happened = outcomes[0].forces;
   attempt.position_error = outcomes[0].position_error;
   attempt.angle_error = outcomes[0].angle_error;

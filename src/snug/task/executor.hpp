@@ -16,6 +16,7 @@ struct Attempt {
   bool succeeded = false;     ///< in the course that counts
   double share = 0.0;         ///< of the samples that succeeded
   std::string reason;         ///< why it did not succeed
+  bool was_stopped = false;   ///< by a protective stop of the robot, in the course that counts
   TurnManner turn = TurnManner::None;
   PlaceManner manner = PlaceManner::Straight;
   packing::Placement planned;
@@ -46,6 +47,7 @@ class Executor {
   struct Outcome {
     bool succeeded = false;
     std::string reason;
+    bool was_stopped = false;
     AttemptForces forces;
     double position_error = 0.0, angle_error = 0.0;
   };

@@ -219,6 +219,7 @@ Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orient
   Grasp best;
   best.orientation = orientation;
   best.problem = "nothing flat to turn it on";
+  best.episodes.resize(request.lanes.size());
   bool is_first = true;
   for (const TurnManner manner : manners) {
     GraspPlanner planner(request, orientation);

@@ -19,7 +19,9 @@ void merge(Episode& into, const Episode& episode) {
   into.peak_force = std::max(into.peak_force, episode.peak_force);
   into.peak_torque = std::max(into.peak_torque, episode.peak_torque);
   into.duration += episode.duration;
-  if (into.failure.empty()) into.failure = episode.failure;
+  if (!into.failure.empty()) return;
+  into.failure = episode.failure;
+  into.was_stopped = episode.was_stopped;
 }
 
 void append(motion::Program& program, const std::vector<motion::Waypoint>& rows) {
@@ -34,6 +36,7 @@ Lane::Lane(const model::Scenario& scenario, const std::string& sequence, const c
 bool Lane::advance(const motion::PreparedProgram& plan, Episode& episode) {
   const cell::CellTick tick = simulation_->advance(plan, state_, work_);
   episode.failure = tick.failure;
+  episode.was_stopped = !tick.failure.empty() && work_.arm.stop;
   episode.peak_force = std::max(episode.peak_force, state_.gripper.F_S.force.norm());
   episode.peak_torque = std::max(episode.peak_torque, state_.gripper.F_S.torque.norm());
   return tick.failure.empty();

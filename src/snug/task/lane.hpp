@@ -19,6 +19,7 @@ struct Episode {
   double peak_torque = 0.0;  ///< Nm, about the lip
   double duration = 0.0;     ///< s, simulated
   std::string failure;       ///< empty, or why the simulation had to stop
+  bool was_stopped = false;  ///< the failure is a protective stop of the robot
 };
 
 /// The larger peaks, both durations, the first failure.

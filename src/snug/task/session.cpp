@@ -155,8 +155,7 @@ class PackingSession {
         if (is_enough(best, report.attempts)) break;
         Attempt attempt = executor_.attempt(placed, variant, top);
         report.attempts += attempt.was_simulated ? 1 : 0;
-        const bool has_stopped = !attempt.succeeded && attempt.reason.starts_with("protective stop");
-        report.stops += attempt.was_simulated && has_stopped ? 1 : 0;
+        report.stops += attempt.was_simulated && attempt.was_stopped ? 1 : 0;
         if (!attempt.was_simulated) break;
         if (report.reason.empty()) report.reason = attempt.reason;
         if (!attempt.succeeded) continue;
