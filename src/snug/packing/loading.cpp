@@ -25,8 +25,9 @@ constexpr int kMostTypes = 1000;
 constexpr int kMostBoxes = 5000;  // of one type
 /// Blocks looked at in one second, with all that a search does around them: measured on the reference machine.
 constexpr double kBlocksPerSecond = 6.0e7;
-/// Weights of a block's value, volume * usable^kLossPower * boxes^-kCountPower: the form of Araya and Riff's evaluation
-/// without its contact term. Of 1, 2, 4, 8 and 0, 0.1, 0.2, tried on instances 11 and 12 of BR1-BR7, these load most.
+/// Weights of a block's value, volume * usable^kLossPower * boxes^-kCountPower: the form of VCS (Araya, Guerrero and
+/// Nunez, 2017) without its contact term. Of 1, 2, 4, 8 and 0, 0.1, 0.2, tried on instances 11 and 12 of BR1-BR7, these
+/// load most.
 constexpr double kLossPower = 8.0;
 constexpr double kCountPower = 0.1;
 

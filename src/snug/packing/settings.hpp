@@ -14,8 +14,8 @@ struct PackingSettings {
   double margin = 0.020;    ///< m, agent `margin`: to boxes and walls
   /// m, each box is planned this much smaller than measured along Tx and Ty: boxes give way when pressed together.
   double squeeze = 0.001;
-  /// m, agent `contact-aware`: the same for a box that fits nowhere otherwise. Not more than `squeeze`: it is given up.
-  /// For callers that try a place before they count on it.
+  /// m, the same for a box that `contact-aware` has no place for otherwise; for callers that try a place before they
+  /// count on it. Not more than `squeeze`: such a box has no place.
   double last_squeeze = 0.0;
   double min_support = 0.6;    ///< part of the lower face that has to rest on something
   double com_margin = 0.005;   ///< m, the centre of mass stays inside the support polygon by this

@@ -31,8 +31,8 @@ struct PlaceLimits {
 struct SessionOptions {
   std::string agent = "contact-aware";
   packing::PackingSettings packing;
-  /// m, of agents that decide as items come (`PackingSettings::last_squeeze`): half a millimetre more than
-  /// the clearance that the demonstrator's boxes have in contact (docs/decisions/0005).
+  /// m, of agents that decide as items come (`PackingSettings::last_squeeze`): 1 mm more than the clearance that the
+  /// demonstrator's boxes have in contact (docs/decisions/0005).
   double last_squeeze = 0.003;
   int threads = 1;              ///< results do not depend on it
   int samples = 8;              ///< courses of events that could be, executed beside the one that counts; 0: none
