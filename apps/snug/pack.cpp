@@ -74,11 +74,11 @@ int run_pack(const PackOptions& options) {
     repeated.simulation = session.simulation;
     executions = task::repeat(scenario, result, repeated);
   }
-  const bool is_nothing_done = result.program.waypoints.empty();
-  if (options.program && !is_nothing_done) motion::write_program(result.program, *options.program);
+  const bool has_program = !result.program.waypoints.empty();
+  if (options.program && has_program) motion::write_program(result.program, *options.program);
   if (options.plan) write_file(*options.plan, format_plan(result));
-  if (options.record && !is_nothing_done) record(options, scenario, result, session);
-  if (is_nothing_done && (options.program || options.record)) {
+  if (options.record && has_program) record(options, scenario, result, session);
+  if (!has_program && (options.program || options.record)) {
     std::fputs("snug: nothing was packed: no program, no recording\n", stderr);
   }
   const std::string text = options.json ? format_json(result, executions) : format_table(result, executions);

@@ -59,8 +59,7 @@ void add_pack(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb.add_option("--robot", options->robot,
                   "move the tool with the joints of the scenario's robot, such as ur10, in all that is simulated: a "
-                  "protective stop "
-                  "is a failed attempt; absent: the tool moves by itself")
+                  "protective stop is a failed attempt; absent: the tool moves by itself")
       ->type_name("NAME");
   verb.add_option("--executions", options->executions,
                   "repeat the finished program N times, open loop, under sampled uncertainty")

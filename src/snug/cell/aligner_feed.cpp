@@ -8,6 +8,7 @@
 #include <string>
 
 #include "snug/core/check.hpp"
+#include "snug/cup/pick_length.hpp"
 
 namespace snug::cell {
 namespace {
@@ -44,10 +45,9 @@ Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item, co
   if (!by_pick) {
     return model::standing_pose(aligner, size, model::standing_rotation(item.up, item.up_sign, item.yaw.value_or(0.0)));
   }
-  // Where the tool touches, as far as its waypoint tells: the lip pressed by a third of what it loses under vacuum.
-  const model::CupParams& cup = scenario.cup;
+  // Where the tool touches, as far as its waypoint tells.
   const Vector3 direction = X_WE_pick->R.col(2);
-  const Vector3 touched = X_WE_pick->p + (cup.hold_length + 0.35 * (cup.free_length - cup.hold_length)) * direction;
+  const Vector3 touched = X_WE_pick->p + cup::pick_length(scenario.cup) * direction;
   Pose best;
   double best_distance = std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < 4; ++turn) {

@@ -23,9 +23,9 @@ namespace snug::motion {
                                                double neutral_yaw);
 
 /// Straight ways of a tool that points down, longer than `least` [m] and nearer than that to the robot's first axis at
-/// `p_WB`, get a row in between that
-/// leads around it, `room` [m] away, at the height of the higher end. Its name is that of the row before, and
-/// "_around". There the tool would meet the upper arm, and the first joints would have to turn fast.
+/// `p_WB`, get a row in between that leads around it, `room` [m] away, at the height of the higher end. Its name is
+/// that of the row before, and "_around". There the tool would meet the upper arm, and the first joints would have to
+/// turn fast.
 [[nodiscard]] std::vector<Waypoint> with_detours(const Waypoint& before, const std::vector<Waypoint>& rows,
                                                  const Vector3& p_WB, double least, double room);
 

@@ -49,7 +49,7 @@ struct Program {
 /// Throws InputError for a name that the format cannot carry (empty, with a comma, a control character or blank ends)
 /// and for a pose that is not finite.
 [[nodiscard]] std::string format_program(const Program& program);
-/// The row, turned by less than 1e-11 rad, so that it reads back from a file exactly as it is: what is done with a
+/// The row, turned by less than 5e-11 rad, so that it reads back from a file exactly as it is: what is done with a
 /// program before it is written is then what the written one does. Numbers always read back, but the matrix of a
 /// rotation vector need not have that rotation vector.
 [[nodiscard]] Waypoint as_written(const Waypoint& row);

@@ -42,13 +42,15 @@ class ContactAwareAgent : public Agent {
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     PackingSettings settings = input_.settings;
-    const Expected<Decision, NoPlace> decision = decide(state, item, plan_for_contact(state, settings));
+    const Planning usual = plan_for_contact(state, settings);
+    settings.squeeze = settings.last_squeeze;
+    const Planning pressed = plan_for_contact(state, settings);
+    const Expected<Decision, NoPlace> decision = decide(state, item, usual);
     const bool is_full =
         !decision && (decision.error() == NoPlace::NoSpace || decision.error() == NoPlace::NoStablePlace);
-    if (!is_full || settings.last_squeeze <= settings.squeeze) return decision;
-    settings.squeeze = settings.last_squeeze;
-    const Expected<Decision, NoPlace> pressed = decide(state, item, plan_for_contact(state, settings));
-    return pressed ? pressed : decision;
+    if (!is_full || pressed.squeeze <= usual.squeeze) return decision;
+    const Expected<Decision, NoPlace> at_last = decide(state, item, pressed);
+    return at_last ? at_last : decision;
   }
 
  private:
@@ -64,26 +66,23 @@ class ContactAwareAgent : public Agent {
     std::vector<Spot>& spots = list.spots;
     if (spots.empty()) return tl::unexpected(reason_of(worst));
     const Policy policy = make_policy(planning, kinds);
+    order_by_cost(layout, policy, choice.piece, spots);
     return rank(planning, state, item, choice, layout, policy, spots);
   }
 
   Expected<Decision, NoPlace> rank(const Planning& planning, const ContainerState& state, const Item& item,
                                    const Choice& choice, const Layout& layout, const Policy& policy,
                                    const std::vector<Spot>& spots) {
-    std::vector<std::pair<double, Spot>> liked;
-    for (const Spot& spot : spots) liked.emplace_back(cost(layout, policy, choice.piece, spot), spot);
-    std::stable_sort(liked.begin(), liked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Candidate> candidates;
     std::vector<Layout> entrants;
     NoPlace reason = NoPlace::NoStablePlace;
-    for (const auto& [dislike, spot] : liked) {
+    for (const Spot& spot : spots) {
       if (entrants.size() >= kEntrants) break;
       auto candidate = place_item(planning, layout, item, choice, spot, input_.is_reachable);
       if (!candidate) {
         reason = candidate.error();
         continue;
       }
-      candidate->score = -dislike;
       candidates.push_back(*candidate);
       entrants.push_back(layout);
       entrants.back().add(Layout::block_at(choice.piece, spot));

@@ -1,8 +1,6 @@
 // load_arm: the arm that a scenario names, checked against what the scenario says about it.
 #include "snug/robot/load_arm.hpp"
 
-#include <filesystem>
-
 #include "snug/core/input_error.hpp"
 
 namespace snug::robot {
@@ -47,9 +45,7 @@ ArmModel load_arm(const model::Scenario& scenario) {
     throw InputError(scenario.source_name, "robot", "",
                      "a 'robot' in the scenario, to run through the joints of an arm");
   const model::RobotParams& robot = *scenario.robot;
-  std::filesystem::path path = robot.urdf;
-  if (path.is_relative()) path = std::filesystem::path(scenario.source_name).parent_path() / path;
-  ArmModel arm = load_urdf(path, robot.tool_frame);
+  ArmModel arm = load_urdf(urdf_path(scenario), robot.tool_frame);
   arm.X_WB = robot.X_WB;
   const ScenarioChecks checks(scenario, arm);
   checks.check_link("flange_frame", robot.flange_frame);
@@ -61,6 +57,11 @@ ArmModel load_arm(const model::Scenario& scenario) {
     checks.check_link("self_collision.links", pair.link_b);
   }
   return arm;
+}
+
+std::filesystem::path urdf_path(const model::Scenario& scenario) {
+  const std::filesystem::path path = scenario.robot->urdf;
+  return path.is_relative() ? std::filesystem::path(scenario.source_name).parent_path() / path : path;
 }
 
 JointVector joint_vector(const std::vector<double>& values) {

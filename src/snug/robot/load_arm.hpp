@@ -1,6 +1,8 @@
 // load_arm: the arm that a scenario names, standing where the scenario puts it.
 #pragma once
 
+#include <filesystem>
+
 #include "snug/model/scenario.hpp"
 #include "snug/robot/arm.hpp"
 
@@ -9,6 +11,9 @@ namespace snug::robot {
 /// Loads scenario.robot's URDF (relative to the scenario file) and checks what the scenario says about it: frames and
 /// links by name, one number in posture for each joint, within the limits. InputError otherwise, and without a robot.
 [[nodiscard]] ArmModel load_arm(const model::Scenario& scenario);
+
+/// Where the URDF of scenario.robot is; there must be a robot.
+[[nodiscard]] std::filesystem::path urdf_path(const model::Scenario& scenario);
 
 /// Joint values of a list, which load_arm has checked.
 [[nodiscard]] JointVector joint_vector(const std::vector<double>& values);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "snug/core/input_error.hpp"
+#include "snug/cup/pick_length.hpp"
 #include "snug/cup/statics.hpp"
 #include "snug/motion/unwinding.hpp"
 
@@ -20,6 +21,7 @@ constexpr double kNearBase = 0.34;       ///< m
 constexpr double kBaseRoom = 0.42;       ///< m
 constexpr double kTurnClearance = 0.03;  ///< m, more, where a box turns in the air
 constexpr double kLipClearance = 0.002;  ///< m
+constexpr double kSealRoom = 0.001;      ///< m, around the disc on which the vacuum acts
 constexpr double kFlipRoom = 0.16;       ///< m, from the middle of a lying box to the edges of its surface
 
 struct Top {
@@ -193,6 +195,10 @@ PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequen
   return {item, has_prefix ? id.substr(3) : id, model::collision_size(scenario, parcel), parcel.inertia};
 }
 
+Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Matrix3& R_WP) {
+  return motion::choose_cup_offset(R_WP, box.size, box.inertia.com, 0.5 * cup.effective_diameter + kSealRoom);
+}
+
 std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                         const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
                                         double travel, bool again) {
@@ -200,10 +206,9 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
   intent.number = box.number;
   intent.X_WP = X_WP;
   intent.size = box.size;
-  const double radius = 0.5 * scenario.cup.effective_diameter + 0.001;
-  intent.cup_offset_P = motion::choose_cup_offset(X_WP.R, box.size, box.inertia.com, radius);
+  intent.cup_offset_P = cup_offset(scenario.cup, box, X_WP.R);
   intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(X_WP.R, R_WP_next);
-  intent.length = scenario.cup.hold_length + 0.35 * (scenario.cup.free_length - scenario.cup.hold_length);
+  intent.length = cup::pick_length(scenario.cup);
   intent.again = again;
   const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);
   const double top = X_WP.p.z() + 0.5 * height;
@@ -238,8 +243,7 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   intent.face = face;
   intent.again = again;
   const Matrix3 R_WP_up = motion::face_up(X_WP.R, face);
-  const double radius = 0.5 * cup.effective_diameter + 0.001;
-  intent.cup_offset_P = motion::choose_cup_offset(R_WP_up, box.size, box.inertia.com, radius);
+  intent.cup_offset_P = cup_offset(cup, box, R_WP_up);
   // The lip stays off what the box stands on; where the side is too low for that it reaches over its upper edge.
   const double half_height = -motion::lowest_corner(X_WP.R, box.size);
   const double low = cup.lip_radius + kLipClearance - half_height;
@@ -249,7 +253,7 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(R_WP_up, R_WP_next);
   // At the aligner the plates hold the box against the cup. Elsewhere the lip just touches, and pulls the box to
   // itself.
-  intent.length = again ? cup.free_length : cup.hold_length + 0.35 * (cup.free_length - cup.hold_length);
+  intent.length = again ? cup.free_length : cup::pick_length(cup);
   intent.lift = std::max(0.02, travel - (X_WP.p.z() - half_height));
   intent.approach_height = travel + half_height;
   return motion::side_pick_rows(intent);

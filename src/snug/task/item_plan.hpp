@@ -67,6 +67,8 @@ struct PlannedBox {
   SpatialInertia inertia;
 };
 [[nodiscard]] PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item);
+/// m, in P, from the middle of the upper face to where the cup presses: as near the centre of mass as it seals.
+[[nodiscard]] Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Matrix3& R_WP);
 
 /// Rows that pick the box where it stands, so that it can be brought to stand like `R_WP_next` next. The turn between
 /// both is shared: at the pick the tool is turned from `layout.neutral_yaw` to one side by half of it, then to the

@@ -15,11 +15,9 @@ namespace {
 
 class Reach {
  public:
-  Reach(const model::Scenario& scenario, CellLayout layout, const model::Sequence& sequence)
-      : layout_(std::move(layout)),
-        cup_(scenario.cup),
-        inverse_(robot::load_arm(scenario)),
-        posture_(robot::joint_vector(scenario.robot->posture)) {
+  Reach(const model::Scenario& scenario, CellLayout layout, const model::Sequence& sequence,
+        std::function<bool(const Pose& X_WE)> reaches)
+      : layout_(std::move(layout)), cup_(scenario.cup), reaches_(std::move(reaches)) {
     for (std::size_t i = 0; i < sequence.items.size(); ++i) {
       boxes_[sequence.items[i].parcel] = make_planned_box(scenario, sequence, static_cast<int>(i));
     }
@@ -31,12 +29,10 @@ class Reach {
     const PlannedBox& box = found->second;
     const Pose X_WP = layout_.X_WT * placement.X_TP;
     const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);
-    const double radius = 0.5 * cup_.effective_diameter + 0.001;
-    const Vector3 offset = motion::choose_cup_offset(X_WP.R, box.size, box.inertia.com, radius);
-    Pose X_WE{motion::upright_tool(layout_.neutral_yaw), X_WP.p + X_WP.R * offset};
+    Pose X_WE{motion::upright_tool(layout_.neutral_yaw), X_WP.p + X_WP.R * cup_offset(cup_, box, X_WP.R)};
     for (const double bottom : {X_WP.p.z() - 0.5 * height, travel_bottom(layout_, 0.0)}) {
       X_WE.p.z() = bottom + height + cup_.hold_length;
-      if (!inverse_.nearest(X_WE, posture_)) return false;
+      if (!reaches_(X_WE)) return false;
     }
     return true;
   }
@@ -44,23 +40,15 @@ class Reach {
  private:
   CellLayout layout_;
   model::CupParams cup_;
-  robot::InverseKinematics inverse_;
-  robot::JointVector posture_;
+  std::function<bool(const Pose& X_WE)> reaches_;
   std::map<std::string, PlannedBox> boxes_;
 };
-
-bool has_arm(const model::Scenario& scenario) {
-  if (!scenario.robot) return false;
-  const std::filesystem::path urdf = scenario.robot->urdf;
-  const std::filesystem::path folder = std::filesystem::path(scenario.source_name).parent_path();
-  std::error_code error;
-  return std::filesystem::exists(urdf.is_relative() ? folder / urdf : urdf, error);
-}
 
 }  // namespace
 
 std::function<bool(const Pose&)> make_tool_reach(const model::Scenario& scenario) {
-  if (!has_arm(scenario)) return {};
+  std::error_code error;
+  if (!scenario.robot || !std::filesystem::exists(robot::urdf_path(scenario), error)) return {};
   const auto inverse = std::make_shared<const robot::InverseKinematics>(robot::load_arm(scenario));
   const robot::JointVector posture = robot::joint_vector(scenario.robot->posture);
   return [inverse, posture](const Pose& X_WE) { return inverse->nearest(X_WE, posture).has_value(); };
@@ -68,8 +56,9 @@ std::function<bool(const Pose&)> make_tool_reach(const model::Scenario& scenario
 
 std::function<bool(const packing::Placement&)> make_reach(const model::Scenario& scenario, const CellLayout& layout,
                                                           const model::Sequence& sequence) {
-  if (!has_arm(scenario)) return {};
-  const auto reach = std::make_shared<const Reach>(scenario, layout, sequence);
+  auto reaches = make_tool_reach(scenario);
+  if (!reaches) return {};
+  const auto reach = std::make_shared<const Reach>(scenario, layout, sequence, std::move(reaches));
   return [reach](const packing::Placement& placement) { return reach->can(placement); };
 }
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <optional>
@@ -11,18 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "snug/cell/test/demonstrator.hpp"
+#include "snug/cup/pick_length.hpp"
 #include "snug/motion/side_pick.hpp"
 #include "snug/motion/unwinding.hpp"
 
 namespace snug::cell {
 namespace {
-
-const std::filesystem::path kSource = SNUG_SOURCE_DIR;
-
-const model::Scenario& demonstrator() {
-  static const model::Scenario scenario = model::load_scenario(kSource / "scenarios/box-demonstrator.yaml");
-  return scenario;
-}
 
 TEST(FindItem, MatchesTheNumberAfterThePrefix) {
   const model::Sequence& sequence = *model::find_sequence(demonstrator(), "1");
@@ -104,12 +98,11 @@ TEST(PoseAtAligner, TurnsEachBoxAsThePicksOfTheRealProgramsSay) {
 
 /// Where the tool touches a side of the box, pressed as packed programs press there.
 Pose side_pick_of(const Pose& X_WP, const Vector3& size, const Vector3& face) {
-  const model::CupParams& cup = demonstrator().cup;
   motion::SidePickIntent intent;
   intent.X_WP = X_WP;
   intent.size = size;
   intent.face = face;
-  intent.length = cup.hold_length + 0.35 * (cup.free_length - cup.hold_length);
+  intent.length = cup::pick_length(demonstrator().cup);
   return motion::side_pick_rows(intent)[3].X_WE;
 }
 

@@ -13,18 +13,12 @@
 #include "snug/cell/ensemble.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/cell/task.hpp"
+#include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/reader.hpp"
 
 namespace snug::cell {
 namespace {
-
-const std::filesystem::path kSource = SNUG_SOURCE_DIR;
-
-const model::Scenario& demonstrator() {
-  static const model::Scenario scenario = model::load_scenario(kSource / "scenarios/box-demonstrator.yaml");
-  return scenario;
-}
 
 RunOptions demo_options() {
   const auto file = kSource / "scenarios/demo-placements.yaml";

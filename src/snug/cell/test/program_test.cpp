@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "snug/cell/run.hpp"
+#include "snug/cell/test/demonstrator.hpp"
 
 namespace snug::cell {
 namespace {
 
-const std::filesystem::path kSource = SNUG_SOURCE_DIR;
 const std::filesystem::path kPrograms = kSource / "../shared/data/waypoints";
 
 struct RealProgram {
@@ -36,11 +36,6 @@ const std::vector<RealProgram>& for_simulation() {
                                                  {"poses2sim.csv", "2", "", 232.0, 12, 66.14},
                                                  {"poses3sim.csv", "3", "", 292.0, 13, 68.69}};
   return programs;
-}
-
-const model::Scenario& demonstrator() {
-  static const model::Scenario scenario = model::load_scenario(kSource / "scenarios/box-demonstrator.yaml");
-  return scenario;
 }
 
 std::vector<RunResult> run_all(const std::vector<RealProgram>& programs) {

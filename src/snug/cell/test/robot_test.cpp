@@ -8,18 +8,12 @@
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
 #include "snug/cell/run.hpp"
+#include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/reader.hpp"
 
 namespace snug::cell {
 namespace {
-
-const std::filesystem::path kSource = SNUG_SOURCE_DIR;
-
-const model::Scenario& demonstrator() {
-  static const model::Scenario scenario = model::load_scenario(kSource / "scenarios/box-demonstrator.yaml");
-  return scenario;
-}
 
 const Pose& home() { return demonstrator().controller.X_WE_start; }
 

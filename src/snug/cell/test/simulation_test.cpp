@@ -3,20 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "snug/cell/task.hpp"
+#include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::cell {
 namespace {
-
-const std::filesystem::path kSource = SNUG_SOURCE_DIR;
-
-const model::Scenario& demonstrator() {
-  static const model::Scenario scenario = model::load_scenario(kSource / "scenarios/box-demonstrator.yaml");
-  return scenario;
-}
 
 motion::Program demo_program(std::size_t rows = 16) {
   const auto file = kSource / "scenarios/demo-placements.yaml";
