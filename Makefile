@@ -1,7 +1,7 @@
 # The front door: each verb sets up what it needs, then calls a preset of CMakePresets.json. `make` lists the verbs.
 .DEFAULT_GOAL := help
 JOBS ?= $(shell nproc)
-ROOM ?=
+MODULE ?=
 SCENARIO := scenarios/box-demonstrator.yaml
 SOURCES = $(shell find src apps bench tests examples -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
 
@@ -26,8 +26,8 @@ build: setup ## build the program as build/snug
 demo: build ## pack the five sequences of the report as they come, and write a report of each
 	@scripts/demo.sh
 
-test: setup ## build and run every test; ROOM=cup for one room's
-	@scripts/test.sh $(ROOM)
+test: setup ## build and run every test; MODULE=cup for one module's
+	@scripts/test.sh $(MODULE)
 
 check: format-check test ## format check, warnings as errors, every test: before each push
 
@@ -47,7 +47,7 @@ tsan: setup ## tests under the thread sanitizer
 tidy: setup-lint ## clang-tidy over everything
 	@$(call configure-build,tidy)
 
-cover: setup ## which lines the tests reach, by room
+cover: setup ## which lines the tests reach, by module
 	@$(call configure-build,coverage) && $(call run-tests,coverage) && python3 tools/coverage.py build-coverage
 
 bench: build ## how fast and how accurate the physics is, beside its targets

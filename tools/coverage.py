@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""coverage.py BUILD: which lines of src and apps the tests reached, by room, from the counts that gcov reads.
+"""coverage.py BUILD: which lines of src and apps the tests reached, by module, from the counts that gcov reads.
 
 BUILD is a folder built with --coverage in which the tests ran. A line counts as reached when any object that holds it
-(a header is in many) ran it. Prints one row for each room, and the ten files with the most lines missed.
+(a header is in many) ran it. Prints one row for each module, and the ten files with the most lines missed.
 """
 import collections
 import json
@@ -30,8 +30,8 @@ def reached_lines(build):
     return lines
 
 
-def room_of(path):
-    """Name of the room, or None for what is not ours or is a test."""
+def module_of(path):
+    """Name of the module, or None for what is not ours or is a test."""
     try:
         parts = path.relative_to(ROOT).parts
     except ValueError:
@@ -44,17 +44,17 @@ def room_of(path):
 
 
 def main(arguments):
-    lines = {path: found for path, found in reached_lines(Path(arguments[1])).items() if room_of(path)}
+    lines = {path: found for path, found in reached_lines(Path(arguments[1])).items() if module_of(path)}
     if not lines:
         print("coverage.py: no counts found; build with the preset 'coverage' and run the tests", file=sys.stderr)
         return 1
-    rooms = collections.defaultdict(lambda: [0, 0])
+    modules = collections.defaultdict(lambda: [0, 0])
     for path, found in lines.items():
-        for name in (room_of(path), "all"):
-            rooms[name][0] += sum(found.values())
-            rooms[name][1] += len(found)
-    for name in sorted(rooms, key=lambda key: (key == "all", key)):
-        reached, total = rooms[name]
+        for name in (module_of(path), "all"):
+            modules[name][0] += sum(found.values())
+            modules[name][1] += len(found)
+    for name in sorted(modules, key=lambda key: (key == "all", key)):
+        reached, total = modules[name]
         print(f"{name:12} {100.0 * reached / total:6.1f} % of {total} lines")
     print("\nmost lines missed:")
     for path in sorted(lines, key=lambda key: sum(lines[key].values()) - len(lines[key]))[:10]:

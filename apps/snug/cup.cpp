@@ -1,4 +1,4 @@
-// cup: reads JSON lines, asks the cup room, prints its answers.
+// cup: reads JSON lines, asks the cup module, prints its answers.
 #include "cup.hpp"
 
 #include <cstdio>

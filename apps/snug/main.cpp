@@ -1,4 +1,4 @@
-// snug: the command line. Parses words, calls rooms, prints; no physics here.
+// snug: the command line. Parses words, calls modules, prints; no physics here.
 #include <algorithm>
 #include <cstdio>
 #include <exception>

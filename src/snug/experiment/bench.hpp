@@ -32,7 +32,7 @@ struct BenchOptions {
 [[nodiscard]] double box_overlap(const Vector3& half_a, const Pose& X_WA, const Vector3& half_b, const Pose& X_WB);
 
 /// Runs the scenes with the solver settings that scenarios have by default (checked). Timed figures are CPU time of
-/// this process. docs: README.md of this room.
+/// this process. docs: README.md of this module.
 [[nodiscard]] std::vector<Figure> run_bench(const BenchOptions& options);
 
 }  // namespace snug::experiment

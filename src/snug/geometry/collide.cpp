@@ -13,7 +13,7 @@ namespace {
 using internal::Axis;
 using internal::PairCall;
 using internal::Polytope;
-using internal::PolytopeRoom;
+using internal::PolytopeStorage;
 
 /// Boxes, then hulls, then capsules: the general algorithm wants the capsule second.
 int rank(const Shape& shape) noexcept {
@@ -63,9 +63,9 @@ bool is_swapped(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_
 void collide_general(const Shape& A, const Shape& B, const PairCall& call, Axis& axis, Manifold& out) noexcept {
   const Matrix3 R_AW = call.X_WA.R.transpose();
   const Pose X_AB{R_AW * call.X_WB.R, R_AW * (call.X_WB.p - call.X_WA.p)};
-  PolytopeRoom room_A;
-  PolytopeRoom room_B;
-  const auto view = [](const Shape& shape, const Pose& X, PolytopeRoom& room) noexcept {
+  PolytopeStorage room_A;
+  PolytopeStorage room_B;
+  const auto view = [](const Shape& shape, const Pose& X, PolytopeStorage& room) noexcept {
     if (const Box* box = std::get_if<Box>(&shape)) return Polytope(*box, X, room);
     if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return Polytope(*capsule, X, room);
     return Polytope(*std::get_if<ConvexHull>(&shape), X, room);

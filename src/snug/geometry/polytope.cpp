@@ -15,7 +15,7 @@ constexpr std::array<int, 4> kSegmentEdge = {0, 1, -1, -1};
 
 }  // namespace
 
-Polytope::Polytope(const Box& box, const Pose& X, PolytopeRoom& room) noexcept
+Polytope::Polytope(const Box& box, const Pose& X, PolytopeStorage& room) noexcept
     : room_(&room), vertex_count_(8), face_count_(6), edge_count_(12) {
   const Vector3 x = X.R.col(0) * box.half[0];
   const Vector3 y = X.R.col(1) * box.half[1];
@@ -29,7 +29,7 @@ Polytope::Polytope(const Box& box, const Pose& X, PolytopeRoom& room) noexcept
   }
 }
 
-Polytope::Polytope(const ConvexHull& hull, const Pose& X, PolytopeRoom& room) noexcept
+Polytope::Polytope(const ConvexHull& hull, const Pose& X, PolytopeStorage& room) noexcept
     : hull_(&hull),
       room_(&room),
       vertex_count_(static_cast<int>(hull.vertices.size())),
@@ -42,7 +42,7 @@ Polytope::Polytope(const ConvexHull& hull, const Pose& X, PolytopeRoom& room) no
   for (std::size_t f = 0; f < hull.normals.size(); ++f) room.normals[f] = X.R * hull.normals[f];
 }
 
-Polytope::Polytope(const Capsule& capsule, const Pose& X, PolytopeRoom& room) noexcept
+Polytope::Polytope(const Capsule& capsule, const Pose& X, PolytopeStorage& room) noexcept
     : room_(&room), vertex_count_(capsule.half_length > 0.0 ? 2 : 1), edge_count_(capsule.half_length > 0.0 ? 1 : 0) {
   room.vertices[0] = X.p - capsule.half_length * X.R.col(2);
   room.vertices[1] = X.p + capsule.half_length * X.R.col(2);

@@ -312,8 +312,8 @@ void collide_polytopes(const PolytopePair& pair, const PairCall& call, Axis& axi
 
 void collide_apart(const Box& A, const Box& B, const Matrix3& R_AB, const Vector3& p_AB, const Vector3& n_A,
                    const PairCall& call, Manifold& out) noexcept {
-  PolytopeRoom room_A;
-  PolytopeRoom room_B;
+  PolytopeStorage room_A;
+  PolytopeStorage room_B;
   const Polytope shape_A(A, Pose{}, room_A);
   const Polytope shape_B(B, Pose{R_AB, p_AB}, room_B);
   apart_contact({shape_A, shape_B}, n_A, call, out);

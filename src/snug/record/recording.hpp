@@ -17,7 +17,7 @@ inline constexpr int kFormatVersion = 1;
 /// bit.
 struct PoseSample {
   Vector3 p = Vector3::Zero();                       ///< p_AB, m
-  Quaternion quat = Quaternion(1.0, 0.0, 0.0, 0.0);  ///< quat_AB, unit; maps B to A. Never normalised by this room
+  Quaternion quat = Quaternion(1.0, 0.0, 0.0, 0.0);  ///< quat_AB, unit; maps B to A. Never normalised by this module
 
   PoseSample() = default;
   PoseSample(const Vector3& position, const Quaternion& quaternion) : p(position), quat(quaternion) {}

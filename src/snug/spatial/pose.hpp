@@ -1,4 +1,4 @@
-// Pose, Twist, Wrench, SpatialInertia: the values that every other room speaks in.
+// Pose, Twist, Wrench, SpatialInertia: the values that every other module speaks in.
 #pragma once
 
 #include <Eigen/Core>

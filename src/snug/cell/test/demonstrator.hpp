@@ -1,4 +1,4 @@
-// The demonstrator's cell, for the tests of this room.
+// The demonstrator's cell, for the tests of this module.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The demonstrator's arm and controller, for the tests of this room.
+// The demonstrator's arm and controller, for the tests of this module.
 #pragma once
 
 #include <filesystem>

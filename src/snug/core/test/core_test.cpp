@@ -1,4 +1,4 @@
-// Tests of the core room: error texts, near names, random numbers, hashing.
+// Tests of the core module: error texts, near names, random numbers, hashing.
 #include <gtest/gtest.h>
 
 #include <array>

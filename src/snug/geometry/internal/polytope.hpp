@@ -9,7 +9,7 @@
 namespace snug::geometry::internal {
 
 /// Room for the vertices and normals of one shape in another's frame.
-struct PolytopeRoom {
+struct PolytopeStorage {
   std::array<Vector3, kMaxHullVertices> vertices;
   std::array<Vector3, kMaxHullFaces> normals;
 };
@@ -17,10 +17,10 @@ struct PolytopeRoom {
 /// Vertices, faces and edges in one frame. Refers to the room (and the hull) it was made from.
 class Polytope {
  public:
-  Polytope(const Box& box, const Pose& X, PolytopeRoom& room) noexcept;
-  Polytope(const ConvexHull& hull, const Pose& X, PolytopeRoom& room) noexcept;
+  Polytope(const Box& box, const Pose& X, PolytopeStorage& room) noexcept;
+  Polytope(const ConvexHull& hull, const Pose& X, PolytopeStorage& room) noexcept;
   /// The capsule's segment: two vertices, one edge, no faces (its faces read -1). One vertex when the length is 0.
-  Polytope(const Capsule& capsule, const Pose& X, PolytopeRoom& room) noexcept;
+  Polytope(const Capsule& capsule, const Pose& X, PolytopeStorage& room) noexcept;
 
   [[nodiscard]] int vertex_count() const noexcept { return vertex_count_; }
   [[nodiscard]] int face_count() const noexcept { return face_count_; }
@@ -41,7 +41,7 @@ class Polytope {
 
  private:
   const ConvexHull* hull_ = nullptr;
-  const PolytopeRoom* room_ = nullptr;
+  const PolytopeStorage* room_ = nullptr;
   int vertex_count_ = 0;
   int face_count_ = 0;
   int edge_count_ = 0;

@@ -1,4 +1,4 @@
-// The demonstrator's controller table, corrections and files, for the tests of this room.
+// The demonstrator's controller table, corrections and files, for the tests of this module.
 #pragma once
 
 #include <filesystem>

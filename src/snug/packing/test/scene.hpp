@@ -1,4 +1,4 @@
-// Scenes and checks that the tests of this room share.
+// Scenes and checks that the tests of this module share.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// h5: the few things of the HDF5 C library that this room uses, with handles that close and errors that throw.
+// h5: the few things of the HDF5 C library that this module uses, with handles that close and errors that throw.
 #pragma once
 
 #include <hdf5.h>

@@ -1,4 +1,4 @@
-// Random recordings and scratch files for the tests of this room.
+// Random recordings and scratch files for the tests of this module.
 #pragma once
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Messages of one frame as JSON text: they are many, so they are put together by hand. Internal to the room.
+// Messages of one frame as JSON text: they are many, so they are put together by hand. Internal to the module.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a viewer draws of a recording: bodies and cup as foxglove.SceneUpdate. Internal to the room.
+// What a viewer draws of a recording: bodies and cup as foxglove.SceneUpdate. Internal to the module.
 #pragma once
 
 #include <cstdint>

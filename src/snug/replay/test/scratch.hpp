@@ -1,4 +1,4 @@
-// Scratch files and a small made-up run for the tests of this room.
+// Scratch files and a small made-up run for the tests of this module.
 #pragma once
 
 #include <unistd.h>

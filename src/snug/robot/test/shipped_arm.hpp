@@ -1,4 +1,4 @@
-// The arm of the shipped scenario, and joints at random, for the tests of this room.
+// The arm of the shipped scenario, and joints at random, for the tests of this module.
 #pragma once
 
 #include "snug/core/rng.hpp"

@@ -1,4 +1,4 @@
-// GuardedServer: httplib's server behind connections that are limited in time, size and number. Internal to the room.
+// GuardedServer: httplib's server behind connections that are limited in time, size and number. Internal to the module.
 #pragma once
 
 #include <httplib.h>

@@ -1,7 +1,7 @@
-# snug_room(name HEADERS ... SOURCES ... DEPENDS rooms... LINK libraries... TESTS files... SLOW_TESTS files...)
+# snug_module(name HEADERS ... SOURCES ... DEPENDS modules... LINK libraries... TESTS files... SLOW_TESTS files...)
 #
 # Makes the static library snug::<name> from the folder it is called in, checks that each public header compiles
-# alone, and builds the room's tests. DEPENDS lists the rooms it may include; tools/check_rooms.py holds it to that.
+# alone, and builds the module's tests. DEPENDS lists the modules it may include; tools/check_modules.py holds it to that.
 
 # -Wno-restrict: g++ 12 reports impossible overlaps in std::string (GCC bug 105651).
 set(SNUG_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wno-restrict)
@@ -25,7 +25,7 @@ function(snug_test name)
                        PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1200)
 endfunction()
 
-function(snug_room name)
+function(snug_module name)
   cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;DEPENDS;LINK;TESTS;SLOW_TESTS" ${ARGN})
   add_library(snug_${name} STATIC ${ARG_SOURCES})
   add_library(snug::${name} ALIAS snug_${name})
@@ -35,7 +35,7 @@ function(snug_room name)
   target_link_libraries(snug_${name} PUBLIC ${ARG_DEPENDS} Eigen3::Eigen PRIVATE ${ARG_LINK})
   snug_compile_options(snug_${name})
   if(SNUG_TESTS)
-    add_custom_target(${name}_tests)  # what `make test ROOM=<name>` builds
+    add_custom_target(${name}_tests)  # what `make test MODULE=<name>` builds
   endif()
   if(SNUG_TESTS AND ARG_TESTS)
     snug_test(${name}_test SOURCES ${ARG_TESTS} LINK snug::${name} ${ARG_LINK} LABELS "${name}")

@@ -1,21 +1,21 @@
 #!/usr/bin/env python3
-"""check_rooms_test.py: tools/check_rooms.py must object to each kind of wrong include, at the right file and line."""
+"""check_modules_test.py: tools/check_modules.py must object to each kind of wrong include, at the right file and line."""
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-TOOL = Path(__file__).resolve().parent.parent / "tools" / "check_rooms.py"
+TOOL = Path(__file__).resolve().parent.parent / "tools" / "check_modules.py"
 
 SOUND = {
-    "src/snug/low/CMakeLists.txt": "snug_room(low HEADERS low.hpp)\n",
+    "src/snug/low/CMakeLists.txt": "snug_module(low HEADERS low.hpp)\n",
     "src/snug/low/low.hpp": "// Low.\n#include <vector>\n",
     "src/snug/low/internal/secret.hpp": "// Secret.\n",
     "src/snug/low/low.cpp": '#include "snug/low/low.hpp"\n#include "snug/low/internal/secret.hpp"\n',
-    "src/snug/middle/CMakeLists.txt": "snug_room(middle HEADERS middle.hpp\n  DEPENDS low  # why\n  TESTS test/a.cpp)\n",
+    "src/snug/middle/CMakeLists.txt": "snug_module(middle HEADERS middle.hpp\n  DEPENDS low  # why\n  TESTS test/a.cpp)\n",
     "src/snug/middle/middle.hpp": '#include "snug/low/low.hpp"\n',
-    "src/snug/high/CMakeLists.txt": "snug_room(high HEADERS high.hpp DEPENDS middle)\n",
+    "src/snug/high/CMakeLists.txt": "snug_module(high HEADERS high.hpp DEPENDS middle)\n",
     "src/snug/high/high.hpp": '#include "snug/middle/middle.hpp"\n#include "snug/low/low.hpp"\n',
     "apps/tool/main.cpp": '#include "beside.hpp"\n#include "snug/high/high.hpp"\n',
     "apps/tool/beside.hpp": "// Beside.\n",
@@ -24,7 +24,7 @@ SOUND = {
 }
 
 
-class CheckRooms(unittest.TestCase):
+class CheckModules(unittest.TestCase):
     def run_on(self, changes):
         with tempfile.TemporaryDirectory() as folder:
             for name, text in {**SOUND, **changes}.items():
@@ -42,13 +42,13 @@ class CheckRooms(unittest.TestCase):
 
     def test_accepts_declared_and_transitive_includes(self):
         status, output = self.run_on({})
-        self.assertEqual((status, output), (0, "9 includes follow the declared rooms\n"))
+        self.assertEqual((status, output), (0, "9 includes follow the declared modules\n"))
 
-    def test_refuses_an_undeclared_room(self):
+    def test_refuses_an_undeclared_module(self):
         self.assert_refused({"src/snug/low/low.cpp": '// Low.\n\n#include "snug/high/high.hpp"\n'},
-                            "low.cpp:3:", "room 'low' does not declare 'high'")
+                            "low.cpp:3:", "module 'low' does not declare 'high'")
 
-    def test_refuses_an_undeclared_room_in_a_test(self):
+    def test_refuses_an_undeclared_module_in_a_test(self):
         self.assert_refused({"src/snug/low/test/low_test.cpp": '#  include "snug/middle/middle.hpp"\n'},
                             "low_test.cpp:1:", "does not declare 'middle'")
 
@@ -56,30 +56,30 @@ class CheckRooms(unittest.TestCase):
         self.assert_refused({"src/snug/low/low.cpp": "#include <snug/high/high.hpp>\n"},
                             "low.cpp:1:", "in quotes", "does not declare 'high'")
 
-    def test_refuses_circular_rooms(self):
-        self.assert_refused({"src/snug/low/CMakeLists.txt": "\nsnug_room(low HEADERS low.hpp DEPENDS high)\n"},
-                            "CMakeLists.txt:", "circular rooms:")
+    def test_refuses_circular_modules(self):
+        self.assert_refused({"src/snug/low/CMakeLists.txt": "\nsnug_module(low HEADERS low.hpp DEPENDS high)\n"},
+                            "CMakeLists.txt:", "circular modules:")
 
-    def test_refuses_a_dependency_on_a_room_that_is_not_there(self):
-        self.assert_refused({"src/snug/high/CMakeLists.txt": "snug_room(high DEPENDS middle moon)\n"},
+    def test_refuses_a_dependency_on_a_module_that_is_not_there(self):
+        self.assert_refused({"src/snug/high/CMakeLists.txt": "snug_module(high DEPENDS middle moon)\n"},
                             "CMakeLists.txt:1:", "'moon'")
 
-    def test_refuses_internal_headers_of_another_room(self):
+    def test_refuses_internal_headers_of_another_module(self):
         self.assert_refused({"src/snug/high/high.cpp": '#include "snug/low/internal/secret.hpp"\n'},
-                            "high.cpp:1:", "internal headers are for room 'low' only")
+                            "high.cpp:1:", "internal headers are for module 'low' only")
         self.assert_refused({"apps/tool/main.cpp": '#include "snug/low/internal/secret.hpp"\n'}, "main.cpp:1:")
 
-    def test_refuses_relative_ways_into_another_room(self):
-        self.assert_refused({"src/snug/low/low.cpp": '#include "../high/high.hpp"\n'}, "low.cpp:1:", "leaves room")
+    def test_refuses_relative_ways_into_another_module(self):
+        self.assert_refused({"src/snug/low/low.cpp": '#include "../high/high.hpp"\n'}, "low.cpp:1:", "leaves module")
 
-    def test_refuses_headers_outside_rooms_that_do_not_exist(self):
+    def test_refuses_headers_outside_modules_that_do_not_exist(self):
         self.assert_refused({"bench/peers/main.cpp": '#include "peers/gone.hpp"\n'}, "main.cpp:1:", "gone.hpp")
 
     def test_refuses_headers_that_do_not_exist(self):
         self.assert_refused({"src/snug/high/high.cpp": '#include "snug/low/gone.hpp"\n'}, "high.cpp:1:", "no such file")
 
-    def test_refuses_a_folder_without_a_room(self):
-        self.assert_refused({"src/snug/stray/stray.cpp": "// Stray.\n"}, "stray.cpp:1:", "declares no room")
+    def test_refuses_a_folder_without_a_module(self):
+        self.assert_refused({"src/snug/stray/stray.cpp": "// Stray.\n"}, "stray.cpp:1:", "declares no module")
 
 
 if __name__ == "__main__":
