@@ -2,11 +2,10 @@
 #include "snug/cell/ensemble.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <string>
-#include <thread>
+
+#include "snug/core/parallel.hpp"
 
 namespace snug::cell {
 namespace {
@@ -65,25 +64,9 @@ EnsembleResult run_ensemble(const model::Scenario& scenario, const RunOptions& o
   unrecorded.observer = nullptr;
   EnsembleResult result;
   result.runs.resize(static_cast<std::size_t>(ensemble.count));
-  std::vector<std::exception_ptr> errors(result.runs.size());
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int i = next++; i < ensemble.count; i = next++) {
-      const auto slot = static_cast<std::size_t>(i);
-      try {
-        result.runs[slot] = run_one(scenario, unrecorded, ensemble, i);
-      } catch (...) {
-        errors[slot] = std::current_exception();
-      }
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int i = 1; i < ensemble.threads; ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
+  parallel_for(ensemble.count, ensemble.threads, [&](int i, int) {
+    result.runs[static_cast<std::size_t>(i)] = run_one(scenario, unrecorded, ensemble, i);
+  });
   summarize(result);
   return result;
 }

@@ -2,13 +2,12 @@
 #include "snug/packing/loading.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/packing/internal/blocks.hpp"
 
 namespace snug::packing {
@@ -277,17 +276,11 @@ class Search {
   }
 
   void complete_all(std::vector<Child>& children) {
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t i = next++; i < children.size(); i = next++) {
-        children[i].complete = children[i].node;
-        children[i].work = complete(children[i].complete);
-      }
-    };
-    std::vector<std::thread> threads;
-    for (int i = 1; i < settings_.threads; ++i) threads.emplace_back(work);
-    work();
-    for (std::thread& thread : threads) thread.join();
+    parallel_for(static_cast<int>(children.size()), settings_.threads, [&](int i, int) {
+      Child& child = children[static_cast<std::size_t>(i)];
+      child.complete = child.node;
+      child.work = complete(child.complete);
+    });
   }
 
   /// One beam search. False: the work was used up before its end.

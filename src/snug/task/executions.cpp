@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/core/parallel.hpp"
+
 namespace snug::task {
 namespace {
 
@@ -63,8 +65,8 @@ ExecutionResult repeat(const model::Scenario& scenario, const SessionResult& ses
   result.count = options.count;
   if (session.program.waypoints.empty() || options.count <= 0) return result;
   std::vector<Run> runs(static_cast<std::size_t>(options.count));
-  for_each_parallel(options.count, options.threads,
-                    [&](int i) { runs[static_cast<std::size_t>(i)] = run_once(scenario, session, options, i); });
+  parallel_for(options.count, options.threads,
+               [&](int i, int) { runs[static_cast<std::size_t>(i)] = run_once(scenario, session, options, i); });
   int good = 0;
   for (const packing::Placement& placement : session.plan) {
     const auto box = std::ranges::find(session.boxes, placement.item, &cell::BoxResult::id);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/core/parallel.hpp"
 #include "snug/task/reach.hpp"
 
 namespace snug::task {
@@ -145,7 +146,7 @@ Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVarian
   attempt.position_error = outcomes[0].position_error;
   attempt.angle_error = outcomes[0].angle_error;
   if (!attempt.succeeded) return attempt;
-  for_each_parallel(static_cast<int>(count) - 1, options_.threads, [&](int i) { execute(i + 1); });
+  parallel_for(static_cast<int>(count) - 1, options_.threads, [&](int i, int) { execute(i + 1); });
   int good = 0;
   for (std::size_t i = 1; i < count; ++i) {
     good += outcomes[i].succeeded ? 1 : 0;

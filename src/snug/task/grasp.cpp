@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/core/parallel.hpp"
 #include "snug/task/uncertainty.hpp"
 
 namespace snug::task {
@@ -186,7 +187,7 @@ class GraspPlanner {
 
   void run_samples() {
     const int samples = static_cast<int>(request_.lanes.size()) - 1;
-    for_each_parallel(samples, request_.threads, [&](int i) {
+    parallel_for(samples, request_.threads, [&](int i, int) {
       const auto slot = static_cast<std::size_t>(i) + 1;
       merge(grasp_.episodes[slot], request_.lanes[slot]->run(grasp_.program));
     });

@@ -1,7 +1,6 @@
 // Lane: one course of events of a cell: the one that counts, or one that could be; runs rows, can go back.
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -52,8 +51,5 @@ class Lane {
   cell::CellState state_;
   cell::CellWorkspace work_;
 };
-
-/// Calls `work(i)` for 0 .. count-1 on as many threads; the first exception is thrown again.
-void for_each_parallel(int count, int threads, const std::function<void(int)>& work);
 
 }  // namespace snug::task

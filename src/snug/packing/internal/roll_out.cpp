@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "snug/packing/internal/parallel.hpp"
+#include "snug/core/parallel.hpp"
 
 namespace snug::packing::internal {
 
@@ -37,7 +37,7 @@ struct Heat {
     const int per = static_cast<int>(futures.size());
     const int count = static_cast<int>(field.size()) * per;
     std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
-    share_out(count, threads, [&](int job, int thread) {
+    parallel_for(count, threads, [&](int job, int thread) {
       const Standing& standing = field[static_cast<std::size_t>(job / per)];
       volume[static_cast<std::size_t>(job)] =
           roll_out(entrants[static_cast<std::size_t>(standing.entrant)], policy, prospect,

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "snug/core/hash.hpp"
-#include "snug/packing/internal/parallel.hpp"
+#include "snug/core/parallel.hpp"
 
 namespace snug::packing::internal {
 
@@ -54,7 +54,7 @@ class Beam {
   std::vector<Child> breed(const std::vector<Node>& nodes, int index) {
     const Piece& piece = pieces_[static_cast<std::size_t>(index)];
     std::vector<std::vector<Child>> litters(nodes.size());
-    share_out(static_cast<int>(nodes.size()), settings_.threads, [&](int n, int thread) {
+    parallel_for(static_cast<int>(nodes.size()), settings_.threads, [&](int n, int thread) {
       RollOutWork& work = work_[static_cast<std::size_t>(thread)];
       const Layout& layout = nodes[static_cast<std::size_t>(n)].layout;
       work.looked_at += layout.find_spots(piece, work.list);
@@ -79,7 +79,7 @@ class Beam {
     Future rest(pieces_.size() - static_cast<std::size_t>(index) - 1);
     std::iota(rest.begin(), rest.end(), index + 1);
     const std::int64_t before = effort();
-    share_out(static_cast<int>(children.size()), settings_.threads, [&](int c, int thread) {
+    parallel_for(static_cast<int>(children.size()), settings_.threads, [&](int c, int thread) {
       Child& child = children[static_cast<std::size_t>(c)];
       Layout layout = nodes[static_cast<std::size_t>(child.parent)].layout;
       layout.add(Layout::block_at(pieces_[static_cast<std::size_t>(index)], child.spot));
