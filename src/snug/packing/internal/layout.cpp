@@ -19,10 +19,11 @@ bool contains(const Rectangle& outer, const Rectangle& inner) {
 
 Rectangle footprint(const Block& b) { return {b.x1, b.y1, b.x2, b.y2}; }
 
-int shared_area(const Rectangle& a, const Block& b) {
+/// ticks^2: 21.5 m^2 would not fit into 31 bits.
+std::int64_t shared_area(const Rectangle& a, const Block& b) {
   const int ox = std::min(a.x2, b.x2) - std::max(a.x1, b.x1);
   const int oy = std::min(a.y2, b.y2) - std::max(a.y1, b.y1);
-  return ox > 0 && oy > 0 ? ox * oy : 0;
+  return ox > 0 && oy > 0 ? std::int64_t{ox} * oy : 0;
 }
 
 /// Levels are whole millimetres, rounded up: boxes that were looked at stand at any height.
@@ -102,7 +103,7 @@ void Layout::add(const Block& block) {
   double below = 0.0;
   const Rectangle face = footprint(block);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    below += columns_[i] * shared_area(face, blocks_[i]);
+    below += columns_[i] * static_cast<double>(shared_area(face, blocks_[i]));
   }
   const double area = static_cast<double>(face.x2 - face.x1) * (face.y2 - face.y1);
   columns_.push_back(std::max(0.0, block.z2 - below / area));
@@ -225,7 +226,7 @@ Refusal Layout::settle(const Piece& piece, int stance, int x, int y, Spot& spot)
   if (base + s.height > rules_.size_z) return Refusal::Height;
   double support = 1.0;
   if (base > 0) {
-    int held = 0;
+    std::int64_t held = 0;
     for (const Block& b : blocks_) {
       if (b.z2 <= base && base - b.z2 <= rules_.level_slack) held += shared_area(face, b);
     }
@@ -283,11 +284,12 @@ void Layout::add_load(std::size_t upper, double mass) {
   const Rectangle face = footprint(top);
   const auto rests_on = [&](const Block& b) { return b.z2 <= top.z1 && top.z1 - b.z2 <= rules_.level_slack; };
   double total = 0.0;
-  for (std::size_t i = 0; i < upper; ++i) total += rests_on(blocks_[i]) ? shared_area(face, blocks_[i]) : 0;
+  for (std::size_t i = 0; i < upper; ++i)
+    total += rests_on(blocks_[i]) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
   if (total <= 0.0) return;
   for (std::size_t i = 0; i < upper; ++i) {
-    const int shared = rests_on(blocks_[i]) ? shared_area(face, blocks_[i]) : 0;
-    if (shared == 0) continue;
+    const double shared = rests_on(blocks_[i]) ? static_cast<double>(shared_area(face, blocks_[i])) : 0.0;
+    if (shared <= 0.0) continue;
     loads_[i] += mass * shared / total;
     add_load(i, mass * shared / total);
   }

@@ -52,6 +52,26 @@ int top_of_cell(const Layout& layout, int cx, int cy) {
   return top;
 }
 
+TEST(Layout, CarriesABoxOfAnyAreaThatAContainerCanHave) {
+  // 10 m x 10 m is 10^10 squares of a tenth of a millimetre.
+  Rules rules;
+  rules.size_x = rules.size_y = 100000;
+  rules.size_z = 20000;
+  for (const int side : {46000, 46400, 65600, 100000}) {  // 46 341 squared is 2^31
+    SCOPED_TRACE(side);
+    Layout layout(rules);
+    layout.add({0, 0, 0, side, side, 1000, 1000});
+    Piece piece;
+    piece.stances.push_back({side, side, 1000, 0, 0, 0});
+    Spot spot;
+    EXPECT_EQ(layout.settle(piece, 0, 0, 0, spot), Refusal::None);
+    EXPECT_EQ(spot.z, 1000);
+    EXPECT_EQ(spot.support, 1.0);
+    layout.add(Layout::block_at(piece, spot));
+    EXPECT_NEAR(layout.columns().back(), 1000.0, 1e-9);
+  }
+}
+
 TEST(Layout, LowersAsAHeightMapDoes) {
   Rng rng = Rng(3).split("height map");
   for (int i = 0; i < 300; ++i) {
