@@ -1,14 +1,13 @@
 // AlignerFeed: how a box of the sequence stands at the aligner when the robot comes for it.
 #include "snug/cell/aligner_feed.hpp"
 
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 
 #include "snug/core/check.hpp"
 #include "snug/cup/pick_length.hpp"
+#include "snug/motion/row_name.hpp"
 
 namespace snug::cell {
 namespace {
@@ -72,21 +71,16 @@ Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item, c
   return X_WP;
 }
 
-int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view prefix) {
-  if (waypoint_name.substr(0, prefix.size()) != prefix) return -1;
-  std::string digits;
-  for (const char c : waypoint_name.substr(prefix.size())) {
-    if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
-      digits += c;
-    } else if (!digits.empty()) {
-      break;
-    }
-  }
-  if (digits.empty()) return -1;
+int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view kind) {
+  int best = -1;
+  std::size_t most = 0;
   for (std::size_t i = 0; i < sequence.items.size(); ++i) {
-    if (sequence.items[i].parcel.ends_with(digits)) return static_cast<int>(i);
+    const std::size_t named = motion::names_box(waypoint_name, kind, sequence.items[i].parcel);
+    if (named <= most) continue;
+    most = named;
+    best = static_cast<int>(i);
   }
-  return -1;
+  return best;
 }
 
 int vertical_axis(const Matrix3& R_WP) {

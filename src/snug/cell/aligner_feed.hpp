@@ -14,9 +14,8 @@ namespace snug::cell {
 [[nodiscard]] Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
                                    const std::optional<Pose>& X_WE_pick);
 
-/// Index of the item whose box id ends with the number that follows `prefix` in a waypoint's name
-/// ("PrePick027" -> the box whose id ends in 027), or -1.
-[[nodiscard]] int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view prefix);
+/// Index of the item that a row of this kind ("PrePick") is for, by its name as `motion::names_box` reads it, or -1.
+[[nodiscard]] int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view kind);
 
 /// The axis of a box that is nearest to vertical, 0 .. 2.
 [[nodiscard]] int vertical_axis(const Matrix3& R_WP);

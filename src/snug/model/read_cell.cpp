@@ -79,6 +79,8 @@ void ScenarioReader::read_parcel(const Value& value) {
   const Value id = map.require("id");
   check_new_name(id, "parcel", find_parcel(scenario_, id.name()) != nullptr);
   parcel.id = id.name();
+  // Waypoints are named after their box, and a comma ends a field of the program's file.
+  if (parcel.id.find(',') != std::string::npos) id.fail("an id without commas: it stands in programs (CSV)");
   const Value type_name = map.require("type");
   const ParcelType* type = find_parcel_type(scenario_, type_name.name());
   if (type == nullptr)

@@ -35,8 +35,8 @@ const MotionLimits& find_limits(const Program& program, std::size_t row, std::sp
     prefixes.push_back(entry.prefix);
     known += (known.empty() ? "" : ", ") + entry.prefix;
   }
-  // Compare without the box number, which no prefix has.
-  const std::string_view stem = std::string_view(name).substr(0, name.find_first_of("0123456789"));
+  // Compare without the box, which no prefix has.
+  const std::string_view stem = std::string_view(name).substr(0, name.find_first_of("(0123456789"));
   const std::string_view nearest = find_nearest(stem, prefixes);
   std::string expected =
       table.empty() ? "a table of limits that is not empty" : "a name that starts with one of " + known;

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "snug/motion/row_name.hpp"
+
 namespace snug::motion {
 namespace {
 
@@ -20,7 +22,7 @@ constexpr double kSameHeight = 1e-3;
 
 /// One box of the plan with everything in W.
 struct Move {
-  std::string number;
+  std::string box;
   Pose X_WE_pick;
   Pose X_WE_place;
   double pick_top = 0.0;      ///< z of the top face at the aligner
@@ -71,8 +73,7 @@ bool is_finite(const PlacementSettings& s) {
 
 Move plan_move(const PickSpec& pick, const Pose& X_WP_place, const PlacementSettings& settings) {
   Move move;
-  const bool has_prefix = pick.box.size() > 3 && (pick.box.starts_with("BOX") || pick.box.starts_with("Box"));
-  move.number = has_prefix ? pick.box.substr(3) : pick.box;
+  move.box = pick.box;
   move.height = standing_height(pick.X_WP, pick.size);
   move.pick_top = pick.X_WP.p.z() + 0.5 * move.height;
   move.place_bottom = X_WP_place.p.z() - 0.5 * move.height;
@@ -107,7 +108,7 @@ class Writer {
       stack_top_ = std::max(stack_top_, moves_[i].place_bottom + moves_[i].height);
       const double next_top = i + 1 < moves_.size() ? moves_[i + 1].pick_top : kNothing;
       const double z = std::max(empty_height(next_top), moves_[i].X_WE_place.p.z());
-      add(at_height(moves_[i].X_WE_place, z), "PostPlace" + moves_[i].number, {});
+      add(at_height(moves_[i].X_WE_place, z), row_name("PostPlace", moves_[i].box), {});
     }
     add(settings_.X_WE_home, "home", {});
     return std::move(program_);
@@ -135,22 +136,22 @@ class Writer {
   }
 
   void write_pick(const Move& move) {
-    add(at_height(move.X_WE_pick, empty_height(move.pick_top)), "PrePick" + move.number, {});
-    add(move.X_WE_pick, "Box" + move.number, {});
-    add(at_height(move.X_WE_pick, loaded_height(move)), "PostPick" + move.number, kHold);
+    add(at_height(move.X_WE_pick, empty_height(move.pick_top)), row_name("PrePick", move.box), {});
+    add(move.X_WE_pick, row_name("Box", move.box), {});
+    add(at_height(move.X_WE_pick, loaded_height(move)), row_name("PostPick", move.box), kHold);
   }
 
   void write_place(const Move& move) {
     const double travel = loaded_height(move);
-    add(at_height(move.X_WE_place, travel), "PrePlace" + move.number, kHold);
+    add(at_height(move.X_WE_place, travel), row_name("PrePlace", move.box), kHold);
     if (settings_.entry_clearance) {
       const double entry = packed_top() + *settings_.entry_clearance + move.height + settings_.hold_length;
       if (entry < travel - kSameHeight && entry > move.X_WE_place.p.z() + kSameHeight) {
-        add(at_height(move.X_WE_place, entry), "PrePlace" + move.number + "_2", kHold);
+        add(at_height(move.X_WE_place, entry), row_name("PrePlace", move.box, "_2"), kHold);
       }
     }
-    add(move.X_WE_place, "Place" + move.number, kHold);
-    add(move.X_WE_place, "Place" + move.number, kRelease);
+    add(move.X_WE_place, row_name("Place", move.box), kHold);
+    add(move.X_WE_place, row_name("Place", move.box), kRelease);
   }
 
   static constexpr IO kHold = {.vacuum = true};

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "snug/core/check.hpp"
+#include "snug/motion/row_name.hpp"
 #include "snug/motion/unwinding.hpp"
 
 namespace snug::motion {
@@ -37,14 +38,14 @@ Pose at_height(Pose X, double z) {
 /// Collects the rows of one box.
 class Rows {
  public:
-  explicit Rows(std::string number) : number_(std::move(number)) {}
+  explicit Rows(std::string box) : box_(std::move(box)) {}
   void add(const char* name, const Pose& X_WE, const IO& io, const char* suffix = "") {
-    rows_.push_back({X_WE, name + number_ + suffix, io, 0});
+    rows_.push_back({X_WE, row_name(name, box_, suffix), io, 0});
   }
   std::vector<Waypoint> take() { return std::move(rows_); }
 
  private:
-  std::string number_;
+  std::string box_;
   std::vector<Waypoint> rows_;
 };
 
@@ -94,7 +95,7 @@ std::vector<Waypoint> pick_rows(const PickIntent& intent) {
   const double sign = intent.X_WP.R(2, up) > 0.0 ? 1.0 : -1.0;
   const Vector3 touched = intent.X_WP * (intent.cup_offset_P + 0.5 * sign * intent.size[up] * Vector3::Unit(up));
   const Pose X_WE_pick{upright_tool(intent.tool_yaw), touched + Vector3(0.0, 0.0, intent.length)};
-  Rows rows(intent.number);
+  Rows rows(intent.box);
   rows.add(intent.again ? "PreRePick" : "PrePick", at_height(X_WE_pick, intent.approach_height), {});
   rows.add(intent.again ? "RePick" : "Box", X_WE_pick, {});
   rows.add(intent.again ? "PostRePick" : "PostPick", at_height(X_WE_pick, intent.lift_height), kHold);
@@ -118,7 +119,7 @@ std::vector<Waypoint> flip_rows(const FlipIntent& intent) {
     const Matrix3 R = turn(axis, angle);
     return intent.tool_for({R * intent.R_WP, p_WEdge + Vector3(0.0, 0.0, height) - R * edge});
   };
-  Rows rows(intent.number);
+  Rows rows(intent.box);
   const double above = intent.travel_bottom - intent.p_WF.z();
   rows.add("PreTwist", tool(0.0, above), kHold);
   rows.add("PreTwist", tool(0.6 * intent.tilt, 0.03), kHold, "_2");
@@ -145,7 +146,7 @@ std::vector<Waypoint> place_rows(const PlaceIntent& intent) {
   const auto tool = [&](double bottom, const Vector3& by) {
     return intent.tool_for(shifted(at_height(intent.X_WP, bottom + height), by));
   };
-  Rows rows(intent.number);
+  Rows rows(intent.box);
   const Vector3& from = intent.come_from;
   rows.add("PrePlace", tool(std::max(intent.travel_bottom, rest + 0.02), from), kHold);
   Vector3 last = Vector3::Zero();

@@ -15,7 +15,7 @@ using ToolFor = std::function<Pose(const Pose& X_WP)>;
 
 /// Box as it stands, tool above it. Rows approach, press, lift with vacuum.
 struct PickIntent {
-  std::string number;                      ///< ends the rows' names
+  std::string box;                         ///< id, in the rows' names (row_name.hpp)
   Pose X_WP;                               ///< of the standing box; may be turned and tilted a little
   Vector3 size = Vector3::Constant(0.1);   ///< m, along Px, Py, Pz
   Vector3 cup_offset_P = Vector3::Zero();  ///< m, in P, from the middle of the upper face to where the cup presses
@@ -35,7 +35,7 @@ struct PickIntent {
 /// Turn of a hanging box about its lower edge over a flat surface until the side that faced against `direction` is
 /// its lower face (report Figure 13), let go, tool drawn back and up.
 struct FlipIntent {
-  std::string number;
+  std::string box;
   Matrix3 R_WP = Matrix3::Identity();     ///< of the hanging box before, standing on a face
   Vector3 size = Vector3::Constant(0.1);  ///< m
   Vector3 p_WF = Vector3::Zero();         ///< m, on the surface: under the middle of the box when it lies
@@ -65,7 +65,7 @@ struct TiltedEntry {
 
 /// A box that hangs from the cup comes to rest in the container.
 struct PlaceIntent {
-  std::string number;
+  std::string box;
   Pose X_WP;                              ///< at rest, level
   Vector3 size = Vector3::Constant(0.1);  ///< m
   ToolFor tool_for;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "snug/core/check.hpp"
+#include "snug/motion/row_name.hpp"
 #include "snug/motion/unwinding.hpp"
 
 namespace snug::motion {
@@ -45,14 +46,14 @@ std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent) {
   X_WE_high.p.z() = std::max(intent.approach_height, X_WE_before.p.z() + 0.01);
   Pose X_WE_lifted = X_WE_pick;
   X_WE_lifted.p.z() += intent.lift;
-  const std::string pick = (intent.again ? "RePick" : "Pick") + intent.number;
-  const std::string press = (intent.again ? "RePick" : "Box") + intent.number;
+  const std::string pick = intent.again ? "RePick" : "Pick";
+  const auto name = [&](const std::string& kind, const char* suffix) { return row_name(kind, intent.box, suffix); };
   const Pose X_WE_upright{upright_tool(intent.tool_yaw), X_WE_high.p};
-  return {{X_WE_upright, "Pre" + pick, {}, 0},
-          {X_WE_high, "Pre" + pick + "_level", {}, 0},
-          {X_WE_before, "Pre" + pick + "_side", {}, 0},
-          {X_WE_pick, press, {}, 0},
-          {X_WE_lifted, "Post" + pick, kHold, 0}};
+  return {{X_WE_upright, name("Pre" + pick, ""), {}, 0},
+          {X_WE_high, name("Pre" + pick, "_level"), {}, 0},
+          {X_WE_before, name("Pre" + pick, "_side"), {}, 0},
+          {X_WE_pick, name(intent.again ? "RePick" : "Box", ""), {}, 0},
+          {X_WE_lifted, name("Post" + pick, ""), kHold, 0}};
 }
 
 std::vector<Waypoint> set_down_rows(const SetDownIntent& intent) {
@@ -66,11 +67,12 @@ std::vector<Waypoint> set_down_rows(const SetDownIntent& intent) {
   const Pose X_WE_high = tool(intent.travel_bottom), X_WE_down = tool(rest - intent.press);
   Pose X_WE_back = X_WE_down;
   X_WE_back.p.z() = X_WE_high.p.z() + 0.03;
-  return {{X_WE_high, "PreTwist" + intent.number, kHold, 0},
-          {tool(rest + 0.01), "PreTwist" + intent.number + "_low", kHold, 0},
-          {X_WE_down, "Twist" + intent.number, kHold, 0},
-          {X_WE_down, "Twist" + intent.number, kRelease, 0},
-          {X_WE_back, "PreTwist" + intent.number + "_back", {}, 0}};
+  const auto name = [&](const char* kind, const char* suffix) { return row_name(kind, intent.box, suffix); };
+  return {{X_WE_high, name("PreTwist", ""), kHold, 0},
+          {tool(rest + 0.01), name("PreTwist", "_low"), kHold, 0},
+          {X_WE_down, name("Twist", ""), kHold, 0},
+          {X_WE_down, name("Twist", ""), kRelease, 0},
+          {X_WE_back, name("PreTwist", "_back"), {}, 0}};
 }
 
 }  // namespace snug::motion

@@ -8,7 +8,7 @@ namespace snug::motion {
 
 /// A standing box, picked by a side face with the tool nearly level.
 struct SidePickIntent {
-  std::string number;                      ///< ends the rows' names
+  std::string box;                         ///< id, in the rows' names (row_name.hpp)
   Pose X_WP;                               ///< of the standing box; may be turned a little
   Vector3 size = Vector3::Constant(0.1);   ///< m
   Vector3 face = Vector3::UnitX();         ///< unit, level: about the outward normal of the side that is picked
@@ -31,7 +31,7 @@ struct SidePickIntent {
 
 /// A hanging box is put on a flat surface and let go.
 struct SetDownIntent {
-  std::string number;
+  std::string box;
   Pose X_WP;  ///< standing there
   Vector3 size = Vector3::Constant(0.1);
   double travel_bottom = 0.08;  ///< m, z in W of the lower face on the way in

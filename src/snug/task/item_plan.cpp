@@ -9,6 +9,8 @@
 #include "snug/cup/pick_length.hpp"
 #include "snug/cup/statics.hpp"
 #include "snug/motion/unwinding.hpp"
+#include "snug/geometry/bounds.hpp"
+#include "snug/motion/row_name.hpp"
 
 namespace snug::task {
 namespace {
@@ -191,8 +193,7 @@ std::vector<PlaceVariant> choose_variants(const packing::Candidate& candidate, c
 PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item) {
   const std::string& id = sequence.items[static_cast<std::size_t>(item)].parcel;
   const model::Parcel& parcel = *model::find_parcel(scenario, id);
-  const bool has_prefix = id.size() > 3 && (id.starts_with("BOX") || id.starts_with("Box"));
-  return {item, has_prefix ? id.substr(3) : id, model::collision_size(scenario, parcel), parcel.inertia};
+  return {item, id, model::collision_size(scenario, parcel), parcel.inertia};
 }
 
 Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Matrix3& R_WP) {
@@ -203,7 +204,7 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
                                         const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
                                         double travel, bool again) {
   motion::PickIntent intent;
-  intent.number = box.number;
+  intent.box = box.id;
   intent.X_WP = X_WP;
   intent.size = box.size;
   intent.cup_offset_P = cup_offset(scenario.cup, box, X_WP.R);
@@ -237,7 +238,7 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
                                              const Matrix3& R_WP_next, double travel, bool again) {
   const model::CupParams& cup = scenario.cup;
   motion::SidePickIntent intent;
-  intent.number = box.number;
+  intent.box = box.id;
   intent.X_WP = X_WP;
   intent.size = box.size;
   intent.face = face;
@@ -266,7 +267,7 @@ motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox&
   X_WP_up.p.z() = travel + kTurnClearance - motion::lowest_corner(R_WP, box.size);
   motion::Waypoint row;
   row.X_WE = make_tool_for(scenario, box, X_PS)(X_WP_up);
-  row.name = (again ? "PostRePick" : "PostPick") + box.number + "_up";
+  row.name = motion::row_name(again ? "PostRePick" : "PostPick", box.id, "_up");
   row.io.vacuum = true;
   return row;
 }
@@ -275,7 +276,7 @@ std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, con
                                             const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
                                             double travel) {
   motion::SetDownIntent intent;
-  intent.number = box.number;
+  intent.box = box.id;
   intent.size = box.size;
   intent.X_WP = {R_WP, place.p_WF - motion::lowest_corner(R_WP, box.size) * Vector3::UnitZ()};
   intent.travel_bottom = travel;
@@ -286,7 +287,7 @@ std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, con
 std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box, const FlipPlace& place,
                                         const Matrix3& R_WP, const Pose& X_PS, double travel) {
   motion::FlipIntent intent;
-  intent.number = box.number;
+  intent.box = box.id;
   intent.size = box.size;
   intent.p_WF = place.p_WF;
   intent.direction = place.direction;
@@ -325,7 +326,7 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
                                          const PlaceRequest& request) {
   const Matrix3& R_WT = layout.X_WT.R;
   motion::PlaceIntent intent;
-  intent.number = request.box.number;
+  intent.box = request.box.id;
   intent.X_WP = layout.X_WT * request.X_TP;
   intent.size = request.box.size;
   intent.tool_for = make_tool_for(scenario, request.box, request.X_PS);

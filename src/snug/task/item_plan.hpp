@@ -62,7 +62,7 @@ struct PlaceVariant {
 /// A box of the plan: as the scenario has it.
 struct PlannedBox {
   int item = 0;  ///< of the sequence
-  std::string number;
+  std::string id;
   Vector3 size = Vector3::Constant(0.1);  ///< m, collision size
   SpatialInertia inertia;
 };

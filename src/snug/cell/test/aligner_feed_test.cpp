@@ -12,6 +12,7 @@
 
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cup/pick_length.hpp"
+#include "snug/motion/row_name.hpp"
 #include "snug/motion/side_pick.hpp"
 #include "snug/motion/unwinding.hpp"
 
@@ -27,6 +28,25 @@ TEST(FindItem, MatchesTheNumberAfterThePrefix) {
   EXPECT_EQ(find_item(sequence, "PrePick", "PrePick"), -1);
   EXPECT_EQ(find_item(sequence, "PrePick099", "PrePick"), -1);
   EXPECT_EQ(find_item(sequence, "", "PrePick"), -1);
+  EXPECT_EQ(find_item(sequence, "PrePick7", "PrePick"), -1);
+  EXPECT_EQ(find_item(sequence, "PrePick27", "PrePick"), -1);
+}
+
+TEST(FindItem, KnowsBoxesWithAnyIdByTheNamesThatOurRowsHave) {
+  model::Sequence sequence;
+  for (const char* id : {"BOX11", "BOX1", "A12B", "crate", "crate_turn", "11", "a (b) c"}) {
+    sequence.items.push_back({});
+    sequence.items.back().parcel = id;
+  }
+  for (std::size_t i = 0; i < sequence.items.size(); ++i) {
+    const std::string& id = sequence.items[i].parcel;
+    EXPECT_EQ(find_item(sequence, motion::row_name("PrePick", id), "PrePick"), static_cast<int>(i)) << id;
+    EXPECT_EQ(find_item(sequence, motion::row_name("PrePick", id, "_turn"), "PrePick"), static_cast<int>(i)) << id;
+  }
+  EXPECT_EQ(find_item(sequence, "PrePick1", "PrePick"), 1);
+  EXPECT_EQ(find_item(sequence, "PrePickA12B", "PrePick"), 2);
+  EXPECT_EQ(find_item(sequence, "PrePickcrate_2", "PrePick"), 3);
+  EXPECT_EQ(find_item(sequence, "PrePick11", "PrePick"), 5);
 }
 
 TEST(PoseAtAligner, StandsInTheCornerOnTheBeltWithTheWantedAxisUp) {

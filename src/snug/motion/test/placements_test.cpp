@@ -73,10 +73,23 @@ NoProgram refusal_of(const Job& job) {
 
 TEST(Placements, GiveTheRowsAndSwitchesOfAPickAndPlace) {
   const Program program = program_of(two_boxes());
-  const std::vector<std::string> names = {
-      "PrePick027",    "Box027",       "PostPick027", "PrePlace027",  "PrePlace027_2", "Place027",
-      "Place027",      "PostPlace027", "PrePick013",  "Box013",       "PostPick013",   "PrePlace013",
-      "PrePlace013_2", "Place013",     "Place013",    "PostPlace013", "home"};
+  const std::vector<std::string> names = {"PrePick(BOX027)",
+                                          "Box(BOX027)",
+                                          "PostPick(BOX027)",
+                                          "PrePlace(BOX027)",
+                                          "PrePlace(BOX027)_2",
+                                          "Place(BOX027)",
+                                          "Place(BOX027)",
+                                          "PostPlace(BOX027)",
+                                          "PrePick(BOX013)",
+                                          "Box(BOX013)",
+                                          "PostPick(BOX013)",
+                                          "PrePlace(BOX013)",
+                                          "PrePlace(BOX013)_2",
+                                          "Place(BOX013)",
+                                          "Place(BOX013)",
+                                          "PostPlace(BOX013)",
+                                          "home"};
   const std::string vacuum = "00111100001111000";
   const std::string blow = "00000010000000100";
   ASSERT_EQ(program.waypoints.size(), names.size());
@@ -224,7 +237,7 @@ TEST(Placements, GiveAProgramThatReadsBackAndRuns) {
 }
 
 TEST(Placements, AreEnteredByTheFaithfulToolFarWithinTheGapsBetweenBoxes) {
-  // What the stop PrePlaceNNN_2 is for: boxes are packed with 1 mm between them.
+  // What the stop PrePlace(...)_2 is for: boxes are packed with 1 mm between them.
   const Job job = two_boxes();
   const Program program = program_of(job);
   const PreparedProgram plan = prepare(program, demonstrator_settings(1));

@@ -28,13 +28,13 @@ TEST(ChooseCupOffset, FollowsTheMassAsFarAsTheFaceAllows) {
 
 TEST(PickRows, PressFromAboveAndLiftWithVacuum) {
   PickIntent intent;
-  intent.number = "027";
+  intent.box = "BOX027";
   intent.X_WP = {Matrix3::Identity(), Vector3(0.1, 0.2, 0.05)};
   const auto rows = pick_rows(intent);
   ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(rows[0].name, "PrePick027");
-  EXPECT_EQ(rows[1].name, "Box027");
-  EXPECT_EQ(rows[2].name, "PostPick027");
+  EXPECT_EQ(rows[0].name, "PrePick(BOX027)");
+  EXPECT_EQ(rows[1].name, "Box(BOX027)");
+  EXPECT_EQ(rows[2].name, "PostPick(BOX027)");
   EXPECT_FALSE(rows[1].io.vacuum);
   EXPECT_TRUE(rows[2].io.vacuum);
   EXPECT_TRUE(rows[1].X_WE.p.isApprox(Vector3(0.1, 0.2, 0.1 + intent.length), kRounding));
@@ -69,7 +69,7 @@ TEST(FlipRows, EndFlatOnTheSideThatFacedAway) {
 
 TEST(PlaceRows, SlideAgainstNeighboursFromTheFreeSide) {
   PlaceIntent intent;
-  intent.number = "014";
+  intent.box = "BOX014";
   intent.X_WP = {Matrix3::Identity(), Vector3(0.5, 0.0, 0.05)};
   intent.tool_for = rigid(intent.size);
   intent.travel_bottom = 0.4;

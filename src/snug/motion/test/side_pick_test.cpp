@@ -33,15 +33,15 @@ TEST(SidePickRotation, PointsAtTheFaceAndIsUprightAgainWhenTheFaceIsUp) {
 
 TEST(SidePickRows, ComeLowBeforeTheFaceTouchItAndLiftTheBoxAsItStood) {
   SidePickIntent intent;
-  intent.number = "013";
+  intent.box = "BOX013";
   intent.size = Vector3(0.2, 0.12, 0.1);
   intent.X_WP = {Matrix3::Identity(), Vector3(0.3, 0.1, 0.05)};
   intent.face = -Vector3::UnitY();
   const auto rows = side_pick_rows(intent);
   ASSERT_EQ(rows.size(), 5u);
-  EXPECT_EQ(rows[0].name, "PrePick013");
-  EXPECT_EQ(rows[3].name, "Box013");
-  EXPECT_EQ(rows[4].name, "PostPick013");
+  EXPECT_EQ(rows[0].name, "PrePick(BOX013)");
+  EXPECT_EQ(rows[3].name, "Box(BOX013)");
+  EXPECT_EQ(rows[4].name, "PostPick(BOX013)");
   for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(rows[i].io.vacuum) << i;
   EXPECT_TRUE(rows[4].io.vacuum);
   const Vector3 touched = rows[3].X_WE.p + intent.length * rows[3].X_WE.R.col(2);
@@ -55,9 +55,9 @@ TEST(SidePickRows, ComeLowBeforeTheFaceTouchItAndLiftTheBoxAsItStood) {
   EXPECT_EQ(rows[0].X_WE.p, rows[1].X_WE.p);
   intent.again = true;
   const auto again = side_pick_rows(intent);
-  EXPECT_EQ(again[0].name, "PreRePick013");
-  EXPECT_EQ(again[3].name, "RePick013");
-  EXPECT_EQ(again[4].name, "PostRePick013");
+  EXPECT_EQ(again[0].name, "PreRePick(BOX013)");
+  EXPECT_EQ(again[3].name, "RePick(BOX013)");
+  EXPECT_EQ(again[4].name, "PostRePick(BOX013)");
 }
 
 TEST(SidePickRows, FollowABoxThatStandsALittleTurned) {
@@ -73,7 +73,7 @@ TEST(SidePickRows, FollowABoxThatStandsALittleTurned) {
 
 TEST(SetDownRows, PutTheBoxOnTheSurfaceAndLetGo) {
   SetDownIntent intent;
-  intent.number = "030";
+  intent.box = "BOX030";
   intent.size = Vector3(0.2, 0.12, 0.1);
   intent.X_WP = {Matrix3::Identity(), Vector3(0.3, 0.1, 0.05)};
   intent.tool_for = [](const Pose& X_WP) {
