@@ -1,29 +1,12 @@
 // Task: placements into waypoints: plain pick-and-place in the cell of a scenario.
 #include "snug/cell/task.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/obstacles.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::cell {
 namespace {
-
-/// Highest fixed thing that the tool passes on its way: benches and plates, not the ground under them.
-double obstacle_top(const model::Scenario& scenario) {
-  double top = scenario.aligner->X_WA.p.z();
-  for (const model::Body& body : scenario.bodies) {
-    if (body.kind != model::BodyKind::Static) continue;
-    for (const model::PlacedShape& shape : body.shapes) {
-      const auto* box = std::get_if<geometry::Box>(&shape.shape);
-      if (box == nullptr) continue;
-      const Pose X_WG = body.X_WB * shape.X_BG;
-      top = std::max(top, X_WG.p.z() + (X_WG.R.cwiseAbs() * box->half).z());
-    }
-  }
-  return top;
-}
 
 const model::Item& item_of(const model::Sequence& sequence, const model::PlacementEntry& placement,
                            const std::string& name) {
@@ -61,7 +44,7 @@ Expected<motion::Program, motion::NoProgramReason> make_program(const model::Sce
   motion::PlacementSettings settings;
   settings.X_WT = container->X_WT;
   settings.rim_height = container->has_walls ? container->inner_size.z() : 0.0;
-  settings.obstacle_top = obstacle_top(scenario);
+  settings.obstacle_top = highest_fixed_point(scenario);
   settings.pick_length = scenario.cup.hold_length;
   settings.hold_length = scenario.cup.hold_length;
   settings.X_WE_home = scenario.controller.X_WE_start;

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "snug/cell/obstacles.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/cup/statics.hpp"
-#include "snug/motion/unwinding.hpp"
 #include "snug/geometry/bounds.hpp"
 #include "snug/motion/row_name.hpp"
+#include "snug/motion/unwinding.hpp"
 
 namespace snug::task {
 namespace {
@@ -25,44 +26,50 @@ constexpr double kTurnClearance = 0.03;  ///< m, more, where a box turns in the 
 constexpr double kLipClearance = 0.002;  ///< m
 constexpr double kSealRoom = 0.001;      ///< m, around the disc on which the vacuum acts
 constexpr double kFlipRoom = 0.16;       ///< m, from the middle of a lying box to the edges of its surface
+constexpr double kFlipDrag = 0.08;       ///< m, more where it comes down, before it is dragged back
+constexpr double kLevel = 1e-3;          ///< rad
 
-struct Top {
-  Vector3 low, high;  ///< corners in W
-};
-
-std::vector<Top> static_tops(const model::Scenario& scenario) {
-  std::vector<Top> tops;
+/// Bounds in W of the boxes that fixed bodies are made of, where one face lies level.
+std::vector<geometry::Aabb> flat_tops(const model::Scenario& scenario) {
+  std::vector<geometry::Aabb> tops;
   for (const model::Body& body : scenario.bodies) {
     if (body.kind != model::BodyKind::Static) continue;
-    for (const model::PlacedShape& shape : body.shapes) {
-      const auto* box = std::get_if<geometry::Box>(&shape.shape);
-      if (box == nullptr) continue;
-      const Pose X_WG = body.X_WB * shape.X_BG;
-      const Vector3 reach = X_WG.R.cwiseAbs() * box->half;
-      tops.push_back({X_WG.p - reach, X_WG.p + reach});
+    for (const model::PlacedShape& placed : body.shapes) {
+      const Pose X_WG = body.X_WB * placed.X_BG;
+      const bool is_level = X_WG.R.row(2).cwiseAbs().maxCoeff() > std::cos(kLevel);
+      if (is_level && std::holds_alternative<geometry::Box>(placed.shape)) {
+        tops.push_back(geometry::bounds(placed.shape, X_WG));
+      }
     }
   }
   return tops;
 }
 
+/// The axis of W that is nearest to the way from `from` to `to`.
+Vector3 main_direction(const Vector3& from, const Vector3& to) {
+  const Vector3 way = to - from;
+  const int axis = std::abs(way.x()) >= std::abs(way.y()) ? 0 : 1;
+  return std::copysign(1.0, way[axis]) * Vector3::Unit(axis);
+}
+
 /// The highest surface that is large enough, near the way from aligner to container.
-std::optional<FlipPlace> find_flip_place(const std::vector<Top>& tops, const Vector3& from, const Vector3& to) {
-  const Vector3 middle = 0.5 * (from + to);
+std::optional<FlipPlace> find_flip_place(const std::vector<geometry::Aabb>& tops, const Vector3& from,
+                                         const Vector3& to) {
+  const Vector3 middle = 0.5 * (from + to), direction = main_direction(from, to);
   std::optional<FlipPlace> best;
   double best_distance = 0.0;
-  for (const Top& top : tops) {
-    const Vector3 low = top.low + Vector3::Constant(kFlipRoom), high = top.high - Vector3::Constant(kFlipRoom + 0.08);
+  for (const geometry::Aabb& top : tops) {
+    // A flipped box is let go further on in `direction` and dragged back to its place: room on that side only.
+    const Vector3 low = top.lower + Vector3::Constant(kFlipRoom) + kFlipDrag * (-direction).cwiseMax(0.0);
+    const Vector3 high = top.upper - Vector3::Constant(kFlipRoom) - kFlipDrag * direction.cwiseMax(0.0);
     if (low.x() > high.x() || low.y() > high.y()) continue;
     const Vector3 spot(std::clamp(middle.x(), low.x(), high.x()), std::clamp(middle.y(), low.y(), high.y()),
-                       top.high.z());
+                       top.upper.z());
     const double distance = (spot - middle).head<2>().norm();
     const bool is_higher = best && spot.z() > best->p_WF.z() + 1e-6;
     const bool is_as_high = best && std::abs(spot.z() - best->p_WF.z()) <= 1e-6;
     if (best && !is_higher && !(is_as_high && distance < best_distance)) continue;
-    const Vector3 way = to - from;
-    const bool along_x = std::abs(way.x()) >= std::abs(way.y());
-    best = FlipPlace{spot, along_x ? Vector3(std::copysign(1.0, way.x()), 0.0, 0.0)
-                                   : Vector3(0.0, std::copysign(1.0, way.y()), 0.0)};
+    best = FlipPlace{spot, direction};
     best_distance = distance;
   }
   return best;
@@ -127,10 +134,8 @@ CellLayout make_layout(const model::Scenario& scenario) {
   CellLayout layout;
   layout.X_WT = container->X_WT;
   layout.rim = container->has_walls ? container->inner_size.z() : 0.0;
-  layout.fixed_top = std::max(scenario.aligner->X_WA.p.z(), scenario.aligner->support_height);
-  const std::vector<Top> tops = static_tops(scenario);
-  for (const Top& top : tops) layout.fixed_top = std::max(layout.fixed_top, top.high.z());
-  layout.flip_place = find_flip_place(tops, scenario.aligner->X_WA.p, container->X_WT.p);
+  layout.fixed_top = cell::highest_fixed_point(scenario);
+  layout.flip_place = find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p);
   if (scenario.robot) layout.p_WB = scenario.robot->X_WB.p;
   layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
   return layout;
