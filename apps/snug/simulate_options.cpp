@@ -58,7 +58,7 @@ void add_simulate(CLI::App& app, Action& action) {
   add_program_options(verb, *options);
   add_physics_options(verb, *options);
   verb.add_option("--ensemble", options->ensemble,
-                  "run the program N times with aligner, box sizes and friction changed a little at random")
+                  "run the program N times with aligner, box sizes, friction and masses changed a little at random")
       ->check(whole(1))
       ->type_name("N");
   verb.add_option("--threads", options->threads, "threads of an ensemble; the result does not depend on it")

@@ -54,7 +54,17 @@ model::Scenario perturbed(const model::Scenario& scenario, const Perturbation& p
     for (int i = 0; i < 3; ++i) parcel.size[i] += draw(perturbation.parcel_size);
   }
   for (model::ContactPair& pair : changed.contact_pairs) pair.params.friction *= 1.0 + draw(perturbation.friction);
+  draw_masses(changed, perturbation.mass, rng.split("mass"));
   return changed;
+}
+
+void draw_masses(model::Scenario& scenario, double half_width, Rng rng) {
+  if (half_width == 0.0) return;
+  for (model::Parcel& parcel : scenario.parcels) {
+    const double factor = 1.0 + rng.uniform(-half_width, half_width);
+    parcel.inertia.mass *= factor;
+    parcel.inertia.inertia *= factor;
+  }
 }
 
 EnsembleResult run_ensemble(const model::Scenario& scenario, const RunOptions& options,

@@ -8,12 +8,17 @@
 
 namespace snug::cell {
 
+/// How far a box's mass may be off, as a share: boxes of the report weigh up to 2.3 % more or less than their type's
+/// nominal mass (Tables 8 and 9); this is twice that.
+inline constexpr double kMassSpread = 0.05;
+
 /// Half widths of uniform changes.
 struct Perturbation {
   double aligner_position = 0.5e-3;                           ///< m, along Ax and Ay
   double aligner_yaw = 0.2 * 3.14159265358979323846 / 180.0;  ///< rad
   double parcel_size = 0.5e-3;                                ///< m, each edge of each box
   double friction = 0.10;                                     ///< share of each pair's coefficient
+  double mass = kMassSpread;                                  ///< share of each box's mass
 };
 
 struct EnsembleOptions {
@@ -41,6 +46,9 @@ struct EnsembleResult {
 
 /// The scenario with every change drawn from `rng`.
 [[nodiscard]] model::Scenario perturbed(const model::Scenario& scenario, const Perturbation& perturbation, Rng rng);
+
+/// Masses and inertias of the scenario's boxes, each times 1 + a uniform draw within the half width.
+void draw_masses(model::Scenario& scenario, double half_width, Rng rng);
 
 /// Runs the program `count` times. Throws like run(). Nothing is recorded.
 [[nodiscard]] EnsembleResult run_ensemble(const model::Scenario& scenario, const RunOptions& options,

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/cell/ensemble.hpp"
 #include "snug/task/session.hpp"
 
 namespace snug::task {
@@ -12,7 +13,7 @@ struct ExecutionOptions {
   int count = 20;
   std::uint64_t seed = 1;
   int threads = 1;  ///< results do not depend on it
-  Uncertainty uncertainty;
+  Uncertainty uncertainty{.mass = cell::kMassSpread};
   cell::SimulationOptions simulation{motion::ControllerKind::Faithful, cup::CupMode::Phases, {}};
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/ensemble.hpp"
 #include "snug/core/check.hpp"
 #include "snug/motion/unwinding.hpp"
 
@@ -68,6 +69,7 @@ model::Scenario sample(const model::Scenario& scenario, const std::string& seque
     }
   }
   for (model::ContactPair& pair : changed.contact_pairs) pair.params.friction *= 1.0 + draw(uncertainty.friction);
+  cell::draw_masses(changed, uncertainty.mass, rng.split("mass"));
   scale(changed.cup.stiffness, 1.0 + draw(uncertainty.cup));
   scale(changed.cup.damping, 1.0 + draw(uncertainty.cup));
   return changed;

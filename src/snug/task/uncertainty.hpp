@@ -16,6 +16,7 @@ struct Uncertainty {
   double yaw = 1.0 * std::numbers::pi / 180.0;  ///< rad, of each box at the aligner
   double com = 5.0e-3;                          ///< m, each coordinate of each centre of mass
   double cup = 0.10;                            ///< share of the cup's stiffness and damping
+  double mass = 0.0;                            ///< share of each box's mass; cell::kMassSpread in executions
   bool operator==(const Uncertainty&) const = default;
 };
 

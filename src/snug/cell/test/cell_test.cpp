@@ -110,6 +110,9 @@ TEST(Ensemble, ChangesNoMoreThanItSays) {
     for (std::size_t i = 0; i < changed.parcels.size(); ++i) {
       const Vector3 change = changed.parcels[i].size - demonstrator().parcels[i].size;
       EXPECT_LE(change.cwiseAbs().maxCoeff(), limits.parcel_size + 1e-12);
+      const double mass = changed.parcels[i].inertia.mass / demonstrator().parcels[i].inertia.mass;
+      EXPECT_LE(std::abs(mass - 1.0), limits.mass + 1e-12);
+      EXPECT_NE(mass, 1.0);
     }
   }
 }
