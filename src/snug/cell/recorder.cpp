@@ -97,6 +97,19 @@ void fill_cup(const CellWorld& world, const physics::WorldState& state, const Fr
   cup.F_PSo_S = input.gripper->F_S;
 }
 
+bool is_asleep(const CellWorld& world, const physics::WorldState& state, int body) {
+  const physics::BodyState& now = state.bodies[static_cast<std::size_t>(body)];
+  return world.model.bodies[static_cast<std::size_t>(body)].kind == physics::BodyKind::Dynamic && now.is_present &&
+         now.sleep_group >= 0;
+}
+
+/// A static body, or a kinematic one that is not being moved.
+bool is_still(const CellWorld& world, const physics::WorldState& state, int body) {
+  const physics::BodyState& now = state.bodies[static_cast<std::size_t>(body)];
+  return world.model.bodies[static_cast<std::size_t>(body)].kind != physics::BodyKind::Dynamic && now.is_present &&
+         now.velocity.isZero(0.0) && now.angular_velocity.isZero(0.0);
+}
+
 }  // namespace
 
 Recorder::Recorder(const model::Scenario& scenario, const CellWorld& world, const RecorderSetup& setup)
@@ -118,6 +131,19 @@ void Recorder::close(const std::string& result_json) {
   if (writer_) writer_->close(result_json);
 }
 
+void Recorder::add_contacts(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work) {
+  frame_.contacts.clear();
+  for (const physics::ContactReport& contact : work.contacts()) frame_.contacts.push_back(contact_sample(contact));
+  for (const record::ContactSample& contact : contacts_) {
+    const bool is_asleep_a = is_asleep(world, state, contact.body_a);
+    const bool is_asleep_b = is_asleep(world, state, contact.body_b);
+    const bool is_held = (is_asleep_a && (is_asleep_b || is_still(world, state, contact.body_b))) ||
+                         (is_asleep_b && is_still(world, state, contact.body_a));
+    if (is_held) frame_.contacts.push_back(contact);
+  }
+  contacts_ = frame_.contacts;
+}
+
 bool Recorder::add_frame(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
                          const physics::StepReport& report, const FrameInput& input) {
   frame_.time = state.time(world.model);
@@ -135,13 +161,12 @@ bool Recorder::add_frame(const CellWorld& world, const physics::WorldState& stat
     body.X_WB = record::PoseSample(physics::pose_of(world.model, state, id).p, state.bodies[i].quat_WB);
     body.V_WB = physics::twist_of(world.model, state, id);
   }
-  frame_.contacts.clear();
+  add_contacts(world, state, work);
   Wrench F_E_W;  // on the tool, about the origin of E
-  for (const physics::ContactReport& contact : work.contacts()) {
-    frame_.contacts.push_back(contact_sample(contact));
-    const double sign = contact.b == world.tool ? 1.0 : contact.a == world.tool ? -1.0 : 0.0;
-    F_E_W.force += sign * contact.force_W;
-    F_E_W.torque += (contact.p_WQ - input.X_WE.p).cross(sign * contact.force_W);
+  for (const record::ContactSample& contact : frame_.contacts) {
+    const double sign = contact.body_b == world.tool.index ? 1.0 : contact.body_a == world.tool.index ? -1.0 : 0.0;
+    F_E_W.force += sign * contact.force_B_W;
+    F_E_W.torque += (contact.p_WQ - input.X_WE.p).cross(sign * contact.force_B_W);
   }
   frame_.F_flange.force = input.X_WE.R.transpose() * F_E_W.force;
   frame_.F_flange.torque = input.X_WE.R.transpose() * F_E_W.torque;

@@ -58,10 +58,15 @@ class Recorder {
   void close(const std::string& result_json);
 
  private:
+  /// Contacts of the world into the frame: those found in the step, and of pairs at rest, at which a step does not
+  /// look, those that the frame before had.
+  void add_contacts(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work);
+
   std::optional<record::RecordingWriter> writer_;
   RunObserver* observer_ = nullptr;
   std::size_t recorded_events_ = 0;
   record::Frame frame_;
+  std::vector<record::ContactSample> contacts_;  ///< of the world in the frame before
 };
 
 }  // namespace snug::cell

@@ -1,5 +1,5 @@
-// Resting: contacts of boxes that sleep. The recording holds those of boxes that are awake; a pair that has not moved since its
-// last recorded contact still has it.
+// Resting: contacts of boxes that sleep, for recordings of older versions, which hold those of boxes that are awake; a pair that has
+// not moved since its last recorded contact still has it.
 
 import type { Replay } from "./replay";
 

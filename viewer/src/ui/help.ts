@@ -50,7 +50,7 @@ export function helpOverlay(palette: () => Palette): HTMLElement {
     }
     const left = make("div", "", make("h2", "", "Keys"), listOf(KEYS));
     const right = make("div", "", make("h2", "", "Mouse"), listOf(MOUSE), make("h2", "", "Colours"), legend,
-      make("p", "hint", "Contacts of boxes that sleep are not recorded: they are drawn fainter, as they were last. An arrow at a contact is the force on the box."),
+      make("p", "hint", "Contacts of boxes that sleep stand as they were last; recordings of older versions do not have them: they are drawn fainter. An arrow at a contact is the force on the box."),
       make("h2", "", "Frames"), make("p", "", "W world, T container, A aligner, C conveyor, E end of the gripper, S lip of the cup, P held or selected box."));
     overlay.replaceChildren(make("div", "card wide", make("div", "columns", left, right)));
   };

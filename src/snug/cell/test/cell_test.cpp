@@ -183,6 +183,32 @@ TEST(Recording, OfTwoSecondsHasAFrameForEveryTickAndWhatRan) {
   EXPECT_EQ(recording.events.size(), result.events.size());
 }
 
+TEST(Recording, HoldsTheContactsOfWhatSleepsUntilItWakes) {
+  RunOptions options;
+  options.until = 4.0;
+  options.record_path = std::filesystem::temp_directory_path() / "snug_cell_test_sleep.h5";
+  const model::Scenario scenario = model::load_scenario(kSource / "scenarios/stack.yaml");
+  (void)run(scenario, options);
+  const record::Recording recording = record::load_recording(options.record_path);
+  std::filesystem::remove(options.record_path);
+  double weight = 0.0;
+  for (const record::BodyInfo& body : recording.header.bodies) {
+    if (body.kind == record::BodyKind::Dynamic) weight += 9.81 * body.mass;
+  }
+  ASSERT_GT(weight, 0.0);
+  const record::Frame& last = recording.frames.back();
+  EXPECT_EQ(last.solver.status, record::SolverStatus::NothingToSolve) << "it should sleep";
+  double carried = 0.0;
+  for (const record::ContactSample& contact : last.contacts) {
+    const auto is_static = [&](int body) {
+      return recording.header.bodies[static_cast<std::size_t>(body)].kind == record::BodyKind::Static;
+    };
+    if (is_static(contact.body_a)) carried += contact.force_B_W.z();
+    if (is_static(contact.body_b)) carried -= contact.force_B_W.z();
+  }
+  EXPECT_NEAR(carried, weight, 0.01 * weight);  // found while it was still slow, not at rest
+}
+
 // ---- the cup in a world with one box
 
 class GripperAtABox : public ::testing::Test {
