@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 namespace snug::app {
@@ -42,67 +41,87 @@ std::vector<std::string> agents_of(const std::vector<CompareRow>& rows) {
   return agents;
 }
 
-std::string agent_lines(const std::vector<CompareRow>& rows, const std::string& agent) {
-  std::string planned = fmt::format("{:<14} planned ", agent), executed = fmt::format("{:<14} executed", "");
+const model::Reported* find_reported(const model::Sequence& sequence, const std::string& agent) {
+  const auto found = std::ranges::find(sequence.reported, agent, &model::Reported::agent);
+  return found != sequence.reported.end() ? &*found : nullptr;
+}
+
+std::string label_of(const std::string& reporter) { return "reported, " + reporter; }
+
+std::string cell_of(int boxes, double percent) { return fmt::format("  {:3} / {:5.2f}", boxes, percent); }
+
+std::string agent_lines(const std::vector<CompareRow>& rows, const std::string& agent, std::size_t width) {
+  std::string planned = fmt::format("{:<{}} planned ", agent, width - 9);
+  std::string executed = fmt::format("{:<{}} executed", "", width - 9);
   for (const CompareRow& row : rows) {
     if (row.result.agent != agent) continue;
-    planned += fmt::format("  {:3} / {:5.2f}", row.result.planned_boxes, row.result.planned_percent);
-    executed += fmt::format("  {:3} / {:5.2f}", row.result.executed_boxes, row.result.executed_percent);
+    planned += cell_of(row.result.planned_boxes, row.result.planned_percent);
+    executed += cell_of(row.result.executed_boxes, row.result.executed_percent);
   }
   const Means means = means_of(rows, agent);
   return fmt::format("{}   {:5.2f}\n{}   {:5.2f}\n", planned, means.planned, executed, means.executed);
 }
 
-/// What the report's Table 7 counted on its five sequences: boxes, and percent of the scenario's container.
-std::string reference_lines(const model::Scenario& scenario, const std::vector<std::string>& sequences) {
-  struct Reference {
-    const char* name;
-    std::array<int, 5> boxes;
-  };
-  constexpr std::array<Reference, 3> kTable7{{{"report, state of the art", {5, 7, 8, 6, 6}},
-                                              {"report, I.AM.", {12, 12, 13, 14, 12}},
-                                              {"report, manual operator", {12, 12, 13, 15, 14}}}};
-  const model::Container& container = *model::find_container(scenario, scenario.target);
-  std::string text;
-  for (const Reference& reference : kTable7) {
-    std::string line = fmt::format("{:<24}", reference.name).substr(0, 23);
-    double sum = 0.0;
-    for (const std::string& name : sequences) {
-      const model::Sequence& sequence = *model::find_sequence(scenario, name);
-      const auto index = static_cast<std::size_t>(name[0] - '1');
-      if (name.size() != 1 || index >= 5 || !sequence.packed_count) return {};
-      const auto boxes = static_cast<std::size_t>(reference.boxes[index]);
-      std::vector<std::string> ids;
-      for (std::size_t i = 0; i < std::min(boxes, sequence.items.size()); ++i) ids.push_back(sequence.items[i].parcel);
-      const double percent = model::compute_filling_degree_percent(scenario, container, ids);
-      sum += percent;
-      line += fmt::format("  {:3} / {:5.2f}", boxes, percent);
+/// What others packed of every one of these sequences, as the scenario says, in the order of the first: percent of the
+/// scenario's container.
+std::vector<std::string> reporters_of(const model::Scenario& scenario, const std::vector<std::string>& sequences) {
+  std::vector<std::string> agents;
+  for (const model::Reported& one : model::find_sequence(scenario, sequences.front())->reported) {
+    if (std::ranges::all_of(sequences, [&](const std::string& name) {
+          const model::Reported* found = find_reported(*model::find_sequence(scenario, name), one.agent);
+          return found != nullptr && found->packed_count.has_value();
+        })) {
+      agents.push_back(one.agent);
     }
-    text += fmt::format("{}   {:5.2f}\n", line, sum / static_cast<double>(sequences.size()));
   }
-  return text;
+  return agents;
+}
+
+std::string reporter_line(const model::Scenario& scenario, const std::vector<std::string>& sequences,
+                          const std::string& agent, std::size_t width) {
+  const model::Container& container = *model::find_container(scenario, scenario.target);
+  std::string line = fmt::format("{:<{}}", label_of(agent), width);
+  double sum = 0.0;
+  for (const std::string& name : sequences) {
+    const model::Sequence& sequence = *model::find_sequence(scenario, name);
+    const int boxes = *find_reported(sequence, agent)->packed_count;
+    const double percent =
+        model::compute_filling_degree_percent(scenario, container, model::first_parcels(sequence, boxes));
+    sum += percent;
+    line += cell_of(boxes, percent);
+  }
+  return fmt::format("{}   {:5.2f}\n", line, sum / static_cast<double>(sequences.size()));
 }
 
 /// Sequences beside each other, agents below each other.
 std::string format_columns(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
                            const std::vector<std::string>& sequences, bool with_references) {
-  std::string text = fmt::format("{:<23}", "boxes / filling, %");
+  const std::vector<std::string> reporters =
+      with_references ? reporters_of(scenario, sequences) : std::vector<std::string>{};
+  std::size_t width = 22;
+  for (const std::string& agent : agents_of(rows)) width = std::max(width, agent.size() + 9);
+  for (const std::string& agent : reporters) width = std::max(width, label_of(agent).size());
+  std::string text = fmt::format("{:<{}}", "boxes / filling, %", width);
   for (const std::string& sequence : sequences) text += fmt::format("  {:>11}", "sequence " + sequence);
   text += "    mean\n";
-  for (const std::string& agent : agents_of(rows)) text += agent_lines(rows, agent);
-  return with_references ? text + reference_lines(scenario, sequences) : text;
+  for (const std::string& agent : agents_of(rows)) text += agent_lines(rows, agent, width);
+  for (const std::string& agent : reporters) text += reporter_line(scenario, sequences, agent, width);
+  return text;
 }
 
 /// A line for each row: for many sequences, or long names.
 std::string format_lines(const std::vector<CompareRow>& rows) {
-  std::size_t width = 8;
-  for (const CompareRow& row : rows) width = std::max(width, row.result.sequence.size());
-  std::string text = fmt::format("{:<14} {:<{}}  {:>16}  {:>16}  {:>10}\n", "agent", "sequence", width,
+  std::size_t width = 8, agent_width = 14;
+  for (const CompareRow& row : rows) {
+    width = std::max(width, row.result.sequence.size());
+    agent_width = std::max(agent_width, row.result.agent.size());
+  }
+  std::string text = fmt::format("{:<{}} {:<{}}  {:>16}  {:>16}  {:>10}\n", "agent", agent_width, "sequence", width,
                                  "planned, boxes %", "executed, boxes %", "decided, s");
   const auto line = [&](const std::string& agent, const std::string& sequence, const std::string& planned,
                         const std::string& executed, double seconds) {
-    text +=
-        fmt::format("{:<14} {:<{}}  {:>16}  {:>17}  {:10.2f}\n", agent, sequence, width, planned, executed, seconds);
+    text += fmt::format("{:<{}} {:<{}}  {:>16}  {:>17}  {:10.2f}\n", agent, agent_width, sequence, width, planned,
+                        executed, seconds);
   };
   for (const CompareRow& row : rows) {
     const task::SessionResult& r = row.result;

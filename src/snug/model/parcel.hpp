@@ -72,12 +72,19 @@ struct Item {
   bool operator==(const Item&) const = default;
 };
 
+/// What somebody else reached with a sequence, as published.
+struct Reported {
+  std::string agent;
+  std::optional<int> packed_count;        ///< how many of the first items
+  std::optional<double> filling_percent;  ///< as printed, of whatever container the source counts with
+  bool operator==(const Reported&) const = default;
+};
+
 struct Sequence {
   std::string name;
   std::vector<Item> items;
   std::optional<double> task_stiffness;            ///< 1/s^2, overrides the controller's
-  std::optional<int> packed_count;                 ///< how many of the first items the report packed
-  std::optional<double> reported_filling_percent;  ///< report Table 7, row I.AM.
+  std::vector<Reported> reported;        ///< what others reached; the first is the one to compare a run with
   bool operator==(const Sequence&) const = default;
 };
 

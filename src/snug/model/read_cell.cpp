@@ -253,9 +253,39 @@ Item ScenarioReader::read_item(const Value& value) const {
   return item;
 }
 
+void ScenarioReader::read_reported(const MapReader& map, Sequence& sequence) const {
+  const auto read_count = [&](const Value& value) {
+    return static_cast<int>(value.integer(0, static_cast<std::int64_t>(sequence.items.size())));
+  };
+  map.forbid_together("reported", "packed_count");
+  map.forbid_together("reported", "reported_filling_percent");
+  const auto count = map.find("packed_count"), percent = map.find("reported_filling_percent");
+  if (count || percent) {
+    Reported& one = sequence.reported.emplace_back();
+    one.agent = "the report";
+    if (count) one.packed_count = read_count(*count);
+    if (percent) one.filling_percent = percent->number_within(0.0, 100.0, "a percentage");
+  }
+  const auto rows = map.find("reported");
+  if (!rows) return;
+  for (const Value& entry : rows->list()) {
+    const MapReader row = entry.map("reported", {"agent", "packed_count", "filling_percent"});
+    const Value agent = row.require("agent");
+    Reported one;
+    one.agent = agent.name();
+    for (const Reported& known : sequence.reported) check_new_name(agent, "agent", known.agent == one.agent);
+    if (const auto packed = row.find("packed_count")) one.packed_count = read_count(*packed);
+    if (const auto filling = row.find("filling_percent"))
+      one.filling_percent = filling->number_within(0.0, 100.0, "a percentage");
+    if (!one.packed_count && !one.filling_percent)
+      entry.fail("neither packed_count nor filling_percent", "at least one of them");
+    sequence.reported.push_back(one);
+  }
+}
+
 void ScenarioReader::read_sequence(const Value& value) {
   const MapReader map =
-      value.map("sequence", {"name", "items", "task_stiffness", "packed_count", "reported_filling_percent"});
+      value.map("sequence", {"name", "items", "task_stiffness", "reported", "packed_count", "reported_filling_percent"});
   Sequence sequence;
   const Value name = map.require("name");
   check_new_name(name, "sequence", find_sequence(scenario_, name.name()) != nullptr);
@@ -268,10 +298,7 @@ void ScenarioReader::read_sequence(const Value& value) {
   }
   if (sequence.items.empty()) map.require("items").fail("at least one item");
   if (const auto stiffness = map.find("task_stiffness")) sequence.task_stiffness = stiffness->number(Range::Positive);
-  if (const auto count = map.find("packed_count"))
-    sequence.packed_count = static_cast<int>(count->integer(0, static_cast<std::int64_t>(sequence.items.size())));
-  if (const auto percent = map.find("reported_filling_percent"))
-    sequence.reported_filling_percent = percent->number_within(0.0, 100.0, "a percentage");
+  read_reported(map, sequence);
   scenario_.sequences.push_back(sequence);
 }
 

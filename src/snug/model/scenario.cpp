@@ -126,6 +126,14 @@ const CorrectionLayer* find_correction_layer(const Scenario& scenario, std::stri
   return find_named(scenario.controller.correction_layers, &CorrectionLayer::name, name);
 }
 
+std::vector<std::string> first_parcels(const Sequence& sequence, int count) {
+  std::vector<std::string> ids;
+  for (const Item& item : sequence.items) {
+    if (static_cast<int>(ids.size()) < count) ids.push_back(item.parcel);
+  }
+  return ids;
+}
+
 double compute_filling_degree_percent(const Scenario& scenario, const Container& container,
                                       const std::vector<std::string>& parcel_ids) {
   double volume = 0.0;

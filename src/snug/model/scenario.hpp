@@ -117,6 +117,8 @@ struct Scenario {
   return parcel.size - Vector3::Constant(scenario.parcel_clearance);
 }
 
+/// Ids of the first `count` items, or of all where there are fewer.
+[[nodiscard]] std::vector<std::string> first_parcels(const Sequence& sequence, int count);
 /// Report eq. (1): percent of the container's inner volume filled by these boxes (measured sizes).
 [[nodiscard]] double compute_filling_degree_percent(const Scenario& scenario, const Container& container,
                                                     const std::vector<std::string>& parcel_ids);

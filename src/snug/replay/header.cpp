@@ -1,5 +1,4 @@
 // The header of the replay form: what ran, the bodies, what happened and what became of it.
-#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -135,48 +134,27 @@ Json speed_as_json(const Json& result) {
           {"real_time_factor", result.value("real_time_factor", Json())}};
 }
 
-/// Row of the report's Table 7: filling degree, percent, of its sequences 1 to 5.
-struct Table7Row {
-  const char* agent;
-  std::array<double, 5> percent;
-};
-constexpr const char* kReportsOwnAgent = "I.AM.";
-constexpr std::array kTable7 = {
-    Table7Row{"State of the Art", {32.21, 41.41, 41.18, 29.55, 39.59}},
-    Table7Row{kReportsOwnAgent, {75.66, 67.45, 70.00, 68.00, 67.98}},
-    Table7Row{"Manual Operator", {75.66, 67.45, 70.00, 73.68, 77.92}},
-};
-
-/// All agents of Table 7 for the sequence of that name; only the scenario's own row when it is not the report's
-/// sequence.
-Json agents_as_json(const model::Sequence& sequence) {
-  const double own = *sequence.reported_filling_percent;
-  for (std::size_t k = 0; k < kTable7[1].percent.size(); ++k) {
-    if (sequence.name != std::to_string(k + 1) || kTable7[1].percent[k] != own) continue;
-    Json agents = Json::array();
-    for (const Table7Row& row : kTable7) agents.push_back({{"agent", row.agent}, {"filling_percent", row.percent[k]}});
-    return agents;
-  }
-  return Json::array({{{"agent", kReportsOwnAgent}, {"filling_percent", own}}});
-}
-
-/// What the public report states for the sequence, beside what its boxes fill as snug counts.
-Json table7_as_json(const std::optional<model::Scenario>& scenario, const std::string& sequence_name) {
+/// What others reached with the sequence, beside what the boxes of the first of them fill as snug counts.
+Json reported_as_json(const std::optional<model::Scenario>& scenario, const std::string& sequence_name) {
   if (!scenario) return nullptr;
   const model::Sequence* sequence = model::find_sequence(*scenario, sequence_name);
   const model::Container* container = model::find_container(*scenario, scenario->target);
-  if (sequence == nullptr || container == nullptr || !sequence->reported_filling_percent) return nullptr;
-  Json table = {{"filling_percent", *sequence->reported_filling_percent},
+  if (sequence == nullptr || container == nullptr || sequence->reported.empty()) return nullptr;
+  const model::Reported& first = sequence->reported.front();
+  if (!first.filling_percent) return nullptr;
+  Json agents = Json::array();
+  for (const model::Reported& one : sequence->reported) {
+    if (one.filling_percent) agents.push_back({{"agent", one.agent}, {"filling_percent", *one.filling_percent}});
+  }
+  Json table = {{"filling_percent", *first.filling_percent},
                 {"boxes", nullptr},
                 {"same_boxes_percent", nullptr},
-                {"agents", agents_as_json(*sequence)}};
-  if (sequence->packed_count) {
-    std::vector<std::string> ids;
-    for (const auto& item : sequence->items) {
-      if (static_cast<int>(ids.size()) < *sequence->packed_count) ids.push_back(item.parcel);
-    }
-    table["boxes"] = ids.size();
-    table["same_boxes_percent"] = model::compute_filling_degree_percent(*scenario, *container, ids);
+                {"agent", first.agent},
+                {"agents", std::move(agents)}};
+  if (first.packed_count) {
+    table["boxes"] = *first.packed_count;
+    table["same_boxes_percent"] = model::compute_filling_degree_percent(
+        *scenario, *container, model::first_parcels(*sequence, *first.packed_count));
   }
   return table;
 }
@@ -247,7 +225,7 @@ Json result_as_json(const HeaderInput& input, const Json& result, const std::opt
           {"filling_degree_percent", has_ended ? result.value("filling_degree_percent", Json()) : Json()},
           {"packed", std::move(packed)},
           {"failure", has_ended ? result.value("failure", "") : ""},
-          {"report_table7", table7_as_json(scenario, input.header->sequence)}};
+          {"report_table7", reported_as_json(scenario, input.header->sequence)}};
 }
 
 std::optional<model::Scenario> scenario_of(const record::RecordingHeader& header) {

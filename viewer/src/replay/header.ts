@@ -53,6 +53,7 @@ export interface RunResult {
     filling_percent: number;
     boxes: number | null;
     same_boxes_percent: number | null;
+    agent?: string; // whose these are
     agents?: { agent: string; filling_percent: number }[];
   } | null;
 }

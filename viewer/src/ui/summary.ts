@@ -24,7 +24,7 @@ export function headline(replay: Replay): HTMLElement {
     const beside = table?.same_boxes_percent ?? table?.filling_percent ?? null;
     if (table && beside !== null) {
       const counted = table.same_boxes_percent === null ? "." : `; counted as here, by sizes and container, its boxes fill ${beside.toFixed(2)} %.`;
-      add("report", `${beside.toFixed(2)} %`, `The report's Table 7 states ${table.filling_percent} %${counted}`);
+      add("report", `${beside.toFixed(2)} %`, `Reported: ${table.filling_percent} %${counted}`);
     }
   }
   add("simulated", `${(speed?.duration_s ?? replay.end - replay.start).toFixed(1)} s`);
@@ -37,7 +37,7 @@ export function headline(replay: Replay): HTMLElement {
   return bar;
 }
 
-/** Filling degree of this run beside those of the report's Table 7, as bars; null when there is neither. */
+/** Filling degree of this run beside those that others reported, as bars; null when there is neither. */
 export function fillBars(replay: Replay, second: Replay | null, isLarge = false): HTMLElement | null {
   const { result } = replay.header;
   const ours = result?.filling_degree_percent ?? null;
@@ -52,10 +52,11 @@ export function fillBars(replay: Replay, second: Replay | null, isLarge = false)
   if (theirs !== null) rows.push(["laid over it", theirs, "ours", `The same of ${second!.header.name}`]);
   if (table) {
     const boxes = table.boxes === null ? "" : `: ${table.boxes} boxes`;
-    const agents = table.agents?.length ? table.agents : [{ agent: "I.AM.", filling_percent: table.filling_percent }];
+    const own = table.agent ?? "the report";
+    const agents = table.agents?.length ? table.agents : [{ agent: own, filling_percent: table.filling_percent }];
     for (const { agent, filling_percent } of agents) {
-      const isSame = agent === "I.AM.";
-      rows.push([agent, filling_percent, "", `As the report's Table 7 states it${isSame ? boxes : ""}`]);
+      const isSame = agent === own;
+      rows.push([agent, filling_percent, "", `As reported${isSame ? boxes : ""}`]);
       if (!isSame || table.same_boxes_percent === null) continue;
       rows.push([`${agent}, as here`, table.same_boxes_percent, "", "What those boxes fill by their sizes and the container of the scenario, counted as this run is"]);
     }
@@ -69,7 +70,7 @@ export function fillBars(replay: Replay, second: Replay | null, isLarge = false)
     bars.append(row);
   }
   if (isLarge && table) {
-    bars.append(make("p", "note", "Rows of the report's Table 7 are as it states them." + (table.same_boxes_percent === null ? "" : " As here: the same boxes counted as those of this run, by their sizes over the inner size of the container.")));
+    bars.append(make("p", "note", "Rows of others are as they were reported." + (table.same_boxes_percent === null ? "" : " As here: the same boxes counted as those of this run, by their sizes over the inner size of the container.")));
   }
   return bars;
 }

@@ -41,6 +41,7 @@ class ScenarioReader {
   void read_cup(const Value& value);
   void read_controller(const Value& value);
   void read_sequence(const Value& value);
+  void read_reported(const MapReader& map, Sequence& sequence) const;
   [[nodiscard]] Item read_item(const Value& value) const;
   // read_robot.cpp
   void read_robot(const Value& value);

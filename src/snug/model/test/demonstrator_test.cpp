@@ -123,7 +123,8 @@ TEST(Demonstrator, HasTheFillingDegreesOfThePackedBoxes) {
   const std::array<int, 5> packed = {12, 12, 13, 14, 12};
   for (std::size_t k = 0; k < 5; ++k) {
     const Sequence& sequence = s.sequences[k];
-    EXPECT_EQ(sequence.packed_count, packed[k]);
+    ASSERT_EQ(sequence.reported.size(), 3U);
+    EXPECT_EQ(sequence.reported[0].packed_count, packed[k]);
     std::vector<std::string> ids;
     for (int i = 0; i < packed[k]; ++i) ids.push_back(sequence.items[static_cast<std::size_t>(i)].parcel);
     // Two printed digits.

@@ -206,6 +206,41 @@ TEST(StrictLoading, RefusesNamesUsedTwice) {
                    {"up: X", "sequences[0].items[1]", "'BOX1' a second time", "once in a sequence"});
 }
 
+TEST(StrictLoading, RefusesAnIdThatAProgramCouldNotHold) {
+  expect_complaint(replaced(kText, "id: BOX2", "id: 'BOX,2'"), {"BOX,2", "parcels[1].id", "'BOX,2'", "without commas"});
+}
+
+TEST(StrictLoading, ReadsWhatOthersReachedStrictly) {
+  const auto with = [](const std::string& rows) {
+    return replaced(kText, "  - name: first\n", "  - name: first\n" + rows);
+  };
+  const Scenario scenario = parse_scenario(
+      with("    reported:\n      - {agent: one, packed_count: 2}\n      - {agent: two, filling_percent: 70.5}\n"), "t");
+  const std::vector<Reported>& reported = scenario.sequences[0].reported;
+  ASSERT_EQ(reported.size(), 2U);
+  EXPECT_EQ(reported[0], (Reported{"one", 2, std::nullopt}));
+  EXPECT_EQ(reported[1], (Reported{"two", std::nullopt, 70.5}));
+  EXPECT_EQ(first_parcels(scenario.sequences[0], 1), std::vector<std::string>{"BOX1"});
+  // Files from before there was a list.
+  const Scenario old = parse_scenario(with("    packed_count: 1\n    reported_filling_percent: 60\n"), "t");
+  ASSERT_EQ(old.sequences[0].reported.size(), 1U);
+  EXPECT_EQ(old.sequences[0].reported[0], (Reported{"the report", 1, 60.0}));
+
+  const std::string at = "sequences[0].reported";
+  expect_complaint(with("    reported: [{agent: one}]\n"), {"{agent: one}", at + "[0]", "neither", "at least one"});
+  expect_complaint(with("    reported: [{packed_count: 2}]\n"),
+                   {"{packed_count", at + "[0].agent", "nothing", "required"});
+  expect_complaint(with("    reported: [{agent: one, packed_count: 3}]\n"),
+                   {"packed_count", at + "[0].packed_count", "'3'", "0 to 2"});
+  expect_complaint(with("    reported: [{agent: one, filling_percent: 101}]\n"),
+                   {"filling_percent", at + "[0].filling_percent", "'101'", "a percentage"});
+  expect_complaint(with("    reported: [{agent: one, boxes: 2}]\n"), {"boxes", at + "[0].boxes", "unknown key", ""});
+  expect_complaint(with("    reported: [{agent: one, packed_count: 1}, {agent: one, packed_count: 2}]\n"),
+                   {"reported:", at + "[1].agent", "a second time", ""});
+  expect_complaint(with("    packed_count: 1\n    reported: [{agent: one, packed_count: 2}]\n"),
+                   {"    packed_count: 1", "sequences[0].packed_count", "both", "one of the two"});
+}
+
 TEST(StrictLoading, RefusesNamesOfNothing) {
   expect_complaint(replaced(kText, "{parcel: BOX2, up: X", "{parcel: BOX3, up: X"),
                    {"BOX3", "sequences[0].items[1].parcel", "'BOX3'", "'BOX1' (nearest)"});
