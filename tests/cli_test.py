@@ -609,7 +609,14 @@ class OtherCells(unittest.TestCase):
                               "--json").stdout)
         self.assertEqual(run["state_hash"], packed["state_hash"])
         self.assertEqual(snug("simulate", CELL, "--program", program, "--sequence", "two").returncode, 2)
-        self.assertIn(snug("check", CELL, *cell, "--program", program, "--sequence", "two").returncode, (0, 1))
+        checked = snug("check", CELL, *cell, "--program", program, "--sequence", "two", "--json")
+        found = json.loads(checked.stdout)
+        self.assertEqual(checked.returncode, 0 if found["ok"] else 1)
+        self.assertEqual(found["ok"], all(one["severity"] != "error" for one in found["findings"]))
+        self.assertGreater(found["looks"], 1000)
+        rows = len(program.read_text().splitlines())
+        self.assertTrue(all(1 <= one["row"] <= rows for one in found["findings"]))
+        self.assertLess(abs(found["duration_s"] / run["duration_s"] - 1), 0.2)
         self.assertEqual(snug("report", recording, "-o", self.folder / "out.html").returncode, 0)
         for placement in json.loads(plan.read_text())["placements"]:
             for number in placement["position"]:
@@ -624,12 +631,73 @@ class OtherCells(unittest.TestCase):
     def test_box_that_fits_nowhere_is_a_reason(self):
         packed = self.pack("--sequence", "huge")
         self.assertEqual(packed["planned_boxes"], 0)
-        self.assertIn("too big for the container", packed["stopped"])
+        self.assertIn("too big for the container", packed["items"][0]["reason"])
+        self.assertEqual(packed["stopped"], "no more items, 1 not packed")
+
+    def test_items_after_one_that_can_never_fit_are_packed(self):
+        self.orders.write_text(self.ORDERS.replace("\ntwo,tray", "\ntwo,crate,800,700,650,6,1,0,0,\ntwo,tray"))
+        items = self.pack("--sequence", "two")["items"]
+        self.assertEqual([item["placed"] for item in items], [True, False, True])
+        self.assertIn("too big for the container", items[1]["reason"])
+
+    def test_boxes_with_any_id_are_packed_and_their_program_runs_again(self):
+        ids = ["BOX11", "BOX1", "A12B", "crate", "crate_turn"]
+        items = self.folder / "items.yaml"
+        items.write_text("parcel_types:\n  - {name: cube, size: [0.11, 0.11, 0.1], mass: 0.3}\nparcels:\n"
+                         + "".join(f"  - {{id: {id}, type: cube, material: box}}\n" for id in ids)
+                         + "sequences:\n  - name: any\n    items:\n"
+                         + "".join(f"      - {{parcel: {id}, up: Z}}\n" for id in ids))
+        program = self.folder / "any.csv"
+        words = (CELL, "--items", items, "--sequence", "any")
+        packed = json.loads(snug("pack", *words, *self.QUICK, "--program", program, "--json").stdout)
+        self.assertEqual(packed["executed_boxes"], len(ids), packed["stopped"])
+        for id in ids:
+            self.assertIn(f",PrePick({id}),", program.read_text())
+        run = json.loads(snug("simulate", *words, "--program", program, "--cup", "phases", "--json").stdout)
+        self.assertEqual(run["state_hash"], packed["state_hash"])
+        self.assertEqual([box["state"] for box in run["boxes"]], ["packed"] * len(ids))
+        comma = snug("pack", CELL, "--sequence", "any", "--items", self.write_items("a,b"))
+        self.assert_refused(comma, "parcels[0].id", "without commas")
+
+    def write_items(self, id):
+        path = self.folder / "one.yaml"
+        path.write_text("parcel_types:\n  - {name: cube, size: [0.11, 0.11, 0.1], mass: 0.3}\n"
+                        f"parcels:\n  - {{id: '{id}', type: cube, material: box}}\n"
+                        f"sequences:\n  - name: any\n    items:\n      - {{parcel: '{id}', up: Z}}\n")
+        return path
+
+    def test_other_items_do_not_change_what_is_expected_unless_asked(self):
+        words = ("pack", CELL, "--sequence", "1", "--container", "220x240x120", *self.QUICK, "--json")
+        plans = []
+        for more in ([], ["--items", self.orders], ["--items", self.orders, "--future", "all"]):
+            packed = json.loads(snug(*words, *more).stdout)
+            plans.append([item.get("planned") for item in packed["items"]])
+        self.assertTrue(any(plans[0]))
+        self.assertEqual(plans[0], plans[1])
+        self.assertEqual(len(plans[2]), len(plans[0]))
+        self.assert_refused(snug(*words, "--future", "som"), "--future", "own", "all")
+
+    def test_without_samples_nothing_is_said_of_samples(self):
+        item = self.pack("--sequence", "two")["items"][0]
+        self.assertEqual((item["samples"], item["samples_succeeded"], item["predicted"]), (0, None, None))
+        table = snug("pack", CELL, "--items", self.orders, "--sequence", "two", *self.QUICK).stdout
+        line = next(line for line in table.splitlines() if line.startswith("ITEM000001"))
+        self.assertNotIn("%", line)
+        self.assertEqual([line.split()[-4], line.split()[-2]], ["-", "-"])
+
+    def test_comparison_prints_names_whole(self):
+        lines = snug("compare", CELL, "--sequences", "1", "--agents", "margin", *self.QUICK).stdout.splitlines()
+        table7 = {"I.AM.": "12 / 74.22", "State of the Art": "5 / 31.60", "Manual Operator": "12 / 74.22"}
+        for agent, cell in table7.items():
+            line = next(line for line in lines if line.startswith(f"reported, {agent} "))
+            self.assertIn(cell, line)
+        self.assertEqual(len({len(line) for line in lines}), 1, "columns stand below each other")
 
     def test_container_too_small_for_anything_is_a_reason(self):
         packed = self.pack("--sequence", "two", "--container", "60x60x60")
         self.assertEqual(packed["executed_boxes"], 0)
-        self.assertIn("too big for the container", packed["stopped"])
+        for item in packed["items"]:
+            self.assertIn("too big for the container", item["reason"])
 
     def test_pallet_is_packed_within_its_edges(self):
         packed = self.pack("--sequence", "two", "--pallet", "250x200x300")
@@ -656,9 +724,13 @@ class OtherCells(unittest.TestCase):
         drawn = snug("items", "sequence", CELL, "--all", "--name", "random", "--sequences", 1, "--seed", 3)
         self.assertEqual(drawn.stdout.count("parcel:"), 18)
 
-    def test_nothing_packed_leaves_no_program_and_says_so(self):
-        program = self.folder / "out.csv"
-        result = snug("pack", CELL, "--items", self.orders, "--sequence", "huge", *self.QUICK, "--program", program)
-        self.assertEqual(result.returncode, 0)
-        self.assertIn("no program, no recording", result.stderr)
-        self.assertFalse(program.exists())
+    def test_nothing_packed_leaves_no_program_and_no_recording_and_says_so(self):
+        words = ("pack", CELL, "--items", self.orders, "--sequence", "huge", *self.QUICK)
+        self.assertEqual(snug(*words).returncode, 0, "a no is a result")
+        for option, name in (("--program", "out.csv"), ("-o", "out.h5")):
+            path = self.folder / name
+            result = snug(*words, option, path)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("no program, no recording", result.stderr)
+            self.assertIn("too big for the container", result.stdout)
+            self.assertFalse(path.exists())

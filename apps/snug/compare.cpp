@@ -61,7 +61,8 @@ std::vector<std::string> choose_sequences(const CompareOptions& options, model::
 }  // namespace
 
 int run_compare(const CompareOptions& options) {
-  model::Scenario scenario = load_changed(options.pack.scenario, options.pack.changes);
+  SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
+  model::Scenario& scenario = loaded.scenario;
   const std::vector<std::string> sequences = choose_sequences(options, scenario);
   const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents");
   const std::size_t runs = agents.size() * sequences.size();
@@ -70,7 +71,7 @@ int run_compare(const CompareOptions& options) {
     for (const std::string& sequence : sequences) {
       PackOptions pack = options.pack;
       pack.agent = agent;
-      const task::SessionOptions session = make_session_options(pack, scenario);
+      const task::SessionOptions session = make_session_options(pack, loaded, sequence);
       const std::string label = fmt::format("{} of {}: {}, sequence {}", rows.size() + 1, runs, agent, sequence);
       rows.push_back({task::pack(scenario, sequence, session, make_progress_line(label)), session.packing.seed});
     }

@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
+#include <iterator>
+#include <span>
 #include <thread>
 
 #include "pack_report.hpp"
@@ -33,12 +34,34 @@ void record(const PackOptions& options, const model::Scenario& scenario, const t
   (void)cell::run(scenario, run);
 }
 
+/// Any parcel of the files that the sequence's boxes come from.
+packing::FutureModel own_future(const SourcedScenario& loaded, const std::string& name) {
+  packing::FutureModel future;
+  const model::Sequence* sequence = model::find_sequence(loaded.scenario, name);
+  if (sequence == nullptr) return future;  // refused later, with the names that there are
+  std::size_t begin = 0;
+  for (const std::size_t end : loaded.ends) {
+    const auto parcels = std::span(loaded.scenario.parcels).subspan(begin, end - begin);
+    begin = end;
+    const bool is_source = std::ranges::any_of(sequence->items, [&](const model::Item& item) {
+      return std::ranges::find(parcels, item.parcel, &model::Parcel::id) != parcels.end();
+    });
+    if (!is_source) continue;
+    packing::FutureModel part = packing::make_future_model(loaded.scenario, parcels);
+    std::ranges::move(part.kinds, std::back_inserter(future.kinds));
+    std::ranges::move(part.weights, std::back_inserter(future.weights));
+  }
+  return future;
+}
+
 }  // namespace
 
-task::SessionOptions make_session_options(const PackOptions& options, const model::Scenario& scenario) {
+task::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
+                                          const std::string& sequence) {
   task::SessionOptions session;
   session.agent = options.agent;
-  session.packing.seed = options.seed.value_or(scenario.seed);
+  session.packing.seed = options.seed.value_or(loaded.scenario.seed);
+  if (options.future == "own") session.future = own_future(loaded, sequence);
   session.packing.decision_time = options.decision_time;
   session.threads = options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   session.packing.threads = session.threads;
@@ -61,8 +84,9 @@ task::Progress make_progress_line(const std::string& label) {
 }
 
 int run_pack(const PackOptions& options) {
-  const model::Scenario scenario = load_changed(options.scenario, options.changes);
-  const task::SessionOptions session = make_session_options(options, scenario);
+  const SourcedScenario loaded = load_with_sources(options.scenario, options.changes);
+  const model::Scenario& scenario = loaded.scenario;
+  const task::SessionOptions session = make_session_options(options, loaded, options.sequence);
   const task::SessionResult result =
       task::pack(scenario, options.sequence, session, make_progress_line("sequence " + options.sequence));
   task::ExecutionResult executions;
@@ -78,12 +102,11 @@ int run_pack(const PackOptions& options) {
   if (options.program && has_program) motion::write_program(result.program, *options.program);
   if (options.plan) write_file(*options.plan, format_plan(result));
   if (options.record && has_program) record(options, scenario, result, session);
-  if (!has_program && (options.program || options.record)) {
-    std::fputs("snug: nothing was packed: no program, no recording\n", stderr);
-  }
+  const bool is_missing = !has_program && (options.program || options.record);
+  if (is_missing) std::fputs("snug: nothing was packed: no program, no recording\n", stderr);
   const std::string text = options.json ? format_json(result, executions) : format_table(result, executions);
   std::fputs(text.c_str(), stdout);
-  return kSuccess;
+  return is_missing ? kRunFailed : kSuccess;
 }
 
 }  // namespace snug::app

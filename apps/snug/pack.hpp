@@ -21,6 +21,7 @@ struct PackOptions {
   double decision_time = packing::PackingSettings{}.decision_time;  ///< s
   std::optional<int> threads;                                       ///< absent: all cores
   int samples = task::SessionOptions{}.samples;
+  std::string future = "own";
   std::string look = "exact";
   std::optional<std::string> robot;
   std::optional<int> executions;
@@ -31,7 +32,8 @@ struct PackOptions {
 void add_pack(CLI::App& app, Action& action);
 /// What `pack` and `compare` have in common.
 void add_packing_options(CLI::App& verb, PackOptions& options);
-[[nodiscard]] task::SessionOptions make_session_options(const PackOptions& options, const model::Scenario& scenario);
+[[nodiscard]] task::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
+                                                        const std::string& sequence);
 /// A line on a terminal that is written over again, or nothing.
 [[nodiscard]] task::Progress make_progress_line(const std::string& label);
 

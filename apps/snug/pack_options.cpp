@@ -35,10 +35,16 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
       ->check(whole(1))
       ->type_name("N");
   verb.add_option("--samples", options.samples,
-                  "courses of events with uncertain sizes, friction, poses, masses and cup in which every motion is "
-                  "tried before it is done, at most 64; 0: none")
+                  "courses of events with uncertain sizes, friction, poses, centres of mass and cup in which every "
+                  "motion is tried before it is done, at most 64; 0: none")
       ->check(whole(0, 64))
       ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--future", options.future,
+                  "what an item is expected to be followed by: boxes of the files that the sequence's come from (own), "
+                  "or all boxes of the scenario and of --items")
+      ->check(one_of({"own", "all"}))
+      ->type_name("WHICH")
       ->capture_default_str();
 }
 
@@ -62,7 +68,8 @@ void add_pack(CLI::App& app, Action& action) {
                   "protective stop is a failed attempt; absent: the tool moves by itself")
       ->type_name("NAME");
   verb.add_option("--executions", options->executions,
-                  "repeat the finished program N times, open loop, under sampled uncertainty")
+                  "repeat the finished program N times, open loop, under sampled uncertainty: that of the samples, and "
+                  "masses")
       ->check(whole(1))
       ->type_name("N");
   verb.add_option("--program", options->program, "write the waypoint program")->type_name("FILE.csv");

@@ -50,8 +50,9 @@ Json as_json(const task::ItemReport& item) {
     json["turned"] = task::name_of(item.turn);
     json["position_error_mm"] = 1e3 * item.position_error;
     json["angle_error_deg"] = item.angle_error / kDegree;
-    json["samples_succeeded"] = item.share;
-    json["predicted"] = as_json(item.predicted);
+    json["samples"] = item.samples;
+    json["samples_succeeded"] = item.samples > 0 ? Json(item.share) : Json();
+    json["predicted"] = item.samples > 0 ? as_json(item.predicted) : Json();
     json["happened"] = as_json(item.happened);
   }
   json["attempts"] = item.attempts;
@@ -82,14 +83,18 @@ std::string item_line(const task::ItemReport& item) {
                        item.attempts);
   }
   const Vector3 p = 1e3 * item.planned.X_TP.p;
+  const auto of_samples = [&](double value, const char* form) {
+    return item.samples > 0 ? fmt::format(fmt::runtime(form), value) : std::string("-");
+  };
   return fmt::format(
-      "{:<8} {:7.1f} {:7.1f} {:7.1f}  {}{}  {:<9}  {:<8} {:6.1f} {:6.1f} {:8.2f} {:>6.2f} {:5} {:5.0f}% "
-      "{:5.0f} {:5.0f} {:6.1f} {:6.1f}\n",
+      "{:<8} {:7.1f} {:7.1f} {:7.1f}  {}{}  {:<9}  {:<8} {:6.1f} {:6.1f} {:8.2f} {:>6.2f} {:5} {:>6} "
+      "{:>5} {:5.0f} {:>6} {:6.1f}\n",
       item.id, p.x(), p.y(), p.z(), item.planned.orientation.up_sign > 0 ? '+' : '-',
       static_cast<char>('X' + static_cast<int>(item.planned.orientation.up)), task::name_of(item.turn),
       task::name_of(item.manner), 1e3 * item.position_error, item.angle_error / kDegree, item.decision_seconds,
-      item.prediction_seconds, item.attempts, 100.0 * item.share, item.predicted.force, item.happened.force,
-      1e3 * item.predicted.displacement, 1e3 * item.happened.displacement);
+      item.prediction_seconds, item.attempts, of_samples(100.0 * item.share, "{:.0f}%"),
+      of_samples(item.predicted.force, "{:.0f}"), item.happened.force,
+      of_samples(1e3 * item.predicted.displacement, "{:.1f}"), 1e3 * item.happened.displacement);
 }
 
 }  // namespace

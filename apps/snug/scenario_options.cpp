@@ -20,12 +20,21 @@ void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes) {
       ->excludes(container);
 }
 
-model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes) {
-  model::Scenario scenario = model::load_scenario(file);
+SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes) {
+  SourcedScenario loaded{model::load_scenario(file), {}};
+  model::Scenario& scenario = loaded.scenario;
   if (changes.container) scenario = model::with_container(scenario, *changes.container);
   if (changes.pallet) scenario = model::with_pallet(scenario, *changes.pallet);
-  for (const std::string& items : changes.items) model::add_items(scenario, items);
-  return scenario;
+  loaded.ends.push_back(scenario.parcels.size());
+  for (const std::string& items : changes.items) {
+    model::add_items(scenario, items);
+    loaded.ends.push_back(scenario.parcels.size());
+  }
+  return loaded;
+}
+
+model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes) {
+  return load_with_sources(file, changes).scenario;
 }
 
 }  // namespace snug::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,5 +22,12 @@ struct ScenarioChanges {
 void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes);
 /// The scenario of a file, changed so; its text says the same. Throws InputError for what cannot be used.
 [[nodiscard]] model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes);
+
+/// The same, and which of its parcels came from which file.
+struct SourcedScenario {
+  model::Scenario scenario;
+  std::vector<std::size_t> ends;  ///< index behind the last parcel of the scenario file, and of each --items file
+};
+[[nodiscard]] SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes);
 
 }  // namespace snug::app

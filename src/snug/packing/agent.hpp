@@ -25,8 +25,8 @@ struct FutureModel {
 
 /// Every parcel of the scenario, equally likely: types as frequent as the scenario has them, sizes as measured.
 [[nodiscard]] FutureModel make_future_model(const model::Scenario& scenario);
-/// Items seen elsewhere (orders), equally likely each; equal sizes are put together.
-[[nodiscard]] FutureModel learn_future_model(std::span<const Item> items);
+/// The same of some of its parcels.
+[[nodiscard]] FutureModel make_future_model(const model::Scenario& scenario, std::span<const model::Parcel> parcels);
 
 struct Decision {
   std::vector<Candidate> candidates;  ///< best first, never empty

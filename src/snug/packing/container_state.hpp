@@ -43,7 +43,5 @@ struct Extent {
 
 /// Percent of the inner volume filled by the boxes (measured sizes), report eq. (1).
 [[nodiscard]] double filling_percent(const ContainerState& state);
-/// Mass in kg that rests on each box, directly and through others, shared by area of contact.
-[[nodiscard]] std::vector<double> compute_loads(const ContainerState& state);
 
 }  // namespace snug::packing

@@ -33,10 +33,6 @@ class ManualAgent : public Agent {
   }
 
  private:
-  [[nodiscard]] static bool is_hopeless(NoPlace reason) {
-    return reason == NoPlace::TooBig || reason == NoPlace::TooHeavy || reason == NoPlace::NotPickable;
-  }
-
   /// Large ones first, more or less: the volumes are shaken the more the later the order.
   [[nodiscard]] std::vector<Item> sorted(std::vector<Item> items, int order) const {
     Rng rng = Rng(input_.settings.seed + static_cast<std::uint64_t>(order)).split("order");

@@ -1,5 +1,6 @@
 // Agent offline: knows the sequence and plans it in its order; an upper bound for those that do not.
 #include <algorithm>
+#include <iterator>
 
 #include "snug/packing/internal/agents.hpp"
 #include "snug/packing/internal/search.hpp"
@@ -17,19 +18,22 @@ class OfflineAgent : public Agent {
     const Planning planning = plan_for_contact(state, input_.settings);
     const Choice choice = make_choice(planning, item);
     if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
-    const std::vector<Item> rest = rest_from(item);
+    const std::vector<Item> rest = rest_from(planning, item);
     const Layout layout = to_layout(planning, make_rules(planning, rest), state);
     if (!still_holds(planning, layout, rest)) replan(planning, layout, rest);
     return propose(planning, layout, item, choice);
   }
 
  private:
-  /// The sequence from this item on; the item alone when the sequence does not have it.
-  [[nodiscard]] std::vector<Item> rest_from(const Item& item) const {
+  /// The sequence from this item on, without later ones that nothing can be done with; the item alone when the sequence
+  /// does not have it.
+  [[nodiscard]] std::vector<Item> rest_from(const Planning& planning, const Item& item) const {
     const auto at =
         std::find_if(input_.sequence.begin(), input_.sequence.end(), [&](const Item& i) { return i.id == item.id; });
     std::vector<Item> rest{item};
-    if (at != input_.sequence.end()) rest.insert(rest.end(), at + 1, input_.sequence.end());
+    if (at == input_.sequence.end()) return rest;
+    std::copy_if(at + 1, input_.sequence.end(), std::back_inserter(rest),
+                 [&](const Item& later) { return !refuse(planning, later, make_choice(planning, later)); });
     return rest;
   }
 
@@ -54,8 +58,6 @@ class OfflineAgent : public Agent {
     std::vector<Piece> pieces;
     for (const Item& item : rest) {
       Choice choice = make_choice(planning, item);
-      // The sequence ends for this plan at an item that nothing can be done with.
-      if (refuse(planning, item, choice)) break;
       pieces.push_back(choice.piece);
       choices.push_back(std::move(choice));
     }

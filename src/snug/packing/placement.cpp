@@ -22,6 +22,10 @@ ContainerState with_candidate(ContainerState state, const Item& item, const Cand
   return state;
 }
 
+bool is_hopeless(NoPlace reason) {
+  return reason == NoPlace::TooBig || reason == NoPlace::TooHeavy || reason == NoPlace::NotPickable;
+}
+
 std::string_view describe(NoPlace reason) {
   switch (reason) {
     case NoPlace::TooBig:

@@ -54,6 +54,8 @@ enum class NoPlace {
 /// The state as it would be if the candidate's plan came true exactly: what a plan on paper goes on with.
 [[nodiscard]] ContainerState with_candidate(ContainerState state, const Item& item, const Candidate& candidate);
 
+/// Whether the item would have no place in the empty container either: nothing to wait for, the next one may fit.
+[[nodiscard]] bool is_hopeless(NoPlace reason);
 /// "too big" and so on; a sentence's end for tables.
 [[nodiscard]] std::string_view describe(NoPlace reason);
 

@@ -55,7 +55,7 @@ class PackingSession {
     input.settings = options_.packing;
     // Plans that are made on paper first have no other place to try.
     if (!plans_on_paper()) input.settings.last_squeeze = options_.last_squeeze;
-    input.future = packing::make_future_model(scenario_);
+    input.future = options_.future ? *options_.future : packing::make_future_model(scenario_);
     input.sequence = items_;
     input.is_reachable = make_reach(scenario_, executor_.layout(), executor_.real().simulation().sequence());
     const std::unique_ptr<packing::Agent> agent = packing::make_agent(options_.agent, std::move(input));
@@ -70,9 +70,7 @@ class PackingSession {
         place(static_cast<int>(i), decision->candidates, report);
       } else {
         report.reason = packing::describe(decision.error());
-        const packing::NoPlace why = decision.error();
-        const bool is_set_aside = why == packing::NoPlace::TooHeavy || why == packing::NoPlace::NotPickable;
-        if (!is_set_aside) result_.stopped = fmt::format("{}: {}", report.id, report.reason);
+        if (!packing::is_hopeless(decision.error())) result_.stopped = fmt::format("{}: {}", report.id, report.reason);
       }
       finish_item(std::move(report));
       if (progress) progress(result_, static_cast<int>(i) + 1, static_cast<int>(items_.size()));
@@ -88,6 +86,13 @@ class PackingSession {
       const auto decision = agent.decide(paper, item);
       paper_seconds_.push_back(seconds_since(start));
       if (!decision && decision.error() == packing::NoPlace::NotPlanned) continue;
+      if (!decision && packing::is_hopeless(decision.error())) {
+        ItemReport report;
+        report.id = item.id;
+        report.reason = packing::describe(decision.error());
+        result_.items.push_back(std::move(report));
+        continue;
+      }
       if (!decision) {
         ending_ = fmt::format("{}: {}", item.id, packing::describe(decision.error()));
         break;
@@ -178,6 +183,7 @@ class PackingSession {
     report.turn = best->turn;
     report.manner = best->manner;
     report.flips = packing::count_flips(item.arrival, best->planned.orientation);
+    report.samples = options_.samples;
     report.share = best->share;
     report.predicted = best->predicted;
     report.happened = best->happened;
@@ -274,13 +280,6 @@ SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
                    const Progress& progress) {
   (void)make_layout(scenario);  // says what is missing
   return PackingSession(scenario, sequence, options).pack(progress);
-}
-
-SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
-                      const std::vector<packing::Placement>& plan, const SessionOptions& options,
-                      const Progress& progress) {
-  (void)make_layout(scenario);
-  return PackingSession(scenario, sequence, options).execute(plan, progress);
 }
 
 }  // namespace snug::task

@@ -41,6 +41,8 @@ struct SessionOptions {
   double least_share = 0.5;     ///< of the samples, below which not even the best attempt is taken
   int max_attempts = 10;        ///< for an item: candidates times manners
   int most_attempts = 24;       ///< where none was good
+  /// What may follow an item; absent: any parcel of the scenario.
+  std::optional<packing::FutureModel> future;
   Uncertainty uncertainty;
   PlaceLimits limits;
   Perception perception = Perception::Exact;
@@ -64,8 +66,9 @@ struct ItemReport {
   int flips = 0;
   int attempts = 0;         ///< simulated for this item
   int stops = 0;            ///< of them that ended with a protective stop of the robot, in the course that counts
-  double share = 0.0;       ///< of the samples that succeeded
-  AttemptForces predicted;  ///< largest of the samples
+  int samples = 0;          ///< in which it was tried beside the course that counts
+  double share = 0.0;       ///< of the samples that succeeded; means nothing without samples
+  AttemptForces predicted;  ///< largest of the samples; means nothing without samples
   AttemptForces happened;
   double position_error = 0.0;    ///< m
   double angle_error = 0.0;       ///< rad
@@ -95,11 +98,5 @@ using Progress = std::function<void(const SessionResult& so_far, int item, int i
 /// are executed in its order. Throws InputError for an unknown sequence, agent, or a scenario that cannot be packed.
 [[nodiscard]] SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
                                  const SessionOptions& options, const Progress& progress = {});
-
-/// The same with the decisions made: each placement is executed in the best manner; boxes that do not
-/// come to their place are left out.
-[[nodiscard]] SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
-                                    const std::vector<packing::Placement>& plan, const SessionOptions& options,
-                                    const Progress& progress = {});
 
 }  // namespace snug::task

@@ -8,7 +8,6 @@ namespace snug::packing::internal {
 
 /// Lengths are integers in tenths of a millimetre: sums are exact and equal on every machine. Origin: the corner of the
 /// inner floor where Tx and Ty are smallest.
-inline constexpr int kTick = 1;
 inline constexpr int kTicksPerMillimetre = 10;
 inline constexpr double kTicksPerMetre = 10000.0;
 

@@ -114,6 +114,36 @@ TEST_P(EveryAgent, AsksWhatCanBeReached) {
   EXPECT_EQ(decision.error(), NoPlace::NotReachable);
 }
 
+TEST_P(EveryAgent, PassesOnWhatAReachFunctionThrowsAtAnyNumberOfThreads) {
+  const Item item = make_box("one", Vector3(0.10, 0.12, 0.20)), next = make_box("two", Vector3(0.10, 0.12, 0.15));
+  for (const int threads : {1, 2}) {
+    AgentInput input{{}, make_future_model(scenario), {item, next}, [](const Placement&) -> bool {
+                       throw InputError("arm", "reach", "nothing", "something");
+                     }};
+    input.settings.decision_time = 0.01;
+    input.settings.threads = threads;
+    const auto agent = make_agent(GetParam(), std::move(input));
+    EXPECT_THROW((void)agent->decide(make_container_state(scenario.containers.front()), item), InputError);
+  }
+}
+
+TEST(NoPlace, IsHopelessWhereAnEmptyContainerWouldNotHelp) {
+  for (const NoPlace reason : {NoPlace::TooBig, NoPlace::TooHeavy, NoPlace::NotPickable}) {
+    EXPECT_TRUE(is_hopeless(reason)) << describe(reason);
+  }
+  for (const NoPlace reason : {NoPlace::NoSpace, NoPlace::NoStablePlace, NoPlace::OverLoad, NoPlace::NotReachable}) {
+    EXPECT_FALSE(is_hopeless(reason)) << describe(reason);
+  }
+}
+
+TEST(FutureModel, HoldsTheParcelsAskedForAlone) {
+  const model::Scenario scenario = test::demonstrator();
+  const FutureModel some = make_future_model(scenario, std::span(scenario.parcels).subspan(4, 2));
+  ASSERT_EQ(some.kinds.size(), 2U);
+  EXPECT_EQ(some.kinds[0].id, scenario.parcels[4].id);
+  EXPECT_EQ(make_future_model(scenario, scenario.parcels), make_future_model(scenario));
+}
+
 TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
   // A slot of 100 mm, as high as the container, between boxes that nothing fits on.
   ContainerState state = make_container_state(test::demonstrator().containers.front());

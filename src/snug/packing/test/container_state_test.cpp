@@ -1,4 +1,4 @@
-// ContainerState: extents, filling degree and loads against sums by hand.
+// ContainerState: extents and filling degree against sums by hand.
 #include "snug/packing/container_state.hpp"
 
 #include <gtest/gtest.h>
@@ -30,28 +30,6 @@ TEST(ContainerState, FillingDegreeIsThatOfTheReportForSequenceOne) {
   const std::vector<Item> items = make_items(scenario, *model::find_sequence(scenario, "1"));
   for (int i = 0; i < 12; ++i) state.boxes.push_back({items[static_cast<std::size_t>(i)], Pose()});
   EXPECT_NEAR(filling_percent(state), 74.22, 0.005);  // Table 9 sizes over 52.725 L, two decimals
-}
-
-TEST(ContainerState, BridgeSharesItsMassByArea) {
-  ContainerState state;
-  state.boxes.push_back(cube(0.1, Vector3(-0.05, 0.0, 0.05), 1.0));
-  state.boxes.push_back(cube(0.1, Vector3(0.05, 0.0, 0.05), 1.0));
-  state.boxes.push_back(cube(0.1, Vector3(0.025, 0.0, 0.15), 2.0));  // a quarter on the first, three on the second
-  state.boxes.push_back(cube(0.1, Vector3(0.025, 0.0, 0.25), 3.0));
-  const std::vector<double> load = compute_loads(state);
-  EXPECT_NEAR(load[0], 1.25, 1e-12);  // rounding
-  EXPECT_NEAR(load[1], 3.75, 1e-12);
-  EXPECT_NEAR(load[2], 3.0, 1e-12);
-  EXPECT_EQ(load[3], 0.0);
-}
-
-TEST(FutureModel, CountsEqualItemsOnce) {
-  std::vector<Item> items(3);
-  items[2].size = Vector3(0.2, 0.1, 0.1);
-  const FutureModel future = learn_future_model(items);
-  ASSERT_EQ(future.kinds.size(), 2U);
-  EXPECT_EQ(future.weights[0], 2.0);
-  EXPECT_TRUE(learn_future_model({}).kinds.empty());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/model/other_container.hpp"
+#include "snug/motion/limits.hpp"
 #include "snug/task/executions.hpp"
 #include "snug/task/grasp.hpp"
 #include "snug/task/surroundings.hpp"
@@ -144,7 +145,107 @@ TEST(Layout, HasNoRimWhereThereAreNoWalls) {
 TEST(Pack, LeavesABoxThatIsTooBigForTheContainerWithAReason) {
   const SessionResult result = pack(model::with_container(demonstrator(), "150x150x60"), "1", quick());
   EXPECT_EQ(result.planned_boxes, 0);
-  EXPECT_EQ(result.stopped, "BOX027: too big for the container");
+  ASSERT_EQ(result.items.size(), 18U);
+  for (const ItemReport& item : result.items) EXPECT_EQ(item.reason, "too big for the container") << item.id;
+  EXPECT_EQ(result.stopped, "no more items, 18 not packed");
+}
+
+TEST(Pack, GoesOnAfterAnItemThatCanNeverFit) {
+  model::Scenario scenario = model::with_container(demonstrator(), "320x320x150");  // reads its text anew
+  scenario.sequences.front().items.resize(2);
+  scenario.parcels[14].size = Vector3(0.3, 0.3, 0.2);  // BOX027, the first item
+  ASSERT_EQ(scenario.parcels[14].id, "BOX027");
+  for (const char* agent : {"contact-aware", "margin", "manual", "offline"}) {
+    SCOPED_TRACE(agent);
+    SessionOptions options = quick();
+    options.agent = agent;
+    options.samples = 0;
+    const SessionResult result = pack(scenario, "1", options);
+    ASSERT_EQ(result.items.size(), 2U);
+    EXPECT_EQ(result.items[0].id, "BOX027");
+    EXPECT_EQ(result.items[0].reason, "too big for the container");
+    EXPECT_TRUE(result.items[1].is_placed) << result.items[1].reason;
+    EXPECT_EQ(result.items[1].samples, 0);
+    EXPECT_EQ(result.executed_boxes, 1);
+  }
+}
+
+TEST(Pack, CarriesItsOwnBox018AsFastAsAnyOther) {
+  // The demonstrator slows one waypoint of its own programs, PrePlace018.
+  model::Scenario scenario = shortened(1);
+  scenario.sequences.front().items.front().parcel = "BOX018";
+  scenario.sequences.front().items.front().up = model::UpAxis::Z;
+  SessionOptions options = quick();
+  options.samples = 0;
+  const SessionResult result = pack(scenario, "1", options);
+  ASSERT_EQ(result.executed_boxes, 1) << result.stopped;
+  const Lane lane(scenario, "1", options.simulation);
+  const motion::PreparedProgram plan = lane.simulation().prepare(result.program);
+  int rows = 0;
+  for (const motion::Waypoint& row : plan.program.waypoints) {
+    if (!row.name.starts_with("PrePlace")) continue;
+    ++rows;
+    EXPECT_EQ(motion::match_limits(row.name, plan.settings.limits)->prefix, "PrePlace") << row.name;
+  }
+  EXPECT_GE(rows, 1);
+}
+
+TEST(Executions, DrawMassesAndSamplesDoNot) {
+  const model::Scenario scenario = demonstrator();
+  const auto spread = [&](const Uncertainty& uncertainty) {
+    const model::Scenario changed = sample(scenario, "1", uncertainty, Rng(3));
+    double most = 0.0;
+    for (std::size_t i = 0; i < scenario.parcels.size(); ++i) {
+      const SpatialInertia &was = scenario.parcels[i].inertia, &is = changed.parcels[i].inertia;
+      most = std::max(most, std::abs(is.mass / was.mass - 1.0));
+      // 1e-12: rounding. A box that is heavier throughout turns as much harder.
+      EXPECT_TRUE(is.inertia.isApprox(is.mass / was.mass * was.inertia, 1e-12));
+    }
+    return most;
+  };
+  const double drawn = spread(ExecutionOptions().uncertainty);
+  EXPECT_LE(drawn, cell::kMassSpread);
+  EXPECT_GT(drawn, 0.5 * cell::kMassSpread);  // the largest of eighteen uniform draws
+  EXPECT_EQ(spread(SessionOptions().uncertainty), 0.0);
+  // All else is drawn as before.
+  model::Scenario with = sample(scenario, "1", ExecutionOptions().uncertainty, Rng(3));
+  const model::Scenario without = sample(scenario, "1", {}, Rng(3));
+  for (std::size_t i = 0; i < with.parcels.size(); ++i) {
+    EXPECT_EQ(with.parcels[i].size, without.parcels[i].size);
+    EXPECT_EQ(with.parcels[i].inertia.com, without.parcels[i].inertia.com);
+    with.parcels[i].inertia = without.parcels[i].inertia;
+  }
+  EXPECT_EQ(with, without);
+}
+
+/// A cell with one bench of 0.5 x 0.7 m over the aligner, the container twice `way` from there.
+CellLayout layout_with_bench(const Vector3& way) {
+  model::Scenario scenario = demonstrator();
+  model::Body bench;
+  bench.name = "bench";
+  bench.kind = model::BodyKind::Static;
+  bench.shapes.push_back({geometry::Box{Vector3(0.25, 0.35, 0.05)}, Pose{}});
+  bench.X_WB.p = Vector3(1.0, 2.0, 0.0);
+  scenario.bodies = {bench};
+  scenario.aligner->X_WA.p = Vector3(1.0, 2.0, -1.0);
+  scenario.containers[0].X_WT.p = Vector3(1.0, 2.0, -1.0) + 2.0 * way;
+  return make_layout(scenario);
+}
+
+TEST(Layout, KeepsRoomForAFlipWhereTheBoxComesDownAndNowhereElse) {
+  for (const Vector3& way :
+       {Vector3(0.9, 0.1, 0.0), Vector3(-0.9, 0.1, 0.0), Vector3(0.1, 0.9, 0.0), Vector3(0.1, -0.9, 0.0)}) {
+    const CellLayout layout = layout_with_bench(way);
+    ASSERT_TRUE(layout.flip_place.has_value());
+    int axis = 0;
+    way.cwiseAbs().maxCoeff(&axis);
+    const double sign = way[axis] > 0.0 ? 1.0 : -1.0;
+    EXPECT_EQ(layout.flip_place->direction, Vector3(sign * Vector3::Unit(axis)));
+    // Pulled as far toward the container as the room lets it: 160 mm and 80 mm more from that edge; 160 mm across.
+    const double half[2] = {0.25, 0.35}, middle[2] = {1.0, 2.0};
+    EXPECT_NEAR(sign * (layout.flip_place->p_WF[axis] - middle[axis]), half[axis] - 0.24, 1e-12);
+    EXPECT_NEAR(layout.flip_place->p_WF[1 - axis] - middle[1 - axis], std::min(0.1, half[1 - axis] - 0.16), 1e-12);
+  }
 }
 
 TEST(Pack, GivesTheSameWithAnyNumberOfThreadsAndWhenItsProgramIsRunAgain) {
