@@ -83,7 +83,7 @@ struct Reported {
 struct Sequence {
   std::string name;
   std::vector<Item> items;
-  std::optional<double> task_stiffness;            ///< 1/s^2, overrides the controller's
+  std::optional<double> task_stiffness;  ///< 1/s^2, overrides the controller's
   std::vector<Reported> reported;        ///< what others reached; the first is the one to compare a run with
   bool operator==(const Sequence&) const = default;
 };

@@ -284,8 +284,8 @@ void ScenarioReader::read_reported(const MapReader& map, Sequence& sequence) con
 }
 
 void ScenarioReader::read_sequence(const Value& value) {
-  const MapReader map =
-      value.map("sequence", {"name", "items", "task_stiffness", "reported", "packed_count", "reported_filling_percent"});
+  const MapReader map = value.map(
+      "sequence", {"name", "items", "task_stiffness", "reported", "packed_count", "reported_filling_percent"});
   Sequence sequence;
   const Value name = map.require("name");
   check_new_name(name, "sequence", find_sequence(scenario_, name.name()) != nullptr);
