@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <thread>
 
 #include "pack_report.hpp"
@@ -19,19 +18,35 @@
 namespace snug::app {
 namespace {
 
-/// The finished program once more, recorded.
-void record(const PackOptions& options, const model::Scenario& scenario, const task::SessionResult& result,
-            const task::SessionOptions& session) {
+/// The finished program once more, recorded; why that run had to stop, or nothing.
+std::string record(const PackOptions& options, const model::Scenario& scenario, const task::SessionResult& result,
+                   const task::SessionOptions& session, OutputFile& file) {
   cell::RunOptions run;
   run.program = result.program;
   run.program_text = motion::format_program(result.program);
   run.sequence = options.sequence;
   run.simulation = session.simulation;
-  run.record_path = *options.record;
+  run.record_file = &file;
   run.version = SNUG_VERSION;
   run.describe = [](const cell::RunResult& one) { return format_json(one); };
-  (void)cell::run(scenario, run);
+  return cell::run(scenario, run).failure;
 }
+
+/// The files that were asked for, reserved before the work begins.
+struct PackFiles {
+  std::optional<OutputFile> program, plan, record;
+
+  PackFiles(const PackOptions& options, const model::Scenario& scenario) {
+    NamedFiles outputs;
+    add_file(outputs, "--program", options.program);
+    add_file(outputs, "--plan", options.plan);
+    add_file(outputs, "-o", options.record);
+    expect_distinct(files_of(options.scenario, options.changes, scenario), outputs);
+    program = reserve(options.program);
+    plan = reserve(options.plan);
+    record = reserve_recording(options.record);
+  }
+};
 
 }  // namespace
 
@@ -63,6 +78,7 @@ task::Progress make_progress_line(const std::string& label) {
 int run_pack(const PackOptions& options) {
   const model::Scenario scenario = load_changed(options.scenario, options.changes);
   const task::SessionOptions session = make_session_options(options, scenario);
+  PackFiles files(options, scenario);
   const task::SessionResult result =
       task::pack(scenario, options.sequence, session, make_progress_line("sequence " + options.sequence));
   task::ExecutionResult executions;
@@ -75,15 +91,24 @@ int run_pack(const PackOptions& options) {
     executions = task::repeat(scenario, result, repeated);
   }
   const bool has_program = !result.program.waypoints.empty();
-  if (options.program && has_program) motion::write_program(result.program, *options.program);
-  if (options.plan) write_file(*options.plan, format_plan(result));
-  if (options.record && has_program) record(options, scenario, result, session);
+  std::string failure = result.failure;
+  if (files.program && has_program) write_file(std::move(*files.program), motion::format_program(result.program));
+  if (files.plan) write_file(std::move(*files.plan), format_plan(result));
+  if (files.record && has_program) {
+    const std::string recorded = record(options, scenario, result, session, *files.record);
+    if (failure.empty()) failure = recorded;
+  }
   if (!has_program && (options.program || options.record)) {
     std::fputs("snug: nothing was packed: no program, no recording\n", stderr);
   }
   const std::string text = options.json ? format_json(result, executions) : format_table(result, executions);
-  std::fputs(text.c_str(), stdout);
-  return kSuccess;
+  print(text);
+  if (failure.empty() && executions.failed > 0) {
+    failure = fmt::format("{} of {} executions did not reach their end", executions.failed, executions.count);
+  }
+  if (failure.empty()) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %s\n", failure.c_str());
+  return kRunFailed;
 }
 
 }  // namespace snug::app
