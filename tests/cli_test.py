@@ -336,7 +336,7 @@ class Views(unittest.TestCase):
         text = page.read_text()
         self.assertIn('id="snug-recording-0"', text)
         self.assertNotRegex(text, r"""(?:src|href)=["']https?:""")
-        self.assertEqual([p.name for p in self.path.iterdir() if ".part" in p.name], [])
+        self.assertEqual([p.name for p in self.path.iterdir() if "part" in p.name], [])
 
     def test_report_refuses_what_is_no_recording_and_writes_nothing(self):
         page = self.path / "page.html"

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/experiment/bench.hpp"
 
@@ -73,7 +74,7 @@ int run_bench(const BenchOptions& options) {
   const std::vector<experiment::Figure> figures = experiment::run_bench(bench);
   if (figures.empty())
     throw InputError("command line", "--only", "'" + bench.only + "'", "the start of a figure's name");
-  std::fputs((options.json ? as_json(figures) : as_table(figures)).c_str(), stdout);
+  print(options.json ? as_json(figures) : as_table(figures));
   const bool all_met = std::all_of(figures.begin(), figures.end(), [](const auto& figure) { return figure.ok; });
   return all_met ? kSuccess : kRunFailed;
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrate_files.hpp"
+#include "outputs.hpp"
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/calibration/identify.hpp"
 #include "snug/core/input_error.hpp"
@@ -63,7 +64,7 @@ void add_shifts(const robot::ArmModel& written, const robot::ArmModel& nominal, 
   json["max_deviation_in_base_rad"] = frames.angle;
 }
 
-void print(const ordered_json& json) {
+void print_table(const ordered_json& json) {
   const auto number = [&](const char* key) { return json.at(key).get<double>(); };
   if (json.contains("max_end_effector_error_m"))
     std::printf("tool against the deviations: at most %.2g m, %.2g rad apart\n", number("max_end_effector_error_m"),
@@ -89,6 +90,14 @@ int run_calibrate_kinematics(const CalibrateKinematicsOptions& options) {
   check_one_source(options);
   const AngleReading reading = options.angles == "urdf" ? AngleReading::Urdf : AngleReading::EulerXyz;
   const NominalArm nominal = load_nominal(options);
+  NamedFiles inputs = {{"the nominal URDF", nominal.path}}, outputs;
+  add_file(inputs, "--deltas", options.deltas);
+  add_file(inputs, "--yaml", options.yaml);
+  add_file(inputs, "--poses", options.poses);
+  add_file(outputs, "-o", options.output);
+  add_file(outputs, "--write-yaml", options.yaml_output);
+  expect_distinct(inputs, outputs);
+  std::optional<OutputFile> output = reserve(options.output), yaml_output = reserve(options.yaml_output);
   ordered_json json;
   robot::ArmModel arm;
   calibration::DhTable table;
@@ -114,12 +123,12 @@ int run_calibrate_kinematics(const CalibrateKinematicsOptions& options) {
     json["max_end_effector_error_rad"] = end.angle;
   }
   add_shifts(written, nominal.arm, json);
-  if (options.output) write_file(*options.output, text);
-  if (options.yaml_output) write_file(*options.yaml_output, calibration::format_calibration_yaml(written, reading));
+  if (output) write_file(std::move(*output), text);
+  if (yaml_output) write_file(std::move(*yaml_output), calibration::format_calibration_yaml(written, reading));
   if (options.json)
-    std::printf("%s\n", json.dump(2).c_str());
+    print(json.dump(2) + "\n");
   else
-    print(json);
+    print_table(json);
   return kSuccess;
 }
 

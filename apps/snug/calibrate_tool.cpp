@@ -7,6 +7,7 @@
 
 #include "calibrate.hpp"
 #include "calibrate_files.hpp"
+#include "outputs.hpp"
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/calibration/force_sensor.hpp"
 #include "snug/calibration/tool_tip.hpp"
@@ -39,6 +40,8 @@ std::string note_of(const std::string& what, const std::string& input, const Nom
 
 int run_calibrate_tool(const CalibrateToolOptions& options) {
   const NominalArm nominal = load_nominal(options);
+  std::optional<OutputFile> output =
+      reserve({{"the input", options.input}, {"the nominal URDF", nominal.path}}, options.output);
   const int flange = require_link(nominal.arm, "--flange", options.flange);
   const robot::Link& flange_link = nominal.arm.links[static_cast<std::size_t>(flange)];
   if (flange_link.segment != nominal.arm.joint_count())
@@ -49,8 +52,8 @@ int run_calibrate_tool(const CalibrateToolOptions& options) {
   const Vector3 tip_in_tool(options.tip_in_tool[0], options.tip_in_tool[1], options.tip_in_tool[2]);
   const Vector3 p_FE = tip.p_FQ - X_FE.R * tip_in_tool;
   const Vector3 shift = p_FE - X_FE.p;
-  if (options.output)
-    write_file(*options.output,
+  if (output)
+    write_file(std::move(*output),
                calibration::format_urdf_with_tip(nominal.path, nominal.arm, flange, p_FE,
                                                  note_of("tool frame", options.input, nominal), nominal.out_folder));
   if (options.json) {
@@ -62,7 +65,7 @@ int run_calibrate_tool(const CalibrateToolOptions& options) {
     json["point_m"] = numbers(tip.p_WQ);
     json["point_standard_deviation_m"] = numbers(deviations(tip.point_covariance));
     json["noise_m"] = tip.noise;
-    std::printf("%s\n", json.dump(2).c_str());
+    print(json.dump(2) + "\n");
     return kSuccess;
   }
   print_three("tip", tip.p_FQ, deviations(tip.covariance), 1e3, ("mm in " + options.flange).c_str());
@@ -74,13 +77,15 @@ int run_calibrate_tool(const CalibrateToolOptions& options) {
 
 int run_calibrate_sensor(const CalibrateSensorOptions& options) {
   const NominalArm nominal = load_nominal(options);
+  std::optional<OutputFile> output =
+      reserve({{"the input", options.input}, {"the nominal URDF", nominal.path}}, options.output);
   const int sensor = require_link(nominal.arm, "--sensor", options.sensor);
   const calibration::ForceSensorFit fit = calibration::fit_force_sensor(
       calibration::load_table(options.input, calibration::force_sensor_columns()), options.mass);
-  if (options.output)
-    write_file(*options.output, calibration::format_urdf_with_load(
-                                    nominal.path, nominal.arm, sensor, fit.mass, fit.com,
-                                    note_of("load of the sensor", options.input, nominal), nominal.out_folder));
+  if (output)
+    write_file(std::move(*output), calibration::format_urdf_with_load(
+                                       nominal.path, nominal.arm, sensor, fit.mass, fit.com,
+                                       note_of("load of the sensor", options.input, nominal), nominal.out_folder));
   if (options.json) {
     ordered_json json;
     json["mass_kg"] = fit.mass;
@@ -95,7 +100,7 @@ int run_calibrate_sensor(const CalibrateSensorOptions& options) {
     json["scale_standard_deviation"] = numbers(fit.scale_deviation);
     json["force_noise_N"] = fit.force_noise;
     json["torque_noise_Nm"] = fit.torque_noise;
-    std::printf("%s\n", json.dump(2).c_str());
+    print(json.dump(2) + "\n");
     return kSuccess;
   }
   std::printf("mass          %10.4f +- %.4f kg%s\n", fit.mass, fit.mass_deviation, options.mass ? " (given)" : "");

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "outputs.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
 
@@ -70,7 +71,7 @@ int run_check(const CheckOptions& options) {
   const motion::Program program = cell::corrected(scenario, motion::load_program(options.program),
                                                   options.corrections == "none" ? "" : options.corrections);
   const cell::CheckResult result = cell::check_program(scenario, program, check);
-  std::fputs((options.json ? format_json(result) : format_table(result)).c_str(), stdout);
+  print(options.json ? format_json(result) : format_table(result));
   return result.is_ok ? kSuccess : kRunFailed;
 }
 

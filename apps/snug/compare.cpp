@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "compare_report.hpp"
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/packing/representatives.hpp"
 
@@ -80,8 +81,12 @@ int run_compare(const CompareOptions& options) {
   const std::string text = options.json  ? format_compare_json(rows)
                            : options.csv ? format_compare_csv(rows)
                                          : format_compare_table(scenario, rows, is_own_container);
-  std::fputs(text.c_str(), stdout);
-  return kSuccess;
+  print(text);
+  int failed = 0;
+  for (const CompareRow& row : rows) failed += row.result.failure.empty() ? 0 : 1;
+  if (failed == 0) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", failed, rows.size());
+  return kRunFailed;
 }
 
 }  // namespace snug::app

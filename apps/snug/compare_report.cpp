@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "snug/core/csv_cell.hpp"
+
 namespace snug::app {
 namespace {
 
@@ -149,7 +151,8 @@ std::string format_compare_json(const std::vector<CompareRow>& rows) {
                             {"executed_boxes", r.executed_boxes},
                             {"executed_percent", r.executed_percent},
                             {"decision_seconds_median", r.decision_seconds_median},
-                            {"seed", row.seed}});
+                            {"seed", row.seed},
+                            {"failure", r.failure}});
   }
   for (const std::string& agent : agents_of(rows)) {
     const Means means = means_of(rows, agent);
@@ -167,8 +170,9 @@ std::string format_compare_csv(const std::vector<CompareRow>& rows) {
       "agent,sequence,planned_boxes,planned_percent,executed_boxes,executed_percent,decision_seconds_median,seed\n";
   for (const CompareRow& row : rows) {
     const task::SessionResult& r = row.result;
-    text += fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{}\n", r.agent, r.sequence, r.planned_boxes,
-                        r.planned_percent, r.executed_boxes, r.executed_percent, r.decision_seconds_median, row.seed);
+    text +=
+        fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{}\n", csv_cell(r.agent), csv_cell(r.sequence), r.planned_boxes,
+                    r.planned_percent, r.executed_boxes, r.executed_percent, r.decision_seconds_median, row.seed);
   }
   return text;
 }

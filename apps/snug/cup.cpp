@@ -1,12 +1,15 @@
 // cup: reads JSON lines, asks the cup module, prints its answers.
 #include "cup.hpp"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <string>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/json_lines.hpp"
 
@@ -19,8 +22,8 @@ int answer_lines(std::istream& input, const std::string& source, AnswerLine answ
   std::string line;
   for (int number = 1; std::getline(input, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    std::puts(answer(line, number, source).c_str());
-    std::fflush(stdout);
+    print(answer(line, number, source) + "\n");
+    if (std::fflush(stdout) != 0) throw OutputError("standard output", std::strerror(errno));
   }
   return kSuccess;
 }

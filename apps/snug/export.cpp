@@ -18,23 +18,24 @@ namespace {
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
-int write_mcap(const ExportOptions& options) {
+int write_mcap(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
   const replay::McapTotals totals = replay::export_mcap(reader, file_name(options.input), options.selection,
-                                                        options.output, {.compression = options.compression});
+                                                        std::move(output), {.compression = options.compression});
   std::fprintf(stderr, "%s: %zu frames, %llu messages, %.2f MB\n", options.output.c_str(), totals.frames,
                static_cast<unsigned long long>(totals.messages), static_cast<double>(totals.bytes) / 1e6);
   return kSuccess;
 }
 
-int write_csv(const ExportOptions& options) {
+int write_csv(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
-  record::Recording recording;
-  recording.header = reader.header();
+  record::CsvWriter writer(std::move(output), reader.header());
+  record::Frame frame;
   for (const std::size_t index : replay::select_frames(reader, file_name(options.input), options.selection)) {
-    reader.read_frame(index, recording.frames.emplace_back());
+    reader.read_frame(index, frame);
+    writer.append(frame);
   }
-  record::write_csv(recording, options.output);
+  writer.close();
   return kSuccess;
 }
 
@@ -61,7 +62,10 @@ int run_export(const ExportOptions& options) {
   if (options.scenario.empty() && options.changes.any()) {
     throw InputError("command line", "--items, --container, --pallet", "without --scenario", "a scenario to change");
   }
-  return found->write(options);
+  NamedFiles inputs = {{"the input", options.input}};
+  if (!options.scenario.empty()) add_file(inputs, "--scenario", options.scenario);
+  for (NamedFile& items : name_all("--items", options.changes.items)) inputs.push_back(std::move(items));
+  return found->write(options, reserve(inputs, options.output));
 }
 
 }  // namespace snug::app

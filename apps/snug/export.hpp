@@ -31,7 +31,7 @@ struct ExportOptions {
 struct ExportFormat {
   const char* name;
   const char* description;  ///< for --help: what it is made from and who reads it
-  int (*write)(const ExportOptions&);
+  int (*write)(const ExportOptions&, OutputFile);
 };
 [[nodiscard]] std::span<const ExportFormat> export_formats();
 

@@ -2,13 +2,12 @@
 #include "export_program.hpp"
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/control/program_export.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 
 namespace snug::app {
 namespace {
@@ -30,27 +29,15 @@ RobotProgram load(const ExportOptions& options) {
   }
   const model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (!scenario.robot) throw InputError(options.scenario, "robot", "", "a scenario with a robot");
+  expect_distinct(files_of(options.scenario, options.changes, scenario), {{"-o", options.output}});
   std::string sequence = options.sequence;
   if (sequence.empty() && !scenario.sequences.empty()) sequence = scenario.sequences.front().name;
   return {scenario, sequence, options};
 }
 
-void write_whole(const std::string& text, const std::string& path) {
-  const std::string beside = path + ".part";
-  std::ofstream file(beside, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(beside, path, error);
-  if (!file || error) {
-    std::filesystem::remove(beside, error);
-    throw InputError(path, "", "", "a file that can be written");
-  }
-}
-
 /// Runs the program through the joints and writes what `format` makes of it; nothing when the robot cannot do it.
 template <class Format>
-int write_run(const ExportOptions& options, Format format) {
+int write_run(const ExportOptions& options, OutputFile output, Format format) {
   const RobotProgram program = load(options);
   const cell::CellArm& arm = *program.simulation.arm();
   const control::JointRun run =
@@ -61,38 +48,41 @@ int write_run(const ExportOptions& options, Format format) {
                  program.plan.program.waypoints[row].name.c_str());
     return kRunFailed;
   }
-  write_whole(format(run, arm.model(), program), options.output);
+  write_file(std::move(output), format(run, arm.model(), program));
   return kSuccess;
 }
 
 }  // namespace
 
-int write_urscript(const ExportOptions& options) {
+int write_urscript(const ExportOptions& options, OutputFile output) {
   const RobotProgram program = load(options);
   const cell::CellArm& arm = *program.simulation.arm();
   const Pose X_WE = robot::forward_tool(arm.model(), arm.start());
-  write_whole(
-      control::format_urscript(program.plan, arm.model(), X_WE, {options.vacuum_output, options.blow_off_output}),
-      options.output);
+  write_file(std::move(output), control::format_urscript(program.plan, arm.model(), X_WE,
+                                                         {options.vacuum_output, options.blow_off_output}));
   return kSuccess;
 }
 
-int write_ros_trajectory(const ExportOptions& options) {
-  return write_run(options, [&](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
-    return control::format_ros_trajectory(run, arm, program.plan.settings.tick, options.period);
-  });
+int write_ros_trajectory(const ExportOptions& options, OutputFile output) {
+  return write_run(options, std::move(output),
+                   [&](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
+                     return control::format_ros_trajectory(run, arm, program.plan.settings.tick, options.period);
+                   });
 }
 
-int write_mc_rtc_csv(const ExportOptions& options) {
-  return write_run(options, [](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
-    return control::format_log_csv(control::make_log(run, arm, program.simulation.scenario().gravity));
-  });
+int write_mc_rtc_csv(const ExportOptions& options, OutputFile output) {
+  return write_run(options, std::move(output),
+                   [](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
+                     return control::format_log_csv(control::make_log(run, arm, program.simulation.scenario().gravity));
+                   });
 }
 
-int write_mc_rtc_flat(const ExportOptions& options) {
-  return write_run(options, [](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
-    return control::format_log_flat(control::make_log(run, arm, program.simulation.scenario().gravity));
-  });
+int write_mc_rtc_flat(const ExportOptions& options, OutputFile output) {
+  return write_run(
+      options, std::move(output),
+      [](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
+        return control::format_log_flat(control::make_log(run, arm, program.simulation.scenario().gravity));
+      });
 }
 
 }  // namespace snug::app

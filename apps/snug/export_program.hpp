@@ -5,9 +5,9 @@
 
 namespace snug::app {
 
-[[nodiscard]] int write_urscript(const ExportOptions& options);
-[[nodiscard]] int write_ros_trajectory(const ExportOptions& options);
-[[nodiscard]] int write_mc_rtc_csv(const ExportOptions& options);
-[[nodiscard]] int write_mc_rtc_flat(const ExportOptions& options);
+[[nodiscard]] int write_urscript(const ExportOptions& options, OutputFile output);
+[[nodiscard]] int write_ros_trajectory(const ExportOptions& options, OutputFile output);
+[[nodiscard]] int write_mc_rtc_csv(const ExportOptions& options, OutputFile output);
+[[nodiscard]] int write_mc_rtc_flat(const ExportOptions& options, OutputFile output);
 
 }  // namespace snug::app

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/model/items_file.hpp"
@@ -17,11 +18,11 @@
 namespace snug::app {
 namespace {
 
-void print_or_write(const std::string& text, const std::optional<std::string>& output) {
+void print_or_write(const std::string& text, std::optional<OutputFile> output) {
   if (output) {
-    write_file(*output, text);
+    write_file(std::move(*output), text);
   } else {
-    std::fputs(text.c_str(), stdout);
+    print(text);
   }
 }
 
@@ -108,11 +109,12 @@ std::string boxes_as_yaml(const model::Scenario& drawn_from, const std::vector<m
 }  // namespace
 
 int run_items_reduce(const ItemsReduceOptions& options) {
+  std::optional<OutputFile> output = reserve({{"the orders", options.orders}}, options.output);
   const packing::ReductionSettings settings{options.count, 0.01 * options.group_percent, 0.01 * options.cover_percent};
   const packing::Reduction reduction = packing::reduce_items(model::load_orders(options.orders), settings);
-  if (options.output) write_file(*options.output, as_yaml(reduction));
+  if (output) write_file(std::move(*output), as_yaml(reduction));
   if (options.json) {
-    std::fputs(as_json(reduction).c_str(), stdout);
+    print(as_json(reduction));
     return kSuccess;
   }
   std::printf("%-4s %26s %9s %7s %8s\n", "", "size mm", "mass kg", "boxes", "share %");
@@ -128,6 +130,9 @@ int run_items_reduce(const ItemsReduceOptions& options) {
 
 int run_items_sequence(const ItemsSequenceOptions& options) {
   const model::Scenario scenario = model::load_scenario(options.scenario);
+  NamedFiles inputs = {{"the scenario", options.scenario}};
+  add_file(inputs, "--types", options.types);
+  std::optional<OutputFile> output = reserve(inputs, options.output);
   const model::Scenario drawn_from = options.types ? with_new_boxes(scenario, options) : scenario;
   const packing::SequenceSettings settings{options.fill_percent, options.all ? 0.0 : options.repeat,
                                            options.any_side_up, options.all};
@@ -146,7 +151,7 @@ int run_items_sequence(const ItemsSequenceOptions& options) {
   }
   text += "sequences:\n";
   for (const model::Sequence& sequence : sequences) text += as_yaml(sequence);
-  print_or_write(text, options.output);
+  print_or_write(text, std::move(output));
   return kSuccess;
 }
 

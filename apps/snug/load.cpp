@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/packing/instances.hpp"
@@ -46,6 +47,7 @@ ordered_json as_json(const packing::LoadProblem& problem, const packing::LoadRes
 }  // namespace
 
 int run_load(const LoadOptions& options) {
+  std::optional<OutputFile> output = reserve({{"the input", options.file}}, options.output);
   std::vector<packing::LoadProblem> problems = problems_of(options);
   if (options.first > 0) problems.resize(std::min(problems.size(), static_cast<std::size_t>(options.first)));
   ordered_json all = ordered_json::array();
@@ -64,10 +66,10 @@ int run_load(const LoadOptions& options) {
   const std::string text =
       options.json ? ordered_json{{"problems", all}, {"mean_percent", mean}, {"time", options.time}}.dump(1) + "\n"
                    : table;
-  if (options.output) {
-    write_file(*options.output, text);
+  if (output) {
+    write_file(std::move(*output), text);
   } else {
-    std::fputs(text.c_str(), stdout);
+    print(text);
   }
   return kSuccess;
 }

@@ -1,11 +1,17 @@
 // snug: the command line. Parses words, calls modules, prints; no physics here.
+#include <fcntl.h>
+#include <signal.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "verb.hpp"
 #include "verbs.hpp"
@@ -19,7 +25,11 @@ constexpr const char* kExamples = R"(Examples:
   snug simulate scenarios/drop.yaml --until 5 --json
   snug cup evaluate deformations.jsonl
 `snug VERB --help` tells the options of a verb. Data goes to stdout, messages to stderr.
-Exit codes: 0 done, 1 the run failed, 2 the input cannot be used.)";
+Exit codes:
+  0  done; boxes that were not packed, with their reasons, are a result too
+  1  the run failed: an output could not be written, a simulation could not go on (a protective stop of the robot, also
+     on the way home; with --ensemble, --executions and in compare in any of the runs), check or bench said no
+  2  the input cannot be used, or an output cannot be written, is an input or is being written by another run)";
 
 /// A misspelt verb deserves a better answer than "unexpected argument".
 void check_verb(const CLI::App& app, int argc, char** argv) {
@@ -46,20 +56,28 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
-    return app.exit(request);
+    std::ostringstream text;
+    const int code = app.exit(request, text, text);
+    snug::app::print(text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     throw snug::InputError("command line", std::string(error.what()) + " (see --help)", "", "");
   }
   if (!action) {
-    std::fputs(app.help().c_str(), stdout);
+    snug::app::print(app.help());
     return snug::app::kSuccess;
   }
   return action();
 }
 
-}  // namespace
+/// Streams that were closed (`>&-`) stay so, but their numbers must not become those of files.
+void occupy_closed_streams() {
+  for (const int number : {0, 1, 2}) {
+    if (::fcntl(number, F_GETFD) < 0 && errno == EBADF) (void)!::open("/dev/null", number == 0 ? O_WRONLY : O_RDONLY);
+  }
+}
 
-int main(int argc, char** argv) {
+int run_guarded(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const snug::InputError& error) {
@@ -69,4 +87,15 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "snug: failed: %s\n", error.what());
     return snug::app::kRunFailed;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  occupy_closed_streams();
+  ::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is like a full disk: said, not died of
+  snug::remove_drafts_when_interrupted();
+  const int code = run_guarded(argc, argv);
+  if (code == snug::app::kSuccess && !snug::app::flush_stdout()) return snug::app::kRunFailed;
+  return code;
 }

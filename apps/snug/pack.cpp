@@ -20,18 +20,18 @@
 namespace snug::app {
 namespace {
 
-/// The finished program once more, recorded.
-void record(const PackOptions& options, const model::Scenario& scenario, const task::SessionResult& result,
-            const task::SessionOptions& session) {
+/// The finished program once more, recorded; why that run had to stop, or nothing.
+std::string record(const PackOptions& options, const model::Scenario& scenario, const task::SessionResult& result,
+                   const task::SessionOptions& session, OutputFile& file) {
   cell::RunOptions run;
   run.program = result.program;
   run.program_text = motion::format_program(result.program);
   run.sequence = options.sequence;
   run.simulation = session.simulation;
-  run.record_path = *options.record;
+  run.record_file = &file;
   run.version = SNUG_VERSION;
   run.describe = [](const cell::RunResult& one) { return format_json(one); };
-  (void)cell::run(scenario, run);
+  return cell::run(scenario, run).failure;
 }
 
 /// Any parcel of the files that the sequence's boxes come from.
@@ -53,6 +53,21 @@ packing::FutureModel own_future(const SourcedScenario& loaded, const std::string
   }
   return future;
 }
+/// The files that were asked for, reserved before the work begins.
+struct PackFiles {
+  std::optional<OutputFile> program, plan, record;
+
+  PackFiles(const PackOptions& options, const model::Scenario& scenario) {
+    NamedFiles outputs;
+    add_file(outputs, "--program", options.program);
+    add_file(outputs, "--plan", options.plan);
+    add_file(outputs, "-o", options.record);
+    expect_distinct(files_of(options.scenario, options.changes, scenario), outputs);
+    program = reserve(options.program);
+    plan = reserve(options.plan);
+    record = reserve_recording(options.record);
+  }
+};
 
 }  // namespace
 
@@ -87,6 +102,7 @@ int run_pack(const PackOptions& options) {
   const SourcedScenario loaded = load_with_sources(options.scenario, options.changes);
   const model::Scenario& scenario = loaded.scenario;
   const task::SessionOptions session = make_session_options(options, loaded, options.sequence);
+  PackFiles files(options, scenario);
   const task::SessionResult result =
       task::pack(scenario, options.sequence, session, make_progress_line("sequence " + options.sequence));
   task::ExecutionResult executions;
@@ -99,14 +115,24 @@ int run_pack(const PackOptions& options) {
     executions = task::repeat(scenario, result, repeated);
   }
   const bool has_program = !result.program.waypoints.empty();
-  if (options.program && has_program) motion::write_program(result.program, *options.program);
-  if (options.plan) write_file(*options.plan, format_plan(result));
-  if (options.record && has_program) record(options, scenario, result, session);
-  const bool is_missing = !has_program && (options.program || options.record);
-  if (is_missing) std::fputs("snug: nothing was packed: no program, no recording\n", stderr);
+  std::string failure = result.failure;
+  if (files.program && has_program) write_file(std::move(*files.program), motion::format_program(result.program));
+  if (files.plan) write_file(std::move(*files.plan), format_plan(result));
+  if (files.record && has_program) {
+    const std::string recorded = record(options, scenario, result, session, *files.record);
+    if (failure.empty()) failure = recorded;
+  }
   const std::string text = options.json ? format_json(result, executions) : format_table(result, executions);
-  std::fputs(text.c_str(), stdout);
-  return is_missing ? kRunFailed : kSuccess;
+  print(text);
+  if (failure.empty() && executions.failed > 0) {
+    failure = fmt::format("{} of {} executions did not reach their end", executions.failed, executions.count);
+  }
+  if (failure.empty() && !has_program && (options.program || options.record)) {
+    failure = "nothing was packed: no program, no recording";
+  }
+  if (failure.empty()) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %s\n", failure.c_str());
+  return kRunFailed;
 }
 
 }  // namespace snug::app

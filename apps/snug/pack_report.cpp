@@ -71,6 +71,7 @@ Json as_json(const task::ExecutionResult& executions) {
                      {"worst_distance_mm", 1e3 * item.worst_distance}});
   }
   return {{"count", executions.count},
+          {"failed", executions.failed},
           {"success_percent", executions.success_percent},
           {"mean_filling_percent", executions.mean_filling_percent},
           {"lowest_filling_percent", executions.lowest_filling_percent},
@@ -124,6 +125,7 @@ std::string format_table(const task::SessionResult& result, const task::Executio
                         executions.count, 1e3 * item.deviation.x(), 1e3 * item.deviation.y(), 1e3 * item.deviation.z(),
                         1e3 * item.worst_distance);
   }
+  if (executions.failed > 0) text += fmt::format("did not end        {} of {}\n", executions.failed, executions.count);
   text += fmt::format("items that succeed {:.1f} %\n", executions.success_percent);
   text += fmt::format("filling degree     mean {:.2f} %, lowest {:.2f} %\n", executions.mean_filling_percent,
                       executions.lowest_filling_percent);
@@ -139,6 +141,7 @@ std::string format_json(const task::SessionResult& result, const task::Execution
             {"executed_percent", result.executed_percent},
             {"decision_seconds_median", result.decision_seconds_median},
             {"stopped", result.stopped},
+            {"failure", result.failure},
             {"duration", result.duration},
             {"state_hash", fmt::format("{:016x}", result.state_hash)}};
   json["items"] = Json::array();

@@ -1,11 +1,14 @@
 // picture: puts the recording into the viewer's page and has a browser without a screen draw it.
 #include "picture.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -15,6 +18,8 @@
 #include <vector>
 
 #include "browser.hpp"
+#include "outputs.hpp"
+#include "snug/core/descriptor.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/replay/page.hpp"
@@ -132,13 +137,17 @@ std::vector<double> video_times(const PictureOptions& options, const record::Rec
   return instants;
 }
 
-/// Throws unless the folder is empty or can be made: pictures of an earlier video must not get among the new ones.
-void make_empty_folder(const fs::path& path) {
+void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error || !fs::is_directory(path)) {
     throw InputError(path.string(), "--video", error ? error.message() : "not a folder", "a folder that can be made");
   }
+}
+
+/// Pictures of an earlier video must not get among the new ones.
+void expect_empty(const fs::path& path) {
+  std::error_code error;
   if (!fs::is_empty(path, error) || error) {
     throw InputError(path.string(), "--video", error ? error.message() : "a folder with something in it",
                      "a new or empty folder");
@@ -152,9 +161,19 @@ void heed_interruption() {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_is_interrupted = 1; });
 }
 
+/// Keeps a second video out of the same folder as long as the result lives.
+Descriptor lock_folder(const std::string& path) {
+  Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.is_open() && ::flock(folder.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw InputError(path, "--video", "a folder that another run is writing to", "one that nobody else writes to");
+  return folder;
+}
+
 void draw_video(const PictureOptions& options, record::RecordingReader& reader) {
   const std::vector<double> instants = video_times(options, reader);
-  make_empty_folder(options.video);
+  make_folder(options.video);
+  const Descriptor lock = lock_folder(options.video);
+  expect_empty(options.video);
   Studio studio(options, reader);
   const bool is_watched = ::isatty(STDERR_FILENO) == 1;
   for (std::size_t i = 0; i < instants.size(); ++i) {
@@ -176,6 +195,8 @@ int run_picture(const PictureOptions& options) {
   expect_finite("--time", options.time);
   expect_finite("--from", options.from);
   expect_finite("--to", options.to);
+  std::optional<OutputFile> output;
+  if (!options.output.empty()) output = reserve({{"the recording", options.recording}}, options.output);
   record::RecordingReader reader(options.recording);
   if (reader.frame_count() == 0) {
     throw InputError(options.recording, "", "a recording without frames", "at least one frame");
@@ -185,7 +206,7 @@ int run_picture(const PictureOptions& options) {
     if (!options.video.empty()) {
       draw_video(options, reader);
     } else {
-      write_file(options.output, Studio(options, reader).take_picture());
+      write_file(std::move(*output), Studio(options, reader).take_picture());
     }
   } catch (const BrowserError& error) {
     std::fprintf(stderr, "snug: failed: %s\n", error.what());

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/replay/page.hpp"
@@ -19,6 +20,7 @@ int run_plot(const PlotOptions& options) {
     throw InputError("command line", "--width, --height", "a drawing that nobody could read",
                      "40 to 2000 mm wide, 10 to 2000 mm high");
   }
+  OutputFile output = reserve(name_all("a recording", options.recordings), options.output);
   std::vector<record::RecordingReader> readers;
   std::vector<replay::PlotSource> sources;
   readers.reserve(options.recordings.size());
@@ -29,7 +31,7 @@ int run_plot(const PlotOptions& options) {
   replay::Figure figure = replay::make_plot(sources, options.what, options.selection);
   figure.width_mm = options.width_mm;
   figure.panel_height_mm = options.height_mm;
-  write_file(options.output, replay::draw_svg(figure));
+  write_file(std::move(output), replay::draw_svg(figure));
   return kSuccess;
 }
 

@@ -5,6 +5,7 @@
 
 #include "snug/cell/task.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 #include "snug/motion/waypoint.hpp"
 
 namespace snug::app {
@@ -12,16 +13,20 @@ namespace snug::app {
 int run_program(const ProgramOptions& options) {
   const model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (!options.sequence) throw InputError("command line", "--sequence", "nothing", "a sequence of the scenario");
+  NamedFiles inputs = files_of(options.scenario, options.changes, scenario);
+  add_file(inputs, "the placements", options.placements);
+  std::optional<OutputFile> output = reserve(inputs, options.output);
   const auto placements = model::load_placements(options.placements, scenario);
   const auto program = cell::make_program(scenario, *options.sequence, placements, options.placements);
   if (!program) {
     std::fprintf(stderr, "snug: no program: %s\n", program.error().text.c_str());
     return kRunFailed;
   }
-  if (options.output) {
-    motion::write_program(*program, *options.output);
+  const std::string text = motion::format_program(*program);
+  if (output) {
+    write_file(std::move(*output), text);
   } else {
-    std::fputs(motion::format_program(*program).c_str(), stdout);
+    print(text);
   }
   return kSuccess;
 }

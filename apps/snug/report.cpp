@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/replay/page.hpp"
@@ -16,6 +17,7 @@ int run_report(const ReportOptions& options) {
     throw InputError("command line", "recordings", std::to_string(options.recordings.size()) + " of them",
                      "one, or one and another to lay over it");
   }
+  OutputFile output = reserve(name_all("a recording", options.recordings), options.output);
   const std::string_view page = viewer_page();
   std::vector<replay::PageRecording> recordings;
   for (const std::string& path : options.recordings) {
@@ -24,7 +26,7 @@ int run_report(const ReportOptions& options) {
     recordings.push_back({name, replay::encode_recording(reader, name, options.selection)});
   }
   const std::string html = replay::assemble_page(page, recordings);
-  write_file(options.output, html);
+  write_file(std::move(output), html);
   std::fprintf(stderr, "%s: %.2f MB\n", options.output.c_str(), static_cast<double>(html.size()) / 1e6);
   return kSuccess;
 }

@@ -122,8 +122,8 @@ std::string bodies_table(const cell::RunResult& result) {
 
 std::string format_table(const cell::RunResult& result) {
   std::string text = result.boxes.empty() ? bodies_table(result) : boxes_table(result);
-  text += fmt::format("simulated          {:.2f} s in {:.2f} s, real-time factor {:.0f}\n", result.duration,
-                      result.wall, result.real_time_factor);
+  text += fmt::format("simulated          {:.2f} s in {:.2f} s, real-time factor {:.0f}{}\n", result.duration,
+                      result.wall, result.real_time_factor, result.is_interrupted ? ", ended early" : "");
   text +=
       fmt::format("contact solver     {} steps, {} not converged, worst residual {:.1e} m/s, penetration {:.3f} mm\n",
                   result.solver.steps, result.solver.not_converged, result.solver.worst_residual,
@@ -154,6 +154,7 @@ std::string format_json(const cell::RunResult& result) {
                         {"mean_sweeps", result.solver.mean_sweeps}};
   document["state_hash"] = fmt::format("{:016x}", result.state_hash);
   document["protective_stop"] = result.stop ? stop_as_json(*result.stop) : Json(nullptr);
+  document["interrupted"] = result.is_interrupted;
   document["failure"] = result.failure;
   return document.dump(2) + "\n";
 }
@@ -175,6 +176,7 @@ std::string format_json(const cell::EnsembleResult& result) {
   Json document = {{"mean_packed_percent", result.mean_packed_percent},
                    {"standard_deviation_percent", result.standard_deviation_percent},
                    {"lowest_packed_percent", result.lowest_packed_percent},
+                   {"failed_runs", result.failed_runs},
                    {"runs", Json::array()}};
   for (const cell::EnsembleRun& run : result.runs) {
     document["runs"].push_back({{"packed", run.packed},

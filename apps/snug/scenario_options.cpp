@@ -3,6 +3,7 @@
 
 #include "snug/model/items_file.hpp"
 #include "snug/model/other_container.hpp"
+#include "snug/robot/load_arm.hpp"
 
 namespace snug::app {
 
@@ -18,6 +19,13 @@ void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes) {
                   "pack a slab without walls, sizes in mm, boxes up to H high (default: the depth of the target)")
       ->type_name("LxW[xH]")
       ->excludes(container);
+}
+
+NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, const model::Scenario& scenario) {
+  NamedFiles files = {{"the scenario", file}};
+  for (const std::string& items : changes.items) files.push_back({"--items", items});
+  if (scenario.robot) files.push_back({"the robot's URDF", robot::urdf_path(scenario)});
+  return files;
 }
 
 SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "outputs.hpp"
 #include "snug/model/scenario.hpp"
 
 namespace snug::app {
@@ -20,6 +21,9 @@ struct ScenarioChanges {
 
 /// --items, --container and --pallet.
 void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes);
+/// What is read for load_changed() and for the robot of the scenario that it returned.
+[[nodiscard]] NamedFiles files_of(const std::string& file, const ScenarioChanges& changes,
+                                  const model::Scenario& scenario);
 /// The scenario of a file, changed so; its text says the same. Throws InputError for what cannot be used.
 [[nodiscard]] model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes);
 

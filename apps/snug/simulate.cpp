@@ -13,24 +13,25 @@
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
-#include "snug/record/reader.hpp"
 
 namespace snug::app {
 namespace {
 
-/// A recording that is needed only to make a table of it; gone when this goes.
-class TemporaryFile {
+/// Writes the table of a run while it goes on.
+class TableWriter : public cell::RunObserver {
  public:
-  explicit TemporaryFile(std::filesystem::path path) : path_(std::move(path)) {}
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
+  explicit TableWriter(OutputFile file) : file_(std::move(file)) {}
+  void begin(const record::RecordingHeader& header) override { writer_.emplace(std::move(file_), header); }
+  bool add(const record::Frame& frame) override {
+    writer_->append(frame);
+    return true;
   }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  void add(const record::Event& /*event*/) override {}
+  void close() { writer_->close(); }
 
  private:
-  std::filesystem::path path_;
+  OutputFile file_;
+  std::optional<record::CsvWriter> writer_;
 };
 
 std::string read_text(const std::string& path) {
@@ -75,8 +76,13 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   run.until = options.until;
   run.version = SNUG_VERSION;
   run.describe = [](const cell::RunResult& result) { return format_json(result); };
-  if (options.record) run.record_path = *options.record;
   return run;
+}
+
+NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scenario) {
+  NamedFiles files = files_of(options.scenario, options.changes, scenario);
+  add_file(files, "--program", options.program);
+  return files;
 }
 
 int run_simulate(const SimulateOptions& options) {
@@ -89,17 +95,23 @@ int run_simulate(const SimulateOptions& options) {
     }
     const cell::EnsembleResult result =
         cell::run_ensemble(scenario, run_options, {*options.ensemble, scenario.seed, options.threads, {}});
-    std::fputs((options.json ? format_json(result) : format_table(result)).c_str(), stdout);
-    return kSuccess;
+    print(options.json ? format_json(result) : format_table(result));
+    if (result.failed_runs == 0) return kSuccess;
+    std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", result.failed_runs,
+                 result.runs.size());
+    return kRunFailed;
   }
-  std::optional<TemporaryFile> temporary;
-  if (options.csv && !options.record) {
-    run_options.record_path = *options.csv + ".part.h5";
-    temporary.emplace(run_options.record_path);
-  }
+  NamedFiles outputs;
+  add_file(outputs, "-o", options.record);
+  add_file(outputs, "--csv", options.csv);
+  expect_distinct(files_of(options, scenario), outputs);
+  std::optional<OutputFile> record = reserve_recording(options.record);
+  if (record) run_options.record_file = &*record;
+  std::optional<TableWriter> table;
+  if (options.csv) run_options.observer = &table.emplace(OutputFile(*options.csv));
   const cell::RunResult result = cell::run(scenario, run_options);
-  if (options.csv) record::write_csv(record::load_recording(run_options.record_path), *options.csv);
-  std::fputs((options.json ? format_json(result) : format_table(result)).c_str(), stdout);
+  if (table) table->close();
+  print(options.json ? format_json(result) : format_table(result));
   if (result.failure.empty()) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());
   return kRunFailed;

@@ -41,6 +41,9 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options);
 [[nodiscard]] model::Scenario load_with_overrides(const SimulateOptions& options);
 [[nodiscard]] cell::RunOptions make_run_options(const SimulateOptions& options, const model::Scenario& scenario);
 
+/// What both read.
+[[nodiscard]] NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scenario);
+
 /// Prints the result on stdout and returns the exit code. Throws InputError for input that cannot be used.
 [[nodiscard]] int run_simulate(const SimulateOptions& options);
 

@@ -97,6 +97,9 @@ class LiveSimulation {
   LiveSimulation(const ViewOptions& options, serve::LiveRun& live) : live_(live) {
     scenario_ = load_with_overrides(options.run);
     run_options_ = make_run_options(options.run, scenario_);
+    if (options.run.record) expect_distinct(files_of(options.run, scenario_), {{"-o", *options.run.record}});
+    record_ = reserve_recording(options.run.record);
+    if (record_) run_options_.record_file = &*record_;
     run_options_.observer = &live;
     run_options_.describe = describe_watched;
   }
@@ -104,7 +107,7 @@ class LiveSimulation {
     thread_ = std::thread([this, on_trouble = std::move(on_trouble)] {
       try {
         result_ = cell::run(scenario_, run_options_);
-        live_.finish(describe_watched(*result_), result_->failure);
+        live_.finish(describe_watched(*result_), result_->failure, result_->is_interrupted);
       } catch (const std::exception& error) {
         trouble_ = std::current_exception();
         live_.finish("", error.what());
@@ -131,6 +134,7 @@ class LiveSimulation {
   serve::LiveRun& live_;
   model::Scenario scenario_;
   cell::RunOptions run_options_;
+  std::optional<OutputFile> record_;
   std::optional<cell::RunResult> result_;
   std::exception_ptr trouble_;
   std::thread thread_;
@@ -150,7 +154,7 @@ int view_live(const ViewOptions& options) {
   if (!live.is_over() || live.whole_form()) announce(server, options);
   server.run();
   const cell::RunResult& result = simulation.result();
-  std::fputs(format_table(result).c_str(), stdout);
+  print(format_table(result));
   if (result.failure.empty()) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());
   return kRunFailed;

@@ -30,6 +30,7 @@ void summarize(EnsembleResult& result) {
   result.lowest_packed_percent = 100.0;
   for (const EnsembleRun& one : result.runs) {
     const double percent = one.boxes > 0 ? 100.0 * one.packed / one.boxes : 0.0;
+    result.failed_runs += one.failure.empty() ? 0 : 1;
     sum += percent;
     square += percent * percent;
     result.lowest_packed_percent = std::min(result.lowest_packed_percent, percent);
@@ -71,6 +72,7 @@ EnsembleResult run_ensemble(const model::Scenario& scenario, const RunOptions& o
                             const EnsembleOptions& ensemble) {
   RunOptions unrecorded = options;
   unrecorded.record_path.clear();
+  unrecorded.record_file = nullptr;
   unrecorded.observer = nullptr;
   EnsembleResult result;
   result.runs.resize(static_cast<std::size_t>(ensemble.count));

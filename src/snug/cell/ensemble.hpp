@@ -42,6 +42,7 @@ struct EnsembleResult {
   double mean_packed_percent = 0.0;
   double standard_deviation_percent = 0.0;
   double lowest_packed_percent = 0.0;
+  int failed_runs = 0;  ///< that did not reach their end, such as by a protective stop
 };
 
 /// The scenario with every change drawn from `rng`.

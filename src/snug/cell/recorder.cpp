@@ -115,7 +115,11 @@ bool is_still(const CellWorld& world, const physics::WorldState& state, int body
 Recorder::Recorder(const model::Scenario& scenario, const CellWorld& world, const RecorderSetup& setup)
     : observer_(setup.observer) {
   const record::RecordingHeader header = header_of(scenario, world, setup);
-  if (!setup.path.empty()) writer_.emplace(setup.path, header);
+  if (setup.file != nullptr) {
+    writer_.emplace(std::move(*setup.file), header);
+  } else if (!setup.path.empty()) {
+    writer_.emplace(setup.path, header);
+  }
   if (observer_ != nullptr) observer_->begin(header);
 }
 
@@ -127,8 +131,8 @@ void Recorder::add_events(const std::vector<record::Event>& events) {
   }
 }
 
-void Recorder::close(const std::string& result_json) {
-  if (writer_) writer_->close(result_json);
+void Recorder::close(const std::string& result_json, bool is_interrupted) {
+  if (writer_) writer_->close(result_json, is_interrupted ? record::RunEnd::Interrupted : record::RunEnd::Complete);
 }
 
 void Recorder::add_contacts(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work) {

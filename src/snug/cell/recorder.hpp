@@ -24,6 +24,7 @@ class RunObserver {
 
 struct RecorderSetup {
   std::filesystem::path path;       ///< HDF5, or empty: nothing is written
+  OutputFile* file = nullptr;       ///< instead of `path`: reserved before; taken; not owned
   RunObserver* observer = nullptr;  ///< not owned
   double period = 0.008;            ///< s between frames
   std::string program_text;
@@ -54,8 +55,8 @@ class Recorder {
                                const physics::StepReport& report, const FrameInput& input);
   /// Records those of a growing list that it has not seen.
   void add_events(const std::vector<record::Event>& events);
-  /// `result_json` is kept in the recording.
-  void close(const std::string& result_json);
+  /// `result_json` is kept in the recording; `is_interrupted`: the observer ended the run early.
+  void close(const std::string& result_json, bool is_interrupted);
 
  private:
   /// Contacts of the world into the frame: those found in the step, and of pairs at rest, at which a step does not

@@ -24,6 +24,7 @@ struct RunOptions {
   SimulationOptions simulation;
   std::optional<double> until;        ///< s; absent: to the end of the program, or the scenario's duration
   std::filesystem::path record_path;  ///< HDF5, or empty
+  OutputFile* record_file = nullptr;  ///< instead: from record::reserve_recording() before the work; taken; not owned
   std::string version;                ///< for the recording
   std::function<std::string(const RunResult&)> describe;  ///< JSON to keep in the recording, or none
   RunObserver* observer = nullptr;                        ///< sees each frame and event, may stop the run; not owned
@@ -47,11 +48,13 @@ struct RunResult {
   SolverSummary solver;
   std::uint64_t state_hash = 0;
   std::optional<ProtectiveStop> stop;  ///< with a robot: the limit that ended the run
+  bool is_interrupted = false;         ///< the observer ended the run early
   std::string failure;                 ///< empty, or why the run had to stop: body, time, last contacts
 };
 
 /// Throws InputError for options that do not fit the scenario (unknown sequence, corrections, waypoint name, tick that
-/// is no multiple of the time step, no tool or aligner) and for a recording that cannot be written.
+/// is no multiple of the time step, no tool or aligner) and for a recording that cannot be written; OutputError when
+/// writing it fails.
 [[nodiscard]] RunResult run(const model::Scenario& scenario, const RunOptions& options);
 
 }  // namespace snug::cell

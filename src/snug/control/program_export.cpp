@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "snug/core/check.hpp"
+#include "snug/core/csv_cell.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/robot/dynamics.hpp"
 
@@ -157,7 +158,7 @@ std::string format_log_csv(const std::vector<LogColumn>& log) {
   std::string text;
   std::size_t rows = 0;
   for (const LogColumn& column : log) {
-    text += (text.empty() ? "" : ";") + column.name;
+    text += (text.empty() ? "" : ";") + csv_cell(column.name);
     rows = std::max({rows, column.numbers.size(), column.texts.size()});
   }
   text += '\n';

@@ -1,12 +1,14 @@
 // write_file: a whole file or none.
 #pragma once
 
-#include <filesystem>
 #include <string_view>
+
+#include "snug/core/output_file.hpp"
 
 namespace snug {
 
-/// Writes beside `path` and renames, so that a file at `path` is always whole. Throws InputError when it cannot.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+/// Writes and publishes. Throws InputError for a path that cannot be written (where the file is made), OutputError when
+/// writing fails.
+void write_file(OutputFile file, std::string_view bytes);
 
 }  // namespace snug

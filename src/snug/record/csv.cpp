@@ -1,37 +1,27 @@
 // CSV: a recording as one table with the column names of mc_rtc logs, for spreadsheets and plotting programs.
 #include "snug/record/csv.hpp"
 
-#include <unistd.h>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "snug/core/check.hpp"
-#include "snug/core/input_error.hpp"
+#include "snug/core/csv_cell.hpp"
 
 namespace snug::record {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
-/// A file of numbers; remembers whether writing failed until the end.
+/// Cells and rows, gathered before they are written.
 class Table {
  public:
-  explicit Table(const std::string& path) : file_(std::fopen(path.c_str(), "wb")) { buffer_.reserve(kBufferBytes); }
-  ~Table() {
-    if (file_ != nullptr) std::fclose(file_);
-  }
-  Table(const Table&) = delete;
-  Table& operator=(const Table&) = delete;
-
-  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
+  explicit Table(OutputFile file) : file_(std::move(file)) { buffer_.reserve(kBufferBytes); }
 
   void cell(std::string_view text) {
     if (!is_first_) buffer_ += ';';
@@ -60,25 +50,20 @@ class Table {
     is_first_ = true;
     if (buffer_.size() > kBufferBytes - 65536) spill();
   }
-  /// Writes the rest through to the disk; false if anything failed.
-  [[nodiscard]] bool close() {
+  void publish() {
     spill();
-    has_failed_ = std::fflush(file_) != 0 || has_failed_;
-    has_failed_ = ::fsync(::fileno(file_)) != 0 || has_failed_;
-    has_failed_ = std::fclose(std::exchange(file_, nullptr)) != 0 || has_failed_;
-    return !has_failed_;
+    file_.publish();
   }
 
  private:
   void spill() {
-    has_failed_ = std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size() || has_failed_;
+    file_.write(buffer_);
     buffer_.clear();
   }
 
-  std::FILE* file_;
+  OutputFile file_;
   std::string buffer_;
   bool is_first_ = true;
-  bool has_failed_ = false;
 };
 
 /// Inverse rotation with the sign nearest to the previous one of the same column, so that curves do not jump.
@@ -95,14 +80,15 @@ class LoggedRotation {
   Quaternion previous_ = Quaternion(1.0, 0.0, 0.0, 0.0);
 };
 
-/// "BOX024" is logged as "box024"; other names as they are, but with what would break the table replaced.
+/// "BOX024" is logged as "box024"; other names as they are, but with what would break the table, or run in it,
+/// replaced.
 std::string column_prefix(const std::string& name) {
-  std::string prefix = name;
+  std::string prefix = csv_cell(name);
   const bool is_numbered_box = name.size() > 3 && std::isdigit(static_cast<unsigned char>(name[3])) != 0 &&
                                (name.starts_with("BOX") || name.starts_with("Box"));
   if (is_numbered_box) prefix.replace(0, 3, "box");
   for (char& c : prefix)
-    if (c == ';' || c == '"' || c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0) c = '_';
+    if (c == ' ') c = '_';
   return prefix;
 }
 
@@ -204,33 +190,34 @@ class FrameRows {
 
 }  // namespace
 
-void write_csv(const Recording& recording, const std::filesystem::path& path) {
-  const auto refuse = [&](const std::string& got) {
-    throw InputError(path.string(), "", got, "a path where a file can be written");
-  };
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) refuse("a folder");
-  const std::string draft = path.string() + ".part" + std::to_string(::getpid());
-  bool is_written = false;
-  {
-    Table table(draft);
-    if (!table.is_open()) refuse("no permission or no such folder");
-    write_names(table, recording.header);
-    FrameRows rows(recording.header);
-    double last_time = -std::numeric_limits<double>::infinity();
-    for (const Frame& frame : recording.frames) {
-      SNUG_CHECK(std::isfinite(frame.time) && frame.time > last_time, "time of a frame must be finite and grow");
-      last_time = frame.time;
-      rows.write(table, frame);
-    }
-    is_written = table.close();
+struct CsvWriter::Impl {
+  Impl(OutputFile file, const RecordingHeader& recording_header)
+      : table(std::move(file)), header(recording_header), rows(header) {
+    write_names(table, header);
   }
-  if (is_written) std::filesystem::rename(draft, path, error);
-  if (!is_written || error) {
-    std::error_code ignored;
-    std::filesystem::remove(draft, ignored);
-    refuse(is_written ? error.message() : "a write that failed (disk full?)");
-  }
+
+  Table table;
+  RecordingHeader header;
+  FrameRows rows;
+  double last_time = -std::numeric_limits<double>::infinity();
+};
+
+CsvWriter::CsvWriter(OutputFile file, const RecordingHeader& header)
+    : impl_(std::make_unique<Impl>(std::move(file), header)) {}
+CsvWriter::~CsvWriter() = default;
+
+void CsvWriter::append(const Frame& frame) {
+  SNUG_CHECK(std::isfinite(frame.time) && frame.time > impl_->last_time, "time of a frame must be finite and grow");
+  impl_->last_time = frame.time;
+  impl_->rows.write(impl_->table, frame);
+}
+
+void CsvWriter::close() { impl_->table.publish(); }
+
+void write_csv(const Recording& recording, OutputFile file) {
+  CsvWriter writer(std::move(file), recording.header);
+  for (const Frame& frame : recording.frames) writer.append(frame);
+  writer.close();
 }
 
 }  // namespace snug::record

@@ -11,6 +11,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/record/internal/header_file.hpp"
 #include "snug/record/internal/layout.hpp"
+#include "snug/record/internal/live_file.hpp"
 
 namespace snug::record {
 namespace {
@@ -45,9 +46,7 @@ Handle open_file(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, error)) throw InputError(path.string(), "", "not a file", expected);
   if (H5Fis_hdf5(path.c_str()) <= 0)
     throw InputError(path.string(), "", "a file that is not HDF5, or one that lost its beginning", expected);
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
-  check(H5Pset_file_locking(access.get(), false, true), "file access");
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "cannot open"};
+  return open_for_reading(path);
 }
 
 void require_format(hid_t file, const std::filesystem::path& path) {
@@ -162,6 +161,7 @@ struct RecordingReader::Impl {
   std::vector<Event> events;
   std::vector<double> times;
   bool is_complete = false;
+  bool is_interrupted = false;
   std::string result;
   std::array<Handle, kFrameColumnCount> columns;
   Handle present, pose, twist;                   ///< without bodies: not open
@@ -181,6 +181,10 @@ void RecordingReader::Impl::open() {
   std::uint8_t complete = 0;
   read_attribute(file.get(), "complete", H5T_NATIVE_UINT8, &complete);
   is_complete = complete == 1;
+  std::uint8_t interrupted = 0;
+  if (has_attribute(file.get(), "interrupted"))
+    read_attribute(file.get(), "interrupted", H5T_NATIVE_UINT8, &interrupted);
+  is_interrupted = interrupted == 1;
   for (std::size_t i = 0; i < kFrameColumnCount; ++i)
     columns[i] = open_dataset(file.get(), frame_column(static_cast<FrameColumn>(i)).path);
   const std::size_t bodies = header.bodies.size();
@@ -335,6 +339,7 @@ const RecordingHeader& RecordingReader::header() const { return impl_->header; }
 const std::vector<Event>& RecordingReader::events() const { return impl_->events; }
 const std::vector<double>& RecordingReader::times() const { return impl_->times; }
 bool RecordingReader::is_complete() const { return impl_->is_complete; }
+bool RecordingReader::is_interrupted() const { return impl_->is_interrupted; }
 const std::string& RecordingReader::result() const { return impl_->result; }
 
 std::size_t RecordingReader::find_frame(double time) const {

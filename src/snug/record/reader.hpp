@@ -14,6 +14,8 @@ namespace snug::record {
 /// Random access to a recording without loading all of it: times, header and events are in memory, frames are read
 /// in blocks of about a second as they are asked for.
 ///
+/// A recording that is being written is read as it was when it was opened.
+///
 /// A file that is missing, truncated, not a recording, or newer than this program throws InputError that says so.
 class RecordingReader {
  public:
@@ -27,8 +29,10 @@ class RecordingReader {
   /// Time of every frame, s, strictly increasing.
   [[nodiscard]] const std::vector<double>& times() const;
   [[nodiscard]] std::size_t frame_count() const { return times().size(); }
-  /// False for the file of a run that was killed.
+  /// False for the file of a run that was killed, failed, is going on, or was interrupted.
   [[nodiscard]] bool is_complete() const;
+  /// The run was ended early by who watched it.
+  [[nodiscard]] bool is_interrupted() const;
   /// What became of the run (docs/formats.md, result), JSON; empty when the recording does not hold it.
   [[nodiscard]] const std::string& result() const;
 

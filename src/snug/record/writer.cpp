@@ -51,16 +51,16 @@ void refuse_foreign_file(const std::filesystem::path& path) {
 }
 
 /// An open file and the driver that writes it.
-struct OutputFile {
+struct OpenFile {
   Handle driver;
   Handle file;
 };
 
-OutputFile create_file(const std::filesystem::path& path) {
+OpenFile create_file(const std::filesystem::path& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
   // The formats of HDF5 1.8 have no "open for writing" mark: the file of a killed run opens with any reader.
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18), "file access");
-  OutputFile output;
+  OpenFile output;
   output.driver = use_commit_driver(access.get());
   output.file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), "create file");
   return output;
@@ -143,29 +143,35 @@ class EventLog {
 }  // namespace
 
 struct RecordingWriter::Impl {
-  Impl(const std::filesystem::path& file_path, const RecordingHeader& header);
+  Impl(OutputFile output_file, const RecordingHeader& header);
   void append(const Frame& frame);
   void put_frame(const Frame& frame);
   void put_bodies(const Frame& frame);
   void put_joints(const Frame& frame);
   void write();
-  void close(bool is_complete, const std::string& result_json);
-  /// Runs `work` with HDF5 quiet; its errors become InputErrors that name the file.
+  void close(std::optional<RunEnd> end, const std::string& result_json);
+  void give_up() noexcept;
+  /// Runs `work` with HDF5 quiet; its errors become OutputErrors that name the file.
   template <class Work>
   void guarded(Work work) {
     const QuietErrors quiet;
     try {
       work();
     } catch (const H5Error& error) {
-      throw InputError(path.string(), "", error.what(), "a file that can be written");
+      has_failed = true;
+      throw OutputError(file.path().string(), error.what());
+    } catch (const OutputError&) {
+      has_failed = true;
+      throw;
     }
   }
 
-  std::filesystem::path path;
+  OutputFile file;
+  bool has_failed = false;  ///< to write
   std::size_t body_count;
   std::size_t joint_count;
   std::size_t chunk_rows;
-  OutputFile output;
+  OpenFile output;
   std::vector<Column> columns;        ///< by FrameColumn
   std::vector<Column> body_columns;   ///< present, pose, twist; none without bodies
   std::vector<Column> joint_columns;  ///< position, velocity, torque; none without a robot
@@ -178,13 +184,12 @@ struct RecordingWriter::Impl {
   double last_time = -std::numeric_limits<double>::infinity();
 };
 
-RecordingWriter::Impl::Impl(const std::filesystem::path& file_path, const RecordingHeader& header)
-    : path(file_path), body_count(header.bodies.size()), joint_count(header.joints.size()), chunk_rows(0) {
-  validate(path, header);
+RecordingWriter::Impl::Impl(OutputFile output_file, const RecordingHeader& header)
+    : file(std::move(output_file)), body_count(header.bodies.size()), joint_count(header.joints.size()), chunk_rows(0) {
+  validate(file.path(), header);
   chunk_rows = chunk_rows_for(header.record_period);
   guarded([&] {
-    refuse_foreign_file(path);
-    output = create_file(path);
+    output = create_file(file.location());
     write_header(output.file.get(), header);
     // The commit driver writes the lengths of datasets in the order of their creation: what is referred to first.
     events.emplace(output.file.get());
@@ -271,7 +276,8 @@ void RecordingWriter::Impl::put_joints(const Frame& frame) {
   }
 }
 
-/// Writes the chunk as far as it is filled, with all it refers to, and commits.
+/// Writes the chunk as far as it is filled, with all it refers to, and commits. The first commit makes the recording
+/// visible, but an earlier one stays in its place until the new one has its end.
 void RecordingWriter::Impl::write() {
   events->write();
   contacts->write();
@@ -285,13 +291,17 @@ void RecordingWriter::Impl::write() {
     filled = 0;
   }
   check(H5Fflush(output.file.get(), H5F_SCOPE_LOCAL), "flush");
+  if (!file.is_published() && !file.replaces_file()) file.publish();
 }
 
-void RecordingWriter::Impl::close(bool is_complete, const std::string& result_json) {
+/// Without `end` the run did not get there.
+void RecordingWriter::Impl::close(std::optional<RunEnd> end, const std::string& result_json) {
   guarded([&] {
     if (!result_json.empty()) write_text(output.file.get(), kResult, result_json);
     write();  // commits; only then may the file be called complete
-    const auto complete = static_cast<std::uint8_t>(is_complete);
+    const std::uint8_t complete = end == RunEnd::Complete ? 1 : 0;
+    const std::uint8_t interrupted = end == RunEnd::Interrupted ? 1 : 0;
+    update_attribute(output.file.get(), "interrupted", H5T_NATIVE_UINT8, &interrupted);
     update_attribute(output.file.get(), "complete", H5T_NATIVE_UINT8, &complete);
     check(H5Fflush(output.file.get(), H5F_SCOPE_LOCAL), "flush");
     contacts.reset();
@@ -300,11 +310,34 @@ void RecordingWriter::Impl::close(bool is_complete, const std::string& result_js
     body_columns.clear();
     joint_columns.clear();
     output.file.reset();
+    if (end && !file.is_published()) file.publish();
   });
 }
 
+/// Keeps the frames there are of a run that did not get to its end, unless an earlier recording or a failed write is in
+/// the way.
+void RecordingWriter::Impl::give_up() noexcept {
+  const QuietErrors quiet;
+  const bool has_frames = last_time > -std::numeric_limits<double>::infinity();
+  if (has_failed || !has_frames || (file.replaces_file() && !file.is_published())) return;
+  try {
+    close(std::nullopt, {});
+  } catch (const OutputError&) {  // nobody to tell; the file keeps what was written before
+  }
+}
+
+OutputFile reserve_recording(const std::filesystem::path& path) {
+  OutputFile file(path);
+  const QuietErrors quiet;
+  refuse_foreign_file(path);
+  return file;
+}
+
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHeader& header)
-    : impl_(std::make_unique<Impl>(path, header)) {}
+    : RecordingWriter(reserve_recording(path), header) {}
+
+RecordingWriter::RecordingWriter(OutputFile file, const RecordingHeader& header)
+    : impl_(std::make_unique<Impl>(std::move(file), header)) {}
 
 RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
 
@@ -315,11 +348,8 @@ RecordingWriter& RecordingWriter::operator=(RecordingWriter&& other) noexcept {
 
 RecordingWriter::~RecordingWriter() {
   if (!impl_) return;
+  impl_->give_up();
   const QuietErrors quiet;
-  try {
-    impl_->close(false, {});
-  } catch (const InputError&) {  // nobody to tell; the file keeps what was written before
-  }
   impl_.reset();
 }
 
@@ -338,11 +368,11 @@ void RecordingWriter::flush() {
   impl_->guarded([&] { impl_->write(); });
 }
 
-void RecordingWriter::close(const std::string& result_json) {
+void RecordingWriter::close(const std::string& result_json, RunEnd end) {
   SNUG_CHECK(impl_ != nullptr, "recording is closed");
   const QuietErrors quiet;
   const std::unique_ptr<Impl> impl = std::move(impl_);
-  impl->close(true, result_json);
+  impl->close(end, result_json);
 }
 
 void save_recording(const std::filesystem::path& path, const Recording& recording) {

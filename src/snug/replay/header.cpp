@@ -251,6 +251,7 @@ std::string make_header_json(const HeaderInput& input) {
                {"dt", header.dt},
                {"record_period", header.record_period},
                {"complete", input.is_complete},
+               {"interrupted", input.is_interrupted},
                {"frames", input.frames},
                {"scenario", {{"name", scenario ? scenario->name : ""}, {"text", header.scenario_text}}},
                {"program", program_as_json(header)},

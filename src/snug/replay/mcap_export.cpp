@@ -225,7 +225,8 @@ void attach_sources(McapWriter& writer, const record::RecordingReader& reader, c
                                {"sequence", header.sequence},
                                {"program_name", header.program_name},
                                {"settings", header.settings},
-                               {"complete", reader.is_complete() ? "true" : "false"}});
+                               {"complete", reader.is_complete() ? "true" : "false"},
+                               {"interrupted", reader.is_interrupted() ? "true" : "false"}});
   if (!header.scenario_text.empty()) writer.attach("scenario.yaml", "application/yaml", header.scenario_text);
   if (!header.program_text.empty()) writer.attach("program.csv", "text/csv", header.program_text);
   if (!reader.result().empty()) writer.attach("result.json", "application/json", reader.result());
@@ -234,9 +235,9 @@ void attach_sources(McapWriter& writer, const record::RecordingReader& reader, c
 }  // namespace
 
 McapTotals export_mcap(record::RecordingReader& reader, const std::string& name, const Selection& selection,
-                       const std::filesystem::path& path, const McapSettings& settings) {
+                       OutputFile file, const McapSettings& settings) {
   const std::vector<std::size_t> frames = select_frames(reader, name, selection);
-  McapWriter writer(path, settings);
+  McapWriter writer(std::move(file), settings);
   Exporter exporter(writer, reader.header());
   const bool is_whole = selection == Selection{};
   const std::vector<double>& times = reader.times();

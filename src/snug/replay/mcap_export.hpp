@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include "snug/replay/mcap_writer.hpp"
@@ -17,8 +16,8 @@ struct McapTotals {
 };
 
 /// Topics and messages: docs/formats.md, "MCAP". `name` is that of the recording. Throws InputError for a recording
-/// without such frames, and when `path` cannot be written.
+/// without such frames.
 McapTotals export_mcap(record::RecordingReader& reader, const std::string& name, const Selection& selection,
-                       const std::filesystem::path& path, const McapSettings& settings = {});
+                       OutputFile file, const McapSettings& settings = {});
 
 }  // namespace snug::replay

@@ -1,21 +1,15 @@
 // McapWriter: records of the format (mcap.dev/spec), gathered in chunks, indexed at the end.
 #include "snug/replay/mcap_writer.hpp"
 
-#include <unistd.h>
 #include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <limits>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "snug/core/check.hpp"
-#include "snug/core/input_error.hpp"
 
 namespace snug::replay {
 namespace {
@@ -108,20 +102,16 @@ struct ChannelState {
 }  // namespace
 
 struct McapWriter::Impl {
-  Impl(const std::filesystem::path& final_path, const McapSettings& writer_settings);
-  ~Impl();
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  Impl(OutputFile output_file, const McapSettings& writer_settings)
+      : file(std::move(output_file)), settings(writer_settings) {}
   void put(std::string_view bytes);
   void flush_chunk();
   [[nodiscard]] std::string packed(const std::string& records) const;
   [[nodiscard]] std::string statistics() const;
   void write_summary();
-  [[noreturn]] void refuse(const std::string& why);
 
-  std::filesystem::path path, beside;
+  OutputFile file;
   McapSettings settings;
-  std::FILE* file = nullptr;
   std::uint64_t offset = 0;
   std::uint32_t crc = 0;  ///< of all that was put so far
   std::map<std::string, std::uint16_t> schemas;
@@ -135,29 +125,8 @@ struct McapWriter::Impl {
   std::string chunk_index, attachment_index, metadata_index;
 };
 
-McapWriter::Impl::Impl(const std::filesystem::path& final_path, const McapSettings& writer_settings)
-    : path(final_path), beside(final_path.string() + ".part" + std::to_string(::getpid())), settings(writer_settings) {
-  std::error_code error;
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
-    refuse("something that is not a regular file");
-  }
-  file = std::fopen(beside.c_str(), "wb");
-  if (file == nullptr) refuse(std::strerror(errno));
-}
-
-McapWriter::Impl::~Impl() {
-  if (file == nullptr) return;
-  std::fclose(file);
-  std::error_code ignored;
-  std::filesystem::remove(beside, ignored);
-}
-
-void McapWriter::Impl::refuse(const std::string& why) {
-  throw InputError(path.string(), "", why, "a file that can be written");
-}
-
 void McapWriter::Impl::put(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size()) refuse(std::strerror(errno));
+  file.write(bytes);
   offset += bytes.size();
   crc = crc_of(bytes, crc);
 }
@@ -240,8 +209,8 @@ void McapWriter::Impl::write_summary() {
   put(checksum.str());
 }
 
-McapWriter::McapWriter(const std::filesystem::path& path, const McapSettings& settings)
-    : impl_(std::make_unique<Impl>(path, settings)) {
+McapWriter::McapWriter(OutputFile file, const McapSettings& settings)
+    : impl_(std::make_unique<Impl>(std::move(file), settings)) {
   Bytes header;
   header.text("").text("snug");
   impl_->put(kMagic);
@@ -315,22 +284,13 @@ void McapWriter::add_metadata(const std::string& name, const std::map<std::strin
 }
 
 void McapWriter::close() {
-  SNUG_CHECK(impl_->file != nullptr, "closed once");
   impl_->flush_chunk();
   Bytes end;
   end.u32(impl_->crc);
   impl_->put(record_of(Op::DataEnd, end.str()));
   impl_->write_summary();
   impl_->put(kMagic);
-  std::FILE* file = std::exchange(impl_->file, nullptr);
-  std::error_code error;
-  if (std::fclose(file) == 0) {
-    std::filesystem::rename(impl_->beside, impl_->path, error);
-    if (!error) return;
-  }
-  const std::string why = error ? error.message() : std::strerror(errno);
-  std::filesystem::remove(impl_->beside, error);
-  impl_->refuse(why);
+  impl_->file.publish();
 }
 
 std::uint64_t McapWriter::size() const { return impl_->offset; }

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
+
+#include "snug/core/output_file.hpp"
 
 namespace snug::replay {
 
@@ -18,14 +19,13 @@ struct McapSettings {
   std::size_t chunk_bytes = std::size_t{1} << 20U;  ///< a chunk is closed when it holds as many, before compression
 };
 
-/// Writes beside `path` and renames on close(), so that a file at `path` is always whole. Every checksum that the
-/// format has is there, and the summary with all indices. Throws InputError naming the path when the file cannot be
-/// written.
+/// The file is at its path when it is closed. Every checksum that the format has is there, and the summary with all
+/// indices. Throws OutputError when writing fails.
 ///
 /// Called out of order (a channel that does not exist, a time before the channel's last) it stops the program.
 class McapWriter {
  public:
-  explicit McapWriter(const std::filesystem::path& path, const McapSettings& settings = {});
+  explicit McapWriter(OutputFile file, const McapSettings& settings = {});
   ~McapWriter();  ///< without close() nothing is left
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;

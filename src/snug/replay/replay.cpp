@@ -54,7 +54,8 @@ std::string encode_recording(record::RecordingReader& reader, const std::string&
     reader.read_frame(index, frame);
     coder.add(frame);
   }
-  HeaderInput input{name, &reader.header(), reader.events(), reader.result(), reader.is_complete(), frames.size()};
+  HeaderInput input{name,          &reader.header(),       reader.events(), reader.result(), reader.is_complete(),
+                    frames.size(), reader.is_interrupted()};
   return encode_form(make_header_json(input), coder.finish());
 }
 

@@ -31,6 +31,7 @@ struct HeaderInput {
   std::string result_json;  ///< or empty
   bool is_complete = false;
   std::size_t frames = 0;
+  bool is_interrupted = false;
 };
 [[nodiscard]] std::string make_header_json(const HeaderInput& input);
 

@@ -99,12 +99,13 @@ bool LiveRun::wait_for_turn(std::unique_lock<std::mutex>& lock) {
   return !is_stopped_ && log_bytes_ < kMaxLogBytes;
 }
 
-void LiveRun::finish(const std::string& result_json, const std::string& failure) {
+void LiveRun::finish(const std::string& result_json, const std::string& failure, bool is_interrupted) {
   const std::lock_guard lock(mutex_);
   if (is_over_) return;
   if (whole_ && whole_->frames() > 0) {
     flush();
-    const replay::HeaderInput input{name_, &header_, events_, result_json, true, whole_->frames()};
+    const replay::HeaderInput input{name_,           &header_,         events_,       result_json,
+                                    !is_interrupted, whole_->frames(), is_interrupted};
     whole_form_ = std::make_shared<const std::string>(form_of(input, *whole_));
   }
   is_over_ = true;

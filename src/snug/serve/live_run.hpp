@@ -29,8 +29,9 @@ class LiveRun : public cell::RunObserver {
   void begin(const record::RecordingHeader& header) override;
   bool add(const record::Frame& frame) override;
   void add(const record::Event& event) override;
-  /// The run is over. `result_json` as snug simulate --json prints it, or empty.
-  void finish(const std::string& result_json, const std::string& failure);
+  /// The run is over. `result_json` as snug simulate --json prints it, or empty; `is_interrupted`: it ended early, as
+  /// it was told to.
+  void finish(const std::string& result_json, const std::string& failure, bool is_interrupted = false);
 
   void pause();
   void resume();

@@ -14,6 +14,7 @@ constexpr double kRest = 1.0;  ///< s, after the program
 struct Run {
   std::vector<cell::BoxResult> boxes;
   double percent = 0.0;
+  bool has_failed = false;
 };
 
 Run run_once(const model::Scenario& scenario, const SessionResult& session, const ExecutionOptions& options,
@@ -21,9 +22,10 @@ Run run_once(const model::Scenario& scenario, const SessionResult& session, cons
   const Rng rng = Rng(options.seed).split("execution " + std::to_string(index));
   const model::Scenario changed = sample(scenario, session.sequence, options.uncertainty, rng);
   Lane lane(changed, session.sequence, options.simulation);
-  (void)lane.run(session.program);
-  (void)lane.settle(session.program, kRest);
+  Episode episode = lane.run(session.program);
+  merge(episode, lane.settle(session.program, kRest));
   Run run;
+  run.has_failed = !episode.failure.empty();
   run.boxes = lane.simulation().boxes(lane.state());
   std::vector<std::string> packed;
   for (const cell::BoxResult& box : run.boxes) {
@@ -77,6 +79,7 @@ ExecutionResult repeat(const model::Scenario& scenario, const SessionResult& ses
       100.0 * good / (static_cast<double>(result.items.size()) * static_cast<double>(options.count));
   result.lowest_filling_percent = runs[0].percent;
   for (const Run& run : runs) {
+    result.failed += run.has_failed ? 1 : 0;
     result.mean_filling_percent += run.percent / static_cast<double>(options.count);
     result.lowest_filling_percent = std::min(result.lowest_filling_percent, run.percent);
   }

@@ -27,6 +27,7 @@ struct ItemSpread {
 
 struct ExecutionResult {
   int count = 0;
+  int failed = 0;  ///< executions that did not reach the program's end, such as by a protective stop
   std::vector<ItemSpread> items;
   double success_percent = 0.0;  ///< of all items in all executions
   double mean_filling_percent = 0.0, lowest_filling_percent = 0.0;

@@ -242,7 +242,8 @@ class PackingSession {
   SessionResult finish() {
     if (result_.stopped.empty()) result_.stopped = items_.empty() ? "no items" : no_more_items();
     const Episode last = executor_.finish();
-    if (!last.failure.empty()) result_.stopped += "; on the way home: " + last.failure;
+    if (!last.failure.empty()) result_.failure = "on the way home: " + last.failure;
+    if (!last.failure.empty()) result_.stopped += "; " + result_.failure;
     count();
     result_.duration = last.duration;
     if (!executor_.program().waypoints.empty()) {

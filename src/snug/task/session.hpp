@@ -89,6 +89,7 @@ struct SessionResult {
   std::vector<cell::BoxResult> boxes;
   std::uint64_t state_hash = 0;
   std::string stopped;  ///< why the session ended
+  std::string failure;  ///< empty, or why the robot did not get home: the program cannot be run to its end
 };
 
 /// Called after every item.

@@ -68,6 +68,7 @@ export interface Header {
   dt: number;
   record_period: number;
   complete: boolean;
+  interrupted: boolean;
   frames: number;
   scenario: { name: string; text: string };
   program: { name: string; names: string[] };
@@ -96,6 +97,7 @@ export function completeHeader(h: Partial<Header>): Header {
     dt: h.dt ?? 0,
     record_period: h.record_period ?? 0,
     complete: h.complete ?? true,
+    interrupted: h.interrupted ?? false,
     frames: h.frames ?? 0,
     scenario: h.scenario ?? { name: "", text: "" },
     program: h.program ?? { name: "", names: [] },

@@ -82,7 +82,9 @@ export class Replay {
     this.bodyPose_ = this.header.bodies.map((_, k) => this.channels_.get(`body.${k}.pose`));
     this.bodyPresent_ = this.header.bodies.map((_, k) => this.channels_.get(`body.${k}.present`));
     this.contacts_ = this.findContacts();
-    if (!this.header.complete) {
+    if (this.header.interrupted) {
+      this.warnings.push("The run was ended early by who watched it.");
+    } else if (!this.header.complete) {
       this.warnings.push("The run did not end in order: it was killed, failed, or was still running.");
     }
   }

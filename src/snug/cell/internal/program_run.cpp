@@ -23,7 +23,7 @@ class ProgramRun {
         plan_(simulation_.prepare(corrected(scenario, *options.program, options.corrections))),
         state_(simulation_.make_state()),
         work_(simulation_.make_workspace()) {
-    if (!options.record_path.empty() || options.observer != nullptr) start_recording();
+    if (is_recorded(options)) start_recording();
   }
 
   RunResult run() {
@@ -43,7 +43,8 @@ class ProgramRun {
     result.wall = wall.count();
     result.real_time_factor = simulation_.time(state_) / result.wall;
     fill(result);
-    if (recorder_) recorder_->close(options_.describe ? options_.describe(result) : "");
+    result.is_interrupted = is_stopped_;
+    if (recorder_) recorder_->close(options_.describe ? options_.describe(result) : "", result.is_interrupted);
     return result;
   }
 
@@ -51,6 +52,7 @@ class ProgramRun {
   void start_recording() {
     RecorderSetup setup;
     setup.path = options_.record_path;
+    setup.file = options_.record_file;
     setup.observer = options_.observer;
     setup.period = simulation_.scenario().controller.tick;
     setup.program_text = options_.program_text;

@@ -5,6 +5,11 @@
 
 namespace snug::cell::internal {
 
+/// Does anybody want to have the frames?
+[[nodiscard]] inline bool is_recorded(const RunOptions& options) {
+  return !options.record_path.empty() || options.record_file != nullptr || options.observer != nullptr;
+}
+
 [[nodiscard]] RunResult run_program(const model::Scenario& scenario, const RunOptions& options);
 [[nodiscard]] RunResult run_scene(const model::Scenario& scenario, const RunOptions& options);
 

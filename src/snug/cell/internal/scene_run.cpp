@@ -18,9 +18,10 @@ RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) 
   Scene scene(scenario);
   const double until = options.until.value_or(scenario.duration);
   std::unique_ptr<Recorder> recorder;
-  if (!options.record_path.empty() || options.observer != nullptr) {
+  if (is_recorded(options)) {
     RecorderSetup setup;
     setup.path = options.record_path;
+    setup.file = options.record_file;
     setup.observer = options.observer;
     setup.period = std::max(kRecordPeriod, scenario.time_step);
     setup.version = options.version;
@@ -52,7 +53,8 @@ RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) 
                              physics::pose_of(scene.world().model, scene.state(), physics::BodyId{static_cast<int>(i)}),
                              scene.state().bodies[i].velocity.norm()});
   }
-  if (recorder) recorder->close(options.describe ? options.describe(result) : "");
+  result.is_interrupted = is_stopped;
+  if (recorder) recorder->close(options.describe ? options.describe(result) : "", result.is_interrupted);
   return result;
 }
 

@@ -7,10 +7,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <map>
 #include <memory>
 #include <new>
+#include <thread>
+
+#include "snug/core/file_lock.hpp"
 
 namespace snug::record::internal {
 namespace {
@@ -76,7 +80,27 @@ int rank_of(const PendingWrite& write) {
   }
 }
 
+/// Held while the file is not whole. Readers hold the lock for the time that it takes to copy the file
+/// (live_file.cpp); one that does not give it back must not hold up the run.
+class CommitLock {
+ public:
+  explicit CommitLock(int descriptor) : descriptor_(descriptor) {
+    const auto deadline = std::chrono::steady_clock::now() + kWriterPatience;
+    while (!try_lock(descriptor_, LockByte::Commit, LockKind::Exclusive)) {
+      if (std::chrono::steady_clock::now() > deadline) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  ~CommitLock() { unlock(descriptor_, LockByte::Commit); }
+  CommitLock(const CommitLock&) = delete;
+  CommitLock& operator=(const CommitLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 bool commit(CommitFile& file) {
+  const CommitLock lock(file.descriptor);
   if (!write_at(file, file.committed_end, file.tail.data(), file.tail.size())) return false;
   file.tail.clear();
   if (file.end_of_file < file.end_of_allocation) {
@@ -232,6 +256,7 @@ herr_t truncate_file(H5FD_t* base, hid_t /*transfer*/, hbool_t closing) {
   CommitFile& file = self(base);
   if (file.has_failed || !closing || file.end_of_file <= file.end_of_allocation) return 0;
   if (!commit(file)) return fail(file);
+  const CommitLock lock(file.descriptor);
   if (::ftruncate(file.descriptor, static_cast<off_t>(file.end_of_allocation)) != 0) return fail(file);
   file.end_of_file = file.end_of_allocation;
   return 0;

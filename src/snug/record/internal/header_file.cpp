@@ -153,10 +153,11 @@ std::vector<BodyInfo> read_bodies(hid_t file) {
 
 void write_header(hid_t file, const RecordingHeader& header) {
   const std::int32_t version = kFormatVersion;
-  const std::uint8_t complete = 0;
+  const std::uint8_t complete = 0;  // nor interrupted: until it is closed
   write_attribute(file, "format", kFormatName);
   write_attribute(file, "format_version", H5T_NATIVE_INT32, &version);
   write_attribute(file, "complete", H5T_NATIVE_UINT8, &complete);
+  write_attribute(file, "interrupted", H5T_NATIVE_UINT8, &complete);
   write_attribute(file, "snug_version", header.version);
   write_attribute(file, "program_name", header.program_name);
   write_attribute(file, "sequence", header.sequence);

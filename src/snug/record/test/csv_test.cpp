@@ -194,5 +194,26 @@ TEST_F(Csv, KeepsNamesFromBreakingTheTable) {
             table.names.end());
 }
 
+TEST_F(Csv, HasNoCellThatASpreadsheetWouldRun) {
+  const char* names[] = {"=cmd|' /C calc'!A0", "+1", "-2+3", "@SUM(1)"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    recording.header.bodies[i].name = names[i];
+    recording.header.bodies[i].kind = BodyKind::Dynamic;
+    recording.frames[i].cup.attached_body = static_cast<int>(i);
+  }
+  recording.header.container.name = "\t=1";
+  const ParsedTable table = written();
+  for (const std::string& name : table.names)
+    EXPECT_EQ(std::string("=+-@\t\r").find(name[0]), std::string::npos) << name;
+  EXPECT_EQ(table.rows[2].at("cup_attached"), "_2+3");
+  for (const auto& row : table.rows) {
+    for (const auto& [name, text] : row) {
+      if (text.empty() || name == "cup_attached") continue;
+      EXPECT_EQ(text.find_first_not_of("0123456789+-.e"), std::string::npos) << name << ": numbers stay numbers";
+    }
+  }
+  EXPECT_LT(number(table.rows[0], "tool_position_x") * number(table.rows[0], "tool_position_x"), 4.01);
+}
+
 }  // namespace
 }  // namespace snug::record

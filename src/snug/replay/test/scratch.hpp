@@ -8,28 +8,12 @@
 #include <string>
 
 #include "snug/core/rng.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 #include "snug/record/recording.hpp"
 
 namespace snug::replay::test {
 
-/// A folder of this process that disappears with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "snug-replay-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
+using snug::test::ScratchFolder;
 
 inline Vector3 random_vector(Rng& rng, double scale) {
   return {rng.uniform(-scale, scale), rng.uniform(-scale, scale), rng.uniform(-scale, scale)};

@@ -1,0 +1,242 @@
+// OutputFile: a file that is written whole or not at all, by one writer at a time.
+#include "snug/core/output_file.hpp"
+
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "snug/core/check.hpp"
+#include "snug/core/descriptor.hpp"
+#include "snug/core/file_lock.hpp"
+#include "snug/core/follow_links.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug {
+namespace {
+
+constexpr const char* kDraftSuffix = ".snug-part";
+
+/// Paths of drafts for the handler of signals, which may neither lock nor allocate. Beyond so many at a time (no verb
+/// has them) a draft may be left behind.
+struct DraftSlot {
+  enum State : int { Free, Taken, Ready };
+  std::atomic<int> state{Free};
+  std::array<char, PATH_MAX> path{};
+};
+std::array<DraftSlot, 16> g_drafts;
+
+class Registration {
+ public:
+  Registration() = default;
+  ~Registration() { reset(); }
+  Registration(const Registration&) = delete;
+  Registration& operator=(const Registration&) = delete;
+
+  void set(const std::string& path) {
+    for (DraftSlot& slot : g_drafts) {
+      int free = DraftSlot::Free;
+      if (path.size() >= slot.path.size() || !slot.state.compare_exchange_strong(free, DraftSlot::Taken)) continue;
+      std::memcpy(slot.path.data(), path.c_str(), path.size() + 1);
+      slot.state = DraftSlot::Ready;
+      slot_ = &slot;
+      return;
+    }
+  }
+  void reset() {
+    if (slot_ != nullptr) slot_->state = DraftSlot::Free;
+    slot_ = nullptr;
+  }
+
+ private:
+  DraftSlot* slot_ = nullptr;
+};
+
+void remove_drafts(int signal) {
+  for (const DraftSlot& slot : g_drafts) {
+    if (slot.state == DraftSlot::Ready) ::unlink(slot.path.data());
+  }
+  ::raise(signal);  // SA_RESETHAND: now it ends the program
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw InputError(path.string(), "", why, "a file that can be written");
+}
+
+[[noreturn]] void refuse_busy(const std::filesystem::path& path) {
+  throw InputError(path.string(), "", "a file that another run is writing", "one that nobody else writes");
+}
+
+/// Is `path` itself, not what it links to, the open file?
+bool names_file(const std::filesystem::path& path, int descriptor) {
+  struct stat named = {}, open = {};
+  return ::lstat(path.c_str(), &named) == 0 && ::fstat(descriptor, &open) == 0 && named.st_dev == open.st_dev &&
+         named.st_ino == open.st_ino;
+}
+
+/// Creates and locks the draft. The lock is on the draft's own inode and goes where publish() moves it; a draft
+/// that nobody has locked was left by a killed process. Never opens what it did not create for writing: in a folder
+/// of others the name may be a link to something precious.
+Descriptor create_draft(const std::filesystem::path& path, const std::filesystem::path& draft) {
+  for (;;) {
+    Descriptor file(::open(draft.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+    if (file.is_open()) {
+      if (try_lock(file.get(), LockByte::Writer, LockKind::Exclusive) && names_file(draft, file.get())) return file;
+      continue;  // somebody took it for left over before it was locked
+    }
+    if (errno != EEXIST) refuse(path, std::strerror(errno));
+    const Descriptor other(::open(draft.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (!other.is_open() && errno == ENOENT) continue;
+    if (!other.is_open()) refuse(draft, std::strerror(errno));
+    if (!try_lock(other.get(), LockByte::Writer, LockKind::Exclusive)) refuse_busy(path);
+    if (names_file(draft, other.get()) && ::unlink(draft.c_str()) != 0) refuse(draft, std::strerror(errno));
+  }
+}
+
+/// The draft's name and its open, locked file; removed with the object unless it was moved to its place.
+class Draft {
+ public:
+  Draft(const std::filesystem::path& path, std::filesystem::path location)
+      : location_(std::move(location)), descriptor_(create_draft(path, location_)) {
+    registration_.set(location_.string());
+  }
+  ~Draft() {
+    registration_.reset();
+    if (!is_moved_ && names_file(location_, descriptor_.get())) ::unlink(location_.c_str());
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  /// False when the system does not let us; errno tells why.
+  [[nodiscard]] bool move_to(const std::filesystem::path& place) {
+    if (!names_file(location_, descriptor_.get())) {
+      errno = ESTALE;  // removed, or replaced where the file system knows no locks
+      return false;
+    }
+    registration_.reset();
+    if (::rename(location_.c_str(), place.c_str()) != 0) return false;
+    location_ = place;
+    is_moved_ = true;
+    return true;
+  }
+  [[nodiscard]] const std::filesystem::path& location() const { return location_; }
+  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
+  [[nodiscard]] bool is_moved() const { return is_moved_; }
+
+ private:
+  std::filesystem::path location_;
+  Descriptor descriptor_;
+  Registration registration_;
+  bool is_moved_ = false;
+};
+
+/// The status of what is at `place`, if there is anything; throws InputError when it is not ours to replace.
+std::optional<struct stat> look_at(const std::filesystem::path& path, const std::filesystem::path& place) {
+  struct stat status = {};
+  const bool exists = ::stat(place.c_str(), &status) == 0;
+  if (exists && !S_ISREG(status.st_mode)) refuse(path, "something that is not a regular file");
+  if (!place.has_filename()) refuse(path, "no name of a file");
+  if (place.extension() == kDraftSuffix) refuse(path, std::string("a name that ends in ") + kDraftSuffix);
+  if (!exists) return std::nullopt;
+  if (::access(place.c_str(), W_OK) != 0) refuse(path, std::strerror(errno));
+  return status;
+}
+
+bool is_written_by_another(const std::filesystem::path& place) {
+  Descriptor file(::open(place.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!file.is_open()) file = Descriptor(::open(place.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
+  return file.is_open() && is_locked(file.get(), LockByte::Writer);
+}
+
+}  // namespace
+
+std::filesystem::path follow_links(const std::filesystem::path& path) {
+  constexpr int kMostLinks = 40;  // as Linux has it
+  std::filesystem::path place = path;
+  std::error_code error;
+  for (int i = 0; std::filesystem::is_symlink(place, error); ++i) {
+    const std::filesystem::path next = std::filesystem::read_symlink(place, error);
+    if (error || i == kMostLinks) refuse(path, std::strerror(ELOOP));
+    place = next.is_absolute() ? next : place.parent_path() / next;
+  }
+  return place;
+}
+
+OutputError::OutputError(const std::string& where, const std::string& why)
+    : std::runtime_error(where + ": could not be written: " + why) {}
+
+struct OutputFile::Impl {
+  explicit Impl(const std::filesystem::path& as_asked);
+  ~Impl() {
+    if (stream != nullptr) std::fclose(stream);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  void fail() const { throw OutputError(path.string(), std::strerror(errno)); }
+
+  std::filesystem::path path, place;
+  std::optional<struct stat> old;  ///< what is to be replaced
+  Draft draft;
+  std::FILE* stream = nullptr;  ///< over a copy of the draft's descriptor
+};
+
+OutputFile::Impl::Impl(const std::filesystem::path& as_asked)
+    : path(as_asked),
+      place(follow_links(as_asked)),
+      old(look_at(path, place)),
+      draft(path, place.string() + kDraftSuffix) {
+  // Behind the draft: a writer that has published its file holds the lock there, one that has not holds the draft.
+  if (is_written_by_another(place)) refuse_busy(path);
+  if (old) {
+    (void)!::fchown(draft.descriptor(), old->st_uid, old->st_gid);  // only root may give files away
+    if (::fchmod(draft.descriptor(), old->st_mode & 07777U) != 0) refuse(path, std::strerror(errno));
+  }
+  const int copy = ::fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0);
+  stream = copy >= 0 ? ::fdopen(copy, "wb") : nullptr;
+  if (stream == nullptr) {
+    if (copy >= 0) ::close(copy);
+    refuse(path, std::strerror(errno));
+  }
+}
+
+OutputFile::OutputFile(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
+OutputFile::~OutputFile() = default;
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
+OutputFile& OutputFile::operator=(OutputFile&&) noexcept = default;
+
+const std::filesystem::path& OutputFile::path() const { return impl_->path; }
+const std::filesystem::path& OutputFile::location() const { return impl_->draft.location(); }
+bool OutputFile::replaces_file() const { return impl_->old.has_value(); }
+bool OutputFile::is_published() const { return impl_->draft.is_moved(); }
+
+void OutputFile::write(std::string_view bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), impl_->stream) != bytes.size()) impl_->fail();
+}
+
+void OutputFile::publish() {
+  SNUG_CHECK(!is_published(), "published once");
+  if (std::fflush(impl_->stream) != 0 || ::fsync(impl_->draft.descriptor()) != 0) impl_->fail();
+  if (!impl_->draft.move_to(impl_->place)) impl_->fail();
+}
+
+void remove_drafts_when_interrupted() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before = {}, action = {};
+    if (::sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) continue;  // nohup, background jobs
+    action.sa_handler = remove_drafts;
+    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+    ::sigaction(signal, &action, nullptr);
+  }
+}
+
+}  // namespace snug
