@@ -18,6 +18,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double kLongestTip = 2.0;      // m
+constexpr double kHeaviestLoad = 500.0;  // kg
+
 ordered_json numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 Vector3 deviations(const Matrix3& covariance) { return covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
@@ -38,6 +41,9 @@ std::string note_of(const std::string& what, const std::string& input, const Nom
 }  // namespace
 
 int run_calibrate_tool(const CalibrateToolOptions& options) {
+  for (const double value : options.tip_in_tool)
+    if (!(std::abs(value) <= kLongestTip))
+      throw InputError("command line", "--tip-in-tool", std::to_string(value), "metres, at most 2");
   const NominalArm nominal = load_nominal(options);
   const int flange = require_link(nominal.arm, "--flange", options.flange);
   const robot::Link& flange_link = nominal.arm.links[static_cast<std::size_t>(flange)];
@@ -74,6 +80,8 @@ int run_calibrate_tool(const CalibrateToolOptions& options) {
 
 int run_calibrate_sensor(const CalibrateSensorOptions& options) {
   const NominalArm nominal = load_nominal(options);
+  if (options.mass && !(*options.mass <= kHeaviestLoad))
+    throw InputError("command line", "--mass", std::to_string(*options.mass), "kilograms, at most 500");
   const int sensor = require_link(nominal.arm, "--sensor", options.sensor);
   const calibration::ForceSensorFit fit = calibration::fit_force_sensor(
       calibration::load_table(options.input, calibration::force_sensor_columns()), options.mass);
