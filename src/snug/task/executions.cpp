@@ -19,7 +19,7 @@ Run run_once(const model::Scenario& scenario, const SessionResult& session, cons
   const Rng rng = Rng(options.seed).split("execution " + std::to_string(index));
   const model::Scenario changed = sample(scenario, session.sequence, options.uncertainty, rng);
   Lane lane(changed, session.sequence, options.simulation);
-  (void)lane.run(session.program);
+  (void)lane.run(session.program, {.arm_may_touch = true});
   (void)lane.settle(session.program, kRest);
   Run run;
   run.boxes = lane.simulation().boxes(lane.state());

@@ -237,6 +237,7 @@ class PackingSession {
     if (result_.stopped.empty()) result_.stopped = items_.empty() ? "no items" : no_more_items();
     const Episode last = executor_.finish();
     if (!last.failure.empty()) result_.stopped += "; on the way home: " + last.failure;
+    if (last.failure.empty() && !last.arm_contact.empty()) result_.stopped += "; on the way home " + last.arm_contact;
     count();
     result_.duration = last.duration;
     if (!executor_.program().waypoints.empty()) {
