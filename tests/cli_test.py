@@ -249,6 +249,33 @@ class Robot(unittest.TestCase):
         self.assertFalse(out.exists())
 
 
+    def test_a_urdf_without_efforts_is_used_with_a_warning(self):
+        urdf = (ROOT / "scenarios" / "robots" / "ur10.urdf").read_text()
+        line = next(n for n, text in enumerate(urdf.splitlines(), 1) if 'effort="330"' in text)
+        self.write("robot.urdf", urdf.replace('effort="330"', 'effort="0"', 1))
+        cell = self.write("cell.yaml", CELL.read_text().replace("urdf: robots/ur10.urdf", "name: ur10\n  urdf: robot.urdf"))
+        words = ("--program", self.write("near.csv", self.NEAR), "--sequence", "1")
+        for result in (snug("simulate", cell, *words, "--robot", "ur10"), snug("check", cell, *words)):
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(f"robot.urdf:{line}: joint 'shoulder_pan_joint'", result.stderr)
+            self.assertIn("effort 0", result.stderr)
+
+    def test_a_scenario_without_limits_has_defaults_for_every_name(self):
+        head, _, tail = CELL.read_text().partition("  limits:  # [ctl]")
+        cell = self.write("cell.yaml", head + "  # [ctl] Offsets" + tail.partition("  # [ctl] Offsets")[2])
+        self.assertNotIn("prefix: PrePick,", cell.read_text())
+        cell.write_text(cell.read_text().replace("urdf: robots/", f"urdf: {CELL.parent}/robots/"))
+        result = snug("check", cell, "--program", self.write("near.csv", self.NEAR.replace("home", "anything")))
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_rows_of_one_finding_are_printed_as_one_line(self):
+        path = self.write("far.csv", self.NEAR + 3 * (self.NEAR.replace("0.2,0,", "-0.3,0,")))
+        result = snug("check", CELL, "--program", path)
+        self.assertEqual(result.returncode, 1)
+        lines = [line for line in result.stdout.partition("Smallest")[0].splitlines() if line.startswith("collision       gripper")]
+        self.assertEqual(len(lines), 1, result.stdout)
+        self.assertIn("rows 2-4", lines[0])
+
 class Cup(unittest.TestCase):
     assert_refused = CommandLine.assert_refused
 
@@ -560,6 +587,40 @@ class Calibrate(unittest.TestCase):
             self.assertAlmostEqual(value, expected, places=9)
         self.assertIn("Calibrated: load of the sensor from ft.csv", out.read_text())
 
+    def test_a_tool_frame_that_coincides_with_the_last_joint_can_be_measured(self):
+        urdf = (ROOT / "scenarios" / "robots" / "ur10.urdf").read_text()
+        turned = ('rpy="0 -1.5707963267948966 -1.5707963267948966"', 'rpy="1.5707963267948966 0 1.5707963267948966"')
+        for rpy in turned:
+            self.assertEqual(urdf.count(rpy), 1)
+            urdf = urdf.replace(rpy, 'rpy="0 0 0"')
+        arm = self.write("coincident.urdf", urdf)
+        poses = self.write("poses.csv", "q1,q2,q3,q4,q5,q6,x,y,z,rx,ry,rz\n0,0,0,0,0,0,1,0,0,0,0,0\n")
+        words = ("calibrate", "kinematics", "--poses", poses, "--urdf", arm, "--end")
+        self.assertIn("10 or more", snug(*words, "tool0").stderr)
+        result = snug(*words, "wrist_3_link")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("such as 'flange'", result.stderr)
+
+    def test_another_arm_or_another_unit_is_refused_with_line_and_key(self):
+        text = ("kinematics:\n  shoulder: {x: 0, y: 0, z: 0.1273, roll: 0, pitch: 0, yaw: 0}\n"
+                "  upper_arm: {x: 0, y: 0, z: 0, roll: 1.570796327, pitch: 0, yaw: 0}\n"
+                "  forearm: {x: -0.612, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}\n"
+                "  wrist_1: {x: -0.5723, y: 0, z: 0.163941, roll: 0, pitch: 0, yaw: 0}\n"
+                "  wrist_2: {x: 0, y: -0.1157, z: 0, roll: 1.570796327, pitch: 0, yaw: 0}\n"
+                "  wrist_3: {x: 0, y: 0.0922, z: 0, roll: 1.570796327, pitch: 3.141592653, yaw: 3.141592653}\n")
+        self.assertEqual(snug("calibrate", "kinematics", "--yaml", self.write("ok.yaml", text)).returncode, 0)
+        for old, new, parts in (("x: -0.612", "x: -612", ("arm.yaml:4", "forearm.x", "metres")),
+                                ("x: -0.612", "x: -0.425", ("arm.yaml", "elbow_joint", "0.1 m")),
+                                ("roll: 1.570796327, pitch: 0, yaw: 0}\n  forearm", "roll: 90, pitch: 0, yaw: 0}\n  forearm",
+                                 ("arm.yaml:3", "upper_arm.roll", "radians"))):
+            with self.subTest(new=new):
+                out = self.path / "out.urdf"
+                result = snug("calibrate", "kinematics", "--yaml", self.write("arm.yaml", text.replace(old, new)), "-o", out)
+                self.assertEqual(result.returncode, 2, result.stdout)
+                for part in parts:
+                    self.assertIn(part, result.stderr)
+                self.assertFalse(out.exists())
+
     def test_what_cannot_be_used_is_refused(self):
         short = self.write("short.csv", "x,y,z,rx,ry,rz\n0,0,0,0,0,0\n")
         for words, part in ((["kinematics"], "--deltas, --yaml, --poses"),
@@ -569,7 +630,9 @@ class Calibrate(unittest.TestCase):
                             (["kinematics", "--poses", short, "--end", "tol0"], "tool0"),
                             (["kinematics", "--deltas", short, "--angles", "rpy"], "euler-xyz"),
                             (["tool", short], "4 or more"), (["tool", short, "--flange", "base_link"], "behind the last joint"),
-                            (["ft", short], "column 'fx'"), (["ft", short, "--mass", -1], "--mass")):
+                            (["ft", short], "column 'fx'"), (["ft", short, "--mass", -1], "--mass"),
+                            (["ft", short, "--mass", 1200], "kilograms"),
+                            (["tool", short, "--tip-in-tool", 0, 0, 341], "--tip-in-tool")):
             with self.subTest(words=words):
                 result = snug("calibrate", *words)
                 self.assertEqual(result.returncode, 2, result.stderr)

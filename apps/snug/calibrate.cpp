@@ -1,6 +1,7 @@
 // calibrate kinematics: deviations, origins or measured poses in, a calibrated URDF out.
 #include "calibrate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -33,9 +34,16 @@ calibration::IdentifiedArm identify(const CalibrateKinematicsOptions& options, c
                                            require_link(nominal, "--end", options.end)};
   const auto segment = [&](int link) { return nominal.links[static_cast<std::size_t>(link)].segment; };
   if (segment(frames.base) != 0) throw InputError("command line", "--base", options.base, "a link that does not move");
-  if (segment(frames.end) != nominal.joint_count() ||
-      nominal.links[static_cast<std::size_t>(frames.end)].X_SL == Pose{})
-    throw InputError("command line", "--end", options.end, "a link fixed behind the last joint's, such as tool0");
+  // The last joint's own link carries no origin that the deviation of the end could be written to.
+  const auto is_fixed_behind = [&](const robot::Link& link) {
+    return link.segment == nominal.joint_count() && segment(link.parent) == nominal.joint_count();
+  };
+  if (!is_fixed_behind(nominal.links[static_cast<std::size_t>(frames.end)])) {
+    const auto other = std::find_if(nominal.links.begin(), nominal.links.end(), is_fixed_behind);
+    throw InputError("command line", "--end", "'" + options.end + "'",
+                     "a link behind a fixed joint of the last joint's link" +
+                         (other == nominal.links.end() ? ": the URDF has none" : ", such as '" + other->name + "'"));
+  }
   return calibration::identify_arm(nominal, calibration::load_pose_pairs(*options.poses, nominal), frames);
 }
 
@@ -112,6 +120,7 @@ int run_calibrate_kinematics(const CalibrateKinematicsOptions& options) {
     json = describe(found, nominal.arm);
   }
   const std::string source = options.deltas ? *options.deltas : options.yaml ? *options.yaml : *options.poses;
+  calibration::check_same_arm(arm, nominal.arm, source);
   const std::string note = "Calibrated: joint origins from " + std::filesystem::path(source).filename().string() +
                            ", all else from " + nominal.path.filename().string();
   const std::string text = calibration::format_urdf(nominal.path, nominal.arm, arm, note, nominal.out_folder);

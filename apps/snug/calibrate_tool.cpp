@@ -19,6 +19,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double kLongestTip = 2.0;      // m
+constexpr double kHeaviestLoad = 500.0;  // kg
+
 ordered_json numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 Vector3 deviations(const Matrix3& covariance) { return covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
@@ -39,6 +42,9 @@ std::string note_of(const std::string& what, const std::string& input, const Nom
 }  // namespace
 
 int run_calibrate_tool(const CalibrateToolOptions& options) {
+  for (const double value : options.tip_in_tool)
+    if (!(std::abs(value) <= kLongestTip))
+      throw InputError("command line", "--tip-in-tool", std::to_string(value), "metres, at most 2");
   const NominalArm nominal = load_nominal(options);
   std::optional<OutputFile> output =
       reserve({{"the input", options.input}, {"the nominal URDF", nominal.path}}, options.output);
@@ -77,6 +83,8 @@ int run_calibrate_tool(const CalibrateToolOptions& options) {
 
 int run_calibrate_sensor(const CalibrateSensorOptions& options) {
   const NominalArm nominal = load_nominal(options);
+  if (options.mass && !(*options.mass <= kHeaviestLoad))
+    throw InputError("command line", "--mass", std::to_string(*options.mass), "kilograms, at most 500");
   std::optional<OutputFile> output =
       reserve({{"the input", options.input}, {"the nominal URDF", nominal.path}}, options.output);
   const int sensor = require_link(nominal.arm, "--sensor", options.sensor);

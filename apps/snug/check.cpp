@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "outputs.hpp"
+#include "robot_warnings.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
 
@@ -22,14 +23,22 @@ Json as_json(const cell::CheckFinding& finding) {
           {"waypoint", finding.waypoint},
           {"what", finding.what},
           {"margin", finding.margin},
+          {"allowance", finding.allowance},
           {"unit", finding.unit},
           {"time_s", finding.time}};
 }
 
 std::string format_json(const cell::CheckResult& result) {
-  Json document = {{"ok", result.is_ok},    {"duration_s", result.duration}, {"wall_s", result.wall},
-                   {"looks", result.looks}, {"findings", Json::array()},     {"margins", Json::array()}};
+  Json document = {{"ok", result.is_ok},      {"duration_s", result.duration}, {"wall_s", result.wall},
+                   {"looks", result.looks},   {"findings", Json::array()},     {"groups", Json::array()},
+                   {"margins", Json::array()}};
   for (const cell::CheckFinding& finding : result.findings) document["findings"].push_back(as_json(finding));
+  for (const cell::CheckGroup& group : cell::group(result.findings)) {
+    Json entry = as_json(group.worst);
+    entry["rows"] = Json::array();
+    for (const int row : group.rows) entry["rows"].push_back(row + 1);
+    document["groups"].push_back(std::move(entry));
+  }
   for (const cell::CheckFinding& margin : result.margins) {
     Json entry = as_json(margin);
     entry.erase("severity");
@@ -38,24 +47,46 @@ std::string format_json(const cell::CheckResult& result) {
   return document.dump(2) + "\n";
 }
 
-std::string line_of(const cell::CheckFinding& finding) {
-  return fmt::format("{:<15} {:>4} {:<20} {:>8.2f}  {:<32} {:>9.4f} {}\n", cell::name_of(finding.kind), finding.row + 1,
-                     finding.waypoint, finding.time, finding.what, finding.margin, finding.unit);
+/// "3", "3, 5-9", and of many the first, with their number.
+std::string rows_of(const std::vector<int>& rows) {
+  constexpr std::size_t kMost = 4;
+  std::vector<std::string> runs;
+  for (std::size_t i = 0; i < rows.size();) {
+    std::size_t end = i + 1;
+    while (end < rows.size() && rows[end] == rows[end - 1] + 1) ++end;
+    runs.push_back(end - i == 1 ? fmt::format("{}", rows[i] + 1)
+                                : fmt::format("{}-{}", rows[i] + 1, rows[end - 1] + 1));
+    i = end;
+  }
+  const bool is_long = runs.size() > kMost;
+  if (is_long) runs.resize(kMost);
+  return fmt::format("{}{}", fmt::join(runs, ", "), is_long ? fmt::format(", ... ({} rows)", rows.size()) : "");
+}
+
+/// One finding as a line; `rows`: all rows that have it, or only its own.
+std::string line_of(const cell::CheckFinding& finding, const std::vector<int>& rows) {
+  std::string text =
+      fmt::format("{:<15} {:<36} {:>9.4f} {:<6} {:>4} {:<20} {:>8.2f}", cell::name_of(finding.kind), finding.what,
+                  finding.margin, finding.unit, finding.row + 1, finding.waypoint, finding.time);
+  if (finding.allowance > 0.0) text += fmt::format("  {:.3f} {} inside allowed", finding.allowance, finding.unit);
+  if (rows.size() > 1) text += "  rows " + rows_of(rows);
+  return text + "\n";
 }
 
 std::string format_table(const cell::CheckResult& result) {
-  const std::string head =
-      fmt::format("{:<15} {:>4} {:<20} {:>8}  {:<32} {:>9}\n", "", "row", "waypoint", "time s", "what", "margin");
+  const std::string head = fmt::format("{:<15} {:<36} {:>9} {:<6} {:>4} {:<20} {:>8}\n", "", "what", "margin", "",
+                                       "row", "waypoint", "time s");
   std::string text;
+  const std::vector<cell::CheckGroup> groups = cell::group(result.findings);
   for (const bool is_error : {true, false}) {
     std::string lines;
-    for (const cell::CheckFinding& finding : result.findings) {
-      if (finding.is_error == is_error) lines += line_of(finding);
+    for (const cell::CheckGroup& group : groups) {
+      if (group.worst.is_error == is_error) lines += line_of(group.worst, group.rows);
     }
     if (!lines.empty()) text += (is_error ? "In the way\n" : "Slower than planned\n") + head + lines + "\n";
   }
   text += "Smallest margins\n" + head;
-  for (const cell::CheckFinding& margin : result.margins) text += line_of(margin);
+  for (const cell::CheckFinding& margin : result.margins) text += line_of(margin, {});
   return text + fmt::format("\n{}: {:.1f} s of program, {} poses, in {:.3f} s\n",
                             result.is_ok ? "nothing in the way" : "cannot be done like this", result.duration,
                             result.looks, result.wall);
@@ -68,6 +99,7 @@ int run_check(const CheckOptions& options) {
   cell::CheckOptions check;
   if (options.sequence) check.sequence = *options.sequence;
   if (options.robot) check.robot = *options.robot;
+  print_robot_warnings(scenario);
   const motion::Program program = cell::corrected(scenario, motion::load_program(options.program),
                                                   options.corrections == "none" ? "" : options.corrections);
   const cell::CheckResult result = cell::check_program(scenario, program, check);

@@ -9,9 +9,10 @@ namespace snug::app {
 namespace {
 
 constexpr const char* kExamples =
-    R"(Looks at the whole way of the arm, in the timing of the faithful controller, without contact physics: reach, joint
-limits and speeds, singularities, the arm's own links, and links, gripper, cup and held box against everything that
-stands in the cell. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
+    R"(Moves the arm with its controller and limits, as a run does, but with nothing to touch, and looks at the whole way:
+reach, joint limits and speeds, singularities, the arm's own links, and links, gripper, cup and held box against
+everything that stands in the cell. Margins of collisions are distances, negative inside; what cup and held box may be
+inside is said beside them. Rows with one finding stand in one line. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
 Examples:
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1
   snug check scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json)";

@@ -42,8 +42,9 @@ int write_csv(const ExportOptions& options, OutputFile output) {
 constexpr std::array kFormats = {
     ExportFormat{"mcap", "a recording for Foxglove, Lichtblick and other viewers of MCAP", write_mcap},
     ExportFormat{"csv", "a recording as one table with the column names of mc_rtc logs", write_csv},
-    ExportFormat{"urscript", "a program for the controller of a UR robot; needs --scenario", write_urscript},
-    ExportFormat{"ros-trajectory", "a program as trajectory_msgs/JointTrajectory, YAML; needs --scenario",
+    ExportFormat{"urscript", "a program for the controller of a UR robot (no other); needs --scenario", write_urscript},
+    ExportFormat{"ros-trajectory",
+                 "a program as trajectory_msgs/JointTrajectory and times of the outputs, YAML; needs --scenario",
                  write_ros_trajectory},
     ExportFormat{"mc-rtc-csv", "a program through the joints as a log of mc_rtc, CSV; needs --scenario",
                  write_mc_rtc_csv},

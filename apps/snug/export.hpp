@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scenario_options.hpp"
+#include "snug/control/program_export.hpp"
 #include "snug/replay/mcap_writer.hpp"
 #include "snug/replay/replay.hpp"
 #include "verb.hpp"
@@ -23,8 +24,7 @@ struct ExportOptions {
   std::string sequence;              ///< whose gain; empty: the first
   std::string corrections = "none";  ///< layer of the scenario
   double period = 0.04;              ///< s, between the points of a trajectory
-  int vacuum_output = 0;             ///< digital output of the robot
-  int blow_off_output = 1;
+  control::UrScriptOptions script;
 };
 
 /// One format that can be asked for.

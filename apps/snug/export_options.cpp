@@ -50,13 +50,23 @@ void add_export(CLI::App& app, Action& action) {
       ->check(positive())
       ->type_name("SECONDS")
       ->capture_default_str();
-  verb.add_option("--vacuum-output", options->vacuum_output, "of urscript: digital output of the vacuum")
-      ->check(whole(0))
+  verb.add_option("--vacuum-output", options->script.vacuum_output, "of urscript: digital output of the vacuum")
+      ->check(whole(0, 7))
       ->type_name("N")
       ->capture_default_str();
-  verb.add_option("--blow-off-output", options->blow_off_output, "of urscript: digital output of the blow-off")
-      ->check(whole(0))
+  verb.add_option("--blow-off-output", options->script.blow_off_output, "of urscript: digital output of the blow-off")
+      ->check(whole(0, 7))
       ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--vacuum-input", options->script.vacuum_input,
+                  "of urscript: digital input that is on while there is vacuum")
+      ->check(whole(0, 7))
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--vacuum-timeout", options->script.vacuum_timeout,
+                  "of urscript: the program halts when the vacuum has not changed by then")
+      ->check(positive())
+      ->type_name("SECONDS")
       ->capture_default_str();
   verb.footer(footer + kExamples);
   verb.callback([options, compression, &action] {

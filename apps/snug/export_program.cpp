@@ -3,7 +3,9 @@
 
 #include <cstdio>
 
+#include "robot_warnings.hpp"
 #include "snug/cell/corrected.hpp"
+#include "snug/cell/held_boxes.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/control/program_export.hpp"
 #include "snug/core/input_error.hpp"
@@ -13,23 +15,55 @@ namespace snug::app {
 namespace {
 
 /// A program and the robot that is to do it.
-struct RobotProgram {
+struct LoadedProgram {
   cell::Simulation simulation;
   motion::PreparedProgram plan;
 
-  RobotProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
+  LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
       : simulation(scenario, sequence, {motion::ControllerKind::Faithful, cup::CupMode::Holding, scenario.robot->name}),
         plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input),
                                                 options.corrections == "none" ? "" : options.corrections))) {}
+
+  [[nodiscard]] control::RobotProgram for_robot() const {
+    return {plan, simulation.arm()->model(), simulation.arm()->start(), find_loads()};
+  }
+
+ private:
+  /// What the cup holds on the way to each row, as far as the names of the rows tell; says what they do not tell.
+  [[nodiscard]] std::vector<std::optional<control::CarriedLoad>> find_loads() const {
+    std::vector<std::optional<control::CarriedLoad>> loads;
+    cell::HeldBoxes boxes(simulation.scenario(), simulation.sequence());
+    const std::vector<motion::Waypoint>& rows = plan.program.waypoints;
+    bool was_unknown = false;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      boxes.depart(plan.program, static_cast<int>(i),
+                   i > 0 ? rows[i - 1].X_WE : simulation.scenario().controller.X_WE_start);
+      loads.emplace_back();
+      if (const std::optional<cell::HeldBox>& held = boxes.held()) {
+        const std::string& id = simulation.sequence().items[static_cast<std::size_t>(held->item)].parcel;
+        const SpatialInertia& inertia = model::find_parcel(simulation.scenario(), id)->inertia;
+        loads.back() = {inertia.mass, held->X_EP * inertia.com};
+      }
+      if (boxes.is_unknown() && !was_unknown) {
+        std::fprintf(
+            stderr,
+            "snug: warning: row %zu (%s): no box of sequence %s is known to be held: payload of the gripper alone\n",
+            i + 1, rows[i].name.c_str(), simulation.sequence().name.c_str());
+      }
+      was_unknown = boxes.is_unknown();
+    }
+    return loads;
+  }
 };
 
-RobotProgram load(const ExportOptions& options) {
+LoadedProgram load(const ExportOptions& options) {
   if (options.scenario.empty()) {
     throw InputError("command line", "--scenario", "nothing", "the scenario file with the robot that does the program");
   }
   const model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (!scenario.robot) throw InputError(options.scenario, "robot", "", "a scenario with a robot");
   expect_distinct(files_of(options.scenario, options.changes, scenario), {{"-o", options.output}});
+  print_robot_warnings(scenario);
   std::string sequence = options.sequence;
   if (sequence.empty() && !scenario.sequences.empty()) sequence = scenario.sequences.front().name;
   return {scenario, sequence, options};
@@ -38,7 +72,7 @@ RobotProgram load(const ExportOptions& options) {
 /// Runs the program through the joints and writes what `format` makes of it; nothing when the robot cannot do it.
 template <class Format>
 int write_run(const ExportOptions& options, OutputFile output, Format format) {
-  const RobotProgram program = load(options);
+  const LoadedProgram program = load(options);
   const cell::CellArm& arm = *program.simulation.arm();
   const control::JointRun run =
       control::run_joints(program.plan, arm.controller(), control::make_demonstrator_machine(), arm.start());
@@ -55,24 +89,30 @@ int write_run(const ExportOptions& options, OutputFile output, Format format) {
 }  // namespace
 
 int write_urscript(const ExportOptions& options, OutputFile output) {
-  const RobotProgram program = load(options);
-  const cell::CellArm& arm = *program.simulation.arm();
-  const Pose X_WE = robot::forward_tool(arm.model(), arm.start());
-  write_file(std::move(output), control::format_urscript(program.plan, arm.model(), X_WE,
-                                                         {options.vacuum_output, options.blow_off_output}));
+  if (options.script.vacuum_output == options.script.blow_off_output) {
+    throw InputError("command line", "--blow-off-output", std::to_string(options.script.blow_off_output),
+                     "another output than --vacuum-output");
+  }
+  const LoadedProgram program = load(options);
+  const control::UrScript script = control::format_urscript(program.for_robot(), options.script);
+  write_file(std::move(output), script.text);
+  std::fprintf(stderr,
+               "%s: %d moves, %.1f s nominal from stop to stop; %.1f s simulated, with a controller that lags behind "
+               "them\n",
+               options.output.c_str(), script.moves, script.nominal_duration, script.simulated_duration);
   return kSuccess;
 }
 
 int write_ros_trajectory(const ExportOptions& options, OutputFile output) {
   return write_run(options, std::move(output),
-                   [&](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
-                     return control::format_ros_trajectory(run, arm, program.plan.settings.tick, options.period);
+                   [&](const control::JointRun& run, const robot::ArmModel&, const LoadedProgram& program) {
+                     return control::format_ros_trajectory(run, program.for_robot(), options.period);
                    });
 }
 
 int write_mc_rtc_csv(const ExportOptions& options, OutputFile output) {
   return write_run(options, std::move(output),
-                   [](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
+                   [](const control::JointRun& run, const robot::ArmModel& arm, const LoadedProgram& program) {
                      return control::format_log_csv(control::make_log(run, arm, program.simulation.scenario().gravity));
                    });
 }
@@ -80,7 +120,7 @@ int write_mc_rtc_csv(const ExportOptions& options, OutputFile output) {
 int write_mc_rtc_flat(const ExportOptions& options, OutputFile output) {
   return write_run(
       options, std::move(output),
-      [](const control::JointRun& run, const robot::ArmModel& arm, const RobotProgram& program) {
+      [](const control::JointRun& run, const robot::ArmModel& arm, const LoadedProgram& program) {
         return control::format_log_flat(control::make_log(run, arm, program.simulation.scenario().gravity));
       });
 }

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "pack_report.hpp"
+#include "robot_warnings.hpp"
 #include "run_report.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
@@ -84,6 +85,7 @@ task::SessionOptions make_session_options(const PackOptions& options, const Sour
   if (options.look == "noisy") session.perception = task::Perception::Noisy;
   if (options.look == "dead-reckoning") session.perception = task::Perception::DeadReckoning;
   session.simulation.robot = options.robot.value_or("");
+  if (options.robot) print_robot_warnings(scenario);
   return session;
 }
 

@@ -108,6 +108,20 @@ std::string boxes_table(const cell::RunResult& result) {
   return text;
 }
 
+/// How often the arm touched something with its links, and the worst.
+std::string arm_contacts(const std::vector<record::Event>& events) {
+  const record::Event* worst = nullptr;
+  int count = 0;
+  const auto force_of = [](const record::Event& event) { return event.numbers.front().value; };
+  for (const record::Event& event : events) {
+    if (event.kind != "arm_contact_end") continue;
+    ++count;
+    if (worst == nullptr || force_of(event) > force_of(*worst)) worst = &event;
+  }
+  if (worst == nullptr) return "";
+  return fmt::format("arm contacts       {}; {}: {}, at {:.1f} s\n", count, worst->body, worst->text, worst->time);
+}
+
 std::string bodies_table(const cell::RunResult& result) {
   std::string text =
       fmt::format("{:<16} {:>9} {:>9} {:>9} {:>10}\n", "body", "x_W mm", "y_W mm", "z_W mm", "speed m/s");
@@ -128,6 +142,7 @@ std::string format_table(const cell::RunResult& result) {
       fmt::format("contact solver     {} steps, {} not converged, worst residual {:.1e} m/s, penetration {:.3f} mm\n",
                   result.solver.steps, result.solver.not_converged, result.solver.worst_residual,
                   result.solver.worst_penetration * kMm);
+  text += arm_contacts(result.events);
   return text + fmt::format("state hash         {:016x}\n", result.state_hash);
 }
 

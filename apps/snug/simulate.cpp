@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "robot_warnings.hpp"
 #include "run_report.hpp"
 #include "snug/cell/ensemble.hpp"
 #include "snug/cell/run.hpp"
@@ -70,7 +71,10 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   }
   if (options.sequence) run.sequence = *options.sequence;
   if (options.corrections != "none") run.corrections = options.corrections;
-  if (options.robot) run.simulation.robot = *options.robot;
+  if (options.robot) {
+    run.simulation.robot = *options.robot;
+    print_robot_warnings(scenario);
+  }
   if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
   if (options.cup) run.simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;

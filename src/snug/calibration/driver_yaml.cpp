@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "snug/calibration/exact_arm.hpp"
+#include "snug/calibration/internal/complaints.hpp"
 #include "snug/calibration/internal/frames.hpp"
 #include "snug/core/input_error.hpp"
 
@@ -29,6 +30,10 @@ Pose read_yaml_origin(const std::string& name, const YAML::Node& node, const std
     if (!YAML::convert<double>::decode(value, values[i]) || !std::isfinite(values[i]))
       refuse(name, value, joint + "." + kYamlKeys[i], value.IsScalar() ? value.Scalar() : "no number",
              "a finite number");
+    const double most = i < 3 ? internal::kFarthest : internal::kLargestTurn;
+    if (!(std::abs(values[i]) <= most))
+      refuse(name, value, joint + "." + kYamlKeys[i], value.Scalar(),
+             std::string(i < 3 ? "metres" : "radians") + ", at most " + internal::to_text(most));
   }
   const Vector3 angles(values[3], values[4], values[5]);
   return {reading == AngleReading::Urdf ? internal::from_urdf_angles(angles) : internal::from_euler_xyz_angles(angles),

@@ -2,10 +2,12 @@
 #include "snug/calibration/exact_arm.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <vector>
 
 #include "snug/calibration/internal/frames.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/robot/kinematics.hpp"
 
@@ -13,6 +15,8 @@ namespace snug::calibration {
 namespace {
 
 constexpr int kSamples = 1000;
+constexpr double kFarthestFrame = 0.1;     ///< m
+constexpr double kLargestFrameTurn = 0.2;  ///< rad
 
 /// All joints zero, then uniform in +-pi; the same ones always.
 std::vector<robot::JointVector> sample_joints(int joints) {
@@ -93,6 +97,22 @@ FrameShift largest_frame_shift(const robot::ArmModel& a, const robot::ArmModel& 
     for (std::size_t i = 1; i <= a.joints.size(); ++i) widen(shift, at_a.X_WS[i], at_b.X_WS[i]);
   }
   return shift;
+}
+
+void check_same_arm(const robot::ArmModel& arm, const robot::ArmModel& nominal, const std::string& where) {
+  const robot::ArmModel near = with_frames_near(arm, nominal);
+  const robot::ArmPose at = robot::forward(near, robot::JointVector::Zero(arm.joint_count()));
+  const robot::ArmPose wanted = robot::forward(nominal, robot::JointVector::Zero(arm.joint_count()));
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    FrameShift shift;
+    widen(shift, at.X_WS[i + 1], wanted.X_WS[i + 1]);
+    if (shift.position <= kFarthestFrame && shift.angle <= kLargestFrameTurn) continue;
+    char got[120];
+    std::snprintf(got, sizeof got, "its frame %.4g m and %.4g rad from that of the nominal arm", shift.position,
+                  shift.angle);
+    throw InputError(where, arm.joints[i].name, got,
+                     "deviations of this arm, in metres and radians: frames within 0.1 m and 0.2 rad");
+  }
 }
 
 FrameShift largest_end_error(const robot::ArmModel& arm, const robot::ArmModel& nominal, const DhTable& table) {

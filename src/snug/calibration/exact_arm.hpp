@@ -30,6 +30,11 @@ struct FrameShift {
 /// a nominal arm most of it is the deviation of the arm itself, which no choice of frames changes.
 [[nodiscard]] FrameShift largest_frame_shift(const robot::ArmModel& a, const robot::ArmModel& b);
 
+/// InputError when the joint frames of `arm`, slid and turned as near to those of `nominal` as that allows, are farther
+/// off than any real arm's (0.1 m, 0.2 rad; a real UR10's are 8 mm): another arm, millimetres or degrees. `where` is
+/// the file that it comes from.
+void check_same_arm(const robot::ArmModel& arm, const robot::ArmModel& nominal, const std::string& where);
+
 /// Largest difference of the tool, over the same configurations, between `arm` and the nominal tool carried by the DH
 /// chain itself.
 [[nodiscard]] FrameShift largest_end_error(const robot::ArmModel& arm, const robot::ArmModel& nominal,

@@ -5,11 +5,15 @@
 #include <cmath>
 
 #include "snug/calibration/internal/complaints.hpp"
+#include "snug/calibration/internal/frames.hpp"
 #include "snug/calibration/internal/linear_fit.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::calibration {
 namespace {
+
+/// Between what the sensor reads and N: beyond it the mass or the readings have another unit.
+constexpr double kLargestScale = 10.0;
 
 /// Directions of gravity in the sensor's frame, m/s^2.
 std::vector<Vector3> gravities(const Table& table, double gravity) {
@@ -49,6 +53,16 @@ internal::LinearFit fit_torques(const Table& table, const std::vector<Vector3>& 
   return internal::fit_linear(A, b, 3);
 }
 
+void check_ranges(const Table& table) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    internal::check_range(table, i, internal::kLargestTurn, "a part of a rotation vector in rad");
+    internal::check_range(table, 3 + i, internal::kLargestForce,
+                          "a force in N, at most " + internal::to_text(internal::kLargestForce));
+    internal::check_range(table, 6 + i, internal::kLargestTorque,
+                          "a torque in Nm, at most " + internal::to_text(internal::kLargestTorque));
+  }
+}
+
 void check_orientations(const Table& table, const std::vector<Vector3>& g_S, double gravity) {
   for (int axis = 0; axis < 3; ++axis) {
     double low = gravity, high = -gravity;
@@ -70,6 +84,7 @@ std::vector<std::string> force_sensor_columns() { return {"rx", "ry", "rz", "fx"
 
 ForceSensorFit fit_force_sensor(const Table& table, std::optional<double> known_mass, double gravity) {
   internal::check_count(table, 4, "orientations");
+  check_ranges(table);
   const std::vector<Vector3> g_S = gravities(table, gravity);
   check_orientations(table, g_S, gravity);
   const internal::LinearFit forces = fit_forces(table, g_S, gravity);
@@ -95,6 +110,11 @@ ForceSensorFit fit_force_sensor(const Table& table, std::optional<double> known_
   const double mean_weight = std::cbrt(weight.prod());
   fit.mass = known_mass.value_or(mean_weight / gravity);
   fit.scale = fit.mass * gravity * inverse;
+  if (!(fit.scale.minCoeff() >= 1.0 / kLargestScale && fit.scale.maxCoeff() <= kLargestScale))
+    throw InputError(table.name, "fx,fy,fz",
+                     "readings of " + internal::to_text(weight) + " N along the three axes for " +
+                         internal::to_text(fit.mass) + " kg",
+                     "forces in N and a mass in kg");
   const Vector3 third = Vector3::Constant(1.0 / 3.0);
   fit.mass_deviation = known_mass ? 0.0 : fit.mass * std::sqrt(third.dot(relative * third));
   for (int i = 0; i < 3; ++i) {
@@ -105,6 +125,9 @@ ForceSensorFit fit_force_sensor(const Table& table, std::optional<double> known_
   fit.torque_offset = torques.x.head<3>();
   fit.torque_offset_deviation = torques.covariance.diagonal().head<3>().cwiseSqrt();
   fit.com = moment / (fit.mass * gravity);
+  if (!(fit.com.norm() <= internal::kLongestTool))
+    throw InputError(table.name, "tx,ty,tz", "a centre of mass at " + internal::to_text(fit.com) + " m of the sensor",
+                     "torques in Nm that put it within " + internal::to_text(internal::kLongestTool) + " m");
   const double mass_part = fit.mass_deviation / fit.mass;
   fit.com_deviation =
       (torques.covariance.diagonal().tail<3>() / std::pow(fit.mass * gravity, 2) + (mass_part * fit.com).cwiseAbs2())

@@ -25,6 +25,10 @@ constexpr double kFirstAngleNoise = 3e-4;     // rad
 /// A combination of deviations (m, rad) of size 1 must move the ends by this on average, else it is undetermined.
 constexpr double kSmallestSpread = 1e-3;
 
+/// A joint may be read this far beyond its limit, rad or m; one without limits may have been turned this often, rad.
+constexpr double kBeyondLimit = 0.1;
+constexpr double kManyTurns = 100.0;
+
 /// Two directions across a unit axis; for z they are x and y.
 std::pair<Vector3, Vector3> across(const Vector3& axis) {
   const Vector3 guess = std::abs(axis.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
@@ -156,6 +160,17 @@ std::string deviation_name(const robot::ArmModel& arm, int index) {
 PosePairs make_pose_pairs(Table table, const robot::ArmModel& arm) {
   PosePairs pairs;
   const auto n = arm.joints.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const robot::Joint& joint = arm.joints[i];
+    const bool turns = joint.kind == robot::JointKind::Revolute;
+    const double farthest = std::max(std::abs(joint.lower), std::abs(joint.upper));
+    const double most = std::max(turns ? internal::kLargestTurn : internal::kFarthest,
+                                 std::isfinite(farthest) ? farthest + kBeyondLimit : kManyTurns);
+    internal::check_range(
+        table, i, most,
+        "a position of " + joint.name + (turns ? " in rad" : " in metres") + ", at most " + internal::to_text(most));
+  }
+  internal::check_poses(table, n);
   for (const std::vector<double>& row : table.rows) {
     pairs.q.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(n)));
     pairs.X_BF.push_back(row_pose(row, n));

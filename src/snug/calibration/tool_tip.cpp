@@ -2,6 +2,7 @@
 #include "snug/calibration/tool_tip.hpp"
 
 #include "snug/calibration/internal/complaints.hpp"
+#include "snug/calibration/internal/frames.hpp"
 #include "snug/calibration/internal/linear_fit.hpp"
 #include "snug/core/input_error.hpp"
 
@@ -11,6 +12,7 @@ std::vector<std::string> tool_tip_columns() { return {"x", "y", "z", "rx", "ry",
 
 ToolTip find_tool_tip(const Table& table) {
   internal::check_count(table, 4, "touches of the point");
+  internal::check_poses(table, 0);
   const auto rows = static_cast<Eigen::Index>(table.rows.size());
   Eigen::MatrixXd A(3 * rows, 6);
   Eigen::VectorXd b(3 * rows);
@@ -32,6 +34,10 @@ ToolTip find_tool_tip(const Table& table) {
   ToolTip tip;
   tip.p_FQ = fit.x.head<3>();
   tip.p_WQ = fit.x.tail<3>();
+  if (!(tip.p_FQ.norm() <= internal::kLongestTool))
+    throw InputError(table.name, "", "a tip at " + internal::to_text(tip.p_FQ) + " m of the flange",
+                     "poses in metres and radians that put it within " + internal::to_text(internal::kLongestTool) +
+                         " m of the flange");
   tip.covariance = fit.covariance.topLeftCorner<3, 3>();
   tip.point_covariance = fit.covariance.bottomRightCorner<3, 3>();
   tip.noise = fit.sigma;

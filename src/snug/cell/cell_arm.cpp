@@ -42,8 +42,18 @@ JointVector start_joints(const model::Scenario& scenario, const robot::ArmModel&
   return solution.q;
 }
 
-const std::string& name_of(const CellWorld& world, int body) {
-  return world.model.bodies[static_cast<std::size_t>(body)].name;
+// N, of a link against something: less is rounding.
+constexpr double kTouch = 0.5;
+// s, after which links that no longer touch have parted: shorter gaps are bounces.
+constexpr double kParted = 0.1;
+
+void add_touch(physics::BodyId link, physics::BodyId other, double force, std::vector<ArmTouch>& touches) {
+  for (ArmTouch& known : touches) {
+    if (known.link != link || known.other != other) continue;
+    known.force = std::max(known.force, force);
+    return;
+  }
+  touches.push_back({link, other, 0.0, 0.0, force});
 }
 
 }  // namespace
@@ -96,7 +106,7 @@ void CellArm::attach(const CellWorld& world) {
 }
 
 ArmState CellArm::make_state(std::uint64_t seed) const {
-  return {machine_.make_state(controller_, start_), Rng(seed).split("force sensor")};
+  return {machine_.make_state(controller_, start_), Rng(seed).split("force sensor"), {}};
 }
 
 control::MachineTick CellArm::tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
@@ -142,6 +152,11 @@ void CellArm::add_loads(const CellWorld& world, const physics::WorldState& state
     }
     return -1;
   };
+  struct PairForce {
+    physics::BodyId link, other;
+    Vector3 force_W;
+  };
+  std::vector<PairForce> pairs;  // of moving links, all points of a pair together
   for (const physics::ContactReport& contact : work.contacts()) {
     for (const bool is_b : {false, true}) {
       const physics::BodyId body = is_b ? contact.b : contact.a;
@@ -151,13 +166,23 @@ void CellArm::add_loads(const CellWorld& world, const physics::WorldState& state
       const Vector3 force_W = is_b ? contact.force_W : Vector3(-contact.force_W);
       const int segment = is_tool ? model().joint_count() : model().links[static_cast<std::size_t>(link)].segment;
       add_force(at, segment, contact.p_WQ, force_W, is_tool, loads);
+      const physics::BodyId other = is_b ? contact.a : contact.b;
       if (force_W.norm() > loads.worst_force) {
         loads.worst_force = force_W.norm();
         loads.worst_part = body;
-        loads.worst_other = is_b ? contact.a : contact.b;
+        loads.worst_other = other;
+      }
+      if (is_tool || segment == 0) continue;
+      const auto known = std::find_if(pairs.begin(), pairs.end(),
+                                      [&](const PairForce& pair) { return pair.link == body && pair.other == other; });
+      if (known == pairs.end()) {
+        pairs.push_back({body, other, force_W});
+      } else {
+        known->force_W += force_W;
       }
     }
   }
+  for (const PairForce& pair : pairs) add_touch(pair.link, pair.other, pair.force_W.norm(), loads.touches);
   if (gripper.cup.body >= 0) {  // the reaction of the cup
     const Pose X_WS = physics::pose_of(world.model, state, physics::BodyId{gripper.cup.body}) * gripper.cup.X_PS;
     const Vector3 force_W = -(X_WS.R * gripper.F_S.force);
@@ -202,6 +227,7 @@ double CellArm::touch_obstacles(const CellWorld& world, const robot::ArmPose& at
       if (row.squaredNorm() > 0.0) {
         yielded = std::max(yielded, -point.phi * row.lpNorm<Eigen::Infinity>() / row.squaredNorm());
       }
+      if (!is_tool) add_touch(contact.b, contact.a, contact.force_W.norm(), loads.touches);
       if (contact.force_W.norm() > loads.worst_force) {
         loads.worst_force = contact.force_W.norm();
         loads.worst_part = contact.b;
@@ -210,6 +236,29 @@ double CellArm::touch_obstacles(const CellWorld& world, const robot::ArmPose& at
     }
   }
   return yielded;
+}
+
+void CellArm::follow_touches(double time, const ArmLoads& loads, ArmState& state, ArmReading& reading) const {
+  reading.touches_begun.clear();
+  reading.touches_ended.clear();
+  for (const ArmTouch& touch : loads.touches) {
+    if (touch.force < kTouch) continue;
+    const auto known = std::find_if(state.touches.begin(), state.touches.end(), [&](const ArmTouch& open) {
+      return open.link == touch.link && open.other == touch.other;
+    });
+    if (known != state.touches.end()) {
+      known->force = std::max(known->force, touch.force);
+      known->last = time;
+      continue;
+    }
+    state.touches.push_back({touch.link, touch.other, time, time, touch.force});
+    reading.touches_begun.push_back(state.touches.back());
+  }
+  std::erase_if(state.touches, [&](const ArmTouch& open) {
+    const bool has_ended = time - open.last > kParted;
+    if (has_ended) reading.touches_ended.push_back(open);
+    return has_ended;
+  });
 }
 
 Wrench CellArm::disturbed(const Wrench& F, double time, Rng& noise) const {
@@ -250,14 +299,15 @@ void CellArm::read(const CellWorld& world, const motion::PreparedProgram& plan, 
     reading.joints[static_cast<std::size_t>(j)] = {joints.q[j], joints.qd[j], torques[j]};
   }
 
+  follow_touches(time, loads, state, reading);
   reading.stop.reset();
   const auto stop = [&](std::string what, std::string where, double value, double limit, const char* unit) {
     if (reading.stop || !(value > limit)) return;
     ProtectiveStop found{std::move(what), std::move(where), value, limit, unit, time, tick.program.row, "", "", ""};
     if (found.row >= 0) found.waypoint = plan.program.waypoints[static_cast<std::size_t>(found.row)].name;
     if (loads.worst_force > 0.0) {
-      found.touching = fmt::format("{} with {}, {:.0f} N", name_of(world, loads.worst_other.index),
-                                   name_of(world, loads.worst_part.index), loads.worst_force);
+      found.touching = fmt::format("{} with {}, {:.0f} N", name_of(world, loads.worst_other),
+                                   name_of(world, loads.worst_part), loads.worst_force);
     }
     for (int i = 0; i < tick.joints.active_count; ++i) {
       found.limited_by +=

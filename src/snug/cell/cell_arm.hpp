@@ -15,10 +15,20 @@
 
 namespace snug::cell {
 
+/// A moving link of the arm (not the gripper) against a box or against what never moves.
+struct ArmTouch {
+  physics::BodyId link;
+  physics::BodyId other;
+  double since = 0.0;  ///< s, end of the first tick in which they touched
+  double last = 0.0;   ///< s, end of the last one so far
+  double force = 0.0;  ///< N, the largest so far
+};
+
 /// Everything of the arm that changes. Copying it is a snapshot.
 struct ArmState {
   control::MachineState machine;
-  Rng noise{0};  ///< of the force sensor
+  Rng noise{0};                   ///< of the force sensor
+  std::vector<ArmTouch> touches;  ///< that have not ended
 };
 
 /// Why the arm stopped.
@@ -45,6 +55,9 @@ struct ArmLoads {
   double worst_force = 0.0;     ///< N, of the strongest contact
   physics::BodyId worst_part;   ///< link or tool
   physics::BodyId worst_other;  ///< what it touches
+  /// Of each pair of a moving link and something else, the largest force of a step, or the spring's against what never
+  /// moves.
+  std::vector<ArmTouch> touches;
 };
 
 /// What the arm does and feels at the end of a tick.
@@ -54,6 +67,8 @@ struct ArmReading {
   std::vector<physics::ContactReport> contacts;  ///< of links and gripper with what never moves
   control::JointTick control;
   std::optional<ProtectiveStop> stop;
+  std::vector<ArmTouch> touches_begun;  ///< in this tick
+  std::vector<ArmTouch> touches_ended;  ///< a while ago, known now
 };
 
 class CellArm {
@@ -97,6 +112,7 @@ class CellArm {
   };
   [[nodiscard]] double touch_obstacles(const CellWorld& world, const robot::ArmPose& at, ArmLoads& loads,
                                        ArmReading& reading) const;
+  void follow_touches(double time, const ArmLoads& loads, ArmState& state, ArmReading& reading) const;
   void add_force(const robot::ArmPose& at, int segment, const Vector3& p_WQ, const Vector3& force_W, bool is_tool,
                  ArmLoads& loads) const;
   [[nodiscard]] Wrench disturbed(const Wrench& F, double time, Rng& noise) const;

@@ -7,12 +7,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
+#include <limits>
 #include <utility>
 
-#include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/held_boxes.hpp"
 #include "snug/cell/simulation.hpp"
-#include "snug/control/pose_solver.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/geometry/manifold.hpp"
 
@@ -23,7 +22,8 @@ constexpr double kLongestProgram = 7200.0;  ///< s
 constexpr double kRadian = 0.3;             ///< m, that a turn by 1 rad counts as
 // Below this the controller's task gives way (joint_controller.cpp): the tool is no longer where it should be.
 constexpr double kSingular = 0.05;
-constexpr double kPickLength = 0.05;  ///< m, E to the top face of a box that is picked up again
+// Beyond a limit by less than this is the rounding of a controller that keeps it.
+constexpr double kRounding = 1e-6;
 
 struct Obstacle {
   std::string name;
@@ -37,7 +37,7 @@ struct Mover {
   std::string name;
   int segment = 0;                         ///< of the arm
   std::vector<model::PlacedShape> shapes;  ///< X_BG in the segment
-  double give = 0.0;                       ///< m, that it may press into something
+  double allowance = 0.0;                  ///< m, that it may press into something
 };
 
 std::vector<Obstacle> find_obstacles(const model::Scenario& scenario) {
@@ -52,7 +52,7 @@ std::vector<Obstacle> find_obstacles(const model::Scenario& scenario) {
   return obstacles;
 }
 
-std::vector<Mover> find_movers(const model::Scenario& scenario, const robot::ArmModel& arm, double give) {
+std::vector<Mover> find_movers(const model::Scenario& scenario, const robot::ArmModel& arm, double allowance) {
   std::vector<Mover> movers;
   const int sensor = robot::find_link(arm, scenario.robot->sensor_frame);
   for (int i = 0; i < static_cast<int>(arm.links.size()); ++i) {
@@ -69,17 +69,9 @@ std::vector<Mover> find_movers(const model::Scenario& scenario, const robot::Arm
   };
   if (scenario.tool) {
     carried("gripper", scenario.tool->rod_shapes, 0.0);
-    carried("cup", scenario.tool->cup_shapes, give);
+    carried("cup", scenario.tool->cup_shapes, allowance);
   }
   return movers;
-}
-
-/// R with the axis that is nearest to the vertical made vertical.
-Matrix3 upright(const Matrix3& R_WP) {
-  const int axis = vertical_axis(R_WP);
-  const Vector3 up = R_WP.col(axis);
-  const Vector3 goal = Vector3(0.0, 0.0, up.z() < 0.0 ? -1.0 : 1.0);
-  return orthonormalized(Quaternion::FromTwoVectors(up, goal).toRotationMatrix() * R_WP);
 }
 
 class Check {
@@ -91,27 +83,35 @@ class Check {
                      options.robot.empty() ? scenario.robot->name : options.robot}),
         plan_(simulation_.prepare(program)),
         obstacles_(find_obstacles(scenario)),
-        movers_(find_movers(scenario, arm(), options.give)),
-        q_(simulation_.arm()->start()) {}
+        movers_(find_movers(scenario, arm(), options.allowance)),
+        machine_(control::make_demonstrator_machine()),
+        boxes_(simulation_.scenario(), simulation_.sequence()) {}
 
   CheckResult run() {
     const auto begin = std::chrono::steady_clock::now();
-    motion::ControllerState state = motion::make_controller_state(robot::forward_tool(arm(), q_));
-    Pose X_WE_last = state.command.X_WE;
-    bool is_first = true;
-    while (static_cast<double>(state.tick_count) * plan_.settings.tick < kLongestProgram) {
-      const motion::ToolState tool = state.command;
-      const motion::ControllerOutput out = motion::tick(plan_, tool, state);
-      time_ = static_cast<double>(state.tick_count - 1) * plan_.settings.tick;
+    control::MachineState state = machine_.make_state(controller(), simulation_.arm()->start());
+    control::JointControllerWork work;
+    Pose X_WE_last = state.tool.X_WE;
+    for (std::int64_t i = 0; static_cast<double>(i) * plan_.settings.tick < kLongestProgram; ++i) {
+      time_ = static_cast<double>(i) * plan_.settings.tick;
+      const robot::JointVector q = state.joints.q;
+      const motion::ToolState tool = state.tool;
+      const control::MachineTick tick = machine_.tick(plan_, controller(), state, work);
+      const motion::ControllerOutput& out = tick.program;
       row_ = std::max(0, out.reached >= 0 ? out.reached : out.row);
       const double way = (tool.X_WE.p - X_WE_last.p).norm() + kRadian * angle_between(tool.X_WE.R, X_WE_last.R);
-      if (is_first || out.reached >= 0 || way >= options_.path_step) {
-        look(tool);
+      if (i == 0 || out.reached >= 0 || way >= options_.path_step) {
+        look(q, tool, out.X_WE_reference);
         X_WE_last = tool.X_WE;
-        is_first = false;
       }
-      if (out.departed >= 0) depart(out.departed, tool.X_WE);
+      if (out.departed >= 0) boxes_.depart(plan_.program, out.departed, tool.X_WE);
       if (out.finished_now) break;
+      if (tick.outcome != "Stuck") continue;
+      miss(tick, state.tool.X_WE);
+      if (out.row + 1 == static_cast<int>(plan_.program.waypoints.size())) break;
+      // On to the next row from where the arm stands.
+      plan_.row_limits[static_cast<std::size_t>(out.row)].precision = std::numeric_limits<double>::infinity();
+      state.state = tick.state;
     }
     result_.duration = time_;
     std::stable_sort(result_.findings.begin(), result_.findings.end(),
@@ -127,42 +127,60 @@ class Check {
     return scenario.sequences.empty() ? "" : scenario.sequences.front().name;
   }
   [[nodiscard]] const robot::ArmModel& arm() const { return simulation_.arm()->model(); }
+  [[nodiscard]] const control::JointController& controller() const { return simulation_.arm()->controller(); }
 
   /// Keeps the worst of each kind and thing: for the row when it is beyond its limit, and over the program.
-  void note(CheckKind kind, const std::string& what, double margin, const char* unit, bool is_error = true) {
+  void note(CheckKind kind, const std::string& what, double margin, const char* unit, bool is_error = true,
+            double allowance = 0.0) {
+    const double left = margin + allowance;
     const auto keep = [&](std::vector<CheckFinding>& list, bool same_row) {
       for (CheckFinding& known : list) {
         if (known.kind != kind || (same_row && (known.row != row_ || known.what != what))) continue;
-        if (margin < known.margin) known = make(kind, what, margin, unit, is_error);
+        if (left < known.margin + known.allowance) known = make(kind, what, margin, unit, is_error, allowance);
         return;
       }
-      list.push_back(make(kind, what, margin, unit, is_error));
+      list.push_back(make(kind, what, margin, unit, is_error, allowance));
     };
     keep(result_.margins, false);
-    if (margin < 0.0) keep(result_.findings, true);
+    if (left < -kRounding) keep(result_.findings, true);
   }
   [[nodiscard]] CheckFinding make(CheckKind kind, const std::string& what, double margin, const char* unit,
-                                  bool is_error) const {
-    return {kind, is_error, row_, plan_.program.waypoints[static_cast<std::size_t>(row_)].name,
-            what, margin,   unit, time_};
+                                  bool is_error, double allowance) const {
+    return {kind,      is_error, row_, plan_.program.waypoints[static_cast<std::size_t>(row_)].name, what, margin,
+            allowance, unit,     time_};
   }
 
-  void look(const motion::ToolState& tool) {
+  /// The row was not reached.
+  void miss(const control::MachineTick& tick, const Pose& X_WE) {
+    const Pose& goal = plan_.program.waypoints[static_cast<std::size_t>(tick.program.row)].X_WE;
+    std::string what = "tool";
+    for (int i = 0; i < tick.joints.active_count; ++i) {
+      what += (i == 0 ? ": " : ", ") + controller().describe(tick.joints.active[static_cast<std::size_t>(i)]);
+    }
+    note(CheckKind::Reach, what, -std::max((goal.p - X_WE.p).norm(), kRadian * angle_between(goal.R, X_WE.R)), "m");
+  }
+
+  void look(const robot::JointVector& q, const motion::ToolState& tool, const Pose& X_WE_reference) {
     ++result_.looks;
-    const control::PoseSolution solution = control::solve_pose(arm(), tool.X_WE, q_);
-    q_ = solution.q;
-    const robot::ArmPose at = robot::forward(arm(), q_);
+    const robot::ArmPose at = robot::forward(arm(), q);
     const robot::Jacobian J_WE = robot::tool_jacobian(arm(), at);
     const double singularity = robot::singularity_measure(J_WE);
-    if (!solution.is_reached(1e-4, 1e-3)) {
-      note(CheckKind::Reach, "tool", -std::max(solution.position_error, kRadian * solution.angle_error), "m");
-    }
     note(CheckKind::Singularity, "tool", singularity - kSingular, "1");
-    look_at_joints(J_WE, as_vector(tool.V_WE), singularity);
+    look_at_joints(q, J_WE, wanted_twist(tool, X_WE_reference), singularity);
     look_at_distances(at);
   }
 
-  void look_at_joints(const robot::Jacobian& J_WE, const Vector6& V_WE, double singularity) {
+  /// What the tool alone would do next: docs/theory/controller.md, eq. 1.
+  [[nodiscard]] Vector6 wanted_twist(const motion::ToolState& tool, const Pose& X_WE_reference) const {
+    const double k = plan_.settings.task_stiffness, dt = plan_.settings.tick;
+    Vector6 error;
+    error << X_WE_reference.p - tool.X_WE.p, log_rotation(X_WE_reference.R * tool.X_WE.R.transpose());
+    const Vector6 V_WE = as_vector(tool.V_WE);
+    return V_WE + dt * (k * error - 2.0 * std::sqrt(k) * V_WE);
+  }
+
+  void look_at_joints(const robot::JointVector& q, const robot::Jacobian& J_WE, const Vector6& V_WE,
+                      double singularity) {
     const model::RobotParams& params = simulation_.arm()->controller().settings().params;
     Matrix6 M = J_WE * J_WE.transpose();
     if (singularity < kSingular) M.diagonal().array() += 1e-4;
@@ -173,7 +191,7 @@ class Check {
       const double range = joint.upper - joint.lower;
       if (std::isfinite(range)) {
         note(CheckKind::JointLimit, joint.name,
-             std::min(q_[j] - joint.lower, joint.upper - q_[j]) - params.damper.safety * range, turns ? "rad" : "m");
+             std::min(q[j] - joint.lower, joint.upper - q[j]) - params.damper.safety * range, turns ? "rad" : "m");
       }
       const double speed = std::abs(qd[j]), allowed = params.velocity_fraction * joint.max_speed;
       note(CheckKind::JointSpeed, joint.name, allowed - speed, turns ? "rad/s" : "m/s", speed > joint.max_speed);
@@ -189,10 +207,10 @@ class Check {
            nearest.distance - clearance.pairs()[static_cast<std::size_t>(i)].safety, "m");
     }
     for (const Mover& mover : movers_) look_at_obstacles(mover, at.X_WS[static_cast<std::size_t>(mover.segment)]);
-    if (held_) {
-      const Mover box{held_name_, 0, {{geometry::Box{held_half_}, *held_}}, options_.give};
-      look_at_obstacles(box, at.X_WE);
-    }
+    if (!boxes_.held() || options_.sequence.empty()) return;
+    const HeldBox& held = *boxes_.held();
+    const std::string& name = simulation_.sequence().items[static_cast<std::size_t>(held.item)].parcel;
+    look_at_obstacles({name, 0, {{geometry::Box{0.5 * held.size}, held.X_EP}}, options_.allowance}, at.X_WE);
   }
 
   void look_at_obstacles(const Mover& mover, const Pose& X_WS) {
@@ -209,41 +227,10 @@ class Check {
           distance = std::min(distance, manifold.points[static_cast<std::size_t>(i)].phi);
         }
         if (distance < options_.range) {
-          note(CheckKind::Collision, mover.name + " - " + obstacle.name, distance + mover.give, "m");
+          note(CheckKind::Collision, mover.name + " - " + obstacle.name, distance, "m", true, mover.allowance);
         }
       }
     }
-  }
-
-  /// The vacuum comes on: the box of the pick hangs where it stood, relative to the tool. It goes off: it stays.
-  void depart(int row, const Pose& X_WE) {
-    const bool vacuum = plan_.program.waypoints[static_cast<std::size_t>(row)].io.vacuum;
-    if (vacuum == vacuum_ || options_.sequence.empty()) return;
-    vacuum_ = vacuum;
-    if (!vacuum) {
-      if (held_) X_WP_released_ = X_WE * *held_;
-      held_.reset();
-      return;
-    }
-    if (row == 0) return;
-    const std::string& pick = plan_.program.waypoints[static_cast<std::size_t>(row - 1)].name;
-    const int item = find_item(simulation_.sequence(), pick, "Box");
-    Pose X_WP;
-    if (item >= 0) {
-      const model::Item& fed = simulation_.sequence().items[static_cast<std::size_t>(item)];
-      held_name_ = fed.parcel;
-      held_half_ =
-          0.5 * model::collision_size(simulation_.scenario(), *model::find_parcel(simulation_.scenario(), fed.parcel));
-      X_WP = pose_at_aligner(simulation_.scenario(), fed, X_WE);
-    } else if (X_WP_released_) {  // picked up again: it has settled on its nearest face
-      X_WP.R = upright(X_WP_released_->R);
-      X_WP.p = X_WP_released_->p;
-      const bool from_above = X_WE.R(2, 2) < -0.5;
-      if (from_above) X_WP.p.z() = X_WE.p.z() - kPickLength - held_half_[vertical_axis(X_WP.R)];
-    } else {
-      return;
-    }
-    held_ = X_WE.inverse() * X_WP;
   }
 
   CheckOptions options_;
@@ -251,12 +238,8 @@ class Check {
   motion::PreparedProgram plan_;
   std::vector<Obstacle> obstacles_;
   std::vector<Mover> movers_;
-  robot::JointVector q_;
-  bool vacuum_ = false;
-  std::optional<Pose> held_;  ///< X_EP
-  std::optional<Pose> X_WP_released_;
-  std::string held_name_;
-  Vector3 held_half_ = Vector3::Zero();
+  control::StateMachine machine_;
+  HeldBoxes boxes_;
   int row_ = 0;
   double time_ = 0.0;
   CheckResult result_;
@@ -280,6 +263,22 @@ const char* name_of(CheckKind kind) {
       break;
   }
   return "self-collision";
+}
+
+std::vector<CheckGroup> group(const std::vector<CheckFinding>& findings) {
+  std::vector<CheckGroup> groups;
+  for (const CheckFinding& finding : findings) {
+    const auto known = std::find_if(groups.begin(), groups.end(), [&](const CheckGroup& one) {
+      return one.worst.kind == finding.kind && one.worst.what == finding.what && one.worst.is_error == finding.is_error;
+    });
+    if (known == groups.end()) {
+      groups.push_back({finding, {finding.row}});
+      continue;
+    }
+    known->rows.push_back(finding.row);
+    if (finding.margin + finding.allowance < known->worst.margin + known->worst.allowance) known->worst = finding;
+  }
+  return groups;
 }
 
 CheckResult check_program(const model::Scenario& scenario, const motion::Program& program,

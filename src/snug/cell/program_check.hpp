@@ -18,10 +18,17 @@ struct CheckFinding {
   bool is_error = true;  ///< false: the controller copes, by being slower
   int row = 0;           ///< of the program, from 0, that the tool was on its way to
   std::string waypoint;
-  std::string what;     ///< joint, or "part - body"
-  double margin = 0.0;  ///< to the limit; negative: beyond it
+  std::string what;        ///< joint, or "part - body"
+  double margin = 0.0;     ///< to the limit, of collisions to the body; negative: beyond it, inside it
+  double allowance = 0.0;  ///< how far it may be beyond, in the same unit
   std::string unit;
   double time = 0.0;  ///< s, in the timing of the faithful controller
+};
+
+/// Findings of one kind and thing, of all rows.
+struct CheckGroup {
+  CheckFinding worst;
+  std::vector<int> rows;  ///< in order
 };
 
 struct CheckOptions {
@@ -29,7 +36,7 @@ struct CheckOptions {
   std::string robot = {};     ///< name of the scenario's robot; empty: the one that there is
   double path_step = 0.01;    ///< m, and 1 rad counts as 0.3 m: between two looks
   double range = 0.05;        ///< m, up to which distances are measured
-  double give = 0.03;  ///< m, that cup and held box may press into something; the demonstrator's flips press 20 mm
+  double allowance = 0.03;  ///< m, that cup and held box may press into something; the demonstrator's flips press 20 mm
 };
 
 struct CheckResult {
@@ -41,6 +48,11 @@ struct CheckResult {
   double wall = 0.0;                   ///< s
 };
 
+/// Findings of the same kind, thing and severity together, in the order of their first rows.
+[[nodiscard]] std::vector<CheckGroup> group(const std::vector<CheckFinding>& findings);
+
+/// Moves the joints with the robot's controller and its limits, as a run does, but with nothing to touch. A row that is
+/// not reached is found (Reach), and the next one is aimed at from where the arm stands.
 /// Throws InputError as Simulation::prepare and robot::load_arm.
 [[nodiscard]] CheckResult check_program(const model::Scenario& scenario, const motion::Program& program,
                                         const CheckOptions& options);

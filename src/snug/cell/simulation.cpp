@@ -83,7 +83,8 @@ motion::PreparedProgram Simulation::prepare(motion::Program program) const {
   settings.task_stiffness = sequence_.task_stiffness.value_or(params.task_stiffness);
   settings.vacuum_wait = params.vacuum_wait;
   settings.convergence_deg_per_metre = params.convergence_deg_per_metre;
-  for (const model::MoveLimits& limits : params.limits) {
+  // A scenario without limits has the defaults for every name.
+  for (const model::MoveLimits& limits : params.limits.empty() ? std::vector(1, model::MoveLimits{}) : params.limits) {
     settings.limits.push_back({limits.prefix,
                                {limits.precision, limits.max_acceleration, limits.max_speed, limits.max_turn_speed,
                                 limits.max_turn_acceleration}});
@@ -183,7 +184,10 @@ void Simulation::advance_arm(const motion::PreparedProgram& plan, const control:
     tick.tool = {at.X_WE, twist_from(V_WE)};
   }
   arm_->read(world_, plan, machine, time(state), loads, *state.arm, work.arm);
+  for (const ArmTouch& touch : work.arm.touches_begun) note_touch(touch, false, state);
+  for (const ArmTouch& touch : work.arm.touches_ended) note_touch(touch, true, state);
   if (!work.arm.stop || !tick.failure.empty()) return;
+  end_touches(state);
   const ProtectiveStop& stop = *work.arm.stop;
   tick.failure = describe(stop);
   state.journey.note({time(state),
@@ -191,6 +195,30 @@ void Simulation::advance_arm(const motion::PreparedProgram& plan, const control:
                       stop.where,
                       tick.failure,
                       {{"value", stop.value}, {"limit", stop.limit}, {"row", static_cast<double>(stop.row)}}});
+}
+
+void Simulation::note_touch(const ArmTouch& touch, bool has_ended, CellState& state) const {
+  if (has_ended) {
+    state.journey.note({time(state),
+                        "arm_contact_end",
+                        name_of(world_, touch.other),
+                        fmt::format("{} touched it with up to {:.0f} N", name_of(world_, touch.link), touch.force),
+                        {{"force_N", touch.force}, {"began_s", touch.since}, {"ended_s", touch.last}}});
+    return;
+  }
+  state.journey.note(
+      {time(state), "arm_contact", name_of(world_, touch.other), describe_touch(touch), {{"force_N", touch.force}}});
+}
+
+std::string Simulation::describe_touch(const ArmTouch& touch) const {
+  return fmt::format("{} touches {} with {:.0f} N", name_of(world_, touch.link), name_of(world_, touch.other),
+                     touch.force);
+}
+
+void Simulation::end_touches(CellState& state) const {
+  if (!state.arm) return;
+  for (const ArmTouch& touch : state.arm->touches) note_touch(touch, true, state);
+  state.arm->touches.clear();
 }
 
 void Simulation::advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, CellState& state,

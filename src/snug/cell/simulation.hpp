@@ -75,6 +75,10 @@ class Simulation {
 
   /// One controller tick and its physics steps.
   CellTick advance(const motion::PreparedProgram& plan, CellState& state, CellWorkspace& work) const;
+  /// "robot/forearm_link touches tote with 12 N"
+  [[nodiscard]] std::string describe_touch(const ArmTouch& touch) const;
+  /// To be called when a run ends: touches of the arm that go on become events as if they ended now.
+  void end_touches(CellState& state) const;
   /// Whether the coming tick would find the last row reached. A program that goes on instead may be put in the place of
   /// `plan` now: rows appended at this moment are executed as if they had always been there.
   [[nodiscard]] bool is_at_end(const motion::PreparedProgram& plan, const CellState& state) const;
@@ -95,6 +99,7 @@ class Simulation {
                     CellWorkspace& work, CellTick& tick) const;
   void advance_tool(const motion::PreparedProgram& plan, const motion::ToolState& start, const motion::ToolState& end,
                     CellState& state, CellWorkspace& work, CellTick& tick) const;
+  void note_touch(const ArmTouch& touch, bool has_ended, CellState& state) const;
   void advance_arm(const motion::PreparedProgram& plan, const control::JointState& start,
                    const control::MachineTick& machine, CellState& state, CellWorkspace& work, CellTick& tick) const;
 

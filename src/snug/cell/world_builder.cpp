@@ -219,4 +219,8 @@ BodyId find_body(const CellWorld& world, std::string_view name) {
   return {};
 }
 
+const std::string& name_of(const CellWorld& world, physics::BodyId body) {
+  return world.model.bodies[static_cast<std::size_t>(body.index)].name;
+}
+
 }  // namespace snug::cell

@@ -54,5 +54,6 @@ struct DropPlan {
 [[nodiscard]] physics::WorldState make_initial_state(const model::Scenario& scenario, const CellWorld& world);
 
 [[nodiscard]] physics::BodyId find_body(const CellWorld& world, std::string_view name);
+[[nodiscard]] const std::string& name_of(const CellWorld& world, physics::BodyId body);
 
 }  // namespace snug::cell

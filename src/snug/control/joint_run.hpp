@@ -20,12 +20,14 @@ struct JointSample {
 };
 
 struct JointRun {
-  std::vector<JointSample> samples;
-  bool is_complete = false;  ///< the last row was reached
-  int stuck_row = -1;        ///< that was not reached in time, -1 when all were
+  std::vector<JointSample> samples;  ///< of a complete run: until the joints rest on the last row
+  bool is_complete = false;          ///< the last row was reached
+  int stuck_row = -1;                ///< that was not reached in time, -1 when all were
 };
 
-/// Until the program ends, a row is not reached in time, or two hours are over.
+inline constexpr double kLongestProgram = 7200.0;  ///< s
+
+/// Until the program ends and the joints have come to rest, a row is not reached in time, or two hours are over.
 [[nodiscard]] JointRun run_joints(const motion::PreparedProgram& plan, const JointController& controller,
                                   const StateMachine& machine, const robot::JointVector& q_start);
 

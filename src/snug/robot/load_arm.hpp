@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "snug/model/scenario.hpp"
 #include "snug/robot/arm.hpp"
@@ -14,6 +16,10 @@ namespace snug::robot {
 
 /// Where the URDF of scenario.robot is; there must be a robot.
 [[nodiscard]] std::filesystem::path urdf_path(const model::Scenario& scenario);
+
+/// Moving joints of a URDF whose limit has effort 0, as many public files have that do not know it: "file:line: joint
+/// 'x': ...", a warning for each. Such a joint has Joint::max_effort infinity.
+[[nodiscard]] std::vector<std::string> find_unknown_efforts(const std::filesystem::path& path);
 
 /// Joint values of a list, which load_arm has checked.
 [[nodiscard]] JointVector joint_vector(const std::vector<double>& values);

@@ -14,6 +14,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/robot/internal/inertia.hpp"
 #include "snug/robot/internal/urdf.hpp"
+#include "snug/robot/load_arm.hpp"
 
 namespace snug::robot {
 namespace internal {
@@ -207,6 +208,7 @@ Joint read_moving_joint(const RawJoint& raw) {
   if (!(joint.max_speed > 0.0 && joint.max_effort >= 0.0))
     limit.fail("velocity " + limit.text("velocity") + ", effort " + limit.text("effort"), "velocity > 0, effort >= 0");
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (joint.max_effort == 0.0) joint.max_effort = kInfinity;  // nobody knew it: find_unknown_efforts
   joint.lower = raw.type == "continuous" ? -kInfinity : limit.number("lower");
   joint.upper = raw.type == "continuous" ? kInfinity : limit.number("upper");
   if (!(joint.lower < joint.upper))
@@ -341,11 +343,35 @@ ArmModel parse_urdf(const std::string& text, const std::string& name, const std:
   return arm;
 }
 
-ArmModel load_urdf(const std::filesystem::path& path, const std::string& tool_frame) {
+namespace {
+
+std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf())) throw InputError(path.string(), "", "a file that cannot be read", "a URDF");
-  return parse_urdf(text.str(), path.string(), tool_frame, path.parent_path());
+  return text.str();
+}
+
+}  // namespace
+
+ArmModel load_urdf(const std::filesystem::path& path, const std::string& tool_frame) {
+  return parse_urdf(read_text(path), path.string(), tool_frame, path.parent_path());
+}
+
+std::vector<std::string> find_unknown_efforts(const std::filesystem::path& path) {
+  const std::string text = read_text(path);
+  std::vector<std::string> found;
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS) return found;
+  const internal::UrdfSource source{path.string(), path.parent_path()};
+  for (const internal::Element& joint : internal::Element(document.RootElement(), source, "").children("joint")) {
+    if (!joint.has("limit") || joint.text("type") == "fixed") continue;
+    const internal::Element limit = joint.child("limit");
+    if (limit.number("effort") != 0.0) continue;
+    found.push_back(limit.where() + ": " + joint.path() +
+                    ": effort 0 is taken as unknown: its torque does not stop the robot");
+  }
+  return found;
 }
 
 }  // namespace snug::robot

@@ -22,7 +22,7 @@ Run run_once(const model::Scenario& scenario, const SessionResult& session, cons
   const Rng rng = Rng(options.seed).split("execution " + std::to_string(index));
   const model::Scenario changed = sample(scenario, session.sequence, options.uncertainty, rng);
   Lane lane(changed, session.sequence, options.simulation);
-  Episode episode = lane.run(session.program);
+  Episode episode = lane.run(session.program, {.arm_may_touch = true});
   merge(episode, lane.settle(session.program, kRest));
   Run run;
   run.has_failed = !episode.failure.empty();

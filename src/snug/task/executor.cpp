@@ -127,13 +127,14 @@ Attempt Executor::attempt(const packing::Candidate& candidate, const PlaceVarian
     const auto before = poses(lane);
     lane.restore(grasp.states[i]);
     Episode episode = grasp.episodes[i];
-    merge(episode, lane.run(attempt.program, options_.limits.force));
+    merge(episode, lane.run(attempt.program, {options_.limits.force, false}));
     const cell::CellState end = lane.state();
     if (episode.failure.empty()) merge(episode, lane.settle(attempt.program, kRest));
     outcomes[i] = judge(lane, before, attempt.planned.X_TP);
     outcomes[i].forces.force = episode.peak_force;
     outcomes[i].forces.torque = episode.peak_torque;
     outcomes[i].was_stopped = episode.was_stopped;
+    if (episode.failure.empty()) episode.failure = episode.arm_contact;  // while boxes came to rest
     if (!episode.failure.empty()) outcomes[i].reason = episode.failure;
     outcomes[i].succeeded = outcomes[i].reason.empty();
     lane.restore(end);
@@ -183,7 +184,7 @@ Episode Executor::finish() {
   append(program_, drivable(layout_, program_, {home}));
   Lane& lane = *lanes_[0];
   lane.restore(states_[0]);
-  Episode episode = lane.run(program_);
+  Episode episode = lane.run(program_, {.arm_may_touch = true});  // nothing else is left to try: it is reported
   // As a run of the whole program does: one second after the tick in which it ends.
   if (episode.failure.empty()) merge(episode, lane.settle(program_, 0.5 * scenario_.controller.tick));
   episode.duration = lane.time();

@@ -16,6 +16,7 @@ void merge(Episode& into, const Episode& episode) {
   into.peak_force = std::max(into.peak_force, episode.peak_force);
   into.peak_torque = std::max(into.peak_torque, episode.peak_torque);
   into.duration += episode.duration;
+  if (into.arm_contact.empty()) into.arm_contact = episode.arm_contact;
   if (!into.failure.empty()) return;
   into.failure = episode.failure;
   into.was_stopped = episode.was_stopped;
@@ -34,19 +35,26 @@ bool Lane::advance(const motion::PreparedProgram& plan, Episode& episode) {
   const cell::CellTick tick = simulation_->advance(plan, state_, work_);
   episode.failure = tick.failure;
   episode.was_stopped = !tick.failure.empty() && work_.arm.stop;
+  if (episode.arm_contact.empty() && !work_.arm.touches_begun.empty()) {
+    episode.arm_contact = simulation_->describe_touch(work_.arm.touches_begun.front());
+  }
   episode.peak_force = std::max(episode.peak_force, state_.gripper.F_S.force.norm());
   episode.peak_torque = std::max(episode.peak_torque, state_.gripper.F_S.torque.norm());
   return tick.failure.empty();
 }
 
-Episode Lane::run(const motion::Program& program, double most_force) {
+Episode Lane::run(const motion::Program& program, const EpisodeLimits& limits) {
   Episode episode;
   const motion::PreparedProgram plan = simulation_->prepare(program);
   const double start = time();
   while (!simulation_->is_at_end(plan, state_)) {
     if (!advance(plan, episode)) break;
-    if (episode.peak_force > most_force) {
+    if (episode.peak_force > limits.force) {
       episode.failure = fmt::format("{:.0f} N on the box", episode.peak_force);
+      break;
+    }
+    if (!limits.arm_may_touch && !episode.arm_contact.empty()) {
+      episode.failure = episode.arm_contact;
       break;
     }
     if (time() - start > kLongestEpisode) {

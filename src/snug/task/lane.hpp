@@ -19,6 +19,13 @@ struct Episode {
   double duration = 0.0;     ///< s, simulated
   std::string failure;       ///< empty, or why the simulation had to stop
   bool was_stopped = false;  ///< the failure is a protective stop of the robot
+  std::string arm_contact;   ///< empty, or the first that a link of the arm touched
+};
+
+/// What ends an episode as a failure.
+struct EpisodeLimits {
+  double force = std::numeric_limits<double>::infinity();  ///< N, of the cup on the held box
+  bool arm_may_touch = false;                              ///< boxes or what never moves, with its links
 };
 
 /// The larger peaks, both durations, the first failure.
@@ -31,8 +38,8 @@ class Lane {
   Lane(const model::Scenario& scenario, const std::string& sequence, const cell::SimulationOptions& options);
 
   /// Executes the rows of `program` that were not executed yet, up to the moment when more can be appended, or until
-  /// the cup pulls or pushes the held box with more than `most_force` [N]: that is a failure.
-  Episode run(const motion::Program& program, double most_force = std::numeric_limits<double>::infinity());
+  /// one of the limits is exceeded: that is a failure.
+  Episode run(const motion::Program& program, const EpisodeLimits& limits = {});
   /// Goes on at the end of `program` for this long: boxes come to rest.
   Episode settle(const motion::Program& program, double seconds);
 

@@ -244,6 +244,7 @@ class PackingSession {
     const Episode last = executor_.finish();
     if (!last.failure.empty()) result_.failure = "on the way home: " + last.failure;
     if (!last.failure.empty()) result_.stopped += "; " + result_.failure;
+    if (last.failure.empty() && !last.arm_contact.empty()) result_.stopped += "; on the way home " + last.arm_contact;
     count();
     result_.duration = last.duration;
     if (!executor_.program().waypoints.empty()) {

@@ -6,8 +6,9 @@ import { SPEEDS, type Player } from "./player";
 
 const STEPS_OF_SLIDER = 10000;
 /** Events worth a mark; the rest are in the journey of each box. */
-const MARKED = new Set(["seal", "release", "flip", "repick", "lost", "no seal", "dropped", "reseal", "bend", "slip"]);
-const BAD = new Set(["lost", "no seal", "dropped", "bend", "slip"]);
+const MARKED = new Set(["seal", "release", "flip", "repick", "lost", "no seal", "dropped", "reseal", "bend", "slip",
+  "arm_contact", "protective_stop"]);
+const BAD = new Set(["lost", "no seal", "dropped", "bend", "slip", "arm_contact", "protective_stop"]);
 
 export class Timeline {
   readonly element = make("footer", "timeline");

@@ -282,5 +282,73 @@ TEST(Table, ReadsColumnsInAnyOrderAndRefusesWhatIsBroken) {
     expect_refused([&] { (void)parse_table(std::string("a,b\n") + cell + ",1\n", "t.csv", {"a"}); }, "t.csv:2: a");
 }
 
+// --- other units, other arms -----------------------------------------------------------------------------------------
+
+TEST(Units, OfPosesAndJointsAreRefusedWithLineAndColumn) {
+  Rng rng = Rng(2).split("units");
+  const PosePairs pairs = simulate_pairs(nominal(), rng, 12, 1.0, 2.8);
+  const auto changed = [&](std::size_t column, double factor) {
+    Table table = pairs.table;
+    table.columns = {"q1", "q2", "q3", "q4", "q5", "q6", "x", "y", "z", "rx", "ry", "rz"};
+    for (std::vector<double>& row : table.rows) row[column] *= factor;
+    return table;
+  };
+  EXPECT_NO_THROW((void)make_pose_pairs(changed(6, 1.0), nominal()));
+  expect_refused([&] { (void)make_pose_pairs(changed(6, 1000.0), nominal()); }, "x: ");
+  expect_refused([&] { (void)make_pose_pairs(changed(6, 1000.0), nominal()); }, "metres");
+  expect_refused([&] { (void)make_pose_pairs(changed(6, 1000.0), nominal()); }, "pairs.csv:2");
+  expect_refused([&] { (void)make_pose_pairs(changed(1, 180.0 / std::numbers::pi), nominal()); }, "rad");
+  expect_refused([&] { (void)make_pose_pairs(changed(9, 180.0 / std::numbers::pi), nominal()); }, "rotation vector");
+}
+
+TEST(Units, OfTouchesAndTheirTipAreRefused) {
+  const auto touches = [](double unit, double tip) {
+    Table table{"touches.csv", tool_tip_columns(), {}, {}};
+    Rng rng = Rng(3).split("touches");
+    for (int k = 0; k < 8; ++k) {
+      const Matrix3 R = exp_rotation(Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)));
+      append(table, pose_cells({R, unit * (Vector3(0.5, 0.1, 0.0) - R * Vector3(0.0, 0.0, tip))}));
+    }
+    return table;
+  };
+  EXPECT_NEAR(find_tool_tip(touches(1.0, 0.341)).p_FQ.z(), 0.341, 1e-9);
+  expect_refused([&] { (void)find_tool_tip(touches(1000.0, 0.341)); }, "metres");
+  expect_refused([&] { (void)find_tool_tip(touches(9.0, 0.341)); }, "a tip at");  // no number by itself is absurd
+}
+
+TEST(Units, OfForcesMassAndTorquesAreRefused) {
+  const auto readings = [](double force_unit, double torque_unit) {
+    Table table{"ft.csv", force_sensor_columns(), {}, {}};
+    const double half = std::numbers::pi;
+    for (const Vector3& turn : {Vector3(0, 0, 0), Vector3(half, 0, 0), Vector3(half / 2, 0, 0),
+                                Vector3(-half / 2, 0, 0), Vector3(0, half / 2, 0), Vector3(0, -half / 2, 0)}) {
+      const Vector3 weight = exp_rotation(turn).transpose() * Vector3(0.0, 0.0, -1.2 * 9.81);
+      const Vector3 torque = Vector3(0.0, 0.0, 0.1).cross(weight);
+      append(table,
+             {turn.x(), turn.y(), turn.z(), force_unit * weight.x(), force_unit * weight.y(), force_unit * weight.z(),
+              torque_unit * torque.x(), torque_unit * torque.y(), torque_unit * torque.z()});
+    }
+    return table;
+  };
+  EXPECT_NEAR(fit_force_sensor(readings(1.0, 1.0), 1.2).com.z(), 0.1, 1e-9);
+  expect_refused([&] { (void)fit_force_sensor(readings(1.0, 1000.0), 1.2); }, "torque");                 // Nmm
+  expect_refused([&] { (void)fit_force_sensor(readings(1.0, 30.0), 1.2); }, "centre of mass");           // 3 m off
+  expect_refused([&] { (void)fit_force_sensor(readings(1.0, 1.0), 1200.0); }, "a mass in kg");           // grams
+  expect_refused([&] { (void)fit_force_sensor(readings(1000.0, 1.0), std::nullopt); }, "a force in N");  // mN
+}
+
+TEST(SameArm, IsToldFromAnother) {
+  robot::ArmModel arm = nominal();
+  arm.joints[2].X_SJ.p.x() += 0.003;
+  EXPECT_NO_THROW(check_same_arm(arm, nominal(), "file"));
+  arm.joints[2].X_SJ.p.x() = -0.425;  // a smaller arm of the same maker
+  expect_refused([&] { check_same_arm(arm, nominal(), "file"); }, "elbow_joint");
+  arm.joints[2].X_SJ.p.x() = -612.0;
+  expect_refused([&] { check_same_arm(arm, nominal(), "file"); }, "metres");
+  arm = nominal();
+  arm.joints[4].X_SJ.R = exp_rotation(Vector3(0.5, 0.0, 0.0)) * arm.joints[4].X_SJ.R;
+  expect_refused([&] { check_same_arm(arm, nominal(), "file"); }, "wrist_2_joint");
+}
+
 }  // namespace
 }  // namespace snug::calibration

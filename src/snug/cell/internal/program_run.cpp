@@ -39,6 +39,8 @@ class ProgramRun {
     while (result.failure.empty() && !is_stopped_ && !options_.until && simulation_.time(state_) < settled) {
       (void)advance(result.failure);
     }
+    simulation_.end_touches(state_);
+    if (recorder_) recorder_->add_events(state_.journey.events());
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     result.wall = wall.count();
     result.real_time_factor = simulation_.time(state_) / result.wall;

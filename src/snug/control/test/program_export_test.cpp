@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <sstream>
 
 #include "demonstrator.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/rng.hpp"
 
 namespace snug::control {
 namespace {
@@ -34,12 +37,17 @@ struct Exported {
   motion::PreparedProgram plan =
       motion::prepare(small_program(), test::program_settings(motion::ControllerKind::Faithful));
   JointRun run = run_joints(plan, controller, make_demonstrator_machine(), test::start_joints(controller));
+
+  [[nodiscard]] RobotProgram for_robot() const {
+    return {plan, controller.arm(), test::start_joints(controller), std::vector<std::optional<CarriedLoad>>(4)};
+  }
 };
 
+// What a script does when it runs: tests/urscript_test.py.
 TEST(UrScript, MovesTheToolInTheControllersBaseFrame) {
   const Exported exported;
-  const std::string text =
-      format_urscript(exported.plan, exported.controller.arm(), test::demonstrator().controller.X_WE_start, {3, 4});
+  const UrScript script = format_urscript(exported.for_robot(), {3, 4, 5, 2.0});
+  const std::string& text = script.text;
   // W is the controller's base in this cell, so that the waypoint's own numbers appear.
   const Vector3 p = exported.plan.program.waypoints[1].X_WE.p;
   char expected[80];
@@ -50,15 +58,98 @@ TEST(UrScript, MovesTheToolInTheControllersBaseFrame) {
   const std::size_t on = text.find("set_standard_digital_out(3, True)");
   ASSERT_NE(on, std::string::npos);
   EXPECT_LT(text.find("# 3 PostPick013"), on);  // acts before the motion to its row, then waits
-  EXPECT_LT(on, text.find("sleep(0.500)"));
-  EXPECT_LT(text.find("sleep(0.500)"), text.find("# 4 home"));
+  const std::size_t wait = text.find("snug_wait_for_vacuum(True");
+  EXPECT_LT(on, wait);
+  EXPECT_LT(wait, text.find("movel(", on));
+  EXPECT_EQ(script.moves, 4);
 }
 
-TEST(UrScript, NeedsTheFramesOfAUr) {
+TEST(UrScript, CapsBlendsByTheMovesOnBothSides) {
+  // Rows that may be passed at 0.05 m, 0.2 to 120 mm apart, in random directions.
+  Rng rng = Rng(5).split("blends");
+  motion::Program program{"test", {}};
+  Pose X_WE = test::demonstrator().controller.X_WE_start;
+  for (int i = 0; i < 300; ++i) {
+    motion::Waypoint waypoint;
+    const Vector3 way(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+    if (i % 7 != 3) X_WE.p += way.normalized() * std::pow(10.0, rng.uniform(-3.7, -0.92));  // else no way at all
+    waypoint.X_WE = X_WE;
+    waypoint.name = "PostPick013";
+    program.waypoints.push_back(waypoint);
+  }
+  const JointController controller = test::make_controller();
+  const motion::PreparedProgram plan =
+      motion::prepare(program, test::program_settings(motion::ControllerKind::Faithful));
+  const UrScript script = format_urscript({plan, controller.arm(), test::start_joints(controller),
+                                           std::vector<std::optional<CarriedLoad>>(program.waypoints.size())},
+                                          {});
+  std::istringstream lines(script.text);
+  Vector3 before = test::demonstrator().controller.X_WE_start.p;
+  double blend_before = 0.0;
+  int moves = 0, blends = 0;
+  for (std::string line; std::getline(lines, line);) {
+    Vector3 p;
+    if (std::sscanf(line.c_str(), "  movel(p[%lf, %lf, %lf,", &p.x(), &p.y(), &p.z()) != 3) continue;
+    const std::size_t at = line.find(", r=");
+    const double blend = at == std::string::npos ? 0.0 : std::stod(line.substr(at + 4));
+    const double length = (p - before).norm();
+    EXPECT_GT(length, 1e-4) << line;
+    EXPECT_LT(blend + blend_before, length) << line;
+    EXPECT_LE(blend, 0.05);
+    before = p;
+    blend_before = blend;
+    ++moves;
+    blends += blend > 0.0 ? 1 : 0;
+  }
+  EXPECT_EQ(blend_before, 0.0) << "the last move ends in a stop";
+  EXPECT_EQ(moves, script.moves);
+  EXPECT_EQ(moves, 300 - 43);
+  EXPECT_GT(blends, 60);  // of 257 moves, 0.2 to 120 mm: two of five have both neighbours long enough
+}
+
+TEST(UrScript, TellsTheControllerWhatTheGripperCarries) {
+  Exported exported;
+  RobotProgram program = exported.for_robot();
+  program.loads[2] = program.loads[3] = CarriedLoad{2.0, Vector3(0.01, 0.0, 0.1)};
+  const std::string text = format_urscript(program, {}).text;
+  const SpatialInertia gripper = robot::distal_inertia(program.arm, robot::find_link(program.arm, "tool0"));
+  char expected[80];
+  std::snprintf(expected, sizeof expected, "set_payload(%.4f, [", gripper.mass);
+  EXPECT_LT(text.find(expected), text.find("movel("));
+  std::snprintf(expected, sizeof expected, "set_payload(%.4f, [", gripper.mass + 2.0);
+  const std::size_t at = text.find(expected);
+  ASSERT_NE(at, std::string::npos) << text;
+  Vector3 com;
+  ASSERT_EQ(std::sscanf(text.c_str() + at + std::strlen(expected), "%lf, %lf, %lf", &com.x(), &com.y(), &com.z()), 3);
+  // E is turned by half a turn about z against tool0, 335 mm before it.
+  const Vector3 moment = gripper.mass * gripper.com + 2.0 * Vector3(-0.01, 0.0, 0.335 + 0.1);
+  EXPECT_LT((com - moment / (gripper.mass + 2.0)).norm(), 2e-5);
+}
+
+TEST(UrScript, IsRefusedForAnArmThatIsNoUr) {
   const Exported exported;
+  const auto expect_refused = [&](const robot::ArmModel& arm, const std::string& part) {
+    RobotProgram program{exported.plan, arm, test::start_joints(exported.controller), exported.for_robot().loads};
+    try {
+      (void)format_urscript(program, {});
+      ADD_FAILURE() << "accepted; expected a complaint with '" << part << "'";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("ros-trajectory"), std::string::npos) << error.what();
+    }
+  };
   robot::ArmModel arm = exported.controller.arm();
   arm.links[static_cast<std::size_t>(robot::find_link(arm, "tool0"))].name = "other";
-  EXPECT_THROW((void)format_urscript(exported.plan, arm, Pose{}, {}), InputError);
+  expect_refused(arm, "tool0");
+  arm = exported.controller.arm();
+  arm.joints[3].name = "joint_a4";
+  expect_refused(arm, "wrist_1_joint");
+  arm = exported.controller.arm();
+  arm.joints[4].X_SJ.R = exp_rotation(Vector3(0.3, 0.0, 0.0)) * arm.joints[4].X_SJ.R;
+  expect_refused(arm, "axes");
+  arm = exported.controller.arm();
+  arm.joints.pop_back();
+  expect_refused(arm, "5 joints");
 }
 
 TEST(JointRun, EndsAtTheLastRow) {
@@ -69,9 +160,23 @@ TEST(JointRun, EndsAtTheLastRow) {
   EXPECT_EQ(exported.run.samples.back().state, "Operation");
 }
 
+TEST(JointRun, ComesToRestWithoutAJump) {
+  const Exported exported;
+  const JointState& end = exported.run.samples.back().after;
+  EXPECT_EQ(end.qd.norm(), 0.0);
+  const Pose& goal = exported.plan.program.waypoints.back().X_WE;
+  EXPECT_LT((robot::forward_tool(exported.controller.arm(), end.q).p - goal.p).norm(), 1e-3);
+  for (std::size_t i = 1; i < exported.run.samples.size(); ++i) {
+    const JointSample& sample = exported.run.samples[i];
+    EXPECT_EQ(sample.before.q, exported.run.samples[i - 1].after.q);
+    EXPECT_NEAR(sample.time, 0.008 * static_cast<double>(i), 1e-9);
+    EXPECT_LE((sample.after.qd - sample.before.qd).cwiseAbs().maxCoeff() / 0.008, 15.0 + 1e-9);
+  }
+}
+
 TEST(RosTrajectory, HasStrictlyGrowingTimesAndAllJoints) {
   const Exported exported;
-  std::istringstream text(format_ros_trajectory(exported.run, exported.controller.arm(), 0.008, 0.04));
+  std::istringstream text(format_ros_trajectory(exported.run, exported.for_robot(), 0.04));
   double last = -1.0;
   int points = 0, names = 0;
   for (std::string line; std::getline(text, line);) {

@@ -21,7 +21,7 @@ void put_stamp(JsonText& out, std::uint64_t ns) { out.raw("{\"timestamp\":").tim
 constexpr int kInfo = 2, kWarning = 3;
 
 int level_of(const std::string& kind) {
-  static constexpr std::string_view kTroubles[] = {"lost", "no seal", "bend", "stop"};
+  static constexpr std::string_view kTroubles[] = {"lost", "no seal", "bend", "arm_contact", "protective_stop"};
   return std::find(std::begin(kTroubles), std::end(kTroubles), kind) != std::end(kTroubles) ? kWarning : kInfo;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <variant>
 
 #include "shipped_arm.hpp"
@@ -153,6 +154,20 @@ TEST(Urdf, MakesHullsOfMeshesBesideIt) {
     for (const Vector3& v : hull.vertices) EXPECT_NEAR(v.norm(), 0.1, 1e-5);
   }
   std::filesystem::remove_all(folder);
+}
+
+TEST(Urdf, TakesAnEffortOfZeroAsUnknownAndSaysWhere) {
+  const std::string text = replaced(small_arm(), "effort=\"10\" velocity=\"1\"", "effort=\"0\" velocity=\"1\"");
+  const ArmModel arm = parse_urdf(text, "arm.urdf");
+  EXPECT_EQ(arm.joints[0].max_effort, 10.0);
+  EXPECT_EQ(arm.joints[1].max_effort, std::numeric_limits<double>::infinity());
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_effort.urdf";
+  std::ofstream(path) << text;
+  const std::vector<std::string> warnings = find_unknown_efforts(path);
+  std::filesystem::remove(path);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].starts_with(path.string() + ":10: joint 'slide'")) << warnings[0];
+  EXPECT_TRUE(find_unknown_efforts(SNUG_SOURCE_DIR "/scenarios/robots/ur10.urdf").empty());
 }
 
 TEST(LoadArm, RefusesWhatTheScenarioSaysOfLinksThatAreNotThere) {
