@@ -640,6 +640,118 @@ class Calibrate(unittest.TestCase):
                 self.assertIn(part, result.stderr)
 
 
+SENSORS = ROOT / "scenarios" / "sensors" / "demonstrator.yaml"
+
+
+class Measurements(unittest.TestCase):
+    """A virtual experiment, its archive, and the run beside it."""
+    assert_refused = CommandLine.assert_refused
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.path = Path(cls.folder.name)
+        cls.recording = cls.path / "drop.h5"
+        cls.archive = cls.path / "measured.h5"
+        cls.truth = cls.path / "truth.json"
+        for words in (("simulate", DROP, "--until", 6, "-o", cls.recording),
+                      ("measure", cls.recording, "--sensors", SENSORS, "--repetitions", 3, "--seed", 4, "-o",
+                       cls.archive, "--truth", cls.truth)):
+            result = snug(*words)
+            assert result.returncode == 0, result.stderr
+
+    def test_help_of_measuring_has_examples(self):
+        for words in (("measure",), ("validate",), ("archive", "list"), ("archive", "check"), ("archive", "convert"),
+                      ("archive", "merge")):
+            self.assertIn("Example", snug(*words, "--help").stdout, words)
+
+    def test_measuring_again_makes_the_same_bytes_and_another_seed_others(self):
+        again, other = self.path / "again.h5", self.path / "other.h5"
+        for path, seed in ((again, 4), (other, 5)):
+            snug("measure", self.recording, "--sensors", SENSORS, "--repetitions", 3, "--seed", seed, "-o", path)
+        self.assertEqual(again.read_bytes(), self.archive.read_bytes())
+        self.assertNotEqual(other.read_bytes(), self.archive.read_bytes())
+
+    def test_archive_list_names_repetitions_and_rates(self):
+        listed = json.loads(snug("archive", "list", self.archive, "--json").stdout)["recordings"]
+        self.assertEqual([one["remarks"]["repetition"] for one in listed], ["1 of 3", "2 of 3", "3 of 3"])
+        self.assertAlmostEqual(listed[0]["sources"]["motion_capture"]["rate_Hz"], 360.0, places=3)
+        self.assertAlmostEqual(listed[0]["sources"]["force_torque"]["rate_Hz"], 500.0, places=3)
+        self.assertIn("tracked", snug("archive", "list", self.archive).stdout)
+
+    def test_archive_check_tells_whole_from_cut(self):
+        self.assertEqual(snug("archive", "check", self.archive).returncode, 0)
+        cut = self.path / "cut.h5"
+        cut.write_bytes(self.archive.read_bytes()[:-5000])
+        self.assert_refused(snug("archive", "check", cut), "cut.h5", "truncated")
+        self.assert_refused(snug("archive", "check", self.recording), "a recording of a simulation")
+
+    def test_archive_converts_to_tables_and_back(self):
+        folder = self.path / "tables"
+        written = snug("archive", "convert", self.archive, "-o", folder).stdout.split()
+        self.assertEqual(len(written), 9)
+        back = self.path / "back.h5"
+        result = snug("archive", "convert", written[0], "--name", "Rec_1", "--sequence", "x", "-o", back)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        one = json.loads(snug("archive", "list", back, "--json").stdout)["recordings"][0]
+        self.assertEqual((one["name"], one["remarks"]["sequence"]), ("Rec_1", "x"))
+
+    def test_archive_merge_keeps_recordings_and_refuses_two_of_one_name(self):
+        other, merged = self.path / "later.h5", self.path / "merged.h5"
+        snug("measure", self.recording, "--sensors", SENSORS, "--date", "20240229T120000Z", "-o", other)
+        self.assertEqual(snug("archive", "merge", self.archive, other, "-o", merged).returncode, 0)
+        names = [one["name"] for one in json.loads(snug("archive", "list", merged, "--json").stdout)["recordings"]]
+        self.assertEqual(len(names), 4)
+        self.assertIn("Rec_20240229T120000Z", names)
+        before = merged.read_bytes()
+        self.assert_refused(snug("archive", "merge", self.archive, self.archive, "-o", merged), "two recordings")
+        self.assertEqual(merged.read_bytes(), before)
+
+    def test_validate_finds_the_clocks_and_errors_of_the_sensors(self):
+        page, csv, figures = self.path / "v.html", self.path / "v.csv", self.path / "figures"
+        result = snug("validate", "--simulated", self.recording, "--measured", self.archive, "-o", page, "--csv", csv,
+                      "--svg", figures, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = json.loads(result.stdout)
+        truth = json.loads(self.truth.read_text())["repetitions"]
+        for one, true in zip(found["repetitions"], truth):
+            clock = one["clocks"][0]
+            expected = true["clocks"]["motion_capture"]
+            offset = expected["offset_s"] + 1e-6 * expected["rate_ppm"] * clock["at_s"]
+            self.assertAlmostEqual(clock["shift_s"], offset, delta=2e-3)
+        self.assertLess(found["means"]["clean"]["rest_position_mm"], 1.5)
+        self.assertIn("<table>", page.read_text())
+        self.assertNotRegex(page.read_text(), r"""(?:src|href)=["']https?:""")
+        self.assertTrue(list(figures.glob("*-poses.svg")))
+        self.assertEqual(len(csv.read_text().splitlines()), 1 + 6 * len(found["bodies"]))
+
+    def test_validate_takes_a_log_and_shifts_by_hand(self):
+        log = self.path / "drop.csv"
+        snug("simulate", DROP, "--until", 6, "--csv", log)
+        result = snug("validate", "--simulated", self.recording, "--measured", log, "--shift", "mocap=0", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = json.loads(result.stdout)
+        self.assertTrue(found["repetitions"][0]["clocks"][0]["by_hand"])
+        self.assertLess(found["means"]["clean"]["rms_position_mm"], 1e-6)
+
+    def test_slips_are_refused_and_leave_nothing(self):
+        base = ("validate", "--simulated", self.recording, "--measured", self.archive)
+        self.assert_refused(snug(*base, "--shift", "mocp=1"), "mocp", "did you mean mocap?")
+        self.assert_refused(snug(*base, "--shift", "mocap=fast"), "mocap=fast")
+        before = self.archive.read_bytes()
+        self.assert_refused(snug(*base, "--csv", self.archive), "named twice")
+        self.assert_refused(snug("measure", self.recording, "--sensors", SENSORS, "-o", self.recording), "named twice")
+        self.assertEqual(self.archive.read_bytes(), before)
+        self.assert_refused(snug("validate", "--simulated", self.archive, "--measured", self.archive), "measured.h5")
+        sensors, output = self.path / "s.yaml", self.path / "none.h5"
+        sensors.write_text("motion_capture:\n  rte: 360\n")
+        self.assert_refused(snug("measure", self.recording, "--sensors", sensors, "-o", output), "s.yaml:2", "rate")
+        self.assert_refused(snug("measure", self.recording, "--sensors", SENSORS, "--date", "now", "-o", output), "--date")
+        self.assertFalse(output.exists())
+        self.assertEqual([p.name for p in self.path.iterdir() if ".part" in p.name], [])
+
+
 class OtherCells(unittest.TestCase):
     """Other boxes and other containers: pack, and everything that goes on with what it leaves."""
     assert_refused = CommandLine.assert_refused

@@ -63,6 +63,7 @@ int run_bench(const BenchOptions& options) {
   const std::filesystem::path scenarios = find_scenarios();
   bench.scenes = scenarios / "bench";
   bench.scenario = scenarios / "box-demonstrator.yaml";
+  bench.sensors = scenarios / "sensors/demonstrator.yaml";
   bench.program = scenarios.parent_path() / "../shared/data/waypoints/poses1real.csv";
   bench.corrections = "seq1";
   bench.instances = scenarios.parent_path() / "../shared/data/packing";

@@ -1,6 +1,7 @@
 // add_verbs: every verb that this program offers, in the order of --help.
 #include "verbs.hpp"
 
+#include "archive.hpp"
 #include "bench.hpp"
 #include "calibrate.hpp"
 #include "check.hpp"
@@ -9,12 +10,14 @@
 #include "export.hpp"
 #include "items.hpp"
 #include "load.hpp"
+#include "measure.hpp"
 #include "pack.hpp"
 #include "picture.hpp"
 #include "plot.hpp"
 #include "program.hpp"
 #include "report.hpp"
 #include "simulate.hpp"
+#include "validate.hpp"
 #include "view.hpp"
 
 namespace snug::app {
@@ -34,6 +37,9 @@ void add_verbs(CLI::App& app, Action& action) {
   add_load(app, action);
   add_cup(app, action);
   add_calibrate(app, action);
+  add_measure(app, action);
+  add_archive(app, action);
+  add_validate(app, action);
   add_bench(app, action);
 }
 

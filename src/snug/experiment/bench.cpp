@@ -16,6 +16,7 @@
 #include "snug/experiment/internal/cpu_time.hpp"
 #include "snug/experiment/internal/packing_bench.hpp"
 #include "snug/experiment/internal/robot_figures.hpp"
+#include "snug/experiment/internal/validation_bench.hpp"
 
 namespace snug::experiment {
 namespace {
@@ -358,6 +359,30 @@ void measure_packing(const BenchOptions& options, std::vector<Figure>& figures) 
   figures.push_back({"packing.load.mean_percent", mean, "%", ">= 90", mean >= 90.0});
 }
 
+/// Targets: rest errors are the sensors' (36 draws, three coordinates of twelve bodies: 1.3 is 2.5 standard errors of
+/// their spread above 1); a step of a parameter by its standard error stays below the means of the report's Tables 4
+/// to 6.
+void measure_validation(const BenchOptions& options, std::vector<Figure>& figures) {
+  if (!std::filesystem::exists(options.program)) return;
+  const internal::ValidationFigures found = internal::measure_validation(options);
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  figures.push_back(at_most("validation.true.rest_over_noise", found.rest_over_noise, "1", 1.3));
+  figures.push_back({"validation.true.rest_mm", kMm * found.true_clean.rest_position, "mm", "", true});
+  figures.push_back({"validation.true.rms_mm", kMm * found.true_clean.rms_position, "mm", "", true});
+  figures.push_back({"validation.true.rms_mm.report", kMm * found.true_report.rms_position, "mm", "", true});
+  figures.push_back(at_most("validation.true.shift_ms", found.worst_shift_ms, "ms", 1.0));
+  for (const auto& [form, means] : {std::pair("", &found.off_clean), std::pair(".report", &found.off_report)}) {
+    const std::string name = "validation.off_by_one.";
+    figures.push_back(at_most(name + "rest_mm" + form, kMm * means->rest_position, "mm", 8.5));
+    figures.push_back(at_most(name + "rms_mm" + form, kMm * means->rms_position, "mm", 23.5));
+    figures.push_back(at_most(name + "rms_N" + form, means->rms_force, "N", 20.0));
+    figures.push_back({name + "rest_deg" + form, kDegrees * means->rest_rotation, "deg", "", true});
+    figures.push_back({name + "rms_deg" + form, kDegrees * means->rms_rotation, "deg", "", true});
+    figures.push_back({name + "rms_Nm" + form, means->rms_torque, "Nm", "", true});
+  }
+  figures.push_back(at_most("validation.seconds", found.seconds, "s", 5.0));
+}
+
 }  // namespace
 
 double box_overlap(const Vector3& half_a, const Pose& X_WA, const Vector3& half_b, const Pose& X_WB) {
@@ -385,7 +410,7 @@ std::vector<Figure> run_bench(const BenchOptions& options) {
       {"s1", measure_stack},      {"s2", measure_drops},        {"s3", measure_slides},
       {"s4", measure_bounce},     {"s5", measure_swing},        {"s6", measure_press},
       {"growth", measure_growth}, {"program", measure_program}, {"robot", internal::measure_robot},
-      {"arm", measure_arm},       {"packing", measure_packing}};
+      {"arm", measure_arm},       {"packing", measure_packing}, {"validation", measure_validation}};
   std::vector<Figure> figures;
   for (const auto& [name, measure] : scenes) {
     const std::string scene(name);

@@ -177,7 +177,9 @@ struct Legend {
 Legend lay_out_legend(const Panel& panel, double width) {
   Legend legend;
   if (!panel.band_label.empty() && !panel.bands.empty()) legend.entries.push_back({panel.band_label, nullptr});
-  for (const Curve& curve : panel.curves) legend.entries.push_back({curve.label, &curve});
+  for (const Curve& curve : panel.curves) {
+    if (!curve.label.empty()) legend.entries.push_back({curve.label, &curve});
+  }
   legend.widths = {0.0};
   for (LegendEntry& entry : legend.entries) {
     const double size = kSwatch + kSpace + width_of(entry.label) + kBetween;
@@ -238,9 +240,21 @@ std::string draw_grid(const Axes& axes, bool has_x_labels) {
   return out;
 }
 
+std::size_t rows_of(const Figure& figure) {
+  return std::max<std::size_t>(1, (figure.panels.size() + figure.columns - 1) / figure.columns);
+}
+
+/// Height of the legends of a row of panels: that of the highest.
+double legend_height(const Figure& figure, std::size_t row, double width) {
+  double height = 0.0;
+  for (std::size_t i = row; i < figure.panels.size(); i += rows_of(figure))
+    height = std::max(height, lay_out_legend(figure.panels[i], width).height());
+  return height;
+}
+
 std::string draw_panel(const Figure& figure, std::size_t index, const Axes& axes) {
   const Panel& panel = figure.panels[index];
-  const bool is_last = index + 1 == figure.panels.size();
+  const bool is_last = index + 1 == figure.panels.size() || (index + 1) % rows_of(figure) == 0;
   std::string out = draw_bands(panel, axes) + draw_grid(axes, is_last);
   out += fmt::format(
       "<clipPath id=\"axes{}\"><rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"/>"
@@ -253,7 +267,9 @@ std::string draw_panel(const Figure& figure, std::size_t index, const Axes& axes
       "stroke-width=\"0.6\"/>\n",
       axes.left, axes.top, axes.width, axes.height);
   const double middle = axes.top + 0.5 * axes.height;
-  out += text_at(10.0, middle, panel.y_label, "middle", fmt::format(" transform=\"rotate(-90 10.00 {:.2f})\"", middle));
+  const double label = axes.left - kLeft + 10.0;
+  out += text_at(label, middle, panel.y_label, "middle",
+                 fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", label, middle));
   if (is_last) {
     out += text_at(axes.left + 0.5 * axes.width, axes.top + axes.height + 24.0, figure.x_label, "middle");
   }
@@ -280,23 +296,26 @@ std::vector<double> choose_ticks(double low, double high, int count) {
 std::string draw_svg(const Figure& figure) {
   const double width = figure.width_mm * kPointsPerMm;
   const double panel_height = figure.panel_height_mm * kPointsPerMm;
-  const auto count = static_cast<double>(figure.panels.size());
+  const std::size_t rows = figure.panels.empty() ? 0 : rows_of(figure);
+  const double column = width / static_cast<double>(figure.columns);
+  Axes axes;
+  axes.width = column - kLeft - kRight;
+  axes.height = panel_height;
+  const auto count = static_cast<double>(rows);
   double height = count * panel_height + std::max(0.0, count - 1.0) * kGap + kBottom;
-  for (const Panel& panel : figure.panels) height += lay_out_legend(panel, width - kLeft - kRight).height();
+  for (std::size_t row = 0; row < rows; ++row) height += legend_height(figure, row, axes.width);
   std::string svg = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{:.2f}mm\" height=\"{:.2f}mm\" "
       "viewBox=\"0 0 {:.2f} {:.2f}\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" "
       "font-size=\"{}\" fill=\"#000000\">\n<desc>{}</desc>\n<rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n",
       width / kPointsPerMm, height / kPointsPerMm, width, height, kFont, escape_markup(figure.description));
-  Axes axes;
   axes.x = x_range(figure);
-  axes.left = kLeft;
-  axes.width = width - kLeft - kRight;
-  axes.height = panel_height;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    if (i % rows == 0) axes.top = 0.0;
+    axes.left = kLeft + column * static_cast<double>(i / rows);
     axes.y = y_range(figure.panels[i]);
-    axes.top += lay_out_legend(figure.panels[i], axes.width).height();
+    axes.top += legend_height(figure, i % rows, axes.width);
     svg += draw_panel(figure, i, axes);
     axes.top += panel_height + kGap;
   }

@@ -1,6 +1,7 @@
 // Figure: curves over a common axis, drawn as SVG for papers: no browser, no scripts, fonts that everybody has.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,7 +10,7 @@ namespace snug::replay {
 
 /// One line. It breaks where y is not finite.
 struct Curve {
-  std::string label;
+  std::string label;         ///< empty: not in the legend
   std::vector<double> x, y;  ///< as long as each other; x growing
   int color = 0;             ///< place in a palette of seven that colour-blind people can tell apart
   bool is_dashed = false;
@@ -29,6 +30,7 @@ struct Figure {
   std::vector<Panel> panels;
   double width_mm = 180.0;        ///< two columns of a paper
   double panel_height_mm = 45.0;  ///< of one pair of axes
+  std::size_t columns = 1;        ///< of panels, filled from top to bottom; >= 1
 };
 
 /// The figure as an SVG document of version 1.1. Long curves are thinned to what can be seen: extremes are kept.

@@ -76,6 +76,21 @@ TEST(Figure, DrawsNothingStrangeForStrangeNumbers) {
   }
 }
 
+TEST(Figure, FillsColumnsFromTopToBottomEachWithItsAxis) {
+  Figure figure;
+  figure.x_label = "time [s]";
+  for (int i = 0; i < 5; ++i) figure.panels.push_back(panel_with({0, 1, 2}, {1.0, 2.0, 0.0}));
+  const std::string one = draw_svg(figure);
+  figure.columns = 2;
+  const std::string two = draw_svg(figure);
+  expect_sound(two);
+  EXPECT_EQ(count(one, ">time [s]<"), 1);
+  EXPECT_EQ(count(two, ">time [s]<"), 2);
+  const auto height_of = [](const std::string& svg) { return std::stod(svg.substr(svg.find("height=\"") + 8)); };
+  EXPECT_LT(height_of(two), 0.7 * height_of(one));  // three rows instead of five
+  EXPECT_EQ(count(two, "clip-path=\"url(#axes"), 5);
+}
+
 TEST(Figure, BreaksACurveWhereThereIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Figure figure;

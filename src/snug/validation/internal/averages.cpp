@@ -1,0 +1,30 @@
+// Averages: the mean of poses that may be lost, the median of numbers.
+#include "snug/validation/internal/averages.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace snug::validation::internal {
+
+std::optional<Pose> mean_pose(std::span<const record::PoseSample> poses, double least_tracked) {
+  Vector3 p = Vector3::Zero();
+  Eigen::Vector4d q = Eigen::Vector4d::Zero();
+  double count = 0.0;
+  for (const record::PoseSample& pose : poses) {
+    if (!record::is_tracked(pose)) continue;
+    p += pose.p;
+    q += (pose.quat.coeffs().dot(q) < 0.0 ? -1.0 : 1.0) * pose.quat.coeffs();
+    count += 1.0;
+  }
+  if (count == 0.0 || count < least_tracked * static_cast<double>(poses.size())) return std::nullopt;
+  return Pose{Quaternion(q.normalized()).toRotationMatrix(), p / count};
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace snug::validation::internal
