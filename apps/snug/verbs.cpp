@@ -7,6 +7,7 @@
 #include "compare.hpp"
 #include "cup.hpp"
 #include "export.hpp"
+#include "identify.hpp"
 #include "items.hpp"
 #include "load.hpp"
 #include "pack.hpp"
@@ -34,6 +35,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_load(app, action);
   add_cup(app, action);
   add_calibrate(app, action);
+  add_identify(app, action);
   add_bench(app, action);
 }
 
