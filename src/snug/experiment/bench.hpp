@@ -23,6 +23,7 @@ struct BenchOptions {
   std::filesystem::path scenario;   ///< the demonstrator's cell, for the program
   std::filesystem::path program;    ///< a program of the demonstrator's sequence 1; left out when absent
   std::filesystem::path instances;  ///< folder of public loading instances, BR1.txt ...; said to be skipped when absent
+  std::filesystem::path cup_data;   ///< folder of the cup's reference data; said to be skipped when absent
   std::string corrections;          ///< for that program, or empty
   std::string only;                 ///< figures whose scene starts so; empty: all
 };
