@@ -147,7 +147,7 @@ void measure_plucks(std::vector<Figure>& figures) {
   std::vector<identification::Release> swings, plucks;
   for (int i = 0; i < 3; ++i) {
     swings.push_back(make(PluckDirection::Bend, 0.1));
-    plucks.push_back(make(PluckDirection::Axial, 0.004));
+    plucks.push_back(make(PluckDirection::Axial, 0.005));
   }
   const auto d_ax_error = [&](const std::vector<identification::Release>& releases) {
     const identification::Parameter d_ax = identification::identify_damping(releases).parameters[1];

@@ -158,7 +158,14 @@ struct Solution {
   double chi2 = 0.0;
   int degrees_of_freedom = 1;
   int iterations = 0;
+  std::string failure;  ///< why the fit has not converged, or empty
 };
+
+void require_convergence(const Solution& solution, const Release& release) {
+  if (solution.failure.empty()) return;
+  throw InputError(release.name, "", "a fit that does not converge: " + solution.failure,
+                   "free oscillations after a release, with the load's mass, inertia and stiffness of the cup");
+}
 
 int count_used(const std::vector<char>& is_used) {
   return static_cast<int>(std::count(is_used.begin(), is_used.end(), char{1}));
@@ -205,9 +212,7 @@ Solution solve(const Problem& problem, const std::vector<std::size_t>& which, co
        }});
   const numerics::LeastSquaresResult found =
       numerics::solve_least_squares(terms, start.cwiseQuotient(scale), {.tolerance = 1e-8, .max_iterations = 50});
-  if (!found.has_converged)
-    throw InputError(problem.releases[which.front()].name, "", "a fit that does not converge: " + found.message,
-                     "free oscillations after a release, with the load's mass, inertia and stiffness of the cup");
+  solution.failure = found.has_converged ? "" : found.message;
   solution.theta = scale.cwiseProduct(found.x);
   const Eigen::VectorXd inverse = scale.cwiseInverse();
   solution.information = inverse.asDiagonal() * found.information * inverse.asDiagonal();
@@ -353,6 +358,7 @@ DampingFit identify_damping(const std::vector<Release>& releases, const DampingO
     solution = solve(problem, all, solution.theta, solution.own);
     fit.iterations += solution.iterations;
   }
+  require_convergence(solution, releases.front());  // outliers may have kept the fits before from it
   fit.start = problem.is_moving ? ReleaseStart::Moving : ReleaseStart::Rest;
   fit.chi2_per_dof = solution.chi2 / solution.degrees_of_freedom;
   fit.degrees_of_freedom = solution.degrees_of_freedom;

@@ -155,7 +155,11 @@ TEST(Damping, AlongTheAxisIsWeakFromSwingsAndIdentifiedFromPlucks) {
 
 TEST(Damping, OfAllDirectionsTogetherIsIdentified) {
   std::vector<Release> releases;
-  for (std::uint64_t i = 0; i < 8; ++i) releases.push_back(recorded(static_cast<PluckDirection>(i % 4), i));
+  std::uint64_t seed = 0;
+  for (const PluckDirection direction :
+       {PluckDirection::Axial, PluckDirection::Axial, PluckDirection::Axial, PluckDirection::Lateral,
+        PluckDirection::Lateral, PluckDirection::Bend, PluckDirection::Torsion})
+    releases.push_back(recorded(direction, seed++));
   const DampingFit fit = identify_damping(releases);
   EXPECT_TRUE(fit.releases_agree);
   const double truth[] = {kTruth.lateral, kTruth.axial, kTruth.bend, kTruth.torsion};
