@@ -752,6 +752,79 @@ class Measurements(unittest.TestCase):
         self.assertEqual([p.name for p in self.path.iterdir() if ".part" in p.name], [])
 
 
+class Identify(unittest.TestCase):
+    assert_refused = CommandLine.assert_refused
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name)
+
+    def test_help_names_the_parts_and_has_examples(self):
+        self.assertIn("stiffness", snug("identify", "--help").stdout)
+        for part in ("stiffness", "damping", "pluck"):
+            self.assertIn("Examples:", snug("identify", part, "--help").stdout)
+
+    @unittest.skipUnless(CUP_DATA.exists(), f"no reference data at {CUP_DATA}")
+    def test_stiffness_of_the_reference_poses_is_written_where_a_scenario_takes_it(self):
+        block = self.path / "cup.yaml"
+        result = snug("identify", "stiffness", CUP_DATA / "identification.json", "-o", block, "--json")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        found = json.loads(result.stdout)
+        truth = {"k_lat": 2300.0, "k_ax": 5500.0, "k_bend": 5.5, "k_tors": 2.8, "c": -20.0}
+        for parameter in found["parameters"]:
+            error = abs(parameter["value"] / truth.pop(parameter["name"]) - 1.0)
+            self.assertLess(error, 0.10 if parameter["name"] == "c" else 0.03)  # tolerances stated with the data
+            self.assertGreater(parameter["standard_error"], 0.0)
+            self.assertEqual(parameter["verdict"], "identified")
+        self.assertEqual(truth, {})
+        self.assertAlmostEqual(found["chi2_per_dof"], 1.0, delta=0.1)
+        self.assertAlmostEqual(found["held_back_error"], 1.0, delta=0.1)
+        self.assertTrue(found["symmetry"]["supported"])
+        scenario = self.path / "scene.yaml"
+        scenario.write_text(DROP.read_text() + "\n" + block.read_text())
+        self.assertEqual(snug("simulate", scenario, "--until", "0.01", "--json").returncode, 0)
+        again = snug("identify", "stiffness", CUP_DATA / "identification.json", "-o", block, "--json")
+        self.assertEqual(again.stdout, result.stdout, "the same input must give the same bytes")
+        table = snug("identify", "stiffness", CUP_DATA / "identification.json", "--parameters", "21")
+        self.assertIn("k_x_ry", table.stdout)
+
+    def test_axial_pluck_tells_the_axial_damping_and_a_swing_does_not(self):
+        verdicts = {}
+        for direction in ("axial", "bend"):
+            record = self.path / f"{direction}.json"
+            made = snug("identify", "pluck", "--scenario", CELL, "--parcel", "BOX013", "--direction", direction, "-o", record)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            result = snug("identify", "damping", record, "--json", "-o", self.path / "cup.yaml")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            found = json.loads(result.stdout)
+            self.assertAlmostEqual(found["chi2_per_dof"], 1.0, delta=0.1)
+            verdicts[direction] = next(p for p in found["parameters"] if p["name"] == "d_ax")
+        self.assertEqual(verdicts["axial"]["verdict"], "identified")
+        self.assertNotEqual(verdicts["bend"]["verdict"], "identified")
+        self.assertIn("pluck", verdicts["bend"]["record_instead"])
+
+    def test_measurements_that_cannot_be_used_are_refused(self):
+        record = {"E_o_S": [0, 0, 0.05], "E_q_S": [1, 0, 0, 0], "wrench_S": [0, 0, -1, 0, 0, 0]}
+        def write(name, content):
+            (self.path / name).write_text(content)
+            return self.path / name
+        no_turn = write("no_turn.json", json.dumps({"records": [record, dict(record, E_q_S=[1, 1, 0, 0])]}))
+        cut = write("cut.json", json.dumps({"records": [record] * 9})[:-20])
+        few = write("few.json", json.dumps({"records": [record] * 2}))
+        for words, parts in ((["stiffness", no_turn], ["no_turn.json", "records[1].E_q_S"]),
+                             (["stiffness", cut], ["cut.json:1"]), (["stiffness", few], ["4 or more"]),
+                             (["stiffness", few, "--method", "complience"], ["did you mean compliance?"]),
+                             (["stiffness", few, "--parameters", "7"], ["21"]),
+                             (["stiffness", self.path / "none.json"], ["none.json"]),
+                             (["damping", few], ["cases"]), (["damping"], ["releases"]),
+                             (["pluck", "--parcel", "BOX013", "-o", self.path / "p.json"], ["--scenario"]),
+                             (["pluck", "--scenario", CELL, "--parcel", "BOX13", "-o", self.path / "p.json"], ["BOX013"]),
+                             (["pluck", "--amplitude", "1", "-o", self.path / "p.json"], ["0.03 m"])):
+            with self.subTest(words=words):
+                self.assert_refused(snug("identify", *words), *parts)
+
+
 class OtherCells(unittest.TestCase):
     """Other boxes and other containers: pack, and everything that goes on with what it leaves."""
     assert_refused = CommandLine.assert_refused

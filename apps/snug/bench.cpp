@@ -66,6 +66,7 @@ int run_bench(const BenchOptions& options) {
   bench.sensors = scenarios / "sensors/demonstrator.yaml";
   bench.program = scenarios.parent_path() / "../shared/data/waypoints/poses1real.csv";
   bench.corrections = "seq1";
+  bench.cup_data = scenarios.parent_path() / "../shared/data/cup";
   bench.instances = scenarios.parent_path() / "../shared/data/packing";
   if (!std::filesystem::exists(bench.program)) {
     bench.program = "out/sequence-1.csv";  // what `make demo` leaves

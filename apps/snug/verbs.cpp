@@ -8,6 +8,7 @@
 #include "compare.hpp"
 #include "cup.hpp"
 #include "export.hpp"
+#include "identify.hpp"
 #include "items.hpp"
 #include "load.hpp"
 #include "measure.hpp"
@@ -40,6 +41,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_measure(app, action);
   add_archive(app, action);
   add_validate(app, action);
+  add_identify(app, action);
   add_bench(app, action);
 }
 

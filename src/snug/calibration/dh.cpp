@@ -10,6 +10,7 @@
 
 #include "snug/calibration/internal/frames.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 
 namespace snug::calibration {
 namespace {
@@ -135,8 +136,6 @@ DhTable parse_deltas(const std::string& text, const std::string& name) {
   return deltas;
 }
 
-DhTable load_deltas(const std::filesystem::path& path) {
-  return parse_deltas(internal::read_file(path), path.string());
-}
+DhTable load_deltas(const std::filesystem::path& path) { return parse_deltas(read_file(path), path.string()); }
 
 }  // namespace snug::calibration

@@ -8,6 +8,7 @@
 #include "snug/calibration/internal/complaints.hpp"
 #include "snug/calibration/internal/frames.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 
 namespace snug::calibration {
 namespace {
@@ -47,7 +48,7 @@ robot::ArmModel load_calibration_yaml(const std::filesystem::path& path, AngleRe
   const std::string name = path.string();
   YAML::Node root;
   try {
-    root = YAML::Load(internal::read_file(path));
+    root = YAML::Load(read_file(path));
   } catch (const YAML::Exception& error) {
     throw InputError(name + ":" + std::to_string(error.mark.line + 1), "", error.msg, "YAML that can be parsed");
   }

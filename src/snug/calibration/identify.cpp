@@ -9,9 +9,10 @@
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/calibration/internal/complaints.hpp"
 #include "snug/calibration/internal/frames.hpp"
-#include "snug/calibration/internal/least_squares.hpp"
 #include "snug/calibration/internal/linear_fit.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/numerics/least_squares.hpp"
+#include "snug/numerics/outliers.hpp"
 #include "snug/robot/kinematics.hpp"
 
 namespace snug::calibration {
@@ -114,15 +115,31 @@ void check_determined(const robot::ArmModel& arm, const PosePairs& pairs, const 
                    "poses in which every joint takes values a radian or more apart");
 }
 
-internal::LeastSquaresResult fit(const Model& model, const Eigen::VectorXd& start, const Eigen::VectorXd& w,
+/// Residuals and derivatives of all pairs at one place: the terms, one for each pair, take their rows from it.
+struct Evaluation {
+  Eigen::VectorXd at;
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+};
+
+numerics::LeastSquaresResult fit(const Model& model, const Eigen::VectorXd& start, const Eigen::VectorXd& w,
                                  double loss_scale) {
-  return internal::solve_least_squares(
-      {[&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return w.asDiagonal() * model.errors(x); },
-       [&](const Eigen::VectorXd& x) -> Eigen::MatrixXd { return w.asDiagonal() * model.jacobian(x); }, 6, loss_scale},
-      start);
+  Evaluation last;
+  std::vector<numerics::LeastSquaresTerm> terms;
+  for (Eigen::Index row = 0; row < w.size(); row += 6) {
+    terms.push_back(
+        {6, {}, [&, row](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+           if (last.at.size() != x.size() || last.at != x)
+             last = {x, w.asDiagonal() * model.errors(x), Eigen::MatrixXd()};
+           if (J != nullptr && last.jacobian.size() == 0) last.jacobian = w.asDiagonal() * model.jacobian(x);
+           r = last.residual.segment<6>(row);
+           if (J != nullptr) *J = last.jacobian.middleRows<6>(row);
+         }});
+  }
+  return numerics::solve_least_squares(terms, start, {.loss_scale = loss_scale});
 }
 
-void require_convergence(const internal::LeastSquaresResult& result, const PosePairs& pairs) {
+void require_convergence(const numerics::LeastSquaresResult& result, const PosePairs& pairs) {
   if (!result.has_converged)
     throw InputError(pairs.table.name, "", "a fit that does not converge: " + result.message,
                      "poses of this arm, in the base named, in metres and radians");
@@ -197,22 +214,22 @@ IdentifiedArm identify_arm(const robot::ArmModel& nominal, const PosePairs& pair
 
   // First round with a loss that forgives outliers: what they are, and how large the noise is.
   const Eigen::VectorXd first_weights = weights(before.size(), kFirstPositionNoise, kFirstAngleNoise);
-  const internal::LeastSquaresResult first = fit(model, none, first_weights, 3.0);
+  const numerics::LeastSquaresResult first = fit(model, none, first_weights, 3.0);
   require_convergence(first, pairs);
   const Sizes left = group_sizes(model.errors(first.x));
   constexpr double kRounding = 1e-10;  // m, rad: exact data have no outliers
-  std::vector<std::size_t> outliers = internal::find_outliers(left.positions, 3, kRounding);
-  for (const std::size_t k : internal::find_outliers(left.angles, 3, kRounding)) outliers.push_back(k);
+  std::vector<std::size_t> outliers = numerics::find_outliers(left.positions, 3, kRounding);
+  for (const std::size_t k : numerics::find_outliers(left.angles, 3, kRounding)) outliers.push_back(k);
   std::sort(outliers.begin(), outliers.end());
   outliers.erase(std::unique(outliers.begin(), outliers.end()), outliers.end());
   internal::check_outliers(pairs.table, outliers);
 
   // Second round: plain least squares, each kind weighed by its own noise.
   IdentifiedArm result;
-  result.position_noise = std::max(kRounding, internal::median_deviation(left.positions, 3));
-  result.angle_noise = std::max(kRounding, internal::median_deviation(left.angles, 3));
+  result.position_noise = std::max(kRounding, numerics::median_deviation(left.positions, 3));
+  result.angle_noise = std::max(kRounding, numerics::median_deviation(left.angles, 3));
   const Eigen::VectorXd w = weights(before.size(), result.position_noise, result.angle_noise);
-  const internal::LeastSquaresResult second = fit(model, first.x, w, 0.0);
+  const numerics::LeastSquaresResult second = fit(model, first.x, w, 0.0);
   require_convergence(second, pairs);
   result.deviations = second.x;
   result.iterations = first.iterations + second.iterations;

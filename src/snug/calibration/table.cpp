@@ -8,6 +8,7 @@
 
 #include "snug/calibration/internal/frames.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 
 namespace snug::calibration {
 namespace {
@@ -55,7 +56,8 @@ double read_number(const std::string& cell, const std::string& where, const std:
 
 }  // namespace
 
-Table parse_table(const std::string& text, const std::string& name, const std::vector<std::string>& columns) {
+Table parse_table(const std::string& text, const std::string& name, const std::vector<std::string>& columns,
+                  const std::vector<std::string>& optional) {
   Table table{name, columns, {}, {}};
   std::vector<std::size_t> places;
   std::size_t width = 0;
@@ -67,7 +69,9 @@ Table parse_table(const std::string& text, const std::string& name, const std::v
     const std::vector<std::string> cells = split(line);
     const std::string where = name + ":" + std::to_string(number);
     if (places.empty()) {
-      places = find_columns(cells, columns, where);
+      for (const std::string& column : optional)
+        if (std::find(cells.begin(), cells.end(), column) != cells.end()) table.columns.push_back(column);
+      places = find_columns(cells, table.columns, where);
       width = cells.size();
       continue;
     }
@@ -75,15 +79,17 @@ Table parse_table(const std::string& text, const std::string& name, const std::v
       throw InputError(where, "", std::to_string(cells.size()) + " cells",
                        std::to_string(width) + ", as in the header");
     std::vector<double>& row = table.rows.emplace_back();
-    for (std::size_t i = 0; i < places.size(); ++i) row.push_back(read_number(cells[places[i]], where, columns[i]));
+    for (std::size_t i = 0; i < places.size(); ++i)
+      row.push_back(read_number(cells[places[i]], where, table.columns[i]));
     table.lines.push_back(number);
   }
   if (places.empty()) throw InputError(name + ":1", "", "no header", joined(columns));
   return table;
 }
 
-Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns) {
-  return parse_table(internal::read_file(path), path.string(), columns);
+Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns,
+                 const std::vector<std::string>& optional) {
+  return parse_table(read_file(path), path.string(), columns, optional);
 }
 
 Pose row_pose(const std::vector<double>& row, std::size_t first) {

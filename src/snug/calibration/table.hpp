@@ -21,10 +21,12 @@ struct Table {
 };
 
 /// Reads a CSV: separator comma, first line the column names, lines that start with # and empty lines left out. The
-/// columns named must be there, in any order; others are ignored. Returned in the order of `columns`.
-[[nodiscard]] Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns);
+/// columns named must be there, in any order; those of `optional` may; others are ignored. Returned in the order of
+/// `columns`, then of those optional ones that are there.
+[[nodiscard]] Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns,
+                               const std::vector<std::string>& optional = {});
 [[nodiscard]] Table parse_table(const std::string& text, const std::string& name,
-                                const std::vector<std::string>& columns);
+                                const std::vector<std::string>& columns, const std::vector<std::string>& optional = {});
 
 /// Pose from six numbers from `first` on: x, y, z [m], rx, ry, rz (rotation vector, rad).
 [[nodiscard]] Pose row_pose(const std::vector<double>& row, std::size_t first);

@@ -3,12 +3,15 @@
 
 #include <cmath>
 
+#include "snug/cup/law_derivatives.hpp"
+
 namespace snug::cup {
 namespace {
 
 Vector3 odd_part(const Matrix3& R) { return {R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)}; }
 
-/// de = J nu.
+}  // namespace
+
 Matrix6 deformation_jacobian(const Pose& H) {
   Matrix6 J;
   J << Matrix3::Identity() + H.R, skew(H.R.transpose() * H.p),  //
@@ -16,7 +19,14 @@ Matrix6 deformation_jacobian(const Pose& H) {
   return J;
 }
 
-}  // namespace
+Matrix6 pullback_derivative(const Pose& H, const Vector6& y) {
+  const Vector3 y1 = y.head<3>(), y2 = y.tail<3>();
+  const Vector3 a = H.R.transpose() * H.p;
+  Matrix6 G;
+  G << Matrix3::Zero(), skew(H.R.transpose() * y1),  //
+      skew(y1), skew(y1) * skew(a) - y2 * odd_part(H.R).transpose() + H.R * skew(y2);
+  return G;
+}
 
 Matrix6 as_matrix(const model::CupElasticity& elasticity) {
   Matrix6 K = Matrix6::Zero();
@@ -56,15 +66,8 @@ Vector6 spring_wrench(const Pose& H, const Matrix6& K) {
 }
 
 Matrix6 spring_tangent(const Pose& H, const Matrix6& K) {
-  const Vector6 y = K * deformation(H);
-  const Vector3 y1 = y.head<3>(), y2 = y.tail<3>();
-  const Vector3 a = H.R.transpose() * H.p;
   const Matrix6 J = deformation_jacobian(H);
-  // d(J^T y) with y held: docs/theory/cup.md, section 2.
-  Matrix6 G;
-  G << Matrix3::Zero(), skew(H.R.transpose() * y1),  //
-      skew(y1), skew(y1) * skew(a) - y2 * odd_part(H.R).transpose() + H.R * skew(y2);
-  return -0.25 * (G + J.transpose() * K * J);
+  return -0.25 * (pullback_derivative(H, K * deformation(H)) + J.transpose() * K * J);
 }
 
 Matrix6 wrench_transform(const Pose& X_SS1) {

@@ -14,6 +14,7 @@
 #include "snug/core/check.hpp"
 #include "snug/experiment/internal/arm_bench.hpp"
 #include "snug/experiment/internal/cpu_time.hpp"
+#include "snug/experiment/internal/identification_bench.hpp"
 #include "snug/experiment/internal/packing_bench.hpp"
 #include "snug/experiment/internal/robot_figures.hpp"
 #include "snug/experiment/internal/validation_bench.hpp"
@@ -410,7 +411,8 @@ std::vector<Figure> run_bench(const BenchOptions& options) {
       {"s1", measure_stack},      {"s2", measure_drops},        {"s3", measure_slides},
       {"s4", measure_bounce},     {"s5", measure_swing},        {"s6", measure_press},
       {"growth", measure_growth}, {"program", measure_program}, {"robot", internal::measure_robot},
-      {"arm", measure_arm},       {"packing", measure_packing}, {"validation", measure_validation}};
+      {"arm", measure_arm},       {"packing", measure_packing}, {"validation", measure_validation},
+      {"identification", internal::measure_identification}};
   std::vector<Figure> figures;
   for (const auto& [name, measure] : scenes) {
     const std::string scene(name);

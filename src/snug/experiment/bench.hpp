@@ -24,6 +24,7 @@ struct BenchOptions {
   std::filesystem::path program;    ///< a program of the demonstrator's sequence 1; left out when absent
   std::filesystem::path instances;  ///< folder of public loading instances, BR1.txt ...; said to be skipped when absent
   std::filesystem::path sensors;    ///< what virtual experiments are measured with (figures of validation)
+  std::filesystem::path cup_data;   ///< folder of the cup's reference data; said to be skipped when absent
   std::string corrections;          ///< for that program, or empty
   std::string only;                 ///< figures whose scene starts so; empty: all
 };

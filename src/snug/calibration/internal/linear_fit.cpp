@@ -7,12 +7,11 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
-#include "snug/core/check.hpp"
+#include "snug/numerics/outliers.hpp"
 
 namespace snug::calibration::internal {
 namespace {
 
-constexpr double kOutlierDeviations = 6.0;  // chance of 1e-7 in three normal numbers
 constexpr int kRobustSteps = 20;
 
 double group_size(const Eigen::VectorXd& residual, Eigen::Index group, Eigen::Index k) {
@@ -36,21 +35,6 @@ Eigen::VectorXd fit_robustly(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
 
 }  // namespace
 
-double median_deviation(std::vector<double> sizes, int degrees) {
-  SNUG_CHECK(degrees == 3 || degrees == 6, "median known for 3 and 6 degrees of freedom");
-  const double median_norm = degrees == 3 ? 1.5382 : 2.3126;  // square roots of the medians of chi-square
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-  return sizes[sizes.size() / 2] / median_norm;
-}
-
-std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int degrees, double floor) {
-  const double limit = kOutlierDeviations * std::max(floor, median_deviation(sizes, degrees));
-  std::vector<std::size_t> found;
-  for (std::size_t k = 0; k < sizes.size(); ++k)
-    if (sizes[k] > limit) found.push_back(k);
-  return found;
-}
-
 LinearFit fit_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::Index group) {
   LinearFit fit;
   const Eigen::Index groups = b.size() / group;
@@ -68,7 +52,7 @@ LinearFit fit_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::
   const Eigen::VectorXd robust = A * fit_robustly(A, b, group, floor) - b;
   std::vector<double> sizes;
   for (Eigen::Index k = 0; k < groups; ++k) sizes.push_back(group_size(robust, group, k));
-  fit.outliers = find_outliers(sizes, static_cast<int>(group), floor);
+  fit.outliers = numerics::find_outliers(sizes, static_cast<int>(group), floor);
   return fit;
 }
 

@@ -20,10 +20,4 @@ struct LinearFit {
 /// residuals): beyond 6 standard deviations, which are taken from the median.
 [[nodiscard]] LinearFit fit_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::Index group);
 
-/// Groups whose size is beyond 6 standard deviations of the rest, where each is the norm of `degrees` (3 or 6) normal
-/// numbers of equal deviation; estimated from the median.
-[[nodiscard]] std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int degrees, double floor);
-/// That deviation.
-[[nodiscard]] double median_deviation(std::vector<double> sizes, int degrees);
-
 }  // namespace snug::calibration::internal

@@ -1,0 +1,48 @@
+// identify: numbers of the cup from measurements, with how well the data fix them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verb.hpp"
+
+namespace snug::app {
+
+/// What the parts of the verb share.
+struct IdentifyOptions {
+  std::optional<std::string> scenario;  ///< whose cup is the first guess; the default cup without
+  std::optional<std::string> output;    ///< block for a scenario
+  std::optional<double> position_noise, rotation_noise, force_noise, torque_noise;  ///< m, rad, N, Nm
+  bool json = false;
+};
+
+struct IdentifyStiffnessOptions : IdentifyOptions {
+  std::string input;
+  std::string method = "compliance";
+  std::optional<std::string> wrench;
+  std::string parameters = "5";
+};
+
+struct IdentifyDampingOptions : IdentifyOptions {
+  std::vector<std::string> inputs;
+  std::string start = "auto";
+  std::optional<std::uint64_t> release;  ///< only this one, from 0
+  bool coupling = false;
+  bool stiffness = false;
+};
+
+struct IdentifyPluckOptions : IdentifyOptions {
+  std::string parcel;
+  std::string direction = "axial";
+  std::optional<double> amplitude;  ///< m or rad
+  std::uint64_t repeat = 3;
+  std::uint64_t seed = 1;
+};
+
+void add_identify(CLI::App& app, Action& action);
+[[nodiscard]] int run_identify_stiffness(const IdentifyStiffnessOptions& options);
+[[nodiscard]] int run_identify_damping(const IdentifyDampingOptions& options);
+[[nodiscard]] int run_identify_pluck(const IdentifyPluckOptions& options);
+
+}  // namespace snug::app

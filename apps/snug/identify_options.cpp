@@ -1,0 +1,135 @@
+// identify: what may be said after the verb.
+#include <memory>
+
+#include "identify.hpp"
+#include "options.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kStiffnessHelp =
+    R"(Each pose: where the lip is in the gripper's frame, and the cup's wrench on the box (sensor) or the box's mass and centre of
+mass with the gripper's orientation (gravity). Files: docs/formats.md, static poses. Poses that do not belong to the rest are
+left out and named by index. Verdicts: identified (standard error below 5 %), weak (below 25 %), not identifiable.
+Methods: compliance, closed form, the default; wrench, closed form, exact without noise, biased low with it;
+errors-in-variables, maximum likelihood, the best error bars.
+Examples:
+  snug identify stiffness poses.json
+  snug identify stiffness poses.csv --method errors-in-variables --wrench gravity -o cup.yaml
+  snug identify stiffness poses.json --parameters 21 --json)";
+
+constexpr const char* kDampingHelp =
+    R"(Each release: poses of the lip in the gripper's frame after a held box was displaced and let go, gripper at rest; mass, centre
+of mass and inertia of the box. Files: docs/formats.md, releases. Stiffness is that of the file, else of --scenario.
+Examples:
+  snug identify damping swings.json pluck.json --scenario cell.yaml -o cup.yaml
+  snug identify damping swings.json --release 2 --json)";
+
+constexpr const char* kPluckHelp =
+    R"(Swings say little about damping along the cup's axis. This writes the experiment that does, as sensors would record it
+(360 Hz, 1.5 s): the box hangs straight down, is pulled along the axis and let go; --direction lateral, bend, torsion for
+the others. What it is identified with: snug identify damping.
+Examples:
+  snug identify pluck --scenario scenarios/box-demonstrator.yaml --parcel BOX013 -o pluck.json
+  snug identify damping pluck.json)";
+
+void add_scenario(CLI::App& part, IdentifyOptions& options) {
+  part.add_option("--scenario", options.scenario,
+                  "whose cup is the first guess; without, the cup that scenarios have by default")
+      ->type_name("SCENARIO.yaml");
+}
+
+void add_pose_noise(CLI::App& part, IdentifyOptions& options) {
+  part.add_option("--position-noise", options.position_noise,
+                  "standard deviation along each axis; 0.0005 unless the file tells")
+      ->check(positive())
+      ->type_name("M");
+  part.add_option("--rotation-noise", options.rotation_noise, "about each axis; 0.0035 unless the file tells")
+      ->check(positive())
+      ->type_name("RAD");
+}
+
+void add_result(CLI::App& part, IdentifyOptions& options) {
+  part.add_option("-o,--output", options.output, "the numbers as a block that a scenario takes")
+      ->type_name("FILE.yaml");
+  part.add_flag("--json", options.json, "the result as one JSON object on stdout");
+}
+
+void add_stiffness(CLI::App& verb, Action& action) {
+  CLI::App& part = *verb.add_subcommand("stiffness", "the cup's stiffness from a held box at rest");
+  const auto options = std::make_shared<IdentifyStiffnessOptions>();
+  part.add_option("poses", options->input, "static poses")->required()->type_name("FILE.json|FILE.csv");
+  part.add_option("--method", options->method, "compliance, wrench or errors-in-variables")
+      ->check(one_of({"compliance", "wrench", "errors-in-variables"}))
+      ->capture_default_str();
+  part.add_option("--wrench", options->wrench, "sensor or gravity; the sensor's unless some pose has none")
+      ->check(one_of({"sensor", "gravity"}));
+  part.add_option("--parameters", options->parameters, "5, a cup that looks the same from all sides, or 21")
+      ->check(one_of({"5", "21"}))
+      ->capture_default_str();
+  add_scenario(part, *options);
+  add_pose_noise(part, *options);
+  part.add_option("--force-noise", options->force_noise, "0.3 unless the file tells")
+      ->check(positive())
+      ->type_name("N");
+  part.add_option("--torque-noise", options->torque_noise, "0.02 unless the file tells")
+      ->check(positive())
+      ->type_name("NM");
+  add_result(part, *options);
+  part.footer(kStiffnessHelp);
+  part.callback([options, &action] { action = [options] { return run_identify_stiffness(*options); }; });
+}
+
+void add_damping(CLI::App& verb, Action& action) {
+  CLI::App& part = *verb.add_subcommand("damping", "the cup's damping from free oscillations");
+  const auto options = std::make_shared<IdentifyDampingOptions>();
+  part.add_option("releases", options->inputs, "records after a release")->required()->type_name("FILE.json|FILE.csv");
+  part.add_option("--release", options->release, "only this one of all, counted from 0")
+      ->check(whole(0))
+      ->type_name("N");
+  part.add_option("--start", options->start,
+                  "how the box moves when a record begins: rest, moving, or auto: at rest unless the data contradict")
+      ->check(one_of({"auto", "rest", "moving"}))
+      ->capture_default_str();
+  part.add_flag("--coupling", options->coupling, "also the damping that couples shear and bending");
+  part.add_flag("--stiffness", options->stiffness, "the stiffness too, from the given one on");
+  add_scenario(part, *options);
+  add_pose_noise(part, *options);
+  add_result(part, *options);
+  part.footer(kDampingHelp);
+  part.callback([options, &action] { action = [options] { return run_identify_damping(*options); }; });
+}
+
+void add_pluck(CLI::App& verb, Action& action) {
+  CLI::App& part = *verb.add_subcommand("pluck", "a virtual release, to see what it would tell");
+  const auto options = std::make_shared<IdentifyPluckOptions>();
+  part.add_option("--parcel", options->parcel, "box of the scenario, held in the middle of its upper face")
+      ->type_name("ID");
+  part.add_option("--direction", options->direction, "axial, lateral, bend or torsion")
+      ->check(one_of({"axial", "lateral", "bend", "torsion"}))
+      ->capture_default_str();
+  part.add_option("--amplitude", options->amplitude, "pulled so far; 0.004 m, or 0.1 rad for bend and torsion")
+      ->check(positive())
+      ->type_name("M|RAD");
+  part.add_option("--repeat", options->repeat, "releases")->check(whole(1, 100))->capture_default_str();
+  part.add_option("--seed", options->seed, "of the noise")->check(whole(0))->capture_default_str();
+  part.add_option("-o,--output", options->output, "the releases")->required()->type_name("FILE.json");
+  add_scenario(part, *options);
+  add_pose_noise(part, *options);
+  part.footer(kPluckHelp);
+  part.callback([options, &action] { action = [options] { return run_identify_pluck(*options); }; });
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand("identify", "numbers of the model from measurements, with their errors");
+  verb.require_subcommand(1);
+  add_stiffness(verb, action);
+  add_damping(verb, action);
+  add_pluck(verb, action);
+  verb.footer(
+      "`snug identify stiffness --help` and so on tell files and methods; docs/theory/identification.md the rest.");
+}
+
+}  // namespace snug::app

@@ -1,0 +1,161 @@
+// PayloadEstimator: weak-form balances of momentum, and an information filter over them.
+#include "snug/identification/payload.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "snug/core/check.hpp"
+#include "snug/cup/law.hpp"
+#include "snug/cup/law_derivatives.hpp"
+
+namespace snug::identification {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kLawIterations = 6;       // each reduces the error by some 20 at 20 degrees of bending
+constexpr double kOverlap = 4.0 / 3.0;  // of variance: neighbouring windows share a sixth of their squares
+constexpr double kLever = 0.1;          // m, of pose noise on torques: a box's size
+
+using Row3 = Eigen::Matrix<double, 3, 16>;
+
+/// I a as a matrix times (Ixx, Iyy, Izz, Ixy, Ixz, Iyz).
+Eigen::Matrix<double, 3, 6> inertia_columns(const Vector3& a) {
+  Eigen::Matrix<double, 3, 6> A;
+  A << a.x(), 0.0, 0.0, a.y(), a.z(), 0.0,  //
+      0.0, a.y(), 0.0, a.x(), 0.0, a.z(),   //
+      0.0, 0.0, a.z(), 0.0, a.x(), a.y();
+  return A;
+}
+
+Vector6 wrench_at(const Pose& X_EA, const Vector6& wrench_E) {
+  const Vector3 force = wrench_E.head<3>(), torque = wrench_E.tail<3>() - X_EA.p.cross(force);
+  return (Vector6() << X_EA.R.transpose() * force, X_EA.R.transpose() * torque).finished();
+}
+
+}  // namespace
+
+Pose lip_under_wrench(const Matrix6& K, const CupFrames& frames, const Vector6& wrench_E) {
+  Pose H;
+  const Eigen::LLT<Matrix6> factor(K);
+  for (int i = 0; i < kLawIterations; ++i) {
+    const Vector6 f = wrench_at(frames.X_ES2 * H, wrench_E);
+    const Vector6 g = cup::deformation_jacobian(H).transpose().partialPivLu().solve(-4.0 * f);
+    const Vector6 e = factor.solve(g);
+    // e back to a pose: the odd part of R has length 2 sin(angle), and the law ends at 45 degrees.
+    const Vector3 odd = 0.5 * e.tail<3>();
+    const double sine = std::min(odd.norm(), std::sqrt(0.5));
+    H.R = sine < 1e-12 ? Matrix3(Matrix3::Identity()) : exp_rotation(odd.normalized() * std::asin(sine));
+    H.p = (Matrix3::Identity() + H.R.transpose()).partialPivLu().solve(Vector3(e.head<3>()));
+  }
+  return frames.X_ES2 * H * frames.X_SS1.inverse();
+}
+
+double PayloadEstimate::mass_deviation() const { return std::sqrt(covariance(0, 0)); }
+Vector3 PayloadEstimate::com_deviation() const { return covariance.diagonal().segment<3>(1).cwiseSqrt(); }
+
+PayloadEstimator::PayloadEstimator(const PayloadSettings& settings) : settings_(settings) {
+  Eigen::Matrix<double, kUnknowns, 1> deviation;
+  deviation << settings.mass_prior, Vector3::Constant(settings.moment_prior), Vector6::Constant(settings.inertia_prior),
+      Vector3::Constant(settings.force_bias), Vector3::Constant(settings.torque_bias);
+  information_ = deviation.cwiseAbs2().cwiseInverse().asDiagonal();
+}
+
+void PayloadEstimator::add(const PayloadSample& sample) {
+  SNUG_CHECK(instants_.empty() || sample.time > instants_.back().time, "time must grow");
+  const Pose X_ES = sample.X_ES ? *sample.X_ES : lip_under_wrench(settings_.K, settings_.frames, sample.wrench_E);
+  instants_.push_back({sample.time, sample.X_WE * X_ES, wrench_at(X_ES, sample.wrench_E)});
+  if (instants_.back().time - instants_.front().time < settings_.window * (1.0 - 1e-9)) return;
+  balance();
+  const double half = instants_.front().time + 0.5 * settings_.window * (1.0 - 1e-9);
+  const auto keep =
+      std::find_if(instants_.begin(), instants_.end(), [&](const Instant& instant) { return instant.time >= half; });
+  instants_.erase(instants_.begin(), keep);
+}
+
+void PayloadEstimator::balance() {
+  const double start = instants_.front().time, span = instants_.back().time - start;
+  const Vector3 origin = instants_.front().X_WS.p;  // torques about a point that stands still, near the load
+  const Vector3& g = settings_.gravity_W;
+  Row3 force = Row3::Zero(), torque = Row3::Zero();
+  Vector3 force_sum = Vector3::Zero(), torque_sum = Vector3::Zero();
+  for (std::size_t k = 0; k < instants_.size(); ++k) {
+    const Instant& at = instants_[k];
+    const double before = k > 0 ? at.time - instants_[k - 1].time : 0.0;
+    const double after = k + 1 < instants_.size() ? instants_[k + 1].time - at.time : 0.0;
+    const double dt = 0.5 * (before + after), s = (at.time - start) / span;
+    const double phi = std::pow(std::sin(kPi * s), 2) * dt;
+    const double phi_second = 2.0 * std::pow(kPi / span, 2) * std::cos(2.0 * kPi * s) * dt;
+    const Matrix3& R = at.X_WS.R;
+    const Vector3 q = at.X_WS.p - origin;
+    const Vector3 f = R * at.wrench_S.head<3>();
+    force_sum += phi * f;
+    torque_sum += phi * (R * at.wrench_S.tail<3>() + q.cross(f));
+    force.col(0) += phi_second * q - phi * g;
+    force.middleCols<3>(1) += phi_second * R;
+    force.middleCols<3>(10) += phi * R;
+    torque.col(0) += phi * g.cross(q);
+    torque.middleCols<3>(1) += phi * skew(g) * R;
+    torque.middleCols<3>(10) += phi * skew(q) * R;
+    torque.middleCols<3>(13) += phi * R;
+    if (k + 1 == instants_.size()) continue;
+    // Angular momentum between two samples, where the differences are velocities.
+    const Instant& next = instants_[k + 1];
+    const Vector3 turn = log_rotation(R.transpose() * next.X_WS.R);
+    const Matrix3 middle = R * exp_rotation(0.5 * turn);
+    const Vector3 w = middle * turn / after, v = (next.X_WS.p - at.X_WS.p) / after;
+    const Vector3 p = 0.5 * (at.X_WS.p + next.X_WS.p) - origin;
+    const double phi_first = kPi / span * std::sin(2.0 * kPi * (s + 0.5 * after / span)) * after;
+    torque.col(0) -= phi_first * p.cross(v);
+    torque.middleCols<3>(1) -= phi_first * (skew(p) * skew(w) - skew(v)) * middle;
+    torque.middleCols<6>(4) -= phi_first * middle * inertia_columns(middle.transpose() * w);
+  }
+  // What the noise of the samples does to the sums: integrals of phi^2 and of its second derivative squared.
+  const double step = span / static_cast<double>(instants_.size() - 1);
+  const double of_wrench = 3.0 / 8.0 * span * step, of_pose = 2.0 * std::pow(kPi, 4) / std::pow(span, 3) * step;
+  const MeasurementNoise& noise = settings_.noise;
+  const double mass = force_sum.norm() / (0.5 * span * g.norm());  // near enough for the size of noise
+  const double shake = std::pow(mass * noise.position, 2) + std::pow(mass * kLever * noise.rotation, 2);
+  const double turning = std::pow(mass * g.norm() * noise.rotation, 2);
+  const double force_variance = kOverlap * ((std::pow(noise.force, 2) + turning) * of_wrench + shake * of_pose);
+  const double torque_variance =
+      kOverlap *
+      ((std::pow(noise.torque, 2) + kLever * kLever * turning + std::pow(mass * g.norm() * noise.position, 2)) *
+           of_wrench +
+       kLever * kLever * shake * of_pose);
+  information_ += force.transpose() * force / force_variance + torque.transpose() * torque / torque_variance;
+  weighted_ += force.transpose() * force_sum / force_variance + torque.transpose() * torque_sum / torque_variance;
+  ++windows_;
+}
+
+PayloadEstimate PayloadEstimator::estimate() const {
+  PayloadEstimate result;
+  result.windows = windows_;
+  const Eigen::LDLT<Eigen::Matrix<double, kUnknowns, kUnknowns>> factor(information_);
+  const Eigen::Matrix<double, kUnknowns, 1> x = factor.solve(weighted_);
+  const Eigen::Matrix<double, kUnknowns, kUnknowns> all =
+      factor.solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
+  const double mass = std::max(x[0], 1e-6);
+  const Vector3 com = x.segment<3>(1) / mass;
+  Matrix3 about_lip;
+  about_lip << x[4], x[7], x[8], x[7], x[5], x[9], x[8], x[9], x[6];
+  result.load_S = {mass, com, about_lip + mass * skew(com) * skew(com)};
+  // com = moment / mass; inertia about it = about the lip + mass com^ com^.
+  Eigen::Matrix<double, 10, 10> J = Eigen::Matrix<double, 10, 10>::Identity();
+  J.block<3, 1>(1, 0) = -com / mass;
+  J.block<3, 3>(1, 1) /= mass;
+  const auto six = [](const Matrix3& I) {
+    return (Vector6() << I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)).finished();
+  };
+  J.block<6, 1>(4, 0) = six(-skew(com) * skew(com));
+  for (int i = 0; i < 3; ++i) {
+    const Matrix3 unit = skew(Vector3(Vector3::Unit(i)));
+    J.block<6, 1>(4, 1 + i) = six(unit * skew(com) + skew(com) * unit);
+  }
+  result.covariance = J * all.topLeftCorner<10, 10>() * J.transpose();
+  return result;
+}
+
+}  // namespace snug::identification

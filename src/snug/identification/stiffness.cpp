@@ -1,0 +1,348 @@
+// identify_stiffness: three estimators on the same balances, and what can be said about their result.
+#include "snug/identification/stiffness.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "snug/core/input_error.hpp"
+#include "snug/cup/law.hpp"
+#include "snug/identification/internal/compliance.hpp"
+#include "snug/identification/internal/pose_misfit.hpp"
+#include "snug/numerics/least_squares.hpp"
+
+namespace snug::identification {
+namespace {
+
+using internal::Balance;
+using internal::Form;
+using internal::LinearEstimate;
+using internal::NoiseAtS1;
+
+constexpr double kPriorWidth = 1000.0;    // times the prior's own size, as in the compliance fit
+constexpr std::size_t kFewest = 4;        // poses; 24 numbers against 5 or 21
+constexpr std::size_t kForSymmetry = 10;  // poses; fewer leave the test of 16 conditions without power
+constexpr int kFolds = 5;
+
+/// Everything that a fit needs, made once for all choices of poses.
+struct Setup {
+  const StaticPoses& poses;
+  const Form& form;
+  Matrix6 prior;
+  StiffnessMethod method;
+  NoiseAtS1 noise;
+  std::vector<Balance> balances;
+  std::vector<internal::CompliancePose> linear;
+};
+
+WrenchSource choose_source(const StaticPoses& poses, const StiffnessOptions& options) {
+  if (options.wrench) return *options.wrench;
+  const bool has_sensor = std::all_of(poses.poses.begin(), poses.poses.end(),
+                                      [](const StaticPose& pose) { return pose.wrench_S.has_value(); });
+  return has_sensor ? WrenchSource::Sensor : WrenchSource::Gravity;
+}
+
+Setup make_setup(const StaticPoses& poses, const StiffnessOptions& options, WrenchSource source) {
+  Setup setup{poses,
+              internal::form_of(options.form),
+              cup::as_matrix(options.prior),
+              options.method,
+              internal::carry_noise(poses.noise, poses.frames),
+              internal::make_balances(poses, source),
+              {}};
+  setup.linear = internal::make_compliance_poses(setup.balances);
+  return setup;
+}
+
+/// Of a fit: numbers of K.
+struct Estimate {
+  Matrix6 K;
+  Eigen::MatrixXd covariance;
+};
+
+void check_definite(const Setup& setup, const Matrix6& K) {
+  if (Eigen::LLT<Matrix6>(K).info() == Eigen::Success && K.allFinite()) return;
+  throw InputError(setup.poses.source, "", "wrenches that pull against the deformation: no positive stiffness fits",
+                   "the wrench of the cup on the package, in S about the lip (a hanging box: fz of the cup negative, z "
+                   "of S into the box)");
+}
+
+/// The compliance fit, which the other methods start from.
+struct Start {
+  Estimate estimate;
+  /// Directions of the numbers of K, in units of the prior, that the data say nothing about: kept as they are.
+  Eigen::MatrixXd unknown;
+};
+
+Start fit_by_compliance(const Setup& setup, const std::vector<double>& weight) {
+  const LinearEstimate found = internal::fit_compliance(setup.linear, weight, setup.noise, setup.form, setup.prior);
+  const Matrix6 C = setup.form.matrix(found.theta);
+  check_definite(setup, C);
+  const Matrix6 K = C.inverse();
+  const Eigen::MatrixXd J = setup.form.inverse_jacobian(K);
+  Start start{{K, J * found.covariance * J.transpose()}, {}};
+  start.unknown = setup.form.scale_in(setup.prior).cwiseInverse().asDiagonal() * J * found.unknown;
+  start.unknown.colwise().normalize();
+  return start;
+}
+
+/// Along unknown directions the error is the compliance fit's, that is the prior's width.
+void widen(const Setup& setup, const Start& start, Estimate& estimate) {
+  if (start.unknown.cols() == 0) return;
+  const Eigen::VectorXd scale = setup.form.scale_in(setup.prior);
+  const Eigen::MatrixXd U =
+      start.unknown * start.unknown.completeOrthogonalDecomposition().pseudoInverse();  // projects on them
+  const Eigen::MatrixXd P = scale.asDiagonal() * U * scale.cwiseInverse().asDiagonal();
+  estimate.covariance += P * start.estimate.covariance * P.transpose();
+}
+
+/// Information that keeps the unknown directions where they are, in units of the prior.
+constexpr double kKept = 1e8;
+
+/// Wrenches at the measured poses are linear in K.
+Estimate fit_by_wrench(const Setup& setup, const std::vector<double>& weight, const Start& start) {
+  const Form& form = setup.form;
+  const Eigen::VectorXd scale = form.scale_in(setup.prior);
+  const Eigen::VectorXd kept = form.numbers_of(start.estimate.K).cwiseQuotient(scale);
+  const Matrix6 W = setup.noise.wrench.inverse();
+  // Everything in units of the prior.
+  Eigen::MatrixXd N = kKept * (start.unknown * start.unknown.transpose());
+  Eigen::VectorXd b = N * kept;
+  N.diagonal().array() += 1.0 / (kPriorWidth * kPriorWidth);
+  b += form.numbers_of(setup.prior).cwiseQuotient(scale) / (kPriorWidth * kPriorWidth);
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(form.size(), form.size());
+  for (std::size_t i = 0; i < setup.balances.size(); ++i) {
+    if (weight[i] == 0.0) continue;
+    const Balance& balance = setup.balances[i];
+    Eigen::Matrix<double, 6, Eigen::Dynamic> A(6, form.size());
+    for (Eigen::Index j = 0; j < form.size(); ++j)
+      A.col(j) = scale[j] * cup::spring_wrench(balance.H, form.numbers[static_cast<std::size_t>(j)].basis);
+    N.noalias() += A.transpose() * (W * A);
+    b.noalias() += A.transpose() * (W * balance.wanted(balance.H));
+    // The noise of the residual, with the compliance fit's K: its size is all that is asked for.
+    const Matrix6 T = cup::spring_tangent(balance.H, start.estimate.K) - balance.wanted_tangent(balance.H);
+    Matrix6 covariance = T * setup.noise.pose * T.transpose();
+    if (!balance.is_gravity) covariance += setup.noise.wrench;
+    const Eigen::Matrix<double, 6, Eigen::Dynamic> WA = W * A;
+    scatter.noalias() += WA.transpose() * (covariance * WA);
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> factor(N);
+  Estimate estimate{form.matrix(scale.cwiseProduct(factor.solve(b))), {}};
+  check_definite(setup, estimate.K);
+  const Eigen::MatrixXd inverse =
+      scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(form.size(), form.size()));
+  estimate.covariance = inverse * scatter * inverse.transpose();
+  widen(setup, start, estimate);
+  return estimate;
+}
+
+/// Maximum likelihood over K and all true poses and wrenches, the latter eliminated pose by pose.
+Estimate fit_by_likelihood(const Setup& setup, const std::vector<double>& weight, const Start& from) {
+  const Form& form = setup.form;
+  const Eigen::VectorXd scale = form.scale_in(setup.prior);  // unknowns in units of the prior
+  const Eigen::VectorXd prior = form.numbers_of(setup.prior).cwiseQuotient(scale);
+  const Eigen::VectorXd start = form.numbers_of(from.estimate.K).cwiseQuotient(scale);
+  std::vector<numerics::LeastSquaresTerm> terms;
+  for (std::size_t i = 0; i < setup.balances.size(); ++i) {
+    if (weight[i] == 0.0) continue;
+    terms.push_back({6,
+                     {},
+                     [&setup, &form, &scale, i](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r,
+                                                Eigen::MatrixXd* J) {
+                       const Matrix6 K = form.matrix(scale.cwiseProduct(x));
+                       const internal::Misfit misfit = internal::compute_misfit(
+                           setup.balances[i], K, setup.noise, setup.poses.frames, J != nullptr ? &form : nullptr);
+                       r = misfit.residual;
+                       if (J != nullptr) *J = misfit.jacobian * scale.asDiagonal();
+                     }});
+  }
+  terms.push_back({form.size(),
+                   {},
+                   [&prior](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+                     r = (x - prior) / kPriorWidth;
+                     if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / kPriorWidth;
+                   }});
+  if (from.unknown.cols() > 0)
+    terms.push_back(
+        {from.unknown.cols(),
+         {},
+         [&from, &start](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+           r = std::sqrt(kKept) * (from.unknown.transpose() * (x - start));
+           if (J != nullptr) *J = std::sqrt(kKept) * from.unknown.transpose();
+         }});
+  const numerics::LeastSquaresResult found =
+      numerics::solve_least_squares(terms, start, {.tolerance = 1e-10, .max_iterations = 50});
+  if (!found.has_converged)
+    throw InputError(setup.poses.source, "", "a fit that does not converge: " + found.message,
+                     "poses of one cup with their wrenches, or the method compliance");
+  Estimate estimate{form.matrix(scale.cwiseProduct(found.x)), {}};
+  check_definite(setup, estimate.K);
+  estimate.covariance = scale.asDiagonal() * found.information.inverse() * scale.asDiagonal();
+  widen(setup, from, estimate);
+  return estimate;
+}
+
+Estimate fit(const Setup& setup, const std::vector<double>& weight) {
+  const Start start = fit_by_compliance(setup, weight);
+  switch (setup.method) {
+    case StiffnessMethod::Wrench:
+      return fit_by_wrench(setup, weight, start);
+    case StiffnessMethod::Compliance:
+      return start.estimate;
+    case StiffnessMethod::ErrorsInVariables:
+      return fit_by_likelihood(setup, weight, start);
+  }
+  return {};
+}
+
+const char* advice_for(const Form::Number& number) {
+  if (number.row == 2 && number.column == 2)
+    return "heavy loads hanging straight down and standing straight up: the cup must stretch by several millimetres";
+  if (number.row == 5 && number.column == 5)
+    return "loads whose centre of mass is 30 mm or more off the cup's axis, gripper tilted by 60 to 90 degrees, turned "
+           "about its axis";
+  if (number.row < 3 && number.column < 3)
+    return "gripper tilted by 60 to 90 degrees with heavy loads whose centre of mass is near the lip: shear without "
+           "bending";
+  if (number.row >= 3 && number.column >= 3)
+    return "gripper tilted by 30 to 90 degrees with the centre of mass 50 mm or more from the lip: bending";
+  return "tilted poses with the same load near and far from the lip: shear and bending in different proportions";
+}
+
+std::vector<Parameter> make_parameters(const Form& form, const Matrix6& K, const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd theta = form.numbers_of(K), scale = form.scale_in(K);
+  std::vector<Parameter> parameters;
+  for (Eigen::Index i = 0; i < form.size(); ++i) {
+    const Form::Number& number = form.numbers[static_cast<std::size_t>(i)];
+    const double error = std::sqrt(std::max(0.0, covariance(i, i)));
+    const Verdict verdict = judge(error, scale[i]);
+    parameters.push_back(
+        {number.name, theta[i], error, number.unit, verdict, verdict == Verdict::Identified ? "" : advice_for(number)});
+  }
+  return parameters;
+}
+
+/// Chance that chi-square with an even number of degrees of freedom exceeds `x`: a finite sum.
+double chi_square_tail(double x, int even_degrees) {
+  double term = std::exp(-0.5 * x), sum = term;
+  for (int k = 1; k < even_degrees / 2; ++k) sum += term *= 0.5 * x / k;
+  return std::min(1.0, sum);
+}
+
+SymmetryTest test_symmetry(const Setup& setup, const std::vector<double>& weight, double inflation) {
+  const Form& full = internal::form_of(StiffnessForm::Full);
+  const LinearEstimate found = internal::fit_compliance(setup.linear, weight, setup.noise, full, setup.prior);
+  // On the compliance, where the fit is linear; both have the same symmetry.
+  const internal::SymmetryConditions& conditions = internal::symmetry_conditions();
+  const Eigen::VectorXd scale = full.scale_in(setup.prior.inverse());
+  const Eigen::MatrixXd rows = conditions.rows;
+  // Each condition in units of its own size.
+  const Eigen::VectorXd size = (rows.cwiseAbs() * scale).cwiseInverse();
+  const Eigen::VectorXd missed = size.asDiagonal() * (rows * found.theta);
+  const Eigen::MatrixXd covariance =
+      inflation * (size.asDiagonal() * rows * found.covariance * rows.transpose() * size.asDiagonal());
+  SymmetryTest test;
+  test.statistic = missed.dot(covariance.ldlt().solve(missed));
+  test.p_value = chi_square_tail(test.statistic, static_cast<int>(rows.rows()));
+  test.is_supported = test.p_value >= 0.01;
+  // Told in stiffnesses, for people.
+  const Matrix6 K = full.matrix(found.theta).inverse();
+  const Eigen::MatrixXd J = rows * full.inverse_jacobian(K);
+  const Eigen::VectorXd value = rows * full.numbers_of(K);
+  const Eigen::VectorXd error = (inflation * (J * found.covariance * J.transpose())).diagonal().cwiseSqrt();
+  Eigen::Index worst = 0;
+  value.cwiseAbs().cwiseQuotient(error).maxCoeff(&worst);
+  char text[120];
+  std::snprintf(text, sizeof text, "%s = %.4g +- %.2g", conditions.names[static_cast<std::size_t>(worst)].c_str(),
+                value[worst], error[worst]);
+  test.worst = text;
+  return test;
+}
+
+std::vector<double> weights_without(std::size_t count, const std::vector<int>& outliers) {
+  std::vector<double> weight(count, 1.0);
+  for (const int index : outliers) weight[static_cast<std::size_t>(index)] = 0.0;
+  return weight;
+}
+
+}  // namespace
+
+const char* name_of(StiffnessMethod method) {
+  switch (method) {
+    case StiffnessMethod::Wrench:
+      return "wrench";
+    case StiffnessMethod::Compliance:
+      return "compliance";
+    case StiffnessMethod::ErrorsInVariables:
+      return "errors-in-variables";
+  }
+  return "";
+}
+
+const char* name_of(WrenchSource source) { return source == WrenchSource::Sensor ? "sensor" : "gravity"; }
+
+StiffnessFit identify_stiffness(const StaticPoses& poses, const StiffnessOptions& options) {
+  if (poses.poses.size() < kFewest)
+    throw InputError(poses.source, "", std::to_string(poses.poses.size()) + " poses",
+                     std::to_string(kFewest) + " or more");
+  StiffnessFit result;
+  result.method = options.method;
+  result.wrench = choose_source(poses, options);
+  const Setup setup = make_setup(poses, options, result.wrench);
+  for (const std::size_t odd : internal::find_odd_poses(setup.linear, setup.noise, setup.form, setup.prior))
+    result.outliers.push_back(static_cast<int>(odd));
+  const std::vector<double> weight = weights_without(poses.poses.size(), result.outliers);
+  const Estimate estimate = fit(setup, weight);
+
+  double chi2 = 0.0;
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    if (weight[i] == 0.0) continue;
+    ++result.poses;
+    chi2 += internal::compute_misfit(setup.balances[i], estimate.K, setup.noise, poses.frames, nullptr)
+                .residual.squaredNorm();
+    const Vector6 error = internal::compute_prediction_error(setup.balances[i], estimate.K, poses.frames);
+    result.position += error.head<3>().squaredNorm();
+    result.rotation += error.tail<3>().squaredNorm();
+  }
+  result.degrees_of_freedom = std::max(1, 6 * result.poses - static_cast<int>(setup.form.size()));
+  result.chi2_per_dof = chi2 / result.degrees_of_freedom;
+  result.position = std::sqrt(result.position / result.poses);
+  result.rotation = std::sqrt(result.rotation / result.poses);
+  const double inflation = std::max(1.0, result.chi2_per_dof);
+  result.K = estimate.K;
+  result.covariance = inflation * estimate.covariance;
+  result.elasticity = internal::nearest_elasticity(result.K);
+  result.parameters = make_parameters(setup.form, result.K, result.covariance);
+  if (static_cast<std::size_t>(result.poses) >= kForSymmetry) result.symmetry = test_symmetry(setup, weight, inflation);
+  return result;
+}
+
+HeldBackError compute_held_back_error(const StaticPoses& poses, const StiffnessOptions& options,
+                                      const StiffnessFit& whole) {
+  const Setup setup = make_setup(poses, options, whole.wrench);
+  const std::vector<double> used = weights_without(poses.poses.size(), whole.outliers);
+  HeldBackError error;
+  int count = 0;
+  for (int fold = 0; fold < kFolds; ++fold) {
+    std::vector<double> weight = used;
+    for (std::size_t i = static_cast<std::size_t>(fold); i < weight.size(); i += kFolds) weight[i] = 0.0;
+    const Matrix6 K = fit(setup, weight).K;
+    for (std::size_t i = static_cast<std::size_t>(fold); i < used.size(); i += kFolds) {
+      if (used[i] == 0.0) continue;
+      ++count;
+      error.relative +=
+          internal::compute_misfit(setup.balances[i], K, setup.noise, poses.frames, nullptr).residual.squaredNorm();
+      const Vector6 miss = internal::compute_prediction_error(setup.balances[i], K, poses.frames);
+      error.position += miss.head<3>().squaredNorm();
+      error.rotation += miss.tail<3>().squaredNorm();
+    }
+  }
+  error.relative = std::sqrt(error.relative / (6.0 * count));
+  error.position = std::sqrt(error.position / count);
+  error.rotation = std::sqrt(error.rotation / count);
+  return error;
+}
+
+}  // namespace snug::identification
