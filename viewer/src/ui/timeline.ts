@@ -6,8 +6,8 @@ import { SPEEDS, type Player } from "./player";
 
 const STEPS_OF_SLIDER = 10000;
 /** Events worth a mark; the rest are in the journey of each box. */
-const MARKED = new Set(["seal", "release", "flip", "repick", "lost", "no seal", "dropped", "reseal", "bend", "slip"]);
-const BAD = new Set(["lost", "no seal", "dropped", "bend", "slip"]);
+const MARKED = new Set(["seal", "release", "flip", "repick", "lost", "no seal", "dropped", "reseal", "bend", "slip", "out of cell", "deep contact"]);
+const BAD = new Set(["lost", "no seal", "dropped", "bend", "slip", "out of cell", "deep contact"]);
 
 export class Timeline {
   readonly element = make("footer", "timeline");
