@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "run_report.hpp"
 #include "snug/cell/ensemble.hpp"
@@ -53,6 +54,11 @@ model::Scenario load_with_overrides(const SimulateOptions& options) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (options.dt) scenario.time_step = *options.dt;
   if (options.seed) scenario.seed = *options.seed;
+  if (options.record_period) scenario.record_period = *options.record_period;
+  if (options.resume) scenario.initial_state = model::InitialState{*options.resume, options.resume_at};
+  if (options.resume_at && !options.resume) {
+    throw InputError("command line", "--resume-at", "without --resume", "a recording to go on from");
+  }
   return scenario;
 }
 
@@ -96,6 +102,12 @@ int run_simulate(const SimulateOptions& options) {
   if (options.csv && !options.record) {
     run_options.record_path = *options.csv + ".part.h5";
     temporary.emplace(run_options.record_path);
+  }
+  std::error_code ignored;
+  if (scenario.initial_state &&
+      std::filesystem::equivalent(run_options.record_path, scenario.initial_state->recording, ignored)) {
+    throw InputError("command line", "--record", "'" + run_options.record_path.string() + "'",
+                     "another file than the recording that the run goes on from");
   }
   const cell::RunResult result = cell::run(scenario, run_options);
   if (options.csv) record::write_csv(record::load_recording(run_options.record_path), *options.csv);
