@@ -46,6 +46,32 @@ Json stop_as_json(const cell::ProtectiveStop& stop) {
       {"touching", stop.touching}, {"limited_by", stop.limited_by}};
 }
 
+Json vector_as_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json contacts_as_json(const std::vector<cell::ContactResult>& contacts) {
+  Json list = Json::array();
+  for (const cell::ContactResult& contact : contacts) {
+    list.push_back({{"bodies", {contact.body_a, contact.body_b}},
+                    {"point_m", vector_as_json(contact.p_WQ)},
+                    {"normal", vector_as_json(contact.n_AB_W)},
+                    {"force_N", vector_as_json(contact.force_B_W)},
+                    {"gap_mm", contact.phi * kMm},
+                    {"slides", contact.slides}});
+  }
+  return list;
+}
+
+Json lost_as_json(const std::vector<cell::LostBody>& bodies) {
+  Json list = Json::array();
+  for (const cell::LostBody& lost : bodies) {
+    list.push_back({{"body", lost.name},
+                    {"time_s", lost.time},
+                    {"position_m", vector_as_json(lost.p_W)},
+                    {"velocity_m_s", vector_as_json(lost.v_W)}});
+  }
+  return list;
+}
+
 struct RepickOffsets {
   double mean = 0.0, worst = 0.0;  ///< m
 };
@@ -138,11 +164,20 @@ std::string format_table(const cell::RunResult& result) {
   std::string text = result.boxes.empty() ? bodies_table(result) : boxes_table(result);
   text += fmt::format("simulated          {:.2f} s in {:.2f} s, real-time factor {:.0f}{}\n", result.duration,
                       result.wall, result.real_time_factor, result.is_interrupted ? ", ended early" : "");
-  text +=
-      fmt::format("contact solver     {} steps, {} not converged, worst residual {:.1e} m/s, penetration {:.3f} mm\n",
-                  result.solver.steps, result.solver.not_converged, result.solver.worst_residual,
-                  result.solver.worst_penetration * kMm);
+  text += fmt::format("contact solver     {} steps, {} not converged, worst residual {:.1e} m/s, penetration {:.3f} mm",
+                      result.solver.steps, result.solver.not_converged, result.solver.worst_residual,
+                      result.solver.worst_penetration * kMm);
+  if (result.solver.worst_compliant_depth > 0.0) {
+    text += fmt::format(" (compliant contacts {:.3f} mm)", result.solver.worst_compliant_depth * kMm);
+  }
+  text += "\n";
   text += arm_contacts(result.events);
+  for (const cell::LostBody& lost : result.lost) {
+    text += fmt::format("out of the cell    {} at t = {:.3f} s, ({:.0f}, {:.0f}, {:.0f}) m, {:.0f} m/s\n", lost.name,
+                        lost.time, lost.p_W.x(), lost.p_W.y(), lost.p_W.z(), lost.v_W.norm());
+  }
+  for (const std::string& warning : result.warnings) text += "warning            " + warning + "\n";
+  if (!result.failure.empty()) text += "failed             " + result.failure + "\n";
   return text + fmt::format("state hash         {:016x}\n", result.state_hash);
 }
 
@@ -166,10 +201,14 @@ std::string format_json(const cell::RunResult& result) {
                         {"not_converged", result.solver.not_converged},
                         {"worst_residual_m_s", result.solver.worst_residual},
                         {"worst_penetration_mm", result.solver.worst_penetration * kMm},
+                        {"worst_compliant_penetration_mm", result.solver.worst_compliant_depth * kMm},
                         {"mean_sweeps", result.solver.mean_sweeps}};
   document["state_hash"] = fmt::format("{:016x}", result.state_hash);
+  document["contacts"] = contacts_as_json(result.contacts);
+  document["lost"] = lost_as_json(result.lost);
   document["protective_stop"] = result.stop ? stop_as_json(*result.stop) : Json(nullptr);
   document["interrupted"] = result.is_interrupted;
+  document["warnings"] = result.warnings;
   document["failure"] = result.failure;
   return document.dump(2) + "\n";
 }

@@ -55,6 +55,11 @@ model::Scenario load_with_overrides(const SimulateOptions& options) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (options.dt) scenario.time_step = *options.dt;
   if (options.seed) scenario.seed = *options.seed;
+  if (options.record_period) scenario.record_period = *options.record_period;
+  if (options.resume) scenario.initial_state = model::InitialState{*options.resume, options.resume_at};
+  if (options.resume_at && !options.resume) {
+    throw InputError("command line", "--resume-at", "without --resume", "a recording to go on from");
+  }
   return scenario;
 }
 
@@ -86,6 +91,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
 NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scenario) {
   NamedFiles files = files_of(options.scenario, options.changes, scenario);
   add_file(files, "--program", options.program);
+  if (scenario.initial_state) files.push_back({"the recording to go on from", scenario.initial_state->recording});
   return files;
 }
 

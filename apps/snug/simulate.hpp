@@ -27,6 +27,9 @@ struct SimulateOptions {
   std::string corrections = "none";       ///< none, or the name of a correction layer of the scenario
   std::optional<std::string> record;      ///< HDF5 file to write
   std::optional<std::string> csv;         ///< table to write
+  std::optional<double> record_period;    ///< s between frames
+  std::optional<std::string> resume;      ///< recording to go on from
+  std::optional<double> resume_at;        ///< s, instant of it
   std::optional<int> ensemble;            ///< run this many times under small random changes
   int threads = 1;                        ///< of an ensemble
   bool json = false;

@@ -66,6 +66,16 @@ void add_simulate(CLI::App& app, Action& action) {
       ->type_name("N")
       ->capture_default_str();
   verb.add_option("-o,--record", options->record, "write a recording")->type_name("FILE.h5");
+  verb.add_option("--record-period", options->record_period,
+                  "time between frames, instead of the scenario's or 0.008; whole steps, with a program whole ticks")
+      ->check(positive())
+      ->type_name("SECONDS");
+  verb.add_option("--resume", options->resume,
+                  "go on from a recording of the same bodies, from its last frame or --resume-at; not with --program")
+      ->type_name("FILE.h5");
+  verb.add_option("--resume-at", options->resume_at, "instant of the recording to go on from")
+      ->check(positive())
+      ->type_name("SECONDS");
   verb.add_option("--csv", options->csv, "write one table, a row per recorded instant")->type_name("FILE.csv");
   verb.add_flag("--json", options->json, "print the result as JSON");
   verb.footer(kExamples);

@@ -36,6 +36,8 @@ const char* name_of(BoxState state) {
       return "outside";
     case BoxState::Dropped:
       return "dropped";
+    case BoxState::Lost:
+      return "lost";
   }
   return "";
 }
@@ -64,6 +66,11 @@ void Journey::box_appeared(int item, double time) {
 void Journey::box_removed(int item, double time) {
   items_[static_cast<std::size_t>(item)].was_removed = true;
   log(time, "removed", item, "taken away from the aligner to make room for the next box");
+}
+
+void Journey::body_lost(record::Event event) {
+  for (std::size_t i = 0; i < ids_.size(); ++i) items_[i].was_lost |= ids_[i] == event.body;
+  note(std::move(event));
 }
 
 void Journey::add_seal(int item, const GripperEvent& event, double time, const Matrix3& R_WP, const Matrix3& R_WE,
@@ -152,7 +159,9 @@ std::vector<BoxResult> Journey::results(const CellWorld& world, const physics::W
     result.above_rim = std::max(0.0, result.X_TP.p.z() + reach.z() - inner_size_.z());
     const bool is_in =
         result.outside <= kPackedBeyondWall && result.above_rim <= kPackedAboveRim && result.X_TP.p.z() > 0.0;
-    if (body.index == held_body) {
+    if (item.was_lost) {
+      result.state = BoxState::Lost;
+    } else if (body.index == held_body) {
       result.state = BoxState::Held;
     } else if (!item.was_held || item.was_removed) {
       result.state = BoxState::Waiting;

@@ -15,6 +15,7 @@ enum class BoxState {
   Packed,   ///< rests in the container, inside its walls and not above its rim by more than the stated tolerances
   Outside,  ///< was released over the container but is not packed
   Dropped,  ///< lies somewhere else
+  Lost,     ///< left the cell
 };
 [[nodiscard]] const char* name_of(BoxState state);
 
@@ -48,6 +49,8 @@ class Journey {
 
   void box_appeared(int item, double time);
   void box_removed(int item, double time);
+  /// A body left the cell; one of the boxes or another.
+  void body_lost(record::Event event);
   void add(const GripperEvent& event, double time, const CellWorld& world, const physics::WorldState& state,
            const Pose& X_WE, const std::string& waypoint);
   /// Something that concerns no box.
@@ -62,6 +65,7 @@ class Journey {
   struct Item {
     bool has_appeared = false;
     bool was_removed = false;
+    bool was_lost = false;
     int seals = 0;
     bool was_held = false;
     bool was_set_down = false;    ///< let go by the program since the last seal

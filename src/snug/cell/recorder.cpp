@@ -16,6 +16,10 @@ record::ShapeInfo shape_info(const physics::Geom& geom) {
     info.kind = record::ShapeKind::Capsule;
     info.radius = capsule->radius;
     info.half_length = capsule->half_length;
+  } else if (const auto* cylinder = std::get_if<geometry::Cylinder>(&geom.shape)) {
+    info.kind = record::ShapeKind::Cylinder;
+    info.radius = cylinder->radius;
+    info.half_length = cylinder->half_length;
   } else {
     info.kind = record::ShapeKind::Hull;
     info.vertices = std::get<geometry::ConvexHull>(geom.shape).vertices;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "snug/cell/resume.hpp"
+#include "snug/cell/scene_input.hpp"
+
 namespace snug::cell {
 namespace {
 
@@ -22,9 +25,7 @@ CellWorld with_holders(const model::Scenario& scenario, std::vector<physics::Bod
   return world;
 }
 
-Pose moved(const Pose& X_WB, const Twist& V_WB, double time) {
-  return {exp_rotation(time * V_WB.angular) * X_WB.R, X_WB.p + time * V_WB.linear};
-}
+bool is_due(double time, double now) { return now >= time - 1e-12; }
 
 }  // namespace
 
@@ -41,26 +42,31 @@ Scene::Scene(const model::Scenario& scenario)
   for (std::size_t i = 0; i < springs_.size(); ++i) {
     elements_.push_back({&springs_[i], holders_[i], Pose{}, find_body(world_, scenario_.springs[i].body)});
   }
+  if (scenario_.initial_state) resume(*scenario_.initial_state, world_, state_);
+  // What appeared in the steps before.
+  const double before = state_.time(world_.model) - world_.model.settings.dt;
+  for (const model::Body& body : scenario_.bodies) {
+    has_appeared_.push_back(body.appears_at <= 0.0 || is_due(body.appears_at, before));
+  }
+  while (dropped_ < drop_plan_.boxes.size() && is_due(drop_time(dropped_), before)) ++dropped_;
+}
+
+double Scene::drop_time(std::size_t index) const {
+  return scenario_.drops->start + static_cast<double>(index) * scenario_.drops->interval;
 }
 
 void Scene::let_bodies_appear() {
   const double now = state_.time(world_.model);
   for (std::size_t i = 0; i < scenario_.bodies.size(); ++i) {
     const model::Body& body = scenario_.bodies[i];
-    if (body.appears_at <= 0.0 || state_.bodies[static_cast<std::size_t>(world_.bodies[i].index)].is_present ||
-        now < body.appears_at - 1e-12) {
-      continue;
-    }
+    if (has_appeared_[i] || !is_due(body.appears_at, now)) continue;
+    has_appeared_[i] = true;
     physics::set_present(state_, world_.bodies[i], true);
     physics::set_pose(world_.model, state_, world_.bodies[i], body.X_WB);
     physics::set_twist(world_.model, state_, world_.bodies[i], body.V_WB);
   }
   if (!scenario_.drops) return;
-  const model::Drops& drops = *scenario_.drops;
-  while (dropped_ < drop_plan_.boxes.size() &&
-         now >= drops.start + static_cast<double>(dropped_) * drops.interval - 1e-12) {
-    drop_next();
-  }
+  while (dropped_ < drop_plan_.boxes.size() && is_due(drop_time(dropped_), now)) drop_next();
 }
 
 void Scene::drop_next() {
@@ -86,18 +92,19 @@ physics::StepReport Scene::advance() {
   let_bodies_appear();
   const double end = static_cast<double>(state_.step_index + 1) * world_.model.settings.dt;
   targets_.clear();
-  for (std::size_t i = 0; i < scenario_.bodies.size(); ++i) {
-    const model::Body& body = scenario_.bodies[i];
-    if (body.kind != model::BodyKind::Kinematic) continue;
-    targets_.push_back({world_.bodies[i], moved(body.X_WB, body.V_WB, std::max(0.0, end - body.appears_at))});
-  }
+  add_body_targets(scenario_, world_, end, targets_);
   for (std::size_t i = 0; i < holders_.size(); ++i) {
     targets_.push_back({holders_[i], model::holder_at(scenario_.springs[i], end).X_WH});
   }
   physics::WorldInput input;
   input.kinematic = targets_;
   input.elements = elements_;
-  return physics::step(world_.model, input, state_, work_);
+  wrenches_.clear();
+  add_wrenches(scenario_, world_, state_, wrenches_);
+  input.wrenches = wrenches_;
+  const physics::StepReport report = physics::step(world_.model, input, state_, work_);
+  if (report.status == physics::StepStatus::LostBody) lost_.push_back(take_lost(world_, state_, report.culprit));
+  return report;
 }
 
 }  // namespace snug::cell

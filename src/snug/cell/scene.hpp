@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "snug/cell/lost_body.hpp"
 #include "snug/cell/world_builder.hpp"
 #include "snug/cup/suction_cup.hpp"
 
@@ -10,12 +11,15 @@ namespace snug::cell {
 
 class Scene {
  public:
+  /// At time 0, or where Scenario::initial_state says; throws InputError when that cannot be read.
   explicit Scene(const model::Scenario& scenario);
 
-  /// One step of Scenario::time_step.
+  /// One step of Scenario::time_step. A body that is lost in it is out of the world from then on.
   physics::StepReport advance();
 
   [[nodiscard]] const CellWorld& world() const { return world_; }
+  /// Bodies that left the cell so far.
+  [[nodiscard]] const std::vector<LostBody>& lost() const { return lost_; }
   [[nodiscard]] physics::WorldState& state() { return state_; }
   [[nodiscard]] const physics::WorldState& state() const { return state_; }
   [[nodiscard]] const physics::Workspace& work() const { return work_; }
@@ -23,6 +27,8 @@ class Scene {
  private:
   void let_bodies_appear();
   void drop_next();
+  /// When a box of the `drops` block appears, s.
+  [[nodiscard]] double drop_time(std::size_t index) const;
 
   model::Scenario scenario_;
   std::vector<physics::BodyId> holders_;  ///< kinematic bodies without shape that carry the springs
@@ -34,6 +40,9 @@ class Scene {
   std::vector<cup::SuctionCup> springs_;
   std::vector<physics::ElementUse> elements_;
   std::vector<physics::KinematicTarget> targets_;
+  std::vector<physics::ExternalWrench> wrenches_;
+  std::vector<bool> has_appeared_;  ///< of Scenario::bodies
+  std::vector<LostBody> lost_;
 };
 
 }  // namespace snug::cell

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/scene_input.hpp"
 #include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
 
@@ -236,11 +237,20 @@ void Simulation::advance_step(const motion::PreparedProgram& plan, const motion:
   }
   const physics::ElementUse use{work.gripper.element, world_.tool, Pose{}, physics::BodyId{work.gripper.body}};
   physics::WorldInput input;
+  add_body_targets(scenario_, world_, time(state) + world_.model.settings.dt, work.targets);
   input.kinematic = work.targets;
+  work.wrenches.clear();
+  add_wrenches(scenario_, world_, state.world, work.wrenches);
+  input.wrenches = work.wrenches;
   if (work.gripper.element != nullptr) input.elements = {&use, 1};
   input.held = physics::BodyId{work.gripper.ignored};
   tick.step = physics::step(world_.model, input, state.world, work.physics);
-  work.solver.add(tick.step);
+  work.solver.add(tick.step, time(state));
+  if (tick.step.status == physics::StepStatus::LostBody && tick.step.culprit.index != state.gripper.cup.body) {
+    work.lost.push_back(take_lost(world_, state.world, tick.step.culprit));
+    state.journey.body_lost(event_of(work.lost.back()));
+    return;
+  }
   tick.failure = describe_failure(world_, state.world, work.physics, tick.step);
 }
 

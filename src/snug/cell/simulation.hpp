@@ -7,6 +7,7 @@
 
 #include "snug/cell/cell_arm.hpp"
 #include "snug/cell/journey.hpp"
+#include "snug/cell/lost_body.hpp"
 #include "snug/cell/solver_summary.hpp"
 #include "snug/motion/controller.hpp"
 
@@ -31,13 +32,16 @@ struct CellState {
 
 /// Scratch memory and what is gathered on the way; one per thread. It has no influence on what happens.
 struct CellWorkspace {
-  explicit CellWorkspace(const physics::WorldModel& model) : physics(model) {}
+  explicit CellWorkspace(const physics::WorldModel& model, const model::ContactLimits& limits = {})
+      : physics(model), solver(limits) {}
   physics::Workspace physics;
   SolverMonitor solver;
   GripperStep gripper;
   std::vector<GripperEvent> events;
   control::JointControllerWork joints;
   std::vector<physics::KinematicTarget> targets;
+  std::vector<physics::ExternalWrench> wrenches;
+  std::vector<LostBody> lost;
   ArmReading arm;  ///< of the last tick, with a robot
 };
 
@@ -69,7 +73,9 @@ class Simulation {
 
   /// At time 0: the tool at its start, no box in the cell.
   [[nodiscard]] CellState make_state() const;
-  [[nodiscard]] CellWorkspace make_workspace() const { return CellWorkspace(world_.model); }
+  [[nodiscard]] CellWorkspace make_workspace() const {
+    return CellWorkspace(world_.model, scenario_.solver.contact_limits);
+  }
   /// The program with the limits and gains of scenario and sequence. Throws as motion::prepare.
   [[nodiscard]] motion::PreparedProgram prepare(motion::Program program) const;
 

@@ -176,6 +176,7 @@ CellWorld build_world(const model::Scenario& scenario, const WorldOptions& optio
     body.inertia = from.inertia;
     body.X_WB = from.X_WB;
     body.geoms = geoms_of(from.shapes, from.material);
+    for (Geom& geom : body.geoms) geom.surface_velocity = from.surface_velocity;
     world.bodies.push_back(add(world, std::move(body)));
   }
   if (options.with_tool) add_tool(scenario, world);
@@ -208,6 +209,12 @@ physics::WorldState make_initial_state(const model::Scenario& scenario, const Ce
     const model::Body& body = scenario.bodies[i];
     physics::set_twist(world.model, state, world.bodies[i], body.V_WB);
     if (body.appears_at > 0.0) physics::set_present(state, world.bodies[i], false);
+  }
+  int group = -1;  // those that start asleep wake together
+  for (std::size_t i = 0; i < scenario.bodies.size(); ++i) {
+    if (!scenario.bodies[i].is_asleep) continue;
+    if (group < 0) group = world.bodies[i].index;
+    state.bodies[static_cast<std::size_t>(world.bodies[i].index)].sleep_group = group;
   }
   return state;
 }

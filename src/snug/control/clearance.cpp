@@ -6,13 +6,14 @@
 #include <algorithm>
 
 #include "snug/core/input_error.hpp"
+#include "snug/geometry/bounds.hpp"
 #include "snug/geometry/manifold.hpp"
 
 namespace snug::control {
 namespace {
 
 ArmShape arm_shape(int segment, const Pose& X_SB, const model::PlacedShape& placed) {
-  return {segment, X_SB * placed.X_BG, placed.shape, bounding_radius(placed.shape)};
+  return {segment, X_SB * placed.X_BG, placed.shape, geometry::bounding_radius(placed.shape)};
 }
 
 int find_part(const std::vector<ArmPart>& parts, const std::string& name, const std::string& where) {
@@ -28,14 +29,6 @@ int find_part(const std::vector<ArmPart>& parts, const std::string& name, const 
 }
 
 }  // namespace
-
-double bounding_radius(const geometry::Shape& shape) noexcept {
-  if (const auto* box = std::get_if<geometry::Box>(&shape)) return box->half.norm();
-  if (const auto* capsule = std::get_if<geometry::Capsule>(&shape)) return capsule->half_length + capsule->radius;
-  double radius = 0.0;
-  for (const Vector3& vertex : std::get<geometry::ConvexHull>(shape).vertices) radius = std::max(radius, vertex.norm());
-  return radius;
-}
 
 Nearest nearest_points(std::span<const ArmShape> A, const Pose& X_WA, std::span<const ArmShape> B, const Pose& X_WB,
                        double range) noexcept {

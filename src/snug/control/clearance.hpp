@@ -44,8 +44,6 @@ struct Nearest {
 /// Smallest distance of two sets of shapes if it is at most `range`, else index -1.
 [[nodiscard]] Nearest nearest_points(std::span<const ArmShape> A, const Pose& X_WA, std::span<const ArmShape> B,
                                      const Pose& X_WB, double range) noexcept;
-/// Ball around the shape's own origin.
-[[nodiscard]] double bounding_radius(const geometry::Shape& shape) noexcept;
 
 class Clearance {
  public:

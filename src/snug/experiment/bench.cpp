@@ -407,12 +407,19 @@ double box_overlap(const Vector3& half_a, const Pose& X_WA, const Vector3& half_
 
 std::vector<Figure> run_bench(const BenchOptions& options) {
   using Measure = void (*)(const BenchOptions&, std::vector<Figure>&);
-  const std::pair<const char*, Measure> scenes[] = {
-      {"s1", measure_stack},      {"s2", measure_drops},        {"s3", measure_slides},
-      {"s4", measure_bounce},     {"s5", measure_swing},        {"s6", measure_press},
-      {"growth", measure_growth}, {"program", measure_program}, {"robot", internal::measure_robot},
-      {"arm", measure_arm},       {"packing", measure_packing}, {"validation", measure_validation},
-      {"identification", internal::measure_identification}};
+  const std::pair<const char*, Measure> scenes[] = {{"s1", measure_stack},
+                                                    {"s2", measure_drops},
+                                                    {"s3", measure_slides},
+                                                    {"s4", measure_bounce},
+                                                    {"s5", measure_swing},
+                                                    {"s6", measure_press},
+                                                    {"growth", measure_growth},
+                                                    {"program", measure_program},
+                                                    {"robot", internal::measure_robot},
+                                                    {"arm", measure_arm},
+                                                    {"packing", measure_packing},
+                                                    {"validation", measure_validation},
+                                                    {"identification", internal::measure_identification}};
   std::vector<Figure> figures;
   for (const auto& [name, measure] : scenes) {
     const std::string scene(name);

@@ -22,5 +22,9 @@ struct Aabb {
 
 /// Smallest axis-aligned box that contains the shape G at pose X_WG.
 [[nodiscard]] Aabb bounds(const Shape& shape, const Pose& X_WG) noexcept;
+/// How far a cylinder reaches from its centre along each world axis, m.
+[[nodiscard]] Vector3 half_extent(const Cylinder& cylinder, const Matrix3& R_WG) noexcept;
+/// Farthest point of a shape from the origin of its frame, m.
+[[nodiscard]] double bounding_radius(const Shape& shape) noexcept;
 
 }  // namespace snug::geometry

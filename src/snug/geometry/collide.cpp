@@ -3,6 +3,7 @@
 
 #include "snug/geometry/internal/box_box.hpp"
 #include "snug/geometry/internal/capsule_capsule.hpp"
+#include "snug/geometry/internal/cylinder_pair.hpp"
 #include "snug/geometry/internal/polytope_pair.hpp"
 #include "snug/geometry/manifold.hpp"
 
@@ -15,10 +16,11 @@ using internal::PairCall;
 using internal::Polytope;
 using internal::PolytopeStorage;
 
-/// Boxes, then hulls, then capsules: the general algorithm wants the capsule second.
+/// Boxes, then hulls, capsules, cylinders: the general algorithm wants the capsule second, that of cylinders theirs.
 int rank(const Shape& shape) noexcept {
   if (std::holds_alternative<Box>(shape)) return 0;
-  return std::holds_alternative<ConvexHull>(shape) ? 1 : 2;
+  if (std::holds_alternative<ConvexHull>(shape)) return 1;
+  return std::holds_alternative<Capsule>(shape) ? 2 : 3;
 }
 
 /// -1, 0, 1 by the first number in which the two differ.
@@ -37,6 +39,11 @@ int compare_shapes(const Shape& A, const Shape& B) noexcept {
   }
   if (const Capsule* a = std::get_if<Capsule>(&A)) {
     const Capsule* b = std::get_if<Capsule>(&B);
+    if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;
+    return compare(&a->half_length, &b->half_length, 1);
+  }
+  if (const Cylinder* a = std::get_if<Cylinder>(&A)) {
+    const Cylinder* b = std::get_if<Cylinder>(&B);
     if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;
     return compare(&a->half_length, &b->half_length, 1);
   }
@@ -60,18 +67,36 @@ bool is_swapped(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_
   return order > 0;
 }
 
-void collide_general(const Shape& A, const Shape& B, const PairCall& call, Axis& axis, Manifold& out) noexcept {
+Polytope view(const Shape& shape, const Pose& X, PolytopeStorage& room) noexcept {
+  if (const Box* box = std::get_if<Box>(&shape)) return Polytope(*box, X, room);
+  if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return Polytope(*capsule, X, room);
+  return Polytope(*std::get_if<ConvexHull>(&shape), X, room);
+}
+
+/// Pose of B in A.
+Pose relative_pose(const PairCall& call) noexcept {
   const Matrix3 R_AW = call.X_WA.R.transpose();
-  const Pose X_AB{R_AW * call.X_WB.R, R_AW * (call.X_WB.p - call.X_WA.p)};
+  return {R_AW * call.X_WB.R, R_AW * (call.X_WB.p - call.X_WA.p)};
+}
+
+/// B is a cylinder; A is any shape.
+void collide_cylinder(const Shape& A, const Cylinder& B, const PairCall& call, Axis& axis, Manifold& out) noexcept {
+  const Pose X_AB = relative_pose(call);
+  if (const Cylinder* cylinder = std::get_if<Cylinder>(&A)) {
+    internal::collide_cylinders(*cylinder, B, X_AB, call, out);
+    return;
+  }
+  PolytopeStorage room;
+  const Polytope shape_A = view(A, Pose{}, room);
+  const Capsule* capsule = std::get_if<Capsule>(&A);
+  internal::collide_polytope_cylinder(shape_A, capsule != nullptr ? capsule->radius : 0.0, B, X_AB, call, axis, out);
+}
+
+void collide_general(const Shape& A, const Shape& B, const PairCall& call, Axis& axis, Manifold& out) noexcept {
   PolytopeStorage room_A;
   PolytopeStorage room_B;
-  const auto view = [](const Shape& shape, const Pose& X, PolytopeStorage& room) noexcept {
-    if (const Box* box = std::get_if<Box>(&shape)) return Polytope(*box, X, room);
-    if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return Polytope(*capsule, X, room);
-    return Polytope(*std::get_if<ConvexHull>(&shape), X, room);
-  };
   const Polytope shape_A = view(A, Pose{}, room_A);
-  const Polytope shape_B = view(B, X_AB, room_B);
+  const Polytope shape_B = view(B, relative_pose(call), room_B);
   const Capsule* capsule = std::get_if<Capsule>(&B);
   internal::collide_polytopes({shape_A, shape_B, capsule != nullptr ? capsule->radius : 0.0}, call, axis, out);
 }
@@ -91,6 +116,8 @@ void collide(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_WB,
   const Box* box_B = std::get_if<Box>(&second);
   if (box_A != nullptr && box_B != nullptr) {
     internal::collide_boxes(*box_A, *box_B, call, axis, out);
+  } else if (const Cylinder* cylinder = std::get_if<Cylinder>(&second)) {
+    collide_cylinder(first, *cylinder, call, axis, out);
   } else if (rank(first) == 2) {
     internal::collide_capsules(*std::get_if<Capsule>(&first), *std::get_if<Capsule>(&second), call, out);
   } else {

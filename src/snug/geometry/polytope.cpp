@@ -1,10 +1,13 @@
 // Polytope: places the vertices and normals of a shape in a frame and finds its support.
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "snug/core/check.hpp"
 #include "snug/geometry/internal/box_topology.hpp"
 #include "snug/geometry/internal/polytope.hpp"
+#include "snug/geometry/internal/prism_topology.hpp"
 #include "snug/geometry/internal/tolerances.hpp"
 
 namespace snug::geometry::internal {
@@ -48,14 +51,46 @@ Polytope::Polytope(const Capsule& capsule, const Pose& X, PolytopeStorage& room)
   room.vertices[1] = X.p + capsule.half_length * X.R.col(2);
 }
 
+Polytope::Polytope(const Vector3& from, const Vector3& to, PolytopeStorage& room) noexcept
+    : room_(&room), vertex_count_(from == to ? 1 : 2), edge_count_(from == to ? 0 : 1) {
+  room.vertices[0] = from;
+  room.vertices[1] = to;
+}
+
+Polytope::Polytope(const Cylinder& cylinder, const Pose& X, const Vector3& azimuth_G, PolytopeStorage& room) noexcept
+    : is_prism_(true),
+      room_(&room),
+      vertex_count_(2 * kPrismSides),
+      face_count_(kPrismSides + 2),
+      edge_count_(3 * kPrismSides) {
+  const Vector3 x = X.R * azimuth_G;
+  const Vector3 z = X.R.col(2);
+  const Vector3 y = z.cross(x);
+  room.normals[0] = -z;
+  room.normals[1] = z;
+  for (int i = 0; i < kPrismSides; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kPrismSides;
+    const double middle = 2.0 * std::numbers::pi * (i + 0.5) / kPrismSides;
+    const Vector3 rim =
+        i == 0 ? Vector3(cylinder.radius * x) : Vector3(cylinder.radius * (std::cos(angle) * x + std::sin(angle) * y));
+    room.vertices[static_cast<std::size_t>(i)] = X.p - cylinder.half_length * z + rim;
+    room.vertices[static_cast<std::size_t>(kPrismSides + i)] = X.p + cylinder.half_length * z + rim;
+    room.normals[static_cast<std::size_t>(2 + i)] = std::cos(middle) * x + std::sin(middle) * y;
+  }
+}
+
 std::span<const int> Polytope::face(int i) const noexcept {
   const auto index = static_cast<std::size_t>(i);
+  if (is_prism_) {
+    return i < 2 ? std::span<const int>(kPrismEnds[index]) : std::span<const int>(kPrismFaces[index - 2]);
+  }
   return hull_ != nullptr ? std::span<const int>(hull_->faces[index]) : std::span<const int>(kBoxFaces[index]);
 }
 
 const std::array<int, 4>& Polytope::edge(int i) const noexcept {
   const auto index = static_cast<std::size_t>(i);
   if (is_segment()) return kSegmentEdge;
+  if (is_prism_) return kPrismEdges[index];
   return hull_ != nullptr ? hull_->edges[index] : kBoxEdges[index];
 }
 

@@ -1,4 +1,4 @@
-// Shapes that can touch: box, capsule, convex hull.
+// Shapes that can touch: box, capsule, convex hull, cylinder.
 #pragma once
 
 #include <array>
@@ -31,6 +31,13 @@ struct ConvexHull {
   bool operator==(const ConvexHull&) const = default;
 };
 
-using Shape = std::variant<Box, Capsule, ConvexHull>;
+/// Solid cylinder along z, centred, with flat ends.
+struct Cylinder {
+  double half_length = 0.5;  ///< m, > 0
+  double radius = 0.1;       ///< m, > 0
+  bool operator==(const Cylinder&) const = default;
+};
+
+using Shape = std::variant<Box, Capsule, ConvexHull, Cylinder>;
 
 }  // namespace snug::geometry

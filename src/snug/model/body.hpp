@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "snug/geometry/shape.hpp"
 #include "snug/model/cup_params.hpp"
 #include "snug/model/material.hpp"
+#include "snug/model/pose_path.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::model {
@@ -23,7 +26,7 @@ struct PlacedShape {
 enum class BodyKind {
   Dynamic,    ///< moves by forces
   Static,     ///< never moves
-  Kinematic,  ///< moves with its constant twist, whatever it meets
+  Kinematic,  ///< moves with its constant twist or along its path, whatever it meets
 };
 
 /// One rigid body, B. Static bodies have no meaningful inertia.
@@ -38,6 +41,9 @@ struct Body {
   SpatialInertia inertia;   ///< dynamic bodies only
   std::string parcel;       ///< id of the parcel the body is, or empty
   double appears_at = 0.0;  ///< s; the body is absent before
+  Vector3 surface_velocity = Vector3::Zero();  ///< m/s, of its surface against it, in B: a belt that runs
+  std::optional<PosePath> path;                ///< of a kinematic body, in place of its twist
+  bool is_asleep = false;                      ///< at the start: rests until something touches it
   bool operator==(const Body&) const = default;
 };
 
@@ -126,6 +132,21 @@ struct HolderState {
 
 /// Where the holder of a spring is at `time` [s] >= 0.
 [[nodiscard]] HolderState holder_at(const Spring& spring, double time);
+
+/// A force and a torque on a dynamic body for some time.
+struct AppliedWrench {
+  std::string body;                  ///< name of a dynamic body
+  Vector3 force = Vector3::Zero();   ///< N
+  Vector3 torque = Vector3::Zero();  ///< Nm
+  bool is_in_body = false;           ///< force and torque turn with the body; else they are in W
+  std::optional<Vector3> p_BQ;       ///< point of the body at which the force acts, m; absent: the centre of mass
+  double start = 0.0;                ///< s
+  double end = std::numeric_limits<double>::infinity();  ///< s, > start
+  bool operator==(const AppliedWrench&) const = default;
+};
+
+/// Where a kinematic body that has appeared is at `time` [s].
+[[nodiscard]] Pose kinematic_pose_at(const Body& body, double time);
 
 /// Boxes that fall into a container one after the other: type, yaw and place uniform, whole box inside the walls.
 /// Boxes have the nominal size and mass of their type and uniform density.

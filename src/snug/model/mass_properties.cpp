@@ -1,4 +1,4 @@
-// Mass properties: cuboids, capsules, hulls, and layered boxes (report eqs 12-14).
+// Mass properties: cuboids, capsules, cylinders, hulls, and layered boxes (report eqs 12-14).
 #include "snug/model/internal/mass_properties.hpp"
 
 #include <cmath>
@@ -34,6 +34,16 @@ SpatialInertia of_shape(const geometry::Capsule& capsule) {
   Matrix3 inertia = Matrix3::Zero();
   inertia.diagonal() << across, across, axial;
   return {cylinder + ball, Vector3::Zero(), inertia};
+}
+
+SpatialInertia of_shape(const geometry::Cylinder& cylinder) {
+  const double r = cylinder.radius;
+  const double length = 2.0 * cylinder.half_length;
+  const double volume = std::numbers::pi * r * r * length;
+  const double across = volume * (3.0 * r * r + length * length) / 12.0;
+  Matrix3 inertia = Matrix3::Zero();
+  inertia.diagonal() << across, across, volume * r * r / 2.0;
+  return {volume, Vector3::Zero(), inertia};
 }
 
 /// Signed tetrahedra from the first vertex; covariance of a tetrahedron (a, b, c, 0) is V/20 (sum x x^T + s s^T).

@@ -4,6 +4,7 @@
 #include "snug/model/internal/fields.hpp"
 #include "snug/model/internal/mass_properties.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
+#include "snug/model/internal/side_file.hpp"
 
 namespace snug::model::internal {
 namespace {
@@ -62,9 +63,19 @@ void ScenarioReader::read_settings(const MapReader& map) {
   if (const auto duration = map.find("duration")) scenario_.duration = read_duration(*duration);
   if (const auto seed = map.find("seed"))
     scenario_.seed = static_cast<std::uint64_t>(seed->integer(0, 9'000'000'000'000'000));
+  if (const auto period = map.find("record_period"))
+    scenario_.record_period = period->number_within(1e-6, 1e4, "a time between frames in seconds");
+  if (const auto state = map.find("initial_state")) read_initial_state(*state);
   if (const auto solver = map.find("solver")) read_fields(*solver, "solver", scenario_.solver);
   if (const auto clearance = map.find("parcel_clearance"))
     scenario_.parcel_clearance = clearance->number_within(0.0, 0.05, "a clearance in metres");
+}
+
+void ScenarioReader::read_initial_state(const Value& value) {
+  const MapReader map = value.map("initial_state", {"recording", "time"});
+  InitialState state{beside_scenario(map.require("recording")), std::nullopt};
+  if (const auto time = map.find("time")) state.time = read_time(*time);
+  scenario_.initial_state = state;
 }
 
 void ScenarioReader::read_materials(const MapReader& map) {
@@ -158,8 +169,9 @@ void ScenarioReader::read_containers(const MapReader& map) {
 }
 
 void ScenarioReader::read_body(const Value& value) {
-  const MapReader map = value.map("body", {"name", "kind", "parcel", "size", "shapes", "material", "pose", "twist",
-                                           "mass", "inertia", "com", "appears_at"});
+  const MapReader map =
+      value.map("body", {"name", "kind", "parcel", "size", "shapes", "material", "pose", "twist", "mass", "inertia",
+                         "com", "appears_at", "surface_velocity", "path", "asleep"});
   Body body;
   const Value name = map.require("name");
   check_new_name(name, "body or container",
@@ -180,14 +192,38 @@ void ScenarioReader::read_body(const Value& value) {
   if (form == "shapes") body.shapes = read_shapes(map.require(form));
   const auto material = map.find("material");
   body.material = parcel != nullptr && !material ? parcel->material : read_material(map.require("material"));
-  body.X_WB = read_world_pose(map.find("pose"));
-  body.V_WB = read_twist(map.find("twist"));
-  if (const auto twist = map.find("twist"); twist && body.kind == BodyKind::Static)
-    twist->fail("a twist", "none: a static body never moves; kind kinematic has one");
-  if (const auto at = map.find("appears_at")) body.appears_at = read_time(*at);
+  read_motion(map, body);
   read_body_inertia(map, parcel, body);
   scenario_.bodies.push_back(body);
   body_values_.push_back(value);
+}
+
+PosePath ScenarioReader::read_path(const Value& value) const {
+  const MapReader map = value.map("path", {"file", "frame"});
+  const auto frame = map.find("frame");
+  return load_pose_path(find_side_file(map.require("file"), "a table of poses (CSV)"),
+                        frame ? read_frame_name(*frame) : Pose{});
+}
+
+void ScenarioReader::read_motion(const MapReader& map, Body& body) const {
+  if (const auto at = map.find("appears_at")) body.appears_at = read_time(*at);
+  if (const auto path = map.find("path")) {
+    if (body.kind != BodyKind::Kinematic) path->fail("a path", "none: only kinematic bodies follow one");
+    map.forbid_together("path", "pose");
+    map.forbid_together("path", "twist");
+    body.path = read_path(*path);
+  }
+  body.X_WB = body.path ? pose_at(*body.path, body.appears_at) : read_world_pose(map.find("pose"));
+  body.V_WB = read_twist(map.find("twist"));
+  if (const auto twist = map.find("twist"); twist && body.kind == BodyKind::Static)
+    twist->fail("a twist", "none: a static body never moves; kind kinematic has one");
+  if (const auto velocity = map.find("surface_velocity")) body.surface_velocity = read_speed(*velocity, "m/s");
+  const auto asleep = map.find("asleep");
+  body.is_asleep = asleep && asleep->boolean();
+  if (!body.is_asleep) return;
+  if (body.kind != BodyKind::Dynamic) asleep->fail("a body that does not move by forces", "none: dynamic bodies sleep");
+  map.forbid_together("asleep", "twist");
+  map.forbid_together("asleep", "appears_at");
 }
 
 void ScenarioReader::read_body_inertia(const MapReader& map, const Parcel* parcel, Body& body) const {
@@ -209,23 +245,44 @@ void ScenarioReader::read_body_inertia(const MapReader& map, const Parcel* parce
     map.self().fail("shapes and mass whose inertia is not positive", "shapes with a volume, or an inertia");
 }
 
+const Body& ScenarioReader::find_dynamic_body(const Value& value) const {
+  const Body* body = find_body(scenario_, value.name());
+  if (body == nullptr)
+    fail_unknown_name(value, "body", names_of(scenario_.bodies, [](const Body& b) { return b.name; }));
+  if (body->kind != BodyKind::Dynamic) value.fail("a dynamic body");
+  return *body;
+}
+
+void ScenarioReader::read_wrench(const Value& value) {
+  const MapReader map = value.map("wrench", {"body", "force", "torque", "frame", "point", "start", "end"});
+  AppliedWrench wrench;
+  wrench.body = find_dynamic_body(map.require("body")).name;
+  if (!map.has("force") && !map.has("torque")) (void)map.require("force");
+  if (const auto force = map.find("force")) wrench.force = force->vector3();
+  if (const auto torque = map.find("torque")) wrench.torque = torque->vector3();
+  if (const auto frame = map.find("frame")) wrench.is_in_body = frame->choice({"world", "body"}) == 1;
+  if (const auto point = map.find("point")) wrench.p_BQ = point->position();
+  if (const auto start = map.find("start")) wrench.start = read_time(*start);
+  if (const auto end = map.find("end")) {
+    wrench.end = read_time(*end);
+    if (!(wrench.end > wrench.start)) end->fail("a time after the start, " + to_text(wrench.start) + " s");
+  }
+  scenario_.wrenches.push_back(wrench);
+}
+
 void ScenarioReader::read_spring(const Value& value) {
   const MapReader map = value.map("spring", {"name", "body", "attachment", "stiffness", "damping", "holder", "moves"});
   Spring spring;
   const Value name = map.require("name");
   for (const Spring& known : scenario_.springs) check_new_name(name, "spring", known.name == name.name());
   spring.name = name.name();
-  const Value body_value = map.require("body");
-  spring.body = body_value.name();
-  const Body* body = find_body(scenario_, spring.body);
-  if (body == nullptr)
-    fail_unknown_name(body_value, "body", names_of(scenario_.bodies, [](const Body& b) { return b.name; }));
-  if (body->kind != BodyKind::Dynamic) body_value.fail("a dynamic body");
+  const Body& body = find_dynamic_body(map.require("body"));
+  spring.body = body.name;
   spring.X_BS = read_local_pose(map.find("attachment"));
   read_fields(map.require("stiffness"), "stiffness", spring.stiffness);
   if (const auto damping = map.find("damping")) read_fields(*damping, "damping", spring.damping);
   const auto holder = map.find("holder");
-  spring.X_WH = holder ? read_world_pose(holder) : body->X_WB * spring.X_BS;
+  spring.X_WH = holder ? read_world_pose(holder) : body.X_WB * spring.X_BS;
   if (const auto moves = map.find("moves")) {
     for (const Value& entry : moves->list()) {
       const MapReader move = entry.map("move", {"start", "duration", "to", "swing"});

@@ -7,6 +7,8 @@
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/model/internal/mass_properties.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
+#include "snug/model/internal/side_file.hpp"
+#include "snug/model/mesh_file.hpp"
 
 namespace snug::model::internal {
 namespace {
@@ -51,6 +53,41 @@ geometry::Shape read_capsule(const Value& value) {
   const MapReader map = value.map("capsule", {"length", "radius"});
   const double length = map.require("length").number_within(0.0, kLargestSize, "a length in metres");
   return geometry::Capsule{0.5 * length, map.require("radius").size()};
+}
+
+geometry::Shape read_cylinder(const Value& value) {
+  const MapReader map = value.map("cylinder", {"length", "radius"});
+  return geometry::Cylinder{0.5 * map.require("length").size(), map.require("radius").size()};
+}
+
+/// The convex hull of each part of a mesh file.
+std::vector<geometry::Shape> read_mesh(const Value& value) {
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  constexpr std::size_t kMostParts = 64;
+  const std::string expected = "a mesh file (STL, OBJ, DAE)";
+  const MapReader map = value.map("mesh", {"file", "scale"});
+  const Value file = map.require("file");
+  const std::filesystem::path path = find_side_file(file, expected);
+  check_side_file(path, kMostBytes, expected);
+  const auto given = map.find("scale");
+  const double scale = given ? given->number_within(1e-6, 1e6, "a factor") : 1.0;
+  MeshParts mesh = read_mesh_parts(path);
+  if (!mesh.error.empty()) file.fail(quote(path.string()) + ": " + mesh.error, expected);
+  if (mesh.parts.empty() || mesh.parts.size() > kMostParts)
+    file.fail(std::to_string(mesh.parts.size()) + " parts in " + quote(path.string()),
+              "1 to " + std::to_string(kMostParts));
+  std::vector<geometry::Shape> hulls;
+  for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+    double extent = 0.0;
+    for (Vector3& point : mesh.parts[i]) extent = std::max(extent, (point *= scale).norm());
+    const std::string part = "part " + std::to_string(i + 1) + " of " + quote(path.string());
+    if (!(extent <= kLargestSize))
+      file.fail(part + ", which reaches " + to_text(extent) + " m", "metres; for millimetres give scale: 0.001");
+    auto hull = make_simple_hull(mesh.parts[i]);
+    if (!hull) file.fail(part + ", which spans no volume", "parts with a volume");
+    hulls.emplace_back(*std::move(hull));
+  }
+  return hulls;
 }
 
 geometry::Shape read_hull(const Value& value) {
@@ -100,27 +137,39 @@ Pose ScenarioReader::read_world_pose(const std::optional<Value>& value) const {
   const Pose X_FG = read_pose_map(map);
   const auto frame = map.find("frame");
   if (!frame) return X_FG;
-  const std::string name = frame->name();
-  for (const Frame& known : scenario_.frames)
-    if (known.name == name) return known.X_WF * X_FG;
-  fail_unknown_name(*frame, "frame", names_of(scenario_.frames, [](const Frame& f) { return f.name; }));
+  return read_frame_name(*frame) * X_FG;
 }
 
-PlacedShape read_shape(const Value& value) {
-  const MapReader map = value.map("shape", {"box", "capsule", "hull", "pose"});
-  const std::string form = map.require_one_of({"box", "capsule", "hull"});
-  const Value given = map.require(form);
-  PlacedShape placed;
-  placed.X_BG = read_local_pose(map.find("pose"));
-  if (form == "box") placed.shape = geometry::Box{0.5 * given.sizes()};
-  if (form == "capsule") placed.shape = read_capsule(given);
-  if (form == "hull") placed.shape = read_hull(given);
-  return placed;
+Pose ScenarioReader::read_frame_name(const Value& value) const {
+  const std::string name = value.name();
+  for (const Frame& known : scenario_.frames)
+    if (known.name == name) return known.X_WF;
+  fail_unknown_name(value, "frame", names_of(scenario_.frames, [](const Frame& f) { return f.name; }));
 }
+
+namespace {
+
+void read_shape(const Value& value, std::vector<PlacedShape>& shapes) {
+  const std::vector<std::string> forms = {"box", "capsule", "cylinder", "hull", "mesh"};
+  std::vector<std::string> keys = forms;
+  keys.emplace_back("pose");
+  const MapReader map = value.map("shape", keys);
+  const std::string form = map.require_one_of(forms);
+  const Value given = map.require(form);
+  const Pose X_BG = read_local_pose(map.find("pose"));
+  if (form == "box") shapes.push_back({geometry::Box{0.5 * given.sizes()}, X_BG});
+  if (form == "capsule") shapes.push_back({read_capsule(given), X_BG});
+  if (form == "cylinder") shapes.push_back({read_cylinder(given), X_BG});
+  if (form == "hull") shapes.push_back({read_hull(given), X_BG});
+  if (form != "mesh") return;
+  for (geometry::Shape& hull : read_mesh(given)) shapes.push_back({std::move(hull), X_BG});
+}
+
+}  // namespace
 
 std::vector<PlacedShape> read_shapes(const Value& value) {
   std::vector<PlacedShape> shapes;
-  for (const Value& part : value.list()) shapes.push_back(read_shape(part));
+  for (const Value& part : value.list()) read_shape(part, shapes);
   if (shapes.empty()) value.fail("at least one shape");
   return shapes;
 }

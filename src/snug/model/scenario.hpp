@@ -33,6 +33,21 @@ struct SleepSettings {
   bool operator==(const SleepSettings&) const = default;
 };
 
+/// What a run may show before it says that it failed, or warns.
+struct ContactLimits {
+  double rigid_depth = 0.01;      ///< m, of rigid bodies in each other: beyond, the run failed
+  double compliant_depth = 0.02;  ///< m, of compliant ones: beyond, the run failed
+  double residual = 0.1;          ///< m/s, of the contact solver: beyond, the run warns
+
+  template <class Archive>
+  void fields(Archive& a) {
+    a("rigid_depth", rigid_depth, Range::Positive);
+    a("compliant_depth", compliant_depth, Range::Positive);
+    a("residual", residual, Range::Positive);
+  }
+  bool operator==(const ContactLimits&) const = default;
+};
+
 struct SolverSettings {
   double tolerance = 1.0e-5;            ///< m/s, natural-map residual of the contact velocities
   int max_sweeps = 200;                 ///< Gauss-Seidel sweeps before a step gives up and says so
@@ -40,6 +55,7 @@ struct SolverSettings {
   double restitution_threshold = 0.05;  ///< m/s, slower approaches do not rebound
   double position_slop = 1.0e-6;        ///< m, penetration that is left uncorrected
   SleepSettings sleep;
+  ContactLimits contact_limits;
 
   template <class Archive>
   void fields(Archive& a) {
@@ -49,6 +65,7 @@ struct SolverSettings {
     a("restitution_threshold", restitution_threshold, Range::NotNegative);
     a("position_slop", position_slop, Range::NotNegative);
     a("sleep", sleep);
+    a("contact_limits", contact_limits);
   }
   bool operator==(const SolverSettings&) const = default;
 };
@@ -57,6 +74,13 @@ struct Frame {
   std::string name;
   Pose X_WF;
   bool operator==(const Frame&) const = default;
+};
+
+/// A recording that a run without a program goes on from.
+struct InitialState {
+  std::filesystem::path recording;
+  std::optional<double> time;  ///< s; absent: its last frame
+  bool operator==(const InitialState&) const = default;
 };
 
 /// World frame W: z up unless gravity says otherwise. All poses are resolved to W while loading.
@@ -69,6 +93,8 @@ struct Scenario {
   double time_step = 0.001;                    ///< s
   double duration = 5.0;                       ///< s, of a run without a program when none is asked for
   std::uint64_t seed = 1;
+  std::optional<double> record_period;  ///< s between frames of a recording; absent: the cell's choice
+  std::optional<InitialState> initial_state;
   SolverSettings solver;
 
   std::vector<Material> materials;
@@ -89,6 +115,7 @@ struct Scenario {
   std::optional<RobotParams> robot;
   std::vector<Sequence> sequences;
   std::vector<Spring> springs;
+  std::vector<AppliedWrench> wrenches;
   std::optional<Drops> drops;
 
   bool operator==(const Scenario&) const = default;

@@ -58,6 +58,12 @@ std::vector<PlacedShape> make_walls(const Container& container) {
           make_slab({-inner.x(), inner.y(), 0.0}, {inner.x(), y, rim})};
 }
 
+Pose kinematic_pose_at(const Body& body, double time) {
+  if (body.path) return pose_at(*body.path, time);
+  const double elapsed = std::max(0.0, time - body.appears_at);
+  return {exp_rotation(elapsed * body.V_WB.angular) * body.X_WB.R, body.X_WB.p + elapsed * body.V_WB.linear};
+}
+
 HolderState holder_at(const Spring& spring, double time) {
   HolderState state{spring.X_WH, {}};
   for (const HolderMove& move : spring.moves) {

@@ -76,6 +76,21 @@ BodyId find_not_finite(const WorldInput& input, const WorldState& state) {
   return {};
 }
 
+/// Bodies of the contact with the largest residual.
+BodyPair find_worst_pair(const Scratch& work) {
+  BodyPair pair;
+  double worst = -1.0;
+  for (const Row& row : work.rows) {
+    const double residual = natural_map(row, work.u.data());
+    if (!(residual > worst)) continue;
+    worst = residual;
+    const Contact& contact = work.contacts[static_cast<std::size_t>(row.contact)];
+    const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+    pair = {BodyId{patch.body_a}, BodyId{patch.body_b}};
+  }
+  return pair;
+}
+
 /// Wake and sleep rules: docs/theory/contact.md, section 6.
 void put_to_sleep(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work) {
   const SleepSettings& sleep = model.settings.sleep;
@@ -94,6 +109,10 @@ void put_to_sleep(const WorldModel& model, const WorldInput& input, WorldState& 
     const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
     if (a.active < 0 && a.is_moving) state.bodies[static_cast<std::size_t>(patch.body_b)].slow_time = 0.0;
     if (b.active < 0 && b.is_moving) state.bodies[static_cast<std::size_t>(patch.body_a)].slow_time = 0.0;
+    if (patch.has_belt) {  // and what lies on a belt that runs
+      for (const int index : {patch.body_a, patch.body_b})
+        state.bodies[static_cast<std::size_t>(index)].slow_time = 0.0;
+    }
   }
   // Islands are complete sets in the union-find forest; a body without contacts falls and never sleeps.
   std::fill_n(work.island_of_root.begin(), work.active_count, -1);  // now: 1 may sleep, 0 must not
@@ -181,6 +200,7 @@ void end_step(const WorldModel& model, const WorldInput& input, WorldState& stat
     body.p_WBcm = target.X_WB_end.p;
     if (body.quat_WB.toRotationMatrix() != target.X_WB_end.R) body.quat_WB = Quaternion(target.X_WB_end.R).normalized();
   }
+  if (report.status == StepStatus::NotConverged) report.residual_pair = find_worst_pair(work);
   report.contacts = static_cast<int>(work.contacts.size());
   report.awake = work.active_count;
   if (model.settings.sleep.enabled) put_to_sleep(model, input, state, work);
@@ -193,10 +213,7 @@ void report_contacts(Scratch& work) {
     const Contact& contact = work.contacts[static_cast<std::size_t>(row.contact)];
     const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
     const Vector3 impulse = row.lambda[0] * patch.n + row.lambda[1] * patch.t1 + row.lambda[2] * patch.t2;
-    const double limit = row.mu * row.lambda[0];
-    const double tangential = row.lambda[1] * row.lambda[1] + row.lambda[2] * row.lambda[2];
-    // Sliding impulses are projected onto the disc: they are on its edge up to rounding.
-    const bool slides = row.lambda[0] > 0.0 && tangential >= limit * limit * (1.0 - 1e-9);
+    const bool slides = is_at_friction_limit(row.mu, row.lambda[0], row.lambda[1], row.lambda[2]);
     work.reports[static_cast<std::size_t>(row.contact)] = {
         BodyId{patch.body_a}, BodyId{patch.body_b}, contact.p_WQ, patch.n, impulse / work.dt, contact.phi, slides};
   }

@@ -15,10 +15,14 @@ namespace {
 double radius_of(const Geom& geom, const Vector3& p_BBcm) {
   using geometry::Box;
   using geometry::Capsule;
+  using geometry::Cylinder;
   const Vector3 p_BcmG = geom.X_BG.p - p_BBcm;
   if (const auto* box = std::get_if<Box>(&geom.shape)) return p_BcmG.norm() + box->half.norm();
   if (const auto* capsule = std::get_if<Capsule>(&geom.shape)) {
     return p_BcmG.norm() + capsule->half_length + capsule->radius;
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&geom.shape)) {
+    return p_BcmG.norm() + std::hypot(cylinder->half_length, cylinder->radius);
   }
   double radius = 0.0;
   for (const Vector3& vertex : std::get<geometry::ConvexHull>(geom.shape).vertices) {
@@ -196,6 +200,35 @@ void set_present(WorldState& state, BodyId body, bool is_present) {
     wake_sleepers(state, state.bodies[static_cast<std::size_t>(body.index)].sleep_group);
   }
   state.bodies[static_cast<std::size_t>(body.index)].is_present = is_present;
+}
+
+void set_lost(WorldState& state, BodyId body) { state.bodies[static_cast<std::size_t>(body.index)].is_present = false; }
+
+std::vector<ContactReport> bearing_contacts(const WorldModel& model, const WorldState& state) {
+  std::vector<ContactReport> reports;
+  for (const PairState& pair : state.pairs) {
+    const WorldModel::GeomRef& geom_a = model.geoms[pair.geom_a];
+    const WorldModel::GeomRef& geom_b = model.geoms[pair.geom_b];
+    const BodyId a{geom_a.body}, b{geom_b.body};
+    if (!state.bodies[static_cast<std::size_t>(a.index)].is_present) continue;
+    if (!state.bodies[static_cast<std::size_t>(b.index)].is_present) continue;
+    const Pose X_WA = pose_of(model, state, a), X_WB = pose_of(model, state, b);
+    const auto material_of = [&model](const WorldModel::GeomRef& ref) {
+      return model.bodies[static_cast<std::size_t>(ref.body)].geoms[static_cast<std::size_t>(ref.geom)].material;
+    };
+    const double mu = model.law(material_of(geom_a), material_of(geom_b)).friction;
+    const Vector3 n = X_WA.R * pair.n_A, t1 = X_WA.R * pair.t_A, t2 = n.cross(t1);
+    for (int i = 0; i < pair.count; ++i) {
+      const auto& impulse = pair.impulses[static_cast<std::size_t>(i)];
+      if (!(impulse[0] > 0.0)) continue;
+      const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
+      const Vector3 p_WA = X_WA * point.p_A, p_WB = X_WB * point.p_B;
+      const Vector3 force = (impulse[0] * n + impulse[1] * t1 + impulse[2] * t2) / model.settings.dt;
+      const bool slides = internal::is_at_friction_limit(mu, impulse[0], impulse[1], impulse[2]);
+      reports.push_back({a, b, 0.5 * (p_WA + p_WB), n, force, n.dot(p_WB - p_WA), slides});
+    }
+  }
+  return reports;
 }
 
 double kinetic_energy(const WorldModel& model, const WorldState& state) {

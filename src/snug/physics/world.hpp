@@ -29,6 +29,9 @@ struct Geom {
   Pose X_BG;                      ///< in the body frame
   int material = 0;               ///< index into WorldModel::laws
   bool touches_held_body = true;  ///< false: ignores the body named in WorldInput::held
+  /// m/s, of the surface against the body, in the body frame: a belt that runs. What of it is along a contact's
+  /// tangents counts, so that the faces a belt is square to do not push.
+  Vector3 surface_velocity = Vector3::Zero();
   bool operator==(const Geom&) const = default;
 };
 
@@ -196,8 +199,14 @@ enum class StepStatus {
   Converged,
   NotConverged,  ///< contact solver stopped at max_sweeps; the state is usable, the residual says how good
   NotFinite,     ///< the state or the input of a body is not a number; stop the run. Bad input leaves the state alone
-  LostBody,      ///< a body is farther than 1 km from the origin; stop the run
+  LostBody,      ///< a body is farther than 1 km from the origin; set_lost() and go on, or stop the run
   TooManyPairs,  ///< more pairs near each other than pair_capacity, or contacts than there is room for; stop the run
+};
+
+/// The two bodies of a contact, A and B; invalid when there was none.
+struct BodyPair {
+  BodyId a, b;
+  bool operator==(const BodyPair&) const = default;
 };
 
 struct StepReport {
@@ -207,8 +216,12 @@ struct StepReport {
   int contacts = 0;                ///< points given to the solver
   int awake = 0;                   ///< dynamic bodies that moved
   double worst_penetration = 0.0;  ///< m, rigid contacts, at the start of the step
-  double element_residual = 0.0;   ///< m/s, of the implicit force elements
-  BodyId culprit;                  ///< with NotFinite and LostBody
+  BodyPair worst_penetration_pair;
+  double worst_compliant_depth = 0.0;  ///< m, compliant contacts, at the start of the step
+  BodyPair worst_compliant_pair;
+  BodyPair residual_pair;         ///< of the contact with the largest residual; with NotConverged only
+  double element_residual = 0.0;  ///< m/s, of the implicit force elements
+  BodyId culprit;                 ///< with NotFinite and LostBody
 };
 
 /// A touching point of the last step, for recordings and measurements.
@@ -259,6 +272,12 @@ void set_twist(const WorldModel& model, WorldState& state, BodyId body, const Tw
 /// Absent bodies touch nothing and do not move. Taking a body away wakes its group, or all when it does not sleep.
 void set_present(WorldState& state, BodyId body, bool is_present);
 void wake(WorldState& state, BodyId body);
+/// Takes a lost body out of the world: absent from now on, and nothing else changes, since it touched nothing.
+void set_lost(WorldState& state, BodyId body);
+
+/// Contacts of a state as its last step left them, those of sleeping bodies included: each point that bears a force.
+/// Forces are the impulses of the last step in which the pair was solved, over the time step.
+[[nodiscard]] std::vector<ContactReport> bearing_contacts(const WorldModel& model, const WorldState& state);
 
 [[nodiscard]] double kinetic_energy(const WorldModel& model, const WorldState& state);
 [[nodiscard]] double potential_energy(const WorldModel& model, const WorldState& state);

@@ -29,7 +29,7 @@ struct PoseSample {
 };
 
 enum class BodyKind : std::uint8_t { Static = 0, Kinematic = 1, Dynamic = 2 };
-enum class ShapeKind : std::uint8_t { Box = 0, Capsule = 1, Hull = 2 };
+enum class ShapeKind : std::uint8_t { Box = 0, Capsule = 1, Hull = 2, Cylinder = 3 };
 
 /// Enough of a shape to draw it. Frame G is the shape's own.
 struct ShapeInfo {

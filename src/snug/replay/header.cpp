@@ -48,6 +48,8 @@ Json shape_as_json(const record::ShapeInfo& shape) {
       return {{"kind", "box"}, {"pose", pose}, {"half", as_json(shape.half)}};
     case record::ShapeKind::Capsule:
       return {{"kind", "capsule"}, {"pose", pose}, {"radius", shape.radius}, {"half_length", shape.half_length}};
+    case record::ShapeKind::Cylinder:
+      return {{"kind", "cylinder"}, {"pose", pose}, {"radius", shape.radius}, {"half_length", shape.half_length}};
     case record::ShapeKind::Hull:
       break;
   }
@@ -225,6 +227,7 @@ Json result_as_json(const HeaderInput& input, const Json& result, const std::opt
           {"filling_degree_percent", has_ended ? result.value("filling_degree_percent", Json()) : Json()},
           {"packed", std::move(packed)},
           {"failure", has_ended ? result.value("failure", "") : ""},
+          {"warnings", has_ended ? result.value("warnings", Json::array()) : Json::array()},
           {"report_table7", reported_as_json(scenario, input.header->sequence)}};
 }
 

@@ -1,13 +1,8 @@
 // read_mesh_hull: the convex hull of a mesh file that a URDF names, within the size that shapes may have.
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-#include <assimp/Importer.hpp>
-
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <filesystem>
 
-#include "snug/geometry/convex_hull.hpp"
+#include "snug/model/mesh_file.hpp"
 #include "snug/robot/internal/urdf.hpp"
 
 namespace snug::robot::internal {
@@ -36,52 +31,17 @@ std::filesystem::path find_mesh(const Element& mesh) {
   return path;
 }
 
-void collect_points(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, std::vector<Vector3>& points) {
-  const aiMatrix4x4 transform = above * node.mTransformation;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
-    for (unsigned v = 0; v < part.mNumVertices; ++v) {
-      const aiVector3D p = transform * part.mVertices[v];
-      points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
-    }
-  }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) collect_points(scene, *node.mChildren[c], transform, points);
-}
-
-/// The points farthest in `count` directions spread evenly over the sphere (Fibonacci lattice).
-std::vector<Vector3> extreme_points(const std::vector<Vector3>& points, int count) {
-  std::vector<Vector3> chosen;
-  const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count;
-    const double r = std::sqrt(1.0 - z * z);
-    const Vector3 direction(r * std::cos(golden * i), r * std::sin(golden * i), z);
-    const auto farthest = std::max_element(points.begin(), points.end(), [&](const Vector3& a, const Vector3& b) {
-      return a.dot(direction) < b.dot(direction);
-    });
-    if (std::find(chosen.begin(), chosen.end(), *farthest) == chosen.end()) chosen.push_back(*farthest);
-  }
-  return chosen;
-}
-
 }  // namespace
 
 geometry::ConvexHull read_mesh_hull(const Element& mesh) {
   const std::filesystem::path path = find_mesh(mesh);
-  Assimp::Importer importer;
-  // COLLADA's own up axis is kept as ROS tools keep it: the file's numbers are the link's.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_JoinIdenticalVertices);
-  if (scene == nullptr || scene->mRootNode == nullptr)
-    mesh.fail("'" + path.string() + "': " + importer.GetErrorString(), "a mesh (STL, DAE, OBJ)");
+  const model::MeshParts parts = model::read_mesh_parts(path);
+  if (!parts.error.empty()) mesh.fail("'" + path.string() + "': " + parts.error, "a mesh (STL, DAE, OBJ)");
   std::vector<Vector3> points;
-  collect_points(*scene, *scene->mRootNode, aiMatrix4x4(), points);
+  for (const std::vector<Vector3>& part : parts.parts) points.insert(points.end(), part.begin(), part.end());
   const Vector3 scale = mesh.vector3_or("scale", Vector3::Ones());
   for (Vector3& point : points) point = point.cwiseProduct(scale);
-  auto hull = geometry::make_convex_hull(points);
-  // Too many corners: those farthest in fewer and fewer directions, which cuts a little off (docs/theory/robot.md).
-  for (int count = geometry::kMaxHullVertices; !hull && hull.error() == geometry::NoHull::TooManyVertices; count -= 4)
-    hull = geometry::make_convex_hull(extreme_points(points, count));
+  const auto hull = model::make_simple_hull(points);
   if (!hull) {
     if (hull.error() == geometry::NoHull::NotFinite)
       mesh.fail("'" + path.string() + "' with points that are not finite", "numbers");

@@ -17,6 +17,7 @@ export interface ChannelMeta {
 export type Shape =
   | { kind: "box"; pose: PoseRow; half: [number, number, number] }
   | { kind: "capsule"; pose: PoseRow; radius: number; half_length: number }
+  | { kind: "cylinder"; pose: PoseRow; radius: number; half_length: number }
   | { kind: "hull"; pose: PoseRow; vertices: [number, number, number][]; triangles: [number, number, number][] };
 
 export interface Body {
@@ -49,6 +50,7 @@ export interface RunResult {
   filling_degree_percent: number | null;
   packed: number | null;
   failure: string | null;
+  warnings?: string[];
   report_table7: {
     filling_percent: number;
     boxes: number | null;

@@ -1,7 +1,7 @@
-// Geometry of shapes: boxes, capsules and hulls merged into one mesh and one set of edges.
+// Geometry of shapes: boxes, capsules, cylinders and hulls merged into one mesh and one set of edges.
 
 import {
-  BoxGeometry, BufferGeometry, CapsuleGeometry, EdgesGeometry, Float32BufferAttribute, Matrix4, SphereGeometry,
+  BoxGeometry, BufferGeometry, CapsuleGeometry, CylinderGeometry, EdgesGeometry, Float32BufferAttribute, Matrix4, SphereGeometry,
 } from "three";
 import type { Shape } from "../replay/header";
 import { matrixOf } from "./maths";
@@ -19,6 +19,12 @@ export function shapeGeometry(shape: Shape): { faces: BufferGeometry; edges: Buf
     const faces = new CapsuleGeometry(shape.radius, 2 * shape.half_length, 5, 18);
     faces.applyMatrix4(new Matrix4().makeRotationX(Math.PI / 2)); // three's capsule lies along y, ours along z
     return { faces: faces.applyMatrix4(X), edges: null };
+  }
+  if (shape.kind === "cylinder") {
+    const faces = new CylinderGeometry(shape.radius, shape.radius, 2 * shape.half_length, 32);
+    faces.applyMatrix4(new Matrix4().makeRotationX(Math.PI / 2)); // along y in three
+    const edges = new EdgesGeometry(faces, 30);
+    return { faces: faces.applyMatrix4(X), edges: edges.applyMatrix4(X) };
   }
   const indexed = new BufferGeometry();
   indexed.setAttribute("position", new Float32BufferAttribute(shape.vertices.flat(), 3));

@@ -42,7 +42,7 @@ export function restOf(replay: Replay, body: number): Stop | null {
 
 /** More stops than this are shown for the selected and the held box only, until all are asked for. */
 const MOST_STOPS = 24;
-const BAD = new Set(["lost", "dropped", "bend", "slip", "outside"]);
+const BAD = new Set(["lost", "dropped", "bend", "slip", "outside", "out of cell", "deep contact"]);
 
 export class Journey {
   readonly element = make("aside", "journey");

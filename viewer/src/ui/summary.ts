@@ -33,6 +33,7 @@ export function headline(replay: Replay): HTMLElement {
   add("seed", h.seed || "-");
   add("version", h.snug_version || "-", `${h.name}, scenario ${h.scenario.name}`);
   if (result?.failure) bar.append(make("span", "warning", result.failure));
+  for (const warning of result?.warnings ?? []) bar.append(make("span", "warning", warning));
   for (const warning of replay.warnings) bar.append(make("span", "warning", warning));
   return bar;
 }

@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "snug/cell/corrected.hpp"
+#include "snug/core/input_error.hpp"
 
 namespace snug::cell::internal {
 namespace {
@@ -23,6 +26,12 @@ class ProgramRun {
         plan_(simulation_.prepare(corrected(scenario, *options.program, options.corrections))),
         state_(simulation_.make_state()),
         work_(simulation_.make_workspace()) {
+    if (scenario.initial_state) {
+      throw InputError(scenario.source_name, "initial_state", "with a program",
+                       "none: recordings do not hold where controller and gripper are; only scenes go on from one");
+    }
+    const double period = scenario.record_period.value_or(scenario.controller.tick);
+    ticks_a_frame_ = std::max<std::int64_t>(1, std::llround(period / scenario.controller.tick));
     if (is_recorded(options)) start_recording();
   }
 
@@ -56,7 +65,7 @@ class ProgramRun {
     setup.path = options_.record_path;
     setup.file = options_.record_file;
     setup.observer = options_.observer;
-    setup.period = simulation_.scenario().controller.tick;
+    setup.period = simulation_.scenario().controller.tick * static_cast<double>(ticks_a_frame_);
     setup.program_text = options_.program_text;
     setup.program_name = options_.program->name;
     setup.sequence = options_.sequence;
@@ -77,6 +86,7 @@ class ProgramRun {
   bool advance(std::string& failure) {
     const CellTick tick = simulation_.advance(plan_, state_, work_);
     failure = tick.failure;
+    for (record::Event& event : work_.solver.take_events(simulation_.world())) state_.journey.note(std::move(event));
     if (recorder_) record(tick);
     return tick.has_ended;
   }
@@ -90,11 +100,13 @@ class ProgramRun {
                            &state_.gripper,
                            tick.command,
                            simulation_.arm() != nullptr ? &work_.arm : nullptr};
+    if (++ticks_ % ticks_a_frame_ != 0 && tick.failure.empty()) return;
     is_stopped_ = !recorder_->add_frame(simulation_.world(), state_.world, work_.physics, tick.step, input);
   }
 
   void fill(RunResult& result) const {
-    result.solver = work_.solver.summary();
+    fill_contacts(simulation_.world(), state_.world, work_.solver, result);
+    result.lost = work_.lost;
     result.boxes = simulation_.boxes(state_);
     result.events = state_.journey.events();
     result.repicks = state_.journey.repicks();
@@ -116,10 +128,26 @@ class ProgramRun {
   CellState state_;
   CellWorkspace work_;
   std::unique_ptr<Recorder> recorder_;
+  std::int64_t ticks_a_frame_ = 1;
+  std::int64_t ticks_ = 0;
   bool is_stopped_ = false;  ///< by the observer
 };
 
 }  // namespace
+
+void fill_contacts(const CellWorld& world, const physics::WorldState& state, const SolverMonitor& monitor,
+                   RunResult& result) {
+  result.solver = monitor.summary(world);
+  result.warnings = describe_warnings(result.solver);
+  if (result.failure.empty()) result.failure = describe_depths(result.solver);
+  const auto name_of = [&world](physics::BodyId id) {
+    return world.model.bodies[static_cast<std::size_t>(id.index)].name;
+  };
+  for (const physics::ContactReport& contact : physics::bearing_contacts(world.model, state)) {
+    result.contacts.push_back({name_of(contact.a), name_of(contact.b), contact.p_WQ, contact.n_AB_W, contact.force_W,
+                               contact.phi, contact.slides});
+  }
+}
 
 RunResult run_program(const model::Scenario& scenario, const RunOptions& options) {
   return ProgramRun(scenario, options).run();

@@ -11,6 +11,9 @@ namespace snug::cell::internal {
 }
 
 [[nodiscard]] RunResult run_program(const model::Scenario& scenario, const RunOptions& options);
+/// What both ways say of the contacts: the solver's summary, warnings, depths as a failure, forces at the end.
+void fill_contacts(const CellWorld& world, const physics::WorldState& state, const SolverMonitor& monitor,
+                   RunResult& result);
 [[nodiscard]] RunResult run_scene(const model::Scenario& scenario, const RunOptions& options);
 
 }  // namespace snug::cell::internal

@@ -1,10 +1,15 @@
 // SceneRun: bodies, springs and drops without a program.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
+#include <utility>
 
 #include "snug/cell/internal/program_run.hpp"
 #include "snug/cell/scene.hpp"
+#include "snug/core/input_error.hpp"
 
 namespace snug::cell::internal {
 namespace {
@@ -17,34 +22,48 @@ RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) 
   const auto start = std::chrono::steady_clock::now();
   Scene scene(scenario);
   const double until = options.until.value_or(scenario.duration);
+  const double period = scenario.record_period.value_or(kRecordPeriod);
+  const auto stride = static_cast<std::int64_t>(std::max(1.0, std::round(period / scenario.time_step)));
+  const std::int64_t first = scene.state().step_index;
+  const auto end = static_cast<std::int64_t>(std::ceil(until / scenario.time_step - 1e-9));
+  if (first > 0 && first >= end) {
+    throw InputError(scenario.source_name, "initial_state",
+                     fmt::format("starts at {} s", scene.state().time(scene.world().model)),
+                     fmt::format("before the end of the run, {} s: a longer duration, or --until", until));
+  }
   std::unique_ptr<Recorder> recorder;
   if (is_recorded(options)) {
     RecorderSetup setup;
     setup.path = options.record_path;
     setup.file = options.record_file;
     setup.observer = options.observer;
-    setup.period = std::max(kRecordPeriod, scenario.time_step);
+    setup.period = static_cast<double>(stride) * scenario.time_step;
     setup.version = options.version;
     recorder = std::make_unique<Recorder>(scenario, scene.world(), setup);
   }
-  const auto stride = static_cast<std::int64_t>(std::max(1.0, std::round(kRecordPeriod / scenario.time_step)));
-  const auto steps = static_cast<std::int64_t>(std::ceil(until / scenario.time_step - 1e-9));
-  SolverMonitor monitor;
+  SolverMonitor monitor(scenario.solver.contact_limits);
   RunResult result;
   bool is_stopped = false;  // by the observer
-  for (std::int64_t i = 0; i < steps && result.failure.empty() && !is_stopped; ++i) {
+  for (std::int64_t i = first; i < end && result.failure.empty() && !is_stopped; ++i) {
     const physics::StepReport report = scene.advance();
-    monitor.add(report);
-    result.failure = describe_failure(scene.world(), scene.state(), scene.work(), report);
-    if (recorder && (i + 1) % stride == 0) {
-      is_stopped = !recorder->add_frame(scene.world(), scene.state(), scene.work(), report, FrameInput{});
+    monitor.add(report, scene.state().time(scene.world().model));
+    if (report.status == physics::StepStatus::LostBody) {
+      result.events.push_back(event_of(scene.lost().back()));
+    } else {
+      result.failure = describe_failure(scene.world(), scene.state(), scene.work(), report);
     }
+    for (record::Event& event : monitor.take_events(scene.world())) result.events.push_back(std::move(event));
+    if (!recorder) continue;
+    recorder->add_events(result.events);
+    if ((i + 1) % stride != 0 && result.failure.empty()) continue;
+    is_stopped = !recorder->add_frame(scene.world(), scene.state(), scene.work(), report, FrameInput{});
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   result.duration = scene.state().time(scene.world().model);
   result.wall = wall.count();
-  result.real_time_factor = result.duration / result.wall;
-  result.solver = monitor.summary();
+  result.real_time_factor = (result.duration - static_cast<double>(first) * scenario.time_step) / result.wall;
+  result.lost = scene.lost();
+  fill_contacts(scene.world(), scene.state(), monitor, result);
   result.state_hash = physics::hash_of(scene.state());
   for (std::size_t i = 0; i < scene.world().model.bodies.size(); ++i) {
     const physics::BodyModel& body = scene.world().model.bodies[i];

@@ -1,4 +1,5 @@
-// Polytope: one view of a box, a hull or the core of a capsule, so that the general algorithms are written once.
+// Polytope: one view of a box, a hull, the core of a capsule or a part of a cylinder, so that the general algorithms
+// are written once.
 #pragma once
 
 #include <array>
@@ -22,6 +23,12 @@ class Polytope {
   /// The capsule's segment: two vertices, one edge, no faces (its faces read -1). One vertex when the length is 0.
   Polytope(const Capsule& capsule, const Pose& X, PolytopeStorage& room) noexcept;
 
+  /// Two points (or one, when they are the same) and what is between them.
+  Polytope(const Vector3& from, const Vector3& to, PolytopeStorage& room) noexcept;
+  /// Prism of kPrismSides inside a cylinder, with its first side edge in the plane of z and `azimuth_G` (unit, square
+  /// to z). Faces: lower end, upper end, sides.
+  Polytope(const Cylinder& cylinder, const Pose& X, const Vector3& azimuth_G, PolytopeStorage& room) noexcept;
+
   [[nodiscard]] int vertex_count() const noexcept { return vertex_count_; }
   [[nodiscard]] int face_count() const noexcept { return face_count_; }
   [[nodiscard]] int edge_count() const noexcept { return edge_count_; }
@@ -41,6 +48,7 @@ class Polytope {
 
  private:
   const ConvexHull* hull_ = nullptr;
+  bool is_prism_ = false;
   const PolytopeStorage* room_ = nullptr;
   int vertex_count_ = 0;
   int face_count_ = 0;

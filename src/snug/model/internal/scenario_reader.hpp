@@ -29,7 +29,12 @@ class ScenarioReader {
   void read_containers(const MapReader& map);
   void read_body(const Value& value);
   void read_body_inertia(const MapReader& map, const Parcel* parcel, Body& body) const;
+  [[nodiscard]] PosePath read_path(const Value& value) const;
+  void read_motion(const MapReader& map, Body& body) const;
+  void read_initial_state(const Value& value);
   void read_spring(const Value& value);
+  void read_wrench(const Value& value);
+  [[nodiscard]] const Body& find_dynamic_body(const Value& value) const;
   void read_drops(const Value& value);
   // read_cell.cpp
   void read_parcel_type(const Value& value);
@@ -52,12 +57,14 @@ class ScenarioReader {
   void check_overlaps() const;
 
   // read_shapes.cpp
+  [[nodiscard]] Pose read_frame_name(const Value& value) const;
   [[nodiscard]] Pose read_world_pose(const std::optional<Value>& value) const;
   [[nodiscard]] MaterialId read_material(const Value& value) const;
 
   /// A solid of the scene at time 0, with where it was described.
   struct Placed;
   [[nodiscard]] std::vector<Placed> placed_solids() const;
+  [[nodiscard]] double compliant_depth(const Placed& a, const Placed& b) const;
 
   Value root_;
   Scenario& scenario_;
@@ -73,8 +80,7 @@ class ScenarioReader {
 /// Rotation from whichever of yaw_deg, rpy_deg, quat_wxyz, rotation_vector is there; identity without.
 [[nodiscard]] Matrix3 read_rotation(const MapReader& map);
 [[nodiscard]] std::vector<std::string> pose_keys();
-[[nodiscard]] PlacedShape read_shape(const Value& value);
-/// At least one.
+/// At least one; a mesh gives one for each of its parts.
 [[nodiscard]] std::vector<PlacedShape> read_shapes(const Value& value);
 /// Three principal moments, or six numbers xx, yy, zz, xy, xz, yz; positive definite, triangle inequality kept.
 [[nodiscard]] Matrix3 read_inertia(const Value& value);

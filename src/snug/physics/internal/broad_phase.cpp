@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/geometry/bounds.hpp"
 #include "snug/physics/internal/scratch.hpp"
 
 namespace snug::physics::internal {
@@ -11,6 +12,7 @@ namespace {
 using geometry::Box;
 using geometry::Capsule;
 using geometry::ConvexHull;
+using geometry::Cylinder;
 
 constexpr double kFatMargin = 0.008;     ///< m, around the tight box
 constexpr double kLookAhead = 0.03;      ///< s, of motion that the fat box covers
@@ -29,6 +31,8 @@ FatBox tight_box(const geometry::Shape& shape, const Matrix3& R_WG, const Vector
   Vector3 half;
   if (const auto* box = std::get_if<Box>(&shape)) {
     half = R_WG.cwiseAbs() * box->half;
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    half = geometry::half_extent(*cylinder, R_WG);
   } else {
     const auto& capsule = std::get<Capsule>(shape);
     half = R_WG.col(2).cwiseAbs() * capsule.half_length + Vector3::Constant(capsule.radius);

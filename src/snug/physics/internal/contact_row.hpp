@@ -86,6 +86,13 @@ inline double natural_map(const Row& row, const double* u) {
   return std::max(rn, std::sqrt(r1 * r1 + r2 * r2) / row.step_t);
 }
 
+/// Sliding impulses are projected onto the disc: they are on its edge up to rounding.
+inline bool is_at_friction_limit(double mu, double normal, double tangential_1, double tangential_2) {
+  const double limit = mu * normal;
+  const double square = tangential_1 * tangential_1 + tangential_2 * tangential_2;
+  return normal > 0.0 && square >= limit * limit * (1.0 - 1e-9);
+}
+
 inline double worst_residual(const Row* first, const Row* end, const double* u) {
   double worst = 0.0;
   for (const Row* row = first; row != end; ++row) worst = std::max(worst, natural_map(*row, u));

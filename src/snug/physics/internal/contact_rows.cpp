@@ -142,6 +142,7 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
         if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, row->b);
         if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ, -1.0, *row);
         if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ, 1.0, *row);
+        if (patch.has_belt) row->bias[1] += patch.t1.dot(patch.belt_W), row->bias[2] += patch.t2.dot(patch.belt_W);
       }
       fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), *row);
       if (!is_kept) finish_row(*row);

@@ -205,6 +205,8 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
   patch.t1 = a.R_WB * pair.t_A;
   patch.t2 = n.cross(patch.t1);
   patch.law = static_cast<std::size_t>(bodies.geom_a.material * model.material_count + bodies.geom_b.material);
+  patch.belt_W = b.R_WB * bodies.geom_b.surface_velocity - a.R_WB * bodies.geom_a.surface_velocity;
+  patch.has_belt = !patch.belt_W.isZero(0.0);
   return touches;
 }
 
@@ -313,8 +315,14 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
     }
   }
   for (const Contact& contact : work.contacts) {
-    if (model.laws[work.patches[static_cast<std::size_t>(contact.patch)].law].stiffness > 0.0) continue;
-    report.worst_penetration = std::max(report.worst_penetration, -contact.phi);
+    const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+    const bool is_rigid = model.laws[patch.law].stiffness <= 0.0;
+    double& worst = is_rigid ? report.worst_penetration : report.worst_compliant_depth;
+    if (!(-contact.phi > worst)) continue;
+    worst = -contact.phi;
+    BodyPair& pair = is_rigid ? report.worst_penetration_pair : report.worst_compliant_pair;
+    pair.a = BodyId{patch.body_a};
+    pair.b = BodyId{patch.body_b};
   }
 }
 

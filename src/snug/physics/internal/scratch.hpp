@@ -68,7 +68,9 @@ struct Patch {
   bool is_kept = false;          ///< the same as in the last step, at the same place
   Vector3 n = Vector3::UnitZ();  ///< from A to B, W
   Vector3 t1 = Vector3::UnitX(), t2 = Vector3::UnitY();
-  std::size_t law = 0;  ///< in WorldModel::laws
+  std::size_t law = 0;               ///< in WorldModel::laws
+  bool has_belt = false;             ///< one of the surfaces runs
+  Vector3 belt_W = Vector3::Zero();  ///< of B's surface against A's, beyond the motion of the bodies, m/s
 };
 
 /// A touching point that may matter in this step.

@@ -75,7 +75,7 @@ void write_bodies(hid_t file, const std::vector<BodyInfo>& bodies) {
   write_table(file, "/bodies/mass", 1, masses, "kg");
   write_table(file, "/bodies/com", 3, coms, "m", "x,y,z");
   write_table(file, "/shapes/body", 1, shapes.body, "row of /bodies/name");
-  write_table(file, "/shapes/kind", 1, shapes.kind, "0 box, 1 capsule, 2 hull");
+  write_table(file, "/shapes/kind", 1, shapes.kind, "0 box, 1 capsule, 2 hull, 3 cylinder");
   write_table(file, "/shapes/pose", 7, shapes.pose, "m, -", kPoseColumns);
   write_table(file, "/shapes/half", 3, shapes.half, "m", "x,y,z");
   write_table(file, "/shapes/radius", 1, shapes.radius, "m");
@@ -119,7 +119,7 @@ void read_shapes(hid_t file, std::vector<BodyInfo>& bodies) {
         end > static_cast<std::int64_t>(vertex.size() / 3))
       throw H5Error("/shapes refers to rows that do not exist");
     ShapeInfo shape;
-    shape.kind = enum_from(kind[i], ShapeKind::Hull, "/shapes/kind");
+    shape.kind = enum_from(kind[i], ShapeKind::Cylinder, "/shapes/kind");
     shape.X_BG = pose_at(pose, i);
     shape.half = vector_at(half, i);
     shape.radius = radius[i];

@@ -52,7 +52,7 @@ inline BodyInfo random_body(Rng& rng, int number) {
   body.com = random_vector(rng, 0.05);
   for (int i = 0; i < number % 4; ++i) {
     ShapeInfo shape;
-    shape.kind = static_cast<ShapeKind>(i % 3);
+    shape.kind = static_cast<ShapeKind>(i % 4);
     shape.X_BG = random_pose(rng);
     shape.half = random_vector(rng, 0.2);
     shape.radius = rng.uniform();

@@ -57,9 +57,14 @@ Json cylinder(const PoseSample& X, const Vector3& size, double top_scale, const 
   return json;
 }
 
-void add_capsule(Json& entity, const record::ShapeInfo& shape, const Json& color) {
+void add_cylinder(Json& entity, const record::ShapeInfo& shape, const Json& color) {
   const double width = 2.0 * shape.radius;
   entity["cylinders"].push_back(cylinder(shape.X_BG, {width, width, 2.0 * shape.half_length}, 1.0, color));
+}
+
+void add_capsule(Json& entity, const record::ShapeInfo& shape, const Json& color) {
+  const double width = 2.0 * shape.radius;
+  add_cylinder(entity, shape, color);
   for (const double end : {-shape.half_length, shape.half_length}) {
     const PoseSample X(shape.X_BG.p + shape.X_BG.quat.normalized() * Vector3(0.0, 0.0, end), shape.X_BG.quat);
     entity["spheres"].push_back(solid(X, Vector3::Constant(width), color));
@@ -95,6 +100,9 @@ Json body_entity(std::uint64_t ns, const record::BodyInfo& body, bool is_contain
         break;
       case record::ShapeKind::Capsule:
         add_capsule(entity, shape, color);
+        break;
+      case record::ShapeKind::Cylinder:
+        add_cylinder(entity, shape, color);
         break;
       case record::ShapeKind::Hull:
         add_hull(entity, shape, color);

@@ -208,7 +208,13 @@ TEST(McapExport, DrawsABodyOnlyWhileItIsThere) {
     const auto ns = static_cast<std::uint64_t>(std::llround(1e9 * frame.time));
     while (at + 1 < scenes.size() && scenes[at + 1].first <= ns) ++at;
     std::vector<std::string> drawn, there;
-    for (const auto& entity : scenes[at].second["entities"]) drawn.push_back(entity["id"]);
+    for (const auto& entity : scenes[at].second["entities"]) {
+      drawn.push_back(entity["id"]);
+      if (entity["id"] != "table") continue;
+      ASSERT_EQ(entity["cylinders"].size(), 1u);
+      EXPECT_EQ(entity["cylinders"][0]["size"]["z"], 0.4);
+      EXPECT_EQ(entity["cylinders"][0]["top_scale"], 1.0);
+    }
     for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
       if (frame.bodies[i].present) there.push_back(recording.header.bodies[i].name);
     }

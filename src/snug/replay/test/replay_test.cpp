@@ -208,6 +208,9 @@ TEST(Replay, HeaderTellsWhatRanEvenWhenScenarioAndProgramMakeNoSense) {
   EXPECT_EQ(header["tool"]["body"], 1);
   ASSERT_EQ(header["bodies"].size(), 4u);
   EXPECT_EQ(header["bodies"][3]["shapes"][0]["triangles"].size(), 4u);
+  EXPECT_EQ(header["bodies"][0]["shapes"][1]["kind"], "cylinder");
+  EXPECT_EQ(header["bodies"][0]["shapes"][1]["radius"], 0.03);
+  EXPECT_EQ(header["bodies"][0]["shapes"][1]["half_length"], 0.2);
   // No result: the journey is that of the events.
   ASSERT_EQ(header["result"]["boxes"].size(), 2u);
   EXPECT_EQ(header["result"]["boxes"][0]["journey"][1]["kind"], "release");
@@ -233,10 +236,12 @@ TEST(Replay, HeaderTakesTheResultThatTheRunStored) {
   text << file.rdbuf();
   recording.header.scenario_text = text.str();
   recording.result = R"({"duration_s": 10.0, "wall_s": 0.5, "real_time_factor": 20.0, "filling_degree_percent": 12.5,
-    "failure": "", "boxes": [{"id": "BOX001", "state": "packed", "up": "X", "X_TP": {"p": [1, 2, 3],
+    "failure": "too deep", "warnings": ["rough"], "boxes": [{"id": "BOX001", "state": "packed", "up": "X", "X_TP": {"p": [1, 2, 3],
     "quat_wxyz": [1, 0, 0, 0]}, "events": [{"time_s": 4.5, "kind": "seal", "body": "BOX001", "text": "t"}]}]})";
   const auto header = nlohmann::json::parse(form_of(recording).header_json);
   EXPECT_EQ(header["speed"]["wall_s"], 0.5);
+  EXPECT_EQ(header["result"]["failure"], "too deep");
+  EXPECT_EQ(header["result"]["warnings"], nlohmann::json({"rough"}));
   EXPECT_EQ(header["result"]["packed"], 1);
   EXPECT_EQ(header["result"]["boxes"][0]["pose"], nlohmann::json({1, 2, 3, 1, 0, 0, 0}));
   EXPECT_EQ(header["result"]["boxes"][0]["journey"][0]["time"], 4.5);

@@ -37,17 +37,21 @@ inline record::BodyInfo body_info(const std::string& name, record::BodyKind kind
 /// number differs from frame to frame.
 inline record::Recording random_recording(Rng& rng, int frames) {
   record::Recording recording;
-  record::ShapeInfo box, capsule, hull;
+  record::ShapeInfo box, capsule, hull, cylinder;
   box.half = {0.1, 0.2, 0.05};
   capsule.kind = record::ShapeKind::Capsule;
   capsule.radius = 0.02;
   capsule.half_length = 0.1;
   hull.kind = record::ShapeKind::Hull;
   hull.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  cylinder.kind = record::ShapeKind::Cylinder;
+  cylinder.radius = 0.03;
+  cylinder.half_length = 0.2;
   record::RecordingHeader& header = recording.header;
   header.bodies = {
       body_info("table", record::BodyKind::Static, box), body_info("tool", record::BodyKind::Kinematic, capsule),
       body_info("BOX001", record::BodyKind::Dynamic, box), body_info("BOX002", record::BodyKind::Dynamic, hull)};
+  header.bodies[0].shapes.push_back(cylinder);  // a leg of the table
   header.dt = 0.001;
   header.record_period = 0.008;
   header.seed = 18446744073709551615U;
