@@ -6,8 +6,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "snug/calibration/internal/frames.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::calibration {
 namespace {
@@ -56,6 +57,7 @@ double read_number(const std::string& cell, const std::string& where, const std:
 }  // namespace
 
 Table parse_table(const std::string& text, const std::string& name, const std::vector<std::string>& columns) {
+  check_utf8(text, name);
   Table table{name, columns, {}, {}};
   std::vector<std::size_t> places;
   std::size_t width = 0;
@@ -83,7 +85,7 @@ Table parse_table(const std::string& text, const std::string& name, const std::v
 }
 
 Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns) {
-  return parse_table(internal::read_file(path), path.string(), columns);
+  return parse_table(read_file(path, "a table of measurements (CSV)"), path.string(), columns);
 }
 
 Pose row_pose(const std::vector<double>& row, std::size_t first) {

@@ -4,9 +4,11 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 
+#include "snug/core/read_file.hpp"
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/robot/internal/urdf.hpp"
 
@@ -68,6 +70,12 @@ std::vector<Vector3> extreme_points(const std::vector<Vector3>& points, int coun
 
 geometry::ConvexHull read_mesh_hull(const Element& mesh) {
   const std::filesystem::path path = find_mesh(mesh);
+  // The library knows fifty more forms, few of them tried with files that are wrong.
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending != ".stl" && ending != ".dae" && ending != ".obj")
+    mesh.fail("'" + path.string() + "'", "a mesh (STL, DAE, OBJ)");
+  check_readable(path, "a mesh (STL, DAE, OBJ)", kLargestMesh);
   Assimp::Importer importer;
   // COLLADA's own up axis is kept as ROS tools keep it: the file's numbers are the link's.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);

@@ -3,12 +3,8 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <system_error>
 
 #include "snug/core/check.hpp"
-#include "snug/core/input_error.hpp"
 
 namespace snug::calibration::internal {
 
@@ -74,14 +70,6 @@ std::string to_text(double value) {
   char buffer[40];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value == 0.0 ? 0.0 : value);
   return {buffer, end};
-}
-
-std::string read_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!std::filesystem::is_regular_file(path) || !file || !(text << file.rdbuf()))
-    throw InputError(path.string(), "", "a file that cannot be read", "a text file that is not empty");
-  return text.str();
 }
 
 }  // namespace snug::calibration::internal

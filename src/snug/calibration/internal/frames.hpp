@@ -1,7 +1,6 @@
 // Small helpers that all calibrations share: turns about axes, joint origins, files.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "snug/robot/arm.hpp"
@@ -29,7 +28,5 @@ void move_end(robot::ArmModel& arm, const Pose& move);
 
 /// Seventeen digits: reads back as the same number.
 [[nodiscard]] std::string to_text(double value);
-/// Whole file; InputError when it cannot be read.
-[[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
 }  // namespace snug::calibration::internal
