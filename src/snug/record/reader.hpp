@@ -14,7 +14,9 @@ namespace snug::record {
 /// Random access to a recording without loading all of it: times, header and events are in memory, frames are read
 /// in blocks of about a second as they are asked for.
 ///
-/// A file that is missing, truncated, not a recording, or newer than this program throws InputError that says so.
+/// A file that is missing, truncated, not a recording, or newer than this program throws InputError that says so; so
+/// does one whose counts say more than a file of its size can hold, or that refers to other files. It takes at most
+/// some 50 MB and a few times the size of the file.
 class RecordingReader {
  public:
   explicit RecordingReader(const std::filesystem::path& path);
@@ -27,6 +29,8 @@ class RecordingReader {
   /// Time of every frame, s, strictly increasing.
   [[nodiscard]] const std::vector<double>& times() const;
   [[nodiscard]] std::size_t frame_count() const { return times().size(); }
+  /// Size of the file.
+  [[nodiscard]] std::size_t file_bytes() const;
   /// False for the file of a run that was killed.
   [[nodiscard]] bool is_complete() const;
   /// What became of the run (docs/formats.md, result), JSON; empty when the recording does not hold it.
