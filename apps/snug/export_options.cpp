@@ -3,6 +3,7 @@
 
 #include "export.hpp"
 #include "options.hpp"
+#include "ranges.hpp"
 #include "report.hpp"
 
 namespace snug::app {
@@ -47,15 +48,15 @@ void add_export(CLI::App& app, Action& action) {
       ->type_name("LAYER")
       ->capture_default_str();
   verb.add_option("--period", options->period, "of ros-trajectory: time between points")
-      ->check(positive())
+      ->check(within(1e-3, 100.0))
       ->type_name("SECONDS")
       ->capture_default_str();
   verb.add_option("--vacuum-output", options->vacuum_output, "of urscript: digital output of the vacuum")
-      ->check(whole(0))
+      ->check(whole(0, 7))
       ->type_name("N")
       ->capture_default_str();
   verb.add_option("--blow-off-output", options->blow_off_output, "of urscript: digital output of the blow-off")
-      ->check(whole(0))
+      ->check(whole(0, 7))
       ->type_name("N")
       ->capture_default_str();
   verb.footer(footer + kExamples);
