@@ -331,7 +331,7 @@ class Text(Attack):
                 self.assert_refused(snug("items", "reduce", self.file("x.json", text)), "x.json" + where, what)
 
     def test_settings_in_a_recording_are_json_whatever_names_are(self):
-        scenario = CELL.read_text().replace("name: site", 'name: "a\\"b\\\\c"')
+        scenario = CELL.read_text().replace("name: seq1", 'name: "a\\"b\\\\c"')
         self.assertIn('a\\"b', scenario)
         program = self.folder / "p.csv"
         self.assertEqual(snug("program", CELL, ROOT / "scenarios/demo-placements.yaml", "--sequence", "1", "-o", program).code, 0)

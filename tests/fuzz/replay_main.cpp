@@ -2,7 +2,11 @@
 // does.
 //
 //   fuzz_<reader> FOLDER MUTATIONS     a fuzzer that libFuzzer found something with takes that file as FOLDER
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -65,7 +69,22 @@ std::string mutated(const std::vector<std::string>& seeds, std::size_t seed, Rng
   return text;
 }
 
+const std::string* g_input = nullptr;  ///< what the reader is reading
+
+/// A crash leaves the input behind, so that it can be looked at and become a seed.
+void keep_input(int signal) {
+  std::signal(signal, SIG_DFL);
+  if (g_input != nullptr) {
+    const int file = ::open("finding", O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    const bool is_kept = file >= 0 && ::write(file, g_input->data(), g_input->size()) >= 0;
+    constexpr std::string_view kNote = "the input is in the file 'finding'\n";
+    if (is_kept) (void)!::write(STDERR_FILENO, kNote.data(), kNote.size());
+  }
+  ::raise(signal);
+}
+
 void run(const std::string& text) {
+  g_input = &text;
   (void)LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
 }
 
@@ -89,6 +108,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: no seeds in %s\n", argv[0], argv[1]);
     return 1;
   }
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS}) std::signal(signal, keep_input);
   for (const std::string& seed : seeds) run(seed);
   const int mutations = std::atoi(argv[2]);
   for (int i = 0; i < mutations; ++i) {

@@ -340,6 +340,7 @@ ArmModel parse_urdf(const std::string& text, const std::string& name, const std:
                      "XML that can be parsed");
   const internal::UrdfSource source{name, folder};
   const tinyxml2::XMLElement* root = document.RootElement();
+  if (root == nullptr) throw InputError(name + ":1", "", "no element", "<robot>");
   const internal::Element robot(root, source, "robot");
   if (robot.tag() != "robot")
     robot.fail("<" + robot.tag() + ">", robot.tag() == "sdf" ? "<robot>: this is SDF, not URDF" : "<robot>");
