@@ -119,18 +119,18 @@ class Memory(Attack):
         text = "length_mm,width_mm,height_mm,mass_kg,count\n" + "100,100,100,1,5000\n" * 20
         path = self.file("x.csv", text)
         answer = snug("pack", CELL, "--items", path, "--sequence", "x")
-        self.assert_refused(answer, "x.csv:2: ", "more than 4000 boxes")
+        self.assert_refused(answer, "x.csv:2: ", "more than 3000 boxes")
         self.assert_cheap(answer, len(text))
 
     def test_as_many_boxes_as_allowed_are_cheap(self):
-        text = "length_mm,width_mm,height_mm,mass_kg,count\n" + "".join(f"{100 + i},100,100,1,40\n" for i in range(100))
+        text = "length_mm,width_mm,height_mm,mass_kg,count\n" + "".join(f"{100 + i},100,100,1,30\n" for i in range(100))
         path = self.file("x.csv", text)
         answer = snug("pack", CELL, "--items", path, "--sequence", "no such")
         self.assert_refused(answer, "no such")
         self.assert_cheap(answer, len(text))
 
     def test_thousands_of_articles_without_a_name_take_no_minute(self):
-        text = "order,length_mm,width_mm,height_mm,mass_kg\n" + "".join(f"o{i},{100 + i},100,100,1\n" for i in range(3900))
+        text = "order,length_mm,width_mm,height_mm,mass_kg\n" + "".join(f"o{i},{100 + i},100,100,1\n" for i in range(2900))
         path = self.file("x.csv", text)
         answer = snug("pack", CELL, "--items", path, "--sequence", "no such")
         self.assert_refused(answer, "no such")

@@ -31,8 +31,9 @@ using internal::kShortestMm;
 const std::vector<std::string> kColumns{"order",   "article", "length_mm",    "width_mm", "height_mm",
                                         "mass_kg", "count",   "upright_only", "no_stack", "max_load_kg"};
 constexpr double kMillimetre = 1e-3;
-/// Boxes that orders add to a scenario with a text: there they are up to 25 values each, within kMostYamlValues.
-constexpr std::size_t kMostWritten = kMostYamlValues / 25;
+/// Boxes that orders add to a scenario with a text: there they are up to 30 values each, within kMostYamlValues and 100
+/// MB.
+constexpr std::size_t kMostWritten = 3000;
 
 std::string read_text(const std::filesystem::path& path) {
   return read_file(path, "orders (.csv, .json) or items (.yaml)");
