@@ -8,7 +8,7 @@ SOURCES = $(shell find src apps bench tests examples -name '*.hpp' -o -name '*.c
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)
 
-.PHONY: help setup setup-lint setup-peers build demo test check format-check fix san tsan tidy cover bench bench-peers docs clean
+.PHONY: help setup setup-lint setup-peers build demo test check format-check fix san tsan tidy cover fuzz bench bench-peers docs clean
 
 help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -19,6 +19,9 @@ setup-lint:
 	@scripts/install-deps.sh lint && scripts/install-viewer.sh
 setup-peers:
 	@scripts/install-deps.sh peers && scripts/install-viewer.sh
+
+setup-fuzz:
+	@scripts/install-deps.sh fuzz && scripts/install-viewer.sh
 
 build: setup ## build the program as build/snug
 	@$(call configure-build,release,--log-level=WARNING)
@@ -44,6 +47,9 @@ san: setup ## tests under the address and undefined-behaviour sanitizers
 tsan: setup ## tests under the thread sanitizer
 	@$(call configure-build,tsan) && $(call run-tests,tsan)
 
+fuzz: setup-fuzz ## attack every reader with libFuzzer for an hour; TIME=600 (seconds in all), READER=urdf for one
+	@$(call configure-build,fuzz) && scripts/fuzz.sh build-fuzz "$(or $(TIME),3600)" $(READER)
+
 tidy: setup-lint ## clang-tidy over everything
 	@$(call configure-build,tidy)
 
@@ -60,4 +66,4 @@ docs: setup ## check that every link in the documents leads somewhere
 	@python3 tools/check_docs.py .
 
 clean: ## remove what the verbs built
-	@rm -rf build build-dev build-asan build-tsan build-tidy build-coverage build-bench out
+	@rm -rf build build-dev build-asan build-tsan build-tidy build-coverage build-bench build-fuzz out

@@ -2,7 +2,7 @@
 # install-deps.sh: the one list of Debian 12 packages that snug is built, tested and compared with.
 #
 #   scripts/install-deps.sh              what building, testing and running need
-#   scripts/install-deps.sh lint peers   that, and the groups named
+#   scripts/install-deps.sh lint peers   that, and the groups named (lint, peers, fuzz)
 #   scripts/install-deps.sh --list ...   only print the packages
 #
 # Installs only what is missing, as root or through sudo; with nothing missing it takes a tenth of a second.
@@ -14,6 +14,7 @@ base="make cmake ninja-build g++ pkg-config ccache python3
   libtinyxml2-dev libassimp-dev libceres-dev libkdl-parser-dev"
 node="nodejs npm"                   # unless there is a node of 18 or newer already
 lint="clang-format clang-tidy"      # make check, fix, tidy
+fuzz="clang libclang-rt-14-dev"     # make fuzz
 peers="libbullet-dev libmujoco-dev" # make bench-peers
 
 wanted="$base"
@@ -23,7 +24,8 @@ for argument in "$@"; do
     --list) only_list=yes ;;
     lint) wanted="$wanted $lint" ;;
     peers) wanted="$wanted $peers" ;;
-    *) echo "install-deps.sh: unknown group '$argument'; expected lint, peers or --list" >&2; exit 2 ;;
+    fuzz) wanted="$wanted $fuzz" ;;
+    *) echo "install-deps.sh: unknown group '$argument'; expected lint, peers, fuzz or --list" >&2; exit 2 ;;
   esac
 done
 node_major="$(node --version 2>/dev/null | sed -n 's/^v\([0-9]*\)\..*/\1/p')"

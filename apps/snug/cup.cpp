@@ -18,9 +18,26 @@ namespace {
 
 using AnswerLine = std::string (*)(std::string_view line, int line_number, std::string_view source);
 
+constexpr std::size_t kLongestLine = 65536;  // a question with all its digits has some 1500
+
+/// Like std::getline, but of a line that does not end only a little more than is allowed.
+bool read_line(std::istream& input, std::string& line) {
+  line.clear();
+  for (int c = input.get(); c != std::char_traits<char>::eof(); c = input.get()) {
+    if (c == '\n' || line.size() > kLongestLine) return true;
+    line += static_cast<char>(c);
+  }
+  return !line.empty();
+}
+
 int answer_lines(std::istream& input, const std::string& source, AnswerLine answer) {
   std::string line;
-  for (int number = 1; std::getline(input, line); ++number) {
+  for (int number = 1; read_line(input, line); ++number) {
+    if (line.size() > kLongestLine) {
+      throw InputError(source + ":" + std::to_string(number), "",
+                       "a line of more than " + std::to_string(kLongestLine) + " bytes",
+                       "one JSON object on each line");
+    }
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     print(answer(line, number, source) + "\n");
     if (std::fflush(stdout) != 0) throw OutputError("standard output", std::strerror(errno));

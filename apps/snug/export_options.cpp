@@ -3,6 +3,7 @@
 
 #include "export.hpp"
 #include "options.hpp"
+#include "ranges.hpp"
 #include "report.hpp"
 
 namespace snug::app {
@@ -47,7 +48,7 @@ void add_export(CLI::App& app, Action& action) {
       ->type_name("LAYER")
       ->capture_default_str();
   verb.add_option("--period", options->period, "of ros-trajectory: time between points")
-      ->check(positive())
+      ->check(within(1e-3, 100.0))
       ->type_name("SECONDS")
       ->capture_default_str();
   verb.add_option("--vacuum-output", options->script.vacuum_output, "of urscript: digital output of the vacuum")

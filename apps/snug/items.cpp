@@ -80,6 +80,7 @@ model::Scenario with_new_boxes(const model::Scenario& scenario, const ItemsSeque
     lines.push_back(line);
   }
   changed.sequences.clear();
+  changed.source_text.clear();  // nobody reads it
   const std::size_t before = changed.parcels.size();
   model::add_orders(changed, lines, *options.types);
   changed.parcels.erase(changed.parcels.begin(), changed.parcels.begin() + static_cast<std::ptrdiff_t>(before));

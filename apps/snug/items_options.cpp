@@ -3,6 +3,7 @@
 
 #include "items.hpp"
 #include "options.hpp"
+#include "ranges.hpp"
 
 namespace snug::app {
 namespace {
@@ -27,7 +28,7 @@ void add_reduce(CLI::App& parent, Action& action) {
   verb.add_option("orders", options->orders, "orders")->required()->type_name("ORDERS");
   verb.add_option("--count", options->count, "representatives wanted")
       ->capture_default_str()
-      ->check(whole(1))
+      ->check(whole(1, kMostRuns))
       ->type_name("N");
   verb.add_option("--group", options->group_percent, "boxes join whose edges and mass differ by at most so much")
       ->capture_default_str()
@@ -62,13 +63,14 @@ void add_sequence(CLI::App& parent, Action& action) {
   all->excludes(types);
   verb.add_option("--sequences", options->sequences, "how many")
       ->capture_default_str()
-      ->check(whole(1))
+      ->check(whole(1, kMostSequences))
       ->type_name("N");
   verb.add_option("--name", options->name, "the sequences are NAME-1, NAME-2, ...")
       ->capture_default_str()
       ->type_name("NAME");
   verb.add_option("--repeat", options->repeat, "probability that a box is of the type of the one before")
       ->capture_default_str()
+      ->check(within(0.0, 1.0))
       ->type_name("0..1");
   verb.add_flag("--any-side-up", options->any_side_up, "boxes arrive standing on any side, not only with Z up");
   verb.add_option("--seed", options->seed, "")->capture_default_str()->check(whole(0))->type_name("N");

@@ -3,6 +3,7 @@
 
 #include "load.hpp"
 #include "options.hpp"
+#include "ranges.hpp"
 
 namespace snug::app {
 namespace {
@@ -25,14 +26,17 @@ void add_load(CLI::App& app, Action& action) {
   verb.add_option("file", options->file, "instances or orders")->required()->type_name("FILE");
   verb.add_option("--container", options->container_mm, "inner length, width and height of the container of orders")
       ->expected(3)
-      ->check(positive())
+      ->check(within(1.0, 1e5))
       ->type_name("MM");
   verb.add_option("--time", options->time, "seconds on one core of 2.5 GHz for each problem")
       ->capture_default_str()
-      ->check(positive())
+      ->check(within(0.0, 86400.0))
       ->type_name("S");
-  verb.add_option("--first", options->first, "only the first N problems")->check(whole(1))->type_name("N");
-  verb.add_option("--threads", options->threads, "")->capture_default_str()->check(whole(1))->type_name("N");
+  verb.add_option("--first", options->first, "only the first N problems")->check(whole(1, kMostThings))->type_name("N");
+  verb.add_option("--threads", options->threads, "")
+      ->capture_default_str()
+      ->check(whole(1, kMostThreads))
+      ->type_name("N");
   verb.add_flag("--json", options->json, "print JSON: every box, where it lies");
   verb.add_option("-o,--output", options->output, "file to write instead of stdout")->type_name("FILE");
   verb.footer(kHelp);

@@ -13,6 +13,7 @@
 
 #include "outputs.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 #include "verb.hpp"
 #include "verbs.hpp"
 
@@ -45,6 +46,14 @@ void check_verb(const CLI::App& app, int argc, char** argv) {
   throw snug::InputError("command line", "verb", std::string("'") + *word + "'", expected);
 }
 
+/// Words become names in JSON and HDF5, which take UTF-8 only.
+void check_words(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (snug::is_utf8(argv[i])) continue;
+    throw snug::InputError("command line", "word " + std::to_string(i), std::string("'") + argv[i] + "'", "UTF-8");
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app("snug simulates how a robot with a suction cup packs boxes, contact included.", "snug");
   app.set_version_flag("--version", "snug " SNUG_VERSION);
@@ -52,6 +61,7 @@ int run(int argc, char** argv) {
   app.footer(kExamples);
   Action action;
   snug::app::add_verbs(app, action);
+  check_words(argc, argv);
   check_verb(app, argc, argv);
   try {
     app.parse(argc, argv);
@@ -61,7 +71,8 @@ int run(int argc, char** argv) {
     snug::app::print(text.str());
     return code;
   } catch (const CLI::ParseError& error) {
-    throw snug::InputError("command line", std::string(error.what()) + " (see --help)", "", "");
+    constexpr std::size_t kRoomForWord = 250;
+    throw snug::InputError("command line", snug::printable(error.what(), kRoomForWord) + " (see --help)", "", "");
   }
   if (!action) {
     snug::app::print(app.help());
@@ -84,7 +95,7 @@ int run_guarded(int argc, char** argv) {
     std::fprintf(stderr, "snug: error: %s\n", error.what());
     return snug::app::kBadInput;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "snug: failed: %s\n", error.what());
+    std::fprintf(stderr, "snug: failed: %s\n", snug::printable(error.what(), snug::kLongestMessage).c_str());
     return snug::app::kRunFailed;
   }
 }

@@ -1,10 +1,13 @@
 // Checks of option values, with messages for people.
 #include "options.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <string_view>
 
+#include "ranges.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::app {
@@ -62,6 +65,16 @@ CLI::Validator whole(std::uint64_t least, std::uint64_t most) {
         return fits ? std::string()
                     : "got '" + text + "'; expected a whole number from " + std::to_string(least) + " to " +
                           std::to_string(most);
+      },
+      "");
+}
+
+CLI::Validator within(double low, double high) {
+  return CLI::Validator(
+      [low, high](const std::string& text) {
+        double value = 0.0;
+        const bool fits = reads_as(text, value) && value >= low && value <= high;
+        return fits ? std::string() : fmt::format("got '{}'; expected a number from {} to {}", text, low, high);
       },
       "");
 }

@@ -3,6 +3,7 @@
 
 #include "options.hpp"
 #include "pack.hpp"
+#include "ranges.hpp"
 #include "snug/packing/agent.hpp"
 
 namespace snug::app {
@@ -28,11 +29,11 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
       ->check(whole(0))
       ->type_name("N");
   verb.add_option("--decision-time", options.decision_time, "for deciding where an item goes, on one core")
-      ->check(positive())
+      ->check(within(0.0, 3600.0))
       ->type_name("SECONDS")
       ->capture_default_str();
   verb.add_option("--threads", options.threads, "threads; the result does not depend on it (default: all cores)")
-      ->check(whole(1))
+      ->check(whole(1, kMostThreads))
       ->type_name("N");
   verb.add_option("--samples", options.samples,
                   "courses of events with uncertain sizes, friction, poses, centres of mass and cup in which every "
@@ -70,7 +71,7 @@ void add_pack(CLI::App& app, Action& action) {
   verb.add_option("--executions", options->executions,
                   "repeat the finished program N times, open loop, under sampled uncertainty: that of the samples, and "
                   "masses")
-      ->check(whole(1))
+      ->check(whole(1, kMostRuns))
       ->type_name("N");
   verb.add_option("--program", options->program, "write the waypoint program")->type_name("FILE.csv");
   verb.add_option("--plan", options->plan, "write the placements as JSON")->type_name("FILE.json");

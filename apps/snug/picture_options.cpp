@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "options.hpp"
+#include "ranges.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::app {
@@ -16,7 +17,9 @@ constexpr const char* kExamples = R"(Examples:
   snug picture run.h5 --video frames --fps 25 --from 40 --to 60
   ffmpeg -framerate 25 -i frames/frame-%06d.png -pix_fmt yuv420p run.mp4      (makes a film of the last))";
 
-constexpr double kFastest = 1000.0;  // pictures a second, and times as fast as it was
+// Pictures a second, and times as fast as it was.
+constexpr double kSlowest = 1e-3;
+constexpr double kFastest = 1000.0;
 
 void read_size(const std::string& text, PictureOptions& options) {
   char rest = '\0';
@@ -36,9 +39,6 @@ void check(const PictureOptions& options) {
   if (!is_video && (options.from || options.to)) {
     throw InputError("command line", "--from, --to", "without --video", "--time for one picture");
   }
-  if (options.fps > kFastest || options.speed > kFastest) {
-    throw InputError("command line", "--fps, --speed", "more than 1000", "1000 at most");
-  }
 }
 
 }  // namespace
@@ -54,11 +54,11 @@ void add_picture(CLI::App& app, Action& action) {
   verb.add_option("--video", options->video, "instead of one picture: frame-000000.png ... in this new or empty folder")
       ->type_name("DIR");
   verb.add_option("--fps", options->fps, "pictures a second of the video")
-      ->check(positive())
+      ->check(within(kSlowest, kFastest))
       ->type_name("N")
       ->capture_default_str();
   verb.add_option("--speed", options->speed, "of the video, recorded seconds a second")
-      ->check(positive())
+      ->check(within(kSlowest, kFastest))
       ->type_name("FACTOR")
       ->capture_default_str();
   verb.add_option("--from", options->from, "where the video begins; without it the first frame")->type_name("SECONDS");

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "options.hpp"
+#include "ranges.hpp"
 #include "report.hpp"
 
 namespace snug::app {
@@ -17,7 +18,9 @@ constexpr const char* kExamples = R"(Examples:
 void add_selection_options(CLI::App& verb, replay::Selection& selection) {
   verb.add_option("--from", selection.from, "leave out what was before this time")->type_name("SECONDS");
   verb.add_option("--to", selection.to, "leave out what was after this time")->type_name("SECONDS");
-  verb.add_option("--every", selection.every, "take every Nth frame only")->check(whole(1))->type_name("N");
+  verb.add_option("--every", selection.every, "take every Nth frame only")
+      ->check(whole(1, kMostThings))
+      ->type_name("N");
 }
 
 void add_report(CLI::App& app, Action& action) {

@@ -3,14 +3,13 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
 #include "snug/cell/ensemble.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
@@ -35,14 +34,6 @@ class TableWriter : public cell::RunObserver {
   std::optional<record::CsvWriter> writer_;
 };
 
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw InputError(path, "", "", "a file that can be read");
-  return text.str();
-}
-
 std::string list_sequences(const model::Scenario& scenario) {
   std::string names;
   for (const model::Sequence& sequence : scenario.sequences) names += (names.empty() ? "" : ", ") + sequence.name;
@@ -66,7 +57,7 @@ model::Scenario load_with_overrides(const SimulateOptions& options) {
 cell::RunOptions make_run_options(const SimulateOptions& options, const model::Scenario& scenario) {
   cell::RunOptions run;
   if (options.program) {
-    run.program_text = read_text(*options.program);
+    run.program_text = read_file(*options.program, "a program file (CSV)");
     run.program = motion::parse_program(run.program_text, *options.program);
     if (!options.sequence) throw InputError("command line", "--sequence", "nothing", list_sequences(scenario));
   } else if (options.robot) {

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "options.hpp"
+#include "ranges.hpp"
 #include "simulate.hpp"
 
 namespace snug::app {
@@ -41,7 +42,9 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--until", options.until, "stop at this simulated time; default: the program's end")
       ->check(positive())
       ->type_name("SECONDS");
-  verb.add_option("--dt", options.dt, "time step, instead of the scenario's")->check(positive())->type_name("SECONDS");
+  verb.add_option("--dt", options.dt, "time step, instead of the scenario's")
+      ->check(within(1e-6, 0.1))
+      ->type_name("SECONDS");
   verb.add_option("--cup", options.cup,
                   "holding: attached and released at once; phases: pressure builds up and decays, holds can fail")
       ->check(one_of({"holding", "phases"}))
@@ -59,10 +62,10 @@ void add_simulate(CLI::App& app, Action& action) {
   add_physics_options(verb, *options);
   verb.add_option("--ensemble", options->ensemble,
                   "run the program N times with aligner, box sizes, friction and masses changed a little at random")
-      ->check(whole(1))
+      ->check(whole(1, kMostRuns))
       ->type_name("N");
   verb.add_option("--threads", options->threads, "threads of an ensemble; the result does not depend on it")
-      ->check(whole(1))
+      ->check(whole(1, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
   verb.add_option("-o,--record", options->record, "write a recording")->type_name("FILE.h5");

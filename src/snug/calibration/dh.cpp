@@ -3,7 +3,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "snug/calibration/internal/frames.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::calibration {
 namespace {
@@ -93,6 +93,7 @@ DhTable nominal_dh(const robot::ArmModel& arm, const std::string& source) {
 }
 
 DhTable parse_deltas(const std::string& text, const std::string& name) {
+  check_utf8(text, name);
   const std::vector<std::string> keys = {"delta_theta", "delta_d", "delta_a", "delta_alpha"};
   std::array<std::optional<std::array<double, 6>>, 4> columns;
   std::istringstream lines(text);
@@ -136,6 +137,8 @@ DhTable parse_deltas(const std::string& text, const std::string& name) {
   return deltas;
 }
 
-DhTable load_deltas(const std::filesystem::path& path) { return parse_deltas(read_file(path), path.string()); }
+DhTable load_deltas(const std::filesystem::path& path) {
+  return parse_deltas(read_file(path, "calibration.conf of a controller"), path.string());
+}
 
 }  // namespace snug::calibration

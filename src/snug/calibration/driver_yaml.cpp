@@ -9,6 +9,7 @@
 #include "snug/calibration/internal/frames.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/model/yaml_limits.hpp"
 
 namespace snug::calibration {
 namespace {
@@ -45,10 +46,16 @@ Pose read_yaml_origin(const std::string& name, const YAML::Node& node, const std
 
 robot::ArmModel load_calibration_yaml(const std::filesystem::path& path, AngleReading reading,
                                       const robot::ArmModel& nominal) {
-  const std::string name = path.string();
+  return parse_calibration_yaml(read_file(path, "a calibration file of a driver (YAML)"), path.string(), reading,
+                                nominal);
+}
+
+robot::ArmModel parse_calibration_yaml(const std::string& text, const std::string& name, AngleReading reading,
+                                       const robot::ArmModel& nominal) {
+  model::check_yaml(text, name);
   YAML::Node root;
   try {
-    root = YAML::Load(read_file(path));
+    root = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw InputError(name + ":" + std::to_string(error.mark.line + 1), "", error.msg, "YAML that can be parsed");
   }

@@ -66,6 +66,8 @@ enum class AngleReading {
 /// joint origins. InputError with file:line for anything else.
 [[nodiscard]] robot::ArmModel load_calibration_yaml(const std::filesystem::path& path, AngleReading reading,
                                                     const robot::ArmModel& nominal);
+[[nodiscard]] robot::ArmModel parse_calibration_yaml(const std::string& text, const std::string& name,
+                                                     AngleReading reading, const robot::ArmModel& nominal);
 [[nodiscard]] std::string format_calibration_yaml(const robot::ArmModel& arm, AngleReading reading);
 
 }  // namespace snug::calibration

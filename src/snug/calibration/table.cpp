@@ -6,9 +6,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "snug/calibration/internal/frames.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::calibration {
 namespace {
@@ -58,6 +58,7 @@ double read_number(const std::string& cell, const std::string& where, const std:
 
 Table parse_table(const std::string& text, const std::string& name, const std::vector<std::string>& columns,
                   const std::vector<std::string>& optional) {
+  check_utf8(text, name);
   Table table{name, columns, {}, {}};
   std::vector<std::size_t> places;
   std::size_t width = 0;
@@ -89,7 +90,7 @@ Table parse_table(const std::string& text, const std::string& name, const std::v
 
 Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns,
                  const std::vector<std::string>& optional) {
-  return parse_table(read_file(path), path.string(), columns, optional);
+  return parse_table(read_file(path, "a table of measurements (CSV)"), path.string(), columns, optional);
 }
 
 Pose row_pose(const std::vector<double>& row, std::size_t first) {

@@ -46,7 +46,7 @@ void move_meshes(tinyxml2::XMLElement& element, const std::filesystem::path& fro
 class UrdfEdit {
  public:
   explicit UrdfEdit(const std::filesystem::path& path) : path_(path) {
-    const std::string text = read_file(path);
+    const std::string text = read_file(path, "a URDF");
     document_.Parse(text.c_str(), text.size());
     SNUG_CHECK(document_.RootElement() != nullptr, "the file has been read before");
   }

@@ -6,8 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "snug/core/text.hpp"
+
 namespace snug {
 namespace {
+
+constexpr std::size_t kLongestWord = 200;  // a longer one is no slip of the keyboard, and would take its time
 
 std::string compose(const std::string& where, const std::string& key, const std::string& got,
                     const std::string& expected) {
@@ -16,6 +20,19 @@ std::string compose(const std::string& where, const std::string& key, const std:
   if (!got.empty()) text += ": got " + got;
   if (!expected.empty()) text += (got.empty() ? ": " : "; ") + std::string("expected ") + expected;
   return text;
+}
+
+/// What stood there may be as long as a file: shortened first. The end of a path says most.
+std::string compose_printable(const std::string& where, const std::string& key, const std::string& got,
+                              const std::string& expected) {
+  constexpr std::size_t kLongestPart = 80;
+  const auto part = [](const std::string& text) { return printable(text, kLongestMessage + 1); };
+  std::string text = compose(printable_end(where, kLongestMessage + 1), part(key), part(got), part(expected));
+  if (text.size() > kLongestMessage && !got.empty()) {
+    text = compose(printable_end(where, kLongestPart), printable(key, kLongestPart), printable(got, kLongestPart),
+                   part(expected));
+  }
+  return printable(text, kLongestMessage);
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -36,7 +53,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 InputError::InputError(std::string where_, std::string key_, std::string got_, std::string expected_)
-    : std::runtime_error(compose(where_, key_, got_, expected_)),
+    : std::runtime_error(compose_printable(where_, key_, got_, expected_)),
       where(std::move(where_)),
       key(std::move(key_)),
       got(std::move(got_)),
@@ -44,6 +61,7 @@ InputError::InputError(std::string where_, std::string key_, std::string got_, s
 
 std::string_view find_nearest(std::string_view word, std::span<const std::string> candidates) {
   std::string_view best;
+  if (word.size() > kLongestWord) return best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);

@@ -158,7 +158,7 @@ std::vector<Release> parse_releases_csv(const std::string& text, const std::stri
 }
 
 std::vector<Release> load_releases(const std::filesystem::path& path, const model::CupParams& cup) {
-  const std::string text = read_file(path);
+  const std::string text = read_file(path, "measurements (JSON or CSV)");
   if (path.extension() == ".json") return parse_releases_json(text, path.string(), cup);
   if (path.extension() == ".csv") return parse_releases_csv(text, path.string(), cup);
   throw InputError(path.string(), "", "a name that ends in '" + path.extension().string() + "'", ".json or .csv");

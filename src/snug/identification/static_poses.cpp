@@ -123,7 +123,7 @@ StaticPoses parse_static_poses_csv(const std::string& text, const std::string& n
 }
 
 StaticPoses load_static_poses(const std::filesystem::path& path, const model::CupParams& cup) {
-  const std::string text = read_file(path);
+  const std::string text = read_file(path, "measurements (JSON or CSV)");
   if (path.extension() == ".json") return parse_static_poses_json(text, path.string(), cup);
   if (path.extension() == ".csv") return parse_static_poses_csv(text, path.string(), cup);
   throw InputError(path.string(), "", "a name that ends in '" + path.extension().string() + "'", ".json or .csv");

@@ -15,6 +15,8 @@ namespace {
 constexpr double kStaticOverlap = 1e-6;
 /// Bodies that move may start this deep in something, m; the contact solver pushes them out.
 constexpr double kStartOverlap = 1e-3;
+/// A cell has some hundred; so many take a second.
+constexpr std::size_t kMostNearPairs = 100'000;
 
 std::array<double, 3> sorted(const Vector3& size) {
   std::array<double, 3> edges{size.x(), size.y(), size.z()};
@@ -31,7 +33,7 @@ std::string to_millimetres(const Vector3& size) {
 double overlap_of(const PlacedShape& a, const Pose& X_WA, const PlacedShape& b, const Pose& X_WB) {
   const Pose X_WG = X_WA * a.X_BG;
   const Pose X_WH = X_WB * b.X_BG;
-  if ((X_WG.p - X_WH.p).norm() > geometry::bounding_radius(a.shape) + geometry::bounding_radius(b.shape)) return 0.0;
+  if (!geometry::bounds(a.shape, X_WG).overlaps(geometry::bounds(b.shape, X_WH))) return 0.0;
   geometry::PairCache cache;
   geometry::Manifold manifold;
   geometry::collide(a.shape, X_WG, b.shape, X_WH, 0.0, cache, manifold);
@@ -81,6 +83,14 @@ double ScenarioReader::compliant_depth(const Placed& a, const Placed& b) const {
 
 void ScenarioReader::check_overlaps() const {
   const std::vector<Placed> solids = placed_solids();
+  // Thousands of bodies have millions of pairs: only those whose boxes around them overlap are looked at.
+  std::vector<std::vector<geometry::Aabb>> boxes;
+  for (const Placed& solid : solids) {
+    boxes.emplace_back();
+    for (const PlacedShape& shape : solid.shapes)
+      boxes.back().push_back(geometry::bounds(shape.shape, solid.X_WB * shape.X_BG));
+  }
+  std::size_t near_pairs = 0;
   for (std::size_t j = 1; j < solids.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
       const Placed& a = solids[i];
@@ -89,9 +99,15 @@ void ScenarioReader::check_overlaps() const {
       const bool is_one_dynamic = a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic;
       if (!(are_static || is_one_dynamic) || !a.is_there_at_start || !b.is_there_at_start) continue;
       double depth = 0.0;
-      for (const PlacedShape& shape_a : a.shapes)
-        for (const PlacedShape& shape_b : b.shapes)
-          depth = std::max(depth, overlap_of(shape_a, a.X_WB, shape_b, b.X_WB));
+      for (std::size_t m = 0; m < a.shapes.size(); ++m) {
+        for (std::size_t n = 0; n < b.shapes.size(); ++n) {
+          if (!boxes[i][m].overlaps(boxes[j][n])) continue;
+          if (++near_pairs > kMostNearPairs)
+            b.value.fail("more than " + std::to_string(kMostNearPairs) + " pairs of shapes close to each other",
+                         "fewer");
+          depth = std::max(depth, overlap_of(a.shapes[m], a.X_WB, b.shapes[n], b.X_WB));
+        }
+      }
       const double weight_depth = are_static ? 0.0 : compliant_depth(a, b);
       if (depth <= (are_static ? kStaticOverlap : std::max(kStartOverlap, weight_depth))) continue;
       const std::string got =

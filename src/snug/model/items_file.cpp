@@ -2,38 +2,41 @@
 #include "snug/model/items_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
+#include <utility>
 
+#include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 #include "snug/model/internal/mass_properties.hpp"
+#include "snug/model/internal/orders_json.hpp"
 #include "snug/model/internal/parse.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
 #include "snug/model/internal/scenario_text.hpp"
+#include "snug/model/yaml_limits.hpp"
 
 namespace snug::model {
 namespace {
 
+using internal::kHeaviest;
+using internal::kLightest;
+using internal::kLongestMm;
+using internal::kMostBoxes;
+using internal::kShortestMm;
+
 const std::vector<std::string> kColumns{"order",   "article", "length_mm",    "width_mm", "height_mm",
                                         "mass_kg", "count",   "upright_only", "no_stack", "max_load_kg"};
 constexpr double kMillimetre = 1e-3;
-constexpr double kLongestMm = 1e5;
-constexpr double kHeaviest = 1e5;
-constexpr std::size_t kMostBoxes = 100000;
+/// Boxes that orders add to a scenario with a text: there they are up to 30 values each, within kMostYamlValues and 100
+/// MB.
+constexpr std::size_t kMostWritten = 3000;
 
 std::string read_text(const std::filesystem::path& path) {
-  std::error_code error;
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!std::filesystem::is_regular_file(path, error) || !(text << file.rdbuf())) {
-    throw InputError(path.string(), "", "no readable file", "orders (.csv, .json) or items (.yaml)");
-  }
-  return text.str();
+  return read_file(path, "orders (.csv, .json) or items (.yaml)");
 }
 
 std::vector<std::string_view> split(std::string_view line) {
@@ -94,10 +97,10 @@ OrderLine read_row(const Row& row, const std::string& name, int line) {
   OrderLine entry;
   entry.order = row.text("order").empty() ? name : std::string(row.text("order"));
   entry.article = std::string(row.text("article"));
-  entry.size = kMillimetre * Vector3(row.number("length_mm", 1.0, kLongestMm, required),
-                                     row.number("width_mm", 1.0, kLongestMm, required),
-                                     row.number("height_mm", 1.0, kLongestMm, required));
-  entry.mass = row.number("mass_kg", 1e-3, kHeaviest, required);
+  entry.size = kMillimetre * Vector3(row.number("length_mm", kShortestMm, kLongestMm, required),
+                                     row.number("width_mm", kShortestMm, kLongestMm, required),
+                                     row.number("height_mm", kShortestMm, kLongestMm, required));
+  entry.mass = row.number("mass_kg", kLightest, kHeaviest, required);
   entry.count = row.whole("count", 1, 5000, 1);
   entry.handling = {row.flag("upright_only"), row.flag("no_stack"), std::nullopt};
   if (!row.text("max_load_kg").empty()) entry.handling.max_load = row.number("max_load_kg", 0.0, 1e6, required);
@@ -127,41 +130,6 @@ std::vector<std::string> read_header(std::string_view text, const std::string& n
   return header;
 }
 
-double json_number(const nlohmann::json& item, const char* key, double low, double high, const std::string& where) {
-  const auto found = item.find(key);
-  if (found == item.end() || !found->is_number() || !(found->get<double>() >= low && found->get<double>() <= high)) {
-    throw InputError(where, key, found == item.end() ? "nothing" : found->dump(),
-                     "a number from " + internal::to_text(low) + " to " + internal::to_text(high));
-  }
-  return found->get<double>();
-}
-
-OrderLine read_json_item(const nlohmann::json& item, const std::string& order, const std::string& where) {
-  if (!item.is_object()) throw InputError(where, "", item.dump().substr(0, 40), "an item");
-  OrderLine entry;
-  entry.order = order;
-  if (const auto id = item.find("id"); id != item.end() && id->is_string()) entry.article = id->get<std::string>();
-  entry.size = kMillimetre * Vector3(json_number(item, "length/mm", 1.0, kLongestMm, where),
-                                     json_number(item, "width/mm", 1.0, kLongestMm, where),
-                                     json_number(item, "height/mm", 1.0, kLongestMm, where));
-  entry.mass = json_number(item, "weight/kg", 1e-3, kHeaviest, where);
-  return entry;
-}
-
-void add_items_text(Scenario& scenario, const std::string& text, const std::string& name) {
-  internal::Document document{name, {}};
-  Scenario extended = scenario;
-  try {
-    const YAML::Node items = YAML::Load(text);
-    internal::ScenarioReader(internal::Value(items, "", document, 1), extended).read_items();
-    if (!scenario.source_text.empty())
-      extended.source_text = internal::text_with_items(scenario.source_text, items, "--items " + name);
-  } catch (const YAML::Exception& error) {
-    throw InputError(name + ":" + std::to_string(error.mark.line + 1), "", error.msg, "YAML that can be parsed");
-  }
-  scenario = std::move(extended);
-}
-
 std::string where_of(const std::string& name, const OrderLine& line) {
   return line.line > 0 ? name + ":" + std::to_string(line.line) : name;
 }
@@ -169,9 +137,7 @@ std::string where_of(const std::string& name, const OrderLine& line) {
 /// What a scenario could not say of a box, an order cannot ask for either.
 void check_line(const Scenario& scenario, const OrderLine& line, const std::string& name) {
   const auto check_name = [&](const char* key, const std::string& text) {
-    const bool is_printable = std::all_of(text.begin(), text.end(),
-                                          [](char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; });
-    if (text.size() > 100 || !is_printable) {
+    if (text.size() > 100 || !is_printable(text)) {
       throw InputError(where_of(name, line), key, internal::quote(text), "at most 100 printable characters");
     }
   };
@@ -206,16 +172,38 @@ void write_down(Scenario& scenario, std::size_t types, std::size_t parcels, std:
   scenario.source_text = internal::text_with_items(scenario.source_text, items, "--items " + name);
 }
 
-/// The type of a line's boxes: by article, with a number behind it where other boxes have that name.
-std::string type_for(Scenario& scenario, const OrderLine& line) {
-  const std::string article = line.article.empty() ? "box" : line.article;
-  for (int i = 1;; ++i) {
-    const std::string name = i == 1 ? article : article + "-" + std::to_string(i);
-    const ParcelType* type = find_parcel_type(scenario, name);
-    if (type == nullptr) scenario.parcel_types.push_back({name, line.size, line.mass});
-    if (type == nullptr || (type->size == line.size && type->mass == line.mass)) return name;
+/// The types of boxes: by article, with a number behind it where other boxes have that name.
+class TypeNames {
+ public:
+  explicit TypeNames(Scenario& scenario) : scenario_(scenario) {
+    for (const ParcelType& type : scenario.parcel_types) known_.emplace(type.name, Boxes(type));
   }
-}
+  const std::string& name_for(const OrderLine& line) {
+    const std::string article = line.article.empty() ? "box" : line.article;
+    const Boxes boxes(line);
+    if (const auto named = named_.find({article, boxes}); named != named_.end()) return named->second;
+    // Numbers that were tried for this article belong to boxes in named_.
+    for (int& i = tried_[article];;) {
+      const std::string name = ++i == 1 ? article : article + "-" + std::to_string(i);
+      const auto [type, is_free] = known_.emplace(name, boxes);
+      if (is_free) scenario_.parcel_types.push_back({name, line.size, line.mass});
+      const auto [named, is_new] = named_.try_emplace({article, type->second}, name);
+      if (type->second == boxes) return named->second;
+    }
+  }
+
+ private:
+  /// What boxes of one type have in common.
+  struct Boxes : std::array<double, 4> {
+    template <class Thing>
+    explicit Boxes(const Thing& thing)
+        : std::array<double, 4>{thing.size.x(), thing.size.y(), thing.size.z(), thing.mass} {}
+  };
+  Scenario& scenario_;
+  std::map<std::string, Boxes> known_;
+  std::map<std::pair<std::string, Boxes>, std::string> named_;
+  std::map<std::string, int> tried_;
+};
 
 }  // namespace
 
@@ -223,6 +211,7 @@ std::vector<OrderLine> parse_orders_csv(std::string_view text, const std::string
   std::vector<std::string> header;
   std::vector<OrderLine> lines;
   std::size_t boxes = 0;
+  check_utf8(text, name);
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
@@ -234,7 +223,10 @@ std::vector<OrderLine> parse_orders_csv(std::string_view text, const std::string
       const Row row(header, split(line), name + ":" + std::to_string(number));
       lines.push_back(read_row(row, std::filesystem::path(name).stem().string(), number));
       boxes += static_cast<std::size_t>(lines.back().count);
-      if (boxes > kMostBoxes) throw InputError(name, "", "more than 100000 boxes", "fewer");
+      if (boxes > kMostBoxes) {
+        throw InputError(name + ":" + std::to_string(number), "", "more than " + std::to_string(kMostBoxes) + " boxes",
+                         "fewer");
+      }
     }
   }
   if (lines.empty()) throw InputError(name, "", "no boxes", "a header and at least one line");
@@ -242,31 +234,8 @@ std::vector<OrderLine> parse_orders_csv(std::string_view text, const std::string
 }
 
 std::vector<OrderLine> parse_orders_json(std::string_view text, const std::string& name) {
-  const nlohmann::json root = nlohmann::json::parse(text, nullptr, false);
-  if (!root.is_object()) throw InputError(name, "", "something else", "a JSON object of orders (BED-BPP)");
-  std::vector<OrderLine> lines;
-  for (const auto& [order, content] : root.items()) {
-    const auto sequence = content.is_object() ? content.find("item_sequence") : content.end();
-    if (!content.is_object() || sequence == content.end() || !sequence->is_object()) {
-      throw InputError(name, order, "no item_sequence", "an order with an item_sequence (BED-BPP)");
-    }
-    std::map<long, OrderLine> by_number;
-    for (const auto& [number, item] : sequence->items()) {
-      const std::string where = name + ": " + order + ", item " + number;
-      long position = 0;
-      const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), position);
-      if (error != std::errc{} || end != number.data() + number.size()) {
-        throw InputError(where, number, "no number", "items counted from 1");
-      }
-      if (!by_number.emplace(position, read_json_item(item, order, where)).second) {
-        throw InputError(where, number, "a second time", "each number once");
-      }
-    }
-    for (auto& [number, line] : by_number) lines.push_back(std::move(line));
-    if (lines.size() > kMostBoxes) throw InputError(name, "", "more than 100000 boxes", "fewer");
-  }
-  if (lines.empty()) throw InputError(name, "", "no items", "at least one");
-  return lines;
+  check_utf8(text, name);
+  return internal::read_orders_json(text, name);
 }
 
 std::vector<OrderLine> load_orders(const std::filesystem::path& path) {
@@ -285,38 +254,60 @@ void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const s
   const std::size_t parcels = scenario.parcels.size();
   std::set<std::string> ids;
   for (const Parcel& parcel : scenario.parcels) ids.insert(parcel.id);
+  std::map<std::string, std::size_t> sequence_of;
+  for (std::size_t i = 0; i < known; ++i) sequence_of.emplace(scenario.sequences[i].name, i);
+  TypeNames type_names(scenario);
   int number = 0;
   for (const OrderLine& line : lines) {
     check_line(scenario, line, name);
-    auto sequence = std::find_if(scenario.sequences.begin(), scenario.sequences.end(),
-                                 [&](const Sequence& s) { return s.name == line.order; });
-    if (sequence == scenario.sequences.end()) {
+    const auto [sequence, is_new] = sequence_of.emplace(line.order, scenario.sequences.size());
+    if (is_new) {
       scenario.sequences.push_back({});
-      sequence = scenario.sequences.end() - 1;
-      sequence->name = line.order;
-    } else if (sequence < scenario.sequences.begin() + static_cast<std::ptrdiff_t>(known)) {
+      scenario.sequences.back().name = line.order;
+    } else if (sequence->second < known) {
       throw InputError(where_of(name, line), "order", "'" + line.order + "'", "a name that is not taken");
     }
-    const std::string type = type_for(scenario, line);
+    std::vector<Item>& items = scenario.sequences[sequence->second].items;
+    const std::string& type = type_names.name_for(line);
     for (int i = 0; i < line.count; ++i) {
       char id[32];
       do {
         std::snprintf(id, sizeof id, "ITEM%06d", ++number);
       } while (!ids.insert(id).second);
+      const std::size_t most = scenario.source_text.empty() ? kMostBoxes : kMostWritten;
+      if (scenario.parcels.size() - parcels >= most) {
+        throw InputError(where_of(name, line), "", "more than " + std::to_string(most) + " boxes",
+                         "fewer: the scenario with all its boxes goes into each recording");
+      }
       Parcel parcel{id, type, line.size, {}, material, line.handling};
       parcel.inertia = {line.mass, Vector3::Zero(), internal::cuboid_inertia(line.size, line.mass)};
       scenario.parcels.push_back(parcel);
-      sequence->items.push_back({});
-      sequence->items.back().parcel = id;
+      items.push_back({});
+      items.back().parcel = id;
     }
   }
   write_down(scenario, types, parcels, known, name);
 }
 
+void add_items_yaml(Scenario& scenario, const std::string& text, const std::string& name) {
+  internal::Document document{name, {}};
+  Scenario extended = scenario;
+  check_yaml(text, name);
+  try {
+    const YAML::Node items = YAML::Load(text);
+    internal::ScenarioReader(internal::Value(items, "", document, 1), extended).read_items();
+    if (!scenario.source_text.empty())
+      extended.source_text = internal::text_with_items(scenario.source_text, items, "--items " + name);
+  } catch (const YAML::Exception& error) {
+    throw InputError(name + ":" + std::to_string(error.mark.line + 1), "", error.msg, "YAML that can be parsed");
+  }
+  scenario = std::move(extended);
+}
+
 void add_items(Scenario& scenario, const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
   if (ending == ".yaml" || ending == ".yml") {
-    add_items_text(scenario, read_text(path), path.string());
+    add_items_yaml(scenario, read_text(path), path.string());
   } else {
     add_orders(scenario, load_orders(path), path.string());
   }

@@ -19,12 +19,12 @@ struct OrderLine {
   double mass = 1.0;                      ///< kg
   int count = 1;
   Handling handling;
-  int line = 0;  ///< in the file, from 1; 0: not known (JSON)
+  int line = 0;  ///< in the file, from 1; 0: not from a file
   bool operator==(const OrderLine&) const = default;
 };
 
 /// Reads a CSV with a header (docs/formats.md, orders), or orders in the BED-BPP form (JSON); by the ending of the
-/// name. Throws InputError with file and line (or key) for anything else.
+/// name. Throws InputError with file and line for anything else.
 [[nodiscard]] std::vector<OrderLine> load_orders(const std::filesystem::path& path);
 [[nodiscard]] std::vector<OrderLine> parse_orders_csv(std::string_view text, const std::string& name);
 [[nodiscard]] std::vector<OrderLine> parse_orders_json(std::string_view text, const std::string& name);
@@ -38,5 +38,7 @@ void add_orders(Scenario& scenario, const std::vector<OrderLine>& lines, const s
 /// Adds what a file holds: .csv and .json as orders; .yaml as `parcel_types`, `parcels` and `sequences` written as in a
 /// scenario.
 void add_items(Scenario& scenario, const std::filesystem::path& path);
+/// The last of these from a text called `name`.
+void add_items_yaml(Scenario& scenario, const std::string& text, const std::string& name);
 
 }  // namespace snug::model

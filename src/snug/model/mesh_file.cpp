@@ -6,8 +6,11 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
+
+#include "snug/core/read_file.hpp"
 
 namespace snug::model {
 namespace {
@@ -44,11 +47,19 @@ std::vector<Vector3> extreme_points(const std::vector<Vector3>& points, int coun
 }  // namespace
 
 MeshParts read_mesh_parts(const std::filesystem::path& path) {
+  MeshParts mesh;
+  // The library knows fifty more forms, few of them tried with files that are wrong.
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending != ".stl" && ending != ".dae" && ending != ".obj") {
+    mesh.error = "not a file of these forms";
+    return mesh;
+  }
+  check_readable(path, "a mesh (STL, DAE, OBJ)", kLargestMesh);
   Assimp::Importer importer;
   // COLLADA's own up axis is kept as ROS tools keep it: the file's numbers are the link's.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_JoinIdenticalVertices);
-  MeshParts mesh;
   if (scene == nullptr || scene->mRootNode == nullptr) {
     mesh.error = importer.GetErrorString();
     return mesh;

@@ -1,6 +1,7 @@
 // Mesh files as convex hulls: what a shape of a scenario or a link of a robot names.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,8 +10,9 @@
 
 namespace snug::model {
 
-/// Points of each part (mesh) of a file, with the transforms of the file's nodes, in the file's own axes. STL, OBJ, DAE
-/// and what else assimp reads. On failure: why, and no parts.
+/// Points of each part (mesh) of a file, with the transforms of the file's nodes, in the file's own axes. STL, OBJ or DAE
+/// of at most kLargestMesh bytes. On failure: why, and no parts.
+inline constexpr std::size_t kLargestMesh = std::size_t{32} << 20U;
 struct MeshParts {
   std::vector<std::vector<Vector3>> parts;
   std::string error;

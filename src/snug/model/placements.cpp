@@ -2,13 +2,13 @@
 #include "snug/model/placements.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
+#include "snug/core/read_file.hpp"
 #include "snug/model/internal/value.hpp"
+#include "snug/model/yaml_limits.hpp"
 
 namespace snug::model {
 namespace {
@@ -58,15 +58,12 @@ std::vector<PlacementEntry> read_list(const Value& root, const Scenario& scenari
 }  // namespace
 
 std::vector<PlacementEntry> load_placements(const std::filesystem::path& path, const Scenario& scenario) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw InputError(path.string(), "", "no readable file", "a placements file (YAML)");
-  return parse_placements(text.str(), path.string(), scenario);
+  return parse_placements(read_file(path, "a placements file (YAML)"), path.string(), scenario);
 }
 
 std::vector<PlacementEntry> parse_placements(std::string_view text, std::string_view name, const Scenario& scenario) {
   Document document{std::string(name), {}};
+  check_yaml(text, name);
   try {
     return read_list(Value(YAML::Load(std::string(text)), "", document, 1), scenario);
   } catch (const YAML::Exception& error) {

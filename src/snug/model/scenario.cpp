@@ -2,15 +2,13 @@
 #include "snug/model/scenario.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
-#include <system_error>
 
-#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include "snug/core/read_file.hpp"
 #include "snug/model/internal/parse.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
+#include "snug/model/yaml_limits.hpp"
 
 namespace snug::model {
 namespace internal {
@@ -22,33 +20,6 @@ std::string where_of(std::string_view name, const YAML::Mark& mark) {
   return where;
 }
 
-/// Notes where documents start and is deaf to the rest.
-class DocumentStarts final : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark& mark) override { last_start = mark; }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-  YAML::Mark last_start;
-};
-
-/// YAML::Load takes the first document and silently drops what follows, be it a second one or the rest after a stray
-/// bracket; YAML::LoadAll never returns when it meets a stray comma.
-void check_one_document(const std::string& text, std::string_view name) {
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  DocumentStarts starts;
-  if (!parser.HandleNextDocument(starts)) throw InputError(std::string(name) + ":1", "", "nothing", "a mapping");
-  if (parser.HandleNextDocument(starts))
-    throw InputError(where_of(name, starts.last_start), "", "something after the end of the YAML document",
-                     "one document and nothing else (look for a stray bracket, comma or ---)");
-}
-
 }  // namespace
 
 Scenario parse_text(std::string_view text, std::string_view name, std::set<std::string>* known_keys) {
@@ -57,8 +28,8 @@ Scenario parse_text(std::string_view text, std::string_view name, std::set<std::
   scenario.source_name = document.name;
   scenario.source_text = std::string(text);
   scenario.name = document.name;
+  check_yaml(text, name);
   try {
-    check_one_document(scenario.source_text, name);
     ScenarioReader(Value(YAML::Load(scenario.source_text), "", document, 1), scenario).read();
   } catch (const YAML::Exception& error) {
     throw InputError(where_of(name, error.mark), "", error.msg, "YAML that can be parsed");
@@ -80,14 +51,7 @@ const Thing* find_named(const std::vector<Thing>& things, Key Thing::*key, std::
 }  // namespace
 
 Scenario load_scenario(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    throw InputError(path.string(), "", "no readable file", "a scenario file (YAML)");
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!(text << file.rdbuf()))
-    throw InputError(path.string(), "", "a file that is empty or cannot be read", "YAML text");
-  Scenario scenario = parse_scenario(text.str(), path.string());
+  Scenario scenario = parse_scenario(read_file(path, "a scenario file (YAML)"), path.string());
   if (scenario.name == scenario.source_name) scenario.name = path.stem().string();
   return scenario;
 }

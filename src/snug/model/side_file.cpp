@@ -1,9 +1,9 @@
 // Side files: what a scenario names beside itself, with a bound on how much of it is read.
 #include "snug/model/internal/side_file.hpp"
 
-#include <fstream>
-#include <sstream>
 #include <system_error>
+
+#include "snug/core/read_file.hpp"
 
 namespace snug::model::internal {
 
@@ -22,21 +22,11 @@ std::filesystem::path find_side_file(const Value& value, const std::string& what
 }
 
 void check_side_file(const std::filesystem::path& file, std::size_t most, const std::string& what) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) throw InputError(file.string(), "", "no readable file", what);
-  const auto size = std::filesystem::file_size(file, error);
-  if (error || size > most)
-    throw InputError(file.string(), "", error ? error.message() : std::to_string(size) + " bytes",
-                     what + " of at most " + std::to_string(most) + " bytes");
+  check_readable(file, what, most);
 }
 
 std::string read_side_file(const std::filesystem::path& file, std::size_t most, const std::string& what) {
-  check_side_file(file, most, what);
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw InputError(file.string(), "", "a file that is empty or cannot be read", what);
-  return std::move(text).str();
+  return read_file(file, what, most);
 }
 
 }  // namespace snug::model::internal

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "snug/core/check.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::model::internal {
 namespace {
@@ -56,9 +57,7 @@ int line_of(const YAML::Node& node, int fallback) {
 
 std::string quote(std::string_view text) {
   constexpr std::size_t kLongest = 60;
-  std::string result = "'";
-  for (const char c : text.substr(0, kLongest)) result += (static_cast<unsigned char>(c) < 0x20) ? '?' : c;
-  return result + (text.size() > kLongest ? "...'" : "'");
+  return "'" + printable(text, kLongest) + "'";
 }
 
 std::string to_text(double value) {
@@ -140,9 +139,7 @@ std::string Value::name() const {
   const std::string expected = "a name of 1 to " + std::to_string(kLongestName) + " printable characters";
   if (!node_.IsScalar()) fail(expected);
   const std::string& text = node_.Scalar();
-  const bool is_printable =
-      std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; });
-  if (text.empty() || text.size() > kLongestName || !is_printable) fail(expected);
+  if (text.empty() || text.size() > kLongestName || !is_printable(text)) fail(expected);
   return text;
 }
 

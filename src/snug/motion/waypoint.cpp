@@ -7,12 +7,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 #include "snug/core/write_file.hpp"
 
 namespace snug::motion {
@@ -22,16 +21,15 @@ constexpr std::size_t kColumns = 13;
 constexpr std::array<const char*, kColumns> kColumnNames = {
     "x",      "y",        "z",           "rx",           "ry",        "rz",      "name",
     "vacuum", "blow-off", "conveyor cw", "conveyor ccw", "optitrack", "reserved"};
-constexpr double kLargestPosition = 100.0;  // m; a cell is a few metres, so more means other units
-constexpr double kLargestRotation = 100.0;  // rad; far beyond any sensible rotation vector, still exact to 1e-14
+constexpr double kLargestPosition = 100.0;       // m; a cell is a few metres, so more means other units
+constexpr std::size_t kMostWaypoints = 100'000;  // hours of motion
+constexpr double kLargestRotation = 100.0;       // rad; far beyond any sensible rotation vector, still exact to 1e-14
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
-
-bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
 /// Where a field stands, for messages.
 struct Field {
@@ -65,7 +63,7 @@ bool parse_switch(const Field& field) {
 
 std::string parse_name(const Field& field) {
   if (field.text.empty()) field.fail("the waypoint's name");
-  if (std::ranges::any_of(field.text, is_control)) field.fail("a name without control characters");
+  if (!is_printable(field.text)) field.fail("a name without control characters");
   return std::string(field.text);
 }
 
@@ -118,8 +116,7 @@ Vector3 rotation_vector(const Matrix3& R) {
 void check_writable(const Program& program, std::size_t row) {
   const Waypoint& waypoint = program.waypoints[row];
   const std::string& name = waypoint.name;
-  if (name.empty() || name != trim(name) || name.find(',') != std::string::npos ||
-      std::ranges::any_of(name, is_control)) {
+  if (name.empty() || name != trim(name) || name.find(',') != std::string::npos || !is_printable(name)) {
     throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name),
                      "a name without commas, control characters and blanks at its ends");
   }
@@ -137,11 +134,16 @@ std::string place_of(const Program& program, std::size_t row) {
 
 Program parse_program(std::string_view text, std::string_view name) {
   Program program{std::string(name), {}};
+  check_utf8(text, name);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark that spreadsheets add
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
     const std::string_view row = trim(text.substr(0, end));
     if (!row.empty()) program.waypoints.push_back(parse_row(row, name, line));
+    if (program.waypoints.size() > kMostWaypoints) {
+      throw InputError(fmt::format("{}:{}", name, line), "", fmt::format("more than {} waypoints", kMostWaypoints),
+                       "fewer");
+    }
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
   if (program.waypoints.empty()) throw InputError(std::string(name), "", "no rows", "at least one waypoint");
@@ -149,15 +151,7 @@ Program parse_program(std::string_view text, std::string_view name) {
 }
 
 Program load_program(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw InputError(path.string(), "", std::filesystem::exists(path, error) ? "something else" : "nothing",
-                     "a program file (CSV)");
-  }
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) throw InputError(path.string(), "", "a read error", "a readable program file (CSV)");
-  return parse_program(text, path.string());
+  return parse_program(read_file(path, "a program file (CSV)"), path.string());
 }
 
 std::string format_program(const Program& program) {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::packing {
 namespace {
@@ -57,6 +57,7 @@ constexpr int kLongest = 100000;
 }  // namespace
 
 std::vector<LoadProblem> parse_instances(std::string_view text, const std::string& name) {
+  check_utf8(text, name);
   Numbers numbers(text, name);
   const int count = numbers.next("number of problems", 1, kMostProblems);
   std::vector<LoadProblem> problems;
@@ -84,13 +85,7 @@ std::vector<LoadProblem> parse_instances(std::string_view text, const std::strin
 }
 
 std::vector<LoadProblem> load_instances(const std::filesystem::path& path) {
-  std::error_code error;
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!std::filesystem::is_regular_file(path, error) || !(text << file.rdbuf())) {
-    throw InputError(path.string(), "", "no readable file", "instances in the thpack form");
-  }
-  return parse_instances(text.str(), path.string());
+  return parse_instances(read_file(path, "instances in the thpack form"), path.string());
 }
 
 std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines, const Vector3& container) {

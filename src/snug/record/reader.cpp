@@ -18,7 +18,8 @@ namespace {
 
 using namespace internal;
 
-constexpr std::size_t kBlockFrames = 1000;  ///< frames read at a time
+constexpr std::size_t kBlockFrames = 1000;                   ///< frames read at a time
+constexpr std::size_t kBlockBytes = std::size_t{24} << 20U;  ///< of fewer frames, when they are large
 
 /// The frames [first, first + count) of all columns, as they lie in the file.
 struct Block {
@@ -60,21 +61,23 @@ void require_format(hid_t file, const std::filesystem::path& path) {
 }
 
 /// The events that all columns hold: a killed run may have left some columns longer than others.
-std::vector<Event> read_events(hid_t file) {
-  const auto times = read_all<double>(file, kEventTime);
-  const auto kinds = read_texts(file, kEventKind);
-  const auto bodies = read_texts(file, kEventBody);
-  const auto texts = read_texts(file, kEventText);
-  const auto first = read_all<std::int64_t>(file, kEventNumberFirst);
-  const auto numbers = read_all<std::int32_t>(file, kEventNumberCount);
-  const auto values = read_all<double>(file, kNumberValue);
-  const auto names = read_texts(file, kNumberName);
+std::vector<Event> read_events(Source& source) {
+  const auto times = read_all<double>(source, kEventTime);
+  const auto kinds = read_texts(source, kEventKind);
+  const auto bodies = read_texts(source, kEventBody);
+  const auto texts = read_texts(source, kEventText);
+  const auto first = read_all<std::int64_t>(source, kEventNumberFirst);
+  const auto numbers = read_all<std::int32_t>(source, kEventNumberCount);
+  const auto values = read_all<double>(source, kNumberValue);
+  const auto names = read_texts(source, kNumberName);
   const auto known = static_cast<std::int64_t>(std::min(names.size(), values.size()));
+  std::int64_t unused = known;  // no number belongs to two events
   std::vector<Event> events(
       std::min({times.size(), kinds.size(), bodies.size(), texts.size(), first.size(), numbers.size()}));
   for (std::size_t i = 0; i < events.size(); ++i) {
     events[i] = {times[i], kinds[i], bodies[i], texts[i], {}};
-    if (first[i] < 0 || numbers[i] < 0 || first[i] > known - numbers[i])
+    unused -= std::max(0, numbers[i]);
+    if (first[i] < 0 || numbers[i] < 0 || first[i] > known - numbers[i] || unused < 0)
       throw H5Error("/events refers to numbers that do not exist");
     for (auto k = static_cast<std::size_t>(first[i]); k < static_cast<std::size_t>(first[i] + numbers[i]); ++k)
       events[i].numbers.push_back({names[k], values[k]});
@@ -83,18 +86,18 @@ std::vector<Event> read_events(hid_t file) {
 }
 
 /// Tables of a killed run may differ in length by what was being written: the rows that all have count.
-Contacts read_contacts(hid_t file, bool is_complete) {
+Contacts read_contacts(Source& source, bool is_complete) {
   const auto path = [](ContactColumn column) { return contact_column(column).path; };
   Contacts c;
-  c.frame_block = read_all<std::int32_t>(file, path(kFrameBlock));
-  c.block_body = read_all<std::int32_t>(file, path(kBlockBody), 2);
-  c.block_first = read_all<std::int64_t>(file, path(kBlockFirst));
-  c.block_count = read_all<std::int32_t>(file, path(kBlockCount));
-  c.point = read_all<float>(file, path(kPoint), 3);
-  c.normal = read_all<float>(file, path(kNormal), 3);
-  c.force = read_all<float>(file, path(kForce), 3);
-  c.gap = read_all<float>(file, path(kGap));
-  c.state = read_all<std::uint8_t>(file, path(kState));
+  c.frame_block = read_all<std::int32_t>(source, path(kFrameBlock));
+  c.block_body = read_all<std::int32_t>(source, path(kBlockBody), 2);
+  c.block_first = read_all<std::int64_t>(source, path(kBlockFirst));
+  c.block_count = read_all<std::int32_t>(source, path(kBlockCount));
+  c.point = read_all<float>(source, path(kPoint), 3);
+  c.normal = read_all<float>(source, path(kNormal), 3);
+  c.force = read_all<float>(source, path(kForce), 3);
+  c.gap = read_all<float>(source, path(kGap));
+  c.state = read_all<std::uint8_t>(source, path(kState));
   const auto [points, most_points] =
       std::minmax({c.point.size() / 3, c.normal.size() / 3, c.force.size() / 3, c.gap.size(), c.state.size()});
   const auto [blocks, most_blocks] = std::minmax({c.block_body.size() / 2, c.block_first.size(), c.block_count.size()});
@@ -121,6 +124,8 @@ void append_block(const Contacts& c, std::int32_t block, std::size_t body_count,
   for (std::size_t side = 0; side < 2; ++side)
     if (c.block_body[2 * b + side] < 0 || static_cast<std::size_t>(c.block_body[2 * b + side]) >= body_count)
       throw H5Error("/contacts/block_body refers to a body that does not exist");
+  if (out.size() + static_cast<std::size_t>(count) > c.points)
+    throw H5Error("a frame has more contacts than /contacts has points");
   for (std::int64_t i = first; i < first + count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (c.state[k] > static_cast<std::uint8_t>(ContactState::Sliding))
@@ -157,6 +162,8 @@ struct RecordingReader::Impl {
 
   std::filesystem::path path;
   Handle file;
+  std::optional<Source> source;
+  std::size_t block_frames = kBlockFrames;
   RecordingHeader header;
   std::vector<Event> events;
   std::vector<double> times;
@@ -177,7 +184,8 @@ RecordingReader::Impl::Impl(const std::filesystem::path& file_path) : path(file_
 void RecordingReader::Impl::open() {
   file = open_file(path);
   require_format(file.get(), path);
-  header = read_header(file.get());
+  source.emplace(file.get());
+  header = read_header(*source);
   std::uint8_t complete = 0;
   read_attribute(file.get(), "complete", H5T_NATIVE_UINT8, &complete);
   is_complete = complete == 1;
@@ -198,8 +206,11 @@ void RecordingReader::Impl::open() {
       joints[i] = open_dataset(file.get(), joint_column(i, count).path);
   }
   find_times();
-  events = read_events(file.get());
-  if (has_link(file.get(), kResult)) result = read_text(file.get(), kResult);
+  events = read_events(*source);
+  if (has_link(file.get(), kResult)) result = read_text(*source, kResult);
+  std::size_t frame_bytes = header.bodies.size() * (7 + 6) * sizeof(double) + header.joints.size() * 3 * sizeof(double);
+  frame_bytes += 1024;  // the columns of fixed width
+  block_frames = std::clamp<std::size_t>(kBlockBytes / frame_bytes, 1, kBlockFrames);
 }
 
 /// Counts the frames that all columns have. Times that do not grow end the recording of a killed run, and mean that
@@ -228,6 +239,7 @@ void RecordingReader::Impl::find_times() {
     for (const Handle& column : joints) look(column, {header.joints.size()});
   }
   if (is_complete && longest != count) throw H5Error("the columns differ in length");
+  source->take_numbers(frame_column(kTime).path, count, sizeof(double));
   times.resize(count);
   if (count > 0) read_rows(columns[kTime].get(), H5T_NATIVE_DOUBLE, 0, count, times.data());
   for (std::size_t i = 0; i < count; ++i) {
@@ -240,10 +252,10 @@ void RecordingReader::Impl::find_times() {
 
 void RecordingReader::Impl::load_block(std::size_t index) {
   if (index >= block.first && index < block.first + block.count) return;
-  if (!contacts) contacts = read_contacts(file.get(), is_complete);
+  if (!contacts) contacts = read_contacts(*source, is_complete);
   block.count = 0;  // stays so if reading throws
-  const std::size_t first = index - index % kBlockFrames;
-  const std::size_t count = std::min(kBlockFrames, times.size() - first);
+  const std::size_t first = index - index % block_frames;
+  const std::size_t count = std::min(block_frames, times.size() - first);
   for (std::size_t i = 0; i < kFrameColumnCount; ++i) {
     const ColumnSpec& spec = frame_column(static_cast<FrameColumn>(i));
     block.columns[i].resize(count * spec.width * spec.value_bytes);
@@ -340,6 +352,7 @@ const std::vector<Event>& RecordingReader::events() const { return impl_->events
 const std::vector<double>& RecordingReader::times() const { return impl_->times; }
 bool RecordingReader::is_complete() const { return impl_->is_complete; }
 bool RecordingReader::is_interrupted() const { return impl_->is_interrupted; }
+std::size_t RecordingReader::file_bytes() const { return impl_->source->size(); }
 const std::string& RecordingReader::result() const { return impl_->result; }
 
 std::size_t RecordingReader::find_frame(double time) const {

@@ -16,7 +16,9 @@ namespace snug::record {
 ///
 /// A recording that is being written is read as it was when it was opened.
 ///
-/// A file that is missing, truncated, not a recording, or newer than this program throws InputError that says so.
+/// A file that is missing, truncated, not a recording, or newer than this program throws InputError that says so; so
+/// does one whose counts say more than a file of its size can hold, or that refers to other files. It takes at most
+/// some 50 MB and a few times the size of the file.
 class RecordingReader {
  public:
   explicit RecordingReader(const std::filesystem::path& path);
@@ -29,6 +31,8 @@ class RecordingReader {
   /// Time of every frame, s, strictly increasing.
   [[nodiscard]] const std::vector<double>& times() const;
   [[nodiscard]] std::size_t frame_count() const { return times().size(); }
+  /// Size of the file.
+  [[nodiscard]] std::size_t file_bytes() const;
   /// False for the file of a run that was killed, failed, is going on, or was interrupted.
   [[nodiscard]] bool is_complete() const;
   /// The run was ended early by who watched it.

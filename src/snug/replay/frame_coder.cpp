@@ -273,16 +273,15 @@ void FrameCoder::add(const record::Frame& frame) {
 }
 
 std::vector<ChannelWriter> FrameCoder::finish() {
-  std::vector<ChannelWriter> channels;
+  std::vector<ChannelWriter> channels, fresh;
+  fresh.reserve(channels_.size());
   for (std::size_t i = 0; i < channels_.size(); ++i) {
+    fresh.emplace_back(channels_[i].spec());
     const bool is_presence = i >= first_body_channel_ && i < first_joint_channel_ && (i - first_body_channel_) % 2 == 1;
     if (is_presence && kinds_[(i - first_body_channel_) / 2] == record::BodyKind::Static) continue;
-    channels.push_back(channels_[i]);
+    channels.push_back(std::move(channels_[i]));
   }
   contacts_.move_to(channels);
-  std::vector<ChannelWriter> fresh;
-  fresh.reserve(channels_.size());
-  for (const ChannelWriter& channel : channels_) fresh.emplace_back(channel.spec());
   channels_ = std::move(fresh);
   last_quat_.clear();
   frames_ = 0;

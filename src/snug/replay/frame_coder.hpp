@@ -17,6 +17,8 @@ class ContactCoder {
  public:
   ContactCoder();
   void add(const std::vector<record::ContactSample>& contacts);
+  /// Coded so far, without those that stayed the same.
+  [[nodiscard]] std::size_t points() const { return point_rows_; }
   void move_to(std::vector<ChannelWriter>& channels);
 
  private:
@@ -39,6 +41,8 @@ class FrameCoder {
   void set_static(const record::Frame& frame);
   void add(const record::Frame& frame);
   [[nodiscard]] std::size_t frames() const { return frames_; }
+  /// Points of contact coded so far, without those that stayed the same.
+  [[nodiscard]] std::size_t contact_points() const { return contacts_.points(); }
   /// All channels of docs/formats.md that a recording has, and an empty coder.
   [[nodiscard]] std::vector<ChannelWriter> finish();
 

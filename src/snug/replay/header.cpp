@@ -21,10 +21,19 @@ Json as_json(const record::PoseSample& X) {
   return {X.p.x(), X.p.y(), X.p.z(), X.quat.w(), X.quat.x(), X.quat.y(), X.quat.z()};
 }
 
-/// The text as JSON, or null.
+/// The text as JSON, or null: also when it is larger than any result, or so deep that taking it apart would need more
+/// stack than there is.
 Json parsed(const std::string& text) {
-  Json value = Json::parse(text, nullptr, false);
-  return value.is_discarded() ? Json() : value;
+  constexpr std::size_t kLargest = std::size_t{4} << 20U;
+  constexpr int kDeepest = 32;
+  if (text.size() > kLargest) return {};
+  bool is_too_deep = false;
+  const auto look = [&](int depth, Json::parse_event_t, Json&) {
+    is_too_deep = is_too_deep || depth > kDeepest;
+    return !is_too_deep;
+  };
+  Json value = Json::parse(text, look, false);
+  return value.is_discarded() || is_too_deep ? Json() : value;
 }
 
 Json hull_as_json(const std::vector<Vector3>& vertices, Json shape) {

@@ -19,7 +19,7 @@ struct Selection {
   bool operator==(const Selection&) const = default;
 };
 
-/// A page is refused more numbers than this: browsers keep all of them in memory.
+/// A page is refused more numbers than this: browsers keep all of them in memory. Fewer for small files (replay.cpp).
 inline constexpr std::size_t kMaxValues = 50'000'000;
 
 /// Everything that a header tells about a run, from what the recording holds. What cannot be read any more (a scenario

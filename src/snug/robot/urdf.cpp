@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -12,6 +11,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 #include "snug/robot/internal/inertia.hpp"
 #include "snug/robot/internal/urdf.hpp"
 #include "snug/robot/load_arm.hpp"
@@ -55,6 +56,11 @@ void Element::check_tags(const std::vector<std::string>& known) const {
 std::string Element::text(const char* key) const {
   const char* value = node_->Attribute(key);
   if (value == nullptr || *value == '\0') fail("no attribute '" + std::string(key) + "'", "one");
+  const std::string_view what = key;
+  const bool is_name = what == "name" || what == "link";
+  // &#xd800; and the like are no characters, but the parser takes them.
+  if (is_name ? !is_printable(value) : !is_utf8(value))
+    fail(std::string(key) + "=\"" + value + "\"", "printable characters");
   return value;
 }
 
@@ -110,6 +116,8 @@ Pose read_origin(const Element& element) {
 
 namespace {
 
+constexpr std::size_t kMostLinks = 1000;
+
 /// A <joint> as written.
 struct RawJoint {
   Element element;
@@ -160,6 +168,8 @@ RawRobot read_raw(const Element& robot) {
     raw.links.push_back(link);
   }
   if (raw.links.empty()) robot.fail("no <link>", "at least one");
+  if (raw.links.size() > kMostLinks)
+    robot.fail(std::to_string(raw.links.size()) + " links", "at most " + std::to_string(kMostLinks));
   std::map<std::string, std::string> parent_joint;
   std::vector<std::string> names;
   for (const auto& [name, index] : raw.link_index) names.push_back(name);
@@ -325,12 +335,14 @@ class Assembler {
 
 ArmModel parse_urdf(const std::string& text, const std::string& name, const std::string& tool_frame,
                     const std::filesystem::path& folder) {
+  check_utf8(text, name);
   tinyxml2::XMLDocument document;
   if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
     throw InputError(name + ":" + std::to_string(std::max(1, document.ErrorLineNum())), "", document.ErrorName(),
                      "XML that can be parsed");
   const internal::UrdfSource source{name, folder};
   const tinyxml2::XMLElement* root = document.RootElement();
+  if (root == nullptr) throw InputError(name + ":1", "", "no element", "<robot>");
   const internal::Element robot(root, source, "robot");
   if (robot.tag() != "robot")
     robot.fail("<" + robot.tag() + ">", robot.tag() == "sdf" ? "<robot>: this is SDF, not URDF" : "<robot>");
@@ -343,23 +355,12 @@ ArmModel parse_urdf(const std::string& text, const std::string& name, const std:
   return arm;
 }
 
-namespace {
-
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(path.string(), "", "a file that cannot be read", "a URDF");
-  return text.str();
-}
-
-}  // namespace
-
 ArmModel load_urdf(const std::filesystem::path& path, const std::string& tool_frame) {
-  return parse_urdf(read_text(path), path.string(), tool_frame, path.parent_path());
+  return parse_urdf(read_file(path, "a URDF", internal::kLargestUrdf), path.string(), tool_frame, path.parent_path());
 }
 
 std::vector<std::string> find_unknown_efforts(const std::filesystem::path& path) {
-  const std::string text = read_text(path);
+  const std::string text = read_file(path, "a URDF", internal::kLargestUrdf);
   std::vector<std::string> found;
   tinyxml2::XMLDocument document;
   if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS) return found;

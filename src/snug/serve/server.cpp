@@ -21,17 +21,17 @@ using Json = nlohmann::ordered_json;
 constexpr int kMaxWatchers = 8;                       // each holds a thread
 constexpr std::chrono::milliseconds kHeartbeat(500);  // how soon a watcher that left is noticed
 
-constexpr std::array kLoopback = {"127.0.0.1", "localhost", "::1"};
-
-bool is_loopback(const std::string& host) {
-  return std::find(kLoopback.begin(), kLoopback.end(), host) != kLoopback.end();
-}
-
-/// "[::1]:80" and "localhost:80" without port and brackets.
-std::string host_of(const std::string& header) {
-  if (header.starts_with('['))
-    return header.substr(1, header.find(']') == std::string::npos ? 0 : header.find(']') - 1);
-  return header.substr(0, header.find(':'));
+/// "[::1]:80" and "localhost:80" without port and brackets; nothing when there is anything else.
+std::string host_of(std::string_view header) {
+  const bool is_bracketed = header.starts_with('[');
+  const std::size_t end = is_bracketed ? header.find(']') : std::min(header.find(':'), header.size());
+  if (end == std::string_view::npos) return {};
+  const std::string_view rest = header.substr(end + (is_bracketed ? 1 : 0));
+  const bool is_port =
+      rest.empty() || (rest.front() == ':' && rest.size() <= 6 &&
+                       std::all_of(rest.begin() + 1, rest.end(), [](char c) { return c >= '0' && c <= '9'; }));
+  if (!is_port) return {};
+  return std::string(is_bracketed ? header.substr(1, end - 1) : header.substr(0, end));
 }
 
 /// Not set_content: that packs with brotli at its slowest, seconds for a page.
@@ -59,6 +59,7 @@ struct Server::Impl {
   internal::GuardedServer server;
   std::atomic<int> watchers = 0;
   std::atomic<bool> is_stopping = false, is_in_run = false;
+  bool is_local = false;  ///< listens where only this machine can reach it
   int port = 0;
 };
 
@@ -86,6 +87,7 @@ Server::Impl::Impl(const ServerSettings& server_settings, Content server_content
     throw InputError("command line", "--host, --port", settings.host + " port " + std::to_string(settings.port),
                      "an address of this machine and a port that is free");
   }
+  is_local = server.is_at_loopback();
   server.widen_queue();
 }
 
@@ -101,11 +103,12 @@ Json Server::Impl::recordings_json() const {
 /// its own name resolve to 127.0.0.1; its requests then carry that name.
 bool Server::Impl::is_for_us(const httplib::Request& request, httplib::Response& response) const {
   if (request.has_header("Transfer-Encoding") || request.get_header_value<std::uint64_t>("Content-Length") > 0) {
-    response.status = 413;
-    response.set_header("Connection", "close");  // what follows is not read
+    response.status = 413;  // the body is not read: each connection ends after its answer
     return false;
   }
-  if (is_loopback(settings.host) && !is_loopback(host_of(request.get_header_value("Host")))) {
+  const bool is_named = request.get_header_value_count("Host") == 1 &&
+                        internal::is_loopback_name(host_of(request.get_header_value("Host")));
+  if (is_local && !is_named) {
     response.status = 403;
     response.set_content("This server answers to the names of this machine only.\n", "text/plain");
     return false;

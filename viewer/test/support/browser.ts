@@ -9,13 +9,13 @@ const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const out = join(root, "test/out");
 
 /** Chromium that draws without a graphics card and asks nobody for anything. */
-export async function openBrowser(): Promise<Browser> {
+export async function openBrowser(...more: string[]): Promise<Browser> {
   const executablePath = process.env.SNUG_CHROMIUM || "/usr/bin/chromium";
   if (!existsSync(executablePath)) throw new Error(`${executablePath} is missing: install Debian's package chromium`);
   return chromium.launch({
     executablePath,
     args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+      "--disable-background-networking", "--disable-component-update", "--disable-sync", ...more],
   });
 }
 

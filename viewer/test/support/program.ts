@@ -1,6 +1,6 @@
 // The program under test, from the shell, and its tables of numbers.
 
-import { spawnSync } from "node:child_process";
+import { spawn, spawnSync, type ChildProcess } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -13,6 +13,21 @@ export function snug(...words: string[]): string {
   const done = spawnSync(program, words, { encoding: "utf8" });
   if (done.status !== 0) throw new Error(`snug ${words.join(" ")}: ${done.stderr || done.error}`);
   return done.stdout;
+}
+
+/** Starts a program that serves, and waits for the address that it tells. */
+export async function serveWith(...words: string[]): Promise<{ child: ChildProcess; address: string }> {
+  const child = spawn(program, words, { stdio: ["ignore", "ignore", "pipe"] });
+  let told = "";
+  const address = await new Promise<string>((resolve, reject) => {
+    child.on("exit", (code) => reject(new Error(`snug ${words.join(" ")} ended with ${code}: ${told}`)));
+    child.stderr!.on("data", (text: Buffer) => {
+      told += text.toString();
+      const found = /showing at (\S+)/.exec(told);
+      if (found) resolve(found[1]!);
+    });
+  });
+  return { child, address };
 }
 
 /** The table of `snug simulate --csv`: columns by name; a name is 1, what is left empty or is no number NaN. */

@@ -1,12 +1,11 @@
 // ProgramRun: a program executed in the cell, recorded, and what became of every box.
 #include "snug/cell/internal/program_run.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "snug/cell/corrected.hpp"
@@ -70,12 +69,14 @@ class ProgramRun {
     setup.program_name = options_.program->name;
     setup.sequence = options_.sequence;
     setup.version = options_.version;
-    setup.settings_json =
-        fmt::format(R"({{"cup": "{}", "controller": "{}", "corrections": "{}", "robot": "{}"}})",
-                    options_.simulation.cup == cup::CupMode::Holding ? "holding" : "phases",
-                    options_.simulation.controller == motion::ControllerKind::Faithful ? "faithful" : "ideal",
-                    options_.corrections.empty() ? "none" : options_.corrections,
-                    options_.simulation.robot.empty() ? "none" : options_.simulation.robot);
+    const auto or_none = [](const std::string& name) { return name.empty() ? "none" : name; };
+    const bool is_holding = options_.simulation.cup == cup::CupMode::Holding;
+    const bool is_faithful = options_.simulation.controller == motion::ControllerKind::Faithful;
+    const nlohmann::ordered_json settings = {{"cup", is_holding ? "holding" : "phases"},
+                                             {"controller", is_faithful ? "faithful" : "ideal"},
+                                             {"corrections", or_none(options_.corrections)},
+                                             {"robot", or_none(options_.simulation.robot)}};
+    setup.settings_json = settings.dump();
     if (const CellArm* arm = simulation_.arm()) {
       for (const robot::Joint& joint : arm->model().joints) setup.joints.push_back(joint.name);
     }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::cup::internal {
 namespace {
@@ -16,6 +17,8 @@ using nlohmann::json;
 
 constexpr double kRotationTolerance = 1e-6;  // of R^T R: a rotation that was printed with seven digits passes
 constexpr double kSymmetryTolerance = 1e-9;  // relative to the largest entry
+
+constexpr int kDeepest = 8;  // printing deeper ones takes stack without end
 
 constexpr const char* kVectorShape = "a list of 3 numbers";
 constexpr const char* kRotationShape = "3 rows of 3 numbers, a rotation";
@@ -40,13 +43,16 @@ bool is_finite_number(const json& value) { return value.is_number() && std::isfi
 LineReader::LineReader(std::string_view line, int line_number, std::string_view source,
                        const std::vector<std::string>& read, const std::vector<std::string>& ignored)
     : where_(std::string(source) + ":" + std::to_string(line_number)) {
+  if (!is_utf8(line)) fail("", "bytes that are not UTF-8", "text in UTF-8");
   std::set<std::string> seen;
   std::string repeated;
+  bool is_too_deep = false;
   const auto note_keys = [&](int depth, json::parse_event_t event, json& parsed) {
     if (event == json::parse_event_t::key && depth == 1 && !seen.insert(parsed.get<std::string>()).second) {
       repeated = parsed.get<std::string>();
     }
-    return true;
+    is_too_deep = is_too_deep || depth > kDeepest;
+    return !is_too_deep;
   };
   try {
     content_ = json::parse(line.begin(), line.end(), note_keys);
@@ -55,6 +61,7 @@ LineReader::LineReader(std::string_view line, int line_number, std::string_view 
   } catch (const json::exception&) {
     fail("", "a number beyond the range of double precision", "finite numbers");
   }
+  if (is_too_deep) fail("", "lists in lists that are deeper than any number here", "one JSON object on the line");
   if (!content_.is_object()) fail("", shown(content_), "one JSON object on the line");
   if (!repeated.empty()) fail(repeated, "the key twice", "each key once");
   std::vector<std::string> known = read;

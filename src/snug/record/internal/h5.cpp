@@ -1,8 +1,13 @@
 // h5: the few things of the HDF5 C library that this module uses, with handles that close and errors that throw.
 #include "snug/record/internal/h5.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
+#include <array>
 #include <cstring>
+
+#include "snug/core/text.hpp"
 
 namespace snug::record::internal {
 namespace {
@@ -18,6 +23,120 @@ std::string take_reason() {
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first_reason, &reason);
   H5Eclear2(H5E_DEFAULT);
   return reason.empty() ? "unknown HDF5 error" : reason;
+}
+
+/// Bytes of a chunk when it is unpacked. The largest of ours holds a second of one byte for each body.
+constexpr hsize_t kLargestChunk = hsize_t{32} << 20U;
+/// A deflated chunk of this size unpacks to 50 MB at most (deflate: 1032 times).
+constexpr hsize_t kHarmlessPacked = hsize_t{48} << 10U;
+/// What small files may have beyond their size: short texts count as kLeastText.
+constexpr std::size_t kSlack = std::size_t{64} << 10U;
+constexpr std::size_t kLeastText = 8;
+
+/// Each group on the way, and the dataset itself, must lie in this file.
+void check_links(hid_t file, const std::string& path) {
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    const std::string part = path.substr(0, end);
+    H5L_info_t info;
+    check(H5Lget_info(file, part.c_str(), &info, H5P_DEFAULT), path);
+    if (info.type != H5L_TYPE_HARD) throw H5Error(part + " is a link to something else");
+    if (end == std::string::npos) return;
+  }
+}
+
+void check_type(hid_t dataset, const char* path) {
+  const Handle type(H5Dget_type(dataset), path);
+  const H5T_class_t kind = H5Tget_class(type.get());
+  const bool is_number = (kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Tget_size(type.get()) <= 8;
+  const bool is_text = kind == H5T_STRING && H5Tis_variable_str(type.get()) == 0;
+  if (!is_number && !is_text) throw H5Error(std::string(path) + " holds neither numbers nor texts of fixed length");
+}
+
+/// Bytes of a chunk when it is unpacked, 0 without chunks.
+hsize_t chunk_bytes_of(hid_t dataset, hid_t properties, Dims& chunk) {
+  if (H5Pget_layout(properties) != H5D_CHUNKED) return 0;
+  chunk.assign(H5S_MAX_RANK, 0);
+  const int rank = H5Pget_chunk(properties, H5S_MAX_RANK, chunk.data());
+  chunk.resize(static_cast<std::size_t>(std::max(0, rank)));
+  const Handle type(H5Dget_type(dataset), "type");
+  hsize_t bytes = H5Tget_size(type.get());
+  for (const hsize_t extent : chunk)
+    bytes = extent > kLargestChunk ? kLargestChunk + 1 : std::min(bytes, kLargestChunk + 1) * extent;
+  return bytes;
+}
+
+void check_storage(hid_t dataset, const char* path) {
+  const Handle properties(H5Dget_create_plist(dataset), path);
+  const H5D_layout_t layout = H5Pget_layout(properties.get());
+  if ((layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) ||
+      H5Pget_external_count(properties.get()) != 0)
+    throw H5Error(std::string(path) + " is kept in another file");
+  Dims chunk;
+  if (chunk_bytes_of(dataset, properties.get(), chunk) > kLargestChunk)
+    throw H5Error(std::string(path) + " is kept in chunks that are too large");
+  const int filters = H5Pget_nfilters(properties.get());
+  for (unsigned i = 0; filters > 0 && i < static_cast<unsigned>(filters); ++i) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(properties.get(), i, &flags, &values, nullptr, 0, nullptr, &config);
+    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE)
+      throw H5Error(std::string(path) + " is packed in an unknown way");
+  }
+}
+
+/// Unpacks into nothing: does it come to more than so many bytes?
+bool inflates_beyond(const std::vector<unsigned char>& packed, hsize_t most) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw H5Error("no memory to unpack");
+  std::array<unsigned char, 65536> out;
+  stream.next_in = const_cast<unsigned char*>(packed.data());
+  stream.avail_in = static_cast<uInt>(packed.size());
+  int status = Z_OK;
+  while (status == Z_OK && stream.total_out <= most) {
+    stream.next_out = out.data();
+    stream.avail_out = static_cast<uInt>(out.size());
+    status = inflate(&stream, Z_NO_FLUSH);
+  }
+  const bool is_beyond = stream.total_out > most;
+  inflateEnd(&stream);
+  return is_beyond;
+}
+
+/// The library unpacks a chunk to whatever it comes to, however large it says that it is.
+void check_chunk(hid_t dataset, const Dims& at, hsize_t chunk_bytes) {
+  hsize_t stored = 0;
+  if (H5Dget_chunk_storage_size(dataset, at.data(), &stored) < 0) {
+    H5Eclear2(H5E_DEFAULT);  // a chunk that was never written
+    return;
+  }
+  constexpr hsize_t kOverhead = 1024;
+  const char* const reason = "a chunk that is larger than it says";
+  if (stored > chunk_bytes + chunk_bytes / 1000 + kOverhead) throw H5Error(reason);
+  if (stored <= kHarmlessPacked) return;
+  std::vector<unsigned char> packed(stored);
+  std::uint32_t skipped = 0;
+  check(H5Dread_chunk(dataset, H5P_DEFAULT, at.data(), &skipped, packed.data()), "chunk");
+  if (skipped == 0 && inflates_beyond(packed, chunk_bytes)) throw H5Error(reason);
+}
+
+/// The chunks that hold rows [first, first + count), if they may be packed.
+void check_chunks(hid_t dataset, const Dims& dims, hsize_t first, hsize_t count) {
+  const Handle properties(H5Dget_create_plist(dataset), "dataset");
+  Dims chunk;
+  const hsize_t chunk_bytes = chunk_bytes_of(dataset, properties.get(), chunk);
+  if (chunk_bytes == 0 || count == 0 || H5Pget_nfilters(properties.get()) == 0) return;
+  Dims at(dims.size(), 0);
+  at[0] = first - first % chunk[0];
+  // Every corner of the grid of chunks, the last dimension fastest.
+  for (std::size_t d = 0;;) {
+    check_chunk(dataset, at, chunk_bytes);
+    for (d = dims.size(); d-- > 0;) {
+      at[d] += chunk[d];
+      if (at[d] < (d == 0 ? first + count : dims[d])) break;
+      if (d == 0) return;
+      at[d] = 0;
+    }
+  }
 }
 
 Handle simple_space(const Dims& dims) {
@@ -96,9 +215,13 @@ std::string read_text_attribute(hid_t object, const char* name) {
   const Handle type(H5Aget_type(attribute.get()), name);
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0)
     throw H5Error(std::string("attribute ") + name + " is not a text of fixed length");
+  const Handle space(H5Aget_space(attribute.get()), name);
+  if (H5Sget_simple_extent_npoints(space.get()) != 1)
+    throw H5Error(std::string("attribute ") + name + " is not a single text");
   std::string text(H5Tget_size(type.get()), '\0');
   check(H5Aread(attribute.get(), type.get(), text.data()), name);
   text.resize(std::strlen(text.c_str()));
+  if (!is_utf8(text)) throw H5Error(std::string("attribute ") + name + " is not UTF-8");
   return text;
 }
 
@@ -131,34 +254,61 @@ void write_texts(hid_t file, const char* path, const std::vector<std::string>& t
   write_dataset(file, path, string_type(size).get(), {texts.size()}, padded.data());
 }
 
-std::vector<std::string> read_texts(hid_t file, const char* path) {
-  const Handle dataset = open_dataset(file, path);
+Source::Source(hid_t file) : file_(file) {
+  hsize_t size = 0;
+  check(H5Fget_filesize(file, &size), "size of the file");
+  size_ = static_cast<std::size_t>(size);
+  left_ = size_ + kSlack;
+}
+
+void Source::take_texts(const char* path, hsize_t rows, std::size_t row_bytes) {
+  take(path, rows, std::max(row_bytes, kLeastText), 1);
+}
+
+void Source::take(const char* path, hsize_t rows, std::size_t row_bytes, std::size_t shrink) {
+  if (rows > shrink * left_ / row_bytes)
+    throw H5Error(std::string(path) + " has more rows than a file of this size can hold");
+  left_ -= rows * row_bytes / shrink;
+}
+
+std::vector<std::string> read_texts(Source& source, const char* path) {
+  const Handle dataset = open_dataset(source.file(), path);
   const Handle type(H5Dget_type(dataset.get()), path);
-  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0)
-    throw H5Error(std::string(path) + " is not text of fixed length");
+  if (H5Tget_class(type.get()) != H5T_STRING) throw H5Error(std::string(path) + " is not text of fixed length");
   const std::size_t size = H5Tget_size(type.get());
   const Handle space(H5Dget_space(dataset.get()), path);
   const auto count = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get())));
+  source.take_texts(path, count, size);
+  const Dims dims = dims_of(dataset.get());
+  if (!dims.empty()) check_chunks(dataset.get(), dims, 0, dims[0]);
   std::string padded(size * count, '\0');
   if (count > 0) check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), path);
   std::vector<std::string> texts;
+  texts.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    std::string text = padded.substr(i * size, size);
-    text.resize(text.find_last_not_of('\0') + 1);
-    texts.push_back(std::move(text));
+    std::string_view text = std::string_view(padded).substr(i * size, size);
+    text = text.substr(0, text.find_last_not_of('\0') + 1);
+    if (!is_utf8(text)) throw H5Error(std::string(path) + " holds text that is not UTF-8");
+    texts.emplace_back(text);
   }
   return texts;
 }
 
-std::string read_text(hid_t file, const char* path) {
-  const std::vector<std::string> texts = read_texts(file, path);
+std::string read_text(Source& source, const char* path) {
+  const std::vector<std::string> texts = read_texts(source, path);
   if (texts.size() != 1) throw H5Error(std::string(path) + " is not a single text");
   return texts[0];
 }
 
 bool has_link(hid_t file, const char* path) { return H5Lexists(file, path, H5P_DEFAULT) > 0; }
 
-Handle open_dataset(hid_t file, const char* path) { return {H5Dopen2(file, path, H5P_DEFAULT), path}; }
+Handle open_dataset(hid_t file, const char* path) {
+  check_links(file, path);
+  Handle dataset(H5Dopen2(file, path, H5P_DEFAULT), path);
+  check_type(dataset.get(), path);
+  check_storage(dataset.get(), path);
+  return dataset;
+}
 
 Dims dims_of(hid_t dataset) {
   const Handle space(H5Dget_space(dataset), "dataspace");
@@ -170,7 +320,8 @@ Dims dims_of(hid_t dataset) {
 
 void read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* out) {
   Dims size = dims_of(dataset);
-  if (size.empty() || first + count > size[0]) throw H5Error("dataset is shorter than expected");
+  if (size.empty() || count > size[0] || first > size[0] - count) throw H5Error("dataset is shorter than expected");
+  check_chunks(dataset, size, first, count);
   size[0] = count;
   Dims start(size.size(), 0);
   start[0] = first;

@@ -89,16 +89,39 @@ void update_attribute(hid_t object, const char* name, hid_t type, const void* va
 [[nodiscard]] std::string read_text_attribute(hid_t object, const char* name);
 void read_attribute(hid_t object, const char* name, hid_t type, void* value);
 
+/// A file that is read, and how much of it may still be taken into memory at once. Counts in a file may be anything;
+/// all that is read whole is together no larger than the file, as its writer does not compress it (numbers a third so
+/// large, for files that others compressed).
+class Source {
+ public:
+  explicit Source(hid_t file);
+  [[nodiscard]] hid_t file() const { return file_; }
+  /// Bytes of the file.
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Throws H5Error when `path` has more rows of so many bytes than are left.
+  void take_numbers(const char* path, hsize_t rows, std::size_t row_bytes) { take(path, rows, row_bytes, 3); }
+  void take_texts(const char* path, hsize_t rows, std::size_t row_bytes);
+
+ private:
+  void take(const char* path, hsize_t rows, std::size_t row_bytes, std::size_t shrink);
+  hid_t file_;
+  std::size_t size_, left_;
+};
+
 /// Creates a dataset of fixed size and writes it.
 Handle write_dataset(hid_t file, const char* path, hid_t type, const Dims& dims, const void* data);
 /// One text as a scalar dataset; strings as an array padded with zero bytes to the longest.
 void write_text(hid_t file, const char* path, const std::string& text);
 void write_texts(hid_t file, const char* path, const std::vector<std::string>& texts);
-[[nodiscard]] std::string read_text(hid_t file, const char* path);
-[[nodiscard]] std::vector<std::string> read_texts(hid_t file, const char* path);
+/// Throw H5Error for what is not UTF-8 too.
+[[nodiscard]] std::string read_text(Source& source, const char* path);
+[[nodiscard]] std::vector<std::string> read_texts(Source& source, const char* path);
 
 /// Is there anything at this path of the root group?
 [[nodiscard]] bool has_link(hid_t file, const char* path);
+/// Opens what lies in this file as numbers of up to 8 bytes or texts of fixed length, in chunks of sensible size that
+/// are deflated at most. Links to other files, and data kept in them, are refused: a recording from elsewhere must not
+/// show what else is on this machine.
 [[nodiscard]] Handle open_dataset(hid_t file, const char* path);
 [[nodiscard]] Dims dims_of(hid_t dataset);
 /// Rows [first, first + count) of the outermost dimension.
@@ -106,12 +129,12 @@ void read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* ou
 
 /// All of a dataset, which must have `width` values in each row.
 template <class T>
-std::vector<T> read_all(hid_t file, const char* path, std::size_t width = 1) {
-  const Handle dataset = open_dataset(file, path);
+std::vector<T> read_all(Source& source, const char* path, std::size_t width = 1) {
+  const Handle dataset = open_dataset(source.file(), path);
   const Dims dims = dims_of(dataset.get());
-  hsize_t row = 1;
-  for (std::size_t i = 1; i < dims.size(); ++i) row *= dims[i];
-  if (dims.empty() || row != width) throw H5Error(std::string("unexpected shape of ") + path);
+  const bool is_flat = width == 1 && dims.size() == 1;
+  if (!is_flat && (dims.size() != 2 || dims[1] != width)) throw H5Error(std::string("unexpected shape of ") + path);
+  source.take_numbers(path, dims[0], width * sizeof(T));
   std::vector<T> values(dims[0] * width);
   if (!values.empty()) read_rows(dataset.get(), file_type<T>(), 0, dims[0], values.data());
   return values;

@@ -1,13 +1,18 @@
 // The part of a recording that is fixed from the start: scenario, program, bodies, container.
 #include "snug/record/internal/header_file.hpp"
 
+#include <algorithm>
 #include <array>
+#include <string>
 
 #include "snug/record/internal/layout.hpp"
 
 namespace snug::record::internal {
 namespace {
 
+// Each takes memory for each frame that is read; no run has had a hundredth of them.
+constexpr std::size_t kMostBodies = 20'000;
+constexpr std::size_t kMostJoints = 1000;
 constexpr const char* kPoseColumns = "x,y,z,qw,qx,qy,qz";
 
 void push(std::vector<double>& out, const Vector3& v) { out.insert(out.end(), {v.x(), v.y(), v.z()}); }
@@ -90,8 +95,8 @@ void require_rows(std::size_t rows, std::size_t expected, const char* path) {
 }
 
 template <class T>
-std::vector<T> read_rows_of(hid_t file, const char* path, std::size_t rows, std::size_t width = 1) {
-  std::vector<T> values = read_all<T>(file, path, width);
+std::vector<T> read_rows_of(Source& source, const char* path, std::size_t rows, std::size_t width = 1) {
+  std::vector<T> values = read_all<T>(source, path, width);
   require_rows(values.size(), rows * width, path);
   return values;
 }
@@ -102,21 +107,23 @@ Enum enum_from(std::uint8_t value, Enum last, const char* path) {
   return static_cast<Enum>(value);
 }
 
-void read_shapes(hid_t file, std::vector<BodyInfo>& bodies) {
-  const std::vector<std::int32_t> body = read_all<std::int32_t>(file, "/shapes/body");
+void read_shapes(Source& source, std::vector<BodyInfo>& bodies) {
+  const std::vector<std::int32_t> body = read_all<std::int32_t>(source, "/shapes/body");
   const std::size_t rows = body.size();
-  const auto kind = read_rows_of<std::uint8_t>(file, "/shapes/kind", rows);
-  const auto pose = read_rows_of<double>(file, "/shapes/pose", rows, 7);
-  const auto half = read_rows_of<double>(file, "/shapes/half", rows, 3);
-  const auto radius = read_rows_of<double>(file, "/shapes/radius", rows);
-  const auto half_length = read_rows_of<double>(file, "/shapes/half_length", rows);
-  const auto first = read_rows_of<std::int32_t>(file, "/shapes/vertex_first", rows);
-  const auto count = read_rows_of<std::int32_t>(file, "/shapes/vertex_count", rows);
-  const auto vertex = read_all<double>(file, "/shapes/vertex", 3);
+  const auto kind = read_rows_of<std::uint8_t>(source, "/shapes/kind", rows);
+  const auto pose = read_rows_of<double>(source, "/shapes/pose", rows, 7);
+  const auto half = read_rows_of<double>(source, "/shapes/half", rows, 3);
+  const auto radius = read_rows_of<double>(source, "/shapes/radius", rows);
+  const auto half_length = read_rows_of<double>(source, "/shapes/half_length", rows);
+  const auto first = read_rows_of<std::int32_t>(source, "/shapes/vertex_first", rows);
+  const auto count = read_rows_of<std::int32_t>(source, "/shapes/vertex_count", rows);
+  const auto vertex = read_all<double>(source, "/shapes/vertex", 3);
+  auto unused = static_cast<std::int64_t>(vertex.size() / 3);  // no vertex belongs to two shapes
   for (std::size_t i = 0; i < rows; ++i) {
     const std::int64_t end = std::int64_t{first[i]} + count[i];
+    unused -= std::max(0, count[i]);
     if (body[i] < 0 || static_cast<std::size_t>(body[i]) >= bodies.size() || first[i] < 0 || count[i] < 0 ||
-        end > static_cast<std::int64_t>(vertex.size() / 3))
+        end > static_cast<std::int64_t>(vertex.size() / 3) || unused < 0)
       throw H5Error("/shapes refers to rows that do not exist");
     ShapeInfo shape;
     shape.kind = enum_from(kind[i], ShapeKind::Cylinder, "/shapes/kind");
@@ -130,13 +137,14 @@ void read_shapes(hid_t file, std::vector<BodyInfo>& bodies) {
   }
 }
 
-std::vector<BodyInfo> read_bodies(hid_t file) {
-  const std::vector<std::string> names = read_texts(file, "/bodies/name");
-  const std::vector<std::string> types = read_texts(file, "/bodies/type");
+std::vector<BodyInfo> read_bodies(Source& source) {
+  const std::vector<std::string> names = read_texts(source, "/bodies/name");
+  const std::vector<std::string> types = read_texts(source, "/bodies/type");
   require_rows(types.size(), names.size(), "/bodies/type");
-  const auto kinds = read_rows_of<std::uint8_t>(file, "/bodies/kind", names.size());
-  const auto masses = read_rows_of<double>(file, "/bodies/mass", names.size());
-  const auto coms = read_rows_of<double>(file, "/bodies/com", names.size(), 3);
+  if (names.size() > kMostBodies) throw H5Error("/bodies/name has more than " + std::to_string(kMostBodies) + " rows");
+  const auto kinds = read_rows_of<std::uint8_t>(source, "/bodies/kind", names.size());
+  const auto masses = read_rows_of<double>(source, "/bodies/mass", names.size());
+  const auto coms = read_rows_of<double>(source, "/bodies/com", names.size(), 3);
   std::vector<BodyInfo> bodies(names.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i].name = names[i];
@@ -145,7 +153,7 @@ std::vector<BodyInfo> read_bodies(hid_t file) {
     bodies[i].mass = masses[i];
     bodies[i].com = vector_at(coms, i);
   }
-  read_shapes(file, bodies);
+  read_shapes(source, bodies);
   return bodies;
 }
 
@@ -178,7 +186,8 @@ void write_header(hid_t file, const RecordingHeader& header) {
   write_table(file, "/container/inner_size", 3, std::vector<double>{size.x(), size.y(), size.z()}, "m", "x,y,z");
 }
 
-RecordingHeader read_header(hid_t file) {
+RecordingHeader read_header(Source& source) {
+  const hid_t file = source.file();
   RecordingHeader header;
   header.version = read_text_attribute(file, "snug_version");
   header.program_name = read_text_attribute(file, "program_name");
@@ -186,16 +195,17 @@ RecordingHeader read_header(hid_t file) {
   read_attribute(file, "seed", H5T_NATIVE_UINT64, &header.seed);
   read_attribute(file, "dt", H5T_NATIVE_DOUBLE, &header.dt);
   read_attribute(file, "record_period", H5T_NATIVE_DOUBLE, &header.record_period);
-  header.scenario_text = read_text(file, "/scenario");
-  header.program_text = read_text(file, "/program");
-  header.settings = read_text(file, "/settings");
-  header.bodies = read_bodies(file);
-  if (has_link(file, kJointName)) header.joints = read_texts(file, kJointName);
-  header.container.name = read_text(file, "/container/name");
-  const auto poses = read_rows_of<double>(file, "/container/pose", 2, 7);
+  header.scenario_text = read_text(source, "/scenario");
+  header.program_text = read_text(source, "/program");
+  header.settings = read_text(source, "/settings");
+  header.bodies = read_bodies(source);
+  if (has_link(file, kJointName)) header.joints = read_texts(source, kJointName);
+  if (header.joints.size() > kMostJoints) throw H5Error("more than " + std::to_string(kMostJoints) + " joints");
+  header.container.name = read_text(source, "/container/name");
+  const auto poses = read_rows_of<double>(source, "/container/pose", 2, 7);
   header.container.X_WT = pose_at(poses, 0);
   header.container.X_TI = pose_at(poses, 1);
-  header.container.inner_size = vector_at(read_rows_of<double>(file, "/container/inner_size", 1, 3), 0);
+  header.container.inner_size = vector_at(read_rows_of<double>(source, "/container/inner_size", 1, 3), 0);
   return header;
 }
 

@@ -8,7 +8,7 @@ namespace snug::record::internal {
 
 /// Writes root attributes, texts, bodies, shapes and the container.
 void write_header(hid_t file, const RecordingHeader& header);
-[[nodiscard]] RecordingHeader read_header(hid_t file);
+[[nodiscard]] RecordingHeader read_header(Source& source);
 
 /// True if the open file is a recording of any version.
 [[nodiscard]] bool is_recording(hid_t file);

@@ -11,6 +11,9 @@
 
 namespace snug::robot::internal {
 
+/// Bytes of a URDF and of a mesh that it names: far above those of any arm, and little enough to be held whole.
+inline constexpr std::size_t kLargestUrdf = std::size_t{4} << 20U;
+
 /// What is known about the text being read.
 struct UrdfSource {
   std::string name;              ///< file or label, for messages

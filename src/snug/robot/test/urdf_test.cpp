@@ -50,6 +50,17 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
+TEST(Urdf, WithoutAnyElementIsRefused) {
+  for (const char* text : {"<?xml version=\"1.0\"?>", "<!-- nothing -->"}) {
+    try {
+      (void)parse_urdf(text, "x.urdf");
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_STREQ(error.what(), "x.urdf:1: got no element; expected <robot>");
+    }
+  }
+}
+
 TEST(Urdf, ReadsTurningAndSlidingJoints) {
   const ArmModel arm = parse_urdf(small_arm(), "arm.urdf");
   ASSERT_EQ(arm.joint_count(), 2);

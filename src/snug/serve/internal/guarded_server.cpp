@@ -1,20 +1,24 @@
-// GuardedServer: what the library does with a socket, done with deadlines. Its own have none for a whole request: a
-// client that sends a byte now and then would hold a thread for ever, and the server's end with it.
+// GuardedServer: what the library does with a socket, done with deadlines. Why its own options are not enough is said
+// in serve/README.md.
 #include "snug/serve/internal/guarded_server.hpp"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
+#include <string>
 
 namespace snug::serve::internal {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kRequestsPerConnection = 100;
+constexpr std::chrono::milliseconds kFarewell(500);  ///< for the client to take the answer and close
 
 /// Waits until the socket can be read or written, or the time is over.
 bool wait_for(socket_t socket, short event, Clock::time_point deadline) {
@@ -27,21 +31,27 @@ bool wait_for(socket_t socket, short event, Clock::time_point deadline) {
   }
 }
 
-/// One request and its answer on a connection.
+bool is_loopback(const sockaddr_storage& address) {
+  constexpr unsigned kNet = 127;
+  if (address.ss_family == AF_INET) {
+    const auto& ip4 = reinterpret_cast<const sockaddr_in&>(address);
+    return ntohl(ip4.sin_addr.s_addr) >> 24U == kNet;
+  }
+  if (address.ss_family != AF_INET6) return false;
+  const in6_addr& ip6 = reinterpret_cast<const sockaddr_in6&>(address).sin6_addr;
+  return IN6_IS_ADDR_LOOPBACK(&ip6) || (IN6_IS_ADDR_V4MAPPED(&ip6) && ip6.s6_addr[12] == kNet);
+}
+
+/// One request and its answer.
 class GuardedStream : public httplib::Stream {
  public:
-  GuardedStream(socket_t socket, const ConnectionLimits& limits) : socket_(socket), limits_(limits) {}
-  void begin_request() {
-    deadline_ = Clock::now() + limits_.request;
-    received_ = 0;
-  }
-  /// Is there something that was received but not asked for yet?
-  [[nodiscard]] bool has_more() const { return begin_ < end_; }
+  GuardedStream(socket_t socket, const ConnectionLimits& limits)
+      : socket_(socket), limits_(limits), deadline_(Clock::now() + limits.request) {}
 
-  bool is_readable() const override { return has_more() || wait_for(socket_, POLLIN, deadline_); }
+  bool is_readable() const override { return begin_ < end_ || wait_for(socket_, POLLIN, deadline_); }
   bool is_writable() const override { return wait_for(socket_, POLLOUT, Clock::now() + limits_.write); }
   ssize_t read(char* to, size_t size) override {
-    if (!has_more() && !fill()) return -1;
+    if (begin_ == end_ && !fill()) return -1;
     const std::size_t count = std::min(size, end_ - begin_);
     std::copy_n(buffer_.data() + begin_, count, to);
     begin_ += count;
@@ -74,7 +84,7 @@ class GuardedStream : public httplib::Stream {
 
   const socket_t socket_;
   const ConnectionLimits& limits_;
-  Clock::time_point deadline_;
+  const Clock::time_point deadline_;
   std::size_t received_ = 0;
   std::array<char, 4096> buffer_;
   std::size_t begin_ = 0, end_ = 0;
@@ -82,42 +92,32 @@ class GuardedStream : public httplib::Stream {
 
 }  // namespace
 
-void ConnectionThreads::enqueue(std::function<void()> task) {
-  const std::lock_guard lock(mutex_);
-  tasks_.push_back(std::move(task));
-  if (tasks_.size() > idle_ && threads_.size() < most_) threads_.emplace_back([this] { work(); });
-  changed_.notify_one();
-}
-
-void ConnectionThreads::work() {
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    ++idle_;
-    changed_.wait(lock, [this] { return !tasks_.empty() || is_over_; });
-    --idle_;
-    if (tasks_.empty()) return;
-    const std::function<void()> task = std::move(tasks_.front());
-    tasks_.pop_front();
-    lock.unlock();
-    task();
-    lock.lock();
+bool is_loopback_name(std::string_view text) {
+  std::string name(text);
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (name == "localhost") return true;
+  sockaddr_storage address{};
+  auto& ip4 = reinterpret_cast<sockaddr_in&>(address);
+  auto& ip6 = reinterpret_cast<sockaddr_in6&>(address);
+  if (::inet_pton(AF_INET, name.c_str(), &ip4.sin_addr) == 1) {
+    address.ss_family = AF_INET;
+  } else if (::inet_pton(AF_INET6, name.c_str(), &ip6.sin6_addr) == 1) {
+    address.ss_family = AF_INET6;
   }
-}
-
-void ConnectionThreads::shutdown() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_over_ = true;
-  }
-  changed_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
+  return is_loopback(address);
 }
 
 GuardedServer::GuardedServer(const ConnectionLimits& limits) : limits_(limits) {
-  new_task_queue = [this] { return new ConnectionThreads(limits_.connections); };
+  new_task_queue = [this] { return new httplib::ThreadPool(limits_.connections); };
 }
 
 void GuardedServer::widen_queue() { ::listen(svr_sock_, static_cast<int>(limits_.connections)); }
+
+bool GuardedServer::is_at_loopback() const {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  return ::getsockname(svr_sock_, reinterpret_cast<sockaddr*>(&address), &size) == 0 && is_loopback(address);
+}
 
 void GuardedServer::close_connections() {
   const std::lock_guard lock(mutex_);
@@ -142,12 +142,14 @@ bool GuardedServer::process_and_close_socket(socket_t socket) {
 
 void GuardedServer::serve_connection(socket_t socket) {
   GuardedStream stream(socket, limits_);
-  for (int left = kRequestsPerConnection; left > 0; --left) {
-    if (!stream.has_more() && !wait_for(socket, POLLIN, Clock::now() + limits_.keep_alive)) return;
-    stream.begin_request();
-    bool is_closed = false;
-    if (!process_request(stream, left == 1, is_closed, nullptr) || is_closed) return;
-  }
+  bool is_closed = false;
+  const bool is_last = true;  // what follows a request may be its body, which a page of another site can write
+  if (!process_request(stream, is_last, is_closed, nullptr)) return;
+  // Closed with something unread, the client's system would throw the answer away.
+  ::shutdown(socket, SHUT_WR);
+  const Clock::time_point deadline = Clock::now() + kFarewell;
+  char ignored[4096];
+  while (wait_for(socket, POLLIN, deadline) && ::recv(socket, ignored, sizeof ignored, 0) > 0) continue;
 }
 
 }  // namespace snug::serve::internal

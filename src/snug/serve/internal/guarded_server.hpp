@@ -4,48 +4,32 @@
 #include <httplib.h>
 
 #include <chrono>
-#include <condition_variable>
-#include <deque>
+#include <cstddef>
 #include <mutex>
 #include <set>
-#include <thread>
-#include <vector>
+#include <string_view>
 
 namespace snug::serve::internal {
 
 /// What one connection may take.
 struct ConnectionLimits {
-  std::chrono::milliseconds request{5000};     ///< from the first byte of a request to its last
-  std::chrono::milliseconds keep_alive{2000};  ///< until the first byte of the next one
-  std::chrono::milliseconds write{5000};       ///< without the client taking anything
+  std::chrono::milliseconds request{5000};  ///< until the last byte of the request
+  std::chrono::milliseconds write{5000};    ///< without the client taking anything
   std::size_t request_bytes = std::size_t{256} << 10U;
-  std::size_t connections = 128;  ///< at the same time; those after them wait
+  std::size_t connections = 128;  ///< at the same time, a thread each; those after them wait
 };
 
-/// A thread for each connection, so that slow ones hold up nobody; made when needed, kept until the end.
-class ConnectionThreads : public httplib::TaskQueue {
- public:
-  explicit ConnectionThreads(std::size_t most) : most_(most) {}
-  void enqueue(std::function<void()> task) override;
-  void shutdown() override;
+/// "localhost", or a numeric address of 127.0.0.0/8, ::1, or one of those written as IPv6 (no brackets, no port).
+[[nodiscard]] bool is_loopback_name(std::string_view name);
 
- private:
-  void work();
-
-  const std::size_t most_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<std::function<void()>> tasks_;
-  std::vector<std::thread> threads_;
-  std::size_t idle_ = 0;
-  bool is_over_ = false;
-};
-
+/// One request a connection: there is no next one that anything could be taken for.
 class GuardedServer : public httplib::Server {
  public:
   explicit GuardedServer(const ConnectionLimits& limits = {});
   /// Lets as many connections wait for their turn as may be open; the library's own number is 5. After binding.
   void widen_queue();
+  /// Is the address that it listens at one that only this machine can reach? After binding.
+  [[nodiscard]] bool is_at_loopback() const;
   /// Ends all connections, whatever they are doing, and those to come.
   void close_connections();
 

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <thread>
 
 #include "snug/core/input_error.hpp"
@@ -20,11 +21,11 @@ constexpr const char* kPage = "<html><!--snug:recordings--></html>";
 /// A plain socket, so that requests can be as wrong as one likes.
 class Client {
  public:
-  explicit Client(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  explicit Client(int port, const char* host = "127.0.0.1") : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ::inet_pton(AF_INET, host, &address.sin_addr);
     timeval patience{3, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     is_connected_ = ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
@@ -55,8 +56,9 @@ class Client {
 
 class ServerTest : public ::testing::Test {
  protected:
-  void start(Content content) {
-    server_ = std::make_unique<Server>(ServerSettings{}, std::move(content));
+  void start(Content content, const std::string& host = "127.0.0.1") {
+    host_ = host;
+    server_ = std::make_unique<Server>(ServerSettings{host, 0}, std::move(content));
     thread_ = std::thread([this] { server_->run(); });
   }
   void TearDown() override {
@@ -66,15 +68,17 @@ class ServerTest : public ::testing::Test {
     thread_.join();
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     EXPECT_LT(took.count(), 4.0);  // a heartbeat of 0.5 s may have to pass, on a busy machine
+    server_.reset();
   }
   [[nodiscard]] std::string ask(const std::string& method, const std::string& path,
                                 const std::string& more = "Host: localhost\r\n") const {
-    const Client client(server_->port());
+    const Client client(server_->port(), host_.c_str());
     client.send(method + " " + path + " HTTP/1.1\r\n" + more + "Connection: close\r\n\r\n");
     return client.read();
   }
   static int status(const std::string& answer) { return answer.size() < 12 ? 0 : std::stoi(answer.substr(9, 3)); }
 
+  std::string host_;
   std::unique_ptr<Server> server_;
   std::thread thread_;
 };
@@ -162,6 +166,88 @@ TEST_F(ServerTest, AnswersToTheNamesOfThisMachineOnly) {
   EXPECT_EQ(status(ask("GET", "/", "Host: localhost.evil.example\r\n")), 403);
   EXPECT_EQ(status(ask("GET", "/", "Host: [\r\n")), 403);
   EXPECT_EQ(status(ask("GET", "/", "")), 403);
+  for (const char* name :
+       {"localhost", "LocalHost:8080", "127.0.0.2", "127.255.1.3:1", "[::1]", "[::ffff:127.0.0.1]:80"}) {
+    EXPECT_EQ(status(ask("GET", "/", "Host: " + std::string(name) + "\r\n")), 200) << name;
+  }
+  for (const char* name :
+       {"128.0.0.1", "127.0.0.1.evil.example", "evil.example:127.0.0.1", "[::1].evil.example", "localhost:80x",
+        "localhost:8080808", "127.0.0", "[::2]", "[::1", "localhost evil.example"}) {
+    EXPECT_EQ(status(ask("GET", "/", "Host: " + std::string(name) + "\r\n")), 403) << name;
+  }
+  EXPECT_EQ(status(ask("GET", "/", "Host: localhost\r\nHost: evil.example\r\n")), 403);
+  EXPECT_EQ(status(ask("GET", "/", "Host: evil.example\r\nHost: localhost\r\n")), 403);
+}
+
+TEST_F(ServerTest, AnswersToTheNamesOfThisMachineOnlyAtEveryAddressOfItsOwn) {
+  for (const char* host : {"127.0.0.2", "127.1.2.3", "127.1", "localhost"}) {
+    start({kPage, {}, nullptr}, host);
+    host_ = std::string(host) == "127.1" || std::string(host) == "localhost" ? "127.0.0.1" : host;
+    if (std::string(host) == "localhost" && !Client(server_->port()).is_connected()) continue;  // bound to ::1
+    EXPECT_EQ(status(ask("GET", "/", "Host: " + host_ + "\r\n")), 200) << host;
+    EXPECT_EQ(status(ask("GET", "/", "Host: evil.example\r\n")), 403) << host;
+    TearDown();
+  }
+}
+
+int count_of(const std::string& text, const std::string& word) {
+  int count = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+/// What a page of another site can have a browser send: a body of its choice behind headers that are not.
+TEST_F(ServerTest, TakesNoBodyForAnotherRequest) {
+  LiveRun live("run", 0.0);
+  live.begin({});
+  start({kPage, {}, &live});
+  const std::string command = "POST /live/pause HTTP/1.1\r\nHost: localhost\r\nX-Snug: 1\r\n\r\n";
+  const std::string length = "Content-Length: " + std::to_string(command.size()) + "\r\n";
+  char size[16];
+  std::snprintf(size, sizeof size, "%zx", command.size());
+  const std::string chunked = std::string(size) + "\r\n" + command + "\r\n0\r\n\r\n";
+  const std::string own = "Host: localhost\r\nContent-Type: text/plain\r\n";
+  const std::vector<std::string> requests = {
+      "POST / HTTP/1.1\r\n" + own + length + "\r\n" + command,
+      "POST /live/pause HTTP/1.1\r\n" + own + length + "\r\n" + command,
+      "GET / HTTP/1.1\r\n" + own + length + "\r\n" + command,
+      "POST / HTTP/1.1\r\n" + own + "Connection: keep-alive\r\n" + length + "\r\n" + command,
+      "POST / HTTP/1.1\r\n" + own + "Transfer-Encoding: chunked\r\n\r\n" + chunked,
+      "POST / HTTP/1.1\r\n" + own + "Expect: 100-continue\r\n" + length + "\r\n" + command,
+      "POST / HTTP/1.1\r\n" + own + "Content-Length: 0\r\n\r\n" + command,
+      "POST / HTTP/1.1\r\n" + own + "Content-Length: -1\r\n\r\n" + command,
+      "POST / HTTP/1.1\r\n" + own + "Content-Length: 99999999999999999999\r\n\r\n" + command,
+      "POST / HTTP/1.1\r\nHost: evil.example\r\n" + length + "\r\n" + command,
+      "OPTIONS / HTTP/1.1\r\n" + own + length + "\r\n" + command,
+      "HEAD / HTTP/1.1\r\n" + own + "\r\n" + command,
+      "GET / HTTP/1.0\r\n" + own + "Connection: keep-alive\r\n\r\n" + command,
+      "GET / HTTP/1.1\r\n" + own + "\r\n" + command,
+  };
+  for (const std::string& request : requests) {
+    SCOPED_TRACE(request);
+    const Client client(server_->port());
+    client.send(request);
+    const std::string answer = client.read();  // until the server closes
+    EXPECT_EQ(count_of(answer, "HTTP/1.1 ") - count_of(answer, "HTTP/1.1 100 "), 1) << answer;
+    EXPECT_NE(answer.find("Connection: close\r\n"), std::string::npos) << answer;
+    EXPECT_FALSE(live.is_paused());
+  }
+  // Sent in two pieces, so that the body comes when the answer is out already.
+  const Client slow(server_->port());
+  slow.send("POST / HTTP/1.1\r\n" + own + length + "\r\n");
+  const std::string answer = slow.read("\r\n\r\n");
+  EXPECT_EQ(status(answer), 413);
+  slow.send(command);
+  EXPECT_EQ(count_of(answer + slow.read(), "HTTP/1.1 "), 1);
+  EXPECT_FALSE(live.is_paused());
+}
+
+TEST_F(ServerTest, TellsWhyItRefusesALargeBody) {
+  start({kPage, {}, nullptr});
+  const Client client(server_->port());
+  const std::string body(60'000, 'x');
+  client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 60000\r\n\r\n" + body);
+  EXPECT_EQ(status(client.read()), 413);  // not a connection that was reset
 }
 
 TEST_F(ServerTest, RefusesAnAddressThatItCannotHave) {
