@@ -51,6 +51,11 @@ std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int deg
   return found;
 }
 
+Weakest find_weakest(const Eigen::MatrixXd& A, std::size_t groups) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinV);
+  return {svd.singularValues()(A.cols() - 1) / std::sqrt(static_cast<double>(groups)), svd.matrixV().col(A.cols() - 1)};
+}
+
 LinearFit fit_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::Index group) {
   LinearFit fit;
   const Eigen::Index groups = b.size() / group;
