@@ -1,6 +1,7 @@
 // check: what may be said after the verb.
 #include "check.hpp"
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "options.hpp"
@@ -8,7 +9,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kCheckExamples =
     R"(Looks at the whole way of the arm, in the timing of the faithful controller, without contact physics: reach, joint
 limits and speeds, singularities, the arm's own links, and links, gripper, cup and held box against everything that
 stands in the cell. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
@@ -30,7 +31,7 @@ void add_check(CLI::App& app, Action& action) {
       ->type_name("LAYER")
       ->capture_default_str();
   verb.add_flag("--json", options->json, "print the result as JSON");
-  verb.footer(kExamples);
+  verb.footer(kCheckExamples);
   verb.callback([options, &action] { action = [options] { return run_check(*options); }; });
 }
 

@@ -1,4 +1,5 @@
 // export: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "export.hpp"
@@ -8,7 +9,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kExportExamples = R"(
 Examples:
   snug export run.h5 --format mcap -o run.mcap
   snug export run.h5 --format mcap --from 40 --to 60 --every 4 -o part.mcap
@@ -58,7 +59,7 @@ void add_export(CLI::App& app, Action& action) {
       ->check(whole(0))
       ->type_name("N")
       ->capture_default_str();
-  verb.footer(footer + kExamples);
+  verb.footer(footer + kExportExamples);
   verb.callback([options, compression, &action] {
     action = [options, compression] {
       options->compression = *compression == "none" ? replay::McapCompression::None : replay::McapCompression::Zstd;

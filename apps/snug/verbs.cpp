@@ -5,10 +5,12 @@
 #include "calibrate.hpp"
 #include "check.hpp"
 #include "compare.hpp"
+#include "completion.hpp"
 #include "cup.hpp"
 #include "export.hpp"
 #include "items.hpp"
 #include "load.hpp"
+#include "manual.hpp"
 #include "pack.hpp"
 #include "picture.hpp"
 #include "plot.hpp"
@@ -35,6 +37,8 @@ void add_verbs(CLI::App& app, Action& action) {
   add_cup(app, action);
   add_calibrate(app, action);
   add_bench(app, action);
+  add_completion(app, action);
+  add_manual(app, action);
 }
 
 }  // namespace snug::app
