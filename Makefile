@@ -2,28 +2,35 @@
 .DEFAULT_GOAL := help
 JOBS ?= $(shell nproc)
 MODULE ?=
+FOLDER ?= ../shared/data/waypoints
+PREFIX ?= /usr/local
 SCENARIO := scenarios/box-demonstrator.yaml
 SOURCES = $(shell find src apps bench tests examples -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
 
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)
 
-.PHONY: help setup setup-lint setup-peers build demo test check format-check fix san tsan tidy cover fuzz bench bench-peers docs clean
+.PHONY: help setup setup-program setup-lint setup-peers setup-package setup-fuzz build demo test acceptance install package check \
+  format-check clang fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
 
 help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
 
 setup: ## install the Debian and npm packages that are missing (root or sudo)
 	@scripts/install-deps.sh && scripts/install-viewer.sh
+setup-program:
+	@scripts/install-deps.sh program && scripts/install-viewer.sh
 setup-lint:
-	@scripts/install-deps.sh lint && scripts/install-viewer.sh
+	@scripts/install-deps.sh test lint && scripts/install-viewer.sh
 setup-peers:
 	@scripts/install-deps.sh peers && scripts/install-viewer.sh
+setup-package:
+	@scripts/install-deps.sh package && scripts/install-viewer.sh
 
 setup-fuzz:
-	@scripts/install-deps.sh fuzz && scripts/install-viewer.sh
+	@scripts/install-deps.sh test fuzz && scripts/install-viewer.sh
 
-build: setup ## build the program as build/snug
+build: setup-program ## build the program as build/snug
 	@$(call configure-build,release,--log-level=WARNING)
 
 demo: build ## pack the five sequences of the report as they come, and write a report of each
@@ -32,10 +39,22 @@ demo: build ## pack the five sequences of the report as they come, and write a r
 test: setup ## build and run every test; MODULE=cup for one module's
 	@scripts/test.sh $(MODULE)
 
+acceptance: build ## run the demonstrator's own programs in FOLDER, print README's table of them
+	@python3 tools/acceptance.py "$(FOLDER)"
+
+install: build ## install the program, its scenarios and the libraries under PREFIX (/usr/local)
+	@cmake --install build --prefix "$(PREFIX)"
+
+package: setup-package build ## make Debian packages of the program and of the libraries, in build/
+	@cd build && cpack -G DEB
+
 check: format-check test ## format check, warnings as errors, every test: before each push
 
 format-check: setup-lint
 	@clang-format --dry-run --Werror $(SOURCES)
+
+clang: setup-lint ## a second compiler reads every source, each with its own includes only
+	@$(call configure-build,clang)
 
 fix: setup-lint ## format every source, apply the safe clang-tidy fixes
 	@clang-format -i $(SOURCES)
@@ -43,6 +62,9 @@ fix: setup-lint ## format every source, apply the safe clang-tidy fixes
 
 san: setup ## tests under the address and undefined-behaviour sanitizers
 	@$(call configure-build,asan) && $(call run-tests,asan)
+
+san-fast: setup ## those of the modules that read files and move bodies; .ci/run
+	@$(call configure-build,sanitize) && $(call run-tests,sanitize) --output-junit test-results.xml
 
 tsan: setup ## tests under the thread sanitizer
 	@$(call configure-build,tsan) && $(call run-tests,tsan)
@@ -66,4 +88,4 @@ docs: setup ## check that every link in the documents leads somewhere
 	@python3 tools/check_docs.py .
 
 clean: ## remove what the verbs built
-	@rm -rf build build-dev build-asan build-tsan build-tidy build-coverage build-bench build-fuzz out
+	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz out

@@ -8,8 +8,8 @@ function(snug_embed_viewer target source)
   if(NOT SNUG_VIEWER)
     return()
   endif()
-  set(viewer ${CMAKE_SOURCE_DIR}/viewer)
-  set(page ${CMAKE_BINARY_DIR}/viewer/index.html)
+  set(viewer ${PROJECT_SOURCE_DIR}/viewer)
+  set(page ${PROJECT_BINARY_DIR}/viewer/index.html)
   find_program(SNUG_NPM npm)
   mark_as_advanced(SNUG_NPM)
   if(NOT SNUG_NPM OR NOT EXISTS ${viewer}/node_modules)
@@ -19,7 +19,7 @@ function(snug_embed_viewer target source)
   file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${viewer}/src/*)
   file(GLOB settings CONFIGURE_DEPENDS ${viewer}/*.json ${viewer}/*.html ${viewer}/*.ts ${viewer}/*.mjs)
   add_custom_command(OUTPUT ${page}
-    COMMAND ${CMAKE_COMMAND} -E env SNUG_VIEWER_OUT=${CMAKE_BINARY_DIR}/viewer ${SNUG_NPM} run --silent build
+    COMMAND ${CMAKE_COMMAND} -E env SNUG_VIEWER_OUT=${PROJECT_BINARY_DIR}/viewer ${SNUG_NPM} run --silent build
     DEPENDS ${inputs} ${settings}
     WORKING_DIRECTORY ${viewer}
     COMMENT "Building the viewer's page"

@@ -1,33 +1,44 @@
 #!/bin/sh
 # install-deps.sh: the one list of Debian 12 packages that snug is built, tested and compared with.
 #
-#   scripts/install-deps.sh              what building, testing and running need
-#   scripts/install-deps.sh lint peers   that, and the groups named (lint, peers, fuzz)
+#   scripts/install-deps.sh              what building, testing and running need: the groups program and test
+#   scripts/install-deps.sh program      what the program needs to be built and to pack; test, lint, fuzz, peers, package:
+#                                        that, and the groups named
 #   scripts/install-deps.sh --list ...   only print the packages
 #
 # Installs only what is missing, as root or through sudo; with nothing missing it takes a tenth of a second.
 set -eu
 
-base="make cmake ninja-build g++ pkg-config ccache python3
-  libeigen3-dev libexpected-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libhdf5-dev hdf5-tools libcli11-dev
-  zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev libbenchmark-dev liborocos-kdl-dev libsiconos-numerics-dev chromium
-  libtinyxml2-dev libassimp-dev libceres-dev libkdl-parser-dev"
+program="make cmake ninja-build g++ pkg-config ccache python3
+  libeigen3-dev libexpected-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libhdf5-dev libcli11-dev
+  zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev libsiconos-numerics-dev
+  libtinyxml2-dev libassimp-dev libceres-dev"
 node="nodejs npm"                   # unless there is a node of 18 or newer already
-lint="clang-format clang-tidy"      # make check, fix, tidy
-fuzz="clang libclang-rt-14-dev"     # make fuzz
-peers="libbullet-dev libmujoco-dev" # make bench-peers
+# make test; chromium also draws `snug picture`
+test="hdf5-tools libbenchmark-dev liborocos-kdl-dev libkdl-parser-dev chromium man-db"
+lint="clang clang-format clang-tidy" # make check, fix, tidy, clang
+fuzz="clang libclang-rt-14-dev"      # make fuzz
+peers="libbullet-dev libmujoco-dev"  # make bench-peers
+package="dpkg-dev file"              # make package
 
-wanted="$base"
+wanted="$program"
+groups=""
 only_list=no
 for argument in "$@"; do
   case "$argument" in
     --list) only_list=yes ;;
-    lint) wanted="$wanted $lint" ;;
-    peers) wanted="$wanted $peers" ;;
-    fuzz) wanted="$wanted $fuzz" ;;
-    *) echo "install-deps.sh: unknown group '$argument'; expected lint, peers, fuzz or --list" >&2; exit 2 ;;
+    program) groups="$groups program" ;;
+    test) groups="$groups test"; wanted="$wanted $test" ;;
+    lint) groups="$groups lint"; wanted="$wanted $lint" ;;
+    fuzz) groups="$groups fuzz"; wanted="$wanted $fuzz" ;;
+    peers) groups="$groups peers"; wanted="$wanted $peers" ;;
+    package) groups="$groups package"; wanted="$wanted $package" ;;
+    *)
+      echo "install-deps.sh: unknown group '$argument'; expected program, test, lint, fuzz, peers, package or --list" >&2
+      exit 2 ;;
   esac
 done
+[ -n "$groups" ] || wanted="$wanted $test"
 node_major="$(node --version 2>/dev/null | sed -n 's/^v\([0-9]*\)\..*/\1/p')"
 if [ "$only_list" = yes ] || [ "${node_major:-0}" -lt 18 ] || ! command -v npm >/dev/null 2>&1; then
   wanted="$wanted $node"

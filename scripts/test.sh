@@ -14,6 +14,6 @@ if [ -n "$module" ]; then
   cmake --build --preset release -j "$jobs" --target "${module}_tests"
   ctest --preset release -j "$jobs" -L "^$module\$"
 else
-  cmake --build --preset release -j "$jobs"
+  cmake --build --preset release -j "$jobs" --target all snug_tests
   ctest --preset release -j "$jobs" --output-junit test-results.xml
 fi

@@ -38,6 +38,19 @@ class TestSummary(unittest.TestCase):
     def test_calls_a_run_without_tests_a_failure(self):
         self.assertEqual(self.run_on("", 0), (1, "0 passed, 1 failed"))
 
+    def test_adds_up_several_runs_and_checks(self):
+        with tempfile.TemporaryDirectory() as folder:
+            first, second = Path(folder) / "a.xml", Path(folder) / "b.xml"
+            first.write_text(f"<testsuite>{PASSED}{PASSED}</testsuite>")
+            second.write_text(f"<testsuite>{PASSED}{FAILED}</testsuite>")
+            result = subprocess.run([sys.executable, TOOL, "format", "0", first, "0", "clang", "2", second, "8"],
+                                    capture_output=True, text=True, check=False)
+        self.assertEqual((result.returncode, result.stdout.splitlines()[-1]), (1, "4 passed, 2 failed"))
+        self.assertIn("FAILED: clang", result.stdout)
+
+    def test_calls_a_file_that_is_not_whole_a_failure(self):
+        self.assertEqual(self.run_on("<testcase", 0), (1, "0 passed, 1 failed"))
+
     def test_calls_an_unexplained_exit_code_a_failure(self):
         self.assertEqual(self.run_on(PASSED, 8), (1, "1 passed, 1 failed"))
 

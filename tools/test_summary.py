@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""test_summary.py RESULTS.xml STATUS: counts test cases of a JUnit file; STATUS is what the test run returned.
+"""test_summary.py WHAT STATUS [WHAT STATUS]...: adds up what was checked; STATUS is what each check returned.
 
-Prints the failed and the skipped cases, then `N passed, N failed`; skipped cases count as neither. A run without results
-or one that failed for a reason that no case shows (the build, a crash of the runner) counts as one failure.
+WHAT is a JUnit file, RESULTS.xml, of which every case counts, or the name of a check that counts as one. Prints the failed and
+the skipped, then `N passed, N failed`; skipped cases count as neither. A run without results, or one that failed for a
+reason that no case shows (the build, a crash of the runner), counts as one failure.
 """
 import os
 import sys
@@ -25,13 +26,30 @@ def count(path):
     return passed, skipped, failed
 
 
-def main(arguments):
-    path, status = arguments[1], int(arguments[2])
+def count_run(path, status):
     passed, skipped, failed = [], [], []
     if os.path.exists(path):
-        passed, skipped, failed = count(path)
+        try:
+            passed, skipped, failed = count(path)
+        except ElementTree.ParseError:
+            failed = [f"{path}, which is not whole"]
     if not failed and (status != 0 or not passed):
-        failed = ["the build or the run of the tests (see above)"]
+        failed = [f"the build or the run of the tests of {path} (see above)"]
+    return passed, skipped, failed
+
+
+def main(arguments):
+    words = arguments[1:]
+    if not words or len(words) % 2 != 0:
+        print(__doc__, file=sys.stderr)
+        return 2
+    passed, skipped, failed = [], [], []
+    for what, status in zip(words[::2], map(int, words[1::2])):
+        if what.endswith(".xml"):
+            parts = count_run(what, status)
+            passed, skipped, failed = passed + parts[0], skipped + parts[1], failed + parts[2]
+        else:
+            (failed if status != 0 else passed).append(what)
     for name in skipped:
         print(f"skipped: {name}")
     for name in failed:

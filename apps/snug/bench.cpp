@@ -9,19 +9,16 @@
 #include <nlohmann/json.hpp>
 
 #include "outputs.hpp"
+#include "shipped.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/experiment/bench.hpp"
 
 namespace snug::app {
 namespace {
 
-/// Where the scenario files are: under the present folder, or where the program was built from.
+/// Where the scenario files are: under the present folder, or with the program.
 std::filesystem::path find_scenarios() {
-  const std::filesystem::path folders[] = {"scenarios", std::filesystem::path(SNUG_SOURCE_DIR) / "scenarios"};
-  for (const std::filesystem::path& folder : folders) {
-    if (std::filesystem::is_directory(folder / "bench")) return folder;
-  }
-  throw InputError("scenarios/bench", "", "no such folder", "to be run from the project's folder");
+  return std::filesystem::is_directory("scenarios/bench") ? "scenarios" : shipped_folder() / "scenarios";
 }
 
 std::string as_json(const std::vector<experiment::Figure>& figures) {

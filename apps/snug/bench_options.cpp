@@ -1,4 +1,5 @@
 // bench: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "bench.hpp"

@@ -3,16 +3,14 @@
 
 #include <vector>
 
+#include "shipped.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::app {
 
 NominalArm load_nominal(const CalibrateOptions& options) {
   std::filesystem::path path = options.urdf;
-  if (path.empty()) {
-    path = "scenarios/robots/ur10.urdf";
-    if (!std::filesystem::exists(path)) path = std::filesystem::path(SNUG_SOURCE_DIR) / path;
-  }
+  if (path.empty()) path = find_shipped("scenarios/robots/ur10.urdf");
   const std::filesystem::path beside = options.output.value_or(path.string());
   return {path, robot::load_urdf(path, options.tool_frame), std::filesystem::absolute(beside).parent_path()};
 }

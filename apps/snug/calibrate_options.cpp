@@ -1,4 +1,5 @@
 // calibrate: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "calibrate.hpp"

@@ -1,6 +1,7 @@
 // check: what may be said after the verb.
 #include "check.hpp"
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "options.hpp"
@@ -8,7 +9,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kCheckExamples =
     R"(Moves the arm with its controller and limits, as a run does, but with nothing to touch, and looks at the whole way:
 reach, joint limits and speeds, singularities, the arm's own links, and links, gripper, cup and held box against
 everything that stands in the cell. Margins of collisions are distances, negative inside; what cup and held box may be
@@ -31,7 +32,7 @@ void add_check(CLI::App& app, Action& action) {
       ->type_name("LAYER")
       ->capture_default_str();
   verb.add_flag("--json", options->json, "print the result as JSON");
-  verb.footer(kExamples);
+  verb.footer(kCheckExamples);
   verb.callback([options, &action] { action = [options] { return run_check(*options); }; });
 }
 

@@ -1,4 +1,5 @@
 // compare: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "compare.hpp"
@@ -7,7 +8,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kCompareExamples = R"(Examples:
   snug compare scenarios/box-demonstrator.yaml
   snug compare scenarios/box-demonstrator.yaml --sequences 1,3 --agents margin,contact-aware --json
   snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --csv > rows.csv
@@ -39,7 +40,7 @@ void add_compare(CLI::App& app, Action& action) {
   add_packing_options(verb, options->pack);
   CLI::Option* json = verb.add_flag("--json", options->json, "print rows as JSON");
   verb.add_flag("--csv", options->csv, "print rows as CSV")->excludes(json);
-  verb.footer(kExamples);
+  verb.footer(kCompareExamples);
   verb.callback([options, &action] { action = [options] { return run_compare(*options); }; });
 }
 

@@ -1,4 +1,5 @@
 // cup: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cup.hpp"

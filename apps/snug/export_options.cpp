@@ -1,4 +1,5 @@
 // export: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "export.hpp"
@@ -9,7 +10,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kExportExamples = R"(
 Examples:
   snug export run.h5 --format mcap -o run.mcap
   snug export run.h5 --format mcap --from 40 --to 60 --every 4 -o part.mcap
@@ -69,7 +70,7 @@ void add_export(CLI::App& app, Action& action) {
       ->check(positive())
       ->type_name("SECONDS")
       ->capture_default_str();
-  verb.footer(footer + kExamples);
+  verb.footer(footer + kExportExamples);
   verb.callback([options, compression, &action] {
     action = [options, compression] {
       options->compression = *compression == "none" ? replay::McapCompression::None : replay::McapCompression::Zstd;

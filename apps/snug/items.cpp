@@ -10,6 +10,7 @@
 #include <set>
 
 #include "outputs.hpp"
+#include "shipped.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/model/items_file.hpp"
@@ -130,7 +131,7 @@ int run_items_reduce(const ItemsReduceOptions& options) {
 }
 
 int run_items_sequence(const ItemsSequenceOptions& options) {
-  const model::Scenario scenario = model::load_scenario(options.scenario);
+  const model::Scenario scenario = model::load_scenario(find_shipped(options.scenario));
   NamedFiles inputs = {{"the scenario", options.scenario}};
   add_file(inputs, "--types", options.types);
   std::optional<OutputFile> output = reserve(inputs, options.output);

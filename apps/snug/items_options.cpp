@@ -1,4 +1,5 @@
 // items: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "items.hpp"

@@ -1,4 +1,5 @@
 // load: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "load.hpp"
@@ -8,7 +9,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kLoadHelp =
     R"(Boxes may stand on each other in any way that does not overlap: no support, weight or order of loading is asked for.
 FILE is one of
   .txt   instances of Bischoff and Ratcliff in the OR-Library's form (thpack): containers and boxes
@@ -39,7 +40,7 @@ void add_load(CLI::App& app, Action& action) {
       ->type_name("N");
   verb.add_flag("--json", options->json, "print JSON: every box, where it lies");
   verb.add_option("-o,--output", options->output, "file to write instead of stdout")->type_name("FILE");
-  verb.footer(kHelp);
+  verb.footer(kLoadHelp);
   verb.callback([options, &action] { action = [options] { return run_load(*options); }; });
 }
 

@@ -7,7 +7,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kMeasureHelp =
     R"(The archive has the layout of the demonstrator's (docs/formats.md): poses of motion capture with noise, losses and a frame
 of its own, wrenches with bias and drift, encoders; each source on a clock of its own. Several recordings become one
 repetition each; --repetitions measures one recording that often, with noise, losses and clocks drawn anew.
@@ -40,7 +40,7 @@ void add_measure(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb.add_option("--truth", options->truth, "a file for what was drawn: clocks, bias, frames, losses")
       ->type_name("FILE.json");
-  verb.footer(kHelp);
+  verb.footer(kMeasureHelp);
   verb.callback([options, &action] { action = [options] { return run_measure(*options); }; });
 }
 

@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <sstream>
 #include <string_view>
 
 #include "ranges.hpp"
@@ -12,6 +13,9 @@
 
 namespace snug::app {
 namespace {
+
+/// The name that validators of `one_of` carry, before the words: how completion in shells and the manual find them.
+constexpr std::string_view kOneOf = "one of ";
 
 template <class Number>
 bool reads_as(std::string_view text, Number& value) {
@@ -22,6 +26,8 @@ bool reads_as(std::string_view text, Number& value) {
 }  // namespace
 
 CLI::Validator one_of(std::vector<std::string> words) {
+  std::string name(kOneOf);
+  for (const std::string& word : words) name += (&word == &words.front() ? "" : ",") + word;
   return CLI::Validator(
       [words = std::move(words)](const std::string& text) {
         std::string list;
@@ -33,7 +39,21 @@ CLI::Validator one_of(std::vector<std::string> words) {
         const std::string hint = nearest.empty() ? "" : "; did you mean " + std::string(nearest) + "?";
         return "got '" + text + "'; expected one of " + list + hint;
       },
-      "");
+      "", name);
+}
+
+std::vector<std::string> choices_of(CLI::Option& option) {
+  std::vector<std::string> words;
+  try {
+    for (int i = 0;; ++i) {
+      const std::string name = option.get_validator(i)->get_name();
+      if (name.rfind(kOneOf, 0) != 0) continue;
+      std::istringstream list(name.substr(kOneOf.size()));
+      for (std::string word; std::getline(list, word, ',');) words.push_back(word);
+    }
+  } catch (const CLI::OptionNotFound&) {  // the parser has no other way to say that there are no more
+  }
+  return words;
 }
 
 CLI::Validator positive() {

@@ -10,6 +10,8 @@ namespace snug::app {
 
 /// The word must be one of these; the message lists them and names the nearest.
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> words);
+/// The words of an option that was checked with `one_of`; else none.
+[[nodiscard]] std::vector<std::string> choices_of(CLI::Option& option);
 /// A finite number above zero.
 [[nodiscard]] CLI::Validator positive();
 /// A whole number that fits into 64 bits, `least` or more.

@@ -1,4 +1,5 @@
 // pack: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "options.hpp"
@@ -9,7 +10,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --json
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --executions 20 --threads 2
@@ -77,7 +78,7 @@ void add_pack(CLI::App& app, Action& action) {
   verb.add_option("--plan", options->plan, "write the placements as JSON")->type_name("FILE.json");
   verb.add_option("-o,--record", options->record, "write a recording of the program's run")->type_name("FILE.h5");
   verb.add_flag("--json", options->json, "print the result as JSON");
-  verb.footer(kExamples);
+  verb.footer(kPackExamples);
   verb.callback([options, &action] { action = [options] { return run_pack(*options); }; });
 }
 

@@ -1,6 +1,7 @@
 // picture: what may be said after the verb.
 #include "picture.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
@@ -11,7 +12,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kPictureExamples = R"(Examples:
   snug picture run.h5 -o end.png --camera top
   snug picture run.h5 --time 12.3 --size 1920x1080 --show frames,wrenches -o pick.png
   snug picture run.h5 --video frames --fps 25 --from 40 --to 60
@@ -72,7 +73,7 @@ void add_picture(CLI::App& app, Action& action) {
                   "parts to draw: names, contacts, forces, wrenches, ghost, frames, trace, xray, robot, walls, shadows")
       ->type_name("A,B");
   verb.add_option("--hide", options->hide, "parts to leave out")->type_name("A,B");
-  verb.footer(kExamples);
+  verb.footer(kPictureExamples);
   verb.callback([options, size, &action] {
     action = [options, size] {
       read_size(*size, *options);

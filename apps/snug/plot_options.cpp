@@ -1,4 +1,5 @@
 // plot: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "options.hpp"
@@ -8,7 +9,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kPlotExamples = R"(Examples:
   snug plot run.h5 --what wrench -o wrench.svg
   snug plot run.h5 --what pose:BOX027 --from 2 --to 20 -o box.svg
   snug plot stiff.h5 soft.h5 --what tool --what speed --width 85 -o compare.svg)";
@@ -38,7 +39,7 @@ void add_plot(CLI::App& app, Action& action) {
       ->type_name("MM")
       ->capture_default_str();
   add_selection_options(verb, options->selection);
-  verb.footer(kExamples);
+  verb.footer(kPlotExamples);
   verb.callback([options, &action] { action = [options] { return run_plot(*options); }; });
 }
 

@@ -1,4 +1,5 @@
 // program: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "program.hpp"

@@ -1,4 +1,5 @@
 // report: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "options.hpp"
@@ -8,7 +9,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kReportExamples = R"(Examples:
   snug report run.h5 -o run.html
   snug report stiff.h5 soft.h5 -o compare.html       the second is laid over the first
   snug report long.h5 -o part.html --from 40 --to 60)";
@@ -31,7 +32,7 @@ void add_report(CLI::App& app, Action& action) {
       ->type_name("FILE.h5");
   verb.add_option("-o,--output", options->output, "the page to write")->required()->type_name("FILE.html");
   add_selection_options(verb, options->selection);
-  verb.footer(kExamples);
+  verb.footer(kReportExamples);
   verb.callback([options, &action] { action = [options] { return run_report(*options); }; });
 }
 

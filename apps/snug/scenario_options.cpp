@@ -1,6 +1,9 @@
 // The words with which several verbs change a scenario: more boxes, another container, a pallet.
 #include "scenario_options.hpp"
 
+#include <CLI/CLI.hpp>
+
+#include "shipped.hpp"
 #include "snug/model/items_file.hpp"
 #include "snug/model/other_container.hpp"
 #include "snug/robot/load_arm.hpp"
@@ -22,20 +25,20 @@ void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes) {
 }
 
 NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, const model::Scenario& scenario) {
-  NamedFiles files = {{"the scenario", file}};
-  for (const std::string& items : changes.items) files.push_back({"--items", items});
+  NamedFiles files = {{"the scenario", find_shipped(file)}};
+  for (const std::string& items : changes.items) files.push_back({"--items", find_shipped(items)});
   if (scenario.robot) files.push_back({"the robot's URDF", robot::urdf_path(scenario)});
   return files;
 }
 
 SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes) {
-  SourcedScenario loaded{model::load_scenario(file), {}};
+  SourcedScenario loaded{model::load_scenario(find_shipped(file)), {}};
   model::Scenario& scenario = loaded.scenario;
   if (changes.container) scenario = model::with_container(scenario, *changes.container);
   if (changes.pallet) scenario = model::with_pallet(scenario, *changes.pallet);
   loaded.ends.push_back(scenario.parcels.size());
   for (const std::string& items : changes.items) {
-    model::add_items(scenario, items);
+    model::add_items(scenario, find_shipped(items));
     loaded.ends.push_back(scenario.parcels.size());
   }
   return loaded;

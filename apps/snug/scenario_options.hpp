@@ -1,7 +1,6 @@
 // The words with which several verbs change a scenario: more boxes, another container, a pallet.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "outputs.hpp"
 #include "snug/model/scenario.hpp"
+#include "verb.hpp"
 
 namespace snug::app {
 

@@ -1,4 +1,5 @@
 // simulate: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "options.hpp"
@@ -8,7 +9,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kSimulateExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug simulate scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --ensemble 20 --seed 7
@@ -81,7 +82,7 @@ void add_simulate(CLI::App& app, Action& action) {
       ->type_name("SECONDS");
   verb.add_option("--csv", options->csv, "write one table, a row per recorded instant")->type_name("FILE.csv");
   verb.add_flag("--json", options->json, "print the result as JSON");
-  verb.footer(kExamples);
+  verb.footer(kSimulateExamples);
   verb.callback([options, &action] { action = [options] { return run_simulate(*options); }; });
 }
 

@@ -6,7 +6,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kValidateHelp =
     R"(The four criteria of the report's section 4.4.1: execution, rest poses (its Table 4), poses over the motion (Table 5),
 wrenches (Table 6), and the key moments of Table 3; repetitions together. Each in two forms: clean (geodesic angle, nothing
 dropped, lost markers counted) and report (the demonstrator's rules). Clocks are found by cross-correlation over all bodies.
@@ -36,7 +36,7 @@ void add_validate(CLI::App& app, Action& action) {
                   "what a source's clock (mocap, ft, robot) shows at time 0 of the simulation, instead of finding it")
       ->type_name("SOURCE=SECONDS");
   verb.add_flag("--json", options->json, "print JSON instead of tables");
-  verb.footer(kHelp);
+  verb.footer(kValidateHelp);
   verb.callback([options, &action] { action = [options] { return run_validate(*options); }; });
 }
 

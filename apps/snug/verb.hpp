@@ -1,8 +1,12 @@
 // Verb: one word of the command line, from its options to its exit code.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+// The parser itself is included only where options are declared: it takes seconds to compile.
+namespace CLI {
+class App;
+}
 
 namespace snug::app {
 

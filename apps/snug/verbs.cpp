@@ -6,11 +6,13 @@
 #include "calibrate.hpp"
 #include "check.hpp"
 #include "compare.hpp"
+#include "completion.hpp"
 #include "cup.hpp"
 #include "export.hpp"
 #include "identify.hpp"
 #include "items.hpp"
 #include "load.hpp"
+#include "manual.hpp"
 #include "measure.hpp"
 #include "pack.hpp"
 #include "picture.hpp"
@@ -43,6 +45,8 @@ void add_verbs(CLI::App& app, Action& action) {
   add_validate(app, action);
   add_identify(app, action);
   add_bench(app, action);
+  add_completion(app, action);
+  add_manual(app, action);
 }
 
 }  // namespace snug::app

@@ -1,4 +1,5 @@
 // view: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "options.hpp"
@@ -9,7 +10,7 @@
 namespace snug::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kViewExamples = R"(Examples:
   snug view run.h5
   snug view stiff.h5 soft.h5                         the second is laid over the first
   snug view --live scenarios/drop.yaml --speed 0.2 --paused
@@ -59,7 +60,7 @@ void add_view(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb.add_flag("--no-open", *is_quiet, "open no browser, only say the address");
   add_selection_options(verb, options->selection);
-  verb.footer(kExamples);
+  verb.footer(kViewExamples);
   verb.callback([options, is_quiet, &action] {
     action = [options, is_quiet] {
       options->opens_browser = !*is_quiet;

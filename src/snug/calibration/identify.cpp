@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/calibration/internal/complaints.hpp"
 #include "snug/calibration/internal/frames.hpp"
@@ -105,11 +103,10 @@ double rms(const std::vector<double>& sizes) {
 
 /// The deviation that the poses say least about.
 void check_determined(const robot::ArmModel& arm, const PosePairs& pairs, const Eigen::MatrixXd& J) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeThinV);
-  const double spread = svd.singularValues()(J.cols() - 1) / std::sqrt(static_cast<double>(pairs.q.size()));
-  if (spread > kSmallestSpread) return;
+  const internal::Weakest weakest = internal::find_weakest(J, pairs.q.size());
+  if (weakest.spread > kSmallestSpread) return;
   Eigen::Index worst = 0;
-  svd.matrixV().col(J.cols() - 1).cwiseAbs().maxCoeff(&worst);
+  weakest.direction.cwiseAbs().maxCoeff(&worst);
   throw InputError(pairs.table.name, deviation_name(arm, static_cast<int>(worst)),
                    "poses that leave this deviation (or one together with it) undetermined",
                    "poses in which every joint takes values a radian or more apart");

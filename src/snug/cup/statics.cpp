@@ -2,12 +2,13 @@
 #include "snug/cup/statics.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "snug/spatial/eigenvalues.hpp"
 
 namespace snug::cup {
 namespace {
@@ -71,7 +72,7 @@ Pose moved(const Pose& H, const Vector6& nu) {
 
 double smallest_eigenvalue(const Matrix6& stiffness) {
   const Matrix6 symmetric = 0.5 * (stiffness + stiffness.transpose());
-  return Eigen::SelfAdjointEigenSolver<Matrix6>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  return symmetric_eigenvalues(symmetric)[0];
 }
 
 /// Of the tangent stiffness, with rotations measured by their arc at the cup's length: N/m.

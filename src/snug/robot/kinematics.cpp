@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "snug/spatial/eigenvalues.hpp"
+
 namespace snug::robot {
 namespace {
 
@@ -111,8 +113,7 @@ double singularity_measure(const Jacobian& J_WE, double length) noexcept {
     return std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
   }
   const Matrix6 gram = scaled * scaled.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(gram, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
+  return std::sqrt(std::max(0.0, symmetric_eigenvalues(gram)(0)));
 }
 
 }  // namespace snug::robot

@@ -35,6 +35,11 @@ Eigen::VectorXd fit_robustly(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
 
 }  // namespace
 
+Weakest find_weakest(const Eigen::MatrixXd& A, std::size_t groups) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinV);
+  return {svd.singularValues()(A.cols() - 1) / std::sqrt(static_cast<double>(groups)), svd.matrixV().col(A.cols() - 1)};
+}
+
 LinearFit fit_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::Index group) {
   LinearFit fit;
   const Eigen::Index groups = b.size() / group;

@@ -7,6 +7,13 @@
 
 namespace snug::calibration::internal {
 
+/// What the rows of a matrix say least about.
+struct Weakest {
+  double spread = 0.0;        ///< smallest singular value / sqrt(groups)
+  Eigen::VectorXd direction;  ///< its direction in x
+};
+[[nodiscard]] Weakest find_weakest(const Eigen::MatrixXd& A, std::size_t groups);
+
 struct LinearFit {
   Eigen::VectorXd x;
   Eigen::MatrixXd covariance;         ///< of x; noise estimated from the residuals

@@ -1,7 +1,6 @@
 // LineReader: one JSON object, read strictly, key by key.
 #include "snug/cup/internal/line_reader.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
+#include "snug/spatial/eigenvalues.hpp"
 
 namespace snug::cup::internal {
 namespace {
@@ -173,8 +173,7 @@ Matrix6 LineReader::stiffness(const std::string& key) const {
     }
   }
   const Matrix6 scaled = K / std::max(size, 1e-300);
-  const double smallest =
-      Eigen::SelfAdjointEigenSolver<Matrix6>(scaled, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
+  const double smallest = symmetric_eigenvalues(scaled).minCoeff();
   if (!(smallest >= -kSymmetryTolerance))
     fail(key, "a negative eigenvalue", "a stiffness without negative eigenvalues");
   return K;

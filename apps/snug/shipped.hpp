@@ -1,0 +1,17 @@
+// shipped: the files that come with the program, wherever it was put.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace snug::app {
+
+/// The folder that holds scenarios/: beside the program as it was built, or in share/snug of where it is installed.
+/// Throws InputError when there is none.
+[[nodiscard]] std::filesystem::path shipped_folder();
+
+/// `file` itself where there is one; else the shipped file of that name, as in `snug simulate scenarios/drop.yaml` from
+/// any folder; else `file`, for the reader to complain about.
+[[nodiscard]] std::string find_shipped(const std::string& file);
+
+}  // namespace snug::app
