@@ -1,5 +1,4 @@
 // Contact Newton: finishes the islands on which Gauss-Seidel converges slowly. docs/theory/contact.md, section 4.
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -7,9 +6,6 @@
 
 namespace snug::physics::internal {
 namespace {
-
-using Block3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-using Block36 = Eigen::Matrix<double, 3, 6, Eigen::RowMajor>;
 
 constexpr double kFirstPenalty = 30.0;  ///< in units of 1 / W of each contact
 constexpr double kLeastPenalty = 0.3;
@@ -63,7 +59,7 @@ double evaluate(const Problem& problem) {
       work.error[i] = work.u[i] - work.u_free[i];
     }
   }
-  NewtonRow* law = work.rows.data();
+  NewtonRow* law = work.rows.get();
   for (const Row* row = problem.first; row != problem.end; ++row, ++law) {
     double xi[3];
     contact_velocity(*row, work.u.data(), xi);
@@ -79,59 +75,60 @@ double evaluate(const Problem& problem) {
   return std::sqrt(square);
 }
 
-/// I + sum (J T)^T slope (J T), in blocks of the island's bodies.
-void assemble(const Problem& problem) {
-  NewtonScratch& work = problem.work;
-  const int count = static_cast<int>(work.active.size());
-  std::fill_n(work.is_filled.begin(), count * count, char{0});
-  for (int i = 0; i < count; ++i) work.open_block(i, i).setIdentity();
-  const NewtonRow* law = work.rows.data();
-  for (const Row* row = problem.first; row != problem.end; ++row, ++law) {
-    if (law->lambda[0] <= 0.0) continue;
-    const Eigen::Map<const Block3> slope(law->slope);
-    const Eigen::Map<const Block36> a(row->a[0]), b(row->b[0]);
-    const int ia = row->ia < 0 ? -1 : work.local[static_cast<std::size_t>(row->ia)];
-    const int ib = row->ib < 0 ? -1 : work.local[static_cast<std::size_t>(row->ib)];
-    if (ia >= 0) {
-      const Block36 force = slope * a;
-      work.open_block(ia, ia).noalias() += a.transpose() * force;
-      if (ib >= 0) work.open_block(ib, ia).noalias() += b.transpose() * force;
-    }
-    if (ib >= 0) {
-      const Block36 force = slope * b;
-      work.open_block(ib, ib).noalias() += b.transpose() * force;
-      if (ia >= 0) work.open_block(ia, ib).noalias() += a.transpose() * force;
+/// M += sum over the three rows of a^T c.
+void add_product(Matrix6& M, const double (&a)[3][6], const double (&c)[3][6]) {
+  double* column = M.data();
+  for (int j = 0; j < 6; ++j, column += 6) {
+    const Pair c0{c[0][j], c[0][j]}, c1{c[1][j], c[1][j]}, c2{c[2][j], c[2][j]};
+    for (int k = 0; k < 6; k += 2) {
+      store(column + k, load(column + k) + (load(a[0] + k) * c0 + load(a[1] + k) * c1 + load(a[2] + k) * c2));
     }
   }
 }
 
-/// Newton step: solves blocks * step = error by elimination that skips empty blocks.
-void solve_blocks(const Problem& problem) {
+/// slope * rows.
+void multiply(const double (&slope)[9], const double (&rows)[3][6], double (&out)[3][6]) {
+  for (int i = 0; i < 3; ++i) {
+    const Pair s0{slope[3 * i], slope[3 * i]}, s1{slope[3 * i + 1], slope[3 * i + 1]},
+        s2{slope[3 * i + 2], slope[3 * i + 2]};
+    for (int k = 0; k < 6; k += 2) {
+      store(out[i] + k, load(rows[0] + k) * s0 + load(rows[1] + k) * s1 + load(rows[2] + k) * s2);
+    }
+  }
+}
+
+/// I + sum (J T)^T slope (J T), in blocks of the island's bodies.
+void assemble(const Problem& problem) {
   NewtonScratch& work = problem.work;
-  const int count = static_cast<int>(work.active.size());
-  const auto part = [&work](std::vector<double>& v, int i) {
-    return Eigen::Map<Vector6>(v.data() + 6 * work.active[static_cast<std::size_t>(i)]);
-  };
-  for (int i = 0; i < count; ++i) part(work.step, i) = part(work.error, i);
-  for (int k = 0; k < count; ++k) {
-    const Matrix6 inverse = work.block(k, k).inverse();
-    work.block(k, k) = inverse;
-    for (int i = k + 1; i < count; ++i) {
-      if (!work.has_block(i, k)) continue;
-      const Matrix6 factor = work.block(i, k) * inverse;
-      for (int j = k + 1; j < count; ++j) {
-        if (work.has_block(k, j)) work.open_block(i, j).noalias() -= factor * work.block(k, j);
-      }
-      part(work.step, i).noalias() -= factor * part(work.step, k);
+  work.solver.set_identity();
+  const NewtonRow* law = work.rows.get();
+  for (const Row* row = problem.first; row != problem.end; ++row, ++law) {
+    if (law->lambda[0] <= 0.0) continue;
+    alignas(16) double force[3][6];
+    if (law->connection >= 0) {
+      const BlockSolver::Coupling coupling = work.solver.coupling(law->connection);
+      multiply(law->slope, row->a, force);
+      add_product(work.solver.diagonal(work.local[static_cast<std::size_t>(row->ia)]), row->a, force);
+      add_product(coupling.ji, row->b, force);
+      multiply(law->slope, row->b, force);
+      add_product(work.solver.diagonal(work.local[static_cast<std::size_t>(row->ib)]), row->b, force);
+      add_product(coupling.ij, row->a, force);
+      continue;
     }
+    const double (&rows)[3][6] = row->ia >= 0 ? row->a : row->b;
+    multiply(law->slope, rows, force);
+    add_product(work.solver.diagonal(work.local[static_cast<std::size_t>(std::max(row->ia, row->ib))]), rows, force);
   }
-  for (int k = count - 1; k >= 0; --k) {
-    Vector6 right = part(work.step, k);
-    for (int j = k + 1; j < count; ++j) {
-      if (work.has_block(k, j)) right.noalias() -= work.block(k, j) * part(work.step, j);
-    }
-    part(work.step, k).noalias() = work.block(k, k) * right;
-  }
+}
+
+/// Newton step: solves the system for step, from error.
+void solve_system(const Problem& problem) {
+  NewtonScratch& work = problem.work;
+  work.solver.factorize();
+  const std::size_t count = work.active.size();
+  for (std::size_t i = 0; i < count; ++i) std::copy_n(work.error.data() + 6 * work.active[i], 6, work.u_start.data() + 6 * i);
+  work.solver.solve(work.u_start.data());
+  for (std::size_t i = 0; i < count; ++i) std::copy_n(work.u_start.data() + 6 * i, 6, work.step.data() + 6 * work.active[i]);
 }
 
 /// Moves along the Newton step until the momentum error shrinks. Returns the new error, negative when it does not.
@@ -159,33 +156,43 @@ bool solve_stage(const Problem& problem, double tolerance, int& iterations) {
     if (error <= tolerance) return true;
     ++iterations;
     assemble(problem);
-    solve_blocks(problem);
+    solve_system(problem);
     error = search_line(problem, error);
     if (error < 0.0) return false;
   }
   return error <= tolerance;
 }
 
-/// The bodies of the island and their velocities without its impulses. False: too many for a dense solve.
+/// The bodies of the island, their velocities without its impulses, and which of them share contacts. False: the linear
+/// system fills beyond memory.
 bool start(Problem& problem, const double* u) {
   NewtonScratch& work = problem.work;
-  if (problem.end - problem.first > NewtonScratch::kMaxRows) return false;
+  for (const int body : work.active) work.local[static_cast<std::size_t>(body)] = -1;  // of the island before
   work.active.clear();
-  std::fill(work.local.begin(), work.local.end(), -1);
   for (const Row* row = problem.first; row != problem.end; ++row) {
     for (const int body : {row->ia, row->ib}) {
       if (body < 0 || work.local[static_cast<std::size_t>(body)] >= 0) continue;
-      if (work.active.size() == NewtonScratch::kMaxBodies) return false;
       work.local[static_cast<std::size_t>(body)] = static_cast<int>(work.active.size());
       work.active.push_back(body);
       std::copy_n(u + 6 * body, 6, work.u_free.data() + 6 * body);
     }
   }
-  for (const Row* row = problem.first; row != problem.end; ++row) {
+  work.solver.begin(static_cast<int>(work.active.size()));
+  const Row* last = nullptr;
+  int connection = -1;
+  NewtonRow* law = work.rows.get();
+  for (const Row* row = problem.first; row != problem.end; ++row, ++law) {
     const double d[3] = {-row->lambda[0], -row->lambda[1], -row->lambda[2]};
     apply(*row, d, work.u_free.data());
+    const bool is_pair = row->ia >= 0 && row->ib >= 0;
+    if (is_pair && (last == nullptr || last->ia != row->ia || last->ib != row->ib)) {
+      connection = work.solver.connect(work.local[static_cast<std::size_t>(row->ia)],
+                                       work.local[static_cast<std::size_t>(row->ib)]);
+      last = row;
+    }
+    law->connection = is_pair ? connection : -1;
   }
-  return true;
+  return work.solver.analyze();
 }
 
 /// u from the impulses of the rows.
@@ -198,14 +205,11 @@ void apply_impulses(const Problem& problem, double* u) {
 
 }  // namespace
 
-NewtonScratch::NewtonScratch(std::size_t bodies) {
+NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity)
+    : solver(bodies, row_capacity), rows(new NewtonRow[row_capacity]) {
   for (std::vector<double>* v : {&u, &u_free, &u_start, &error, &step}) v->assign(6 * bodies, 0.0);
   local.assign(bodies, -1);
-  const std::size_t side = std::min<std::size_t>(kMaxBodies, bodies);
-  active.reserve(side);
-  blocks.assign(side * side, Matrix6::Zero());
-  is_filled.assign(side * side, 0);
-  rows.assign(kMaxRows, NewtonRow{});
+  active.reserve(bodies);
 }
 
 int newton_rows(double tolerance, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {
