@@ -33,7 +33,9 @@ BlockSolver::BlockSolver(std::size_t bodies, std::size_t connections)
       diagonal_(bodies),
       lower_(max_fill_),
       upper_(max_fill_),
-      x_(6 * bodies) {
+      x_(6 * bodies),
+      traces_(std::min(bodies, kMaxResponses)),
+      slot_(bodies, -1) {
   connections_.reserve(connections);
   links_.reserve(2 * (max_fill_ + std::min(connections, max_fill_)));
   for (Index* index : {&first_link_, &degree_, &mark_, &next_in_bucket_, &last_in_bucket_}) index->resize(bodies);
@@ -216,6 +218,58 @@ void BlockSolver::solve(double* x) {
     Part(x_.data() + 6 * k).noalias() = diagonal_[at(k)] * part;
   }
   for (int k = 0; k < count_; ++k) Part(x + 6 * body_[at(k)]) = Part(x_.data() + 6 * k);
+}
+
+/// A column c of the factor fills the rows of its entries, and so on up: the way of a body ends at the last rank.
+void BlockSolver::trace(int body, Trace& trace) {
+  trace.ranks.clear();
+  // The first entry of a column is its parent in the elimination tree, and holds every later entry in its own column.
+  for (std::size_t k = rank_[at(body)];;) {
+    slot_[k] = static_cast<int>(trace.ranks.size());
+    trace.ranks.push_back(static_cast<int>(k));
+    if (column_[k] == column_[k + 1]) break;
+    k = at(row_[column_[k]]);
+  }
+  const std::size_t length = trace.ranks.size();
+  if (trace.left.size() < length) {
+    trace.left.resize(length);
+    trace.right.resize(length);
+  }
+  for (std::size_t s = 0; s < length; ++s) {
+    trace.left[s].setZero();
+    trace.right[s].setZero();
+  }
+  trace.left[0].setIdentity();
+  trace.right[0].setIdentity();
+  for (std::size_t s = 0; s < length; ++s) {
+    const auto k = at(trace.ranks[s]);
+    trace.left[s] = trace.left[s] * diagonal_[k];
+    for (std::size_t e = column_[k]; e < column_[k + 1]; ++e) {
+      const auto to = at(slot_[at(row_[e])]);
+      trace.left[to].noalias() -= trace.left[s] * upper_[e];
+      trace.right[to].noalias() -= lower_[e] * trace.right[s];
+    }
+  }
+  for (const int rank : trace.ranks) slot_[at(rank)] = -1;
+}
+
+void BlockSolver::respond(const std::vector<int>& bodies, std::vector<Matrix6>& response) {
+  const std::size_t n = bodies.size();
+  for (std::size_t i = 0; i < n; ++i) trace(bodies[i], traces_[i]);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Trace& a = traces_[i];
+    for (std::size_t s = 0; s < a.ranks.size(); ++s) slot_[at(a.ranks[s])] = static_cast<int>(s);
+    for (std::size_t j = 0; j < n; ++j) {
+      const Trace& b = traces_[j];
+      Matrix6& block = response[n * i + j];
+      block.setZero();
+      for (std::size_t s = 0; s < b.ranks.size(); ++s) {
+        const int slot = slot_[at(b.ranks[s])];
+        if (slot >= 0) block.noalias() += a.left[at(slot)] * b.right[s];
+      }
+    }
+    for (const int rank : a.ranks) slot_[at(rank)] = -1;
+  }
 }
 
 }  // namespace snug::physics::internal

@@ -53,6 +53,11 @@ class BlockSolver {
   /// A^-1 x in place, 6 entries a body.
   void solve(double* x);
 
+  /// Blocks (i, j) of A^-1 for the bodies given, of a factorised A, as 6n x 6n, row-major by body. Costs only the ways of these
+  /// bodies through the elimination. At most kMaxResponses bodies.
+  static constexpr std::size_t kMaxResponses = 24;
+  void respond(const std::vector<int>& bodies, std::vector<Matrix6>& response);
+
   [[nodiscard]] int count() const { return count_; }
   /// Pairs of blocks beside the diagonal in the factors.
   [[nodiscard]] std::size_t fill() const { return fill_; }
@@ -87,6 +92,14 @@ class BlockSolver {
   Index row_;                        ///< rank of each entry
   BlockStore diagonal_, lower_, upper_;
   std::vector<double> x_;  ///< by rank
+  /// What a body touches on its way through the elimination: by body asked for, then by rank.
+  struct Trace {
+    std::vector<int> ranks;
+    std::vector<Matrix6> left, right;  ///< rows of U^-1, columns of L^-1
+  };
+  void trace(int body, Trace& trace);
+  std::vector<Trace> traces_;
+  Index slot_;  ///< of each rank on the way at hand, or -1
 };
 
 }  // namespace snug::physics::internal
