@@ -16,7 +16,8 @@ constexpr double kFlipCut = 3.0;          ///< of the penalty of a contact whose
 constexpr double kFlipRecovery = 1.5;     ///< of the penalty of one whose status stays
 constexpr double kLeastFlipPenalty = 1.0;
 constexpr double kEasyPenalty = 1e4;      ///< of the contacts that are condensed
-constexpr int kMaxRounds = 8;             ///< of hard contacts
+constexpr int kMaxRounds = 12;            ///< of hard contacts
+constexpr int kSweepsPerRound = 2;
 constexpr double kHardResidual = 0.3;     ///< of the tolerance, above which a contact is hard
 
 constexpr double kFirstPenalty = 30.0;  ///< of the augmented Lagrangian, in units of 1 / W
@@ -122,7 +123,7 @@ class IslandProblem {
 
   void run_cycles(int count);
   void linearise(bool with_hard);
-  bool collect_hard();
+  void collect_hard();
   void couple_hard();
   void solve_hard();
 
@@ -295,26 +296,36 @@ void IslandProblem::run_cycles(int count) {
   }
 }
 
-/// Fills work.hard.rows and the bodies that they touch. False: more than can be solved densely.
-bool IslandProblem::collect_hard() {
-  work_.hard.rows.clear();
+/// Fills work.hard.rows and the bodies that they touch: contacts above the residual, the worst first, as many as fit.
+void IslandProblem::collect_hard() {
+  HardContacts& hard = work_.hard;
+  hard.rows.clear();
   for (const int place : work_.hard_bodies) work_.hard_place[at(place)] = -1;
   work_.hard_bodies.clear();
-  bool fits = true;
-  each_row([&](Row& row, NewtonRow& newton) {
-    newton.is_hard |= natural_map(row, u_) > kHardResidual * tolerance_;
-    if (!newton.is_hard || !fits) return;
-    fits = work_.hard.rows.size() < HardContacts::kMaxContacts;
-    if (!fits) return;
-    work_.hard.rows.push_back(&row);
+  std::size_t count = 0;
+  each_row([&](const Row& row, NewtonRow& newton) {
+    const double residual = natural_map(row, u_);
+    const bool is_above = residual > kHardResidual * tolerance_;
+    if (is_above || newton.is_hard) work_.candidates[count++] = {is_above ? residual : 0.0, static_cast<int>(&row - first_)};
+    newton.is_hard = false;
+  });
+  const auto begin = work_.candidates.begin();
+  std::sort(begin, begin + static_cast<std::ptrdiff_t>(count), [](const auto& a, const auto& b) {
+    return a.residual != b.residual ? a.residual > b.residual : a.row < b.row;
+  });
+  for (std::size_t i = 0; i < count && hard.rows.size() < HardContacts::kMaxContacts; ++i) {
+    Row& row = first_[work_.candidates[i].row];
+    std::size_t added = 0;
+    for (const int body : {row.ia, row.ib}) added += body >= 0 && work_.hard_place[at(work_.local[at(body)])] < 0 ? 1 : 0;
+    if (work_.hard_bodies.size() + added > BlockSolver::kMaxResponses) continue;
     for (const int body : {row.ia, row.ib}) {
       if (body < 0 || work_.hard_place[at(work_.local[at(body)])] >= 0) continue;
       work_.hard_place[at(work_.local[at(body)])] = static_cast<int>(work_.hard_bodies.size());
       work_.hard_bodies.push_back(work_.local[at(body)]);
     }
-    fits = work_.hard_bodies.size() <= BlockSolver::kMaxResponses;
-  });
-  return fits;
+    hard.rows.push_back(&row);
+    work_.rows[at(work_.candidates[i].row)].is_hard = true;
+  }
 }
 
 /// The dense problem of the hard contacts: what the island answers to their impulses.
@@ -354,12 +365,7 @@ void IslandProblem::couple_hard() {
 /// Rounds of: the few hard contacts exactly, all others by the linear laws of their status.
 void IslandProblem::solve_hard() {
   for (int round = 0; round < kMaxRounds && !is_solved(); ++round) {
-    if (!collect_hard()) {
-      each_row([](Row&, NewtonRow& newton) { newton.is_hard = false; });
-      run_cycles(kCycles / 2 + 1);
-      restore_best();
-      continue;
-    }
+    collect_hard();
     ++iterations_;
     linearise(false);
     assemble();
@@ -374,6 +380,9 @@ void IslandProblem::solve_hard() {
     solve_system();
     take_linear_impulses(false);
     apply_impulses();
+    measure();
+    if (is_solved()) return;
+    for (int k = 0; k < kSweepsPerRound; ++k) (void)sweep_rows(first_, end_, u_, sweeps_++ % 2 == 0);
     measure();
   }
   restore_best();
@@ -464,6 +473,7 @@ NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity)
   hard_place.assign(bodies, -1);
   active.reserve(bodies);
   hard_bodies.reserve(BlockSolver::kMaxResponses + 2);
+  candidates.resize(row_capacity);
   response.resize(BlockSolver::kMaxResponses * BlockSolver::kMaxResponses);
 }
 
