@@ -16,8 +16,8 @@ constexpr double kFlipCut = 3.0;          ///< of the penalty of a contact whose
 constexpr double kFlipRecovery = 1.5;     ///< of the penalty of one whose status stays
 constexpr double kLeastFlipPenalty = 1.0;
 constexpr double kEasyPenalty = 1e4;      ///< of the contacts that are condensed
-constexpr int kMaxRounds = 12;            ///< of hard contacts
-constexpr int kSweepsPerRound = 2;
+constexpr int kMaxFailedRounds = 3;       ///< of hard contacts
+constexpr int kMaxCycles = 12;            ///< while each three halve the residual
 constexpr double kHardResidual = 0.3;     ///< of the tolerance, above which a contact is hard
 
 constexpr double kFirstPenalty = 30.0;  ///< of the augmented Lagrangian, in units of 1 / W
@@ -123,7 +123,7 @@ class IslandProblem {
 
   void run_cycles(int count);
   void linearise(bool with_hard);
-  void collect_hard();
+  bool collect_hard();
   void couple_hard();
   void solve_hard();
 
@@ -296,36 +296,26 @@ void IslandProblem::run_cycles(int count) {
   }
 }
 
-/// Fills work.hard.rows and the bodies that they touch: contacts above the residual, the worst first, as many as fit.
-void IslandProblem::collect_hard() {
-  HardContacts& hard = work_.hard;
-  hard.rows.clear();
+/// Fills work.hard.rows and the bodies that they touch. False: more than can be solved densely.
+bool IslandProblem::collect_hard() {
+  work_.hard.rows.clear();
   for (const int place : work_.hard_bodies) work_.hard_place[at(place)] = -1;
   work_.hard_bodies.clear();
-  std::size_t count = 0;
-  each_row([&](const Row& row, NewtonRow& newton) {
-    const double residual = natural_map(row, u_);
-    const bool is_above = residual > kHardResidual * tolerance_;
-    if (is_above || newton.is_hard) work_.candidates[count++] = {is_above ? residual : 0.0, static_cast<int>(&row - first_)};
-    newton.is_hard = false;
-  });
-  const auto begin = work_.candidates.begin();
-  std::sort(begin, begin + static_cast<std::ptrdiff_t>(count), [](const auto& a, const auto& b) {
-    return a.residual != b.residual ? a.residual > b.residual : a.row < b.row;
-  });
-  for (std::size_t i = 0; i < count && hard.rows.size() < HardContacts::kMaxContacts; ++i) {
-    Row& row = first_[work_.candidates[i].row];
-    std::size_t added = 0;
-    for (const int body : {row.ia, row.ib}) added += body >= 0 && work_.hard_place[at(work_.local[at(body)])] < 0 ? 1 : 0;
-    if (work_.hard_bodies.size() + added > BlockSolver::kMaxResponses) continue;
+  bool fits = true;
+  each_row([&](Row& row, NewtonRow& newton) {
+    newton.is_hard |= natural_map(row, u_) > kHardResidual * tolerance_;
+    if (!newton.is_hard || !fits) return;
+    fits = work_.hard.rows.size() < HardContacts::kMaxContacts;
+    if (!fits) return;
+    work_.hard.rows.push_back(&row);
     for (const int body : {row.ia, row.ib}) {
       if (body < 0 || work_.hard_place[at(work_.local[at(body)])] >= 0) continue;
       work_.hard_place[at(work_.local[at(body)])] = static_cast<int>(work_.hard_bodies.size());
       work_.hard_bodies.push_back(work_.local[at(body)]);
     }
-    hard.rows.push_back(&row);
-    work_.rows[at(work_.candidates[i].row)].is_hard = true;
-  }
+    fits = work_.hard_bodies.size() <= BlockSolver::kMaxResponses;
+  });
+  return fits;
 }
 
 /// The dense problem of the hard contacts: what the island answers to their impulses.
@@ -362,10 +352,12 @@ void IslandProblem::couple_hard() {
   }
 }
 
-/// Rounds of: the few hard contacts exactly, all others by the linear laws of their status.
+/// Rounds of: the few hard contacts exactly, all others by the linear laws of their status. Goes on while that helps, and
+/// only where they are few.
 void IslandProblem::solve_hard() {
-  for (int round = 0; round < kMaxRounds && !is_solved(); ++round) {
-    collect_hard();
+  each_row([](const Row&, NewtonRow& newton) { newton.is_hard = false; });
+  int failures = 0;
+  while (!is_solved() && failures < kMaxFailedRounds && collect_hard()) {
     ++iterations_;
     linearise(false);
     assemble();
@@ -380,10 +372,9 @@ void IslandProblem::solve_hard() {
     solve_system();
     take_linear_impulses(false);
     apply_impulses();
+    const double before = best_;
     measure();
-    if (is_solved()) return;
-    for (int k = 0; k < kSweepsPerRound; ++k) (void)sweep_rows(first_, end_, u_, sweeps_++ % 2 == 0);
-    measure();
+    if (best_ > 0.5 * before) ++failures;
   }
   restore_best();
 }
@@ -441,6 +432,7 @@ void IslandProblem::augment() {
     mobility = std::max({mobility, row.W[0] - row.gamma, row.W[3], row.W[5]});
   });
   const int last = iterations_ + kMaxIterations;
+  int tries = 3;  // to settle what is left as hard contacts
   for (double penalty = kFirstPenalty; iterations_ < last && penalty > kLeastPenalty && !is_solved();) {
     each_row([](const Row& row, NewtonRow& newton) { std::copy_n(row.lambda, 3, newton.center); });
     for (const int body : work_.active) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
@@ -450,14 +442,20 @@ void IslandProblem::augment() {
     }
     each_row([](Row& row, const NewtonRow& newton) { std::copy_n(newton.law.lambda, 3, row.lambda); });
     apply_impulses();
+    const double before = best_;
     measure();
     penalty = std::min(kLargestPenalty, penalty * kGrowth);
+    if (best_ < 0.3 * before && tries-- > 0) solve_hard();
   }
   restore_best();
 }
 
 int IslandProblem::solve() {
   run_cycles(kCycles);
+  for (double before = 2.0 * best_; !is_solved() && iterations_ < kMaxCycles && best_ < 0.5 * before;) {
+    before = best_;
+    run_cycles(3);
+  }
   restore_best();
   solve_hard();
   if (!is_solved()) augment();
@@ -473,7 +471,6 @@ NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity)
   hard_place.assign(bodies, -1);
   active.reserve(bodies);
   hard_bodies.reserve(BlockSolver::kMaxResponses + 2);
-  candidates.resize(row_capacity);
   response.resize(BlockSolver::kMaxResponses * BlockSolver::kMaxResponses);
 }
 

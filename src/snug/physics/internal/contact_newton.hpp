@@ -35,11 +35,6 @@ struct NewtonScratch {
   HardContacts hard;
   std::vector<int> hard_bodies, hard_place;  ///< places in `active`; and of each place, the index in hard_bodies or -1
   std::vector<Matrix6> response;
-  struct Candidate {
-    double residual;
-    int row;
-  };
-  std::vector<Candidate> candidates;
   std::unique_ptr<NewtonRow[]> rows;
 };
 
