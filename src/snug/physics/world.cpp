@@ -108,11 +108,19 @@ std::span<const ContactReport> Workspace::contacts() const {
   return {scratch_->reports.begin(), scratch_->reports.size()};
 }
 
-internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size()) {
+namespace {
+
+/// A box touches about ten others with four points each; small worlds get space for every pair.
+std::size_t contact_capacity_of(const WorldModel& model) {
+  return std::min<std::size_t>(8 * model.pair_capacity, 4096 + 96 * model.geoms.size());
+}
+
+}  // namespace
+
+internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size(), contact_capacity_of(model)) {
   const std::size_t n = model.bodies.size();
   const std::size_t geom_count = model.geoms.size();
-  // A box touches about ten others with four points each; small worlds get room for every pair.
-  const std::size_t contact_capacity = std::min<std::size_t>(8 * model.pair_capacity, 4096 + 96 * geom_count);
+  const std::size_t contact_capacity = contact_capacity_of(model);
   static std::atomic<std::uint64_t> scratches{0};
   stamp = (++scratches) << 40;
   memories.resize(n);

@@ -1,52 +1,45 @@
-// Contact Newton: finishes the islands on which Gauss-Seidel converges slowly.
+// Contact Newton: solves the contacts of islands on which Gauss-Seidel converges slowly. docs/theory/contact.md, section 4.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
+#include "snug/physics/internal/block_solver.hpp"
 #include "snug/physics/internal/contact_row.hpp"
-#include "snug/spatial/pose.hpp"
+#include "snug/physics/internal/hard_contacts.hpp"
 
 namespace snug::physics::internal {
 
-/// What Newton's method keeps of one contact: impulses in the row's frame, N s.
+enum class ContactStatus : char { Unknown, Open, Sticks, Slides };
+
+/// What Newton's method keeps of one contact.
 struct NewtonRow {
-  double center[3];  ///< about which the augmented law is taken
-  double lambda[3];  ///< of the augmented law
-  double best[3];    ///< with the least residual so far
-  double slope[9];   ///< -d lambda / d relative velocity, row-major
+  AugmentedLaw law;
+  double center[3];  ///< N s, about which the augmented law is taken
+  double best[3];    ///< N s, with the least residual so far
+  double penalty;    ///< of the generalized step, in units of 1 / W
+  int connection;    ///< of its two bodies in the linear system, or -1
+  ContactStatus status;
+  bool is_hard;
 };
 
 struct NewtonScratch {
-  static constexpr int kMaxBodies = 32;  ///< of an island; larger ones are left to Gauss-Seidel
-  static constexpr int kMaxRows = 512;
-
-  explicit NewtonScratch(std::size_t bodies);
-
-  [[nodiscard]] std::size_t index(int i, int j) const {
-    return static_cast<std::size_t>(i) * active.size() + static_cast<std::size_t>(j);
-  }
-  [[nodiscard]] bool has_block(int i, int j) const { return is_filled[index(i, j)] != 0; }
-  [[nodiscard]] Matrix6& block(int i, int j) { return blocks[index(i, j)]; }
-  /// The block, zero when it is new.
-  [[nodiscard]] Matrix6& open_block(int i, int j) {
-    if (!has_block(i, j)) {
-      is_filled[index(i, j)] = 1;
-      block(i, j).setZero();
-    }
-    return block(i, j);
-  }
+  NewtonScratch(std::size_t bodies, std::size_t rows);
 
   std::vector<int> active;                              ///< the island's bodies, by active index
   std::vector<int> local;                               ///< of each active body: its place in `active`, or -1
   std::vector<double> u, u_free, u_start, error, step;  ///< 6 per active body
-  std::vector<Matrix6> blocks;
-  std::vector<char> is_filled;
-  std::vector<NewtonRow> rows;
+  std::vector<double> right;                            ///< 6 per body of the island
+  BlockSolver solver;
+  HardContacts hard;
+  std::vector<int> hard_bodies, hard_place;  ///< places in `active`; and of each place, the index in hard_bodies or -1
+  std::vector<Matrix6> response;
+  std::unique_ptr<NewtonRow[]> rows;
 };
 
-/// Improves lambda of the rows and u (consistent with each other) by the augmented Lagrangian of the Alart-Curnier law,
-/// each stage solved by Newton's method; keeps the best. Returns the number of Newton steps, 0 for too large an island.
+/// Improves lambda of the rows and u (consistent with each other) until the residual is below `tolerance`, m/s, or keeps the best.
+/// Returns the number of Newton steps.
 int newton_rows(double tolerance, Row* first, Row* end, double* u, NewtonScratch& work) noexcept;
 
 }  // namespace snug::physics::internal

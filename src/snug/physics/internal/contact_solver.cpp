@@ -60,6 +60,16 @@ inline double relax(Row& row, double* u) {
 
 }  // namespace
 
+double sweep_rows(Row* first, Row* end, double* u, bool is_forward) noexcept {
+  double change = 0.0;
+  if (is_forward) {
+    for (Row* row = first; row != end; ++row) change = std::max(change, relax(*row, u));
+  } else {
+    for (Row* row = end; row != first;) change = std::max(change, relax(*--row, u));
+  }
+  return change;
+}
+
 void finish_row(Row& row) noexcept {
   double* W = row.W;
   const auto product = [&row](int i, int j) {
@@ -85,16 +95,11 @@ void finish_row(Row& row) noexcept {
 }
 
 SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, double* u, NewtonScratch& newton) noexcept {
-  constexpr int kSweepsBeforeNewton = 20;
+  constexpr int kSweepsBeforeNewton = 6;
   for (Row* row = first; row != end; ++row) apply(*row, row->lambda, u);  // warm start
   SolveResult result;
   while (result.iterations < settings.max_sweeps) {
-    double change = 0.0;
-    if (result.iterations % 2 == 0) {
-      for (Row* row = first; row != end; ++row) change = std::max(change, relax(*row, u));
-    } else {
-      for (Row* row = end; row != first;) change = std::max(change, relax(*--row, u));
-    }
+    const double change = sweep_rows(first, end, u, result.iterations % 2 == 0);
     ++result.iterations;
     result.residual = change;
     if (change <= settings.tolerance) {
