@@ -19,9 +19,9 @@ namespace snug::model {
 
 struct SleepSettings {
   bool enabled = true;
-  double linear_speed = 0.002;  ///< m/s, a body slower than both speeds is calm
-  double angular_speed = 0.02;  ///< rad/s
-  double time = 0.25;           ///< s, calm this long: the island falls asleep
+  double linear_speed = 5.0e-5;   ///< m/s, a body slower than both speeds is calm
+  double angular_speed = 5.0e-4;  ///< rad/s
+  double time = 0.25;             ///< s, calm this long: the island falls asleep
 
   template <class Archive>
   void fields(Archive& a) {

@@ -30,7 +30,19 @@ void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, c
   work.speed = state.velocity.norm() + state.angular_velocity.norm() * mass.radius;
 }
 
+/// Whether a kinematic body stays where it is: rotations pass through quaternions, which is not exact to the last bit.
+bool stays(const BodyState& body, const Matrix3& R_WB, const Pose& X_WB_end) {
+  return (X_WB_end.p - body.p_WBcm).cwiseAbs().maxCoeff() <= kStill &&
+         (X_WB_end.R - R_WB).cwiseAbs().maxCoeff() <= kStill;
+}
+
 void start_kinematic(const BodyState& state, const KinematicTarget& target, double dt, double radius, BodyWork& work) {
+  if (stays(state, work.R_WB, target.X_WB_end)) {
+    work.velocity_start.setZero(), work.angular_start.setZero();
+    work.velocity.setZero(), work.angular.setZero();
+    work.speed = 0.0;
+    return;
+  }
   const Matrix3 R_end_start = target.X_WB_end.R * work.R_WB.transpose();
   work.velocity_start = (target.X_WB_end.p - state.p_WBcm) / dt;
   work.angular_start = log_rotation(R_end_start) / dt;
@@ -114,19 +126,25 @@ void put_to_sleep(const WorldModel& model, const WorldInput& input, WorldState& 
         state.bodies[static_cast<std::size_t>(index)].slow_time = 0.0;
     }
   }
-  // Islands are complete sets in the union-find forest; a body without contacts falls and never sleeps.
-  std::fill_n(work.island_of_root.begin(), work.active_count, -1);  // now: 1 may sleep, 0 must not
+  // Islands are complete sets in the union-find forest. One that nothing carries never sleeps.
+  std::fill_n(work.island_of_root.begin(), work.active_count, 0);  // now: 1 may sleep, 0 must not
+  const auto root_of = [&work](int i) {
+    while (work.parent[static_cast<std::size_t>(i)] != i) i = work.parent[static_cast<std::size_t>(i)];
+    return static_cast<std::size_t>(i);
+  };
+  for (const Row& row : work.rows) {
+    if ((row.ia < 0 || row.ib < 0) && row.lambda[0] > 0.0) work.island_of_root[root_of(std::max(row.ia, row.ib))] = 1;
+  }
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < work.active_count; ++i) {
-      int root = i;
-      while (work.parent[static_cast<std::size_t>(root)] != root) root = work.parent[static_cast<std::size_t>(root)];
+      const std::size_t root = root_of(i);
       const auto index = static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)]);
       BodyState& body = state.bodies[index];
-      int& may_sleep = work.island_of_root[static_cast<std::size_t>(root)];
+      int& may_sleep = work.island_of_root[root];
       if (pass == 0) {
         may_sleep = (may_sleep != 0 && body.slow_time >= sleep.time) ? 1 : 0;
       } else if (may_sleep == 1) {
-        body.sleep_group = work.active[static_cast<std::size_t>(root)];
+        body.sleep_group = work.active[root];
         body.velocity.setZero();
         body.angular_velocity.setZero();
       }
@@ -146,8 +164,7 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
   }
   for (const KinematicTarget& target : input.kinematic) {
     const BodyState& body = state.bodies[static_cast<std::size_t>(target.body.index)];
-    const Matrix3 R_WB = body.quat_WB.toRotationMatrix();
-    is_anything_moving |= target.X_WB_end.p != body.p_WBcm || target.X_WB_end.R != R_WB;
+    is_anything_moving |= !stays(body, body.quat_WB.toRotationMatrix(), target.X_WB_end);
   }
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].kind == BodyKind::Dynamic) continue;
@@ -197,8 +214,9 @@ void end_step(const WorldModel& model, const WorldInput& input, WorldState& stat
     BodyState& body = state.bodies[i];
     body.velocity = work.bodies[i].velocity_start;
     body.angular_velocity = work.bodies[i].angular_start;
+    if (stays(body, body.quat_WB.toRotationMatrix(), target.X_WB_end)) continue;
     body.p_WBcm = target.X_WB_end.p;
-    if (body.quat_WB.toRotationMatrix() != target.X_WB_end.R) body.quat_WB = Quaternion(target.X_WB_end.R).normalized();
+    body.quat_WB = Quaternion(target.X_WB_end.R).normalized();
   }
   if (report.status == StepStatus::NotConverged) report.residual_pair = find_worst_pair(work);
   report.contacts = static_cast<int>(work.contacts.size());

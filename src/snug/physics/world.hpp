@@ -55,9 +55,9 @@ struct ContactLaw {
 
 struct SleepSettings {
   bool enabled = true;
-  double linear_speed = 1e-3;   ///< m/s, below it a body may fall asleep
-  double angular_speed = 1e-2;  ///< rad/s
-  double time = 0.25;           ///< s, that all bodies of an island must stay below both
+  double linear_speed = 5e-5;   ///< m/s, below it a body counts as at rest: near what the solver leaves, not slow
+  double angular_speed = 5e-4;  ///< rad/s
+  double time = 0.25;  ///< s, that all bodies of an island must stay below both, with something that carries them
   bool operator==(const SleepSettings&) const = default;
 };
 

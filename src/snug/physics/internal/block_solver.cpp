@@ -34,7 +34,10 @@ BlockSolver::BlockSolver(std::size_t bodies, std::size_t connections)
       lower_(max_fill_),
       upper_(max_fill_),
       x_(6 * bodies),
-      traces_(std::min(bodies, kMaxResponses)),
+      trace_length_(std::min(bodies, kMaxResponses)),
+      trace_ranks_(trace_length_.size() * bodies),
+      left_(trace_ranks_.size()),
+      right_(trace_ranks_.size()),
       slot_(bodies, -1) {
   connections_.reserve(connections);
   links_.reserve(2 * (max_fill_ + std::min(connections, max_fill_)));
@@ -220,55 +223,49 @@ void BlockSolver::solve(double* x) {
   for (int k = 0; k < count_; ++k) Part(x + 6 * body_[at(k)]) = Part(x_.data() + 6 * k);
 }
 
-/// A column c of the factor fills the rows of its entries, and so on up: the way of a body ends at the last rank.
-void BlockSolver::trace(int body, Trace& trace) {
-  trace.ranks.clear();
-  // The first entry of a column is its parent in the elimination tree, and holds every later entry in its own column.
-  for (std::size_t k = rank_[at(body)];;) {
-    slot_[k] = static_cast<int>(trace.ranks.size());
-    trace.ranks.push_back(static_cast<int>(k));
+/// The first entry of a column is its parent in the elimination tree, and the parent's column holds the later ones: the
+/// way of a body ends at a root.
+void BlockSolver::trace(int body, std::size_t asked) {
+  const std::size_t first = trace_place(asked, 0);
+  std::size_t length = 0;
+  for (std::size_t k = rank_[at(body)];; k = at(row_[column_[k]])) {
+    slot_[k] = static_cast<int>(length);
+    trace_ranks_[first + length] = static_cast<int>(k);
+    left_[first + length].setZero();
+    right_[first + length].setZero();
+    ++length;
     if (column_[k] == column_[k + 1]) break;
-    k = at(row_[column_[k]]);
   }
-  const std::size_t length = trace.ranks.size();
-  if (trace.left.size() < length) {
-    trace.left.resize(length);
-    trace.right.resize(length);
-  }
-  for (std::size_t s = 0; s < length; ++s) {
-    trace.left[s].setZero();
-    trace.right[s].setZero();
-  }
-  trace.left[0].setIdentity();
-  trace.right[0].setIdentity();
-  for (std::size_t s = 0; s < length; ++s) {
-    const auto k = at(trace.ranks[s]);
-    trace.left[s] = trace.left[s] * diagonal_[k];
+  trace_length_[asked] = length;
+  left_[first].setIdentity();
+  right_[first].setIdentity();
+  for (std::size_t s = first; s < first + length; ++s) {
+    const auto k = at(trace_ranks_[s]);
+    left_[s] = left_[s] * diagonal_[k];
     for (std::size_t e = column_[k]; e < column_[k + 1]; ++e) {
-      const auto to = at(slot_[at(row_[e])]);
-      trace.left[to].noalias() -= trace.left[s] * upper_[e];
-      trace.right[to].noalias() -= lower_[e] * trace.right[s];
+      const std::size_t to = first + at(slot_[at(row_[e])]);
+      left_[to].noalias() -= left_[s] * upper_[e];
+      right_[to].noalias() -= lower_[e] * right_[s];
     }
   }
-  for (const int rank : trace.ranks) slot_[at(rank)] = -1;
+  for (std::size_t s = first; s < first + length; ++s) slot_[at(trace_ranks_[s])] = -1;
 }
 
 void BlockSolver::respond(const std::vector<int>& bodies, std::vector<Matrix6>& response) {
   const std::size_t n = bodies.size();
-  for (std::size_t i = 0; i < n; ++i) trace(bodies[i], traces_[i]);
+  for (std::size_t i = 0; i < n; ++i) trace(bodies[i], i);
   for (std::size_t i = 0; i < n; ++i) {
-    const Trace& a = traces_[i];
-    for (std::size_t s = 0; s < a.ranks.size(); ++s) slot_[at(a.ranks[s])] = static_cast<int>(s);
+    const std::size_t first = trace_place(i, 0);
+    for (std::size_t s = 0; s < trace_length_[i]; ++s) slot_[at(trace_ranks_[first + s])] = static_cast<int>(s);
     for (std::size_t j = 0; j < n; ++j) {
-      const Trace& b = traces_[j];
       Matrix6& block = response[n * i + j];
       block.setZero();
-      for (std::size_t s = 0; s < b.ranks.size(); ++s) {
-        const int slot = slot_[at(b.ranks[s])];
-        if (slot >= 0) block.noalias() += a.left[at(slot)] * b.right[s];
+      for (std::size_t s = trace_place(j, 0); s < trace_place(j, trace_length_[j]); ++s) {
+        const int slot = slot_[at(trace_ranks_[s])];
+        if (slot >= 0) block.noalias() += left_[first + at(slot)] * right_[s];
       }
     }
-    for (const int rank : a.ranks) slot_[at(rank)] = -1;
+    for (std::size_t s = 0; s < trace_length_[i]; ++s) slot_[at(trace_ranks_[first + s])] = -1;
   }
 }
 

@@ -23,9 +23,9 @@ class BlockStore {
   std::unique_ptr<Matrix6, Free> blocks_;
 };
 
-/// LU factorisation of matrices I + sum J^T S J, whose pattern is symmetric and whose blocks on the diagonal stay regular
-/// without pivoting. Bodies are eliminated in the order of minimum degree (ties: least recently touched), so that fill, work
-/// and the bytes of the result depend on the pattern alone. Never allocates after construction.
+/// LU factorisation of matrices I + sum J^T S J, whose pattern is symmetric and whose blocks on the diagonal stay
+/// regular without pivoting. Bodies are eliminated in the order of minimum degree (ties: least recently touched), so
+/// that fill, work and the bytes of the result depend on the pattern alone. Never allocates after construction.
 ///
 /// For a pattern: begin(n), connect(i, j) for pairs of bodies that share contacts, analyze(). For a matrix:
 /// set_identity(), add to diagonal() and coupling(), factorize(), solve().
@@ -53,8 +53,8 @@ class BlockSolver {
   /// A^-1 x in place, 6 entries a body.
   void solve(double* x);
 
-  /// Blocks (i, j) of A^-1 for the bodies given, of a factorised A, as 6n x 6n, row-major by body. Costs only the ways of these
-  /// bodies through the elimination. At most kMaxResponses bodies.
+  /// Blocks (i, j) of A^-1 for the bodies given, of a factorised A, as 6n x 6n, row-major by body. Costs only the ways
+  /// of these bodies through the elimination. At most kMaxResponses bodies.
   static constexpr std::size_t kMaxResponses = 24;
   void respond(const std::vector<int>& bodies, std::vector<Matrix6>& response);
 
@@ -92,13 +92,14 @@ class BlockSolver {
   Index row_;                        ///< rank of each entry
   BlockStore diagonal_, lower_, upper_;
   std::vector<double> x_;  ///< by rank
-  /// What a body touches on its way through the elimination: by body asked for, then by rank.
-  struct Trace {
-    std::vector<int> ranks;
-    std::vector<Matrix6> left, right;  ///< rows of U^-1, columns of L^-1
-  };
-  void trace(int body, Trace& trace);
-  std::vector<Trace> traces_;
+  /// What a body touches on its way through the elimination, by body asked for: ranks, rows of U^-1, columns of L^-1.
+  void trace(int body, std::size_t asked);
+  [[nodiscard]] std::size_t trace_place(std::size_t asked, std::size_t step) const {
+    return asked * rank_.size() + step;
+  }
+  std::vector<std::size_t> trace_length_;
+  Index trace_ranks_;
+  BlockStore left_, right_;
   Index slot_;  ///< of each rank on the way at hand, or -1
 };
 

@@ -1,4 +1,5 @@
-// Contact Newton: solves the contacts of islands on which Gauss-Seidel converges slowly. docs/theory/contact.md, section 4.
+// Contact Newton: solves the contacts of islands on which Gauss-Seidel converges slowly. docs/theory/contact.md,
+// section 4.
 #include "snug/physics/internal/contact_newton.hpp"
 
 #include <algorithm>
@@ -7,18 +8,18 @@
 namespace snug::physics::internal {
 namespace {
 
-// Chosen on some 550 problems on which sweeps fail (a settling pile of 300 boxes, random drops at mass ratios to 1000, a wall):
-// least time among those with which all of them are solved.
-constexpr int kCycles = 5;                ///< generalized steps before hard contacts are looked for
-constexpr int kSweepsPerCycle = 3;        ///< of Gauss-Seidel after each
-constexpr double kPenalty = 300.0;        ///< of generalized steps, in units of 1 / W of each contact
-constexpr double kFlipCut = 3.0;          ///< of the penalty of a contact whose status changes from step to step
-constexpr double kFlipRecovery = 1.5;     ///< of the penalty of one whose status stays
+// Chosen on some 550 problems on which sweeps fail (a settling pile of 300 boxes, random drops at mass ratios to 1000,
+// a wall): least time among those with which all of them are solved.
+constexpr int kCycles = 5;             ///< generalized steps before hard contacts are looked for
+constexpr int kSweepsPerCycle = 3;     ///< of Gauss-Seidel after each
+constexpr double kPenalty = 300.0;     ///< of generalized steps, in units of 1 / W of each contact
+constexpr double kFlipCut = 3.0;       ///< of the penalty of a contact whose status changes from step to step
+constexpr double kFlipRecovery = 1.5;  ///< of the penalty of one whose status stays
 constexpr double kLeastFlipPenalty = 1.0;
-constexpr double kEasyPenalty = 1e4;      ///< of the contacts that are condensed
-constexpr int kMaxFailedRounds = 3;       ///< of hard contacts
-constexpr int kMaxCycles = 12;            ///< while each three halve the residual
-constexpr double kHardResidual = 0.3;     ///< of the tolerance, above which a contact is hard
+constexpr double kEasyPenalty = 1e4;   ///< of the contacts that are condensed
+constexpr int kMaxFailedRounds = 3;    ///< of hard contacts
+constexpr int kMaxCycles = 12;         ///< while each three halve the residual
+constexpr double kHardResidual = 0.3;  ///< of the tolerance, above which a contact is hard
 
 constexpr double kFirstPenalty = 30.0;  ///< of the augmented Lagrangian, in units of 1 / W
 constexpr double kLeastPenalty = 0.3;
@@ -58,8 +59,8 @@ void change_of_velocity(const Row& row, const double* u, double (&xi)[3]) {
   for (int k = 0; k < 3; ++k) xi[k] -= row.bias[k];
 }
 
-/// Law of one step of Alart and Curnier's generalized Newton method: the status is that of the natural map, the law of that status
-/// is linearised about the present impulse and velocity. law.lambda is its answer at xi.
+/// Law of one step of Alart and Curnier's generalized Newton method: the status is that of the natural map, the law of
+/// that status is linearised about the present impulse and velocity. law.lambda is its answer at xi.
 ContactStatus generalized_law(const Row& row, double penalty, const double (&xi)[3], AugmentedLaw& law) {
   std::fill_n(law.slope, 9, 0.0);
   std::fill_n(law.lambda, 3, 0.0);
@@ -97,8 +98,8 @@ ContactStatus generalized_law(const Row& row, double penalty, const double (&xi)
 /// One island: its rows, the velocities of its bodies, scratch. The impulses with the least residual are kept.
 class IslandProblem {
  public:
-  IslandProblem(double tolerance, Row* first, Row* end, double* u, NewtonScratch& work)
-      : tolerance_(tolerance), first_(first), end_(end), u_(u), work_(work) {}
+  IslandProblem(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work)
+      : tolerance_(residuals.accepted), wanted_(residuals.wanted), first_(first), end_(end), u_(u), work_(work) {}
 
   /// False: the linear system fills beyond memory.
   bool start();
@@ -132,7 +133,7 @@ class IslandProblem {
   double evaluate(double penalty);
   double search_line(double penalty, double error);
 
-  double tolerance_;
+  double tolerance_, wanted_;
   Row* first_;
   Row* end_;
   double* u_;
@@ -200,7 +201,7 @@ void IslandProblem::assemble() {
   BlockSolver& solver = work_.solver;
   solver.set_identity();
   each_row([&](const Row& row, const NewtonRow& newton) {
-    const double (&slope)[9] = newton.law.slope;
+    const double(&slope)[9] = newton.law.slope;
     if (slope[0] <= 0.0) return;
     alignas(16) double force[3][6];
     if (newton.connection >= 0) {
@@ -213,7 +214,7 @@ void IslandProblem::assemble() {
       add_product(coupling.ij, row.a, force);
       return;
     }
-    const double (&rows)[3][6] = row.ia >= 0 ? row.a : row.b;
+    const double(&rows)[3][6] = row.ia >= 0 ? row.a : row.b;
     multiply(slope, rows, force);
     add_product(solver.diagonal(work_.local[at(std::max(row.ia, row.ib))]), rows, force);
   });
@@ -266,7 +267,7 @@ void IslandProblem::linearise(bool with_hard) {
 void IslandProblem::take_linear_impulses(bool with_hard) {
   each_row([&](Row& row, const NewtonRow& newton) {
     if (newton.is_hard && !with_hard) return;
-    const double (&slope)[9] = newton.law.slope;
+    const double(&slope)[9] = newton.law.slope;
     double* lambda = row.lambda;
     std::fill_n(lambda, 3, 0.0);
     if (slope[0] <= 0.0) return;
@@ -284,7 +285,7 @@ void IslandProblem::take_linear_impulses(bool with_hard) {
 
 /// Generalized Newton steps with sweeps between them, which mend what the steps leave near single contacts.
 void IslandProblem::run_cycles(int count) {
-  for (int i = 0; i < count && !is_solved(); ++i) {
+  for (int i = 0; i < count && best_ > wanted_; ++i) {
     ++iterations_;
     linearise(true);
     assemble();
@@ -352,8 +353,8 @@ void IslandProblem::couple_hard() {
   }
 }
 
-/// Rounds of: the few hard contacts exactly, all others by the linear laws of their status. Goes on while that helps, and
-/// only where they are few.
+/// Rounds of: the few hard contacts exactly, all others by the linear laws of their status. Goes on while that helps,
+/// and only where they are few.
 void IslandProblem::solve_hard() {
   each_row([](const Row&, NewtonRow& newton) { newton.is_hard = false; });
   int failures = 0;
@@ -474,8 +475,8 @@ NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity)
   response.resize(BlockSolver::kMaxResponses * BlockSolver::kMaxResponses);
 }
 
-int newton_rows(double tolerance, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {
-  IslandProblem problem(tolerance, first, end, u, work);
+int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {
+  IslandProblem problem(residuals, first, end, u, work);
   if (!problem.start()) return 0;
   return problem.solve();
 }

@@ -1,4 +1,5 @@
-// Contact Newton: solves the contacts of islands on which Gauss-Seidel converges slowly. docs/theory/contact.md, section 4.
+// Contact Newton: solves the contacts of islands on which Gauss-Seidel converges slowly. docs/theory/contact.md,
+// section 4.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +11,12 @@
 #include "snug/physics/internal/hard_contacts.hpp"
 
 namespace snug::physics::internal {
+
+/// Natural-map residuals, m/s.
+struct Residuals {
+  double wanted = 0.0;    ///< worked for while that is cheap: what keeps islands at rest quiet
+  double accepted = 0.0;  ///< at which the island counts as solved
+};
 
 enum class ContactStatus : char { Unknown, Open, Sticks, Slides };
 
@@ -38,8 +45,8 @@ struct NewtonScratch {
   std::unique_ptr<NewtonRow[]> rows;
 };
 
-/// Improves lambda of the rows and u (consistent with each other) until the residual is below `tolerance`, m/s, or keeps the best.
+/// Improves lambda of the rows and u (consistent with each other) until the residual is accepted, or keeps the best.
 /// Returns the number of Newton steps.
-int newton_rows(double tolerance, Row* first, Row* end, double* u, NewtonScratch& work) noexcept;
+int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept;
 
 }  // namespace snug::physics::internal

@@ -73,8 +73,8 @@ inline void project_to_disc(double radius, double& x, double& y) {
   }
 }
 
-/// Alart-Curnier natural map of one contact in units of velocity, for the relative velocity xi and the impulse lambda: zero
-/// exactly at a solution.
+/// Alart-Curnier natural map of one contact in units of velocity, for the relative velocity xi and the impulse lambda:
+/// zero exactly at a solution.
 inline double natural_map(const Row& row, const double (&xi)[3], const double* lambda) {
   const double normal = xi[0] - row.target + row.gamma * lambda[0];
   const double rn = std::abs(lambda[0] - std::max(0.0, lambda[0] - normal / row.W[0])) * row.W[0];

@@ -94,7 +94,8 @@ void finish_row(Row& row) noexcept {
   row.step_t = 1.0 / (mean + std::sqrt(half * half + W[4] * W[4]));
 }
 
-SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, double* u, NewtonScratch& newton) noexcept {
+SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end, double* u,
+                       NewtonScratch& newton) noexcept {
   constexpr int kSweepsBeforeNewton = 6;
   for (Row* row = first; row != end; ++row) apply(*row, row->lambda, u);  // warm start
   SolveResult result;
@@ -102,17 +103,17 @@ SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, doubl
     const double change = sweep_rows(first, end, u, result.iterations % 2 == 0);
     ++result.iterations;
     result.residual = change;
-    if (change <= settings.tolerance) {
+    if (change <= residuals.wanted) {
       // A contact satisfies its law right after its visit; later visits moved it by at most the sum of their changes.
       result.residual = change * static_cast<double>(end - first);
-      if (result.residual <= settings.tolerance) return result;
+      if (result.residual <= residuals.wanted) return result;
       result.residual = worst_residual(first, end, u);
-      if (result.residual <= settings.tolerance) return result;
+      if (result.residual <= residuals.wanted) return result;
     }
-    if (result.iterations != kSweepsBeforeNewton) continue;
-    result.iterations += newton_rows(settings.tolerance, first, end, u, newton);
+    if (result.iterations < kSweepsBeforeNewton) continue;
+    if (result.iterations == kSweepsBeforeNewton) result.iterations += newton_rows(residuals, first, end, u, newton);
     result.residual = worst_residual(first, end, u);
-    if (result.residual <= settings.tolerance) return result;
+    if (result.residual <= residuals.accepted) return result;
   }
   result.has_converged = false;
   return result;

@@ -43,8 +43,8 @@ double HardContacts::residual_of(const Vector& impulses) const {
 double HardContacts::evaluate(double penalty) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double* x = xi_.data() + at(i);
-    augmented_law(*rows[i], penalty / mobility_n_[i], penalty / mobility_t_[i], center_.data() + at(i), {x[0], x[1], x[2]},
-                  laws_[i]);
+    augmented_law(*rows[i], penalty / mobility_n_[i], penalty / mobility_t_[i], center_.data() + at(i),
+                  {x[0], x[1], x[2]}, laws_[i]);
     for (int k = 0; k < 3; ++k) law_[at(i) + k] = laws_[i].lambda[k];
   }
   error_ = xi_ - xi_0;

@@ -170,8 +170,8 @@ struct SolveResult {
   double residual = 0.0;
   bool has_converged = true;
 };
-[[nodiscard]] SolveResult solve_rows(const StepSettings& settings, Row* first, Row* end, double* u,
-                                     NewtonScratch& newton) noexcept;
+[[nodiscard]] SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end,
+                                     double* u, NewtonScratch& newton) noexcept;
 /// Displacements that close the position errors of rigid contacts with the least kinetic measure.
 void correct_positions(const StepSettings& settings, Row* first, Row* end, const Contact* contacts, const double* u,
                        double* shift) noexcept;

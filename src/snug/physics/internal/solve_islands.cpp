@@ -9,6 +9,22 @@ namespace snug::physics::internal {
 namespace {
 
 constexpr int kElementIterations = 12;
+constexpr double kCalmSpeed = 2e-3;  ///< m/s, of every point of an island that may be coming to rest
+/// Of the tolerance: islands at rest are solved so far that what is left moves nothing.
+constexpr double kCalmResidual = 1e-3;
+
+/// What the solver works for: islands that come to rest are solved further, because errors of one step would keep them
+/// moving in the next.
+Residuals residuals_of(const WorldModel& model, const Scratch& work, const Island& island) {
+  const double tolerance = model.settings.tolerance;
+  for (int i = island.first_patch; i < island.end_patch; ++i) {
+    const Patch& patch = work.patches[static_cast<std::size_t>(work.patch_order[static_cast<std::size_t>(i)])];
+    for (const int index : {patch.body_a, patch.body_b}) {
+      if (work.bodies[static_cast<std::size_t>(index)].speed > kCalmSpeed) return {tolerance, tolerance};
+    }
+  }
+  return {kCalmResidual * tolerance, tolerance};
+}
 
 /// Velocities that the contacts changed.
 void read_velocities(Scratch& work, const Island& island) {
@@ -27,8 +43,9 @@ void read_velocities(Scratch& work, const Island& island) {
 void solve_plain_island(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island,
                         StepReport& report) {
   build_rows(model, state, work, island, true);
-  const SolveResult result = solve_rows(model.settings, work.rows.begin() + island.first_row,
-                                        work.rows.begin() + island.end_row, work.u.data(), work.newton);
+  const SolveResult result =
+      solve_rows(model.settings, residuals_of(model, work, island), work.rows.begin() + island.first_row,
+                 work.rows.begin() + island.end_row, work.u.data(), work.newton);
   report.sweeps = std::max(report.sweeps, result.iterations);
   report.residual = std::max(report.residual, result.residual);
   if (!result.has_converged) report.status = StepStatus::NotConverged;
@@ -54,18 +71,21 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
   SolveResult result;
+  const Residuals residuals{model.settings.tolerance, model.settings.tolerance};
   double error = 0.0;
-  for (int iteration = 0; iteration < kElementIterations; ++iteration) {
+  bool agrees = false;  // the wrenches with their linearisation
+  for (int iteration = 0; iteration <= kElementIterations; ++iteration) {
     error = 0.0;
     for (ElementBody& body : work.element_bodies) {
       error = std::max(error, evaluate_body(model, input, work, body));
       if (!body.forces.wrench.allFinite() && !report.culprit.is_valid()) report.culprit = BodyId{body.body};
     }
-    if (report.culprit.is_valid() || (iteration > 0 && error <= model.settings.tolerance)) break;
+    agrees = iteration > 0 && error <= model.settings.tolerance;
+    if (report.culprit.is_valid() || agrees || iteration == kElementIterations) break;
     for (const ElementBody& body : work.element_bodies) linearize_body(model, input, work, body);
     reset_plain_bodies(work, island);
     build_rows(model, state, work, island, iteration == 0);
-    if (first != end) result = solve_rows(model.settings, first, end, work.u.data(), work.newton);
+    if (first != end) result = solve_rows(model.settings, residuals, first, end, work.u.data(), work.newton);
     report.sweeps = std::max(report.sweeps, result.iterations);
     for (const ElementBody& body : work.element_bodies) {
       BodyWork& b = work.bodies[static_cast<std::size_t>(body.body)];
@@ -73,7 +93,7 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
     }
   }
   report.residual = std::max(report.residual, result.residual);
-  if (!result.has_converged) report.status = StepStatus::NotConverged;
+  if (!result.has_converged || !agrees) report.status = StepStatus::NotConverged;
   report.element_residual = std::max(report.element_residual, error);
 }
 
