@@ -125,9 +125,10 @@ void write_file_bytes(const std::string& bytes) {
 void change_number(hid_t file, const char* path, Bytes& bytes) {
   const Id dataset(H5Dopen2(file, path, H5P_DEFAULT));
   const Id type(H5Dget_type(dataset));
-  std::size_t count = 1;
-  for (const hsize_t extent : dims_of(dataset)) count *= std::min<hsize_t>(extent, 100'000);
-  if (dataset < 0 || count == 0 || count > 100'000) return;
+  constexpr std::size_t kMost = 100'000;  // an extent may have been changed before
+  std::size_t count = dataset < 0 ? 0 : 1;
+  for (const hsize_t extent : dims_of(dataset)) count = extent > kMost || count > kMost ? 0 : count * extent;
+  if (count == 0 || count > kMost) return;
   const std::size_t size = H5Tget_size(type);
   std::vector<unsigned char> values(count * size);
   if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) return;
