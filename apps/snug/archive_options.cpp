@@ -1,4 +1,5 @@
 // archive: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "archive.hpp"

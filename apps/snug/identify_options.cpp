@@ -1,4 +1,5 @@
 // identify: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "identify.hpp"

@@ -1,4 +1,5 @@
 // measure: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "measure.hpp"

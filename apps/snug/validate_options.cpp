@@ -1,4 +1,5 @@
 // validate: what may be said after the verb.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "validate.hpp"
