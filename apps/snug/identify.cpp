@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/cup/law.hpp"
@@ -215,13 +216,14 @@ void print(const identification::DampingFit& fit, const HeldBackError& held_back
 
 int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
   const model::CupParams cup = cup_of(options);
+  std::optional<OutputFile> output = reserve({{"the input", options.input}}, options.output);
   identification::StaticPoses poses = identification::load_static_poses(options.input, cup);
   apply(options, poses.noise, poses.noise_is_given);
   const identification::StiffnessOptions fit_options = as_fit_options(options, cup);
   const identification::StiffnessFit fit = identification::identify_stiffness(poses, fit_options);
   const HeldBackError held_back = identification::compute_held_back_error(poses, fit_options, fit);
-  if (options.output)
-    write_file(*options.output,
+  if (output)
+    write_file(std::move(*output),
                identification::format_cup_block(
                    stiffness_entries(fit), {},
                    {fmt::format("Stiffness from {} ({} poses, {}, chi2 per degree of freedom {:.3f})",
@@ -235,6 +237,7 @@ int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
 
 int run_identify_damping(const IdentifyDampingOptions& options) {
   const model::CupParams cup = cup_of(options);
+  std::optional<OutputFile> output = reserve(name_all("the input", options.inputs), options.output);
   const std::vector<identification::Release> releases = load_all(options, cup);
   identification::DampingOptions fit_options;
   fit_options.prior = cup.damping;
@@ -246,9 +249,9 @@ int run_identify_damping(const IdentifyDampingOptions& options) {
   fit_options.with_stiffness = options.stiffness;
   const identification::DampingFit fit = identification::identify_damping(releases, fit_options);
   const HeldBackError held_back = identification::compute_held_back_error(releases, fit_options, fit);
-  if (options.output)
+  if (output)
     write_file(
-        *options.output,
+        std::move(*output),
         identification::format_cup_block(
             identification::block_entries(fit.parameters, 'k'), identification::block_entries(fit.parameters, 'd'),
             {fmt::format("Damping from {}{} ({} releases, chi2 per degree of freedom {:.3f})",
@@ -312,7 +315,9 @@ int run_identify_pluck(const IdentifyPluckOptions& options) {
     releases.push_back(identification::make_pluck(pluck));
     identification::add_noise(releases.back(), noise, rng);
   }
-  write_file(*options.output, identification::format_releases(releases));
+  NamedFiles inputs;
+  add_file(inputs, "--scenario", options.scenario);
+  write_file(*reserve(inputs, options.output), identification::format_releases(releases));
   std::printf("%s: %llu releases %s by %g %s, %g kg, %zu samples each\n", options.output->c_str(),
               static_cast<unsigned long long>(options.repeat), options.direction.c_str(), pluck.amplitude,
               is_turn ? "rad" : "m", box.mass, releases.front().times.size());

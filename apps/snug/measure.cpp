@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "distinct.hpp"
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/validation/measure.hpp"
@@ -41,6 +42,7 @@ int run_measure(const MeasureOptions& options) {
   std::vector<std::string> inputs = options.recordings;
   inputs.push_back(options.sensors);
   refuse_same_file(inputs, {options.output, options.truth});
+  std::optional<OutputFile> truth_file = reserve(options.truth);
   const model::Sensors sensors = model::load_sensors(options.sensors);
   validation::MeasureOptions settings;
   settings.seed = options.seed;
@@ -64,7 +66,7 @@ int run_measure(const MeasureOptions& options) {
     }
   }
   writer.close();
-  if (options.truth) write_file(*options.truth, truth.dump(2) + "\n");
+  if (truth_file) write_file(std::move(*truth_file), truth.dump(2) + "\n");
   return kSuccess;
 }
 

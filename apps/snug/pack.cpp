@@ -85,7 +85,7 @@ task::SessionOptions make_session_options(const PackOptions& options, const Sour
   if (options.look == "noisy") session.perception = task::Perception::Noisy;
   if (options.look == "dead-reckoning") session.perception = task::Perception::DeadReckoning;
   session.simulation.robot = options.robot.value_or("");
-  if (options.robot) print_robot_warnings(scenario);
+  if (options.robot) print_robot_warnings(loaded.scenario);
   return session;
 }
 

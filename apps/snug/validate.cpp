@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "distinct.hpp"
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/validation/page.hpp"
@@ -57,6 +58,7 @@ int run_validate(const ValidateOptions& options) {
   std::vector<std::string> inputs = {options.simulated, options.measured};
   if (options.windows) inputs.push_back(*options.windows);
   refuse_same_file(inputs, {options.page, options.csv});
+  std::optional<OutputFile> csv = reserve(options.csv), page = reserve(options.page);
   const validation::HandShifts shifts = parse_shifts(options.shifts);
   const validation::SimulatedRun run = validation::load_run(options.simulated);
   std::vector<validation::Window> windows;
@@ -67,9 +69,9 @@ int run_validate(const ValidateOptions& options) {
     write_figures(*options.svg, validation::make_figures(run, result, false));
     write_figures(*options.svg, validation::make_figures(run, result, true));
   }
-  if (options.csv) write_file(*options.csv, validation::as_csv(result));
-  if (options.page) write_file(*options.page, validation::make_page(run, result));
-  std::fputs((options.json ? validation::as_json(result) : validation::as_text(result)).c_str(), stdout);
+  if (csv) write_file(std::move(*csv), validation::as_csv(result));
+  if (page) write_file(std::move(*page), validation::make_page(run, result));
+  print(options.json ? validation::as_json(result) : validation::as_text(result));
   return kSuccess;
 }
 

@@ -10,8 +10,8 @@
 
 namespace snug::model {
 
-/// Points of each part (mesh) of a file, with the transforms of the file's nodes, in the file's own axes. STL, OBJ or DAE
-/// of at most kLargestMesh bytes. On failure: why, and no parts.
+/// Points of each part (mesh) of a file, with the transforms of the file's nodes, in the file's own axes. STL, OBJ or
+/// DAE of at most kLargestMesh bytes. On failure: why, and no parts.
 inline constexpr std::size_t kLargestMesh = std::size_t{32} << 20U;
 struct MeshParts {
   std::vector<std::vector<Vector3>> parts;

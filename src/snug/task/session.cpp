@@ -284,4 +284,11 @@ SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
   return PackingSession(scenario, sequence, options).pack(progress);
 }
 
+SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
+                      const std::vector<packing::Placement>& plan, const SessionOptions& options,
+                      const Progress& progress) {
+  (void)make_layout(scenario);
+  return PackingSession(scenario, sequence, options).execute(plan, progress);
+}
+
 }  // namespace snug::task
