@@ -63,7 +63,7 @@ fix: setup-lint ## format every source, apply the safe clang-tidy fixes
 san: setup ## tests under the address and undefined-behaviour sanitizers
 	@$(call configure-build,asan) && $(call run-tests,asan)
 
-san-fast: setup ## those of the modules that read files and move bodies; .ci/run
+san-fast: setup ## those of the modules that read files and move bodies
 	@$(call configure-build,sanitize) && $(call run-tests,sanitize) --output-junit test-results.xml
 
 tsan: setup ## tests under the thread sanitizer

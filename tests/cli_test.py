@@ -861,7 +861,7 @@ class OtherCells(unittest.TestCase):
         found = json.loads(checked.stdout)
         self.assertEqual(checked.returncode, 0 if found["ok"] else 1)
         self.assertEqual(found["ok"], all(one["severity"] != "error" for one in found["findings"]))
-        self.assertGreater(found["looks"], 1000)
+        self.assertGreater(found["looks"], 500)  # one each 10 mm of the tool's way, which is metres long
         rows = len(program.read_text().splitlines())
         self.assertTrue(all(1 <= one["row"] <= rows for one in found["findings"]))
         self.assertLess(abs(found["duration_s"] / run["duration_s"] - 1), 0.2)

@@ -108,6 +108,6 @@ int main(int argc, char** argv) {
   ::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is like a full disk: said, not died of
   snug::remove_drafts_when_interrupted();
   const int code = run_guarded(argc, argv);
-  if (code == snug::app::kSuccess && !snug::app::flush_stdout()) return snug::app::kRunFailed;
-  return code;
+  const bool is_written = snug::app::flush_stdout();
+  return code == snug::app::kSuccess && !is_written ? snug::app::kRunFailed : code;
 }

@@ -316,7 +316,8 @@ bool IslandProblem::collect_hard() {
     }
     fits = work_.hard_bodies.size() <= BlockSolver::kMaxResponses;
   });
-  return fits;
+  // Where they are most of the island, its own system is smaller than the dense one.
+  return fits && work_.hard.rows.size() <= 2 * work_.active.size();
 }
 
 /// The dense problem of the hard contacts: what the island answers to their impulses.
@@ -375,7 +376,7 @@ void IslandProblem::solve_hard() {
     apply_impulses();
     const double before = best_;
     measure();
-    if (best_ > 0.5 * before) ++failures;
+    if (!(best_ <= 0.5 * before)) ++failures;  // also when it is not a number
   }
   restore_best();
 }

@@ -96,7 +96,9 @@ void finish_row(Row& row) noexcept {
 
 SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end, double* u,
                        NewtonScratch& newton) noexcept {
-  constexpr int kSweepsBeforeNewton = 6;
+  // Small islands mostly get there by sweeps, which cost less than a linear system.
+  constexpr std::ptrdiff_t kSmall = 256;
+  const int sweeps_before_newton = end - first <= kSmall ? 20 : 6;
   for (Row* row = first; row != end; ++row) apply(*row, row->lambda, u);  // warm start
   SolveResult result;
   while (result.iterations < settings.max_sweeps) {
@@ -110,8 +112,8 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
       result.residual = worst_residual(first, end, u);
       if (result.residual <= residuals.wanted) return result;
     }
-    if (result.iterations < kSweepsBeforeNewton) continue;
-    if (result.iterations == kSweepsBeforeNewton) result.iterations += newton_rows(residuals, first, end, u, newton);
+    if (result.iterations < sweeps_before_newton) continue;
+    if (result.iterations == sweeps_before_newton) result.iterations += newton_rows(residuals, first, end, u, newton);
     result.residual = worst_residual(first, end, u);
     if (result.residual <= residuals.accepted) return result;
   }
