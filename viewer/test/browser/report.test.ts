@@ -121,7 +121,7 @@ describe("the report of a real run", () => {
   it("shows contacts of boxes at rest and leaves them out when they are switched off", async () => {
     const count = (): Promise<string | null> => page.locator(".legend-box small").textContent();
     await page.evaluate((t) => window.snug.setTime(t), table.get("t")!.at(-1)!);
-    await expect.poll(count).toMatch(/[1-9]\d* at rest/);
+    await expect.poll(count).toMatch(/^[1-9]\d* contact points/);
     await page.evaluate(() => [window.snug.toggles("contacts", false), window.snug.toggles("forces", false)]);
     await expect.poll(() => page.isVisible(".legend-box .states")).toBe(false);
     await page.evaluate(() => [window.snug.toggles("contacts", true), window.snug.toggles("forces", true)]);
@@ -133,7 +133,7 @@ describe("the report of a real run", () => {
     expect(await page.textContent(".about")).toContain("box-demonstrator");
     await page.click(".about .tabs >> text=Container");
     await expect.poll(() => page.locator(".about canvas").count()).toBe(2);
-    expect(await page.textContent(".about .fill")).toMatch(/this run\d+\.\d\d %.*State of the Art32\.21 %.*I\.AM\.75\.66 %.*Manual Operator75\.66 %/);
+    expect(await page.textContent(".about .fill")).toMatch(/this run\d+\.\d\d %.*I\.AM\.75\.66 %.*State of the Art32\.21 %.*Manual Operator75\.66 %/);
     await page.click(".about .tabs >> text=Settings");
     expect(await page.textContent(".about table")).toContain("controller");
     await page.click(".about .tabs >> text=Scenario");
