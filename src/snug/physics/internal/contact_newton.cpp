@@ -17,7 +17,7 @@ constexpr double kFlipCut = 3.0;       ///< of the penalty of a contact whose st
 constexpr double kFlipRecovery = 1.5;  ///< of the penalty of one whose status stays
 constexpr double kLeastFlipPenalty = 1.0;
 constexpr double kEasyPenalty = 1e4;   ///< of the contacts that are condensed
-constexpr int kMaxFailedRounds = 3;    ///< of hard contacts
+constexpr int kMaxFailedRounds = 2;    ///< of hard contacts
 constexpr int kMaxCycles = 12;         ///< while each three halve the residual
 constexpr double kHardResidual = 0.3;  ///< of the tolerance, above which a contact is hard
 
@@ -365,7 +365,7 @@ void IslandProblem::solve_hard() {
     assemble();
     solve_system();
     couple_hard();
-    work_.hard.solve(0.1 * tolerance_);
+    const bool is_settled = work_.hard.solve(0.1 * tolerance_);
     for (std::size_t i = 0; i < work_.hard.rows.size(); ++i) {
       Row& row = *work_.hard.rows[i];
       for (int k = 0; k < 3; ++k) row.lambda[k] = work_.hard.lambda[static_cast<Eigen::Index>(3 * i) + k];
@@ -376,6 +376,7 @@ void IslandProblem::solve_hard() {
     apply_impulses();
     const double before = best_;
     measure();
+    if (!is_settled) break;
     if (!(best_ <= 0.5 * before)) ++failures;  // also when it is not a number
   }
   restore_best();
@@ -434,7 +435,7 @@ void IslandProblem::augment() {
     mobility = std::max({mobility, row.W[0] - row.gamma, row.W[3], row.W[5]});
   });
   const int last = iterations_ + kMaxIterations;
-  int tries = 3;  // to settle what is left as hard contacts
+  int tries = 2;  // to settle what is left as hard contacts
   for (double penalty = kFirstPenalty; iterations_ < last && penalty > kLeastPenalty && !is_solved();) {
     each_row([](const Row& row, NewtonRow& newton) { std::copy_n(row.lambda, 3, newton.center); });
     for (const int body : work_.active) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
@@ -453,6 +454,7 @@ void IslandProblem::augment() {
 }
 
 int IslandProblem::solve() {
+  if (!std::isfinite(best_)) return 0;  // the caller says so
   run_cycles(kCycles);
   for (double before = 2.0 * best_; !is_solved() && iterations_ < kMaxCycles && best_ < 0.5 * before;) {
     before = best_;

@@ -24,13 +24,13 @@ class HardContacts {
   Vector lambda;  ///< the answer, N s
 
   HardContacts();
-  /// Solves the law of all rows to `tolerance`, m/s, or as well as it can.
-  void solve(double tolerance);
+  /// Solves the law of all rows to `tolerance`, m/s, or as well as it can. Returns whether it did.
+  bool solve(double tolerance);
 
  private:
   [[nodiscard]] double residual_of(const Vector& impulses) const;
   double evaluate(double penalty);
-  bool solve_stage(double penalty, double tolerance);
+  bool solve_stage(double penalty, double tolerance, int& iterations);
 
   Vector xi_, error_, start_, center_, law_;
   Matrix system_;
