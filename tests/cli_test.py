@@ -740,8 +740,8 @@ class Measurements(unittest.TestCase):
         self.assert_refused(snug(*base, "--shift", "mocp=1"), "mocp", "did you mean mocap?")
         self.assert_refused(snug(*base, "--shift", "mocap=fast"), "mocap=fast")
         before = self.archive.read_bytes()
-        self.assert_refused(snug(*base, "--csv", self.archive), "named twice")
-        self.assert_refused(snug("measure", self.recording, "--sensors", SENSORS, "-o", self.recording), "named twice")
+        self.assert_refused(snug(*base, "--csv", self.archive), "the same file as")
+        self.assert_refused(snug("measure", self.recording, "--sensors", SENSORS, "-o", self.recording), "the same file as")
         self.assertEqual(self.archive.read_bytes(), before)
         self.assert_refused(snug("validate", "--simulated", self.archive, "--measured", self.archive), "measured.h5")
         sensors, output = self.path / "s.yaml", self.path / "none.h5"

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/validation/log_table.hpp"
@@ -82,7 +83,7 @@ int run_archive_list(const ArchiveListOptions& options) {
     else
       text += recording_as_text(recording);
   }
-  std::fputs(options.json ? (json.dump(2) + "\n").c_str() : text.c_str(), stdout);
+  print(options.json ? json.dump(2) + "\n" : text);
   return kSuccess;
 }
 
@@ -97,9 +98,9 @@ int run_archive_check(const ArchiveListOptions& options) {
   }
   if (options.json) {
     const Json json = {{"ok", findings.empty()}, {"recordings", reader.names()}, {"findings", findings}};
-    std::fputs((json.dump(2) + "\n").c_str(), stdout);
+    print(json.dump(2) + "\n");
   } else if (findings.empty()) {
-    std::printf("%s: %zu recordings, whole\n", options.archive.c_str(), reader.size());
+    print(fmt::format("{}: {} recordings, whole\n", options.archive, reader.size()));
   }
   return findings.empty() ? kSuccess : kBadInput;
 }
@@ -110,11 +111,12 @@ int run_archive_convert(const ArchiveConvertOptions& options) {
     throw InputError("command line", "--name, --note, --sequence", "an archive",
                      "a log: recordings keep what they have");
   if (is_log) {
+    OutputFile output = reserve({{"the log", options.input}}, options.output);
     ArchiveRecording recording = validation::load_log(options.input);
     if (!options.name.empty()) recording.name = options.name;
     if (!options.note.empty()) recording.remarks = {{"note", options.note}};
     if (!options.sequence.empty()) recording.remarks.emplace_back("sequence", options.sequence);
-    record::save_archive(options.output, {{recording}});
+    record::save_archive(std::move(output), {{recording}});
     return kSuccess;
   }
   const record::ArchiveReader reader(options.input);
@@ -125,13 +127,13 @@ int run_archive_convert(const ArchiveConvertOptions& options) {
                      "a folder for tables");
   for (std::size_t i = 0; i < reader.size(); ++i) {
     for (const std::filesystem::path& path : validation::save_tables(reader.read(i), options.output))
-      std::printf("%s\n", path.c_str());
+      print(path.string() + "\n");
   }
   return kSuccess;
 }
 
 int run_archive_merge(const ArchiveMergeOptions& options) {
-  record::ArchiveWriter writer(options.output);
+  record::ArchiveWriter writer(reserve(name_all("an archive", options.archives), options.output));
   std::map<std::string, record::ArchiveObject> objects;
   std::string sequence, sequence_of;
   for (const std::string& path : options.archives) {

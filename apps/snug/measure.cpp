@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "distinct.hpp"
 #include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -39,9 +38,11 @@ Json truth_as_json(const std::string& name, const validation::MeasureTruth& trut
 int run_measure(const MeasureOptions& options) {
   if (options.recordings.size() > 1 && options.repetitions > 1)
     throw InputError("command line", "--repetitions", "several recordings", "one recording: each is a repetition");
-  std::vector<std::string> inputs = options.recordings;
-  inputs.push_back(options.sensors);
-  refuse_same_file(inputs, {options.output, options.truth});
+  NamedFiles inputs = name_all("a recording", options.recordings), outputs = {{"-o", options.output}};
+  inputs.push_back({"--sensors", options.sensors});
+  add_file(outputs, "--truth", options.truth);
+  expect_distinct(inputs, outputs);
+  OutputFile archive(options.output);
   std::optional<OutputFile> truth_file = reserve(options.truth);
   const model::Sensors sensors = model::load_sensors(options.sensors);
   validation::MeasureOptions settings;
@@ -49,7 +50,7 @@ int run_measure(const MeasureOptions& options) {
   settings.date = options.date;
   settings.repetitions =
       options.recordings.size() > 1 ? static_cast<int>(options.recordings.size()) : options.repetitions;
-  record::ArchiveWriter writer(options.output);
+  record::ArchiveWriter writer(std::move(archive));
   Json truth = {{"seed", options.seed}, {"repetitions", Json::array()}};
   std::string sequence;
   for (std::size_t i = 0; i < options.recordings.size(); ++i) {

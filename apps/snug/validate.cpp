@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <string_view>
 
-#include "distinct.hpp"
 #include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -55,9 +54,11 @@ void write_figures(const std::string& folder, const std::vector<validation::Name
 }  // namespace
 
 int run_validate(const ValidateOptions& options) {
-  std::vector<std::string> inputs = {options.simulated, options.measured};
-  if (options.windows) inputs.push_back(*options.windows);
-  refuse_same_file(inputs, {options.page, options.csv});
+  NamedFiles inputs = {{"--simulated", options.simulated}, {"--measured", options.measured}}, outputs;
+  add_file(inputs, "--windows", options.windows);
+  add_file(outputs, "-o", options.page);
+  add_file(outputs, "--csv", options.csv);
+  expect_distinct(inputs, outputs);
   std::optional<OutputFile> csv = reserve(options.csv), page = reserve(options.page);
   const validation::HandShifts shifts = parse_shifts(options.shifts);
   const validation::SimulatedRun run = validation::load_run(options.simulated);

@@ -43,8 +43,8 @@ Archive load_archive(const std::filesystem::path& path) {
   return archive;
 }
 
-void save_archive(const std::filesystem::path& path, const Archive& archive) {
-  ArchiveWriter writer(path);
+void save_archive(OutputFile file, const Archive& archive) {
+  ArchiveWriter writer(std::move(file));
   for (const ArchiveRecording& recording : archive.recordings) writer.add(recording);
   writer.close();
 }

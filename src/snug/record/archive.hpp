@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/output_file.hpp"
 #include "snug/record/recording.hpp"
 
 namespace snug::record {
@@ -110,7 +111,8 @@ class ArchiveReader {
 /// bytes. Poses are rounded to single precision; spans of 10 s in which a body is lost take no space.
 class ArchiveWriter {
  public:
-  explicit ArchiveWriter(const std::filesystem::path& path);
+  /// Throws InputError where something other than an earlier archive is.
+  explicit ArchiveWriter(OutputFile file);
   ~ArchiveWriter();
   ArchiveWriter(ArchiveWriter&&) noexcept;
   ArchiveWriter& operator=(ArchiveWriter&&) noexcept;
@@ -124,6 +126,6 @@ class ArchiveWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-void save_archive(const std::filesystem::path& path, const Archive& archive);
+void save_archive(OutputFile file, const Archive& archive);
 
 }  // namespace snug::record

@@ -1,6 +1,4 @@
 // ArchiveWriter: writes archives beside their place, chunk by chunk, and renames them when they are whole.
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -149,26 +147,14 @@ void write_object(hid_t group, const ArchiveObject& object) {
 }  // namespace
 
 struct ArchiveWriter::Impl {
-  explicit Impl(const std::filesystem::path& file_path) : path(file_path) {
-    std::error_code error;
-    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-      throw InputError(path.string(), "", "something that is not a regular file", "a file that can be written");
+  explicit Impl(OutputFile file) : output(std::move(file)) {
     refuse_foreign_file();
-    draft = path.string() + ".part" + std::to_string(::getpid());
     guarded([&] {
       const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
-      check(H5Pset_file_locking(access.get(), false, true), "file access");
-      file = Handle(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), "create file");
+      check(H5Pset_file_locking(access.get(), false, true), "file access");  // OutputFile has a lock of its own
+      archive = Handle(H5Fcreate(output.location().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), "create file");
     });
   }
-  ~Impl() {
-    if (draft.empty()) return;
-    file.reset();
-    std::error_code ignored;
-    std::filesystem::remove(draft, ignored);
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
 
   template <class Work>
   void guarded(Work work) {
@@ -176,12 +162,13 @@ struct ArchiveWriter::Impl {
     try {
       work();
     } catch (const H5Error& error) {
-      throw InputError(path.string(), "", error.what(), "a file that can be written");
+      throw OutputError(output.path().string(), error.what());
     }
   }
 
   /// Replaces nothing but an earlier archive or an empty file.
   void refuse_foreign_file() const {
+    const std::filesystem::path& path = output.path();
     std::error_code error;
     if (!std::filesystem::exists(path, error) || std::filesystem::file_size(path, error) == 0) return;
     try {
@@ -194,7 +181,7 @@ struct ArchiveWriter::Impl {
 
   void require_whole(const ArchiveRecording& recording) const {
     const Complain complain = [&](const std::string& part, const std::string& got, const std::string& expected) {
-      throw InputError(path.string(), '/' + recording.name + '/' + part, got, expected);
+      throw InputError(output.path().string(), '/' + recording.name + '/' + part, got, expected);
     };
     const auto has_slash = [](const std::string& name) { return name.empty() || name.find('/') != std::string::npos; };
     if (has_slash(recording.name)) complain("", "'" + recording.name + "'", "a name without '/' for the recording");
@@ -223,7 +210,7 @@ struct ArchiveWriter::Impl {
   void add(const ArchiveRecording& recording) {
     require_whole(recording);
     guarded([&] {
-      const Handle group(H5Gcreate2(file.get(), recording.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      const Handle group(H5Gcreate2(archive.get(), recording.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                          recording.name.c_str());
       for (const auto& [key, text] : recording.remarks) write_attribute(group.get(), key.c_str(), text);
       const Handle sensors(H5Gcreate2(group.get(), kSensorGroup, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), kSensorGroup);
@@ -237,21 +224,18 @@ struct ArchiveWriter::Impl {
 
   void close() {
     guarded([&] {
-      check(H5Fflush(file.get(), H5F_SCOPE_LOCAL), "flush");
-      file.reset();
+      check(H5Fflush(archive.get(), H5F_SCOPE_LOCAL), "flush");
+      archive.reset();
     });
-    std::error_code error;
-    std::filesystem::rename(draft, path, error);
-    if (error) throw InputError(path.string(), "", error.message(), "a file that can be written");
-    draft.clear();
+    output.publish();
   }
 
-  std::filesystem::path path, draft;
-  Handle file;
+  OutputFile output;
+  Handle archive;
   std::set<std::string> names;
 };
 
-ArchiveWriter::ArchiveWriter(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
+ArchiveWriter::ArchiveWriter(OutputFile file) : impl_(std::make_unique<Impl>(std::move(file))) {}
 ArchiveWriter::~ArchiveWriter() {
   const QuietErrors quiet;
   impl_.reset();
