@@ -17,11 +17,7 @@ std::vector<float> edge_loss(const model::PointLoss& loss) {
   return probabilities;
 }
 
-float grazing_loss(const model::PointLoss& loss, float cosine) {
-  const auto onset = static_cast<float>(std::cos(loss.grazing_onset)), full = static_cast<float>(std::cos(loss.grazing_full));
-  if (cosine >= onset) return 0.0F;
-  if (cosine <= full) return 1.0F;
-  return (onset - cosine) / (onset - full);
-}
+GrazingLoss::GrazingLoss(const model::PointLoss& loss)
+    : onset_(static_cast<float>(std::cos(loss.grazing_onset))), full_(static_cast<float>(std::cos(loss.grazing_full))) {}
 
 }  // namespace snug::camera

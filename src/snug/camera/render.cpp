@@ -65,7 +65,7 @@ class Shot {
  public:
   Shot(const Scene& scene, const model::CameraParams& camera, const CameraDraw& draw, std::uint64_t shot, int threads)
       : scene_(scene), camera_(camera), draw_(draw), view_(true_view(camera, draw)), threads_(threads),
-        cast_(cast(scene, view_, threads)) {
+        cast_(cast(scene, view_, threads)), grazing_loss_(camera.errors.loss) {
     Rng rng = Rng(shot).split("shot of " + camera.name);
     noise_key_ = rng.next();
     wave_key_ = rng.next();
@@ -154,7 +154,7 @@ class Shot {
     const model::PointLoss& loss = camera_.errors.loss;
     const std::uint8_t d = edges_(row, col);
     const float edge = d <= edge_loss_.size() ? edge_loss_[d - 1U] : 0.0F;
-    return 1.0F - (1.0F - static_cast<float>(loss.random)) * (1.0F - edge) * (1.0F - grazing_loss(loss, cosine));
+    return 1.0F - (1.0F - static_cast<float>(loss.random)) * (1.0F - edge) * (1.0F - grazing_loss_(cosine));
   }
 
   /// The point's depth with all errors; 0 outside the working range.
@@ -166,9 +166,9 @@ class Shot {
     if (!noise_.values().empty()) depth += errors.noise.precision * relative * relative * noise_(row, col);
     depth += wave;
     if (!corners_.values().empty() && corners_(row, col) <= corner_reach_) {
-      const double distance = (corners_(row, col) - 0.5) * z / view_.optics.fx;
-      depth -= errors.interreflection.bias * std::exp(-distance / errors.interreflection.reach) /
-               std::max(0.2F, cosine);
+      const auto per_pixel = static_cast<float>(1.0 / (view_.optics.fx * errors.interreflection.reach));
+      const float distance = (static_cast<float>(corners_(row, col)) - 0.5F) * z * per_pixel;  // in reaches
+      depth -= errors.interreflection.bias * std::exp(-distance) / std::max(0.2F, cosine);
     }
     depth = camera_.range.focus + (1.0 + draw_.scale) * (depth - camera_.range.focus);
     return depth >= camera_.range.near && depth <= camera_.range.far ? static_cast<float>(depth) : 0.0F;
@@ -201,8 +201,8 @@ class Shot {
     const CastView& view = projector.view;
     const double col = view.optics.cx + view.optics.fx * (x * z - camera_.p_CL.x()) / z_L - view.first_col;
     const double row = view.optics.cy + view.optics.fy * (y * z - camera_.p_CL.y()) / z_L - view.first_row;
-    const int c = static_cast<int>(std::lround(col)), r = static_cast<int>(std::lround(row));
-    if (!projector.cast.surface.is_inside(r, c)) return false;
+    const int c = static_cast<int>(col + 0.5), r = static_cast<int>(row + 0.5);  // inside, or refused below
+    if (col < 0.0 || row < 0.0 || !projector.cast.surface.is_inside(r, c)) return false;
     const std::int32_t s = projector.cast.surface(r, c);
     if (s < 0) return false;
     const Surface& lit = projector.cast.surfaces[static_cast<std::size_t>(s)];
@@ -221,6 +221,7 @@ class Shot {
   Grid2<std::uint8_t> borders_, edges_, corners_;
   Grid2<float> noise_;
   int corner_reach_ = 0;
+  GrazingLoss grazing_loss_;
   std::vector<float> edge_loss_, greys_;
 };
 

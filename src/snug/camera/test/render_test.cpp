@@ -179,8 +179,8 @@ TEST(Render, LosesPointsAtEdgesGrazingFacesAndAtRandom) {
     ++rows;
   }
   EXPECT_GT(rows, 20);
-  EXPECT_EQ(grazing_loss(camera.errors.loss, static_cast<float>(std::cos(0.9))), 0.0F);
-  EXPECT_EQ(grazing_loss(camera.errors.loss, static_cast<float>(std::cos(1.25))), 1.0F);
+  EXPECT_EQ(GrazingLoss(camera.errors.loss)(static_cast<float>(std::cos(0.9))), 0.0F);
+  EXPECT_EQ(GrazingLoss(camera.errors.loss)(static_cast<float>(std::cos(1.25))), 1.0F);
 }
 
 TEST(Render, ShadowIsAsWideAsTheTwoRaysSay) {
