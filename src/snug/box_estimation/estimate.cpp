@@ -26,6 +26,7 @@ constexpr double kLeastFramePart = 0.5;     // of pixels with a point
 constexpr double kMostBlocked = 0.25;       // of pixels with points above the region
 constexpr double kMovedDistance = 0.010, kMovedAngle = 3.0 * kDegree;
 constexpr double kLeaning = 4.0 * kDegree;
+constexpr double kMostTolerance = 0.02;  // m, of a face from where it was believed to be
 constexpr double kFoundSpread = 0.05;  // m and rad: the belief of a box that was found elsewhere
 
 TrackedBox make_tracked(const ExpectedBox& box, const Pose& X_CW) {
@@ -91,11 +92,25 @@ class Estimator {
     return internal::predict(frame_, range_, surroundings_C_, boxes);
   }
 
+  /// How far a face may be from where the belief has it, m.
+  [[nodiscard]] double belief_tolerance(const ExpectedBox& box) const {
+    const double spread = std::hypot(box.position_spread, 0.5 * box.rotation_spread * box.size.norm());
+    return std::min(kMostTolerance, 2.5 * spread) + tolerance_;
+  }
+
+  [[nodiscard]] std::vector<Agreement> compare(const std::vector<TrackedBox>& boxes) const {
+    return internal::compare(frame_, predict(boxes), std::vector<double>(boxes.size(), fit_tolerance()));
+  }
+
   /// Boxes that the frame shows about where they are believed to be.
   void track() {
     std::vector<TrackedBox> all;
-    for (const ExpectedBox& box : input_.boxes) all.push_back(make_tracked(box, X_CW_));
-    const std::vector<Agreement> agreement = internal::compare(frame_, predict(all), all.size(), tolerance_);
+    std::vector<double> tolerances;
+    for (const ExpectedBox& box : input_.boxes) {
+      all.push_back(make_tracked(box, X_CW_));
+      tolerances.push_back(belief_tolerance(box));
+    }
+    const std::vector<Agreement> agreement = internal::compare(frame_, predict(all), tolerances);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Agreement& a = agreement[i];
       if (a.on >= kLeastPoints && a.part_on() >= kLeastPartOn) {
@@ -105,10 +120,14 @@ class Estimator {
         others_.push_back(i);
       }
     }
-    fit(3);
-    const std::vector<Agreement> after = internal::compare(frame_, predict(tracked_), tracked_.size(), fit_tolerance());
+    fit(4);
+    keep_good();
+  }
+
+  /// Those that agree with the frame.
+  void keep_good() {
     std::vector<bool> is_good;
-    for (const Agreement& a : after) is_good.push_back(a.on >= kLeastPoints && a.part_on() >= kLeastPartOnAfter);
+    for (const Agreement& a : compare(tracked_)) is_good.push_back(a.on >= kLeastPoints && a.part_on() >= kLeastPartOnAfter);
     keep(is_good);
   }
 
@@ -135,42 +154,62 @@ class Estimator {
     ids_ = ids;
   }
 
+  /// What is seen of the place where box i is believed to be, among the tracked ones.
+  [[nodiscard]] Agreement look_at_belief(std::size_t i) const {
+    std::vector<TrackedBox> boxes = tracked_;
+    boxes.push_back(make_tracked(input_.boxes[i], X_CW_));
+    std::vector<double> tolerances(tracked_.size(), fit_tolerance());
+    tolerances.push_back(belief_tolerance(input_.boxes[i]));
+    return internal::compare(frame_, predict(boxes), tolerances).back();
+  }
+
+  /// Boxes that are evidently not where they were believed to be: looked for among what nothing explains. A box whose
+  /// place is covered may well be there.
   void look_for_others() {
-    bool has_found = true;
-    for (int round = 0; round < 3 && has_found && !others_.empty(); ++round) {
+    for (int round = 0; round < 3 && !others_.empty(); ++round) {
       std::sort(others_.begin(), others_.end());
       const Prediction prediction = predict(tracked_);
       const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + 1.5e-3);
       std::vector<internal::Wanted> wanted;
-      for (const std::size_t i : others_)
+      for (const std::size_t i : others_) {
+        const Agreement a = look_at_belief(i);
+        if (a.on + a.farther < std::max(kLeastPoints, a.nearer)) continue;
         wanted.push_back({static_cast<int>(i), 0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP});
-      const auto found = internal::find_boxes(frame_, prediction, mask, wanted, errors_);
-      has_found = !found.empty();
-      for (const internal::FoundBox& one : found) {
-        const std::size_t index = others_[static_cast<std::size_t>(one.wanted)];
-        TrackedBox box = make_tracked(input_.boxes[index], X_CW_);
-        box.X_CP = box.X_CP_prior = one.X_CP;
-        box.prior_information = Matrix6::Identity() / (kFoundSpread * kFoundSpread);
-        tracked_.push_back(box);
-        ids_.push_back(index);
       }
-      std::erase_if(others_, [this](std::size_t i) { return std::find(ids_.begin(), ids_.end(), i) != ids_.end(); });
+      std::vector<camera::SceneShape> solids = surroundings_C_.shapes;
+      for (const TrackedBox& box : tracked_) solids.push_back({geometry::Box{box.half}, box.X_CP, 0});
+      const auto found = internal::find_boxes(frame_, prediction, mask, wanted, solids, errors_);
+      if (found.empty()) break;
+      for (const internal::FoundBox& one : found) add_found(wanted[static_cast<std::size_t>(one.wanted)], one.X_CP);
+      fit(4);
+      keep_good();
     }
-    fit(others_.empty() && tracked_.empty() ? 0 : 4);
+    if (!tracked_.empty()) fit(4);
   }
 
+  void add_found(const internal::Wanted& wanted, const Pose& X_CP) {
+    const auto index = static_cast<std::size_t>(wanted.box);
+    TrackedBox box = make_tracked(input_.boxes[index], X_CW_);
+    box.X_CP = box.X_CP_prior = X_CP;
+    box.prior_information = Matrix6::Identity() / (kFoundSpread * kFoundSpread);
+    tracked_.push_back(box);
+    ids_.push_back(index);
+    std::erase(others_, index);
+  }
+
+  /// Until all that are left agree with the frame.
   void drop_bad_fits() {
-    const std::vector<Agreement> agreement = internal::compare(frame_, predict(tracked_), tracked_.size(), fit_tolerance());
-    std::vector<bool> is_good;
-    for (const Agreement& a : agreement) is_good.push_back(a.on >= kLeastPoints && a.part_on() >= kLeastPartOnAfter);
-    if (std::find(is_good.begin(), is_good.end(), false) == is_good.end()) return;
-    keep(is_good);
-    fit(2);
+    for (int round = 0; round < 3; ++round) {
+      const std::size_t before = tracked_.size();
+      keep_good();
+      if (tracked_.size() == before) return;
+      fit(4);
+    }
   }
 
   void report(Estimate& result) const {
     const Prediction prediction = predict(tracked_);
-    const std::vector<Agreement> agreement = internal::compare(frame_, prediction, tracked_.size(), fit_tolerance());
+    const std::vector<Agreement> agreement = internal::compare(frame_, prediction, std::vector<double>(tracked_.size(), fit_tolerance()));
     for (std::size_t i = 0; i < tracked_.size(); ++i) report_seen(i, agreement[i], result.boxes[ids_[i]]);
     report_others(result);
     const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + 2.5e-3);
@@ -222,9 +261,7 @@ class Estimator {
   /// Of those that were not found: is the place where each should be seen, and empty?
   void report_others(Estimate& result) const {
     for (const std::size_t i : others_) {
-      std::vector<TrackedBox> boxes = tracked_;
-      boxes.push_back(make_tracked(input_.boxes[i], X_CW_));
-      const Agreement a = internal::compare(frame_, predict(boxes), boxes.size(), tolerance_).back();
+      const Agreement a = look_at_belief(i);
       const int points = a.on + a.nearer + a.farther;
       if (points >= kLeastPoints && a.farther > 0.7 * points) result.boxes[i].sight = Sight::Missing;
     }

@@ -86,6 +86,41 @@ Matrix3 covariance_of(const Sums& sums, const Matrix3& inverse, double facing, c
   return result;
 }
 
+/// For each surface, the offset within the wide gate around which most of its points lie: a belief is off by more than what
+/// lies beside a box may be lower or higher.
+std::vector<double> common_offsets(const camera::Frame& frame, const Prediction& prediction, double wide_gate) {
+  constexpr double kBin = 1e-3;
+  constexpr int kWindow = 5;  // bins
+  const camera::Cast& cast = prediction.cast;
+  const auto bins = static_cast<std::size_t>(2.0 * wide_gate / kBin) + 1;
+  std::vector<std::vector<int>> counts(cast.surfaces.size());
+  for (int r = 0; r < prediction.range.rows(); r += 2)
+    for (int c = 0; c < prediction.range.cols(); c += 2) {
+      const std::int32_t s = cast.surface(r, c);
+      const double depth = frame.depth(r + prediction.range.first_row, c + prediction.range.first_col);
+      if (s < 0 || depth == 0.0) continue;
+      const camera::Surface& surface = cast.surfaces[static_cast<std::size_t>(s)];
+      if (surface.body < prediction.first_box) continue;
+      const double e = surface.offset * (depth * cast.inverse_depth(r, c) - 1.0);
+      if (std::abs(e) > wide_gate) continue;
+      std::vector<int>& own = counts[static_cast<std::size_t>(s)];
+      if (own.empty()) own.assign(bins, 0);
+      ++own[static_cast<std::size_t>((e + wide_gate) / kBin)];
+    }
+  std::vector<double> offsets(counts.size(), 0.0);
+  for (std::size_t s = 0; s < counts.size(); ++s) {
+    int most = 0;
+    for (std::size_t i = 0; i + kWindow <= counts[s].size(); ++i) {
+      int sum = 0;
+      for (std::size_t k = i; k < i + kWindow; ++k) sum += counts[s][k];
+      if (sum <= most) continue;
+      most = sum;
+      offsets[s] = (static_cast<double>(i) + 0.5 * kWindow) * kBin - wide_gate;
+    }
+  }
+  return offsets;
+}
+
 }  // namespace
 
 std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction& prediction,
@@ -100,6 +135,8 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
     sums[i].face = surface.face;
     frames[i] = frame_of(boxes[static_cast<std::size_t>(surface.body - prediction.first_box)], surface.face);
   }
+  std::vector<double> offsets(sums.size(), 0.0);
+  if (settings.wide_gate > 0.0) offsets = common_offsets(frame, prediction, settings.wide_gate);
   const PixelRange& range = prediction.range;
   for (int r = kBorder; r < range.rows() - kBorder; ++r) {
     const float* const depth = frame.depth.row(r + range.first_row) + range.first_col;
@@ -111,7 +148,7 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
       if (s < 0 || sums[static_cast<std::size_t>(s)].face < 0 || depth[c] == 0.0F) continue;
       if (surface[c - kBorder] != s || surface[c + kBorder] != s || above[c] != s || below[c] != s) continue;
       const double e = cast.surfaces[static_cast<std::size_t>(s)].offset * (static_cast<double>(depth[c]) * w[c] - 1.0);
-      if (std::abs(e) > settings.gate) continue;
+      if (std::abs(e - offsets[static_cast<std::size_t>(s)]) > settings.gate) continue;
       const int col = c + range.first_col, row = r + range.first_row;
       add_point(sums[static_cast<std::size_t>(s)], frames[static_cast<std::size_t>(s)],
                 static_cast<double>(depth[c]) * camera::pixel_ray(frame.camera.intrinsics, col, row), e, col, row);

@@ -8,6 +8,9 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "snug/geometry/bounds.hpp"
+#include "snug/geometry/manifold.hpp"
+
 namespace snug::box_estimation::internal {
 namespace {
 
@@ -15,6 +18,7 @@ constexpr int kBlock = 6;             // px, side of the blocks that patches gro
 constexpr double kSameNormal = 0.985;  // cosine between neighbouring blocks of a patch: 10 degrees
 constexpr int kLeastBlocks = 6;
 constexpr double kFit = 0.007;        // m: by so much a patch may be wider or narrower than a face
+constexpr double kSizeError = 0.0020;  // m, standard deviation of the side of a rectangle around a patch
 constexpr int kSamples = 14;          // a side, of a face that is compared with the frame
 
 struct Block {
@@ -238,14 +242,35 @@ class Judge {
   double tolerance_;
 };
 
-/// Calls visit(pose) for each way in which a face of the box can be the rectangle, or a part of it seen.
+/// By how much a place is less likely because the box would be in something, or stand on nothing. Rough poses are off by
+/// some millimetres.
+double standing(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
+  constexpr double kSlack = 0.006;
+  const geometry::Shape box = geometry::Box{half};
+  double least = kSlack;
+  for (const camera::SceneShape& solid : solids_C) {
+    if ((X_CP.p - solid.X_WG.p).norm() > geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + kSlack) continue;
+    geometry::PairCache cache;
+    geometry::Manifold manifold;
+    geometry::collide(box, X_CP, solid.shape, solid.X_WG, kSlack, cache, manifold);
+    for (int i = 0; i < manifold.count; ++i) least = std::min(least, manifold.points[static_cast<std::size_t>(i)].phi);
+  }
+  if (least >= kSlack) return 0.6;
+  return least > -kSlack ? 1.0 : std::max(0.1, 1.0 + 40.0 * (least + kSlack));
+}
+
+/// Calls visit(pose, likeliness) for each way in which a face of the box can be the rectangle, or a part of it seen.
 template <class Visit>
-void each_pose(const Wanted& wanted, const Rectangle& rectangle, const Vector3& n, const Visit& visit) {
+void each_pose(const Wanted& wanted, const Rectangle& rectangle, const Vector3& n, double shrink, const Visit& visit) {
   for (int axis = 0; axis < 3; ++axis)
     for (int turn = 0; turn < 2; ++turn) {
       const int a = (axis + 1 + turn) % 3, b = 3 - axis - a;  // P axes along u and v
       const double slack_u = 2.0 * wanted.half(a) - rectangle.width, slack_v = 2.0 * wanted.half(b) - rectangle.height;
       if (slack_u < -kFit || slack_v < -kFit) continue;
+      // A face that is seen whole is as large as the box says, less the points that edges lose.
+      double likeliness = 1.0;
+      for (const double slack : {slack_u, slack_v})
+        if (slack <= kFit) likeliness *= 0.3 + 0.7 * std::exp(-0.5 * std::pow((slack - shrink) / kSizeError, 2));
       Matrix3 R_CP;
       R_CP.col(a) = rectangle.u;
       R_CP.col(b) = rectangle.v;
@@ -256,7 +281,7 @@ void each_pose(const Wanted& wanted, const Rectangle& rectangle, const Vector3& 
       for (const double su : {-0.5, 0.0, 0.5})
         for (const double sv : {-0.5, 0.0, 0.5}) {
           if ((su != 0.0) != (slack_u > kFit) || (sv != 0.0) != (slack_v > kFit)) continue;
-          visit(Pose{R, middle + su * slack_u * rectangle.u + sv * slack_v * rectangle.v});
+          visit(Pose{R, middle + su * slack_u * rectangle.u + sv * slack_v * rectangle.v}, likeliness);
         }
     }
 }
@@ -285,7 +310,7 @@ camera::Grid2<std::uint8_t> unexplained(const camera::Frame& frame, const Predic
 
 std::vector<FoundBox> find_boxes(const camera::Frame& frame, const Prediction& prediction,
                                  const camera::Grid2<std::uint8_t>& unexplained_points, const std::vector<Wanted>& wanted,
-                                 const ErrorModel& errors) {
+                                 const std::vector<camera::SceneShape>& solids_C, const ErrorModel& errors) {
   const double noise = errors.point_error(frame.camera.range.focus);
   const std::vector<Patch> patches = Patches(frame, prediction, unexplained_points, noise).grow();
   const Judge judge(frame, prediction, unexplained_points, noise);
@@ -295,12 +320,15 @@ std::vector<FoundBox> find_boxes(const camera::Frame& frame, const Prediction& p
     const Rectangle rectangle = rectangle_of(patch);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       FoundBox best{static_cast<int>(i), {}, 0.0};
-      each_pose(wanted[i], rectangle, patch.n, [&](const Pose& X_CP) {
+      const double shrink = 2.0 * errors.edge_shift() * patch.mean.z() / frame.camera.intrinsics.fx;
+      each_pose(wanted[i], rectangle, patch.n, shrink, [&](const Pose& X_CP, double likeliness) {
         double part_on = 0.0;
         double score = judge.score(wanted[i].half, X_CP, part_on);
         if (part_on < 0.75) return;
-        // Among boxes alike, the one that is nearest to where it was.
-        score *= 1.0 + 0.02 * std::exp(-(X_CP.p - wanted[i].X_CP_prior.p).norm() / 0.1);
+        score *= likeliness * standing(wanted[i].half, X_CP, solids_C);
+        // Of boxes and turns alike, the one that is nearest to what was.
+        score *= 1.0 + 0.05 * std::exp(-(X_CP.p - wanted[i].X_CP_prior.p).norm() / 0.1) +
+                 0.05 * std::exp(-angle_between(X_CP.R, wanted[i].X_CP_prior.R) / 0.5);
         if (score > best.score) best = {static_cast<int>(i), X_CP, score};
       });
       if (best.score > 6e-4) candidates.push_back(best);

@@ -45,9 +45,9 @@ Prediction predict(const camera::Frame& frame, const PixelRange& range, const ca
   return prediction;
 }
 
-std::vector<Agreement> compare(const camera::Frame& frame, const Prediction& prediction, std::size_t boxes,
-                               double tolerance) {
-  std::vector<Agreement> all(boxes);
+std::vector<Agreement> compare(const camera::Frame& frame, const Prediction& prediction,
+                               const std::vector<double>& tolerances) {
+  std::vector<Agreement> all(tolerances.size());
   const camera::Cast& cast = prediction.cast;
   for (int r = 0; r < prediction.range.rows(); ++r) {
     const float* const depth = frame.depth.row(r + prediction.range.first_row) + prediction.range.first_col;
@@ -57,14 +57,15 @@ std::vector<Agreement> compare(const camera::Frame& frame, const Prediction& pre
       if (surface[c] < 0) continue;
       const camera::Surface& face = cast.surfaces[static_cast<std::size_t>(surface[c])];
       if (face.body < prediction.first_box) continue;
-      Agreement& one = all[static_cast<std::size_t>(face.body - prediction.first_box)];
+      const auto index = static_cast<std::size_t>(face.body - prediction.first_box);
+      Agreement& one = all[index];
       ++one.pixels;
       if (depth[c] == 0.0F) {
         ++one.missing;
         continue;
       }
       const double off = face.offset * (static_cast<double>(depth[c]) * w[c] - 1.0);  // along the outward normal
-      if (std::abs(off) <= tolerance) {
+      if (std::abs(off) <= tolerances[index]) {
         ++one.on;
         one.squares += off * off;
       } else {

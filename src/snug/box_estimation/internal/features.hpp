@@ -29,7 +29,8 @@ struct EdgeFeature {
 };
 
 struct FeatureSettings {
-  double gate = 0.006;     ///< m, points farther from a face are not its own
+  double wide_gate = 0.0;  ///< m, in which the offset that most points of a face agree on is looked for first; 0: not
+  double gate = 0.006;     ///< m, points farther from a face (or from that offset) are not its own
   int reach = 14;          ///< px, on either side of where an edge should be
 };
 

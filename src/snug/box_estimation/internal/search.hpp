@@ -24,9 +24,11 @@ struct FoundBox {
 [[nodiscard]] camera::Grid2<std::uint8_t> unexplained(const camera::Frame& frame, const Prediction& prediction,
                                                       double tolerance);
 
-/// The best poses for wanted boxes, each box at most once, the surest first. Poses are rough: some millimetres.
+/// The best poses for wanted boxes, each box at most once, the surest first. Poses are rough: some millimetres. A box
+/// stands on one of `solids_C` and in none of them.
 [[nodiscard]] std::vector<FoundBox> find_boxes(const camera::Frame& frame, const Prediction& prediction,
                                                const camera::Grid2<std::uint8_t>& unexplained_points,
-                                               const std::vector<Wanted>& wanted, const ErrorModel& errors);
+                                               const std::vector<Wanted>& wanted,
+                                               const std::vector<camera::SceneShape>& solids_C, const ErrorModel& errors);
 
 }  // namespace snug::box_estimation::internal

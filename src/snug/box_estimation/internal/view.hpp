@@ -52,8 +52,8 @@ struct Agreement {
     return points > 0 ? static_cast<double>(on) / points : 0.0;
   }
 };
-/// `tolerance`: m, from its face. One for each box.
-[[nodiscard]] std::vector<Agreement> compare(const camera::Frame& frame, const Prediction& prediction, std::size_t boxes,
-                                             double tolerance);
+/// `tolerances`: m, of each box's points from its faces.
+[[nodiscard]] std::vector<Agreement> compare(const camera::Frame& frame, const Prediction& prediction,
+                                             const std::vector<double>& tolerances);
 
 }  // namespace snug::box_estimation::internal
