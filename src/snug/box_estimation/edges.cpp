@@ -36,8 +36,9 @@ struct Edge {
 /// One edge as the frame shows it.
 class EdgeSearch {
  public:
-  EdgeSearch(const camera::Frame& frame, const Edge& edge, double tolerance, int reach)
-      : frame_(frame), edge_(edge), offset_(edge.n.dot(edge.middle)), tolerance_(tolerance), reach_(reach) {}
+  EdgeSearch(const camera::Frame& frame, const Edge& edge, double tolerance, int reach, const Prediction* neighbours, int body)
+      : frame_(frame), edge_(edge), offset_(edge.n.dot(edge.middle)), tolerance_(tolerance), reach_(reach),
+        neighbours_(neighbours), body_(body) {}
 
   /// False when the edge is not in the picture.
   bool gather() {
@@ -151,7 +152,19 @@ class EdgeSearch {
     if (depth == 0.0) return result;
     const double off = offset_ * (depth / z - 1.0);
     result.kind = std::abs(off) <= tolerance_ ? Kind::On : depth < z ? Kind::Before : Kind::Behind;
+    if (result.kind == Kind::On && result.s > 0.0 && is_neighbour(row, col)) result.kind = Kind::Before;
     return result;
+  }
+
+  /// Whether another box should be seen in a pixel.
+  [[nodiscard]] bool is_neighbour(int row, int col) const {
+    if (neighbours_ == nullptr) return false;
+    const int r = row - neighbours_->range.first_row, c = col - neighbours_->range.first_col;
+    if (!neighbours_->cast.surface.is_inside(r, c)) return false;
+    const std::int32_t s = neighbours_->cast.surface(r, c);
+    if (s < 0) return false;
+    const int body = neighbours_->cast.surfaces[static_cast<std::size_t>(s)].body;
+    return body >= neighbours_->first_box && body != body_;
   }
 
   /// Through the ends by least squares, twice: those beyond three standard deviations are left out the second time.
@@ -190,6 +203,8 @@ class EdgeSearch {
   Edge edge_;
   double offset_, tolerance_;
   int reach_;
+  const Prediction* neighbours_;  ///< null: not looked at
+  int body_;
   bool is_steep_ = false;
   double drift_ = 0.0;  // px, by which the edge crosses the grid of pixels
   std::vector<Line> lines_;
@@ -207,10 +222,10 @@ Rows make_rows(const Edge& edge, const Vector3& middle_of_box, double offset, do
 }
 
 std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, const Edge& edge, const ErrorModel& errors,
-                            const FeatureSettings& settings, bool& is_coarse) {
+                            const FeatureSettings& settings, const Prediction& prediction, int body, bool& is_coarse) {
   const double depth = edge.middle.z();
   const double tolerance = std::max(3.5 * errors.point_error(depth), 0.5e-3);
-  EdgeSearch search(frame, edge, tolerance, settings.reach);
+  EdgeSearch search(frame, edge, tolerance, settings.reach, settings.ignores_neighbours ? &prediction : nullptr, body);
   if (!search.gather()) return std::nullopt;
   const double rough = search.rough_offset(), step = search.pixel();
   is_coarse = std::abs(rough) > (settings.reach - kWindow - 2) * step;
@@ -261,7 +276,7 @@ std::vector<EdgeFeature> find_edges(const camera::Frame& frame, const Prediction
         edge.length = 2.0 * box.half(along);
         edge.middle = box.X_CP.p + box.half(axis) * surface.n_C + box.half(across) * edge.outward;
         EdgeFeature feature;
-        const auto rows = measure(frame, box, edge, errors, settings, feature.is_coarse);
+        const auto rows = measure(frame, box, edge, errors, settings, prediction, surface.body, feature.is_coarse);
         if (!rows) continue;
         feature.box = index;
         feature.axis = across;

@@ -21,6 +21,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kLeastPoints = 150;           // on a box, to say that it was seen
 constexpr double kLeastPartOn = 0.6;        // of the points where a box should be, to fit it from where it was believed
 constexpr double kLeastPartOnAfter = 0.85;  // the same after the fit
+constexpr double kLeastOfPixels = 0.08;     // of the pixels where it should be seen
+constexpr double kMostSpread = 0.015;       // m: a pose less sure than this was not seen
 constexpr double kLeastVisible = 0.04;      // of what a box would show alone
 constexpr double kLeastFramePart = 0.5;     // of pixels with a point
 constexpr double kMostBlocked = 0.25;       // of pixels with points above the region
@@ -102,6 +104,10 @@ class Estimator {
     return internal::compare(frame_, predict(boxes), std::vector<double>(boxes.size(), fit_tolerance()));
   }
 
+  static bool agrees(const Agreement& a, double least_part_on) {
+    return a.on >= kLeastPoints && a.part_on() >= least_part_on && a.on >= kLeastOfPixels * a.pixels;
+  }
+
   /// Boxes that the frame shows about where they are believed to be.
   void track() {
     std::vector<TrackedBox> all;
@@ -113,21 +119,21 @@ class Estimator {
     const std::vector<Agreement> agreement = internal::compare(frame_, predict(all), tolerances);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Agreement& a = agreement[i];
-      if (a.on >= kLeastPoints && a.part_on() >= kLeastPartOn) {
+      if (agrees(a, kLeastPartOn)) {
         tracked_.push_back(all[i]);
         ids_.push_back(i);
       } else {
         others_.push_back(i);
       }
     }
-    fit(4);
+    fit(6);
     keep_good();
   }
 
   /// Those that agree with the frame.
   void keep_good() {
     std::vector<bool> is_good;
-    for (const Agreement& a : compare(tracked_)) is_good.push_back(a.on >= kLeastPoints && a.part_on() >= kLeastPartOnAfter);
+    for (const Agreement& a : compare(tracked_)) is_good.push_back(agrees(a, kLeastPartOnAfter));
     keep(is_good);
   }
 
@@ -180,11 +186,25 @@ class Estimator {
       for (const TrackedBox& box : tracked_) solids.push_back({geometry::Box{box.half}, box.X_CP, 0});
       const auto found = internal::find_boxes(frame_, prediction, mask, wanted, solids, errors_);
       if (found.empty()) break;
+      const std::size_t before = tracked_.size();
       for (const internal::FoundBox& one : found) add_found(wanted[static_cast<std::size_t>(one.wanted)], one.X_CP);
-      fit(4);
+      fit(5);
+      if (turn_to_fit(before)) fit(4);
       keep_good();
     }
     if (!tracked_.empty()) fit(4);
+  }
+
+  /// Found boxes (from `first` on) whose seen sides are as long as others of theirs are turned to match. True when any was.
+  bool turn_to_fit(std::size_t first) {
+    bool has_turned = false;
+    for (std::size_t i = first; i < tracked_.size(); ++i) {
+      const auto turned = internal::turned_to_sizes(tracked_[i], fit_.size_misfit[i], input_.boxes[ids_[i]].X_WP.R.transpose() * frame_.camera.X_WC.R);
+      if (!turned) continue;
+      tracked_[i].X_CP = tracked_[i].X_CP_prior = *turned;
+      has_turned = true;
+    }
+    return has_turned;
   }
 
   void add_found(const internal::Wanted& wanted, const Pose& X_CP) {
@@ -222,7 +242,8 @@ class Estimator {
     const int alone = pixels_alone(tracked_[i]);
     estimate.points = a.on;
     estimate.visible_part = alone > 0 ? std::min(1.0, static_cast<double>(a.on) / alone) : 0.0;
-    if (a.on < kLeastPoints || estimate.visible_part < kLeastVisible) return;  // stays hidden, at its belief
+    const double spread = std::sqrt(fit_.covariance[i].topLeftCorner<3, 3>().diagonal().maxCoeff());
+    if (a.on < kLeastPoints || estimate.visible_part < kLeastVisible || spread > std::max(kMostSpread, 1.1 * box.position_spread)) return;  // stays hidden, at its belief
     estimate.sight = Sight::Seen;
     estimate.rms = a.on > 0 ? std::sqrt(a.squares / a.on) : 0.0;
     const Pose X_WP = frame_.camera.X_WC * tracked_[i].X_CP;
@@ -247,7 +268,8 @@ class Estimator {
       if ((low.head<2>().array() < input_.region_low.head<2>().array() - rim_slack).any() ||
           (high.head<2>().array() > input_.region_high.head<2>().array() + rim_slack).any())
         estimate.findings.push_back(Finding::OnRim);
-    if (fit_.size_error.size() > i && fit_.size_error[i] > 4.0 && std::abs(fit_.size_misfit[i]) > 3e-3)
+    const Vector3& misfit = fit_.size_misfit[i];
+    if (fit_.size_error[i] > 4.0 && misfit.array().isFinite().any() && misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > 3e-3)
       estimate.findings.push_back(Finding::WrongSize);
   }
 

@@ -2,7 +2,9 @@
 #include "snug/box_estimation/internal/joint_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -87,7 +89,7 @@ void add_overlaps(const std::vector<TrackedBox>& boxes, const camera::Scene& sur
 /// Opposite edges that were both seen tell the size: how far that is from what is known.
 void note_size(const std::vector<EdgeFeature>& edges, const std::vector<TrackedBox>& boxes, FitResult& result) {
   result.size_error.assign(boxes.size(), 0.0);
-  result.size_misfit.assign(boxes.size(), 0.0);
+  result.size_misfit.assign(boxes.size(), Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
   for (const EdgeFeature& low : edges)
     for (const EdgeFeature& high : edges) {
       if (low.box != high.box || low.axis != high.axis || low.side != 0 || high.side != 1) continue;
@@ -95,9 +97,8 @@ void note_size(const std::vector<EdgeFeature>& edges, const std::vector<TrackedB
       const double misfit = low.rows.measured(0) + high.rows.measured(0);
       const double sigma = std::sqrt(low.rows.covariance(0, 0) + high.rows.covariance(0, 0));
       const auto k = static_cast<std::size_t>(low.box);
-      if (std::abs(misfit) <= std::abs(result.size_misfit[k])) continue;
-      result.size_misfit[k] = misfit;
-      result.size_error[k] = std::abs(misfit) / sigma;
+      result.size_misfit[k](low.axis) = misfit;
+      result.size_error[k] = std::max(result.size_error[k], std::abs(misfit) / sigma);
     }
 }
 
@@ -114,14 +115,17 @@ FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const c
     // them.
     settings.wide_gate = step == 0 ? 0.025 : step == 1 ? 0.008 : 0.0;
     settings.gate = std::max(step == 0 ? 0.006 : step == 1 ? 0.004 : 0.0015, 4.0 * noise);
-    settings.reach = step <= 1 ? 16 : step == 2 ? 10 : 7;
+    const int left = steps - 1 - step;
+    settings.reach = left >= 2 ? 16 : left == 1 ? 9 : 7;
+    settings.ignores_neighbours = left < 2;
     const Prediction prediction = predict(frame, range, surroundings_C, boxes);
     System system(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) system.add_prior(static_cast<int>(i), boxes[i]);
     for (const FaceFeature& face : fit_faces(frame, prediction, boxes, errors, settings)) system.add(face.box, face.rows);
     std::vector<EdgeFeature> edges;
     if (step > 0) edges = find_edges(frame, prediction, boxes, errors, settings);
-    for (const EdgeFeature& edge : edges) system.add(edge.box, edge.rows);
+    for (const EdgeFeature& edge : edges)
+      if (!edge.is_coarse || left >= 2) system.add(edge.box, edge.rows);
     add_overlaps(boxes, surroundings_C, system);
     const Eigen::VectorXd change = system.solve();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -137,6 +141,36 @@ FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const c
   }
   result.boxes = std::move(boxes);
   return result;
+}
+
+std::optional<Pose> turned_to_sizes(const TrackedBox& box, const Vector3& size_misfit, const Matrix3& R_PC_believed) {
+  constexpr double kBetter = 1.0e-3;  // m: less than that is noise
+  // The axis whose face looks most toward the camera; its length is not seen.
+  int depth_axis = 0;
+  (box.X_CP.R.transpose() * box.X_CP.p.normalized()).cwiseAbs().maxCoeff(&depth_axis);
+  const auto misfit_of = [&](const std::array<int, 3>& order) {  // box axis order[k] lies where axis k lay
+    double sum = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double seen = 2.0 * box.half(k) + size_misfit(k);
+      if (k != depth_axis && std::isfinite(seen)) sum += std::abs(seen - 2.0 * box.half(order[static_cast<std::size_t>(k)]));
+    }
+    return sum;
+  };
+  std::array<int, 3> order = {0, 1, 2}, best = order;
+  const double now = misfit_of(order);
+  double least = now - kBetter;
+  while (std::next_permutation(order.begin(), order.end())) {
+    if (misfit_of(order) >= least) continue;
+    least = misfit_of(order);
+    best = order;
+  }
+  if (best == std::array<int, 3>{0, 1, 2}) return std::nullopt;
+  Matrix3 R_CP;
+  for (int k = 0; k < 3; ++k) R_CP.col(best[static_cast<std::size_t>(k)]) = box.X_CP.R.col(k);
+  if (R_CP.determinant() < 0.0) R_CP.col(0) = -R_CP.col(0);
+  const Vector3 into = box.X_CP.R.col(depth_axis) * (box.X_CP.R.col(depth_axis).dot(box.X_CP.p) > 0.0 ? 1.0 : -1.0);
+  const double deeper = box.half(best[static_cast<std::size_t>(depth_axis)]) - box.half(depth_axis);
+  return Pose{nearest_equal_rotation(R_CP, R_PC_believed.transpose()), box.X_CP.p + deeper * into};
 }
 
 }  // namespace snug::box_estimation::internal

@@ -32,6 +32,8 @@ struct FeatureSettings {
   double wide_gate = 0.0;  ///< m, in which the offset that most points of a face agree on is looked for first; 0: not
   double gate = 0.006;     ///< m, points farther from a face (or from that offset) are not its own
   int reach = 14;          ///< px, on either side of where an edge should be
+  /// Whether points of a face's plane count where another box should be seen: its face may be as high.
+  bool ignores_neighbours = false;
 };
 
 /// Faces with enough points. Points near the edges of what is seen of a face are left out.

@@ -47,10 +47,8 @@ struct Agreement {
   int farther = 0;     ///< points behind it: seen through
   int missing = 0;     ///< no point
   double squares = 0.0;  ///< m^2, of the distances of points that lie on it
-  [[nodiscard]] double part_on() const {
-    const int points = on + nearer + farther;
-    return points > 0 ? static_cast<double>(on) / points : 0.0;
-  }
+  /// Of the points that tell whether it is there: what is before it may be anything.
+  [[nodiscard]] double part_on() const { return on > 0 ? static_cast<double>(on) / (on + farther) : 0.0; }
 };
 /// `tolerances`: m, of each box's points from its faces.
 [[nodiscard]] std::vector<Agreement> compare(const camera::Frame& frame, const Prediction& prediction,
