@@ -230,10 +230,11 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
   const double rough = search.rough_offset(), step = search.pixel();
   is_coarse = std::abs(rough) > (settings.reach - kWindow - 2) * step;
   if (is_coarse) {
-    // All of the band is face, or none: somewhere beyond. Both ends of the band may also be a neighbour as high.
+    // Too near the end of the band to be counted. At its very end all of the band is face, or none: the end lies beyond.
+    const bool is_beyond = std::abs(rough) > (settings.reach - 1.5) * step;
     Rows rows = make_rows(edge, box.X_CP.p, rough, 0.0);
     rows.count = 1;
-    rows.covariance = Matrix3::Identity() * std::pow(0.5 * settings.reach * step, 2);
+    rows.covariance = Matrix3::Identity() * std::pow((is_beyond ? 0.3 * settings.reach : 2.0) * step, 2);
     return rows;
   }
   const auto found = search.refine(rough);
