@@ -14,6 +14,7 @@ namespace {
 
 using internal::Agreement;
 using internal::ErrorModel;
+using internal::FitStart;
 using internal::Prediction;
 using internal::TrackedBox;
 
@@ -126,7 +127,7 @@ class Estimator {
         others_.push_back(i);
       }
     }
-    fit(6);
+    fit(FitStart::Belief, 6);
     keep_good();
   }
 
@@ -142,7 +143,10 @@ class Estimator {
     return std::max(2.5e-3, 4.0 * errors_.point_error(frame_.camera.range.focus));
   }
 
-  void fit(int steps) { fit_ = internal::fit_boxes(frame_, range_, surroundings_C_, tracked_, errors_, steps); tracked_ = fit_.boxes; }
+  void fit(internal::FitStart start, int steps) {
+    fit_ = internal::fit_boxes(frame_, range_, surroundings_C_, tracked_, errors_, start, steps);
+    tracked_ = fit_.boxes;
+  }
 
   /// Boxes that are not kept are looked for, or were never seen.
   void keep(const std::vector<bool>& is_good) {
@@ -188,11 +192,11 @@ class Estimator {
       if (found.empty()) break;
       const std::size_t before = tracked_.size();
       for (const internal::FoundBox& one : found) add_found(wanted[static_cast<std::size_t>(one.wanted)], one.X_CP);
-      fit(5);
-      if (turn_to_fit(before)) fit(4);
+      fit(FitStart::Near, 4);
+      if (turn_to_fit(before)) fit(FitStart::Near, 3);
       keep_good();
     }
-    if (!tracked_.empty()) fit(4);
+    if (!tracked_.empty()) fit(FitStart::Near, 3);
   }
 
   /// Found boxes (from `first` on) whose seen sides are as long as others of theirs are turned to match. True when any was.
@@ -223,7 +227,7 @@ class Estimator {
       const std::size_t before = tracked_.size();
       keep_good();
       if (tracked_.size() == before) return;
-      fit(4);
+      fit(FitStart::Near, 3);
     }
   }
 

@@ -105,17 +105,18 @@ void note_size(const std::vector<EdgeFeature>& edges, const std::vector<TrackedB
 }  // namespace
 
 FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const camera::Scene& surroundings_C,
-                    std::vector<TrackedBox> boxes, const ErrorModel& errors, int steps) {
+                    std::vector<TrackedBox> boxes, const ErrorModel& errors, FitStart start, int steps) {
   FitResult result;
   const double noise = errors.point_error(frame.camera.range.focus);
   for (int step = 0; step < steps && !boxes.empty(); ++step) {
     const bool is_last = step + 1 == steps;
     FeatureSettings settings;
     // From a belief that is off by centimetres to the camera's noise: first the planes alone, since edges are looked for in
-    // them.
-    settings.wide_gate = step == 0 ? 0.025 : step == 1 ? 0.008 : 0.0;
-    settings.gate = std::max(step == 0 ? 0.006 : step == 1 ? 0.004 : 0.0015, 4.0 * noise);
+    // them. From rough poses on, edges at once: without them boxes would go back to the belief.
     const int left = steps - 1 - step;
+    const bool planes_only = start == FitStart::Belief && step == 0;
+    settings.wide_gate = planes_only ? 0.025 : step <= 1 ? 0.008 : 0.0;
+    settings.gate = std::max(planes_only ? 0.006 : step <= 1 ? 0.004 : 0.0015, 4.0 * noise);
     settings.reach = left >= 2 ? 16 : left == 1 ? 9 : 7;
     settings.ignores_neighbours = left < 2;
     const Prediction prediction = predict(frame, range, surroundings_C, boxes);
@@ -123,7 +124,7 @@ FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const c
     for (std::size_t i = 0; i < boxes.size(); ++i) system.add_prior(static_cast<int>(i), boxes[i]);
     for (const FaceFeature& face : fit_faces(frame, prediction, boxes, errors, settings)) system.add(face.box, face.rows);
     std::vector<EdgeFeature> edges;
-    if (step > 0) edges = find_edges(frame, prediction, boxes, errors, settings);
+    if (!planes_only) edges = find_edges(frame, prediction, boxes, errors, settings);
     for (const EdgeFeature& edge : edges)
       if (!edge.is_coarse || left >= 2) system.add(edge.box, edge.rows);
     add_overlaps(boxes, surroundings_C, system);

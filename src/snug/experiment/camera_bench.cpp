@@ -150,8 +150,79 @@ CameraScore score_camera(const model::Scenario& scenario, const model::CameraPar
   std::sort(score.angle_deg.begin(), score.angle_deg.end());
   score.render_ms = median(render_ms);
   score.estimate_ms = median(estimate_ms);
-  (void)at_part;
   return score;
+}
+
+namespace {
+
+// Settings of the estimator were chosen on seeds 1000 to 1999; these judge.
+constexpr std::uint64_t kJudgeSeed = 1;
+constexpr int kScenes = 30;
+
+Figure at_most(std::string name, double value, std::string unit, double limit) {
+  return {std::move(name), value, std::move(unit), fmt::format("<= {}", limit), value <= limit};
+}
+
+double mean_chi_square(const CameraScore& score) {
+  double sum = 0.0;
+  for (const double value : score.chi_square) sum += value / 6.0;
+  return score.chi_square.empty() ? 0.0 : sum / static_cast<double>(score.chi_square.size());
+}
+
+double percent(int part, int all) { return all > 0 ? 100.0 * part / all : 0.0; }
+
+/// The frames of one camera, undisturbed. `has_targets`: those of the demonstrator's class.
+void measure_at_rest(const model::Scenario& scenario, const model::CameraParams& camera, const std::string& name,
+                     bool has_targets, std::vector<Figure>& figures) {
+  const CameraScore score = score_camera(scenario, camera, {kJudgeSeed, kScenes, 15, Disturbance::None, false});
+  const auto add = [&](const std::string& what, double value, const std::string& unit, double limit) {
+    if (has_targets)
+      figures.push_back(at_most(name + what, value, unit, limit));
+    else
+      figures.push_back({name + what, value, unit, "", true});
+  };
+  figures.push_back({name + "visible_boxes", static_cast<double>(score.visible), "boxes", "", true});
+  add("position_median_mm", at_part(score.position_mm, 0.5), "mm", 1.0);
+  add("position_p95_mm", at_part(score.position_mm, 0.95), "mm", 2.5);
+  add("angle_median_deg", at_part(score.angle_deg, 0.5), "deg", 0.3);
+  add("angle_p95_deg", at_part(score.angle_deg, 0.95), "deg", 0.7);
+  figures.push_back({name + "seen_percent", percent(score.visible_seen, score.visible), "%", "", true});
+  add("hidden_seen_percent", percent(score.hidden_seen, score.hidden), "%", 0.1);
+  figures.push_back({name + "more_than_20mm_off", static_cast<double>(score.wrong), "boxes", "", true});
+  const double chi = mean_chi_square(score);
+  if (has_targets)
+    figures.push_back({name + "chi_square_per_degree", chi, "1", "0.9 .. 1.1", chi >= 0.9 && chi <= 1.1});
+  else
+    figures.push_back({name + "chi_square_per_degree", chi, "1", "", true});
+  add("frame_ms", score.render_ms, "ms", 50.0);
+  add("estimate_ms", score.estimate_ms, "ms", 300.0);
+}
+
+void measure_disturbed(const model::Scenario& scenario, const model::CameraParams& camera, std::vector<Figure>& figures) {
+  const std::pair<const char*, Disturbance> kinds[] = {
+      {"moved", Disturbance::Moved}, {"tipped", Disturbance::Tipped}, {"taken", Disturbance::Taken}};
+  std::uint64_t seed = kJudgeSeed + 200;
+  for (const auto& [name, kind] : kinds) {
+    const CameraScore score = score_camera(scenario, camera, {seed, kScenes, 15, kind, false});
+    const double found = percent(score.disturbed_found, score.disturbed);
+    figures.push_back({fmt::format("camera.{}.found_percent", name), found, "%", ">= 99", found >= 99.0});
+    figures.push_back({fmt::format("camera.{}.more_than_20mm_off", name), static_cast<double>(score.wrong), "boxes", "", true});
+    seed += 200;
+  }
+}
+
+}  // namespace
+
+void measure_camera(const BenchOptions& options, std::vector<Figure>& figures) {
+  const model::Scenario scenario = model::load_scenario(options.scenario);
+  if (scenario.cameras.empty()) return;
+  const model::CameraParams& camera = scenario.cameras.front();
+  measure_at_rest(scenario, camera, "camera.rest.", true, figures);
+  measure_disturbed(scenario, camera, figures);
+  model::CameraParams cheap = model::make_camera("active_stereo");
+  cheap.name = camera.name;
+  cheap.X_WC = camera.X_WC;
+  measure_at_rest(scenario, cheap, "camera.active_stereo.", false, figures);
 }
 
 }  // namespace snug::experiment::internal

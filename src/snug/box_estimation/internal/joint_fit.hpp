@@ -14,9 +14,14 @@ struct FitResult {
   std::vector<double> size_error;  ///< the largest of them, in standard deviations
 };
 
+enum class FitStart {
+  Belief,  ///< off by centimetres
+  Near,    ///< off by millimetres
+};
+
 /// Gauss-Newton steps, each with a new prediction and narrower gates. `surroundings_C`: in C.
 [[nodiscard]] FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const camera::Scene& surroundings_C,
-                                  std::vector<TrackedBox> boxes, const ErrorModel& errors, int steps);
+                                  std::vector<TrackedBox> boxes, const ErrorModel& errors, FitStart start, int steps);
 
 /// The pose in which the box's sides match what was seen of them better than they do now, its seen face in the same plane;
 /// none when they match best as it is. `R_PC_believed`: of poses that are equal, the one nearest to it.
