@@ -99,4 +99,8 @@ CLI::Validator within(double low, double high) {
       "");
 }
 
+int threads_or_cores(std::optional<int> threads) {
+  return threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+}
+
 }  // namespace snug::app

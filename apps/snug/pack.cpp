@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <iterator>
 #include <span>
-#include <thread>
 
 #include "pack_report.hpp"
 #include "robot_warnings.hpp"
@@ -79,7 +78,7 @@ task::SessionOptions make_session_options(const PackOptions& options, const Sour
   session.packing.seed = options.seed.value_or(loaded.scenario.seed);
   if (options.future == "own") session.future = own_future(loaded, sequence);
   session.packing.decision_time = options.decision_time;
-  session.threads = options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  session.threads = threads_or_cores(options.threads);
   session.packing.threads = session.threads;
   session.samples = options.samples;
   if (options.look == "noisy") session.perception = task::Perception::Noisy;
