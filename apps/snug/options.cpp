@@ -99,8 +99,4 @@ CLI::Validator within(double low, double high) {
       "");
 }
 
-int threads_or_cores(std::optional<int> threads) {
-  return threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-}
-
 }  // namespace snug::app

@@ -19,7 +19,4 @@ namespace snug::app {
 /// A whole number from `least` to `most`.
 [[nodiscard]] CLI::Validator whole(std::uint64_t least, std::uint64_t most);
 
-/// As many threads as asked for, or as the machine has cores.
-[[nodiscard]] int threads_or_cores(std::optional<int> threads);
-
 }  // namespace snug::app

@@ -9,6 +9,7 @@
 #include "snug/cell/ensemble.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
@@ -74,7 +75,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
   if (options.cup) run.simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;
-  run.threads = threads_or_cores(options.threads);
+  run.threads = options.threads.value_or(core_count());
   run.version = SNUG_VERSION;
   run.describe = [](const cell::RunResult& result) { return format_json(result); };
   return run;
