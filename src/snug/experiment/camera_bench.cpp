@@ -22,7 +22,7 @@ using box_estimation::Sight;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// Of the pixels that a box would show alone, those it shows: from here on it counts as visible.
-constexpr double kVisiblePart = 0.25;
+constexpr double kVisiblePart = 0.5;
 constexpr int kVisiblePixels = 1500;
 constexpr int kHiddenPixels = 20;  ///< fewer than these: hidden
 /// How far beliefs are from the truth in these trials: standard deviations, stated to the estimator.
@@ -78,6 +78,21 @@ double at_part(const std::vector<double>& sorted, double part) {
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(part * static_cast<double>(sorted.size())))];
 }
 
+/// How far the corners of a box are from those of the same box elsewhere, m: the largest of the distances to the nearest. Boxes
+/// with edges of nearly the same length are nearly the same turned.
+double corner_distance(const Vector3& size, const Pose& X_WA, const Pose& X_WB) {
+  double largest = 0.0;
+  const auto corner = [&size](int i) {
+    return Vector3(0.5 * size.cwiseProduct(Vector3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1)));
+  };
+  for (int i = 0; i < 8; ++i) {
+    double nearest = 1e9;
+    for (int k = 0; k < 8; ++k) nearest = std::min(nearest, (X_WA * corner(i) - X_WB * corner(k)).norm());
+    largest = std::max(largest, nearest);
+  }
+  return largest;
+}
+
 void judge_box(const SceneBox& box, const BoxEstimate& estimate, const Visibility& seen, const CameraTrial& trial,
                std::uint64_t seed, CameraScore& score) {
   const bool is_visible = seen.part >= kVisiblePart && seen.pixels >= kVisiblePixels;
@@ -101,7 +116,8 @@ void judge_box(const SceneBox& box, const BoxEstimate& estimate, const Visibilit
     const bool has_moved = (box.X_WP.p - box.X_WP_before.p).norm() > 0.015 || angle_between(box.X_WP.R, box.X_WP_before.R) > 0.08;
     if (has_moved) {
       ++score.disturbed;
-      const bool is_found = is_seen && off.norm() < 0.01 && turn.norm() < 0.06;
+      const bool is_found = is_seen && corner_distance(box.size, estimate.X_WP, box.X_WP) < 0.010;
+      if (trial.print && !is_found) std::fprintf(stderr, "not found: ");
       score.disturbed_found += is_found ? 1 : 0;
     }
   }
