@@ -1,5 +1,4 @@
-// Uncertainty: how far what a scenario says of its cell may be off: one block, for plants, rehearsals and repeated
-// runs.
+// Uncertainty: how far a scenario may be off from its cell: one block, for plants, rehearsals and repeated runs.
 #pragma once
 
 #include <numbers>

@@ -86,6 +86,16 @@ cell::ContainerFit Packer::fit_of(int item, const Pose& X_WP) const {
   return cell::fit_in(inner, box.size, layout_.X_WT.inverse() * X_WP);
 }
 
+bool Packer::is_seen_outside(const std::string& id) const {
+  const int item = static_cast<int>(std::ranges::find(items_, id, &packing::Item::id) - items_.begin());
+  const std::optional<BelievedBox>& box = belief_.box(item);
+  if (!box || !box->was_seen) return false;
+  const double slack = 2.0 * std::sqrt(std::max(0.0, box->covariance(0, 0)));
+  const cell::ContainerFit fit = fit_of(item, box->X_WP);
+  return locate(item) != Location::Container || fit.outside > cell::kPackedBeyondWall + slack ||
+         fit.above_rim > cell::kPackedAboveRim + slack;
+}
+
 void Packer::look() {
   belief_.see(plant_.perceive(belief_.expectations()));
   for (std::size_t i = 0; i < items_.size(); ++i) {

@@ -26,6 +26,8 @@ class Packer {
   /// What is believed to be in the container.
   [[nodiscard]] packing::ContainerState container_state() const;
 
+  /// It is seen over the rim, beyond a wall, or not in the container at all.
+  [[nodiscard]] bool is_seen_outside(const std::string& id) const;
   /// Everything for one item, from its arrival to what became of it.
   [[nodiscard]] ItemReport bring_in(int item, const Decide& decide);
   /// The tool back at its start. Empty, or why it did not get there.

@@ -86,18 +86,14 @@ bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& rep
 }
 
 int Packer::who_sticks_out(int item) const {
+  const auto is_out = [&](int one) {
+    return !left_out_.contains(one) && is_seen_outside(items_[static_cast<std::size_t>(one)].id);
+  };
   for (const int other : order_) {
-    const std::optional<BelievedBox>& box = belief_.box(other);
-    if (!box || !box->was_seen || left_out_.contains(other) || locate(other) != Location::Container) continue;
-    const cell::ContainerFit fit = fit_of(other, box->X_WP);
-    if (fit.outside > cell::kPackedBeyondWall + slack_of(*box) ||
-        fit.above_rim > cell::kPackedAboveRim + slack_of(*box)) {
-      return other;
-    }
+    if (other == item || !belief_.box(other)) continue;
+    if (locate(other) == Location::Container && is_out(other)) return other;
   }
-  const std::optional<BelievedBox>& own = belief_.box(item);
-  const bool may = own && own->was_seen && !left_out_.contains(item);
-  return may && locate(item) != Location::Container ? item : -1;
+  return is_out(item) ? item : -1;
 }
 
 Trouble Packer::assess(int item, const packing::Placement& planned, const std::vector<std::optional<Pose>>& before,

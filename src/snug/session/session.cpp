@@ -134,8 +134,19 @@ class Session {
   void finish_item(ItemReport report, int item, int items) {
     if (report.is_packed()) result_.plan.push_back(report.planned);
     result_.items.push_back(std::move(report));
+    review();
     count();
     if (progress_) progress_(result_, item, items);
+  }
+
+  /// What was packed before, and is seen outside now, is not packed any more.
+  void review() {
+    for (ItemReport& item : result_.items) {
+      if (!item.is_packed() || !packer_.is_seen_outside(item.id)) continue;
+      item.end = ItemEnd::Left;
+      item.reason = "it is seen outside the container";
+      std::erase_if(result_.plan, [&](const packing::Placement& one) { return one.item == item.id; });
+    }
   }
 
   void count() {
