@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <iterator>
 #include <span>
-#include <thread>
 
 #include "interrupt.hpp"
 #include "outputs.hpp"
@@ -16,6 +15,7 @@
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/study/monte_carlo.hpp"
@@ -89,7 +89,7 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
   session.packing.seed = options.seed.value_or(loaded.scenario.seed);
   if (options.future == "own") session.future = own_future(loaded, sequence);
   session.packing.decision_time = options.decision_time;
-  session.threads = options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  session.threads = options.threads.value_or(core_count());
   session.packing.threads = session.threads;
   session.samples = options.samples;
   session.skips = options.skips;
