@@ -51,6 +51,7 @@ MonteCarloResult run_monte_carlo(const model::Scenario& scenario, const RunOptio
   unrecorded.record_path.clear();
   unrecorded.record_file = nullptr;
   unrecorded.observer = nullptr;
+  unrecorded.threads = 1;  // runs share them out
   MonteCarloResult result;
   result.runs.resize(static_cast<std::size_t>(monte_carlo.count));
   parallel_for(monte_carlo.count, monte_carlo.threads, [&](int i, int) {
