@@ -15,6 +15,7 @@
 #include "snug/model/material.hpp"
 #include "snug/model/parcel.hpp"
 #include "snug/model/robot_params.hpp"
+#include "snug/model/uncertainty.hpp"
 
 namespace snug::model {
 
@@ -116,6 +117,7 @@ struct Scenario {
   std::optional<RobotParams> robot;
   std::vector<CameraParams> cameras;
   std::vector<Sequence> sequences;
+  Uncertainty uncertainty;  ///< of all of the above
   std::vector<Spring> springs;
   std::vector<AppliedWrench> wrenches;
   std::optional<Drops> drops;
