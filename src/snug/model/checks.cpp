@@ -182,7 +182,7 @@ void ScenarioReader::read() {
                              "parcel_types",  "parcels",    "containers", "target",     "bodies",
                              "aligner",       "tool",       "cup",        "controller", "sequences",
                              "springs",       "drops",      "robot",      "wrenches",   "record_period",
-                             "initial_state", "uncertainty"});
+                             "initial_state", "uncertainty", "cameras"});
   const auto each = [&map](const char* key, auto&& read_one) {
     if (const auto values = map.find(key))
       for (const Value& value : values->list()) read_one(value);
@@ -198,6 +198,7 @@ void ScenarioReader::read() {
   if (const auto aligner = map.find("aligner")) read_aligner(*aligner);
   if (const auto tool = map.find("tool")) read_tool(*tool);
   if (const auto cup = map.find("cup")) read_cup(*cup);
+  each("cameras", [this](const Value& value) { read_camera(value); });
   if (const auto controller = map.find("controller")) read_controller(*controller);
   if (const auto robot = map.find("robot")) read_robot(*robot);
   each("sequences", [this](const Value& value) { read_sequence(value); });
