@@ -38,7 +38,7 @@ class Room {
     options.initial_block_size = block_.size();
     return options;
   }
-  alignas(std::max_align_t) std::array<char, 32768> block_;
+  alignas(std::max_align_t) std::array<char, 131072> block_;
   google::protobuf::Arena arena_;
 };
 
