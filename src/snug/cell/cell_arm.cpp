@@ -113,6 +113,8 @@ ArmState CellArm::make_state(std::uint64_t seed, const JointVector& q) const {
   return {machine_.make_state(controller_, q), Rng(seed).split("force sensor"), {}, {q, none, none}};
 }
 
+void CellArm::stand(ArmState& state) const { state.machine = machine_.make_state(controller_, state.machine.joints.q); }
+
 control::MachineTick CellArm::tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
                                    ArmState& state, control::JointControllerWork& work) const {
   if (state.machine.state >= 0) state.machine.program = program;

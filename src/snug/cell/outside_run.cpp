@@ -56,7 +56,7 @@ const CellTick& OutsideRun::advance(const OutsideCommand& command) {
   return run.last;
 }
 
-bool OutsideRun::bring(int item, int quarter) { return impl_->simulation.bring(item, quarter, impl_->state); }
+bool OutsideRun::feed(int item, int quarter) { return impl_->simulation.feed(item, quarter, impl_->state); }
 
 double OutsideRun::time() const { return impl_->simulation.time(impl_->state); }
 const CellState& OutsideRun::state() const { return impl_->state; }

@@ -26,8 +26,8 @@ class OutsideRun {
 
   /// As Simulation::advance. After a failure only finish() may follow (checked).
   const CellTick& advance(const OutsideCommand& command);
-  /// As Simulation::bring.
-  bool bring(int item, int quarter);
+  /// As Simulation::feed.
+  bool feed(int item, int quarter);
 
   [[nodiscard]] double time() const;
   [[nodiscard]] const CellState& state() const;

@@ -156,10 +156,10 @@ void Simulation::depart(const motion::PreparedProgram& plan, int row, CellState&
   const int item = find_item(sequence_, name, "PrePick");
   if (item < 0) return;
   const std::optional<Pose> X_WE_pick = next_pick(plan.program, row);
-  (void)bring(item, choose_quarter(scenario_, sequence_.items[static_cast<std::size_t>(item)], X_WE_pick), state);
+  (void)feed(item, choose_quarter(scenario_, sequence_.items[static_cast<std::size_t>(item)], X_WE_pick), state);
 }
 
-bool Simulation::bring(int item, int quarter, CellState& state) const {
+bool Simulation::feed(int item, int quarter, CellState& state) const {
   const physics::BodyId body = world_.parcels[static_cast<std::size_t>(item)];
   if (state.world.bodies[static_cast<std::size_t>(body.index)].is_present) return false;
   const double now = time(state);
@@ -170,17 +170,14 @@ bool Simulation::bring(int item, int quarter, CellState& state) const {
       state.journey.box_removed(state.waiting_item, now);
     }
   }
-  physics::set_present(state.world, body, true);
-  physics::set_pose(world_.model, state.world, body,
-                    pose_at_aligner(scenario_, sequence_.items[static_cast<std::size_t>(item)], quarter));
-  physics::set_twist(world_.model, state.world, body, Twist{});
+  place(body, pose_at_aligner(scenario_, sequence_.items[static_cast<std::size_t>(item)], quarter), state);
   state.waiting_item = item;
   state.journey.box_appeared(item, now);
   return true;
 }
 
 CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& state, CellWorkspace& work) const {
-  const motion::ToolState start = arm_ ? state.arm->machine.tool : state.controller.command;
+  const motion::ToolState start = tool_of(state);
   control::JointState joints;
   control::MachineTick machine;
   motion::ControllerOutput out;
@@ -344,25 +341,6 @@ void Simulation::advance_step(const std::string& waypoint, const motion::ToolSta
 
 bool Simulation::is_at_end(const motion::PreparedProgram& plan, const CellState& state) const {
   return motion::will_finish(plan, state.controller.command, state.controller);
-}
-
-CellState Simulation::adopt(const Simulation& other, const CellState& state) const {
-  CellState adopted = state;
-  adopted.world.stamp = {};
-  for (std::size_t i = 0; i < world_.model.bodies.size(); ++i) {
-    const physics::BodyModel& mine = world_.model.bodies[i];
-    const physics::BodyModel& theirs = other.world_.model.bodies[i];
-    if (mine == theirs) continue;
-    const physics::BodyId body{static_cast<int>(i)};
-    if (mine.kind == physics::BodyKind::Static) {  // stands where it stands here
-      physics::set_pose(world_.model, adopted.world, body, mine.X_WB);
-      continue;
-    }
-    const Twist V_WB = physics::twist_of(other.world_.model, state.world, body);
-    physics::set_pose(world_.model, adopted.world, body, physics::pose_of(other.world_.model, state.world, body));
-    physics::set_twist(world_.model, adopted.world, body, V_WB);
-  }
-  return adopted;
 }
 
 std::vector<BoxResult> Simulation::boxes(const CellState& state) const {

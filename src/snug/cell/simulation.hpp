@@ -56,6 +56,18 @@ struct CellTick {
   std::string failure;       ///< empty, or why the run has to stop: body, time, last contacts
 };
 
+/// Where a cell is taken up: what somebody who did not watch it from the start believes of it. Nothing is held.
+struct CellAnchor {
+  struct Box {
+    int item = 0;  ///< of the sequence
+    Pose X_WP;
+    bool operator==(const Box&) const = default;
+  };
+  std::vector<Box> boxes;  ///< at rest; items that are not named are not in the cell
+  Pose X_WE;               ///< of the tool, at rest
+  std::vector<double> q;   ///< rad; with a robot these count, if given, and X_WE does not
+};
+
 /// The sequence of this name. Throws InputError, with the names that there are.
 [[nodiscard]] const model::Sequence& require_sequence(const model::Scenario& scenario, const std::string& name);
 /// The program with the limits and gains of scenario and sequence. Throws as motion::prepare.
@@ -85,6 +97,8 @@ class Simulation {
 
   /// At time 0: the tool at its start, no box in the cell.
   [[nodiscard]] CellState make_state() const;
+  /// At time 0, everything where the anchor says.
+  [[nodiscard]] CellState take_up(const CellAnchor& anchor) const;
   /// `threads` share the work of large cells; the bytes do not depend on their number.
   [[nodiscard]] CellWorkspace make_workspace(int threads = 1) const {
     return CellWorkspace(world_.model, scenario_.solver.contact_limits, threads);
@@ -99,9 +113,10 @@ class Simulation {
   /// One controller tick, the joints following targets from outside, and its physics steps. With a robot only; every
   /// target is finite and there is one for each joint (checked).
   CellTick advance(const OutsideCommand& command, CellState& state, CellWorkspace& work) const;
-  /// The item comes to the aligner, turned by this many quarter turns where the sequence leaves that open
+  /// The item comes to the aligner as for a program, turned by this many quarter turns where the sequence leaves that
+  /// open
   /// (`choose_quarter`); one that waits there and is not held is taken away. False: it came before.
-  bool bring(int item, int quarter, CellState& state) const;
+  bool feed(int item, int quarter, CellState& state) const;
   /// "robot/forearm_link touches tote with 12 N"
   [[nodiscard]] std::string describe_touch(const ArmTouch& touch) const;
   /// To be called when a run ends: touches of the arm that go on become events as if they ended now.
@@ -110,9 +125,15 @@ class Simulation {
   /// `plan` now: rows appended at this moment are executed as if they had always been there.
   [[nodiscard]] bool is_at_end(const motion::PreparedProgram& plan, const CellState& state) const;
 
-  /// `state` of a simulation of the same cell with other sizes, masses or friction, continued here: every body keeps
-  /// its pose and twist; static ones stand where they stand in this cell.
-  [[nodiscard]] CellState adopt(const Simulation& other, const CellState& state) const;
+  /// Another program goes on from here: its first row is aimed at next, the tool keeps its speed. Switches stay.
+  void begin_motion(CellState& state) const;
+  /// The tool, and the arm, are at rest from now on: the brakes are closed.
+  void stand(CellState& state) const;
+  /// The item comes to the aligner; what stands where it comes, and is not held, is taken away.
+  void bring(int item, CellState& state) const;
+  /// On the tool, from what it carries and touches, about Eo, in E: what a sensor between arm and tool reads beyond the
+  /// tool's own weight.
+  [[nodiscard]] Wrench tool_load(const CellState& state, const CellWorkspace& work) const;
 
   [[nodiscard]] double time(const CellState& state) const { return state.world.time(world_.model); }
   [[nodiscard]] std::vector<BoxResult> boxes(const CellState& state) const;
@@ -120,6 +141,8 @@ class Simulation {
 
  private:
   void depart(const motion::PreparedProgram& plan, int row, CellState& state) const;
+  void place(physics::BodyId body, const Pose& X_WB, CellState& state) const;
+  [[nodiscard]] motion::ToolState tool_of(const CellState& state) const;
   /// work.targets: where tool and links are at the end of the step. `waypoint`: aimed at, for events.
   void advance_step(const std::string& waypoint, const motion::ToolState& tool, CellState& state, CellWorkspace& work,
                     CellTick& tick) const;

@@ -104,7 +104,7 @@ Message Simulator::control(const Control& control) {
     if (!order->names_feeding) feeder_.emplace();
   }
   switches_ = std::move(order->switches);
-  if (order->item >= 0) (void)run_->bring(order->item, order->quarter);
+  if (order->item >= 0) (void)run_->feed(order->item, order->quarter);
   if (settings_.is_async) {
     command_ = std::move(order->command);
     silent_steps_ = 0;
@@ -127,7 +127,7 @@ void Simulator::advance(const cell::OutsideCommand& command) {
   if (feeder_) {
     const int item = feeder_->next(cell_.simulation(), run_->state());
     if (item >= 0) {
-      (void)run_->bring(item, 0);
+      (void)run_->feed(item, 0);
       feeder_->advance();
     }
   }

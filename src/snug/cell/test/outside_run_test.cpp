@@ -43,15 +43,15 @@ TEST(OutsideRun, IsBitByBitTheRunOfAProgramWhoseSpeedsItIsGiven) {
   CellState state = simulation.make_state();
   CellWorkspace work = simulation.make_workspace();
   OutsideRun run(simulation, {});
-  ASSERT_TRUE(run.bring(0, 1));
-  ASSERT_TRUE(simulation.bring(0, 1, state));
+  ASSERT_TRUE(run.feed(0, 1));
+  ASSERT_TRUE(simulation.feed(0, 1, state));
   for (int i = 0; i < 400; ++i) {
     (void)simulation.advance(plan, state, work);
     (void)run.advance(command_of(DriveKind::Speed, state.arm->machine.joints.qd));
     ASSERT_EQ(simulation.hash(run.state()), simulation.hash(state)) << i;
     ASSERT_EQ(run.reading().F_sensor, work.arm.F_sensor) << i;
   }
-  EXPECT_FALSE(run.bring(0, 0)) << "the box is there";
+  EXPECT_FALSE(run.feed(0, 0)) << "the box is there";
   const RunResult result = run.finish("the test");
   EXPECT_EQ(result.state_hash, simulation.hash(state));
   EXPECT_EQ(result.ended_by, "the test");
