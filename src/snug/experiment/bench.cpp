@@ -13,6 +13,7 @@
 #include "snug/cell/scene.hpp"
 #include "snug/core/check.hpp"
 #include "snug/experiment/internal/arm_bench.hpp"
+#include "snug/experiment/internal/click_bench.hpp"
 #include "snug/experiment/internal/cpu_time.hpp"
 #include "snug/experiment/internal/identification_bench.hpp"
 #include "snug/experiment/internal/camera_bench.hpp"
@@ -418,6 +419,7 @@ std::vector<Figure> run_bench(const BenchOptions& options) {
                                                     {"program", measure_program},
                                                     {"robot", internal::measure_robot},
                                                     {"arm", measure_arm},
+                                                    {"click", internal::measure_click},
                                                     {"packing", measure_packing},
                                                     {"camera", internal::measure_camera},
                                                     {"validation", measure_validation},
