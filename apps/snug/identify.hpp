@@ -43,6 +43,7 @@ struct IdentifyPluckOptions : IdentifyOptions {
 struct IdentifySceneOptions {
   std::string task;
   std::vector<std::string> recordings;  ///< those of the task unless given
+  bool floor = false;                   ///< only the error that noise of the start sets
   bool evaluate = false;                ///< only the errors of the task's present values
   std::optional<std::uint64_t> global, local, scatter, seed;  ///< instead of the task's
   std::optional<std::string> log;       ///< of points tried

@@ -135,6 +135,8 @@ void add_scene(CLI::App& verb, Action& action) {
   part.add_option("task", options->task, "what is open, and what was recorded")->required()->type_name("TASK.yaml");
   part.add_option("--recordings", options->recordings, "instead of those that the task names")->type_name("FILE");
   part.add_flag("--evaluate", options->evaluate, "only the errors of the task's present values on all recordings");
+  part.add_flag("--floor", options->floor, "only the error that noise of the start alone sets, at the present values")
+      ->excludes("--evaluate");
   part.add_option("--scatter", options->scatter, "points spread over the bounds first")->check(whole(0, 1000000));
   part.add_option("--global", options->global, "evaluations of the global search")->check(whole(0, 1000000));
   part.add_option("--local", options->local, "evaluations of the local search")->check(whole(0, 1000000));

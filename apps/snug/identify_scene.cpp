@@ -135,9 +135,10 @@ void apply(const IdentifySceneOptions& options, model::SearchSettings& search) {
   if (options.seed) search.seed = *options.seed;
 }
 
-int evaluate(const SceneExperiment& experiment, bool json) {
+int evaluate(const SceneExperiment& experiment, bool floor, bool json) {
   const SceneError error =
-      experiment.summarize(identification::evaluate_scene(experiment, experiment.start()));
+      experiment.summarize(floor ? experiment.evaluate_floor(experiment.start(), experiment.task().search.seed)
+                                 : identification::evaluate_scene(experiment, experiment.start()));
   print(json ? as_json(error).dump(2) + "\n" : as_text(error) + "\n");
   return error.failed == error.recordings ? kRunFailed : kSuccess;
 }
@@ -161,7 +162,7 @@ int run_identify_scene(const IdentifySceneOptions& options) {
                                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   std::vector<identification::RecordedMotion> motions = identification::load_motions(task, task.recordings);
   const SceneExperiment experiment(std::move(task), std::move(motions), threads);
-  if (options.evaluate) return evaluate(experiment, options.json);
+  if (options.evaluate || options.floor) return evaluate(experiment, options.floor, options.json);
   identification::SceneFitOptions fit_options;
   if (options.log) fit_options.log = *options.log;
   fit_options.progress = make_progress();

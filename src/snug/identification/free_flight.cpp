@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <cmath>
 #include <vector>
 
 #include "snug/core/check.hpp"
@@ -79,6 +80,14 @@ FlightStart fit_free_flight(std::span<const double> times, std::span<const recor
     n += 1.0, st += t, stt += t * t, sp += p, spt += t * p;
   }
   const Vector3 velocity = (n * spt - st * sp) / (n * stt - st * st);
+  const double freedom = std::max(1.0, 3.0 * n - 6.0);
+  double square = 0.0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double t = times[k] - times[0];
+    square += (poses[k].p + R[k] * inertia.com - 0.5 * t * t * gravity - (sp - st * velocity) / n - t * velocity).squaredNorm();
+  }
+  start.position_rms = std::sqrt(square / freedom);
+  start.rotation_rms = std::sqrt(misfit(poses, R).squaredNorm() / freedom);
   const Vector3 lever = start.X_WB.R * inertia.com;
   start.X_WB.p = (sp - st * velocity) / n - lever;
   start.V_WB = {velocity - w.cross(lever), w};

@@ -10,6 +10,9 @@ namespace snug::identification {
 struct FlightStart {
   Pose X_WB;
   Twist V_WB;  ///< linear part at the origin of B, in W
+  /// What the poses are off the flight by: root mean square of one coordinate, for the unknowns that were fitted.
+  double position_rms = 0.0;  ///< m
+  double rotation_rms = 0.0;  ///< rad
 };
 
 /// Start of the free flight (gravity alone, rotation by Euler's equations) that fits the poses best: least squares, the

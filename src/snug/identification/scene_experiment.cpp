@@ -7,6 +7,8 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
+#include "snug/identification/free_flight.hpp"
+#include "snug/identification/internal/at_rest.hpp"
 #include "snug/identification/internal/motion_error.hpp"
 #include "snug/identification/internal/scene_motion.hpp"
 #include "snug/model/number_edit.hpp"
@@ -135,6 +137,43 @@ std::vector<MotionError> SceneExperiment::evaluate(std::span<const Eigen::Vector
       error = simulate(*scenarios[job.point], job.motion, job.own);
     else
       error.failure = failures[job.point];
+  });
+  return errors;
+}
+
+std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& values, std::uint64_t seed) const {
+  if (task_.start.from != model::StartFrom::FreeFlight)
+    throw InputError(task_.path.string(), "start", "no free flight", "from: free_flight, whose noise sets the floor");
+  const model::Scenario scenario = scenario_at(values);
+  const internal::OwnValues own(task_.own, {});
+  std::vector<MotionError> errors(motions_.size());
+  parallel_for(static_cast<int>(motions_.size()), threads_, [&](int index, int) {
+    const auto m = static_cast<std::size_t>(index);
+    RecordedMotion twin = motions_[m];
+    const internal::SimulatedMotion exact = internal::simulate_scene(scenario, task_, twin, flights_[m], own);
+    RecordedMotion noisy = twin;
+    Rng rng = Rng(seed).split("floor " + twin.name);
+    for (std::size_t b = 0; b < twin.tracked.size() && exact.failure.empty(); ++b) {
+      const std::size_t rows = flights_[m][b];
+      const model::Body& body = *model::find_body(scenario, twin.tracked[b].body);
+      if (rows < 4) {
+        errors[m].failure = "fewer than four rows of free flight";
+        return;
+      }
+      const FlightStart flight =
+          fit_free_flight(std::span(twin.times).first(rows), std::span(twin.tracked[b].poses).first(rows), body.inertia,
+                          scenario.gravity);
+      twin.tracked[b].poses = exact.bodies[b];
+      noisy.tracked[b].poses = exact.bodies[b];
+      for (std::size_t k = 0; k < rows; ++k) {
+        record::PoseSample& pose = noisy.tracked[b].poses[k];
+        pose = Pose{pose.pose().R * exp_rotation(internal::normal3(rng, flight.rotation_rms)),
+                    pose.p + internal::normal3(rng, flight.position_rms)};
+      }
+    }
+    internal::SimulatedMotion again = internal::simulate_scene(scenario, task_, noisy, flights_[m], own);
+    if (!exact.failure.empty()) again.failure = exact.failure;
+    errors[m] = internal::compare(task_, twin, again, own);
   });
   return errors;
 }

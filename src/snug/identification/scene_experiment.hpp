@@ -52,6 +52,10 @@ class SceneExperiment {
   /// on the number of threads. What cannot be simulated says so.
   [[nodiscard]] std::vector<MotionError> evaluate(std::span<const Eigen::VectorXd> points,
                                                   std::span<const Job> jobs) const;
+  /// Errors that the noise of the start alone sets: each recording is replaced by its own simulation, the poses of its
+  /// free flight get noise as large as those recorded are off theirs, and it is predicted again. Needs
+  /// StartFrom::FreeFlight and at least four rows of flight; recordings with fewer count as failed.
+  [[nodiscard]] std::vector<MotionError> evaluate_floor(const Eigen::VectorXd& values, std::uint64_t seed) const;
   /// The scenario at these values. Throws InputError when it cannot be.
   [[nodiscard]] model::Scenario scenario_at(const Eigen::VectorXd& values) const;
 

@@ -381,29 +381,53 @@ Eigen::MatrixXd SceneSearch::covariance() {
   return result;
 }
 
+Eigen::VectorXd SceneSearch::curvature_steps(const Eigen::VectorXd& middle) {
+  // The cost is rough, and its curvature is seen only where it rises by more than that: steps double until it does.
+  constexpr double kRise = 0.05;  // of the cost
+  Eigen::VectorXd h = (5.0 * step_).cwiseMin(0.25 * (upper_ - lower_));
+  const Eigen::VectorXd most = 0.25 * (upper_ - lower_);
+  const double least = cost(middle, "standard errors");
+  for (bool grows = true; grows;) {
+    std::vector<Eigen::VectorXd> points;
+    for (Eigen::Index i = 0; i < h.size(); ++i) {
+      for (const double sign : {1.0, -1.0}) {
+        points.push_back(middle);
+        points.back()[i] = std::clamp(points.back()[i] + sign * h[i], lower_[i], upper_[i]);
+      }
+    }
+    const std::vector<double> found = costs(points, "standard errors");
+    grows = false;
+    for (Eigen::Index i = 0; i < h.size(); ++i) {
+      const auto at = static_cast<std::size_t>(2 * i);
+      if (0.5 * (found[at] + found[at + 1]) - least >= kRise * least || h[i] >= most[i]) continue;
+      h[i] = std::min(2.0 * h[i], most[i]);
+      grows = true;
+    }
+  }
+  return h;
+}
+
 Eigen::MatrixXd SceneSearch::distance_covariance() {
   // An M-estimate: C = H^-1 S H^-1 / N, S the scatter of the recordings' slopes, H the curvature of the mean
-  // (docs/identification.md). Steps of five times those of differences: the cost is rough below.
-  const Eigen::VectorXd h = (5.0 * step_).cwiseMin(0.25 * (upper_ - lower_));
-  const Eigen::VectorXd x = free_of(best_).cwiseMax(lower_ + h).cwiseMin(upper_ - h);  // all points are within bounds
+  // (docs/theory/identification.md, 9). In units of the steps h.
+  const Eigen::VectorXd found = best_;  // what is tried here is no search
+  const Eigen::VectorXd h = curvature_steps(free_of(found));
+  best_ = found;
+  const Eigen::VectorXd x = free_of(found).cwiseMax(lower_ + h).cwiseMin(upper_ - h);  // all points are within bounds
   const auto n = x.size();
   const auto count = static_cast<Eigen::Index>(fitted_.size());
   std::vector<Eigen::VectorXd> points{full(x)};
-  const auto shifted = [&](Eigen::Index i, double a, Eigen::Index j, double b) {
+  const auto add = [&](Eigen::Index i, Eigen::Index j, double sign) {
     Eigen::VectorXd y = x;
-    y[i] += a * h[i], y[j] += b * h[j];
-    return full(y);
+    y[i] += sign * h[i];
+    if (j != i) y[j] += sign * h[j];
+    points.push_back(full(y));
   };
-  for (Eigen::Index i = 0; i < n; ++i) {
-    points.push_back(shifted(i, 1.0, i, 0.0));
-    points.push_back(shifted(i, -1.0, i, 0.0));
-  }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < i; ++j) {
-      points.push_back(shifted(i, 1.0, j, 1.0));
-      points.push_back(shifted(i, -1.0, j, -1.0));
-    }
-  }
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (const double sign : {1.0, -1.0}) add(i, i, sign);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < i; ++j)
+      for (const double sign : {1.0, -1.0}) add(i, j, sign);
   std::vector<SceneExperiment::Job> jobs;
   for (std::size_t p = 0; p < points.size(); ++p)
     for (const std::size_t m : fitted_) jobs.push_back({p, m, {}});
@@ -417,30 +441,28 @@ Eigen::MatrixXd SceneSearch::distance_covariance() {
   for (Eigen::Index p = 0; p < mean.size(); ++p)
     for (Eigen::Index m = 0; m < count; ++m) mean[p] += cost_at(p, m) / static_cast<double>(count);
   for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index m = 0; m < count; ++m)
-      slopes(m, i) = (cost_at(1 + 2 * i, m) - cost_at(2 + 2 * i, m)) / (2.0 * h[i]);
-    H(i, i) = (mean[1 + 2 * i] - 2.0 * mean[0] + mean[2 + 2 * i]) / (h[i] * h[i]);
+    for (Eigen::Index m = 0; m < count; ++m) slopes(m, i) = 0.5 * (cost_at(1 + 2 * i, m) - cost_at(2 + 2 * i, m));
+    H(i, i) = mean[1 + 2 * i] - 2.0 * mean[0] + mean[2 + 2 * i];
   }
   Eigen::Index p = 1 + 2 * n;
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < i; ++j, p += 2) {
-      // f(+,+) + f(-,-) - f(+i) - f(-i) - f(+j) - f(-j) + 2 f = 2 h_i h_j H_ij
+      // f(+,+) + f(-,-) - f(+i) - f(-i) - f(+j) - f(-j) + 2 f = 2 H_ij
       const double sum = mean[p] + mean[p + 1] - mean[1 + 2 * i] - mean[2 + 2 * i] - mean[1 + 2 * j] -
                          mean[2 + 2 * j] + 2.0 * mean[0];
-      H(i, j) = H(j, i) = sum / (2.0 * h[i] * h[j]);
+      H(i, j) = H(j, i) = 0.5 * sum;
     }
   }
   slopes.rowwise() -= slopes.colwise().mean().eval();
   const Eigen::MatrixXd S = slopes.transpose() * slopes / std::max(1.0, static_cast<double>(count - 1));
-  // Directions in which the mean does not curve upward are unknown: their curvature is taken as that of one unit of
-  // cost over the whole span.
-  const Eigen::VectorXd span = upper_ - lower_;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(span.asDiagonal() * H * span.asDiagonal());
-  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([](double v) { return 1.0 / std::max(v, 1.0); });
+  // A direction with less than a tenth of the curvature of the axes is not seen above the roughness: it gets that much.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
+  const double least = std::max(0.1 * H.diagonal().cwiseMax(0.0).mean(), 1e-12);
+  const Eigen::VectorXd inverse =
+      eigen.eigenvalues().unaryExpr([least](double v) { return 1.0 / std::max(v, least); });
   const Eigen::MatrixXd H_inverse =
-      span.asDiagonal() * (eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose()) *
-      span.asDiagonal();
-  return H_inverse * S * H_inverse / static_cast<double>(count);
+      h.asDiagonal() * (eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose());
+  return H_inverse * S * H_inverse.transpose() / static_cast<double>(count);
 }
 
 }  // namespace snug::identification::internal

@@ -60,6 +60,8 @@ class SceneSearch {
   void take(const Eigen::VectorXd& free_values, double cost, const char* phase);
   double least_squares_from(const Eigen::VectorXd& start, std::string& message);
   [[nodiscard]] Eigen::MatrixXd distance_covariance();
+  /// Shifts of the free parameters at which the mean cost has risen by more than its roughness.
+  [[nodiscard]] Eigen::VectorXd curvature_steps(const Eigen::VectorXd& middle);
   [[nodiscard]] double chi2_per_dof(const std::vector<MotionError>& errors) const;
   /// Rows of a recording's residuals that are not fitted but predicted, where no whole recordings are held back.
   [[nodiscard]] Eigen::Index held_rows(std::size_t motion) const;
