@@ -10,6 +10,7 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/table.hpp"
 #include "snug/identification/internal/measured_table.hpp"
+#include "snug/identification/internal/program_motion.hpp"
 
 namespace snug::identification {
 namespace {
@@ -100,9 +101,18 @@ std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const st
 std::vector<RecordedMotion> load_motions(const model::SceneTask& task,
                                          const std::vector<std::filesystem::path>& files) {
   std::vector<RecordedMotion> motions;
-  for (const std::filesystem::path& file : files)
+  std::optional<internal::CapturedRun> run;  // whose clock archives are brought to
+  for (const std::filesystem::path& file : files) {
+    if (task.program && file.extension() == ".h5") {
+      if (!run) run = internal::capture_program(model::load_scenario(task.scenario), *task.program, task.simulation_time);
+      for (RecordedMotion& motion : internal::motions_of_archive(task, run->recording,
+                                                                 record::load_archive(file).recordings, file.string()))
+        motions.push_back(std::move(motion));
+      continue;
+    }
     for (RecordedMotion& motion : parse_motions(task, read_file(file, "a recording (CSV)"), file.string()))
       motions.push_back(std::move(motion));
+  }
   return motions;
 }
 

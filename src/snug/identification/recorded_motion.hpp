@@ -29,7 +29,7 @@ struct RecordedMotion {
 };
 
 /// Reads the recordings of a task: tables (CSV) with its columns, one recording for each number in its recording
-/// column. Throws InputError with file, line and column for what is missing, no rotation, or out of order in time.
+/// column; of a program's run also archives (HDF5), whose clocks are found by simulating the scenario. Throws InputError with file, line and column for what is missing, no rotation, or out of order in time.
 [[nodiscard]] std::vector<RecordedMotion> load_motions(const model::SceneTask& task,
                                                        const std::vector<std::filesystem::path>& files);
 [[nodiscard]] std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const std::string& text,
