@@ -88,8 +88,8 @@ int run_calibrate_sensor(const CalibrateSensorOptions& options) {
   std::optional<OutputFile> output =
       reserve({{"the input", options.input}, {"the nominal URDF", nominal.path}}, options.output);
   const int sensor = require_link(nominal.arm, "--sensor", options.sensor);
-  const calibration::ForceSensorFit fit = calibration::fit_force_sensor(
-      load_table(options.input, calibration::force_sensor_columns()), options.mass);
+  const calibration::ForceSensorFit fit =
+      calibration::fit_force_sensor(load_table(options.input, calibration::force_sensor_columns()), options.mass);
   if (output)
     write_file(std::move(*output), calibration::format_urdf_with_load(
                                        nominal.path, nominal.arm, sensor, fit.mass, fit.com,

@@ -68,20 +68,20 @@ void add_errors(ordered_json& json, double chi2_per_dof, int degrees_of_freedom,
 
 void show(const std::vector<Parameter>& parameters) {
   for (const Parameter& parameter : parameters) {
-    print(fmt::sprintf("  %-9s %12.6g +- %-9.2g %-8s %s\n", parameter.name.c_str(), parameter.value, parameter.standard_error,
-                parameter.unit.c_str(), name_of(parameter.verdict)));
+    print(fmt::sprintf("  %-9s %12.6g +- %-9.2g %-8s %s\n", parameter.name.c_str(), parameter.value,
+                       parameter.standard_error, parameter.unit.c_str(), name_of(parameter.verdict)));
     if (!parameter.advice.empty()) print(fmt::sprintf("            record instead: %s\n", parameter.advice.c_str()));
   }
 }
 
 void print_errors(double chi2_per_dof, const HeldBackError& held_back, bool noise_is_given) {
   print(fmt::sprintf("misfit: chi2 per degree of freedom %.3f with the noise %s%s\n", chi2_per_dof,
-              noise_is_given ? "given" : "assumed (the demonstrator's sensors)",
-              chi2_per_dof > 2.0   ? ": more than noise; standard errors are enlarged"
-              : chi2_per_dof < 0.5 ? ": less than noise; it is smaller than said"
-                                   : ""));
+                     noise_is_given ? "given" : "assumed (the demonstrator's sensors)",
+                     chi2_per_dof > 2.0   ? ": more than noise; standard errors are enlarged"
+                     : chi2_per_dof < 0.5 ? ": less than noise; it is smaller than said"
+                                          : ""));
   print(fmt::sprintf("held back: %.3f mm, %.3f degrees rms, %.3f times the noise\n", 1e3 * held_back.position,
-              kDegrees * held_back.rotation, held_back.relative));
+                     kDegrees * held_back.rotation, held_back.relative));
 }
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -132,17 +132,18 @@ ordered_json describe(const identification::StiffnessFit& fit, const HeldBackErr
 
 void show(const identification::StiffnessFit& fit, const HeldBackError& held_back, bool noise_is_given) {
   print(fmt::sprintf("stiffness from %d poses, method %s, wrench of the %s\n", fit.poses, name_of(fit.method),
-              fit.wrench == identification::WrenchSource::Sensor ? "sensor" : "payload's gravity"));
+                     fit.wrench == identification::WrenchSource::Sensor ? "sensor" : "payload's gravity"));
   show(fit.parameters);
   print_errors(fit.chi2_per_dof, held_back, noise_is_given);
   print(fmt::sprintf("residuals: %.3f mm, %.3f degrees rms, measured less predicted pose\n", 1e3 * fit.position,
-              kDegrees * fit.rotation));
+                     kDegrees * fit.rotation));
   if (fit.symmetry)
     print(fmt::sprintf("symmetry: the same from all sides is %s (p = %.3g; worst: %s)\n",
-                fit.symmetry->is_supported ? "supported" : "NOT supported", fit.symmetry->p_value,
-                fit.symmetry->worst.c_str()));
+                       fit.symmetry->is_supported ? "supported" : "NOT supported", fit.symmetry->p_value,
+                       fit.symmetry->worst.c_str()));
   if (!fit.outliers.empty())
-    print(fmt::sprintf("left out, beyond 6 standard deviations of the rest: poses %s\n", indices(fit.outliers).c_str()));
+    print(
+        fmt::sprintf("left out, beyond 6 standard deviations of the rest: poses %s\n", indices(fit.outliers).c_str()));
 }
 
 /// The five numbers of a fit with 21 have the errors of the entries they are read from.
@@ -199,14 +200,15 @@ ordered_json describe(const identification::DampingFit& fit, const HeldBackError
 
 void show(const identification::DampingFit& fit, const HeldBackError& held_back, bool noise_is_given) {
   print(fmt::sprintf("damping from %zu release%s, %s when the records begin\n", fit.releases.size(),
-              fit.releases.size() == 1 ? "" : "s",
-              fit.start == identification::ReleaseStart::Moving ? "moving" : "at rest"));
+                     fit.releases.size() == 1 ? "" : "s",
+                     fit.start == identification::ReleaseStart::Moving ? "moving" : "at rest"));
   show(fit.parameters);
   print_errors(fit.chi2_per_dof, held_back, noise_is_given);
   for (const identification::ReleaseFit& release : fit.releases) {
     print(fmt::sprintf("%s: chi2 per degree of freedom %.3f, residuals %.3f mm, %.3f degrees", release.name.c_str(),
-                release.chi2_per_dof, 1e3 * release.position, kDegrees * release.rotation));
-    print(fmt::sprintf(release.outliers.empty() ? "\n" : ", samples left out: %s\n", indices(release.outliers).c_str()));
+                       release.chi2_per_dof, 1e3 * release.position, kDegrees * release.rotation));
+    print(
+        fmt::sprintf(release.outliers.empty() ? "\n" : ", samples left out: %s\n", indices(release.outliers).c_str()));
     if (!fit.releases_agree) show(release.parameters);
   }
   if (!fit.releases_agree) print(fmt::sprintf("the releases contradict each other: no one damping fits them all\n"));
@@ -319,8 +321,8 @@ int run_identify_pluck(const IdentifyPluckOptions& options) {
   add_file(inputs, "--scenario", options.scenario);
   write_file(*reserve(inputs, options.output), identification::format_releases(releases));
   print(fmt::sprintf("%s: %llu releases %s by %g %s, %g kg, %zu samples each\n", options.output->c_str(),
-              static_cast<unsigned long long>(options.repeat), options.direction.c_str(), pluck.amplitude,
-              is_turn ? "rad" : "m", box.mass, releases.front().times.size()));
+                     static_cast<unsigned long long>(options.repeat), options.direction.c_str(), pluck.amplitude,
+                     is_turn ? "rad" : "m", box.mass, releases.front().times.size()));
   return kSuccess;
 }
 

@@ -42,13 +42,13 @@ struct IdentifyPluckOptions : IdentifyOptions {
 
 struct IdentifySceneOptions {
   std::string task;
-  std::vector<std::string> recordings;  ///< those of the task unless given
-  bool floor = false;                   ///< only the error that noise of the start sets
-  bool evaluate = false;                ///< only the errors of the task's present values
+  std::vector<std::string> recordings;                        ///< those of the task unless given
+  bool floor = false;                                         ///< only the error that noise of the start sets
+  bool evaluate = false;                                      ///< only the errors of the task's present values
   std::optional<std::uint64_t> global, local, scatter, seed;  ///< instead of the task's
-  std::optional<std::string> log;       ///< of points tried
-  std::optional<std::string> output;    ///< the task with the values found
-  std::optional<std::string> scenario;  ///< the scenario with the values found
+  std::optional<std::string> log;                             ///< of points tried
+  std::optional<std::string> output;                          ///< the task with the values found
+  std::optional<std::string> scenario;                        ///< the scenario with the values found
   std::uint64_t threads = 0;
   bool json = false;
 };

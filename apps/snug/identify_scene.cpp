@@ -40,9 +40,10 @@ ordered_json as_json(const SceneError& error) {
 }
 
 std::string as_text(const SceneError& error) {
-  std::string text = fmt::format("{:.3f} mm, {:.3f} degrees, right orientation {:.1f} %, cost {:.4f} mm, {} recording{}",
-                                 error.position_mm, error.rotation_deg, error.right_orientation_percent, error.cost,
-                                 error.recordings, error.recordings == 1 ? "" : "s");
+  std::string text =
+      fmt::format("{:.3f} mm, {:.3f} degrees, right orientation {:.1f} %, cost {:.4f} mm, {} recording{}",
+                  error.position_mm, error.rotation_deg, error.right_orientation_percent, error.cost, error.recordings,
+                  error.recordings == 1 ? "" : "s");
   if (error.failed > 0) text += fmt::format(", {} of them could not be simulated", error.failed);
   return text;
 }
@@ -90,7 +91,8 @@ ordered_json as_json(const SceneFit& fit) {
 }
 
 std::string as_text(const SceneFit& fit) {
-  std::string text = "what one step of each parameter changes at the start (rms), and its standard error alone / with all others\n";
+  std::string text =
+      "what one step of each parameter changes at the start (rms), and its standard error alone / with all others\n";
   for (const identification::Sensitivity& row : fit.sensitivity)
     text += fmt::format("  {:<20} step {:<9.4g} {:>9.3f} mm {:>9.3f} deg   {:>9.3g} / {:.3g}\n", row.name, row.step,
                         row.position_mm, row.rotation_deg, row.error_alone, row.error_together);

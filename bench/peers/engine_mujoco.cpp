@@ -44,8 +44,9 @@ std::string scene_xml(const Scene& scene, const MujocoSettings& settings, double
   for (const BoxBody& box : scene.bodies) bodies += geom_xml(box, scene);
   if (scene.has_plane) {
     const Contact& contact = scene.box_container;
-    const std::string soft =
-        contact.time_constant > 0.0 ? fmt::format("solref=\"{} {}\"", contact.time_constant, contact.damping_ratio) : "";
+    const std::string soft = contact.time_constant > 0.0
+                                 ? fmt::format("solref=\"{} {}\"", contact.time_constant, contact.damping_ratio)
+                                 : "";
     bodies +=
         fmt::format(R"(<geom type="plane" size="5 5 1" pos="0 0 {}" friction="{} 0.005 0.0001" priority="1" {}/>)",
                     scene.plane_height, contact.friction, soft);

@@ -117,10 +117,9 @@ class SnugEngine final : public Engine {
     body.inertia.mass = std::max(box.mass, 1.0);
     if (box.mass > 0.0) {
       body.inertia.mass = box.mass;
-      body.inertia.inertia =
-          (Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) * box.inertia_factor *
-           box.mass / 12.0)
-              .asDiagonal();
+      body.inertia.inertia = (Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) *
+                              box.inertia_factor * box.mass / 12.0)
+                                 .asDiagonal();
     }
     body.geoms = {{geometry::Box{box.half}, Pose{}, box.mass > 0.0 ? kBox : kFixed, true}};
     body.X_WB = box.X_WB;

@@ -38,10 +38,10 @@ Scene scene_of(const Eigen::VectorXd& x) {
   scene.plane_height = x[5];
   Contact contact;
   contact.friction = x[0];
-  contact.restitution = 1e-9;  // Bullet divides by it
-  contact.stiffness = 2e3 * std::pow(30.0, x[1]);        // 2 to 60 kN/m
-  contact.damping = 200.0 * x[2];                        // Ns/m
-  contact.time_constant = 0.02 * std::pow(0.1, x[1]);    // 20 to 2 ms
+  contact.restitution = 1e-9;                          // Bullet divides by it
+  contact.stiffness = 2e3 * std::pow(30.0, x[1]);      // 2 to 60 kN/m
+  contact.damping = 200.0 * x[2];                      // Ns/m
+  contact.time_constant = 0.02 * std::pow(0.1, x[1]);  // 20 to 2 ms
   contact.damping_ratio = 0.1 + 1.9 * x[2];
   scene.box_container = contact;
   scene.box_box = contact;

@@ -84,7 +84,8 @@ FlightStart fit_free_flight(std::span<const double> times, std::span<const recor
   double square = 0.0;
   for (std::size_t k = 0; k < times.size(); ++k) {
     const double t = times[k] - times[0];
-    square += (poses[k].p + R[k] * inertia.com - 0.5 * t * t * gravity - (sp - st * velocity) / n - t * velocity).squaredNorm();
+    square += (poses[k].p + R[k] * inertia.com - 0.5 * t * t * gravity - (sp - st * velocity) / n - t * velocity)
+                  .squaredNorm();
   }
   start.position_rms = std::sqrt(square / freedom);
   start.rotation_rms = std::sqrt(misfit(poses, R).squaredNorm() / freedom);

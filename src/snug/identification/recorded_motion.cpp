@@ -11,6 +11,7 @@
 #include "snug/core/table.hpp"
 #include "snug/identification/internal/measured_table.hpp"
 #include "snug/identification/internal/program_motion.hpp"
+#include "snug/validation/measurement.hpp"
 
 namespace snug::identification {
 namespace {
@@ -34,7 +35,7 @@ std::size_t add_columns(std::vector<std::string>& columns, const std::vector<std
 }
 
 BodyColumns add_object(std::vector<std::string>& columns, const model::RecordedObject& object,
-                        const std::string& where) {
+                       const std::string& where) {
   BodyColumns at;
   at.pose = add_columns(columns, object.columns, where);
   at.has_velocity = !object.velocities.empty();
@@ -51,8 +52,8 @@ record::PoseSample pose_at(const Table& table, std::size_t row, std::size_t firs
 void add_row(const Table& table, std::size_t row, const BodyColumns& columns, RecordedBody& body) {
   body.poses.push_back(pose_at(table, row, columns.pose));
   if (columns.has_velocity)
-    body.twists.push_back({internal::vector_at(table, row, columns.velocity),
-                           internal::vector_at(table, row, columns.velocity + 3)});
+    body.twists.push_back(
+        {internal::vector_at(table, row, columns.velocity), internal::vector_at(table, row, columns.velocity + 3)});
   if (columns.has_result) body.result = pose_at(table, row, columns.result);
 }
 
@@ -98,15 +99,50 @@ std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const st
   return motions;
 }
 
+std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, const record::Recording& simulated,
+                                               const std::vector<record::ArchiveRecording>& recordings,
+                                               const std::string& where) {
+  constexpr std::size_t kEach = 6;  // of samples at 360 Hz: boxes move at some Hz
+  const validation::SimulatedRun run = validation::make_run(simulated, "simulation");
+  std::vector<RecordedMotion> motions;
+  for (const record::ArchiveRecording& recording : recordings) {
+    if (recording.motion_capture.times.empty()) continue;
+    const validation::Measurement measured = validation::align(run, recording, {}, where);
+    if (!measured.has_poses())
+      throw InputError(where, recording.name, "poses whose clock is not found", "a run of this program");
+    RecordedMotion& motion = motions.emplace_back();
+    motion.name = recording.name;
+    const double end = task.simulation_time.value_or(run.times.back());
+    for (std::size_t k = 0; k < measured.pose_times.size(); k += kEach)
+      if (measured.pose_times[k] >= 0.0 && measured.pose_times[k] <= end)
+        motion.times.push_back(measured.pose_times[k]);
+    for (const model::RecordedObject& object : task.tracked) {
+      const int index = record::find_body(run.header, object.body);
+      if (index < 0 || measured.bodies[static_cast<std::size_t>(index)].empty())
+        throw InputError(where, recording.name, "no poses of '" + object.body + "'", "those of every tracked object");
+      RecordedBody& body = motion.tracked.emplace_back();
+      body.body = object.body;
+      const std::vector<record::PoseSample>& poses = measured.bodies[static_cast<std::size_t>(index)];
+      for (std::size_t k = 0; k < measured.pose_times.size(); k += kEach)
+        if (measured.pose_times[k] >= 0.0 && measured.pose_times[k] <= end) body.poses.push_back(poses[k]);
+    }
+    if (motion.times.size() < 2)
+      throw InputError(where, recording.name, "hardly any poses", "some of the time simulated");
+  }
+  if (motions.empty()) throw InputError(where, "", "no poses", "at least one recording of a sequence");
+  return motions;
+}
+
 std::vector<RecordedMotion> load_motions(const model::SceneTask& task,
                                          const std::vector<std::filesystem::path>& files) {
   std::vector<RecordedMotion> motions;
   std::optional<internal::CapturedRun> run;  // whose clock archives are brought to
   for (const std::filesystem::path& file : files) {
     if (task.program && file.extension() == ".h5") {
-      if (!run) run = internal::capture_program(model::load_scenario(task.scenario), *task.program, task.simulation_time);
-      for (RecordedMotion& motion : internal::motions_of_archive(task, run->recording,
-                                                                 record::load_archive(file).recordings, file.string()))
+      if (!run)
+        run = internal::capture_program(model::load_scenario(task.scenario), *task.program, task.simulation_time);
+      for (RecordedMotion& motion :
+           internal::motions_of_archive(task, run->recording, record::load_archive(file).recordings, file.string()))
         motions.push_back(std::move(motion));
       continue;
     }

@@ -22,7 +22,10 @@ constexpr double kLost = 1.0;  // m and rad: what a recording without a simulati
 }  // namespace
 
 SceneExperiment::SceneExperiment(model::SceneTask task, std::vector<RecordedMotion> motions, int threads)
-    : task_(std::move(task)), motions_(std::move(motions)), threads_(threads), base_(model::load_scenario(task_.scenario)) {
+    : task_(std::move(task)),
+      motions_(std::move(motions)),
+      threads_(threads),
+      base_(model::load_scenario(task_.scenario)) {
   if (task_.time_step) base_.time_step = *task_.time_step;
   for (const model::TaskParameter& parameter : task_.parameters) {
     std::vector<double>& numbers = base_numbers_.emplace_back();
@@ -40,7 +43,8 @@ SceneExperiment::SceneExperiment(model::SceneTask task, std::vector<RecordedMoti
 
 Eigen::VectorXd SceneExperiment::start() const {
   Eigen::VectorXd values(static_cast<Eigen::Index>(task_.parameters.size()));
-  for (std::size_t i = 0; i < task_.parameters.size(); ++i) values[static_cast<Eigen::Index>(i)] = task_.parameters[i].value;
+  for (std::size_t i = 0; i < task_.parameters.size(); ++i)
+    values[static_cast<Eigen::Index>(i)] = task_.parameters[i].value;
   return values;
 }
 
@@ -184,8 +188,7 @@ double SceneExperiment::cost_of(const MotionError& error) const {
   if (!error.failure.empty()) return 1e3 * kLost * (use_position + use_rotation * ratio);
   if (task_.loss == model::TaskLoss::Distance)
     return 1e3 * (use_position * error.position + use_rotation * ratio * error.rotation);
-  return 1e3 *
-         std::sqrt(use_position * error.position_square + use_rotation * ratio * ratio * error.rotation_square);
+  return 1e3 * std::sqrt(use_position * error.position_square + use_rotation * ratio * ratio * error.rotation_square);
 }
 
 SceneError SceneExperiment::summarize(std::span<const MotionError> errors) const {

@@ -14,15 +14,15 @@ namespace snug::identification {
 
 /// How far the simulation of one recording is from it.
 struct MotionError {
-  double position = 0.0;        ///< m, mean over samples and bodies
-  double rotation = 0.0;        ///< rad
-  double position_square = 0.0; ///< m^2, mean of squares
-  double rotation_square = 0.0; ///< rad^2
-  double end_position = 0.0;    ///< m, of the last sample
-  double end_rotation = 0.0;    ///< rad
-  double right = 0.0;           ///< share of the bodies whose orientation is right at the end
-  Eigen::VectorXd residuals;    ///< in units of the noise, those of own unknowns against what is expected of them last
-  std::string failure;          ///< empty, or why there is no simulation
+  double position = 0.0;         ///< m, mean over samples and bodies
+  double rotation = 0.0;         ///< rad
+  double position_square = 0.0;  ///< m^2, mean of squares
+  double rotation_square = 0.0;  ///< rad^2
+  double end_position = 0.0;     ///< m, of the last sample
+  double end_rotation = 0.0;     ///< rad
+  double right = 0.0;            ///< share of the bodies whose orientation is right at the end
+  Eigen::VectorXd residuals;     ///< in units of the noise, those of own unknowns against what is expected of them last
+  std::string failure;           ///< empty, or why there is no simulation
 };
 
 /// Mean over recordings, each counted once.
@@ -44,9 +44,9 @@ class SceneExperiment {
   SceneExperiment(model::SceneTask task, std::vector<RecordedMotion> motions, int threads);
 
   struct Job {
-    std::size_t point = 0;   ///< of `points`
-    std::size_t motion = 0;  ///< recording
-    Eigen::VectorXd own = {};     ///< its own unknowns; empty: all zero
+    std::size_t point = 0;     ///< of `points`
+    std::size_t motion = 0;    ///< recording
+    Eigen::VectorXd own = {};  ///< its own unknowns; empty: all zero
   };
   /// `points`: values of all parameters of the task, in its order. Each job is a simulation; the result does not depend
   /// on the number of threads. What cannot be simulated says so.
@@ -61,8 +61,8 @@ class SceneExperiment {
 
   [[nodiscard]] const model::SceneTask& task() const { return task_; }
   [[nodiscard]] const std::vector<RecordedMotion>& motions() const { return motions_; }
-  [[nodiscard]] Eigen::VectorXd start() const;             ///< values of the task
-  [[nodiscard]] Eigen::VectorXd own_deviation() const;     ///< expected of the own unknowns; empty when there are none
+  [[nodiscard]] Eigen::VectorXd start() const;          ///< values of the task
+  [[nodiscard]] Eigen::VectorXd own_deviation() const;  ///< expected of the own unknowns; empty when there are none
   [[nodiscard]] Eigen::Index residuals_of(std::size_t motion) const;
   /// Numbers measured in a recording: residuals less those that stand for expectations.
   [[nodiscard]] Eigen::Index samples_of(std::size_t motion) const;

@@ -81,8 +81,8 @@ Sensed sense(const SceneSearch& search) {
     row.step = parameters[index].step;
     row.position_mm = 1e3 * row.step * at.position_rms[j];
     row.rotation_deg = 180.0 / std::numbers::pi * row.step * at.rotation_rms[j];
-    row.error_alone = at.information(j, j) > 0.0 ? 1.0 / std::sqrt(at.information(j, j))
-                                                 : std::numeric_limits<double>::infinity();
+    row.error_alone =
+        at.information(j, j) > 0.0 ? 1.0 / std::sqrt(at.information(j, j)) : std::numeric_limits<double>::infinity();
     row.error_together = std::sqrt(inverse(j, j));
     sensed.rows.push_back(row);
     if (!is_unknown[static_cast<std::size_t>(j)]) sensed.known.push_back(index);
@@ -92,7 +92,8 @@ Sensed sense(const SceneSearch& search) {
 
 std::string advice_of(const model::TaskParameter& parameter, Verdict verdict, bool is_at_bound, bool is_refused) {
   if (is_refused)
-    return "it or a combination with others does not show in these recordings: record motions that it changes, or fix it";
+    return "it or a combination with others does not show in these recordings: record motions that it changes, or fix "
+           "it";
   if (is_at_bound) return "it ended at its bound: widen the bounds, or something else is wrong";
   if (verdict == Verdict::Identified) return "";
   return "more recordings, or motions that " + parameter.name + " changes more";
@@ -114,8 +115,7 @@ void judge_all(const SceneSearch& search, const Sensed& sensed, SceneFit& fit) {
       continue;
     }
     const bool is_refused = std::find(sensed.known.begin(), sensed.known.end(), i) == sensed.known.end();
-    const bool is_at_bound =
-        std::min(parameter.value - of.low, of.high - parameter.value) <= kAtBound * span;
+    const bool is_at_bound = std::min(parameter.value - of.low, of.high - parameter.value) <= kAtBound * span;
     parameter.standard_error =
         is_refused ? std::numeric_limits<double>::infinity() : std::sqrt(std::max(0.0, fit.covariance(at, at)));
     const double scale = std::max(std::abs(parameter.value), kVerdictSpan * span);

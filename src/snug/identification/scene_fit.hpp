@@ -16,9 +16,9 @@ namespace snug::identification {
 struct Sensitivity {
   std::string name;
   double step = 0.0;
-  double position_mm = 0.0;   ///< root mean square over all samples
+  double position_mm = 0.0;  ///< root mean square over all samples
   double rotation_deg = 0.0;
-  double error_alone = 0.0;   ///< standard error if it were the only unknown
+  double error_alone = 0.0;     ///< standard error if it were the only unknown
   double error_together = 0.0;  ///< with all others unknown too; infinite where the data cannot tell
 };
 
@@ -47,7 +47,8 @@ struct SceneFit {
   Eigen::MatrixXd covariance;         ///< of all; zero where one was not fitted
   double chi2_per_dof = 0.0;          ///< with the noise declared
   double held_back_error = 0.0;       ///< mm, cost on what was kept out of the fit; not a number when nothing was
-  SceneError before, fitted, held_back;  ///< at the start and at the end; of the recordings fitted, and of those held back
+  SceneError before, fitted,
+      held_back;  ///< at the start and at the end; of the recordings fitted, and of those held back
   std::vector<Sensitivity> sensitivity;
   std::vector<UnknownDirection> unknown;
   int evaluations = 0;

@@ -45,14 +45,14 @@ std::vector<RecordedObject> read_objects(const MapReader& map, const char* key) 
     for (const Value& entry : list->list()) {
       objects.push_back(read_object(entry));
       for (std::size_t i = 0; i + 1 < objects.size(); ++i)
-        if (objects[i].body == objects.back().body) entry.fail("body '" + objects[i].body + "' a second time", "each body once");
+        if (objects[i].body == objects.back().body)
+          entry.fail("body '" + objects[i].body + "' a second time", "each body once");
     }
   return objects;
 }
 
 TaskParameter read_parameter(const Value& value) {
-  const MapReader map =
-      value.map("parameter", {"name", "path", "paths", "form", "value", "bounds", "step", "fixed"});
+  const MapReader map = value.map("parameter", {"name", "path", "paths", "form", "value", "bounds", "step", "fixed"});
   TaskParameter parameter;
   parameter.where = value.where();
   parameter.name = map.require("name").name();
@@ -84,9 +84,11 @@ void read_parameters(const Value& list, SceneTask& task) {
   std::set<std::string> names, paths;
   for (const Value& entry : list.list()) {
     const TaskParameter parameter = read_parameter(entry);
-    if (!names.insert(parameter.name).second) entry.fail("parameter '" + parameter.name + "' a second time", "each name once");
+    if (!names.insert(parameter.name).second)
+      entry.fail("parameter '" + parameter.name + "' a second time", "each name once");
     for (const std::string& path : parameter.paths)
-      if (!paths.insert(path).second) entry.fail("path '" + path + "' a second time", "each number in one parameter only");
+      if (!paths.insert(path).second)
+        entry.fail("path '" + path + "' a second time", "each number in one parameter only");
     task.parameters.push_back(parameter);
   }
   if (task.parameters.empty()) list.fail("at least one parameter");
@@ -136,7 +138,8 @@ void read_error(const MapReader& map, SceneTask& task) {
     map.require("optimize_rotation").fail("true, or optimize_position true: something to fit");
   if (const auto value = map.find("noise")) read_noise(*value, task);
   task.rotation_position_ratio = task.position_noise / task.rotation_noise;
-  if (const auto ratio = map.find("rotation_position_ratio")) task.rotation_position_ratio = ratio->number(Range::Positive);
+  if (const auto ratio = map.find("rotation_position_ratio"))
+    task.rotation_position_ratio = ratio->number(Range::Positive);
   if (const auto flag = map.find("only_final_state")) task.only_final_state = flag->boolean();
   if (const auto loss = map.find("loss")) task.loss = static_cast<TaskLoss>(loss->choice({"squares", "distance"}));
   if (const auto right = map.find("right_within_deg")) task.right_within = right->radians_from_degrees(Range::Positive);

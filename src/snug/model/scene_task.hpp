@@ -33,10 +33,10 @@ struct TaskParameter {
 
 /// A body and the columns of a recording that tell where it is.
 struct RecordedObject {
-  std::string body;                       ///< of the scenario; of a program's run: the parcel's id
-  std::vector<std::string> columns;       ///< x, y, z [m], qw, qx, qy, qz (body -> world)
-  std::vector<std::string> velocities;    ///< vx, vy, vz [m/s], wx, wy, wz [rad/s], world; or none
-  std::vector<std::string> result;        ///< where the recording has the pose at the end, as `columns`; or none
+  std::string body;                     ///< of the scenario; of a program's run: the parcel's id
+  std::vector<std::string> columns;     ///< x, y, z [m], qw, qx, qy, qz (body -> world)
+  std::vector<std::string> velocities;  ///< vx, vy, vz [m/s], wx, wy, wz [rad/s], world; or none
+  std::vector<std::string> result;      ///< where the recording has the pose at the end, as `columns`; or none
   bool operator==(const RecordedObject&) const = default;
 };
 
@@ -55,8 +55,8 @@ enum class TaskLoss {
 
 struct StartSettings {
   StartFrom from = StartFrom::FirstRow;
-  int samples = 25;      ///< of the flight, at most, the first ones
-  double margin = 0.002; ///< m, gap to anything else below which a body may touch
+  int samples = 25;       ///< of the flight, at most, the first ones
+  double margin = 0.002;  ///< m, gap to anything else below which a body may touch
   bool operator==(const StartSettings&) const = default;
 };
 
@@ -78,10 +78,10 @@ struct OwnSettings {
 };
 
 struct SearchSettings {
-  int scatter = 0;         ///< points spread over the bounds before the local search; the best one joins the start
-  int global = 0;          ///< evaluations of the global search (controlled random search), 0: none
-  int local = 200;         ///< evaluations of the local one, at most
-  int held_back = 5;       ///< each so many-th recording is kept out of the fit
+  int scatter = 0;    ///< points spread over the bounds before the local search; the best one joins the start
+  int global = 0;     ///< evaluations of the global search (controlled random search), 0: none
+  int local = 200;    ///< evaluations of the local one, at most
+  int held_back = 5;  ///< each so many-th recording is kept out of the fit
   std::uint64_t seed = 1;
   bool operator==(const SearchSettings&) const = default;
 };
@@ -90,14 +90,14 @@ struct SearchSettings {
 struct TaskProgram {
   std::filesystem::path file;
   std::string sequence;
-  std::string corrections;  ///< name of a layer of the scenario, or empty
-  bool with_phases = false; ///< the cup with vacuum phases
+  std::string corrections;   ///< name of a layer of the scenario, or empty
+  bool with_phases = false;  ///< the cup with vacuum phases
   bool operator==(const TaskProgram&) const = default;
 };
 
 struct SceneTask {
-  std::filesystem::path path;      ///< the file
-  std::string text;                ///< its text
+  std::filesystem::path path;  ///< the file
+  std::string text;            ///< its text
   std::filesystem::path scenario;
   std::optional<TaskProgram> program;
   std::vector<std::filesystem::path> recordings;  ///< report: csv_path
@@ -111,8 +111,8 @@ struct SceneTask {
   std::string time_column = "t";
   std::vector<RecordedObject> tracked;    ///< report: tracked_objects
   std::vector<RecordedObject> kinematic;  ///< report: kinematic_bodies
-  double position_noise = 0.001;  ///< m, of recorded positions, each axis
-  double rotation_noise = 0.01;   ///< rad
+  double position_noise = 0.001;          ///< m, of recorded positions, each axis
+  double rotation_noise = 0.01;           ///< rad
   TaskLoss loss = TaskLoss::Squares;
   double right_within = 0.5235987755982988;  ///< rad, rotation error at the end up to which an orientation is right
   StartSettings start;

@@ -34,8 +34,7 @@ SearchResult minimize_bounded(const std::function<double(const Eigen::VectorXd&)
   SearchResult best{start, kWorst, 0, ""};
   // In units of the span, so that one tolerance is right for all.
   const auto evaluate = [&](const std::vector<double>& s) {
-    const Eigen::VectorXd x =
-        lower + span.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(s.data(), n));
+    const Eigen::VectorXd x = lower + span.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(s.data(), n));
     ++best.evaluations;
     const double value = cost(x);
     if (!std::isfinite(value)) return kWorst;

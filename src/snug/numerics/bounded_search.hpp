@@ -29,8 +29,8 @@ struct SearchResult {
 };
 
 /// Within lower and upper, lower < upper; `start` is inside. One thread: the same function gives the same bytes. A cost
-/// that is no number counts as the worst. Not to be called from two threads at once with ControlledRandom: NLopt has one
-/// random generator a thread, which is seeded here.
+/// that is no number counts as the worst. Not to be called from two threads at once with ControlledRandom: NLopt has
+/// one random generator a thread, which is seeded here.
 [[nodiscard]] SearchResult minimize_bounded(const std::function<double(const Eigen::VectorXd&)>& cost,
                                             const Eigen::VectorXd& start, const Eigen::VectorXd& lower,
                                             const Eigen::VectorXd& upper, const SearchOptions& options);

@@ -32,8 +32,7 @@ MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, 
   if (!error.failure.empty()) return error;
   const std::size_t begin = first_sample_of(task, motion), end = sample_count(task, motion);
   const int numbers = numbers_of(task);
-  error.residuals =
-      Eigen::VectorXd::Zero(count_residuals(task, motion) + own_deviation(task.own).size());
+  error.residuals = Eigen::VectorXd::Zero(count_residuals(task, motion) + own_deviation(task.own).size());
   const double rotation_noise = task.position_noise / task.rotation_position_ratio;
   Eigen::Index at = 0;
   double count = 0.0;

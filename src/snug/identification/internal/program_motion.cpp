@@ -2,12 +2,10 @@
 #include <algorithm>
 
 #include "snug/cell/run.hpp"
-#include "snug/core/input_error.hpp"
 #include "snug/identification/internal/program_motion.hpp"
 #include "snug/identification/internal/scene_motion.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/archive.hpp"
-#include "snug/validation/measurement.hpp"
 #include "snug/validation/simulated_run.hpp"
 
 namespace snug::identification::internal {
@@ -38,37 +36,6 @@ CapturedRun capture_program(const model::Scenario& scenario, const model::TaskPr
   if (program.with_phases) options.simulation.cup = cup::CupMode::Phases;
   const cell::RunResult result = cell::run(scenario, options);
   return {std::move(capture.recording), result.failure};
-}
-
-std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, const record::Recording& simulated,
-                                               const std::vector<record::ArchiveRecording>& recordings,
-                                               const std::string& where) {
-  constexpr std::size_t kEach = 6;  // of samples at 360 Hz: boxes move at some Hz
-  const validation::SimulatedRun run = validation::make_run(simulated, "simulation");
-  std::vector<RecordedMotion> motions;
-  for (const record::ArchiveRecording& recording : recordings) {
-    if (recording.motion_capture.times.empty()) continue;
-    const validation::Measurement measured = validation::align(run, recording, {}, where);
-    if (!measured.has_poses()) throw InputError(where, recording.name, "poses whose clock is not found", "a run of this program");
-    RecordedMotion& motion = motions.emplace_back();
-    motion.name = recording.name;
-    const double end = task.simulation_time.value_or(run.times.back());
-    for (std::size_t k = 0; k < measured.pose_times.size(); k += kEach)
-      if (measured.pose_times[k] >= 0.0 && measured.pose_times[k] <= end) motion.times.push_back(measured.pose_times[k]);
-    for (const model::RecordedObject& object : task.tracked) {
-      const int index = record::find_body(run.header, object.body);
-      if (index < 0 || measured.bodies[static_cast<std::size_t>(index)].empty())
-        throw InputError(where, recording.name, "no poses of '" + object.body + "'", "those of every tracked object");
-      RecordedBody& body = motion.tracked.emplace_back();
-      body.body = object.body;
-      const std::vector<record::PoseSample>& poses = measured.bodies[static_cast<std::size_t>(index)];
-      for (std::size_t k = 0; k < measured.pose_times.size(); k += kEach)
-        if (measured.pose_times[k] >= 0.0 && measured.pose_times[k] <= end) body.poses.push_back(poses[k]);
-    }
-    if (motion.times.size() < 2) throw InputError(where, recording.name, "hardly any poses", "some of the time simulated");
-  }
-  if (motions.empty()) throw InputError(where, "", "no poses", "at least one recording of a sequence");
-  return motions;
 }
 
 SimulatedMotion simulate_program(const model::Scenario& scenario, const model::SceneTask& task,

@@ -37,7 +37,8 @@ Unknowns make_unknowns(const DampingOptions& options, const Matrix6& K) {
   return unknowns;
 }
 
-ReleaseModel::ReleaseModel(const Release& release, const Unknowns& unknowns, const DampingOptions& options, bool is_moving)
+ReleaseModel::ReleaseModel(const Release& release, const Unknowns& unknowns, const DampingOptions& options,
+                           bool is_moving)
     : release_(release), unknowns_(unknowns), is_moving_(is_moving) {
   swing_.load_S = release.load_S;
   swing_.R_WE = release.R_WE;
@@ -55,8 +56,8 @@ ReleaseModel::ReleaseModel(const Release& release, const Unknowns& unknowns, con
   rotation_ = std::max(release.noise.rotation, 1e-6 * least.rotation);
 }
 
-void ReleaseModel::evaluate(const Eigen::VectorXd& theta, const Eigen::VectorXd& own, std::size_t samples, Eigen::VectorXd& r,
-              Eigen::MatrixXd* J) const {
+void ReleaseModel::evaluate(const Eigen::VectorXd& theta, const Eigen::VectorXd& own, std::size_t samples,
+                            Eigen::VectorXd& r, Eigen::MatrixXd* J) const {
   FreeSwing swing = swing_;
   const auto count = static_cast<Eigen::Index>(unknowns_.damping.size());
   swing.D = sum_of(unknowns_.damping, theta, 0) + coupling_;

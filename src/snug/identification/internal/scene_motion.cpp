@@ -122,8 +122,7 @@ SimulatedMotion simulate_scene(const model::Scenario& given, const model::SceneT
   std::vector<physics::BodyId> ids;
   for (std::size_t b = 0; b < motion.tracked.size(); ++b) {
     ids.push_back(cell::find_body(scene.world(), motion.tracked[b].body));
-    const FlightStart start =
-        start_of(scenario, task, motion, motion.tracked[b], flights.empty() ? 0 : flights[b]);
+    const FlightStart start = start_of(scenario, task, motion, motion.tracked[b], flights.empty() ? 0 : flights[b]);
     physics::set_pose(world, scene.state(), ids[b], start.X_WB);
     physics::set_twist(world, scene.state(), ids[b],
                        {start.V_WB.linear + own.start.linear, start.V_WB.angular + own.start.angular});

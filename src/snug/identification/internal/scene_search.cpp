@@ -17,8 +17,8 @@ namespace snug::identification::internal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kRescuePoints = 20;     // scattered for each free parameter when a fit fails
-constexpr double kOwnStep = 0.01;     // of what is expected of an own unknown, for differences
+constexpr int kRescuePoints = 20;       // scattered for each free parameter when a fit fails
+constexpr double kOwnStep = 0.01;       // of what is expected of an own unknown, for differences
 constexpr double kFirstSubplex = 0.05;  // of the span
 
 std::string identity_of(const SceneExperiment& experiment) {
@@ -159,7 +159,8 @@ numerics::BatchedProblem SceneSearch::problem() const {
       const std::size_t m = jobs[k].motion;
       Eigen::VectorXd& r = errors[k].residuals;
       // The rows of one body grow with time; with several bodies each would have to be cut. Time first, then bodies.
-      const Eigen::Index held = held_rows(m), bodies = static_cast<Eigen::Index>(experiment_.motions()[m].tracked.size());
+      const Eigen::Index held = held_rows(m),
+                         bodies = static_cast<Eigen::Index>(experiment_.motions()[m].tracked.size());
       if (held > 0 && r.size() > 0) {
         const Eigen::Index rows = experiment_.samples_of(m) / bodies, cut = held / bodies;
         for (Eigen::Index b = 0; b < bodies; ++b) r.segment((b + 1) * rows - cut, cut).setZero();
@@ -240,7 +241,8 @@ std::vector<Eigen::VectorXd> SceneSearch::scattered(int count) const {
   for (Eigen::Index j = 0; j < lower_.size(); ++j) {
     std::vector<int> order(static_cast<std::size_t>(count));
     std::iota(order.begin(), order.end(), 0);
-    for (int i = count - 1; i > 0; --i) std::swap(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(rng.index(i + 1))]);
+    for (int i = count - 1; i > 0; --i)
+      std::swap(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(rng.index(i + 1))]);
     for (std::size_t i = 0; i < points.size(); ++i)
       points[i][j] = lower_[j] + (upper_[j] - lower_[j]) * (order[i] + rng.uniform()) / count;
   }
@@ -448,8 +450,8 @@ Eigen::MatrixXd SceneSearch::distance_covariance() {
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < i; ++j, p += 2) {
       // f(+,+) + f(-,-) - f(+i) - f(-i) - f(+j) - f(-j) + 2 f = 2 H_ij
-      const double sum = mean[p] + mean[p + 1] - mean[1 + 2 * i] - mean[2 + 2 * i] - mean[1 + 2 * j] -
-                         mean[2 + 2 * j] + 2.0 * mean[0];
+      const double sum =
+          mean[p] + mean[p + 1] - mean[1 + 2 * i] - mean[2 + 2 * i] - mean[1 + 2 * j] - mean[2 + 2 * j] + 2.0 * mean[0];
       H(i, j) = H(j, i) = 0.5 * sum;
     }
   }
@@ -458,8 +460,7 @@ Eigen::MatrixXd SceneSearch::distance_covariance() {
   // A direction with less than a tenth of the curvature of the axes is not seen above the roughness: it gets that much.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
   const double least = std::max(0.1 * H.diagonal().cwiseMax(0.0).mean(), 1e-12);
-  const Eigen::VectorXd inverse =
-      eigen.eigenvalues().unaryExpr([least](double v) { return 1.0 / std::max(v, least); });
+  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([least](double v) { return 1.0 / std::max(v, least); });
   const Eigen::MatrixXd H_inverse =
       h.asDiagonal() * (eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose());
   return H_inverse * S * H_inverse.transpose() / static_cast<double>(count);

@@ -32,9 +32,9 @@ class SceneSearch {
   [[nodiscard]] int evaluations() const { return evaluations_; }
 
   struct Derivatives {
-    Eigen::MatrixXd information;    ///< of the free parameters, in units of the noise declared
-    Eigen::VectorXd position_rms;   ///< m for each unit of each free parameter
-    Eigen::VectorXd rotation_rms;   ///< rad
+    Eigen::MatrixXd information;   ///< of the free parameters, in units of the noise declared
+    Eigen::VectorXd position_rms;  ///< m for each unit of each free parameter
+    Eigen::VectorXd rotation_rms;  ///< rad
   };
   [[nodiscard]] Derivatives differentiate() const;
 

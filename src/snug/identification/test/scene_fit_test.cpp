@@ -49,10 +49,11 @@ class SceneFitTest : public ::testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] model::SceneTask task(const std::string& more) const {
-    return model::parse_scene_task("scenario: scene.yaml\ntracked_objects: [{body: parcel}]\n"
-                                   "start: {from: scenario}\nnoise: {position: 0.0002, rotation_deg: 0.1146}\n" +
-                                       more,
-                                   folder_ / "task.yaml");
+    return model::parse_scene_task(
+        "scenario: scene.yaml\ntracked_objects: [{body: parcel}]\n"
+        "start: {from: scenario}\nnoise: {position: 0.0002, rotation_deg: 0.1146}\n" +
+            more,
+        folder_ / "task.yaml");
   }
 
   /// What 180 Hz motion capture would have seen with these numbers.
@@ -101,7 +102,8 @@ TEST_F(SceneFitTest, FindsPlantedFrictionAndRestitutionWithIntervalsThatCover) {
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(fit.parameters[static_cast<std::size_t>(i)].verdict, Verdict::Identified);
     // Four standard errors: one case in ten thousand.
-    EXPECT_LE(std::abs(fit.values[i] - truth[static_cast<std::size_t>(i)].value), 4.0 * std::sqrt(fit.covariance(i, i)));
+    EXPECT_LE(std::abs(fit.values[i] - truth[static_cast<std::size_t>(i)].value),
+              4.0 * std::sqrt(fit.covariance(i, i)));
   }
   EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.15);
   EXPECT_TRUE(fit.is_trusted);
@@ -168,8 +170,7 @@ TEST_F(SceneFitTest, SaysThatItCannotBeTrustedWhenTheSceneIsAnother) {
 parameters:
   - {name: restitution, path: "contacts.pairs[0].restitution", value: 0.2, bounds: [0, 0.9], step: 0.002}
 )");
-  const SceneFit fit =
-      identify_scene(SceneExperiment(wrong, {record({{"contacts.pairs[0].friction", 0.6}}, 10)}, 2));
+  const SceneFit fit = identify_scene(SceneExperiment(wrong, {record({{"contacts.pairs[0].friction", 0.6}}, 10)}, 2));
   EXPECT_FALSE(fit.is_trusted);
   EXPECT_EQ(fit.parameters[0].verdict, Verdict::NotIdentifiable);
 }

@@ -45,8 +45,9 @@ TEST(SceneTask, ComplaintsNameLineKeyAndNearest) {
   EXPECT_NE(complaint(replaced(kTask, "value: 0.2", "value: .nan")).find("task.yaml:5"), std::string::npos);
   EXPECT_NE(complaint(replaced(kTask, "[0.1, 0.5]", "[0.5, 0.1]")).find("above 0.5"), std::string::npos);
   EXPECT_NE(complaint(std::string(kTask) + "loss: squared\n").find("squares"), std::string::npos);
-  EXPECT_NE(complaint(std::string(kTask) + "optimize_position: false\noptimize_rotation: false\n").find("something to fit"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint(std::string(kTask) + "optimize_position: false\noptimize_rotation: false\n").find("something to fit"),
+      std::string::npos);
   EXPECT_NE(complaint(std::string(kTask) + "  - {name: friction, path: \"gravity[2]\", value: 0, bounds: [-1, 1]}\n")
                 .find("a second time"),
             std::string::npos);
