@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
 
 namespace snug::calibration {
 

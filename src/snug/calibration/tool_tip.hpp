@@ -1,7 +1,7 @@
 // Tool tip: where the tip of a tool is, from poses of the flange in which it touched one and the same point.
 #pragma once
 
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
 
 namespace snug::calibration {
 

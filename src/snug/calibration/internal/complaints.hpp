@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
 
 namespace snug::calibration::internal {
 
