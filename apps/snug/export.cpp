@@ -31,11 +31,14 @@ int write_csv(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
   record::CsvWriter writer(std::move(output), reader.header());
   record::Frame frame;
-  for (const std::size_t index : replay::select_frames(reader, file_name(options.input), options.selection)) {
+  const std::vector<std::size_t> frames = replay::select_frames(reader, file_name(options.input), options.selection);
+  for (const std::size_t index : frames) {
     reader.read_frame(index, frame);
     writer.append(frame);
   }
   writer.close();
+  std::fprintf(stderr, "%s: %zu rows, %.3f s to %.3f s\n", options.output.c_str(), frames.size(),
+               reader.times()[frames.front()], reader.times()[frames.back()]);
   return kSuccess;
 }
 

@@ -17,6 +17,7 @@
 #include "snug/core/text.hpp"
 #include "verb.hpp"
 #include "verbs.hpp"
+#include "version.hpp"
 
 namespace {
 
@@ -57,7 +58,7 @@ void check_words(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   CLI::App app("snug simulates how a robot with a suction cup packs boxes, contact included.", "snug");
-  app.set_version_flag("--version", "snug " SNUG_VERSION);
+  app.set_version_flag("--version", std::string("snug ") + version_text());
   app.require_subcommand(0, 1);
   app.footer(kExamples);
   Action action;

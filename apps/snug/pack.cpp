@@ -17,6 +17,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/task/executions.hpp"
+#include "version.hpp"
 
 namespace snug::app {
 namespace {
@@ -30,7 +31,7 @@ std::string record(const PackOptions& options, const model::Scenario& scenario, 
   run.sequence = options.sequence;
   run.simulation = session.simulation;
   run.record_file = &file;
-  run.version = SNUG_VERSION;
+  run.version = version_text();
   run.describe = [](const cell::RunResult& one) { return format_json(one); };
   return cell::run(scenario, run).failure;
 }

@@ -13,6 +13,7 @@
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
+#include "version.hpp"
 
 namespace snug::app {
 namespace {
@@ -74,7 +75,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
   if (options.cup) run.simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;
-  run.version = SNUG_VERSION;
+  run.version = version_text();
   run.describe = [](const cell::RunResult& result) { return format_json(result); };
   return run;
 }

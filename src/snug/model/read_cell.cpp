@@ -205,7 +205,7 @@ void ScenarioReader::read_controller(const Value& value) {
       const MapReader row = entry.map("limit", keys_with<MoveLimits>({"prefix"}));
       MoveLimits limit;
       const Value prefix = row.require("prefix");
-      limit.prefix = prefix.name();
+      limit.prefix = prefix.name_or_empty();
       for (const MoveLimits& known : controller.limits) check_new_name(prefix, "limit", known.prefix == limit.prefix);
       for (const std::string& key : field_keys<MoveLimits>()) (void)row.require(key);
       read_fields(row, limit);
@@ -269,11 +269,12 @@ void ScenarioReader::read_reported(const MapReader& map, Sequence& sequence) con
   const auto rows = map.find("reported");
   if (!rows) return;
   for (const Value& entry : rows->list()) {
-    const MapReader row = entry.map("reported", {"agent", "packed_count", "filling_percent"});
+    const MapReader row = entry.map("reported", {"agent", "about", "packed_count", "filling_percent"});
     const Value agent = row.require("agent");
     Reported one;
     one.agent = agent.name();
     for (const Reported& known : sequence.reported) check_new_name(agent, "agent", known.agent == one.agent);
+    if (const auto about = row.find("about")) one.about = about->name_or_empty();
     if (const auto packed = row.find("packed_count")) one.packed_count = read_count(*packed);
     if (const auto filling = row.find("filling_percent"))
       one.filling_percent = filling->number_within(0.0, 100.0, "a percentage");

@@ -10,12 +10,16 @@
 #include "snug/motion/waypoint.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/replay/internal/mcap_scene.hpp"
+#include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/mcap_schemas.hpp"
 
 namespace snug::replay {
 namespace {
 
 using internal::JsonText;
+
+/// Of the robot: viewers of MCAP run on graphics cards.
+constexpr std::size_t kMostTriangles = 200'000;
 
 /// One topic: times grow strictly, whatever the recording's rounding and coincidences.
 class Topic {
@@ -66,6 +70,8 @@ class Exporter {
   void write_tool(std::uint64_t ns, const record::Frame& frame);
   void write_scene(std::uint64_t ns, const record::Frame& frame);
   void write_program(std::uint64_t ns, int row);
+  /// The URDF and how its links look: once, each fixed to the frame of its link.
+  void write_robot(std::uint64_t ns);
   /// Ends the message and hands it on.
   void send(Topic& topic, std::uint64_t ns) {
     topic.write(ns, text_.str());
@@ -77,7 +83,8 @@ class Exporter {
   std::vector<std::string> row_names_;
   Topic tf_static_, tf_, scene_, cup_scene_, events_, program_;
   Topic tool_pose_, tool_command_, tool_twist_, cup_state_, cup_wrench_, flange_wrench_, solver_;
-  std::optional<Topic> joints_;
+  std::optional<Topic> joints_, description_, robot_scene_;
+  std::vector<internal::LinkLook> looks_;
   JsonText text_;
   bool is_first_ = true;
   std::vector<bool> present_;
@@ -103,6 +110,18 @@ Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header)
       flange_wrench_(writer, "/flange/wrench", McapSchema::WrenchStamped),
       solver_(writer, "/solver", McapSchema::SolverState) {
   if (!header.joints.empty()) joints_.emplace(writer, "/joint_states", McapSchema::JointState);
+  if (header.robot.urdf.empty()) return;
+  description_.emplace(writer, "/robot_description", McapSchema::String);
+  looks_ = internal::find_looks(header, kMostTriangles);
+  if (!looks_.empty()) robot_scene_.emplace(writer, "/robot/scene", McapSchema::SceneUpdate);
+}
+
+void Exporter::write_robot(std::uint64_t ns) {
+  if (description_) {
+    text_.raw("{\"data\":").quoted(header_.robot.urdf).raw("}");
+    send(*description_, ns);
+  }
+  if (robot_scene_) robot_scene_->write(ns, internal::robot_message(ns, header_, looks_));
 }
 
 void Exporter::write_static_frames(std::uint64_t ns, const record::Frame& frame) {
@@ -169,7 +188,7 @@ void Exporter::write_tool(std::uint64_t ns, const record::Frame& frame) {
 void Exporter::write_scene(std::uint64_t ns, const record::Frame& frame) {
   std::vector<bool> present;
   for (const record::BodySample& body : frame.bodies) present.push_back(body.present);
-  if (is_first_ || present != present_) scene_.write(ns, internal::scene_message(ns, header_, frame));
+  if (is_first_ || present != present_) scene_.write(ns, internal::scene_message(ns, header_, frame, looks_));
   present_ = std::move(present);
   if (!scenario_ || !scenario_->tool) return;
   const auto looks_alike = [](const record::CupSample& a, const record::CupSample& b) {
@@ -193,7 +212,10 @@ void Exporter::write_program(std::uint64_t ns, int row) {
 
 void Exporter::add(const record::Frame& frame) {
   const std::uint64_t ns = internal::to_ns(frame.time);
-  if (is_first_) write_static_frames(ns, frame);
+  if (is_first_) {
+    write_static_frames(ns, frame);
+    write_robot(ns);
+  }
   write_moving_frames(ns, frame);
   write_scene(ns, frame);
   write_program(ns, frame.program_row);
@@ -229,6 +251,10 @@ void attach_sources(McapWriter& writer, const record::RecordingReader& reader, c
                                {"interrupted", reader.is_interrupted() ? "true" : "false"}});
   if (!header.scenario_text.empty()) writer.attach("scenario.yaml", "application/yaml", header.scenario_text);
   if (!header.program_text.empty()) writer.attach("program.csv", "text/csv", header.program_text);
+  if (!header.robot.urdf.empty()) writer.attach("robot.urdf", "application/xml", header.robot.urdf);
+  for (const record::RobotFile& mesh : header.robot.meshes) {
+    writer.attach(mesh.name, "application/octet-stream", mesh.bytes);
+  }
   if (!reader.result().empty()) writer.attach("result.json", "application/json", reader.result());
 }
 
