@@ -24,9 +24,10 @@ namespace {
 using snug::app::Action;
 
 constexpr const char* kExamples = R"(Examples:
-  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
+  snug init cell my-cell
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --program program.csv -o run.h5
+  snug report run.h5 -o run.html
   snug simulate scenarios/drop.yaml --until 5 --json
-  snug cup evaluate deformations.jsonl
 `snug VERB --help` tells the options of a verb. Data goes to stdout, messages to stderr.
 Exit codes:
   0  done; boxes that were not packed, with their reasons, are a result too

@@ -19,6 +19,7 @@
 
 #include "browser.hpp"
 #include "outputs.hpp"
+#include "robot_files.hpp"
 #include "snug/core/descriptor.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -79,7 +80,8 @@ class Studio {
   Studio(const PictureOptions& options, record::RecordingReader& reader)
       : browser_(find_browser(), folder_.path() / "profile", options.width, options.height) {
     const std::string name = fs::path(options.recording).filename().string();
-    const replay::PageRecording recording{name, replay::encode_recording(reader, name, {})};
+    const replay::RobotDescription robot = find_robot(reader, options.recording, options.urdf);
+    const replay::PageRecording recording{name, replay::encode_recording(reader, name, {}, robot)};
     const fs::path page = folder_.path() / "page.html";
     write_file(page, replay::assemble_page(viewer_page(), {&recording, 1}));
     browser_.open(fmt::format("file://{}#picture=1&t={}&camera={}&theme={}&show={}&hide={}&size={}x{}", page.string(),

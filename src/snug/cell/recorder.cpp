@@ -3,10 +3,6 @@
 
 #include <algorithm>
 
-#include "snug/core/read_file.hpp"
-#include "snug/robot/load_arm.hpp"
-#include "snug/robot/visuals.hpp"
-
 namespace snug::cell {
 namespace {
 
@@ -43,19 +39,6 @@ record::BodyKind kind_of(physics::BodyKind kind) {
   return record::BodyKind::Dynamic;
 }
 
-/// Bytes of mesh files that a recording carries: a UR10's are 3 MB.
-constexpr std::size_t kMostMeshBytes = std::size_t{24} << 20U;
-
-record::RobotInfo robot_info(const model::Scenario& scenario) {
-  record::RobotInfo info;
-  const std::filesystem::path urdf = robot::urdf_path(scenario);
-  info.urdf = read_file(urdf, "a URDF");
-  for (robot::MeshFile& mesh : robot::read_visual_meshes(urdf, kMostMeshBytes)) {
-    info.meshes.push_back({std::move(mesh.name), std::move(mesh.bytes)});
-  }
-  return info;
-}
-
 record::RecordingHeader header_of(const model::Scenario& scenario, const CellWorld& world, const RecorderSetup& setup) {
   record::RecordingHeader header;
   header.scenario_text = scenario.source_text;
@@ -68,7 +51,6 @@ record::RecordingHeader header_of(const model::Scenario& scenario, const CellWor
   header.dt = scenario.time_step;
   header.record_period = setup.period;
   header.joints = setup.joints;
-  if (!setup.joints.empty() && scenario.robot) header.robot = robot_info(scenario);
   for (std::size_t i = 0; i < world.model.bodies.size(); ++i) {
     const physics::BodyModel& body = world.model.bodies[i];
     record::BodyInfo info;

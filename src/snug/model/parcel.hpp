@@ -77,7 +77,6 @@ struct Reported {
   std::string agent;
   std::optional<int> packed_count;        ///< how many of the first items
   std::optional<double> filling_percent;  ///< as printed, of whatever container the source counts with
-  std::string about = {};                 ///< who that is, for people who do not know the name; may be empty
   bool operator==(const Reported&) const = default;
 };
 

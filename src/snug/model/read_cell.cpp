@@ -269,12 +269,11 @@ void ScenarioReader::read_reported(const MapReader& map, Sequence& sequence) con
   const auto rows = map.find("reported");
   if (!rows) return;
   for (const Value& entry : rows->list()) {
-    const MapReader row = entry.map("reported", {"agent", "about", "packed_count", "filling_percent"});
+    const MapReader row = entry.map("reported", {"agent", "packed_count", "filling_percent"});
     const Value agent = row.require("agent");
     Reported one;
     one.agent = agent.name();
     for (const Reported& known : sequence.reported) check_new_name(agent, "agent", known.agent == one.agent);
-    if (const auto about = row.find("about")) one.about = about->name_or_empty();
     if (const auto packed = row.find("packed_count")) one.packed_count = read_count(*packed);
     if (const auto filling = row.find("filling_percent"))
       one.filling_percent = filling->number_within(0.0, 100.0, "a percentage");

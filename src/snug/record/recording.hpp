@@ -70,20 +70,6 @@ struct JointSample {
   bool operator==(const JointSample&) const = default;
 };
 
-/// A file that the description of a robot names.
-struct RobotFile {
-  std::string name;   ///< as the URDF writes it
-  std::string bytes;  ///< whole
-  bool operator==(const RobotFile&) const = default;
-};
-
-/// The robot as it was described, so that readers can draw it. Empty without a robot.
-struct RobotInfo {
-  std::string urdf;               ///< the whole file
-  std::vector<RobotFile> meshes;  ///< that its links are drawn with; none of those that were too large or not there
-  bool operator==(const RobotInfo&) const = default;
-};
-
 /// What ran. Fixed when the recording starts.
 struct RecordingHeader {
   std::string scenario_text;  ///< the whole file
@@ -98,7 +84,6 @@ struct RecordingHeader {
   std::vector<BodyInfo> bodies;
   std::vector<std::string> joints;  ///< names, base to tool; empty without a robot
   ContainerInfo container;
-  RobotInfo robot;
   bool operator==(const RecordingHeader&) const = default;
 };
 

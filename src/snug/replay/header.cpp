@@ -6,6 +6,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/geometry/convex_hull.hpp"
+#include "snug/model/reported_agent.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/replay/internal/robot_look.hpp"
@@ -128,9 +129,9 @@ Json visual_as_json(const robot::Visual& visual) {
   return {{"colour", {visual.rgba[0], visual.rgba[1], visual.rgba[2]}}, {"shape", std::move(shape)}};
 }
 
-Json looks_as_json(const record::RecordingHeader& header) {
+Json looks_as_json(const record::RecordingHeader& header, const RobotDescription& robot) {
   Json looks = Json::array();
-  for (const internal::LinkLook& look : internal::find_looks(header)) {
+  for (const internal::LinkLook& look : internal::find_looks(header, robot)) {
     Json parts = Json::array();
     for (const robot::Visual& visual : look.visuals) parts.push_back(visual_as_json(visual));
     looks.push_back({{"body", look.body}, {"parts", std::move(parts)}});
@@ -141,14 +142,14 @@ Json looks_as_json(const record::RecordingHeader& header) {
 /// Links of a robot are kinematic bodies whose names begin with this.
 constexpr const char* kLinkPrefix = "robot/";
 
-Json robot_as_json(const record::RecordingHeader& header) {
+Json robot_as_json(const record::RecordingHeader& header, const RobotDescription& robot) {
   Json links = Json::array();
   for (std::size_t i = 0; i < header.bodies.size(); ++i) {
     const record::BodyInfo& body = header.bodies[i];
     if (body.kind != record::BodyKind::Dynamic && body.name.starts_with(kLinkPrefix)) links.push_back(i);
   }
   if (links.empty()) return nullptr;
-  return {{"links", std::move(links)}, {"looks", looks_as_json(header)}};
+  return {{"links", std::move(links)}, {"looks", looks_as_json(header, robot)}};
 }
 
 Json frames_as_json(const std::optional<model::Scenario>& scenario) {
@@ -192,12 +193,14 @@ Json reported_as_json(const std::optional<model::Scenario>& scenario, const std:
   if (!first.filling_percent) return nullptr;
   Json agents = Json::array();
   for (const model::Reported& one : sequence->reported) {
-    if (one.filling_percent) agents.push_back({{"agent", one.agent}, {"about", one.about}, {"filling_percent", *one.filling_percent}});
+    const auto [name, about] = model::split_agent(one.agent);
+    if (one.filling_percent)
+      agents.push_back({{"agent", name}, {"about", about}, {"filling_percent", *one.filling_percent}});
   }
   Json table = {{"filling_percent", *first.filling_percent},
                 {"boxes", nullptr},
                 {"same_boxes_percent", nullptr},
-                {"agent", first.agent},
+                {"agent", model::split_agent(first.agent).name},
                 {"agents", std::move(agents)}};
   if (first.packed_count) {
     table["boxes"] = *first.packed_count;
@@ -316,7 +319,7 @@ std::string make_header_json(const HeaderInput& input) {
   json["bodies"] = bodies_as_json(header);
   json["container"] = container_as_json(header.container);
   json["tool"] = tool_as_json(header);
-  json["robot"] = robot_as_json(header);
+  json["robot"] = robot_as_json(header, input.robot);
   json["cup"] = nullptr;
   if (scenario && scenario->tool) {
     json["cup"] = {{"lip_radius", scenario->cup.lip_radius},

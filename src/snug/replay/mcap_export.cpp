@@ -60,7 +60,7 @@ std::vector<std::string> row_names(const record::RecordingHeader& header) {
 
 class Exporter {
  public:
-  Exporter(McapWriter& writer, const record::RecordingHeader& header);
+  Exporter(McapWriter& writer, const record::RecordingHeader& header, const RobotDescription& robot);
   void add(const record::Frame& frame);
   void add(const record::Event& event);
 
@@ -79,6 +79,7 @@ class Exporter {
   }
 
   const record::RecordingHeader& header_;
+  const RobotDescription& robot_;
   std::optional<model::Scenario> scenario_;
   std::vector<std::string> row_names_;
   Topic tf_static_, tf_, scene_, cup_scene_, events_, program_;
@@ -92,8 +93,9 @@ class Exporter {
   int row_ = -1;
 };
 
-Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header)
+Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header, const RobotDescription& robot)
     : header_(header),
+      robot_(robot),
       scenario_(scenario_of(header)),
       row_names_(row_names(header)),
       tf_static_(writer, "/tf_static", McapSchema::FrameTransforms),
@@ -110,15 +112,15 @@ Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header)
       flange_wrench_(writer, "/flange/wrench", McapSchema::WrenchStamped),
       solver_(writer, "/solver", McapSchema::SolverState) {
   if (!header.joints.empty()) joints_.emplace(writer, "/joint_states", McapSchema::JointState);
-  if (header.robot.urdf.empty()) return;
+  if (robot.urdf.empty()) return;
   description_.emplace(writer, "/robot_description", McapSchema::String);
-  looks_ = internal::find_looks(header, kMostTriangles);
+  looks_ = internal::find_looks(header, robot, kMostTriangles);
   if (!looks_.empty()) robot_scene_.emplace(writer, "/robot/scene", McapSchema::SceneUpdate);
 }
 
 void Exporter::write_robot(std::uint64_t ns) {
   if (description_) {
-    text_.raw("{\"data\":").quoted(header_.robot.urdf).raw("}");
+    text_.raw("{\"data\":").quoted(robot_.urdf).raw("}");
     send(*description_, ns);
   }
   if (robot_scene_) robot_scene_->write(ns, internal::robot_message(ns, header_, looks_));
@@ -239,7 +241,8 @@ std::vector<record::Event> events_within(const std::vector<record::Event>& all, 
   return events;
 }
 
-void attach_sources(McapWriter& writer, const record::RecordingReader& reader, const std::string& name) {
+void attach_sources(McapWriter& writer, const record::RecordingReader& reader, const std::string& name,
+                    const RobotDescription& robot) {
   const record::RecordingHeader& header = reader.header();
   writer.add_metadata("snug", {{"recording", name},
                                {"snug_version", header.version},
@@ -251,8 +254,8 @@ void attach_sources(McapWriter& writer, const record::RecordingReader& reader, c
                                {"interrupted", reader.is_interrupted() ? "true" : "false"}});
   if (!header.scenario_text.empty()) writer.attach("scenario.yaml", "application/yaml", header.scenario_text);
   if (!header.program_text.empty()) writer.attach("program.csv", "text/csv", header.program_text);
-  if (!header.robot.urdf.empty()) writer.attach("robot.urdf", "application/xml", header.robot.urdf);
-  for (const record::RobotFile& mesh : header.robot.meshes) {
+  if (!robot.urdf.empty()) writer.attach("robot.urdf", "application/xml", robot.urdf);
+  for (const robot::MeshFile& mesh : robot.meshes) {
     writer.attach(mesh.name, "application/octet-stream", mesh.bytes);
   }
   if (!reader.result().empty()) writer.attach("result.json", "application/json", reader.result());
@@ -261,10 +264,10 @@ void attach_sources(McapWriter& writer, const record::RecordingReader& reader, c
 }  // namespace
 
 McapTotals export_mcap(record::RecordingReader& reader, const std::string& name, const Selection& selection,
-                       OutputFile file, const McapSettings& settings) {
+                       OutputFile file, const McapSettings& settings, const RobotDescription& robot) {
   const std::vector<std::size_t> frames = select_frames(reader, name, selection);
   McapWriter writer(std::move(file), settings);
-  Exporter exporter(writer, reader.header());
+  Exporter exporter(writer, reader.header(), robot);
   const bool is_whole = selection == Selection{};
   const std::vector<double>& times = reader.times();
   const std::vector<record::Event> events =
@@ -278,7 +281,7 @@ McapTotals export_mcap(record::RecordingReader& reader, const std::string& name,
     exporter.add(frame);
   }
   for (; next < events.size(); ++next) exporter.add(events[next]);
-  attach_sources(writer, reader, name);
+  attach_sources(writer, reader, name, robot);
   writer.close();
   return {writer.size(), writer.message_count(), frames.size()};
 }

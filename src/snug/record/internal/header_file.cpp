@@ -13,8 +13,6 @@ namespace {
 // Each takes memory for each frame that is read; no run has had a hundredth of them.
 constexpr std::size_t kMostBodies = 20'000;
 constexpr std::size_t kMostJoints = 1000;
-constexpr const char* kRobotUrdf = "/robot/urdf";
-constexpr const char* kRobotMeshName = "/robot/mesh_name";
 constexpr const char* kPoseColumns = "x,y,z,qw,qx,qy,qz";
 
 void push(std::vector<double>& out, const Vector3& v) { out.insert(out.end(), {v.x(), v.y(), v.z()}); }
@@ -159,43 +157,6 @@ std::vector<BodyInfo> read_bodies(Source& source) {
   return bodies;
 }
 
-/// Names and sizes of the mesh files, and all their bytes one behind the other.
-void write_robot(hid_t file, const RobotInfo& robot) {
-  if (robot.urdf.empty()) return;
-  write_text(file, kRobotUrdf, robot.urdf);
-  if (robot.meshes.empty()) return;
-  std::vector<std::string> names;
-  std::vector<std::int64_t> sizes;
-  std::vector<std::uint8_t> bytes;
-  for (const RobotFile& mesh : robot.meshes) {
-    names.push_back(mesh.name);
-    sizes.push_back(static_cast<std::int64_t>(mesh.bytes.size()));
-    bytes.insert(bytes.end(), mesh.bytes.begin(), mesh.bytes.end());
-  }
-  write_texts(file, kRobotMeshName, names);
-  write_table(file, "/robot/mesh_size", 1, sizes, "bytes");
-  write_table(file, "/robot/mesh_data", 1, bytes, "");
-}
-
-RobotInfo read_robot(Source& source) {
-  RobotInfo robot;
-  if (!has_link(source.file(), "/robot") || !has_link(source.file(), kRobotUrdf)) return robot;
-  robot.urdf = read_text(source, kRobotUrdf);
-  if (!has_link(source.file(), kRobotMeshName)) return robot;
-  const std::vector<std::string> names = read_texts(source, kRobotMeshName);
-  const auto sizes = read_rows_of<std::int64_t>(source, "/robot/mesh_size", names.size());
-  const auto bytes = read_all<std::uint8_t>(source, "/robot/mesh_data");
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (sizes[i] < 0 || static_cast<std::size_t>(sizes[i]) > bytes.size() - at)
-      throw H5Error("/robot/mesh_size refers to bytes that do not exist");
-    const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(at);
-    robot.meshes.push_back({names[i], std::string(begin, begin + static_cast<std::ptrdiff_t>(sizes[i]))});
-    at += static_cast<std::size_t>(sizes[i]);
-  }
-  return robot;
-}
-
 }  // namespace
 
 void write_header(hid_t file, const RecordingHeader& header) {
@@ -216,7 +177,6 @@ void write_header(hid_t file, const RecordingHeader& header) {
   write_text(file, "/settings", header.settings);
   write_bodies(file, header.bodies);
   if (!header.joints.empty()) write_texts(file, kJointName, header.joints);
-  write_robot(file, header.robot);
   write_texts(file, "/container/name", {header.container.name});
   std::vector<double> poses;
   push(poses, header.container.X_WT);
@@ -241,7 +201,6 @@ RecordingHeader read_header(Source& source) {
   header.bodies = read_bodies(source);
   if (has_link(file, kJointName)) header.joints = read_texts(source, kJointName);
   if (header.joints.size() > kMostJoints) throw H5Error("more than " + std::to_string(kMostJoints) + " joints");
-  header.robot = read_robot(source);
   header.container.name = read_text(source, "/container/name");
   const auto poses = read_rows_of<double>(source, "/container/pose", 2, 7);
   header.container.X_WT = pose_at(poses, 0);

@@ -62,12 +62,11 @@ model::DrawnMesh merge_vertices(const model::DrawnMesh& mesh, double cell) {
   return result;
 }
 
-std::vector<LinkLook> find_looks(const record::RecordingHeader& header, std::size_t most_triangles) {
+std::vector<LinkLook> find_looks(const record::RecordingHeader& header, const RobotDescription& description,
+                                 std::size_t most_triangles) {
   std::vector<LinkLook> looks;
-  if (header.robot.urdf.empty()) return looks;
-  std::vector<robot::MeshFile> meshes;
-  for (const record::RobotFile& file : header.robot.meshes) meshes.push_back({file.name, file.bytes});
-  for (robot::LinkVisuals& link : robot::parse_visuals(header.robot.urdf, meshes)) {
+  if (description.urdf.empty()) return looks;
+  for (robot::LinkVisuals& link : robot::parse_visuals(description.urdf, description.meshes)) {
     const int body = record::find_body(header, "robot/" + link.link);
     if (body >= 0) looks.push_back({body, std::move(link.visuals)});
   }

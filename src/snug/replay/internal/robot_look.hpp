@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "snug/record/recording.hpp"
-#include "snug/robot/visuals.hpp"
+#include "snug/replay/robot_description.hpp"
 
 namespace snug::replay::internal {
 
@@ -17,8 +17,8 @@ struct LinkLook {
 /// Triangles that all links together have at most: what more there are is merged until they fit.
 inline constexpr std::size_t kMostTriangles = 40'000;
 
-/// The looks of the links that are bodies of the recording; empty where it has no description of the robot.
-[[nodiscard]] std::vector<LinkLook> find_looks(const record::RecordingHeader& header,
+/// The looks of the links that are bodies of the recording.
+[[nodiscard]] std::vector<LinkLook> find_looks(const record::RecordingHeader& header, const RobotDescription& robot,
                                                std::size_t most_triangles = kMostTriangles);
 
 /// Vertices of one cell of a grid become one, their mean; triangles that lose a corner are left out.

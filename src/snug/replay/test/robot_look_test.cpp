@@ -34,14 +34,19 @@ std::string as_obj(const model::DrawnMesh& mesh) {
   return text;
 }
 
-record::RecordingHeader header_with(const model::DrawnMesh& mesh) {
+record::RecordingHeader make_header() {
   record::RecordingHeader header;
   header.bodies.push_back({"robot/arm", "", record::BodyKind::Kinematic, 0.0, Vector3::Zero(), {}});
-  header.robot.urdf =
+  return header;
+}
+
+RobotDescription robot_with(const model::DrawnMesh& mesh) {
+  RobotDescription robot;
+  robot.urdf =
       "<robot name='r'><link name='arm'><visual><geometry><mesh filename='a.obj'/></geometry></visual></link>"
       "<link name='none'><visual><geometry><box size='1 1 1'/></geometry></visual></link></robot>";
-  header.robot.meshes.push_back({"a.obj", as_obj(mesh)});
-  return header;
+  robot.meshes.push_back({"a.obj", as_obj(mesh)});
+  return robot;
 }
 
 TEST(MergeVertices, MovesNoVertexFartherThanACellIsWide) {
@@ -58,14 +63,15 @@ TEST(MergeVertices, MovesNoVertexFartherThanACellIsWide) {
 }
 
 TEST(RobotLook, IsOfLinksThatAreBodiesAndHasAsManyTrianglesAsAPageMayHave) {
-  const record::RecordingHeader header = header_with(make_square(60));
-  const auto whole = find_looks(header, 100'000);
+  const record::RecordingHeader header = make_header();
+  const RobotDescription robot = robot_with(make_square(60));
+  const auto whole = find_looks(header, robot, 100'000);
   ASSERT_EQ(whole.size(), 1U);  // 'none' is no body of the recording
   EXPECT_EQ(whole[0].body, 0);
   EXPECT_EQ(std::get<model::DrawnMesh>(whole[0].visuals.at(0).shape).triangles.size(), 7200U);
-  const auto small = find_looks(header, 1000);
+  const auto small = find_looks(header, robot, 1000);
   EXPECT_LE(std::get<model::DrawnMesh>(small.at(0).visuals.at(0).shape).triangles.size(), 1000U);
-  EXPECT_TRUE(find_looks(record::RecordingHeader{}).empty());
+  EXPECT_TRUE(find_looks(header, RobotDescription{}).empty());
 }
 
 }  // namespace
