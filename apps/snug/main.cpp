@@ -59,7 +59,7 @@ void check_words(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   CLI::App app("snug simulates how a robot with a suction cup packs boxes, contact included.", "snug");
-  app.set_version_flag("--version", std::string("snug ") + version_text());
+  app.set_version_flag("--version", std::string("snug ") + snug::app::version_text());
   app.require_subcommand(0, 1);
   app.footer(kExamples);
   Action action;
