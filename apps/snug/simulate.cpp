@@ -8,9 +8,10 @@
 #include "program_fit.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
-#include "snug/cell/ensemble.hpp"
+#include "snug/cell/monte_carlo.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
@@ -84,6 +85,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   const std::string cup = options.cup ? *options.cup : run.program && is_own_program(*run.program) ? "phases" : "holding";
   run.simulation.cup = cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;
+  run.threads = options.threads.value_or(core_count());
   run.version = version_text();
   run.describe = [](const cell::RunResult& result) { return format_json(result); };
   return run;
@@ -99,13 +101,13 @@ NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scena
 int run_simulate(const SimulateOptions& options) {
   const model::Scenario scenario = load_with_overrides(options);
   cell::RunOptions run_options = make_run_options(options, scenario);
-  if (options.ensemble) {
-    if (!run_options.program) throw InputError("command line", "--ensemble", "no --program", "a program to run");
+  if (options.monte_carlo) {
+    if (!run_options.program) throw InputError("command line", "--monte-carlo", "no --program", "a program to run");
     if (options.record || options.csv) {
-      throw InputError("command line", "--ensemble", "with --record or --csv", "one of them");
+      throw InputError("command line", "--monte-carlo", "with --record or --csv", "one of them");
     }
-    const cell::EnsembleResult result =
-        cell::run_ensemble(scenario, run_options, {*options.ensemble, scenario.seed, options.threads, {}});
+    const cell::MonteCarloResult result =
+        cell::run_monte_carlo(scenario, run_options, {*options.monte_carlo, scenario.seed, run_options.threads});
     print(options.json ? format_json(result) : format_table(result));
     if (result.failed_runs == 0) return kSuccess;
     std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", result.failed_runs,
