@@ -18,8 +18,8 @@ LONG = 8.0  # s
 WAIT = 3600.0 if os.environ.get("SNUG_LONG") else LONG
 
 # Of these the beginning is enough: minutes of computing, or servers that end with Ctrl-C.
-LONG_COMMANDS = re.compile(r"snug (bench|view|compare|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--ensemble|"
-                           r"pack .*--executions|pack (?!.*--samples 0))")
+LONG_COMMANDS = re.compile(r"snug (bench|view|compare|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
+                           r"pack .*--monte-carlo|pack (?!.*--samples 0))")
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
 LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|\\| man |\.\.\./")
 MAY_FAIL = re.compile(r"snug (check|bench)")  # what they say no to is a result (exit code 1)
