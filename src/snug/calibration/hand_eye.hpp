@@ -1,7 +1,7 @@
 // Hand-eye: where a camera that stands in the cell is, from poses of a board, or of a box, that the robot holds before it.
 #pragma once
 
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
 
 namespace snug::calibration {
 
