@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "pack_report.hpp"
+#include "python_agent.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
 #include "snug/cell/run.hpp"
@@ -76,6 +77,7 @@ task::SessionOptions make_session_options(const PackOptions& options, const Sour
                                           const std::string& sequence) {
   task::SessionOptions session;
   session.agent = options.agent;
+  if (is_python_agent(options.agent)) session.ask = start_python_agent(options.agent);
   session.packing.seed = options.seed.value_or(loaded.scenario.seed);
   if (options.future == "own") session.future = own_future(loaded, sequence);
   session.packing.decision_time = options.decision_time;

@@ -20,6 +20,7 @@
 #include "program.hpp"
 #include "report.hpp"
 #include "simulate.hpp"
+#include "study.hpp"
 #include "validate.hpp"
 #include "view.hpp"
 
@@ -29,6 +30,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_simulate(app, action);
   add_pack(app, action);
   add_compare(app, action);
+  add_study(app, action);
   add_program(app, action);
   add_check(app, action);
   add_report(app, action);

@@ -16,7 +16,23 @@ YAML::Node as_yaml(const Vector3& v) {
 
 YAML::Node as_yaml(bool value) { return YAML::Node(value ? "true" : "false"); }
 
-std::string written(const YAML::Node& root, const std::string& text, const std::string& why) {
+/// Takes the key away first: a value that is an alias of another would change that too.
+void set(YAML::Node map, const char* key, const YAML::Node& value) {
+  map.remove(key);
+  map[key] = value;
+}
+
+YAML::Node find_entry(const YAML::Node& root, const std::string& container) {
+  for (const YAML::Node& entry : root["containers"]) {
+    if (entry["name"].Scalar() == container) return entry;
+  }
+  SNUG_CHECK(false, "a container of a loaded scenario stands in its text");
+  return {};
+}
+
+}  // namespace
+
+std::string text_of(const YAML::Node& root, const std::string& text, const std::string& why) {
   YAML::Emitter emitter;
   emitter << root;
   SNUG_CHECK(emitter.good(), "a tree that was read can be written");
@@ -34,29 +50,13 @@ std::string written(const YAML::Node& root, const std::string& text, const std::
   return notes + line + "\n" + emitter.c_str() + "\n";
 }
 
-/// Takes the key away first: a value that is an alias of another would change that too.
-void set(YAML::Node map, const char* key, const YAML::Node& value) {
-  map.remove(key);
-  map[key] = value;
-}
-
-YAML::Node find_entry(const YAML::Node& root, const std::string& container) {
-  for (const YAML::Node& entry : root["containers"]) {
-    if (entry["name"].Scalar() == container) return entry;
-  }
-  SNUG_CHECK(false, "a container of a loaded scenario stands in its text");
-  return {};
-}
-
-}  // namespace
-
 std::string text_with_items(const std::string& text, const YAML::Node& items, const std::string& why) {
   YAML::Node root = YAML::Load(text);
   for (const char* key : {"parcel_types", "parcels", "sequences"}) {
     if (!items[key]) continue;
     for (const YAML::Node& entry : items[key]) root[key].push_back(entry);
   }
-  return written(root, text, why);
+  return text_of(root, text, why);
 }
 
 std::string text_with_target(const std::string& text, const Container& container, const std::string& why) {
@@ -66,7 +66,7 @@ std::string text_with_target(const std::string& text, const Container& container
   set(entry, "walls", as_yaml(container.has_walls));
   set(entry, "holds_all", as_yaml(container.holds_all));
   set(root, "target", YAML::Node(container.name));
-  return written(root, text, why);
+  return text_of(root, text, why);
 }
 
 YAML::Node as_yaml(const ParcelType& type) {

@@ -57,6 +57,7 @@ class PackingSession {
     if (!plans_on_paper()) input.settings.last_squeeze = options_.last_squeeze;
     input.future = options_.future ? *options_.future : packing::make_future_model(scenario_);
     input.sequence = items_;
+    input.ask = options_.ask;
     input.is_reachable = make_reach(scenario_, executor_.layout(), executor_.real().simulation().sequence());
     const std::unique_ptr<packing::Agent> agent = packing::make_agent(options_.agent, std::move(input));
     if (plans_on_paper()) return execute(plan_on_paper(*agent), progress);
@@ -131,7 +132,7 @@ class PackingSession {
   }
 
  private:
-  [[nodiscard]] bool plans_on_paper() const { return options_.agent == "manual" || options_.agent == "offline"; }
+  [[nodiscard]] bool plans_on_paper() const { return !options_.ask && (options_.agent == "manual" || options_.agent == "offline"); }
 
   /// Percent in the end, on average, when this share of the courses of events goes well and the others end here.
   [[nodiscard]] double worth_of(const packing::Candidate& candidate, double share) const {
