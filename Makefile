@@ -45,8 +45,8 @@ acceptance: build ## run the demonstrator's own programs in FOLDER, print README
 	@python3 tools/acceptance.py "$(FOLDER)"
 
 python: setup-python ## build the Python module and install it: into VENV=DIR, else for /usr/bin/python3
-	@cmake --preset release --log-level=WARNING && cmake --build --preset release -j $(JOBS) --target snug_python
-	@scripts/install-python.sh build $(VENV)
+	@$(call configure-build,python,--log-level=WARNING)
+	@scripts/install-python.sh build-python $(VENV)
 
 install: build ## install the program, its scenarios and the libraries under PREFIX (/usr/local)
 	@cmake --install build --prefix "$(PREFIX)"
@@ -94,4 +94,4 @@ docs: setup ## check that every link in the documents leads somewhere
 	@python3 tools/check_docs.py .
 
 clean: ## remove what the verbs built
-	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz out
+	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz build-python out

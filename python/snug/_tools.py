@@ -33,7 +33,7 @@ class Cup(_core.Cup):
     Frames: S1 is fixed to the lip, S2 to the gripper; both coincide when the cup is not deformed. H = X_S2S1.
     """
 
-    def settle(self, mass: float, com: Any = (0.0, 0.0, 0.0), *, tool: Any = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
+    def settle(self, mass: float, com: Any = (0.0, 0.0, 0.0), tool: Any = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
                gravity: Any = (0.0, 0.0, -9.81)) -> Dict[str, Any]:
         """Where a load comes to rest under the cup that holds it.
 

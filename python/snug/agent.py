@@ -101,7 +101,7 @@ def answerer(agent: Any) -> Callable[[str], str]:
 
 def _find(words: str) -> Any:
     module, _, name = words.partition(":")
-    found = importlib.import_module(module)
+    found: Any = importlib.import_module(module)
     for part in name.split("."):
         found = getattr(found, part)
     return found() if isinstance(found, type) else found

@@ -6,8 +6,8 @@ from typing import Any, Dict as DictType, Optional, Sequence, Tuple
 import numpy as np
 
 try:
-    from gymnasium import Env
-    from gymnasium.spaces import Box, Dict, Discrete
+    from gymnasium import Env  # type: ignore[import]
+    from gymnasium.spaces import Box, Dict, Discrete  # type: ignore[import]
 
     HAS_GYMNASIUM = True
 except ImportError:
