@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <iterator>
 #include <span>
-#include <thread>
 
 #include "pack_report.hpp"
 #include "python_agent.hpp"
@@ -16,6 +15,7 @@
 #include "run_report.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/task/executions.hpp"
 
@@ -81,7 +81,7 @@ task::SessionOptions make_session_options(const PackOptions& options, const Sour
   session.packing.seed = options.seed.value_or(loaded.scenario.seed);
   if (options.future == "own") session.future = own_future(loaded, sequence);
   session.packing.decision_time = options.decision_time;
-  session.threads = options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  session.threads = options.threads.value_or(core_count());
   session.packing.threads = session.threads;
   session.samples = options.samples;
   if (options.look == "noisy") session.perception = task::Perception::Noisy;

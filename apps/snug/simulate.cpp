@@ -9,6 +9,7 @@
 #include "snug/cell/ensemble.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
@@ -74,6 +75,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
   if (options.cup) run.simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;
+  run.threads = options.threads.value_or(core_count());
   run.version = SNUG_VERSION;
   run.describe = [](const cell::RunResult& result) { return format_json(result); };
   return run;
@@ -95,7 +97,7 @@ int run_simulate(const SimulateOptions& options) {
       throw InputError("command line", "--ensemble", "with --record or --csv", "one of them");
     }
     const cell::EnsembleResult result =
-        cell::run_ensemble(scenario, run_options, {*options.ensemble, scenario.seed, options.threads, {}});
+        cell::run_ensemble(scenario, run_options, {*options.ensemble, scenario.seed, run_options.threads, {}});
     print(options.json ? format_json(result) : format_table(result));
     if (result.failed_runs == 0) return kSuccess;
     std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", result.failed_runs,

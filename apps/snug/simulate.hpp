@@ -31,7 +31,7 @@ struct SimulateOptions {
   std::optional<std::string> resume;      ///< recording to go on from
   std::optional<double> resume_at;        ///< s, instant of it
   std::optional<int> ensemble;            ///< run this many times under small random changes
-  int threads = 1;                        ///< of an ensemble
+  std::optional<int> threads;             ///< absent: all cores
   bool json = false;
 };
 

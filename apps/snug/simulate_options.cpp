@@ -53,6 +53,11 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--seed", options.seed, "seed of everything random, instead of the scenario's")
       ->check(whole(0))
       ->type_name("N");
+  verb.add_option(
+          "--threads", options.threads,
+          "threads of an ensemble or of a scene of many bodies; the result does not depend on it (default: all cores)")
+      ->check(whole(1, kMostThreads))
+      ->type_name("N");
 }
 
 void add_simulate(CLI::App& app, Action& action) {
@@ -65,10 +70,6 @@ void add_simulate(CLI::App& app, Action& action) {
                   "run the program N times with aligner, box sizes, friction and masses changed a little at random")
       ->check(whole(1, kMostRuns))
       ->type_name("N");
-  verb.add_option("--threads", options->threads, "threads of an ensemble; the result does not depend on it")
-      ->check(whole(1, kMostThreads))
-      ->type_name("N")
-      ->capture_default_str();
   verb.add_option("-o,--record", options->record, "write a recording")->type_name("FILE.h5");
   verb.add_option("--record-period", options->record_period,
                   "time between frames, instead of the scenario's or 0.008; whole steps, with a program whole ticks")

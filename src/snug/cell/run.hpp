@@ -22,6 +22,7 @@ struct RunOptions {
   std::string sequence;                    ///< name; needed with a program
   std::string corrections;                 ///< name of a layer of the scenario, or empty
   SimulationOptions simulation;
+  int threads = 1;                    ///< that share the work of a step; the result does not depend on it
   std::optional<double> until;        ///< s; absent: to the end of the program, or the scenario's duration
   std::filesystem::path record_path;  ///< HDF5, or empty
   OutputFile* record_file = nullptr;  ///< instead: from record::reserve_recording() before the work; taken; not owned

@@ -30,11 +30,11 @@ bool is_due(double time, double now) { return now >= time - 1e-12; }
 
 }  // namespace
 
-Scene::Scene(const model::Scenario& scenario)
+Scene::Scene(const model::Scenario& scenario, int threads)
     : scenario_(scenario),
       world_(with_holders(scenario, holders_)),
       state_(make_initial_state(scenario, world_)),
-      work_(world_.model),
+      work_(world_.model, threads),
       drop_plan_(plan_drops(scenario)) {
   for (const model::Spring& spring : scenario_.springs) {
     springs_.emplace_back(cup::as_matrix(spring.stiffness), cup::as_matrix(spring.damping), Pose{}, spring.X_BS,

@@ -20,7 +20,8 @@ struct SceneState {
 class Scene {
  public:
   /// At time 0, or where Scenario::initial_state says; throws InputError when that cannot be read.
-  explicit Scene(const model::Scenario& scenario);
+  /// `threads` share the work of large scenes; the bytes do not depend on their number.
+  explicit Scene(const model::Scenario& scenario, int threads = 1);
 
   /// One step of Scenario::time_step. A body that is lost in it is out of the world from then on.
   physics::StepReport advance();

@@ -32,8 +32,8 @@ struct CellState {
 
 /// Scratch memory and what is gathered on the way; one per thread. It has no influence on what happens.
 struct CellWorkspace {
-  explicit CellWorkspace(const physics::WorldModel& model, const model::ContactLimits& limits = {})
-      : physics(model), solver(limits) {}
+  CellWorkspace(const physics::WorldModel& model, const model::ContactLimits& limits, int threads)
+      : physics(model, threads), solver(limits) {}
   physics::Workspace physics;
   SolverMonitor solver;
   GripperStep gripper;
@@ -73,8 +73,9 @@ class Simulation {
 
   /// At time 0: the tool at its start, no box in the cell.
   [[nodiscard]] CellState make_state() const;
-  [[nodiscard]] CellWorkspace make_workspace() const {
-    return CellWorkspace(world_.model, scenario_.solver.contact_limits);
+  /// `threads` share the work of large cells; the bytes do not depend on their number.
+  [[nodiscard]] CellWorkspace make_workspace(int threads = 1) const {
+    return CellWorkspace(world_.model, scenario_.solver.contact_limits, threads);
   }
   /// The program with the limits and gains of scenario and sequence. Throws as motion::prepare.
   [[nodiscard]] motion::PreparedProgram prepare(motion::Program program) const;

@@ -11,6 +11,8 @@
 
 namespace snug {
 
+int core_count() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
 void parallel_for(int count, int threads, const std::function<void(int, int)>& job) {
   std::atomic<int> next{0};
   std::atomic<bool> has_failed{false};

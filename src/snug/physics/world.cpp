@@ -98,7 +98,8 @@ WorldState make_state(const WorldModel& model) {
   return state;
 }
 
-Workspace::Workspace(const WorldModel& model) : scratch_(std::make_unique<internal::Scratch>(model)) {}
+Workspace::Workspace(const WorldModel& model, int threads)
+    : scratch_(std::make_unique<internal::Scratch>(model, threads)) {}
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
@@ -117,7 +118,7 @@ std::size_t contact_capacity_of(const WorldModel& model) {
 
 }  // namespace
 
-internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size(), contact_capacity_of(model)) {
+internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads) {
   const std::size_t n = model.bodies.size();
   const std::size_t geom_count = model.geoms.size();
   const std::size_t contact_capacity = contact_capacity_of(model);
@@ -138,7 +139,12 @@ internal::Scratch::Scratch(const WorldModel& model) : newton(model.bodies.size()
   rows = BoundedVector<Row>(contact_capacity);
   reports = BoundedVector<ContactReport>(contact_capacity);
   islands.resize(n + 1);
-  element_bodies.reserve(n);
+  island_order.resize(n + 1);
+  workers.reserve(static_cast<std::size_t>(pool.size()));
+  for (int i = 0; i < pool.size(); ++i) {
+    workers.push_back({NewtonScratch(n, contact_capacity), {}, {}});
+    workers.back().element_bodies.reserve(n);
+  }
   merged_pairs = BoundedVector<PairState>(model.pair_capacity);
   keys.reserve(model.pair_capacity + 1);
   moved.reserve(geom_count);

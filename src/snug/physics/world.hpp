@@ -238,11 +238,12 @@ namespace internal {
 struct Scratch;
 }
 
-/// Scratch memory of step(); holds no state, at most what it need not compute again. One per thread, and of one model
-/// that does not change.
+/// Scratch memory of step(); holds no state, at most what it need not compute again. One per simulation under way, and
+/// of one model that does not change.
 class Workspace {
  public:
-  explicit Workspace(const WorldModel& model);
+  /// `threads` share the work of each step where there is enough of it; the bytes do not depend on their number.
+  explicit Workspace(const WorldModel& model, int threads = 1);
   ~Workspace();
   Workspace(Workspace&&) noexcept;
   Workspace& operator=(Workspace&&) noexcept;

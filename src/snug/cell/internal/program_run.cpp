@@ -24,7 +24,7 @@ class ProgramRun {
         simulation_(scenario, options.sequence, options.simulation),
         plan_(simulation_.prepare(corrected(scenario, *options.program, options.corrections))),
         state_(simulation_.make_state()),
-        work_(simulation_.make_workspace()) {
+        work_(simulation_.make_workspace(options.threads)) {
     if (scenario.initial_state) {
       throw InputError(scenario.source_name, "initial_state", "with a program",
                        "none: recordings do not hold where controller and gripper are; only scenes go on from one");

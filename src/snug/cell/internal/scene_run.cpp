@@ -20,7 +20,7 @@ constexpr double kRecordPeriod = 0.008;  ///< s
 
 RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  Scene scene(scenario);
+  Scene scene(scenario, options.threads);
   const double until = options.until.value_or(scenario.duration);
   const double period = scenario.record_period.value_or(kRecordPeriod);
   const auto stride = static_cast<std::int64_t>(std::max(1.0, std::round(period / scenario.time_step)));

@@ -16,6 +16,9 @@ constexpr double kPenalty = 300.0;     ///< of generalized steps, in units of 1 
 constexpr double kFlipCut = 3.0;       ///< of the penalty of a contact whose status changes from step to step
 constexpr double kFlipRecovery = 1.5;  ///< of the penalty of one whose status stays
 constexpr double kLeastFlipPenalty = 1.0;
+/// Of contacts whose status stays in islands that are solved and at rest: what a step leaves of a slow mode is 1 / p.
+constexpr double kSolvedPenalty = 3e4;
+constexpr double kSolvedGrowth = 30.0;
 constexpr double kEasyPenalty = 1e4;   ///< of the contacts that are condensed
 constexpr int kMaxFailedRounds = 2;    ///< of hard contacts
 constexpr int kMaxCycles = 12;         ///< while each three halve the residual
@@ -250,10 +253,11 @@ void IslandProblem::linearise(bool with_hard) {
       newton.status = generalized_law(row, newton.penalty, xi, newton.law);
       if (before != ContactStatus::Unknown) {
         if (before != newton.status) {
-          newton.penalty = std::max(kLeastFlipPenalty, newton.penalty / kFlipCut);
+          newton.penalty = std::max(kLeastFlipPenalty, std::min(kPenalty, newton.penalty) / kFlipCut);
           (void)generalized_law(row, newton.penalty, xi, newton.law);
         } else {
-          newton.penalty = std::min(kPenalty, newton.penalty * kFlipRecovery);
+          newton.penalty = is_solved() ? std::min(kSolvedPenalty, newton.penalty * kSolvedGrowth)
+                                       : std::min(kPenalty, newton.penalty * kFlipRecovery);
         }
       }
     } else {

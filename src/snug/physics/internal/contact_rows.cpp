@@ -65,6 +65,28 @@ void add_bias(const BodyWork& body, const Patch& patch, const Vector3& p_WQ, dou
   row.bias[2] += patch.t2.dot(v);
 }
 
+/// Normal speed for an impulse, 1/kg: of the contact alone, or of the bodies without turning.
+double normal_mobility(const Row& row, bool turns) {
+  double sum = 0.0;
+  for (int k = 0; k < (turns ? 6 : 3); ++k) {
+    if (row.ia >= 0) sum += row.a[0][k] * row.a[0][k];
+    if (row.ib >= 0) sum += row.b[0][k] * row.b[0][k];
+  }
+  return sum;
+}
+
+/// A spring at the middle of the step and a damper between there and its end, so placed that a body that bounces on its
+/// face decays as d says at any time step: docs/theory/contact.md, section 3.
+void fill_compliant_law(const ContactLaw& law, double dt, int points, const Contact& contact, Row& row) {
+  const double k = law.stiffness / points, d = law.damping / points;
+  const double x = law.stiffness * dt * dt * normal_mobility(row, false), y = d * dt * normal_mobility(row, true);
+  const double theta = y > 1e-3 ? 1.0 / -std::expm1(-y) - 1.0 / y : 0.5 + y / 12.0;
+  const double fitted = d * (1.0 + 0.25 * x * std::min(1.0, 4.0 * x / (y * y)));
+  const double to_end = 0.25 * k * dt + theta * fitted, to_start = 0.25 * k * dt + (1.0 - theta) * fitted;
+  row.gamma = 1.0 / (dt * to_end);
+  row.target = -(k * contact.phi + to_start * contact.approach) / to_end;
+}
+
 /// The law of one contact in this step: docs/theory/contact.md, section 3.
 void fill_law(const WorldModel& model, const Patch& patch, const Contact& contact, double free_velocity, Row& row) {
   const double dt = model.settings.dt;
@@ -76,10 +98,7 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
   row.is_bounce = false;
   row.is_rigid = law.stiffness <= 0.0;
   if (!row.is_rigid) {
-    const double k = law.stiffness / patch.contact_count, d = law.damping / patch.contact_count;
-    const double s = 0.5 * k * dt + d;
-    row.gamma = 1.0 / (dt * s);
-    row.target = -k * (contact.phi + 0.5 * dt * contact.approach) / s;
+    fill_compliant_law(law, dt, patch.contact_count, contact, row);
     return;
   }
   if (contact.phi + dt * mean > 0.0) {  // does not close by itself: may be pushed as far as closing

@@ -246,24 +246,56 @@ void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int g
 
 namespace {
 
-/// One pair. Returns whether it touches.
-bool visit_pair(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, std::uint32_t index,
-                double reach, double margin) {
-  PairState& pair = state.pairs[index];
-  const PairBodies bodies = bodies_of(model, pair);
+/// A held body may go through what is listed as not touching it.
+bool ignores_held(const PairBodies& bodies, const WorldInput& input) {
   const int held = input.held.index;
-  if (held >= 0 && ((bodies.a == held && !bodies.geom_b.touches_held_body) ||
-                    (bodies.b == held && !bodies.geom_a.touches_held_body))) {
-    pair.count = 0;
-    pair.is_known = false;
-    work.pair_memories[index] = {bodies.a, bodies.b, -1, -1.0, 0};
-    return false;
-  }
+  return held >= 0 && ((bodies.a == held && !bodies.geom_b.touches_held_body) ||
+                       (bodies.b == held && !bodies.geom_a.touches_held_body));
+}
+
+/// A manifold that holds for the present poses.
+void refresh_manifold(const PairBodies& bodies, const WorldState& state, const Scratch& work, double reach,
+                      double margin, PairState& pair) {
   const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
   const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
   const RelativePose now = relative_pose(a, state.bodies[static_cast<std::size_t>(bodies.a)], b,
                                          state.bodies[static_cast<std::size_t>(bodies.b)]);
   if (!has_kept(pair, now, reach)) find_manifold(bodies, a, b, margin, now, pair);
+}
+
+/// Manifolds of the pairs whose bodies move, on all threads; those of sleepers that wake are found later.
+void refresh_manifolds(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, double reach,
+                       double margin) {
+  constexpr std::size_t kLeastPairs = 1000;  // some 100 us of work
+  constexpr std::size_t kChunk = 128;
+  const std::size_t count = state.pairs.size();
+  if (work.pool.size() < 2 || count < kLeastPairs) return;
+  work.pool.run(static_cast<int>((count + kChunk - 1) / kChunk), [&](int chunk, int) {
+    const std::size_t first = kChunk * static_cast<std::size_t>(chunk);
+    for (std::size_t i = first; i < std::min(count, first + kChunk); ++i) {
+      PairState& pair = state.pairs[i];
+      const PairBodies bodies = bodies_of(model, pair);
+      const auto a = static_cast<std::size_t>(bodies.a), b = static_cast<std::size_t>(bodies.b);
+      if ((work.is_moving[a] == 0 && work.is_moving[b] == 0) || ignores_held(bodies, input)) continue;
+      const PairMemory& memory = work.pair_memories[i];
+      if (work.knows_pairs && memory.stamp >= std::max(work.still_since[a], work.still_since[b])) continue;
+      refresh_manifold(bodies, state, work, reach, margin, pair);
+    }
+  });
+}
+
+/// One pair. Returns whether it touches.
+bool visit_pair(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, std::uint32_t index,
+                double reach, double margin) {
+  PairState& pair = state.pairs[index];
+  const PairBodies bodies = bodies_of(model, pair);
+  if (ignores_held(bodies, input)) {
+    pair.count = 0;
+    pair.is_known = false;
+    work.pair_memories[index] = {bodies.a, bodies.b, -1, -1.0, 0};
+    return false;
+  }
+  refresh_manifold(bodies, state, work, reach, margin, pair);
   return add_contacts(model, bodies, index, reach, pair, work);
 }
 
@@ -286,6 +318,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   work.contacts.clear();
   work.has_too_many_contacts = false;
   std::fill_n(work.pair_done.begin(), state.pairs.size(), char{0});
+  refresh_manifolds(model, input, state, work, reach, margin);
   for (bool has_woken = true; has_woken;) {  // waking a group brings its pairs in
     has_woken = false;
     for (std::uint32_t i = 0; i < state.pairs.size(); ++i) {

@@ -107,15 +107,15 @@ void linearize_body(const WorldModel& model, const WorldInput& input, Scratch& w
   Eigen::Map<Vector6>(work.u.data() + 6 * b.active) = whiten(whitening, free.head<3>(), free.tail<3>());
 }
 
-void find_element_bodies(const WorldInput& input, Scratch& work, int island) {
-  work.element_bodies.clear();
+void find_element_bodies(const WorldInput& input, const Scratch& work, int island, std::vector<ElementBody>& found) {
+  found.clear();
   for (const ElementUse& use : input.elements) {
-    BodyWork& body = work.bodies[static_cast<std::size_t>(use.body.index)];
+    const BodyWork& body = work.bodies[static_cast<std::size_t>(use.body.index)];
     if (body.active < 0 || body.island != island) continue;
-    const bool is_known = std::any_of(work.element_bodies.begin(), work.element_bodies.end(),
-                                      [&](const ElementBody& known) { return known.body == use.body.index; });
+    const bool is_known =
+        std::any_of(found.begin(), found.end(), [&](const ElementBody& known) { return known.body == use.body.index; });
     if (is_known) continue;
-    work.element_bodies.emplace_back().body = use.body.index;
+    found.emplace_back().body = use.body.index;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "snug/core/bounded_vector.hpp"
+#include "snug/core/worker_pool.hpp"
 #include "snug/physics/internal/contact_newton.hpp"
 #include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/element_bodies.hpp"
@@ -90,8 +91,18 @@ struct Island {
   bool has_element = false;
 };
 
+/// What one thread solves islands with.
+struct IslandWorker {
+  NewtonScratch newton;
+  std::vector<ElementBody> element_bodies;  ///< of the island being solved
+  StepReport report;                        ///< of its islands of this step
+};
+
 struct Scratch {
-  explicit Scratch(const WorldModel& model);
+  Scratch(const WorldModel& model, int threads);
+
+  WorkerPool pool;
+  std::vector<IslandWorker> workers;  ///< one of each of the pool's
 
   std::uint64_t stamp = 0;  ///< of the state that the memories and the arrays below belong to
   bool knows_state = false;
@@ -112,13 +123,12 @@ struct Scratch {
   BoundedVector<Contact> contacts;  ///< by patch
   std::vector<int> patch_order;     ///< patches by island
   BoundedVector<Row> rows;
-  NewtonScratch newton;
   BoundedVector<ContactReport> reports;
   bool has_reports = false;
   double dt = 0.0;
   std::vector<Island> islands;
   int island_count = 0;
-  std::vector<ElementBody> element_bodies;  ///< of the island being solved
+  std::vector<int> island_order;  ///< those with most rows first
   bool has_too_many_contacts = false;
 
   BoundedVector<PairState> merged_pairs;  ///< broad phase

@@ -2,6 +2,7 @@
 // force elements act.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "snug/physics/internal/scratch.hpp"
 
@@ -41,11 +42,12 @@ void read_velocities(Scratch& work, const Island& island) {
 }
 
 void solve_plain_island(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island,
-                        StepReport& report) {
+                        IslandWorker& worker) {
+  StepReport& report = worker.report;
   build_rows(model, state, work, island, true);
   const SolveResult result =
       solve_rows(model.settings, residuals_of(model, work, island), work.rows.begin() + island.first_row,
-                 work.rows.begin() + island.end_row, work.u.data(), work.newton);
+                 work.rows.begin() + island.end_row, work.u.data(), worker.newton);
   report.sweeps = std::max(report.sweeps, result.iterations);
   report.residual = std::max(report.residual, result.residual);
   if (!result.has_converged) report.status = StepStatus::NotConverged;
@@ -64,10 +66,17 @@ void reset_plain_bodies(Scratch& work, const Island& island) {
   }
 }
 
+/// Of several the one with the lowest index.
+void name_culprit(BodyId culprit, StepReport& report) {
+  if (culprit.is_valid() && (!report.culprit.is_valid() || culprit < report.culprit)) report.culprit = culprit;
+}
+
 void solve_element_island(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work,
-                          int index, StepReport& report) {
+                          int index, IslandWorker& worker) {
   const Island& island = work.islands[static_cast<std::size_t>(index)];
-  find_element_bodies(input, work, index);
+  StepReport& report = worker.report;
+  BodyId culprit;
+  find_element_bodies(input, work, index, worker.element_bodies);
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
   SolveResult result;
@@ -76,18 +85,18 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
   bool agrees = false;  // the wrenches with their linearisation
   for (int iteration = 0; iteration <= kElementIterations; ++iteration) {
     error = 0.0;
-    for (ElementBody& body : work.element_bodies) {
+    for (ElementBody& body : worker.element_bodies) {
       error = std::max(error, evaluate_body(model, input, work, body));
-      if (!body.forces.wrench.allFinite() && !report.culprit.is_valid()) report.culprit = BodyId{body.body};
+      if (!body.forces.wrench.allFinite() && !culprit.is_valid()) culprit = BodyId{body.body};
     }
     agrees = iteration > 0 && error <= model.settings.tolerance;
-    if (report.culprit.is_valid() || agrees || iteration == kElementIterations) break;
-    for (const ElementBody& body : work.element_bodies) linearize_body(model, input, work, body);
+    if (culprit.is_valid() || agrees || iteration == kElementIterations) break;
+    for (const ElementBody& body : worker.element_bodies) linearize_body(model, input, work, body);
     reset_plain_bodies(work, island);
     build_rows(model, state, work, island, iteration == 0);
-    if (first != end) result = solve_rows(model.settings, residuals, first, end, work.u.data(), work.newton);
+    if (first != end) result = solve_rows(model.settings, residuals, first, end, work.u.data(), worker.newton);
     report.sweeps = std::max(report.sweeps, result.iterations);
-    for (const ElementBody& body : work.element_bodies) {
+    for (const ElementBody& body : worker.element_bodies) {
       BodyWork& b = work.bodies[static_cast<std::size_t>(body.body)];
       unwhiten(work.whitening[static_cast<std::size_t>(b.active)], work.u.data() + 6 * b.active, b.velocity, b.angular);
     }
@@ -95,6 +104,7 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
   report.residual = std::max(report.residual, result.residual);
   if (!result.has_converged || !agrees) report.status = StepStatus::NotConverged;
   report.element_residual = std::max(report.element_residual, error);
+  name_culprit(culprit, report);
 }
 
 /// What the next step starts from.
@@ -106,6 +116,44 @@ void keep_impulses(const Row* first, const Row* end, WorldState& state, const Sc
     state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)] = {row->lambda[0], row->lambda[1],
                                                                                  row->lambda[2]};
   }
+}
+
+/// Islands are independent: each touches only its own rows, bodies and pairs.
+void solve_island(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, int index,
+                  IslandWorker& worker) {
+  const Island& island = work.islands[static_cast<std::size_t>(index)];
+  if (island.has_element) {
+    solve_element_island(model, input, state, work, index, worker);
+  } else {
+    solve_plain_island(model, state, work, island, worker);
+  }
+  Row* first = work.rows.begin() + island.first_row;
+  Row* end = work.rows.begin() + island.end_row;
+  keep_impulses(first, end, state, work);
+  correct_positions(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
+  read_velocities(work, island);
+}
+
+/// Those with most rows first, so that threads end at about the same time. Whether it pays to share them.
+bool order_islands(Scratch& work) {
+  constexpr int kLeastShared = 200;  // rows beside the largest island, about 50 us of work
+  const auto first = work.island_order.begin(), end = first + work.island_count;
+  std::iota(first, end, 0);
+  if (work.pool.size() < 2) return false;
+  const auto rows_of = [&work](int i) {
+    const Island& island = work.islands[static_cast<std::size_t>(i)];
+    return island.end_row - island.first_row;
+  };
+  std::sort(first, end, [&](int a, int b) { return rows_of(a) != rows_of(b) ? rows_of(a) > rows_of(b) : a < b; });
+  return work.island_count > 1 && static_cast<int>(work.rows.size()) - rows_of(*first) >= kLeastShared;
+}
+
+void add_report(const StepReport& part, StepReport& report) {
+  report.sweeps = std::max(report.sweeps, part.sweeps);
+  report.residual = std::max(report.residual, part.residual);
+  report.element_residual = std::max(report.element_residual, part.element_residual);
+  if (part.status != StepStatus::Converged) report.status = part.status;
+  name_culprit(part.culprit, report);
 }
 
 }  // namespace
@@ -176,20 +224,18 @@ void solve_islands(const WorldModel& model, const WorldInput& input, WorldState&
   }
   work.rows.resize(work.contacts.size());
   std::fill_n(work.shift.begin(), 6 * work.active_count, 0.0);
-  for (int i = 0; i < work.island_count; ++i) {
-    const Island& island = work.islands[static_cast<std::size_t>(i)];
-    if (island.has_element) {
-      solve_element_island(model, input, state, work, i, report);
-      if (report.culprit.is_valid()) return;
-    } else {
-      solve_plain_island(model, state, work, island, report);
-    }
-    Row* first = work.rows.begin() + island.first_row;
-    Row* end = work.rows.begin() + island.end_row;
-    keep_impulses(first, end, state, work);
-    correct_positions(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
-    read_velocities(work, island);
+  const bool is_shared = order_islands(work);
+  for (IslandWorker& worker : work.workers) worker.report = StepReport{};
+  const auto solve = [&](int i, int worker) {
+    solve_island(model, input, state, work, work.island_order[static_cast<std::size_t>(i)],
+                 work.workers[static_cast<std::size_t>(worker)]);
+  };
+  if (is_shared) {
+    work.pool.run(work.island_count, solve);
+  } else {
+    for (int i = 0; i < work.island_count; ++i) solve(i, 0);
   }
+  for (const IslandWorker& worker : work.workers) add_report(worker.report, report);
 }
 
 }  // namespace snug::physics::internal
