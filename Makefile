@@ -5,7 +5,7 @@ MODULE ?=
 FOLDER ?= ../shared/data/waypoints
 PREFIX ?= /usr/local
 SCENARIO := scenarios/box-demonstrator.yaml
-SOURCES = $(shell find src apps bench tests examples -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
+SOURCES = $(shell find src apps bench tests examples python -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
 
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)

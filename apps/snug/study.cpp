@@ -34,7 +34,7 @@ fs::path folder_of(const StudyOptions& options) {
 int run_row(const std::vector<std::string>& words) {
   std::vector<std::string> all = {"snug"};
   all.insert(all.end(), words.begin(), words.end());
-  const bool takes_all = words.front() == "pack" || words.front() == "compare";
+  const bool takes_all = words.front() == "pack" || words.front() == "compare" || words.front() == "simulate";
   if (takes_all && std::ranges::find(words, "--threads") == words.end()) all.insert(all.end(), {"--threads", "1"});
   std::vector<char*> argv;
   for (std::string& word : all) argv.push_back(word.data());

@@ -10,7 +10,6 @@
 #include <mutex>
 #include <string>
 
-#include "snug/physics/world.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::python {

@@ -52,7 +52,7 @@ def test_environment(tmp_path):
 def test_examples_are_ten_lines(name):
     lines = [line for line in (EXAMPLES / name).read_text().splitlines()[1:]
              if line.strip() and not line.startswith(("import", "from"))]
-    assert len(lines) <= 12, name
+    assert len(lines) <= 10, name
 
 
 def test_the_notebook_shows_the_report(monkeypatch):

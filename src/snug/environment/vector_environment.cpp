@@ -2,9 +2,9 @@
 #include "snug/environment/vector_environment.hpp"
 
 #include <algorithm>
+#include <exception>
 
 #include "snug/core/input_error.hpp"
-#include "snug/core/parallel.hpp"
 #include "snug/core/rng.hpp"
 
 namespace snug::environment {
@@ -18,8 +18,7 @@ VectorEnvironment::VectorEnvironment(std::vector<Environment> environments, int 
     : environments_(std::move(environments)),
       seeds_(environments_.size()),
       episodes_(environments_.size()),
-      reasons_(environments_.size()),
-      threads_(threads) {
+      reasons_(environments_.size()) {
   if (environments_.empty()) throw InputError("environments", "", "none", "one or more");
   if (threads < 1 || threads > 256) throw InputError("environments", "threads", std::to_string(threads), "1 .. 256");
   const Environment& first = environments_.front();
@@ -30,14 +29,23 @@ VectorEnvironment::VectorEnvironment(std::vector<Environment> environments, int 
     throw InputError("environments", "scenarios", "containers or numbers of boxes that differ",
                      "observations of one shape");
   }
+  pool_ = std::make_unique<WorkerPool>(threads);
 }
 
 void VectorEnvironment::for_each(const std::function<void(int)>& job) {
-  const int blocks = threads_ == 1 ? 1 : std::min(count(), threads_ * kBlocksAThread);
-  parallel_for(blocks, threads_, [&](int block, int) {
+  const int blocks = pool_->size() == 1 ? 1 : std::min(count(), pool_->size() * kBlocksAThread);
+  std::vector<std::exception_ptr> errors(static_cast<std::size_t>(blocks));
+  pool_->run(blocks, [&](int block, int) {
     const int end = static_cast<int>(static_cast<std::int64_t>(block + 1) * count() / blocks);
-    for (int i = static_cast<int>(static_cast<std::int64_t>(block) * count() / blocks); i < end; ++i) job(i);
+    try {
+      for (int i = static_cast<int>(static_cast<std::int64_t>(block) * count() / blocks); i < end; ++i) job(i);
+    } catch (...) {
+      errors[static_cast<std::size_t>(block)] = std::current_exception();
+    }
   });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
 }
 
 void VectorEnvironment::reset(std::span<const std::uint64_t> seeds, const Observe& observe) {

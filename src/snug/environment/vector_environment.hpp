@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "snug/core/worker_pool.hpp"
 #include "snug/environment/environment.hpp"
 
 namespace snug::environment {
@@ -29,7 +31,6 @@ class VectorEnvironment {
   void step(std::span<const Action> actions, const BatchView& results, const Observe& observe);
 
   [[nodiscard]] int count() const { return static_cast<int>(environments_.size()); }
-  [[nodiscard]] int threads() const { return threads_; }
   [[nodiscard]] const Environment& environment(int index) const {
     return environments_[static_cast<std::size_t>(index)];
   }
@@ -37,13 +38,14 @@ class VectorEnvironment {
   [[nodiscard]] std::string_view reason(int index) const { return reasons_[static_cast<std::size_t>(index)]; }
 
  private:
+  /// Throws what the job of the lowest index throws.
   void for_each(const std::function<void(int)>& job);
 
   std::vector<Environment> environments_;
   std::vector<std::uint64_t> seeds_;
   std::vector<std::uint64_t> episodes_;
   std::vector<std::string_view> reasons_;
-  int threads_ = 1;
+  std::unique_ptr<WorkerPool> pool_;
 };
 
 }  // namespace snug::environment

@@ -132,7 +132,9 @@ class PackingSession {
   }
 
  private:
-  [[nodiscard]] bool plans_on_paper() const { return !options_.ask && (options_.agent == "manual" || options_.agent == "offline"); }
+  [[nodiscard]] bool plans_on_paper() const {
+    return !options_.ask && (options_.agent == "manual" || options_.agent == "offline");
+  }
 
   /// Percent in the end, on average, when this share of the courses of events goes well and the others end here.
   [[nodiscard]] double worth_of(const packing::Candidate& candidate, double share) const {
