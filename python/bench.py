@@ -79,7 +79,7 @@ def main():
     world = snug.World(snug.parse_scenario(floor))
     many = per_call(lambda: world.step(1000), 20) / 1000
     row("overhead of a step", f"{1e6 * (per_call(world.step, 20000) - many):.2f} us", "<= 2 us")
-    result = snug.pack(scenario, "1", agent="margin", samples=0, decision_time=0.01, threads=1)
+    result = snug.pack(scenario, "1", agent="margin", samples=0, robot="none", decision_time=0.01, threads=1)
     cell = snug.Cell(scenario, "1", result.program)
     cell.step(5000)
     row(f"all poses of the cell, {len(cell.names)} bodies, a new array", f"{1e6 * per_call(cell.poses, 20000):.2f} us", "<= 5 us")

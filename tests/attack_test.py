@@ -353,11 +353,13 @@ class Options(Attack):
         pack = ("pack", CELL, "--sequence", "1")
         orders = ROOT / "scenarios" / "orders-example.csv"
         cases = [
-            (run, "--ensemble", "1 to 10000"),
-            (run + ("--ensemble", "2"), "--threads", "1 to 256"),
+            (run, "--monte-carlo", "1 to 10000"),
+            (run + ("--monte-carlo", "2"), "--threads", "1 to 256"),
             (pack, "--threads", "1 to 256"),
             (pack, "--samples", "0 to 64"),
-            (pack, "--executions", "1 to 10000"),
+            (pack, "--monte-carlo", "1 to 10000"),
+            (pack, "--skips", "0 to 1000"),
+            (("compare", CELL), "--plants", "1 to 10000"),
             (pack, "--decision-time", "0 to 3600"),
             (("compare", CELL), "--random", "1 to 10000"),
             (("compare", CELL, "--sequences", "1"), "--threads", "1 to 256"),
@@ -394,7 +396,7 @@ class Options(Attack):
     def test_as_many_threads_as_allowed_work(self):
         program = self.folder / "p.csv"
         self.assertEqual(snug("program", CELL, ROOT / "scenarios/demo-placements.yaml", "--sequence", "1", "-o", program).code, 0)
-        answer = snug("simulate", CELL, "--sequence", "1", "--program", program, "--until", "0.1", "--ensemble", "2",
+        answer = snug("simulate", CELL, "--sequence", "1", "--program", program, "--until", "0.1", "--monte-carlo", "2",
                       "--threads", "256")
         self.assertEqual(answer.code, 0, answer.stderr)
 

@@ -82,5 +82,53 @@ class CheckModules(unittest.TestCase):
         self.assert_refused({"src/snug/stray/stray.cpp": "// Stray.\n"}, "stray.cpp:1:", "declares no module")
 
 
+class Planner(unittest.TestCase):
+    """A planner cannot name a plant's state: no chain of declared modules leads there, and no include."""
+
+    ROOT = Path(__file__).resolve().parent.parent
+    HIDDEN = ("simulated_plant", "study")
+
+    def setUp(self):
+        sys.path.insert(0, str(TOOL.parent))
+        import check_modules
+        self.check_modules = check_modules
+
+    def test_no_chain_of_modules_leads_from_the_session_to_a_plant_s_truth(self):
+        modules = self.check_modules.declared_modules(self.ROOT / "src" / "snug")
+        problems = []
+        reachable = self.check_modules.check_declarations(modules, problems)
+        self.assertEqual(problems, [])
+        for planner in ("session", "plant", "perception", "packing"):
+            self.assertFalse(reachable[planner] & set(self.HIDDEN), planner)
+        self.assertIn("simulated_plant", reachable["study"])
+
+    def test_no_file_of_the_planner_includes_one_of_a_plant_s_truth(self):
+        for planner in ("session", "plant", "perception", "packing"):
+            files = [path for path in self.check_modules.source_files(self.ROOT)
+                     if self.ROOT / "src" / "snug" / planner in path.parents]
+            self.assertTrue(files, planner)
+            for path in files:
+                for line in path.read_text().splitlines():
+                    match = self.check_modules.INCLUDE.match(line)
+                    if match:
+                        self.assertNotIn(Path(match.group(2)).parts[1:2], [(name,) for name in self.HIDDEN], path)
+
+    def test_an_include_of_it_would_be_refused(self):
+        session = self.ROOT / "src" / "snug" / "session"
+        texts = {"src/snug/simulated_plant/CMakeLists.txt": "snug_module(simulated_plant HEADERS simulated_plant.hpp)\n",
+                 "src/snug/simulated_plant/simulated_plant.hpp": "// Truth.\n",
+                 "src/snug/session/CMakeLists.txt": "snug_module(session HEADERS session.hpp DEPENDS low)\n",
+                 "src/snug/session/session.hpp": '#include "snug/simulated_plant/simulated_plant.hpp"\n'}
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in {**SOUND, **texts}.items():
+                path = Path(folder) / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+            problems, _ = self.check_modules.check(Path(folder))
+        self.assertEqual(len(problems), 1)
+        self.assertIn("module 'session' does not declare 'simulated_plant'", problems[0])
+        self.assertTrue((session / "session.hpp").exists())
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -831,7 +831,7 @@ class OtherCells(unittest.TestCase):
 
     ORDERS = ("order,article,length_mm,width_mm,height_mm,mass_kg,count,upright_only,no_stack,max_load_kg\n"
               "two,cup,120,110,105,0.3,1,1,0,1.0\ntwo,tray,180,150,60,0.5,1,0,1,\nhuge,crate,800,700,650,6,1,0,0,\n")
-    QUICK = ("--samples", 0, "--decision-time", 0.02)
+    QUICK = ("--samples", 0, "--decision-time", 0.02, "--robot", "none")
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -848,14 +848,14 @@ class OtherCells(unittest.TestCase):
     def test_order_is_packed_into_another_container_and_its_program_and_recording_go_on(self):
         program, plan, recording = (self.folder / name for name in ("out.csv", "plan.json", "out.h5"))
         cell = ("--items", self.orders, "--container", "400x300x200")
-        packed = self.pack("--container", "400x300x200", "--sequence", "two", "--program", program, "--plan", plan,
-                           "-o", recording)
+        packed = self.pack("--container", "400x300x200", "--sequence", "two", "--plant-seed", 0, "--program", program,
+                           "--plan", plan, "-o", recording)
         self.assertEqual((packed["planned_boxes"], packed["executed_boxes"]), (2, 2))
         volume = 0.120 * 0.110 * 0.105 + 0.180 * 0.150 * 0.060
         self.assertAlmostEqual(packed["executed_percent"], 100 * volume / (0.4 * 0.3 * 0.2), places=6)
         run = json.loads(snug("simulate", CELL, *cell, "--program", program, "--sequence", "two", "--cup", "phases",
                               "--json").stdout)
-        self.assertEqual(run["state_hash"], packed["state_hash"])
+        self.assertEqual([box["state"] for box in run["boxes"]], ["packed"] * 2)
         self.assertEqual(snug("simulate", CELL, "--program", program, "--sequence", "two").returncode, 2)
         checked = snug("check", CELL, *cell, "--program", program, "--sequence", "two", "--json")
         found = json.loads(checked.stdout)
@@ -897,12 +897,11 @@ class OtherCells(unittest.TestCase):
                          + "".join(f"      - {{parcel: {id}, up: Z}}\n" for id in ids))
         program = self.folder / "any.csv"
         words = (CELL, "--items", items, "--sequence", "any")
-        packed = json.loads(snug("pack", *words, *self.QUICK, "--program", program, "--json").stdout)
+        packed = json.loads(snug("pack", *words, *self.QUICK, "--plant-seed", 0, "--program", program, "--json").stdout)
         self.assertEqual(packed["executed_boxes"], len(ids), packed["stopped"])
         for id in ids:
             self.assertIn(f",PrePick({id}),", program.read_text())
         run = json.loads(snug("simulate", *words, "--program", program, "--cup", "phases", "--json").stdout)
-        self.assertEqual(run["state_hash"], packed["state_hash"])
         self.assertEqual([box["state"] for box in run["boxes"]], ["packed"] * len(ids))
         comma = snug("pack", CELL, "--sequence", "any", "--items", self.write_items("a,b"))
         self.assert_refused(comma, "parcels[0].id", "without commas")
@@ -931,7 +930,7 @@ class OtherCells(unittest.TestCase):
         table = snug("pack", CELL, "--items", self.orders, "--sequence", "two", *self.QUICK).stdout
         line = next(line for line in table.splitlines() if line.startswith("ITEM000001"))
         self.assertNotIn("%", line)
-        self.assertEqual([line.split()[-4], line.split()[-2]], ["-", "-"])
+        self.assertEqual(line.split().count("-"), 2, "neither a success rate nor a force")
 
     def test_comparison_prints_names_whole(self):
         lines = snug("compare", CELL, "--sequences", "1", "--agents", "margin", *self.QUICK).stdout.splitlines()
@@ -939,7 +938,8 @@ class OtherCells(unittest.TestCase):
         for agent, cell in table7.items():
             line = next(line for line in lines if line.startswith(f"reported, {agent} "))
             self.assertIn(cell, line)
-        self.assertEqual(len({len(line) for line in lines}), 1, "columns stand below each other")
+        reported = [line for line in lines if line.startswith("reported")]
+        self.assertEqual(len({len(line) for line in reported}), 1, "columns stand below each other")
 
     def test_container_too_small_for_anything_is_a_reason(self):
         packed = self.pack("--sequence", "two", "--container", "60x60x60")
@@ -968,7 +968,8 @@ class OtherCells(unittest.TestCase):
         self.assertEqual([row["sequence"] for row in rows["rows"]], ["random-1", "random-2"])
         mean = sum(row["executed_percent"] for row in rows["rows"]) / 2
         self.assertAlmostEqual(rows["means"][0]["executed_percent"], mean, places=9)
-        self.assertIn(f"{mean:.2f}", table.stdout.splitlines()[-1])
+        summary = [line for line in table.stdout.splitlines() if line.startswith("contact-aware ")][-1]
+        self.assertIn(f" {mean:.2f} ", summary)
         drawn = snug("items", "sequence", CELL, "--all", "--name", "random", "--sequences", 1, "--seed", 3)
         self.assertEqual(drawn.stdout.count("parcel:"), 18)
 

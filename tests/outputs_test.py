@@ -18,7 +18,7 @@ from cli_test import CELL, DROP, LOAD, ROOT, SNUG, snug
 
 ORDERS = ROOT / "scenarios" / "orders-example.csv"
 PLACEMENTS = ROOT / "scenarios" / "demo-placements.yaml"
-QUICK = ("--samples", 0, "--decision-time", 0.02)
+QUICK = ("--samples", 0, "--decision-time", 0.02, "--robot", "none")
 COMMIT_BYTE = 2**62 + 1  # docs/formats.md, "While a run goes on"
 
 
@@ -399,7 +399,7 @@ class ExitCodes(Folder):
         items = ("--items", self.one_box(), *QUICK, "--json")
         for scenario, code in ((CELL, 0), (cell, 1)):
             with self.subTest(code=code):
-                failure = "on the way home: the rows did not end within two hours" if code else ""
+                failure = "on the way home: timeout: after 60.0 s toward home" if code else ""
                 result = snug("pack", scenario, "--sequence", "one", *items, "--program", program)
                 self.assertEqual(result.returncode, code, result.stderr)
                 self.assertEqual(json.loads(result.stdout)["executed_boxes"], 1, "it is the way home that fails")
@@ -412,9 +412,9 @@ class ExitCodes(Folder):
                 self.assertEqual(json.loads(result.stdout)["rows"][0]["failure"], failure)
                 self.assertEqual("1 of 1 sessions did not reach their end" in result.stderr, code == 1)
 
-    def test_ensemble_with_a_run_that_does_not_reach_its_end_is_exit_1(self):
+    def test_monte_carlo_with_a_run_that_does_not_reach_its_end_is_exit_1(self):
         program = self.folder / "far.csv"
-        words = ("simulate", CELL, "--program", program, "--sequence", "1", "--robot", "ur10", "--ensemble", 2, "--json")
+        words = ("simulate", CELL, "--program", program, "--sequence", "1", "--robot", "ur10", "--monte-carlo", 2, "--json")
         for text, code in ((cli_test.Robot.NEAR, 0), (cli_test.Robot.NEAR + cli_test.Robot.FAR, 1)):
             program.write_text(text)
             result = snug(*words)

@@ -41,7 +41,7 @@ class Shell(unittest.TestCase):
         self.assertEqual(sorted(complete("cup", "")), ["evaluate", "settle"])
         self.assertEqual(complete("pack", "scenario.yaml", "--sequ"), ["--sequence"])
         self.assertEqual(complete("pack", "--agent", "mar"), ["margin"])
-        self.assertEqual(complete("pack", "--agent", "margin", "--loo"), ["--look"])
+        self.assertEqual(complete("pack", "--agent", "margin", "--perc"), ["--perception"])
 
     def test_bash_leaves_names_of_files_to_the_shell(self):
         self.assertEqual(complete("pack", "--program", ""), [])

@@ -155,7 +155,7 @@ class Study(Scratch):
                                              "    print('not an answer')\n    return candidates[:4]\n"
                                              "class Broken:\n  def decide(self, *_):\n    raise ValueError('oh')\n")
         scenario = ROOT / "scenarios" / "box-demonstrator.yaml"
-        words = ("--samples", "0", "--decision-time", "0.01", "--json")
+        words = ("--samples", "0", "--decision-time", "0.01", "--robot", "none", "--json")
         packed = json.loads(self.snug("pack", scenario, "--sequence", "1", "--agent", "mine:Lowest", *words).stdout)
         self.assertEqual(packed["agent"], "mine:Lowest")
         self.assertGreaterEqual(packed["executed_boxes"], 4)

@@ -1,4 +1,4 @@
-// compare: the agents side by side on the sequences of a scenario, planned and executed.
+// compare: agents x sequences x plants.
 #include "compare.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "compare_report.hpp"
+#include "interrupt.hpp"
 #include "outputs.hpp"
 #include "python_agent.hpp"
 #include "snug/core/input_error.hpp"
@@ -68,26 +69,35 @@ int run_compare(const CompareOptions& options) {
   model::Scenario& scenario = loaded.scenario;
   const std::vector<std::string> sequences = choose_sequences(options, scenario);
   const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents", true);
-  const std::size_t runs = agents.size() * sequences.size();
+  const std::size_t plants = static_cast<std::size_t>(options.plants);
+  const std::size_t runs = agents.size() * sequences.size() * plants;
+  const CompareForm form = options.json ? CompareForm::Json : options.csv ? CompareForm::Csv : CompareForm::Table;
+  catch_interrupts();
   std::vector<CompareRow> rows;
-  for (const std::string& agent : agents) {
-    for (const std::string& sequence : sequences) {
-      PackOptions pack = options.pack;
-      pack.agent = agent;
-      const task::SessionOptions session = make_session_options(pack, loaded, sequence);
-      const std::string label = fmt::format("{} of {}: {}, sequence {}", rows.size() + 1, runs, agent, sequence);
-      rows.push_back({task::pack(scenario, sequence, session, make_progress_line(label)), session.packing.seed});
-    }
+  std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %zu plants\n", runs, agents.size(),
+               sequences.size(), plants);
+  print_now(format_compare_head(form));
+  for (std::size_t run = 0; run < runs && !is_interrupted(); ++run) {
+    PackOptions pack = options.pack;
+    pack.agent = agents[run / (sequences.size() * plants)];
+    pack.sequence = sequences[run / plants % sequences.size()];
+    pack.plant_seed += run % plants;
+    const session::SessionOptions session = make_session_options(pack, loaded, pack.sequence);
+    const std::string label =
+        fmt::format("{} of {}: {}, sequence {}, plant {}", run + 1, runs, pack.agent, pack.sequence, pack.plant_seed);
+    rows.push_back(make_row(study::run_trial(scenario, pack.sequence, session, make_plant_options(pack, session),
+                                             make_progress_line(label))));
+    print_now(format_compare_row(form, rows.back(), run == 0));
   }
   const bool is_own_container = !options.pack.changes.container && !options.pack.changes.pallet;
-  const std::string text = options.json  ? format_compare_json(rows)
-                           : options.csv ? format_compare_csv(rows)
-                                         : format_compare_table(scenario, rows, is_own_container);
-  print(text);
-  int failed = 0;
-  for (const CompareRow& row : rows) failed += row.result.failure.empty() ? 0 : 1;
-  if (failed == 0) return kSuccess;
-  std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", failed, rows.size());
+  print_now(format_compare_end(form, scenario, rows, is_own_container));
+  const auto failed = std::ranges::count_if(rows, [](const CompareRow& row) { return !row.failure.empty(); });
+  if (failed == 0 && !is_interrupted()) return kSuccess;
+  if (is_interrupted()) std::fprintf(stderr, "snug: interrupted after %zu of %zu sessions\n", rows.size(), runs);
+  if (failed > 0) {
+    std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", static_cast<int>(failed),
+                 rows.size());
+  }
   return kRunFailed;
 }
 

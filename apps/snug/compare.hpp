@@ -1,4 +1,4 @@
-// compare: the agents side by side on the sequences of a scenario, planned and executed.
+// compare: agents x sequences x plants.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@ namespace snug::app {
 
 /// The words of `snug compare`.
 struct CompareOptions {
-  PackOptions pack;  ///< scenario, seed, decision time, threads, samples
+  PackOptions pack;  ///< scenario, seeds, perception, robot, decision time, threads, samples
+  int plants = 1;    ///< of the seeds pack.plant_seed and those after it
   std::optional<std::string>
       sequences;               ///< "all", or names, separated by commas; absent: all, or the random ones alone
   std::string agents = "all";  ///< or names, separated by commas

@@ -4,21 +4,22 @@
 
 #include "compare.hpp"
 #include "options.hpp"
+#include "ranges.hpp"
 
 namespace snug::app {
 namespace {
 
 constexpr const char* kCompareExamples = R"(Examples:
-  snug compare scenarios/box-demonstrator.yaml
+  snug compare scenarios/box-demonstrator.yaml --agents contact-aware --plants 6
   snug compare scenarios/box-demonstrator.yaml --sequences 1,3 --agents margin,contact-aware --json
-  snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --csv > rows.csv
+  snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --plants 3 --csv > rows.csv
   snug compare scenarios/box-demonstrator.yaml --random 50 --agents contact-aware
   snug compare scenarios/box-demonstrator.yaml --container 400x300x200 --agents contact-aware)";
 
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("compare", "agents side by side on the sequences, planned and executed");
+  CLI::App& verb = *app.add_subcommand("compare", "agents x sequences x plants: filling, items lost, recoveries");
   const auto options = std::make_shared<CompareOptions>();
   verb.add_option("scenario", options->pack.scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
   verb.add_option("--sequences", options->sequences,
@@ -37,6 +38,11 @@ void add_compare(CLI::App& app, Action& action) {
   verb.add_option("--agents", options->agents,
                   "all built-in ones, or names separated by commas, module:Class of Python among them")
       ->type_name("NAMES")
+      ->capture_default_str();
+  verb.add_option("--plants", options->plants,
+                  "plants that every agent packs with every sequence: the seed --plant-seed and those after it")
+      ->check(whole(1, kMostRuns))
+      ->type_name("N")
       ->capture_default_str();
   add_packing_options(verb, options->pack);
   CLI::Option* json = verb.add_flag("--json", options->json, "print rows as JSON");

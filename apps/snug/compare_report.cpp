@@ -1,9 +1,10 @@
-// The rows of a comparison as text: tables for people, JSON and CSV for programs.
+// The rows of a comparison as text: tables for people, JSON and CSV for programs; each row as soon as it is known.
 #include "compare_report.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "snug/core/csv_cell.hpp"
@@ -11,37 +12,55 @@
 namespace snug::app {
 namespace {
 
-constexpr std::size_t kMostColumns = 6;  ///< sequences beside each other
+using Json = nlohmann::ordered_json;
 
-struct Means {
-  int count = 0;
-  double planned = 0.0, executed = 0.0, seconds = 0.0;
+/// Over the rows of one agent.
+struct Summary {
+  int count = 0, sent = 0, as_planned = 0, lost = 0, recoveries = 0;
+  double planned = 0.0, executed = 0.0, deviation = 0.0, lowest = 0.0, highest = 0.0, before_skips = 0.0;
+  double seconds = 0.0;  ///< mean of the medians
 };
 
-/// Over the rows of one agent; seconds: the mean of the medians.
-Means means_of(const std::vector<CompareRow>& rows, const std::string& agent) {
-  Means means;
+Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent, const std::string& sequence = {}) {
+  Summary all;
+  double square = 0.0;
   for (const CompareRow& row : rows) {
-    if (row.result.agent != agent) continue;
-    ++means.count;
-    means.planned += row.result.planned_percent;
-    means.executed += row.result.executed_percent;
-    means.seconds += row.result.decision_seconds_median;
+    if (row.agent != agent || (!sequence.empty() && row.sequence != sequence)) continue;
+    all.lowest = all.count == 0 ? row.executed_percent : std::min(all.lowest, row.executed_percent);
+    all.highest = std::max(all.highest, row.executed_percent);
+    ++all.count;
+    all.sent += row.items_sent;
+    all.as_planned += row.items_as_planned;
+    all.lost += row.boxes_lost;
+    all.recoveries += row.recoveries;
+    all.planned += row.planned_percent;
+    all.executed += row.executed_percent;
+    all.before_skips += row.percent_before_skips;
+    square += row.executed_percent * row.executed_percent;
+    all.seconds += row.decision_seconds_median;
   }
-  if (means.count == 0) return means;
-  means.planned /= means.count;
-  means.executed /= means.count;
-  means.seconds /= means.count;
-  return means;
+  if (all.count == 0) return all;
+  const double count = all.count;
+  all.planned /= count;
+  all.executed /= count;
+  all.before_skips /= count;
+  all.seconds /= count;
+  // Of the sample: divided by one less than there are.
+  if (all.count > 1)
+    all.deviation = std::sqrt(std::max(0.0, (square - count * all.executed * all.executed) / (count - 1.0)));
+  return all;
 }
 
-std::vector<std::string> agents_of(const std::vector<CompareRow>& rows) {
-  std::vector<std::string> agents;
+template <class Get>
+std::vector<std::string> distinct(const std::vector<CompareRow>& rows, const Get& get) {
+  std::vector<std::string> words;
   for (const CompareRow& row : rows) {
-    if (std::ranges::find(agents, row.result.agent) == agents.end()) agents.push_back(row.result.agent);
+    if (std::ranges::find(words, get(row)) == words.end()) words.push_back(get(row));
   }
-  return agents;
+  return words;
 }
+
+double share_of(const Summary& all) { return all.sent > 0 ? 100.0 * all.as_planned / all.sent : 100.0; }
 
 const model::Reported* find_reported(const model::Sequence& sequence, const std::string& agent) {
   const auto found = std::ranges::find(sequence.reported, agent, &model::Reported::agent);
@@ -51,18 +70,6 @@ const model::Reported* find_reported(const model::Sequence& sequence, const std:
 std::string label_of(const std::string& reporter) { return "reported, " + reporter; }
 
 std::string cell_of(int boxes, double percent) { return fmt::format("  {:3} / {:5.2f}", boxes, percent); }
-
-std::string agent_lines(const std::vector<CompareRow>& rows, const std::string& agent, std::size_t width) {
-  std::string planned = fmt::format("{:<{}} planned ", agent, width - 9);
-  std::string executed = fmt::format("{:<{}} executed", "", width - 9);
-  for (const CompareRow& row : rows) {
-    if (row.result.agent != agent) continue;
-    planned += cell_of(row.result.planned_boxes, row.result.planned_percent);
-    executed += cell_of(row.result.executed_boxes, row.result.executed_percent);
-  }
-  const Means means = means_of(rows, agent);
-  return fmt::format("{}   {:5.2f}\n{}   {:5.2f}\n", planned, means.planned, executed, means.executed);
-}
 
 /// What others packed of every one of these sequences, as the scenario says, in the order of the first: percent of the
 /// scenario's container.
@@ -95,98 +102,139 @@ std::string reporter_line(const model::Scenario& scenario, const std::vector<std
   return fmt::format("{}   {:5.2f}\n", line, sum / static_cast<double>(sequences.size()));
 }
 
-/// Sequences beside each other, agents below each other.
-std::string format_columns(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
-                           const std::vector<std::string>& sequences, bool with_references) {
-  const std::vector<std::string> reporters =
-      with_references ? reporters_of(scenario, sequences) : std::vector<std::string>{};
+constexpr const char* kRow =
+    "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7}  {}\n";
+
+std::string summary_line(const std::string& label, const Summary& all) {
+  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:9.2f} % {:5} {:10}\n", label, all.count,
+                     all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
+                     all.recoveries);
+}
+
+std::string format_table_end(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
+                             bool with_references) {
+  std::string text =
+      "\nexecuted filling, %        runs     mean      sd           range   sent as planned  lost recoveries\n";
+  const std::vector<std::string> sequences = distinct(rows, [](const CompareRow& row) { return row.sequence; });
+  for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
+    const Summary all = summarize(rows, agent);
+    const bool has_spread = all.count > static_cast<int>(sequences.size());
+    if (has_spread && sequences.size() > 1 && sequences.size() <= 12) {
+      for (const std::string& sequence : sequences) {
+        text += summary_line(agent + ", sequence " + sequence, summarize(rows, agent, sequence));
+      }
+    }
+    text += summary_line(agent, all);
+    if (all.before_skips < all.executed - 1e-9) {
+      text += fmt::format("{:<25}       {:7.2f} before the first item was skipped\n", "", all.before_skips);
+    }
+  }
+  if (!with_references) return text;
+  const std::vector<std::string> reporters = reporters_of(scenario, sequences);
+  if (reporters.empty()) return text;
   std::size_t width = 22;
-  for (const std::string& agent : agents_of(rows)) width = std::max(width, agent.size() + 9);
   for (const std::string& agent : reporters) width = std::max(width, label_of(agent).size());
-  std::string text = fmt::format("{:<{}}", "boxes / filling, %", width);
+  text += fmt::format("\n{:<{}}", "boxes / filling, %", width);
   for (const std::string& sequence : sequences) text += fmt::format("  {:>11}", "sequence " + sequence);
   text += "    mean\n";
-  for (const std::string& agent : agents_of(rows)) text += agent_lines(rows, agent, width);
   for (const std::string& agent : reporters) text += reporter_line(scenario, sequences, agent, width);
   return text;
 }
 
-/// A line for each row: for many sequences, or long names.
-std::string format_lines(const std::vector<CompareRow>& rows) {
-  std::size_t width = 8, agent_width = 14;
-  for (const CompareRow& row : rows) {
-    width = std::max(width, row.result.sequence.size());
-    agent_width = std::max(agent_width, row.result.agent.size());
+Json as_json(const CompareRow& row) {
+  return {{"agent", row.agent},
+          {"sequence", row.sequence},
+          {"planned_boxes", row.planned_boxes},
+          {"planned_percent", row.planned_percent},
+          {"executed_boxes", row.executed_boxes},
+          {"executed_percent", row.executed_percent},
+          {"percent_before_skips", row.percent_before_skips},
+          {"decision_seconds_median", row.decision_seconds_median},
+          {"seed", row.seed},
+          {"plant_seed", row.plant_seed},
+          {"items_sent", row.items_sent},
+          {"items_as_planned", row.items_as_planned},
+          {"boxes_lost", row.boxes_lost},
+          {"recoveries", row.recoveries},
+          {"stop_reason", row.stop_reason},
+          {"failure", row.failure}};
+}
+
+std::string format_json_end(const std::vector<CompareRow>& rows) {
+  Json means = Json::array();
+  for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
+    const Summary all = summarize(rows, agent);
+    means.push_back({{"agent", agent},
+                     {"sequences", distinct(rows, [](const CompareRow& row) { return row.sequence; }).size()},
+                     {"runs", all.count},
+                     {"planned_percent", all.planned},
+                     {"executed_percent", all.executed},
+                     {"executed_percent_sd", all.deviation},
+                     {"executed_percent_lowest", all.lowest},
+                     {"executed_percent_highest", all.highest},
+                     {"percent_before_skips", all.before_skips},
+                     {"items_sent", all.sent},
+                     {"items_as_planned", all.as_planned},
+                     {"boxes_lost", all.lost},
+                     {"recoveries", all.recoveries},
+                     {"decision_seconds_median", all.seconds}});
   }
-  std::string text = fmt::format("{:<{}} {:<{}}  {:>16}  {:>16}  {:>10}\n", "agent", agent_width, "sequence", width,
-                                 "planned, boxes %", "executed, boxes %", "decided, s");
-  const auto line = [&](const std::string& agent, const std::string& sequence, const std::string& planned,
-                        const std::string& executed, double seconds) {
-    text += fmt::format("{:<{}} {:<{}}  {:>16}  {:>17}  {:10.2f}\n", agent, agent_width, sequence, width, planned,
-                        executed, seconds);
-  };
-  for (const CompareRow& row : rows) {
-    const task::SessionResult& r = row.result;
-    line(r.agent, r.sequence, fmt::format("{:3} {:7.2f}", r.planned_boxes, r.planned_percent),
-         fmt::format("{:3} {:7.2f}", r.executed_boxes, r.executed_percent), r.decision_seconds_median);
-  }
-  for (const std::string& agent : agents_of(rows)) {
-    const Means means = means_of(rows, agent);
-    line(agent, fmt::format("mean {}", means.count), fmt::format("{:7.2f}", means.planned),
-         fmt::format("{:7.2f}", means.executed), means.seconds);
-  }
-  return text;
+  return "\n],\n\"means\": " + means.dump(2) + "}\n";
 }
 
 }  // namespace
 
-std::string format_compare_json(const std::vector<CompareRow>& rows) {
-  nlohmann::ordered_json json{{"rows", nlohmann::ordered_json::array()}, {"means", nlohmann::ordered_json::array()}};
-  for (const CompareRow& row : rows) {
-    const task::SessionResult& r = row.result;
-    json["rows"].push_back({{"agent", r.agent},
-                            {"sequence", r.sequence},
-                            {"planned_boxes", r.planned_boxes},
-                            {"planned_percent", r.planned_percent},
-                            {"executed_boxes", r.executed_boxes},
-                            {"executed_percent", r.executed_percent},
-                            {"decision_seconds_median", r.decision_seconds_median},
-                            {"seed", row.seed},
-                            {"failure", r.failure}});
-  }
-  for (const std::string& agent : agents_of(rows)) {
-    const Means means = means_of(rows, agent);
-    json["means"].push_back({{"agent", agent},
-                             {"sequences", means.count},
-                             {"planned_percent", means.planned},
-                             {"executed_percent", means.executed},
-                             {"decision_seconds_median", means.seconds}});
-  }
-  return json.dump(2) + "\n";
+CompareRow make_row(const study::Trial& trial) {
+  const session::SessionResult& session = trial.session;
+  CompareRow row;
+  row.agent = session.agent;
+  row.sequence = session.sequence;
+  row.seed = trial.seed;
+  row.plant_seed = trial.plant_seed;
+  row.planned_boxes = static_cast<int>(session.plan.size());
+  row.planned_percent = session.planned_percent;
+  row.executed_boxes = trial.executed_boxes;
+  row.executed_percent = trial.executed_percent;
+  row.percent_before_skips = session.percent_before_skips.value_or(trial.executed_percent);
+  row.decision_seconds_median = session.decision_seconds_median;
+  row.items_sent = trial.items_sent;
+  row.items_as_planned = trial.items_as_planned;
+  row.boxes_lost = trial.boxes_lost;
+  row.recoveries = trial.recoveries;
+  row.stop_reason = session::name_of(session.stop_reason);
+  row.failure = session.failure;
+  return row;
 }
 
-std::string format_compare_csv(const std::vector<CompareRow>& rows) {
-  std::string text =
-      "agent,sequence,planned_boxes,planned_percent,executed_boxes,executed_percent,decision_seconds_median,seed\n";
-  for (const CompareRow& row : rows) {
-    const task::SessionResult& r = row.result;
-    text +=
-        fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{}\n", csv_cell(r.agent), csv_cell(r.sequence), r.planned_boxes,
-                    r.planned_percent, r.executed_boxes, r.executed_percent, r.decision_seconds_median, row.seed);
+std::string format_compare_head(CompareForm form) {
+  if (form == CompareForm::Json) return "{\"rows\": [";
+  if (form == CompareForm::Csv) {
+    return "agent,sequence,planned_boxes,planned_percent,executed_boxes,executed_percent,decision_seconds_median,seed,"
+           "plant_seed,items_sent,items_as_planned,boxes_lost,recoveries,percent_before_skips,stop_reason\n";
   }
-  return text;
+  return fmt::format(fmt::runtime(kRow), "agent", "sequence", "seed", "plant", "plan", "%", "exec", "%", "sent",
+                     "as planned", "lost", "recoveries", "dec., s", "stopped");
 }
 
-std::string format_compare_table(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
-                                 bool with_references) {
-  std::vector<std::string> sequences;
-  bool are_short = true;
-  for (const CompareRow& row : rows) {
-    if (std::ranges::find(sequences, row.result.sequence) == sequences.end()) sequences.push_back(row.result.sequence);
-    are_short = are_short && row.result.sequence.size() <= 2;
+std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_first) {
+  if (form == CompareForm::Json) return (is_first ? "\n" : ",\n") + as_json(row).dump();
+  if (form == CompareForm::Csv) {
+    return fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{},{},{:.4f},{}\n", csv_cell(row.agent),
+                       csv_cell(row.sequence), row.planned_boxes, row.planned_percent, row.executed_boxes,
+                       row.executed_percent, row.decision_seconds_median, row.seed, row.plant_seed, row.items_sent,
+                       row.items_as_planned, row.boxes_lost, row.recoveries, row.percent_before_skips,
+                       csv_cell(row.stop_reason));
   }
-  if (!are_short || sequences.size() > kMostColumns) return format_lines(rows);
-  return format_columns(scenario, rows, sequences, with_references);
+  return fmt::format(fmt::runtime(kRow), row.agent, row.sequence, row.seed, row.plant_seed, row.planned_boxes,
+                     fmt::format("{:.2f}", row.planned_percent), row.executed_boxes,
+                     fmt::format("{:.2f}", row.executed_percent), row.items_sent, row.items_as_planned, row.boxes_lost,
+                     row.recoveries, fmt::format("{:.2f}", row.decision_seconds_median), row.stop_reason);
+}
+
+std::string format_compare_end(CompareForm form, const model::Scenario& scenario, const std::vector<CompareRow>& rows,
+                               bool with_references) {
+  if (form == CompareForm::Json) return format_json_end(rows);
+  return form == CompareForm::Csv ? std::string() : format_table_end(scenario, rows, with_references);
 }
 
 }  // namespace snug::app

@@ -1,26 +1,34 @@
-// The rows of a comparison as text: tables for people, JSON and CSV for programs.
+// The rows of a comparison as text: tables for people, JSON and CSV for programs; each row as soon as it is known.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "snug/task/session.hpp"
+#include "snug/study/trial.hpp"
 
 namespace snug::app {
 
-/// One agent on one sequence.
-struct CompareRow {
-  task::SessionResult result;
-  std::uint64_t seed = 0;
-};
+enum class CompareForm { Table, Json, Csv };
 
-/// Few sequences beside each other, many below each other. `with_references`: what the report's Table 7 counted, where
-/// the sequences are its own.
-[[nodiscard]] std::string format_compare_table(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
-                                               bool with_references);
-/// The keys are described in docs/packing-execution.md.
-[[nodiscard]] std::string format_compare_json(const std::vector<CompareRow>& rows);
-[[nodiscard]] std::string format_compare_csv(const std::vector<CompareRow>& rows);
+/// One agent on one sequence in one plant: what is kept of a trial.
+struct CompareRow {
+  std::string agent, sequence;
+  std::uint64_t seed = 0, plant_seed = 0;
+  int planned_boxes = 0, executed_boxes = 0;
+  double planned_percent = 0.0, executed_percent = 0.0, percent_before_skips = 0.0;
+  double decision_seconds_median = 0.0;
+  int items_sent = 0, items_as_planned = 0, boxes_lost = 0, recoveries = 0;
+  std::string stop_reason;
+  std::string failure;  ///< empty, or why the robot did not come home
+};
+[[nodiscard]] CompareRow make_row(const study::Trial& trial);
+
+/// The text in pieces: what was printed when a run is killed is whole rows.
+[[nodiscard]] std::string format_compare_head(CompareForm form);
+[[nodiscard]] std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_first);
+/// Mean, standard deviation and range of each agent; in tables what the report counted, where the sequences are its own
+/// (`with_references`).
+[[nodiscard]] std::string format_compare_end(CompareForm form, const model::Scenario& scenario,
+                                             const std::vector<CompareRow>& rows, bool with_references);
 
 }  // namespace snug::app

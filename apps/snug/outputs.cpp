@@ -74,6 +74,11 @@ void print(std::string_view text) {
     throw OutputError("standard output", std::strerror(errno));
 }
 
+void print_now(std::string_view text) {
+  print(text);
+  if (std::fflush(stdout) != 0) throw OutputError("standard output", std::strerror(errno));
+}
+
 bool flush_stdout() {
   const bool has_failed = std::ferror(stdout) != 0;
   errno = 0;

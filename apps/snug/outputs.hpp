@@ -36,6 +36,8 @@ void expect_distinct(const NamedFiles& inputs, const NamedFiles& outputs);
 
 /// To stdout. Throws OutputError when it cannot be written.
 void print(std::string_view text);
+/// The same, seen at once by who reads along.
+void print_now(std::string_view text);
 /// Writes what is still to be written; to be called once, at the end. False when that, or anything before, failed: then
 /// stderr has the reason.
 [[nodiscard]] bool flush_stdout();

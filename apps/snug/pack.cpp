@@ -1,4 +1,4 @@
-// pack: packs a sequence, item by item, and says how that went.
+// pack: packs a plant with a sequence, item by item, and says how that went.
 #include "pack.hpp"
 
 #include <fmt/format.h>
@@ -9,31 +9,41 @@
 #include <iterator>
 #include <span>
 
+#include "interrupt.hpp"
+#include "outputs.hpp"
 #include "pack_report.hpp"
 #include "python_agent.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
-#include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/task/executions.hpp"
+#include "snug/robot/load_arm.hpp"
+#include "snug/study/monte_carlo.hpp"
 
 namespace snug::app {
 namespace {
 
-/// The finished program once more, recorded; why that run had to stop, or nothing.
-std::string record(const PackOptions& options, const model::Scenario& scenario, const task::SessionResult& result,
-                   const task::SessionOptions& session, OutputFile& file) {
-  cell::RunOptions run;
-  run.program = result.program;
-  run.program_text = motion::format_program(result.program);
-  run.sequence = options.sequence;
-  run.simulation = session.simulation;
-  run.record_file = &file;
-  run.version = SNUG_VERSION;
-  run.describe = [](const cell::RunResult& one) { return format_json(one); };
-  return cell::run(scenario, run).failure;
+/// The plant's course once more, recorded.
+void record(const model::Scenario& scenario, const study::Trial& trial, OutputFile& file) {
+  simulated_plant::RecordedRunOptions recorded;
+  recorded.file = &file;
+  recorded.version = SNUG_VERSION;
+  recorded.events = study::events_of(trial.session);
+  const std::string& robot = trial.plant.simulation.robot;
+  recorded.settings_json =
+      fmt::format(R"({{"cup":"phases","controller":"faithful","corrections":"none","robot":"{}","plant_seed":{}}})",
+                  robot.empty() ? "none" : robot, trial.plant_seed);
+  recorded.describe = [](const cell::RunResult& one) { return format_json(one); };
+  (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
+}
+
+/// The robot that moves the tool: what was asked for, or the scenario's, where its file is there.
+std::string choose_robot(const PackOptions& options, const model::Scenario& scenario) {
+  if (options.robot) return *options.robot == "none" ? std::string() : *options.robot;
+  std::error_code error;
+  const bool is_there = scenario.robot && std::filesystem::exists(robot::urdf_path(scenario), error);
+  return is_there ? scenario.robot->name : std::string();
 }
 
 /// Any parcel of the files that the sequence's boxes come from.
@@ -73,9 +83,9 @@ struct PackFiles {
 
 }  // namespace
 
-task::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
-                                          const std::string& sequence) {
-  task::SessionOptions session;
+session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
+                                             const std::string& sequence) {
+  session::SessionOptions session;
   session.agent = options.agent;
   if (is_python_agent(options.agent)) session.ask = start_python_agent(options.agent);
   session.packing.seed = options.seed.value_or(loaded.scenario.seed);
@@ -84,20 +94,29 @@ task::SessionOptions make_session_options(const PackOptions& options, const Sour
   session.threads = options.threads.value_or(core_count());
   session.packing.threads = session.threads;
   session.samples = options.samples;
-  if (options.look == "noisy") session.perception = task::Perception::Noisy;
-  if (options.look == "dead-reckoning") session.perception = task::Perception::DeadReckoning;
-  session.simulation.robot = options.robot.value_or("");
-  if (options.robot) print_robot_warnings(loaded.scenario);
+  session.skips = options.skips;
+  session.simulation.robot = choose_robot(options, loaded.scenario);
+  session.is_interrupted = is_interrupted;
+  if (options.robot && *options.robot != "none") print_robot_warnings(loaded.scenario);
   return session;
 }
 
-task::Progress make_progress_line(const std::string& label) {
+simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
+                                                          const session::SessionOptions& session) {
+  simulated_plant::SimulatedPlantOptions plant;
+  plant.seed = options.plant_seed;
+  plant.perception = perception::kind_of(options.perception);
+  plant.faults = simulated_plant::parse_faults(options.fault);
+  plant.simulation = session.simulation;
+  return plant;
+}
+
+study::TrialProgress make_progress_line(const std::string& label) {
   if (isatty(STDERR_FILENO) == 0) return {};
-  return [label](const task::SessionResult& so_far, int item, int items) {
-    const bool is_last = item == items || !so_far.stopped.empty();
+  return [label](const study::Trial& so_far, int item, int items) {
     const std::string line = fmt::format("{}: item {} of {}, {} packed, {:.1f} %", label, item, items,
                                          so_far.executed_boxes, so_far.executed_percent);
-    std::fprintf(stderr, "\r%-78s%s", line.c_str(), is_last ? "\r\033[K" : "");
+    std::fprintf(stderr, "\r%-78s%s", line.c_str(), item == items ? "\r\033[K" : "");
     std::fflush(stderr);
   };
 }
@@ -105,31 +124,35 @@ task::Progress make_progress_line(const std::string& label) {
 int run_pack(const PackOptions& options) {
   const SourcedScenario loaded = load_with_sources(options.scenario, options.changes);
   const model::Scenario& scenario = loaded.scenario;
-  const task::SessionOptions session = make_session_options(options, loaded, options.sequence);
+  const session::SessionOptions session = make_session_options(options, loaded, options.sequence);
+  const simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
   PackFiles files(options, scenario);
-  const task::SessionResult result =
-      task::pack(scenario, options.sequence, session, make_progress_line("sequence " + options.sequence));
-  task::ExecutionResult executions;
-  if (options.executions) {
-    task::ExecutionOptions repeated;
-    repeated.count = *options.executions;
-    repeated.seed = session.packing.seed;
-    repeated.threads = session.threads;
-    repeated.simulation = session.simulation;
-    executions = task::repeat(scenario, result, repeated);
+  catch_interrupts();
+  const study::TrialProgress line = make_progress_line("sequence " + options.sequence);
+  if (!options.json) print_now(format_pack_head(options.sequence, session, plant));
+  const study::Trial trial = study::run_trial(
+      scenario, options.sequence, session, plant, [&](const study::Trial& so_far, int item, int items) {
+        if (!options.json) print_now(format_item(so_far.session.items.back(), so_far.items.back()));
+        if (options.json && line) line(so_far, item, items);
+      });
+  const session::SessionResult& result = trial.session;
+  study::MonteCarloResult repeated;
+  if (options.monte_carlo) {
+    study::MonteCarloOptions monte_carlo;
+    monte_carlo.count = *options.monte_carlo;
+    monte_carlo.seed = session.packing.seed;
+    monte_carlo.threads = session.threads;
+    monte_carlo.simulation = session.simulation;
+    repeated = study::repeat(scenario, options.sequence, result.program, result.plan, monte_carlo);
   }
   const bool has_program = !result.program.waypoints.empty();
-  std::string failure = result.failure;
   if (files.program && has_program) write_file(std::move(*files.program), motion::format_program(result.program));
   if (files.plan) write_file(std::move(*files.plan), format_plan(result));
-  if (files.record && has_program) {
-    const std::string recorded = record(options, scenario, result, session, *files.record);
-    if (failure.empty()) failure = recorded;
-  }
-  const std::string text = options.json ? format_json(result, executions) : format_table(result, executions);
-  print(text);
-  if (failure.empty() && executions.failed > 0) {
-    failure = fmt::format("{} of {} executions did not reach their end", executions.failed, executions.count);
+  if (files.record && has_program) record(scenario, trial, *files.record);
+  print(options.json ? format_json(trial, repeated) : format_summary(trial, repeated));
+  std::string failure = result.failure;
+  if (failure.empty() && repeated.failed > 0) {
+    failure = fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
   }
   if (failure.empty() && !has_program && (options.program || options.record)) {
     failure = "nothing was packed: no program, no recording";

@@ -1,4 +1,4 @@
-// pack: packs a sequence, item by item, and says how that went.
+// pack: packs a plant with a sequence, item by item, and says how that went.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "scenario_options.hpp"
-#include "snug/task/session.hpp"
+#include "snug/study/trial.hpp"
 #include "verb.hpp"
 
 namespace snug::app {
@@ -18,13 +18,16 @@ struct PackOptions {
   ScenarioChanges changes;
   std::string agent = "contact-aware";
   std::optional<std::uint64_t> seed;
+  std::uint64_t plant_seed = 1;
   double decision_time = packing::PackingSettings{}.decision_time;  ///< s
   std::optional<int> threads;                                       ///< absent: all cores
-  int samples = task::SessionOptions{}.samples;
+  int samples = session::SessionOptions{}.samples;
+  int skips = session::SessionOptions{}.skips;
   std::string future = "own";
-  std::string look = "exact";
-  std::optional<std::string> robot;
-  std::optional<int> executions;
+  std::string perception = "exact";
+  std::string fault;                 ///< "drop@3,noseal@5"
+  std::optional<std::string> robot;  ///< absent: the scenario's, where its file is there; "none"
+  std::optional<int> monte_carlo;
   std::optional<std::string> program, plan, record;
   bool json = false;
 };
@@ -32,10 +35,13 @@ struct PackOptions {
 void add_pack(CLI::App& app, Action& action);
 /// What `pack` and `compare` have in common.
 void add_packing_options(CLI::App& verb, PackOptions& options);
-[[nodiscard]] task::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
-                                                        const std::string& sequence);
+[[nodiscard]] session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
+                                                           const std::string& sequence);
+/// Throws InputError for words that say nothing.
+[[nodiscard]] simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
+                                                                        const session::SessionOptions& session);
 /// A line on a terminal that is written over again, or nothing.
-[[nodiscard]] task::Progress make_progress_line(const std::string& label);
+[[nodiscard]] study::TrialProgress make_progress_line(const std::string& label);
 
 /// Throws InputError for input that cannot be used.
 [[nodiscard]] int run_pack(const PackOptions& options);

@@ -36,121 +36,194 @@ Json as_json(const packing::Placement& placement) {
       {"yaw_quarter", placement.orientation.yaw_quarter}};
 }
 
-Json as_json(const task::AttemptForces& forces) {
+Json as_json(const session::AttemptForces& forces) {
   return {{"force_N", forces.force}, {"torque_Nm", forces.torque}, {"displacement_mm", 1e3 * forces.displacement}};
 }
 
-Json as_json(const task::ItemReport& item) {
-  Json json{{"box", item.id}, {"placed", item.is_placed}};
-  if (!item.is_placed) json["reason"] = item.reason;
-  if (item.is_placed) {
+Json as_json(const plant::End& end) {
+  return {{"reason", plant::name_of(end.reason)},
+          {"waypoint", end.waypoint},
+          {"value", end.value},
+          {"limit", end.limit},
+          {"where", end.where}};
+}
+
+Json sends_as_json(const session::ItemReport& item, const study::TrueItem& truth) {
+  Json sends = Json::array();
+  for (std::size_t i = 0; i < item.sends.size(); ++i) {
+    const session::Send& send = item.sends[i];
+    sends.push_back({{"time", send.time},
+                     {"predicted_success", send.predicted_success},
+                     {"succeeded", i < truth.succeeded.size() && truth.succeeded[i]},
+                     {"end", as_json(send.end)},
+                     {"trouble", session::name_of(send.trouble)}});
+  }
+  return sends;
+}
+
+Json recoveries_as_json(const std::vector<session::Recovery>& recoveries) {
+  Json list = Json::array();
+  for (const session::Recovery& one : recoveries) {
+    list.push_back({{"time", one.time},
+                    {"trouble", session::name_of(one.trouble)},
+                    {"remedy", session::name_of(one.remedy)},
+                    {"detail", one.detail}});
+  }
+  return list;
+}
+
+Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
+  Json json{{"box", item.id}, {"placed", item.is_packed()}, {"end", session::name_of(item.end)}};
+  if (!item.reason.empty()) json["reason"] = item.reason;
+  if (!item.sends.empty()) {
     json["planned"] = as_json(item.planned);
-    json["manner"] = task::name_of(item.manner);
+    json["believed"] = item.X_TP ? position_as_json(item.X_TP->p) : Json();
+    json["insertion"] = session::name_of(item.skill);
     json["flips"] = item.flips;
-    json["turned"] = task::name_of(item.turn);
-    json["position_error_mm"] = 1e3 * item.position_error;
-    json["angle_error_deg"] = item.angle_error / kDegree;
+    json["reorientation"] = session::name_of(item.reorientation);
+    json["as_planned"] = truth.is_as_planned;
+    json["position_error_mm"] = 1e3 * truth.position_error;
+    json["angle_error_deg"] = truth.angle_error / kDegree;
     json["samples"] = item.samples;
-    json["samples_succeeded"] = item.samples > 0 ? Json(item.share) : Json();
+    json["samples_succeeded"] = item.samples > 0 ? Json(item.success_rate) : Json();
+    json["predicted_success"] = item.predicted_success;
     json["predicted"] = item.samples > 0 ? as_json(item.predicted) : Json();
     json["happened"] = as_json(item.happened);
+    json["sends"] = sends_as_json(item, truth);
+    json["recoveries"] = recoveries_as_json(item.recoveries);
   }
   json["attempts"] = item.attempts;
   json["protective_stops"] = item.stops;
   json["decision_seconds"] = item.decision_seconds;
-  json["prediction_seconds"] = item.prediction_seconds;
+  json["rehearsal_seconds"] = item.rehearsal_seconds;
   return json;
 }
 
-Json as_json(const task::ExecutionResult& executions) {
+Json as_json(const study::MonteCarloResult& repeated) {
   Json items = Json::array();
-  for (const task::ItemSpread& item : executions.items) {
+  for (const study::ItemSpread& item : repeated.items) {
     items.push_back({{"box", item.id},
                      {"succeeded", item.succeeded},
                      {"deviation_mm", as_json(1e3 * item.deviation)},
                      {"worst_distance_mm", 1e3 * item.worst_distance}});
   }
-  return {{"count", executions.count},
-          {"failed", executions.failed},
-          {"success_percent", executions.success_percent},
-          {"mean_filling_percent", executions.mean_filling_percent},
-          {"lowest_filling_percent", executions.lowest_filling_percent},
+  return {{"count", repeated.count},
+          {"failed", repeated.failed},
+          {"success_percent", repeated.success_percent},
+          {"mean_filling_percent", repeated.mean_filling_percent},
+          {"lowest_filling_percent", repeated.lowest_filling_percent},
           {"items", items}};
-}
-
-std::string item_line(const task::ItemReport& item) {
-  if (!item.is_placed) {
-    return fmt::format("{:<8} {}  (decided in {:.2f} s, {} attempts)\n", item.id, item.reason, item.decision_seconds,
-                       item.attempts);
-  }
-  const Vector3 p = 1e3 * item.planned.X_TP.p;
-  const auto of_samples = [&](double value, const char* form) {
-    return item.samples > 0 ? fmt::format(fmt::runtime(form), value) : std::string("-");
-  };
-  return fmt::format(
-      "{:<8} {:7.1f} {:7.1f} {:7.1f}  {}{}  {:<9}  {:<8} {:6.1f} {:6.1f} {:8.2f} {:>6.2f} {:5} {:>6} "
-      "{:>5} {:5.0f} {:>6} {:6.1f}\n",
-      item.id, p.x(), p.y(), p.z(), item.planned.orientation.up_sign > 0 ? '+' : '-',
-      static_cast<char>('X' + static_cast<int>(item.planned.orientation.up)), task::name_of(item.turn),
-      task::name_of(item.manner), 1e3 * item.position_error, item.angle_error / kDegree, item.decision_seconds,
-      item.prediction_seconds, item.attempts, of_samples(100.0 * item.share, "{:.0f}%"),
-      of_samples(item.predicted.force, "{:.0f}"), item.happened.force,
-      of_samples(1e3 * item.predicted.displacement, "{:.1f}"), 1e3 * item.happened.displacement);
 }
 
 }  // namespace
 
-std::string format_table(const task::SessionResult& result, const task::ExecutionResult& executions) {
-  std::string text =
-      "                 planned place, mm       turned     placed   error, of pose   decided  tried        samples "
-      "peak force, N  moved, mm\n"
-      "box          x_T     y_T     z_T  up                           mm    deg        s      s  times   good "
-      "pred. happ.  pred.  happ.\n";
-  for (const task::ItemReport& item : result.items) text += item_line(item);
-  text += fmt::format("\nstopped            {}\n", result.stopped);
-  text += fmt::format("planned            {} boxes, {:.2f} %\n", result.planned_boxes, result.planned_percent);
-  text += fmt::format("executed           {} boxes, {:.2f} %\n", result.executed_boxes, result.executed_percent);
-  int stops = 0;
-  for (const task::ItemReport& item : result.items) stops += item.stops;
-  if (stops > 0) text += fmt::format("protective stops   {} attempts that were given up\n", stops);
-  text += fmt::format("decision           {:.2f} s an item (median), agent {}\n", result.decision_seconds_median,
-                      result.agent);
-  text += fmt::format("simulated          {:.1f} s, {} rows\n", result.duration, result.program.waypoints.size());
-  text += fmt::format("state hash         {:016x}\n", result.state_hash);
-  if (executions.count == 0) return text;
-  text += fmt::format("\nopen loop, {} executions under sampled uncertainty\n", executions.count);
-  text += "box      succeeded   deviation x, y, z, mm   farthest, mm\n";
-  for (const task::ItemSpread& item : executions.items) {
-    text += fmt::format("{:<8} {:4} of {:<4} {:6.1f} {:6.1f} {:6.1f}      {:8.1f}\n", item.id, item.succeeded,
-                        executions.count, 1e3 * item.deviation.x(), 1e3 * item.deviation.y(), 1e3 * item.deviation.z(),
-                        1e3 * item.worst_distance);
+std::string format_pack_head(const std::string& sequence, const session::SessionOptions& session,
+                             const simulated_plant::SimulatedPlantOptions& plant) {
+  const std::string& robot = plant.simulation.robot;
+  return fmt::format(
+      "sequence {}, agent {}, seed {}; plant seed {}, perception {}, robot {}, {} samples\n\n"
+      "                 planned place, mm       turned      insertion          success  error, true pose  peak force, "
+      "N  "
+      "moved  decided, rehearsed\n"
+      "box          x_T     y_T     z_T  up                                  predicted     mm    deg     pred.  happ.  "
+      "   "
+      "mm      s      s  times\n",
+      sequence, session.agent, session.packing.seed, plant.seed, perception::name_of(plant.perception),
+      robot.empty() ? "none" : robot, session.samples);
+}
+
+std::string format_item(const session::ItemReport& item, const study::TrueItem& truth) {
+  std::string text;
+  if (item.sends.empty()) {
+    text = fmt::format("{:<8} {}: {}  (decided in {:.2f} s, {} attempts)\n", item.id, session::name_of(item.end),
+                       item.reason, item.decision_seconds, item.attempts);
+  } else {
+    const Vector3 p = 1e3 * item.planned.X_TP.p;
+    text = fmt::format(
+        "{:<8} {:7.1f} {:7.1f} {:7.1f}  {}{}  {:<11} {:<17} {:>9}  {:6.1f} {:6.1f}    {:>6} {:6.0f} {:6.1f} "
+        "{:6.2f} {:6.2f} {:6}{}\n",
+        item.id, p.x(), p.y(), p.z(), item.planned.orientation.up_sign > 0 ? '+' : '-',
+        static_cast<char>('X' + static_cast<int>(item.planned.orientation.up)), session::name_of(item.reorientation),
+        session::name_of(item.skill),
+        item.samples > 0 ? fmt::format("{:.0f} %", 100.0 * item.predicted_success) : std::string("-"),
+        1e3 * truth.position_error, truth.angle_error / kDegree,
+        item.samples > 0 ? fmt::format("{:.0f}", item.predicted.force) : std::string("-"), item.happened.force,
+        1e3 * truth.displacement, item.decision_seconds, item.rehearsal_seconds, item.attempts,
+        item.end == session::ItemEnd::Placed ? std::string() : fmt::format("  {}", session::name_of(item.end)));
   }
-  if (executions.failed > 0) text += fmt::format("did not end        {} of {}\n", executions.failed, executions.count);
-  text += fmt::format("items that succeed {:.1f} %\n", executions.success_percent);
-  text += fmt::format("filling degree     mean {:.2f} %, lowest {:.2f} %\n", executions.mean_filling_percent,
-                      executions.lowest_filling_percent);
+  for (const session::Recovery& one : item.recoveries) {
+    text += fmt::format("         at {:.1f} s {}: {}{}\n", one.time, session::name_of(one.trouble),
+                        session::name_of(one.remedy), one.detail.empty() ? "" : " (" + one.detail + ")");
+  }
   return text;
 }
 
-std::string format_json(const task::SessionResult& result, const task::ExecutionResult& executions) {
+std::string format_summary(const study::Trial& trial, const study::MonteCarloResult& repeated) {
+  const session::SessionResult& result = trial.session;
+  std::string text =
+      fmt::format("\nstopped            {} ({})\n", result.stopped, session::name_of(result.stop_reason));
+  text += fmt::format("planned            {} boxes, {:.2f} %\n", result.plan.size(), result.planned_percent);
+  text += fmt::format("executed           {} boxes, {:.2f} %\n", trial.executed_boxes, trial.executed_percent);
+  if (result.percent_before_skips) {
+    text += fmt::format("before skipping    {:.2f} %\n", *result.percent_before_skips);
+  }
+  text += fmt::format("items              {} sent, {} as planned, {} lost, {} recoveries\n", trial.items_sent,
+                      trial.items_as_planned, trial.boxes_lost, trial.recoveries);
+  int stops = 0;
+  for (const session::ItemReport& item : result.items) stops += item.stops;
+  if (stops > 0) text += fmt::format("protective stops   {} attempts that were given up\n", stops);
+  text += fmt::format("decision           {:.2f} s an item (median), agent {}\n", result.decision_seconds_median,
+                      result.agent);
+  text += fmt::format("plant              {:.1f} s, {} waypoints\n", result.duration, result.program.waypoints.size());
+  text += fmt::format("state hash         {:016x}\n", trial.state_hash);
+  if (repeated.count == 0) return text;
+  text += fmt::format("\nopen loop, {} runs in cells drawn from the scenario's uncertainty\n", repeated.count);
+  text += "box      succeeded   deviation x, y, z, mm   farthest, mm\n";
+  for (const study::ItemSpread& item : repeated.items) {
+    text += fmt::format("{:<8} {:4} of {:<4} {:6.1f} {:6.1f} {:6.1f}      {:8.1f}\n", item.id, item.succeeded,
+                        repeated.count, 1e3 * item.deviation.x(), 1e3 * item.deviation.y(), 1e3 * item.deviation.z(),
+                        1e3 * item.worst_distance);
+  }
+  if (repeated.failed > 0) text += fmt::format("did not end        {} of {}\n", repeated.failed, repeated.count);
+  text += fmt::format("items that succeed {:.1f} %\n", repeated.success_percent);
+  text += fmt::format("filling degree     mean {:.2f} %, lowest {:.2f} %\n", repeated.mean_filling_percent,
+                      repeated.lowest_filling_percent);
+  return text;
+}
+
+std::string format_json(const study::Trial& trial, const study::MonteCarloResult& repeated) {
+  const session::SessionResult& result = trial.session;
   Json json{{"sequence", result.sequence},
             {"agent", result.agent},
-            {"planned_boxes", result.planned_boxes},
+            {"seed", trial.seed},
+            {"plant", result.plant},
+            {"plant_seed", trial.plant_seed},
+            {"perception", perception::name_of(trial.plant.perception)},
+            {"robot", trial.plant.simulation.robot.empty() ? "none" : trial.plant.simulation.robot},
+            {"planned_boxes", result.plan.size()},
             {"planned_percent", result.planned_percent},
-            {"executed_boxes", result.executed_boxes},
-            {"executed_percent", result.executed_percent},
+            {"executed_boxes", trial.executed_boxes},
+            {"executed_percent", trial.executed_percent},
+            {"percent_before_skips", result.percent_before_skips ? Json(*result.percent_before_skips) : Json()},
+            {"items_sent", trial.items_sent},
+            {"items_as_planned", trial.items_as_planned},
+            {"boxes_lost", trial.boxes_lost},
+            {"recoveries", trial.recoveries},
             {"decision_seconds_median", result.decision_seconds_median},
+            {"stop_reason", session::name_of(result.stop_reason)},
             {"stopped", result.stopped},
             {"failure", result.failure},
             {"duration", result.duration},
-            {"state_hash", fmt::format("{:016x}", result.state_hash)}};
+            {"state_hash", fmt::format("{:016x}", trial.state_hash)}};
   json["items"] = Json::array();
-  for (const task::ItemReport& item : result.items) json["items"].push_back(as_json(item));
-  if (executions.count > 0) json["executions"] = as_json(executions);
+  for (std::size_t i = 0; i < result.items.size(); ++i) {
+    json["items"].push_back(as_json(result.items[i], i < trial.items.size() ? trial.items[i] : study::TrueItem{}));
+  }
+  if (repeated.count > 0) json["monte_carlo"] = as_json(repeated);
   return json.dump(2) + "\n";
 }
 
-std::string format_plan(const task::SessionResult& result) {
+std::string format_plan(const session::SessionResult& result) {
   Json plan{{"sequence", result.sequence}, {"agent", result.agent}};
   plan["placements"] = Json::array();
   for (const packing::Placement& placement : result.plan) plan["placements"].push_back(as_json(placement));

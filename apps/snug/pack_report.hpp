@@ -3,15 +3,21 @@
 
 #include <string>
 
-#include "snug/task/executions.hpp"
+#include "snug/study/monte_carlo.hpp"
+#include "snug/study/trial.hpp"
 
 namespace snug::app {
 
-/// Executions with count 0 are left out.
-[[nodiscard]] std::string format_table(const task::SessionResult& result, const task::ExecutionResult& executions);
+/// What is packed with what, and the head of the table.
+[[nodiscard]] std::string format_pack_head(const std::string& sequence, const session::SessionOptions& session,
+                                           const simulated_plant::SimulatedPlantOptions& plant);
+/// The line of one item, and one for each recovery.
+[[nodiscard]] std::string format_item(const session::ItemReport& item, const study::TrueItem& truth);
+/// What stands under the table. Repeated runs with count 0 are left out.
+[[nodiscard]] std::string format_summary(const study::Trial& trial, const study::MonteCarloResult& repeated);
 /// The keys are described in docs/packing-execution.md.
-[[nodiscard]] std::string format_json(const task::SessionResult& result, const task::ExecutionResult& executions);
+[[nodiscard]] std::string format_json(const study::Trial& trial, const study::MonteCarloResult& repeated);
 /// The placements, in the order of packing.
-[[nodiscard]] std::string format_plan(const task::SessionResult& result);
+[[nodiscard]] std::string format_plan(const session::SessionResult& result);
 
 }  // namespace snug::app

@@ -6,7 +6,7 @@
 namespace snug::app {
 
 inline constexpr std::uint64_t kMostThreads = 256;
-inline constexpr std::uint64_t kMostRuns = 10'000;       ///< of an ensemble or of executions
+inline constexpr std::uint64_t kMostRuns = 10'000;       ///< of repeated runs
 inline constexpr std::uint64_t kMostSequences = 1000;    ///< about as many as one scenario can hold with their items
 inline constexpr std::uint64_t kMostThings = 1'000'000;  ///< frames, problems
 

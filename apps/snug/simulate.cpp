@@ -6,7 +6,7 @@
 
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
-#include "snug/cell/ensemble.hpp"
+#include "snug/cell/monte_carlo.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
@@ -91,13 +91,13 @@ NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scena
 int run_simulate(const SimulateOptions& options) {
   const model::Scenario scenario = load_with_overrides(options);
   cell::RunOptions run_options = make_run_options(options, scenario);
-  if (options.ensemble) {
-    if (!run_options.program) throw InputError("command line", "--ensemble", "no --program", "a program to run");
+  if (options.monte_carlo) {
+    if (!run_options.program) throw InputError("command line", "--monte-carlo", "no --program", "a program to run");
     if (options.record || options.csv) {
-      throw InputError("command line", "--ensemble", "with --record or --csv", "one of them");
+      throw InputError("command line", "--monte-carlo", "with --record or --csv", "one of them");
     }
-    const cell::EnsembleResult result =
-        cell::run_ensemble(scenario, run_options, {*options.ensemble, scenario.seed, run_options.threads, {}});
+    const cell::MonteCarloResult result =
+        cell::run_monte_carlo(scenario, run_options, {*options.monte_carlo, scenario.seed, run_options.threads});
     print(options.json ? format_json(result) : format_table(result));
     if (result.failed_runs == 0) return kSuccess;
     std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", result.failed_runs,

@@ -30,7 +30,7 @@ struct SimulateOptions {
   std::optional<double> record_period;    ///< s between frames
   std::optional<std::string> resume;      ///< recording to go on from
   std::optional<double> resume_at;        ///< s, instant of it
-  std::optional<int> ensemble;            ///< run this many times under small random changes
+  std::optional<int> monte_carlo;         ///< run this many times in cells drawn from the scenario's uncertainty
   std::optional<int> threads;             ///< absent: all cores
   bool json = false;
 };

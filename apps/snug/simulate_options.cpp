@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kSimulateExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug simulate scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json
-  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --ensemble 20 --seed 7
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --monte-carlo 20 --seed 7
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --robot ur10 --csv joints.csv
   snug simulate scenarios/box-demonstrator.yaml --container 400x300x200 --program out.csv --sequence 1 --cup phases
   snug simulate scenarios/slide.yaml --until 5 --csv slide.csv)";
@@ -55,7 +55,7 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
       ->type_name("N");
   verb.add_option(
           "--threads", options.threads,
-          "threads of an ensemble or of a scene of many bodies; the result does not depend on it (default: all cores)")
+          "threads of repeated runs or of a scene of many bodies; the result does not depend on it (default: all cores)")
       ->check(whole(1, kMostThreads))
       ->type_name("N");
 }
@@ -66,8 +66,8 @@ void add_simulate(CLI::App& app, Action& action) {
   verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
   add_program_options(verb, *options);
   add_physics_options(verb, *options);
-  verb.add_option("--ensemble", options->ensemble,
-                  "run the program N times with aligner, box sizes, friction and masses changed a little at random")
+  verb.add_option("--monte-carlo", options->monte_carlo,
+                  "run the program N times in cells drawn from the scenario's `uncertainty`")
       ->check(whole(1, kMostRuns))
       ->type_name("N");
   verb.add_option("-o,--record", options->record, "write a recording")->type_name("FILE.h5");

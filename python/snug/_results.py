@@ -29,10 +29,10 @@ class Result(Dict[str, Any]):
 
 
 def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware", seed: Optional[int] = None,
-         decision_time: float = 0.5, samples: int = 8, threads: int = 0, robot: str = "", perception: str = "exact",
-         executions: int = 0, record: PathLike = "",
+         plant_seed: int = 1, decision_time: float = 0.5, samples: int = 8, threads: int = 0,
+         robot: Optional[str] = None, perception: str = "exact", monte_carlo: int = 0, record: PathLike = "",
          progress: Optional[Callable[[int, int, int, float], None]] = None) -> Result:
-    """Packs a sequence as `snug pack` does: decides, tries under uncertainty, does it in simulation, looks, goes on.
+    """Packs a sequence as `snug pack` does: decides, rehearses, sends motions to a simulated plant, looks, recovers.
 
     Args:
         scenario: with container, aligner and tool.
@@ -40,13 +40,14 @@ def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware
         agent: name of a built-in agent (`agent_names()`), or an object with
             `decide(state, item, candidates)` (see snug.agent).
         seed: of roll-outs and samples; the scenario's by default.
+        plant_seed: of the plant, a cell drawn from the scenario's `uncertainty`; 0: exactly what the scenario says.
         decision_time: s an item on one core; turned into work, so that results repeat.
-        samples: courses of events in which each motion is tried before it is done; 0: none. 0 .. 64.
+        samples: worlds in which each motion is rehearsed beside the nominal one before it is sent; 0 .. 64.
         threads: 0: all cores. The result does not depend on it.
-        robot: name of the scenario's robot, such as "ur10"; "": the tool moves by itself.
+        robot: name of the scenario's robot, "none": the tool moves by itself; None: the robot where its file is there.
         perception: "exact", "noisy" or "dead-reckoning".
-        executions: repeats the finished program so many times, open loop, under sampled uncertainty.
-        record: HDF5 file for a recording of the program's run, or "".
+        monte_carlo: repeats the finished program so many times, open loop, in cells drawn anew.
+        record: HDF5 file for a recording of the plant's course, or "".
         progress: called as progress(item, items, packed, percent) after each item.
 
     Returns:
@@ -57,8 +58,8 @@ def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware
     """
     name = agent if isinstance(agent, str) else type(agent).__name__
     answer = None if isinstance(agent, str) else answerer(agent)
-    words, program = _core.pack(scenario, sequence, name, answer, seed, decision_time, samples, threads, robot,
-                                perception, executions, str(record), progress)
+    words, program = _core.pack(scenario, sequence, name, answer, seed, plant_seed, decision_time, samples,
+                                threads, robot, perception, monte_carlo, str(record), progress)
     result = Result(words)
     result.program = program
     return result

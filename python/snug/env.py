@@ -77,8 +77,8 @@ class Packing(spaces.Env):
         squeeze: m, boxes are planned this much smaller along Tx and Ty.
         settle_time: s, in mode "statics".
         max_displacement, max_tilt: m and rad, how far a box may come to rest from where it was put.
-        vary_size, vary_friction, vary_mass, vary_aligner_position, vary_aligner_yaw: half widths of what is drawn
-            anew for each episode: m on each edge, parts of each coefficient and mass, m, rad. 0 by default.
+        vary: True: the cell is drawn anew for each episode, from the scenario's `uncertainty`: sizes, masses, friction,
+            cup, aligner. `scenario.with_values({"uncertainty.size": 0.002})` sets a half width.
         parameters: this environment's own: size_offset (m), friction_scale, cup_scale, mass_scale.
 
     Observations (each a copy that is yours; m, kg, frame T; float32):

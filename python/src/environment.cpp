@@ -38,11 +38,7 @@ environment::Settings settings_of(const py::dict& words) {
       {"squeeze", number(s.packing.squeeze)},
       {"min_support", number(s.packing.min_support)},
       {"com_margin", number(s.packing.com_margin)},
-      {"vary_size", number(s.variation.parcel_size)},
-      {"vary_friction", number(s.variation.friction)},
-      {"vary_mass", number(s.variation.mass)},
-      {"vary_aligner_position", number(s.variation.aligner_position)},
-      {"vary_aligner_yaw", number(s.variation.aligner_yaw)},
+      {"vary", [&](const py::handle& v) { s.varies = v.cast<bool>(); }},
   };
   std::vector<std::string> names;
   for (const auto& [name, set] : known) names.push_back(name);

@@ -1,6 +1,5 @@
 // Packing sessions, runs of programs, recordings and their report: results are the documented JSON of the command line.
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "core.hpp"
 #include "handles.hpp"
@@ -8,11 +7,15 @@
 #include "run_report.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/record/reader.hpp"
+#include "snug/record/writer.hpp"
 #include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
-#include "snug/task/executions.hpp"
+#include "snug/robot/load_arm.hpp"
+#include "snug/study/monte_carlo.hpp"
+#include "snug/study/trial.hpp"
 
 namespace snug::python {
 namespace {
@@ -38,44 +41,68 @@ packing::Ask ask_of(const py::object& answer) {
 }
 
 struct PackWords {
-  std::string sequence, agent = "contact-aware", robot, record, perception = "exact";
+  std::string sequence, agent, perception;
+  std::optional<std::string> robot;
+  std::filesystem::path record;
   std::optional<std::uint64_t> seed;
-  double decision_time = packing::PackingSettings{}.decision_time;
-  int samples = task::SessionOptions{}.samples, threads = 0, executions = 0;
+  std::uint64_t plant_seed = 1;
+  double decision_time = 0.5;
+  int samples = 8, threads = 0, monte_carlo = 0;
   py::object answer = py::none(), progress = py::none();
 };
 
-task::SessionOptions session_options(const model::Scenario& scenario, const PackWords& words) {
-  task::SessionOptions session;
+/// The robot that moves the tool: what was asked for, or the scenario's, where its file is there.
+std::string choose_robot(const PackWords& words, const model::Scenario& scenario) {
+  if (words.robot) return *words.robot == "none" ? std::string() : *words.robot;
+  std::error_code error;
+  const bool is_there = scenario.robot && std::filesystem::exists(robot::urdf_path(scenario), error);
+  return is_there ? scenario.robot->name : std::string();
+}
+
+session::SessionOptions session_options(const model::Scenario& scenario, const PackWords& words) {
+  if (words.samples < 0 || words.samples > 64)
+    throw InputError("argument", "samples", std::to_string(words.samples), "0 .. 64");
+  if (words.monte_carlo < 0)
+    throw InputError("argument", "monte_carlo", std::to_string(words.monte_carlo), "0 or more");
+  session::SessionOptions session;
   session.agent = words.agent;
   session.ask = ask_of(words.answer);
   session.packing.seed = words.seed.value_or(scenario.seed);
   session.packing.decision_time = words.decision_time;
-  session.threads =
-      words.threads > 0 ? words.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  session.threads = words.threads > 0 ? words.threads : core_count();
   session.packing.threads = session.threads;
   session.samples = words.samples;
-  if (words.samples < 0 || words.samples > 64)
-    throw InputError("argument", "samples", std::to_string(words.samples), "0 .. 64");
-  session.simulation.robot = words.robot;
-  if (words.perception == "noisy") {
-    session.perception = task::Perception::Noisy;
-  } else if (words.perception == "dead-reckoning") {
-    session.perception = task::Perception::DeadReckoning;
-  } else if (words.perception != "exact") {
-    throw InputError("argument", "perception", "'" + words.perception + "'", "exact, noisy or dead-reckoning");
-  }
+  session.simulation.robot = choose_robot(words, scenario);
   return session;
 }
 
-task::ExecutionResult repeated(const model::Scenario& scenario, const task::SessionResult& result,
-                               const task::SessionOptions& session, int count) {
-  task::ExecutionOptions options;
+void save_recording(const model::Scenario& scenario, const study::Trial& trial, const std::filesystem::path& path) {
+  OutputFile file = record::reserve_recording(path);
+  simulated_plant::RecordedRunOptions recorded;
+  recorded.file = &file;
+  recorded.version = SNUG_VERSION;
+  recorded.events = study::events_of(trial.session);
+  const std::string& robot = trial.plant.simulation.robot;
+  recorded.settings_json = nlohmann::json{
+      {"cup", "phases"},
+      {"controller", "faithful"},
+      {"corrections", "none"},
+      {"robot", robot.empty() ? "none" : robot},
+      {"plant_seed",
+       trial.plant_seed}}.dump();
+  recorded.describe = [](const cell::RunResult& one) { return app::format_json(one); };
+  (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
+}
+
+study::MonteCarloResult repeated(const model::Scenario& scenario, const study::Trial& trial,
+                                 const session::SessionOptions& session, int count) {
+  if (count == 0) return {};
+  study::MonteCarloOptions options;
   options.count = count;
   options.seed = session.packing.seed;
   options.threads = session.threads;
   options.simulation = session.simulation;
-  return task::repeat(scenario, result, options);
+  return study::repeat(scenario, trial.session.sequence, trial.session.program, trial.session.plan, options);
 }
 
 cell::RunOptions run_options(const motion::Program& program, const std::string& sequence) {
@@ -91,27 +118,28 @@ cell::RunOptions run_options(const motion::Program& program, const std::string& 
 /// The words of the result, and the program.
 py::tuple pack(const ScenarioHandle& handle, const PackWords& words) {
   const model::Scenario& scenario = **handle;
-  const task::SessionOptions session = session_options(scenario, words);
+  const session::SessionOptions session = session_options(scenario, words);
+  simulated_plant::SimulatedPlantOptions plant;
+  plant.seed = words.plant_seed;
+  plant.perception = perception::kind_of(words.perception);
+  plant.simulation = session.simulation;
+  const auto progress = [&](const study::Trial& so_far, int item, int items) {
+    check_signals();
+    const py::gil_scoped_acquire acquire;
+    if (!words.progress.is_none()) words.progress(item, items, so_far.executed_boxes, so_far.executed_percent);
+  };
   std::string json;
-  std::shared_ptr<Held<motion::Program>> program;
+  ProgramHandle program;
+  study::Trial trial;
   {
     const py::gil_scoped_release release;
-    const task::SessionResult result =
-        task::pack(scenario, words.sequence, session, [&](const task::SessionResult& so_far, int item, int items) {
-          check_signals();
-          const py::gil_scoped_acquire acquire;
-          if (!words.progress.is_none()) words.progress(item, items, so_far.executed_boxes, so_far.executed_percent);
-        });
-    json = app::format_json(result, repeated(scenario, result, session, words.executions));
-    program = std::make_shared<Held<motion::Program>>(result.program);
-    if (!words.record.empty() && !result.program.waypoints.empty()) {
-      cell::RunOptions run = run_options(result.program, words.sequence);
-      run.simulation = session.simulation;
-      run.record_path = words.record;
-      const py::gil_scoped_acquire acquire;
-      const HdfUse use;
-      (void)cell::run(scenario, run);
-    }
+    trial = study::run_trial(scenario, words.sequence, session, plant, progress);
+    json = app::format_json(trial, repeated(scenario, trial, session, words.monte_carlo));
+    program = std::make_shared<Held<motion::Program>>(trial.session.program);
+  }
+  if (!words.record.empty() && !trial.session.program.waypoints.empty()) {
+    const HdfUse use;
+    save_recording(scenario, trial, words.record);
   }
   return py::make_tuple(from_json(json), program);
 }
@@ -228,27 +256,16 @@ void bind_session(py::module_& m) {
   m.def(
       "pack",
       [](const ScenarioHandle& scenario, const std::string& sequence, const std::string& agent,
-         const py::object& answer, const std::optional<std::uint64_t>& seed, double decision_time, int samples,
-         int threads, const std::string& robot, const std::string& perception, int executions,
-         const std::filesystem::path& record, const py::object& progress) {
-        PackWords words;
-        words.sequence = sequence;
-        words.agent = agent;
-        words.answer = answer;
-        words.seed = seed;
-        words.decision_time = decision_time;
-        words.samples = samples;
-        words.threads = threads;
-        words.robot = robot;
-        words.perception = perception;
-        words.executions = executions;
-        words.record = record.string();
-        words.progress = progress;
-        return pack(scenario, words);
+         const py::object& answer, const std::optional<std::uint64_t>& seed, std::uint64_t plant_seed,
+         double decision_time, int samples, int threads, const std::optional<std::string>& robot,
+         const std::string& perception, int monte_carlo, const std::filesystem::path& record,
+         const py::object& progress) {
+        return pack(scenario, {sequence, agent, perception, robot, record, seed, plant_seed, decision_time, samples,
+                               threads, monte_carlo, answer, progress});
       },
       py::arg("scenario"), py::arg("sequence"), py::arg("agent"), py::arg("answer"), py::arg("seed"),
-      py::arg("decision_time"), py::arg("samples"), py::arg("threads"), py::arg("robot"), py::arg("perception"),
-      py::arg("executions"), py::arg("record"), py::arg("progress"));
+      py::arg("plant_seed"), py::arg("decision_time"), py::arg("samples"), py::arg("threads"), py::arg("robot"),
+      py::arg("perception"), py::arg("monte_carlo"), py::arg("record"), py::arg("progress"));
   m.def("simulate", &simulate, py::arg("scenario"), py::arg("program"), py::arg("sequence"), py::arg("corrections"),
         py::arg("robot"), py::arg("cup"), py::arg("controller"), py::arg("until"), py::arg("record"));
   py::class_<Recording>(m, "Recording")

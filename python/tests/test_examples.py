@@ -40,7 +40,7 @@ def test_agent():
         agent = __import__("03_agent").Lowest()
     finally:
         sys.path.pop(0)
-    result = snug.pack(snug.load_scenario(DEMONSTRATOR), "1", agent=agent, samples=0)
+    result = snug.pack(snug.load_scenario(DEMONSTRATOR), "1", agent=agent, samples=0, robot="none")
     assert result.executed_boxes >= 5
 
 

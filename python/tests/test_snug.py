@@ -202,7 +202,7 @@ class TestWorld:
 class TestCell:
     @pytest.fixture(scope="class")
     def program(self, demonstrator, request):
-        result = snug.pack(demonstrator, "1", agent="margin", samples=0, decision_time=0.01, threads=1)
+        result = snug.pack(demonstrator, "1", agent="margin", samples=0, robot="none", decision_time=0.01, threads=1)
         return result.program
 
     def test_a_program_steps_tick_by_tick(self, demonstrator, program):
@@ -280,7 +280,7 @@ class TestPacking:
         assert len(packer.boxes()) >= 5
 
     def test_packing_twice_is_the_same(self, demonstrator):
-        words = dict(agent="margin", samples=0, decision_time=0.01, threads=1)
+        words = dict(agent="margin", samples=0, robot="none", decision_time=0.01, threads=1)
         first, second = snug.pack(demonstrator, "1", **words), snug.pack(demonstrator, "1", **words)
         assert first.state_hash == second.state_hash
         assert first.program.to_csv() == second.program.to_csv()
@@ -300,7 +300,7 @@ class TestPacking:
                 assert item.size and isinstance(state.boxes, list)
                 return candidates[:3]
 
-        result = snug.pack(demonstrator, "1", agent=Last(), samples=0, threads=1)
+        result = snug.pack(demonstrator, "1", agent=Last(), samples=0, robot="none", threads=1)
         assert result.agent == "Last" and Last.asked >= 3 and result.executed_boxes >= 3
 
     def test_what_an_agent_raises_comes_through(self, demonstrator):
@@ -309,7 +309,7 @@ class TestPacking:
                 raise KeyError("oh")
 
         with pytest.raises(KeyError):
-            snug.pack(demonstrator, "1", agent=Broken(), samples=0)
+            snug.pack(demonstrator, "1", agent=Broken(), samples=0, robot="none")
 
     def test_packing_runs_beside_other_threads(self, demonstrator):
         ticks = []
@@ -321,7 +321,7 @@ class TestPacking:
 
         thread = threading.Thread(target=count)
         thread.start()
-        snug.pack(demonstrator, "1", agent="margin", samples=0, decision_time=0.01, threads=1)
+        snug.pack(demonstrator, "1", agent="margin", samples=0, robot="none", decision_time=0.01, threads=1)
         done.set()
         thread.join()
         assert len(ticks) > 20

@@ -105,9 +105,11 @@ void CellArm::attach(const CellWorld& world) {
   }
 }
 
-ArmState CellArm::make_state(std::uint64_t seed) const {
-  return {machine_.make_state(controller_, start_), Rng(seed).split("force sensor"), {}};
+ArmState CellArm::make_state(std::uint64_t seed, const JointVector& q) const {
+  return {machine_.make_state(controller_, q), Rng(seed).split("force sensor"), {}};
 }
+
+void CellArm::stand(ArmState& state) const { state.machine = machine_.make_state(controller_, state.machine.joints.q); }
 
 control::MachineTick CellArm::tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
                                    ArmState& state, control::JointControllerWork& work) const {

@@ -83,7 +83,11 @@ class CellArm {
   /// To be called once, with the world that the arm's bodies are in.
   void attach(const CellWorld& world);
 
-  [[nodiscard]] ArmState make_state(std::uint64_t seed) const;
+  [[nodiscard]] ArmState make_state(std::uint64_t seed) const { return make_state(seed, start_); }
+  /// At rest at q.
+  [[nodiscard]] ArmState make_state(std::uint64_t seed, const robot::JointVector& q) const;
+  /// At rest where it is; its controller starts anew.
+  void stand(ArmState& state) const;
   /// One tick of the controller. `program` is brought up to date.
   [[nodiscard]] control::MachineTick tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
                                           ArmState& state, control::JointControllerWork& work) const;

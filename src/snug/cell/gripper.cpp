@@ -30,7 +30,9 @@ Vector3 half_of(const CellWorld& world, int body) {
 }  // namespace
 
 Gripper::Gripper(const model::CupParams& params, cup::CupMode mode, const CellWorld& world)
-    : params_(params), mode_(mode), world_(&world) {}
+    : params_(params), letting_go_(params), mode_(mode), world_(&world) {
+  letting_go_.free_length = params.hold_length + params.release_push * (params.free_length - params.hold_length);
+}
 
 Gripper::Target Gripper::find_target(const physics::WorldState& world_state, const Pose& X_WE) const {
   model::CupParams loose = params_;  // anything in front of the cup, sealable or not
@@ -54,7 +56,7 @@ void Gripper::try_to_seal(const Target& target, const Pose& X_WE, const cup::Cup
   if (!command.vacuum) return;
   GripperEvent event;
   event.body = target.body;
-  if (target.body >= 0) {
+  if (target.body >= 0 && !state.cannot_seal) {
     const auto seal = cup::try_seal(params_, X_WE, target.half, target.X_WP);
     if (seal) {
       state.cup.phase = cup::CupPhase::Holding;
@@ -93,9 +95,12 @@ void Gripper::let_go(GripperEvent event, GripperState& state, std::vector<Grippe
 
 void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
                          const cup::CupCommand& command, GripperState& state, std::vector<GripperEvent>& events) const {
-  if (!command.vacuum && state.cup.phase == cup::CupPhase::Holding) state.cup.phase = cup::CupPhase::Releasing;
+  if (!command.vacuum && state.cup.phase == cup::CupPhase::Holding) {
+    state.cup.phase = cup::CupPhase::Releasing;
+    state.is_letting_go = true;
+  }
   const physics::ElementQuery query = query_of(*world_, world_state, state.cup.body, X_WE, V_WE);
-  const cup::SuctionCup cup = cup::cup_at(params_, state.cup.pressure_gauge, state.cup.X_PS);
+  const cup::SuctionCup cup = cup::cup_at(params_of(state), state.cup.pressure_gauge, state.cup.X_PS);
   state.F_S = cup.lip_wrench(query);
   state.cup.bend = cup::bend_angle(X_WE.R.transpose() * query.X_WB.R * state.cup.X_PS.R);
   GripperEvent event;
@@ -143,12 +148,13 @@ void Gripper::prepare(const physics::WorldState& world_state, const Pose& X_WE, 
   }
   state.vacuum_time = command.vacuum ? state.vacuum_time + dt : 0.0;
   if (!command.vacuum) state.has_reported = false;
+  if (command.vacuum) state.is_letting_go = false;
   if (state.cup.phase != cup::CupPhase::Free) check_hold(world_state, X_WE, V_WE, command, state, events);
   if (state.cup.phase == cup::CupPhase::Free) {
     const Target target = find_target(world_state, X_WE);
     out.ignored = target.body;
     try_to_seal(target, X_WE, command, state, events);
-    const double length = cup::unloaded_length(params_, state.cup.pressure_gauge);
+    const double length = cup::unloaded_length(params_of(state), state.cup.pressure_gauge);
     if (state.cup.phase == cup::CupPhase::Free && mode_ == cup::CupMode::Phases && target.body >= 0 &&
         target.hit.length < length) {
       out.push = cup::LipPush(params_.free_stiffness_ratio * params_.stiffness.axial,
@@ -159,7 +165,7 @@ void Gripper::prepare(const physics::WorldState& world_state, const Pose& X_WE, 
     }
   }
   if (state.cup.phase != cup::CupPhase::Free) {
-    out.cup = cup::cup_at(params_, state.cup.pressure_gauge, state.cup.X_PS);
+    out.cup = cup::cup_at(params_of(state), state.cup.pressure_gauge, state.cup.X_PS);
     out.element = &out.cup;
     out.body = state.cup.body;
     out.ignored = state.cup.body;

@@ -26,6 +26,8 @@ struct GripperState {
   bool is_established = false;  ///< the vacuum of the present hold was nearly complete: its limits count
   bool has_warned = false;      ///< of too much bending, for the present hold
   bool has_reported = false;    ///< that no seal was found, for the present vacuum command
+  bool is_letting_go = false;   ///< since the vacuum went off on a held box, until it comes on again
+  bool cannot_seal = false;     ///< a fault: the lip leaks
   Wrench F_S;                   ///< on the held box, at the lip, at the start of the step
   bool operator==(const GripperState&) const = default;
 };
@@ -55,6 +57,9 @@ class Gripper {
     Vector3 half = Vector3::Zero();
     Pose X_WP;
   };
+  [[nodiscard]] const model::CupParams& params_of(const GripperState& state) const {
+    return state.is_letting_go ? letting_go_ : params_;
+  }
   [[nodiscard]] Target find_target(const physics::WorldState& world_state, const Pose& X_WE) const;
   void try_to_seal(const Target& target, const Pose& X_WE, const cup::CupCommand& command, GripperState& state,
                    std::vector<GripperEvent>& events) const;
@@ -63,6 +68,7 @@ class Gripper {
   void let_go(GripperEvent event, GripperState& state, std::vector<GripperEvent>& events) const;
 
   model::CupParams params_;
+  model::CupParams letting_go_;  ///< the same, grown by its share of the push at release
   cup::CupMode mode_;
   const CellWorld* world_;
 };

@@ -42,6 +42,16 @@ const char* name_of(BoxState state) {
   return "";
 }
 
+ContainerFit fit_in(const Vector3& inner_size, const Vector3& box_size, const Pose& X_TP) {
+  const Vector3 reach = 0.5 * (X_TP.R.cwiseAbs() * box_size);
+  const Vector3 beyond = X_TP.p.cwiseAbs() + reach - 0.5 * inner_size;
+  ContainerFit fit;
+  fit.outside = std::max({0.0, beyond.x(), beyond.y()});
+  fit.above_rim = std::max(0.0, X_TP.p.z() + reach.z() - inner_size.z());
+  fit.is_in = fit.outside <= kPackedBeyondWall && fit.above_rim <= kPackedAboveRim && X_TP.p.z() > 0.0;
+  return fit;
+}
+
 Journey::Journey(const model::Scenario& scenario, const model::Sequence& sequence) : items_(sequence.items.size()) {
   for (const model::Item& item : sequence.items) {
     ids_.push_back(item.parcel);
@@ -153,19 +163,16 @@ std::vector<BoxResult> Journey::results(const CellWorld& world, const physics::W
     const Pose X_WP = physics::pose_of(world.model, state, body);
     result.X_TP = X_WT_.inverse() * X_WP;
     result.up = axis_letter(vertical_axis(X_WP.R));
-    const Vector3 reach = 0.5 * (result.X_TP.R.cwiseAbs() * sizes_[i]);
-    const Vector3 beyond = result.X_TP.p.cwiseAbs() + reach - 0.5 * inner_size_;
-    result.outside = std::max({0.0, beyond.x(), beyond.y()});
-    result.above_rim = std::max(0.0, result.X_TP.p.z() + reach.z() - inner_size_.z());
-    const bool is_in =
-        result.outside <= kPackedBeyondWall && result.above_rim <= kPackedAboveRim && result.X_TP.p.z() > 0.0;
+    const ContainerFit fit = fit_in(inner_size_, sizes_[i], result.X_TP);
+    result.outside = fit.outside;
+    result.above_rim = fit.above_rim;
     if (item.was_lost) {
       result.state = BoxState::Lost;
     } else if (body.index == held_body) {
       result.state = BoxState::Held;
     } else if (!item.was_held || item.was_removed) {
       result.state = BoxState::Waiting;
-    } else if (is_in) {
+    } else if (fit.is_in) {
       result.state = BoxState::Packed;
     } else {
       result.state = item.over_container ? BoxState::Outside : BoxState::Dropped;

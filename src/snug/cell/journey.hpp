@@ -24,6 +24,14 @@ enum class BoxState {
 inline constexpr double kPackedBeyondWall = 0.005;
 inline constexpr double kPackedAboveRim = 0.012;
 
+/// How far a box reaches out of a container.
+struct ContainerFit {
+  double outside = 0.0;    ///< m, farthest corner beyond the inner walls, 0 inside
+  double above_rim = 0.0;  ///< m, highest corner over the rim, 0 below
+  bool is_in = false;      ///< within the tolerances above, and its middle over the floor
+};
+[[nodiscard]] ContainerFit fit_in(const Vector3& inner_size, const Vector3& box_size, const Pose& X_TP);
+
 struct BoxResult {
   std::string id;
   BoxState state = BoxState::Waiting;

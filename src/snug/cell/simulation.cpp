@@ -258,25 +258,6 @@ bool Simulation::is_at_end(const motion::PreparedProgram& plan, const CellState&
   return motion::will_finish(plan, state.controller.command, state.controller);
 }
 
-CellState Simulation::adopt(const Simulation& other, const CellState& state) const {
-  CellState adopted = state;
-  adopted.world.stamp = {};
-  for (std::size_t i = 0; i < world_.model.bodies.size(); ++i) {
-    const physics::BodyModel& mine = world_.model.bodies[i];
-    const physics::BodyModel& theirs = other.world_.model.bodies[i];
-    if (mine == theirs) continue;
-    const physics::BodyId body{static_cast<int>(i)};
-    if (mine.kind == physics::BodyKind::Static) {  // stands where it stands here
-      physics::set_pose(world_.model, adopted.world, body, mine.X_WB);
-      continue;
-    }
-    const Twist V_WB = physics::twist_of(other.world_.model, state.world, body);
-    physics::set_pose(world_.model, adopted.world, body, physics::pose_of(other.world_.model, state.world, body));
-    physics::set_twist(world_.model, adopted.world, body, V_WB);
-  }
-  return adopted;
-}
-
 std::vector<BoxResult> Simulation::boxes(const CellState& state) const {
   return state.journey.results(world_, state.world, state.gripper.cup.body);
 }

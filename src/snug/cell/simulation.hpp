@@ -56,6 +56,18 @@ struct CellTick {
   std::string failure;       ///< empty, or why the run has to stop: body, time, last contacts
 };
 
+/// Where a cell is taken up: what somebody who did not watch it from the start believes of it. Nothing is held.
+struct CellAnchor {
+  struct Box {
+    int item = 0;  ///< of the sequence
+    Pose X_WP;
+    bool operator==(const Box&) const = default;
+  };
+  std::vector<Box> boxes;  ///< at rest; items that are not named are not in the cell
+  Pose X_WE;               ///< of the tool, at rest
+  std::vector<double> q;   ///< rad; with a robot these count, if given, and X_WE does not
+};
+
 class Simulation {
  public:
   /// Throws InputError for a scenario without tool or aligner, an unknown sequence, and a controller tick that is no
@@ -73,6 +85,8 @@ class Simulation {
 
   /// At time 0: the tool at its start, no box in the cell.
   [[nodiscard]] CellState make_state() const;
+  /// At time 0, everything where the anchor says.
+  [[nodiscard]] CellState take_up(const CellAnchor& anchor) const;
   /// `threads` share the work of large cells; the bytes do not depend on their number.
   [[nodiscard]] CellWorkspace make_workspace(int threads = 1) const {
     return CellWorkspace(world_.model, scenario_.solver.contact_limits, threads);
@@ -90,9 +104,15 @@ class Simulation {
   /// `plan` now: rows appended at this moment are executed as if they had always been there.
   [[nodiscard]] bool is_at_end(const motion::PreparedProgram& plan, const CellState& state) const;
 
-  /// `state` of a simulation of the same cell with other sizes, masses or friction, continued here: every body keeps
-  /// its pose and twist; static ones stand where they stand in this cell.
-  [[nodiscard]] CellState adopt(const Simulation& other, const CellState& state) const;
+  /// Another program goes on from here: its first row is aimed at next, the tool keeps its speed. Switches stay.
+  void begin_motion(CellState& state) const;
+  /// The tool, and the arm, are at rest from now on: the brakes are closed.
+  void stand(CellState& state) const;
+  /// The item comes to the aligner; what stands where it comes, and is not held, is taken away.
+  void bring(int item, CellState& state) const;
+  /// On the tool, from what it carries and touches, about Eo, in E: what a sensor between arm and tool reads beyond the
+  /// tool's own weight.
+  [[nodiscard]] Wrench tool_load(const CellState& state, const CellWorkspace& work) const;
 
   [[nodiscard]] double time(const CellState& state) const { return state.world.time(world_.model); }
   [[nodiscard]] std::vector<BoxResult> boxes(const CellState& state) const;
@@ -101,6 +121,8 @@ class Simulation {
  private:
   [[nodiscard]] std::optional<Pose> next_pick(const motion::PreparedProgram& plan, int row) const;
   void depart(const motion::PreparedProgram& plan, int row, CellState& state) const;
+  void place(physics::BodyId body, const Pose& X_WB, CellState& state) const;
+  [[nodiscard]] motion::ToolState tool_of(const CellState& state) const;
   /// work.targets: where tool and links are at the end of the step.
   void advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, CellState& state,
                     CellWorkspace& work, CellTick& tick) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/environment/internal/happening.hpp"
@@ -25,22 +26,10 @@ void check(const Settings& s, const Parameters& p) {
   require(s.settle_time > 0.0 && s.settle_time <= 60.0, "settle_time", s.settle_time, "above 0, at most 60 s");
   require(s.max_displacement > 0.0, "max_displacement", s.max_displacement, "above 0 m");
   require(s.max_tilt > 0.0, "max_tilt", s.max_tilt, "above 0 rad");
-  const auto is_half_width = [](double v, double most) { return v >= 0.0 && v <= most; };
-  const cell::Perturbation& v = s.variation;
-  require(is_half_width(v.parcel_size, 0.02), "variation.parcel_size", v.parcel_size, "0 .. 0.02 m");
-  require(is_half_width(v.friction, 1.0), "variation.friction", v.friction, "0 .. 1");
-  require(is_half_width(v.mass, 0.9), "variation.mass", v.mass, "0 .. 0.9");
-  require(is_half_width(v.aligner_position, 0.1), "variation.aligner_position", v.aligner_position, "0 .. 0.1 m");
-  require(is_half_width(v.aligner_yaw, 0.5), "variation.aligner_yaw", v.aligner_yaw, "0 .. 0.5 rad");
   require(std::abs(p.size_offset) <= 0.02, "size_offset", p.size_offset, "-0.02 .. 0.02 m");
   require(p.friction_scale >= 0.0 && p.friction_scale <= 100.0, "friction_scale", p.friction_scale, "0 .. 100");
   require(p.cup_scale > 0.0 && p.cup_scale <= 100.0, "cup_scale", p.cup_scale, "above 0, at most 100");
   require(p.mass_scale > 0.0 && p.mass_scale <= 100.0, "mass_scale", p.mass_scale, "above 0, at most 100");
-}
-
-bool varies(const cell::Perturbation& v) {
-  return v.aligner_position != 0.0 || v.aligner_yaw != 0.0 || v.parcel_size != 0.0 || v.friction != 0.0 ||
-         v.mass != 0.0;
 }
 
 void scale(model::CupElasticity& cup, double factor) {
@@ -106,7 +95,7 @@ struct Environment::State {
     for (const model::Item& item : base.items) base_items.push_back(packing::make_item(scenario, item));
     finder = packing::PlaceFinder(
         container, rules_of(asked),
-        varies(asked.variation) ? std::span<const packing::Item>{} : std::span<const packing::Item>(base_items));
+        asked.varies ? std::span<const packing::Item>{} : std::span<const packing::Item>(base_items));
     const double cells_y = std::ceil(container.inner_size.y() / settings.resolution - 1e-9);
     const double cells_x = std::ceil(container.inner_size.x() / settings.resolution - 1e-9);
     require(cells_x * cells_y <= kMostCells, "resolution", settings.resolution, "one that leaves at most 4e6 cells");
@@ -146,18 +135,19 @@ struct Environment::State {
 
   void begin_happening(Rng rng) {
     happening.it.reset();
-    const bool changes = varies(settings.variation);
+    const bool changes = settings.varies;
     items.clear();
     if (settings.mode == Mode::Geometric && !changes) {
       for (const std::size_t i : order) items.push_back(base_items[i]);
       return;
     }
-    model::Scenario drawn = changes ? cell::perturbed(scenario, settings.variation, rng.split("variation")) : scenario;
+    model::Scenario drawn = scenario;
     model::Sequence sequence = base;
     for (std::size_t i = 0; i < order.size(); ++i) sequence.items[i] = base.items[order[i]];
+    drawn.sequences = {sequence};
+    if (changes) drawn = cell::draw_scenario(drawn, sequence.name, rng.split("variation"));
     for (const model::Item& item : sequence.items) items.push_back(packing::make_item(drawn, item));
     if (settings.mode == Mode::Geometric) return;
-    drawn.sequences = {sequence};
     const std::string name(kSequence);
     const internal::Episode episode{drawn, name, settings};
     happening.it = settings.mode == Mode::Statics ? make_statics(episode) : make_execution(episode);

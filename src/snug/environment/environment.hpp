@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "snug/cell/ensemble.hpp"
 #include "snug/packing/place_finder.hpp"
 
 namespace snug::environment {
@@ -31,8 +30,7 @@ struct Settings {
   int max_candidates = 64;
   int max_steps = 1000;      ///< an episode that has not ended then is truncated
   double settle_time = 0.5;  ///< s, Statics
-  /// What is drawn anew for each episode; nothing by default.
-  cell::Perturbation variation{0.0, 0.0, 0.0, 0.0, 0.0};
+  bool varies = false;       ///< the cell is drawn anew for each episode, from the scenario's uncertainty
   /// When a box counts as placed: how far it may come to rest from where it was meant to, m and rad.
   double max_displacement = 0.020;
   double max_tilt = 0.10471975511965977;

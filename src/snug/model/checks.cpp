@@ -177,12 +177,12 @@ void ScenarioReader::check_materials_meet(const Value& at) const {
 
 void ScenarioReader::read() {
   const MapReader map =
-      root_.map("scenario", {"name",         "gravity",   "time_step",  "duration",   "seed",
-                             "solver",       "materials", "contacts",   "frames",     "parcel_clearance",
-                             "parcel_types", "parcels",   "containers", "target",     "bodies",
-                             "aligner",      "tool",      "cup",        "controller", "sequences",
-                             "springs",      "drops",     "robot",      "wrenches",   "record_period",
-                             "initial_state"});
+      root_.map("scenario", {"name",          "gravity",    "time_step",  "duration",   "seed",
+                             "solver",        "materials",  "contacts",   "frames",     "parcel_clearance",
+                             "parcel_types",  "parcels",    "containers", "target",     "bodies",
+                             "aligner",       "tool",       "cup",        "controller", "sequences",
+                             "springs",       "drops",      "robot",      "wrenches",   "record_period",
+                             "initial_state", "uncertainty"});
   const auto each = [&map](const char* key, auto&& read_one) {
     if (const auto values = map.find(key))
       for (const Value& value : values->list()) read_one(value);
@@ -201,6 +201,7 @@ void ScenarioReader::read() {
   if (const auto controller = map.find("controller")) read_controller(*controller);
   if (const auto robot = map.find("robot")) read_robot(*robot);
   each("sequences", [this](const Value& value) { read_sequence(value); });
+  if (const auto uncertainty = map.find("uncertainty")) read_uncertainty(*uncertainty);
   each("springs", [this](const Value& value) { read_spring(value); });
   each("wrenches", [this](const Value& value) { read_wrench(value); });
   if (const auto drops = map.find("drops")) read_drops(*drops);

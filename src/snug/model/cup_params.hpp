@@ -98,9 +98,12 @@ struct CupParams {
   double centre_from_lip = 0.025;      ///< m, centre of stiffness before the lip
   double free_stiffness_ratio = 0.25;  ///< stiffness without vacuum / stiffness under vacuum
   double free_damping_ratio = 0.25;    ///< damping without vacuum / damping under vacuum
-  double lip_radius = 0.035;           ///< m, unloaded
-  double effective_diameter = 0.060;   ///< m, of the disc on which the vacuum acts
-  double lip_friction = 0.5;           ///< Coulomb coefficient of lip on cardboard
+  /// Share of the growth from hold_length to free_length that a cup has which lets go: 1 pushes with all of it, 0 lets
+  /// go without a push. Counts with vacuum phases alone.
+  double release_push = 1.0;
+  double lip_radius = 0.035;          ///< m, unloaded
+  double effective_diameter = 0.060;  ///< m, of the disc on which the vacuum acts
+  double lip_friction = 0.5;          ///< Coulomb coefficient of lip on cardboard
   VacuumParams vacuum;
   SealParams seal;
   HoldLimits limits;
@@ -114,6 +117,7 @@ struct CupParams {
     a("centre_from_lip", centre_from_lip, Range::NotNegative);
     a("free_stiffness_ratio", free_stiffness_ratio, Range::Positive);
     a("free_damping_ratio", free_damping_ratio, Range::NotNegative);
+    a("release_push", release_push, Range::Fraction);
     a("lip_radius", lip_radius, Range::Positive);
     a("effective_diameter", effective_diameter, Range::Positive);
     a("lip_friction", lip_friction, Range::NotNegative);

@@ -1,4 +1,5 @@
 // Reading the robot cell: parcels, aligner, tool, cup, controller and sequences.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -151,6 +152,16 @@ void ScenarioReader::read_aligner(const Value& value) {
     aligner.heavy_side = static_cast<HeavySide>(side->choice({"corner", "away", "any"}));
   scenario_.aligner = aligner;
   aligner_value_ = value;
+}
+
+void ScenarioReader::read_uncertainty(const Value& value) {
+  Uncertainty& uncertainty = scenario_.uncertainty;
+  read_fields(value, "uncertainty", uncertainty);
+  const double longest = std::max({uncertainty.size, uncertainty.com, uncertainty.clearance, uncertainty.position,
+                                   uncertainty.aligner_position, uncertainty.cup_length});
+  if (longest > 0.1) value.fail("a length of " + to_text(longest) + " m", "half widths in metres, at most 0.1");
+  if (std::max(uncertainty.yaw, uncertainty.aligner_yaw) > 0.25 * std::numbers::pi)
+    value.fail("an angle above 45 degrees", "half widths of at most 45 degrees");
 }
 
 void ScenarioReader::read_tool(const Value& value) {

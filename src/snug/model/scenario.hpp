@@ -14,6 +14,7 @@
 #include "snug/model/material.hpp"
 #include "snug/model/parcel.hpp"
 #include "snug/model/robot_params.hpp"
+#include "snug/model/uncertainty.hpp"
 
 namespace snug::model {
 
@@ -114,6 +115,7 @@ struct Scenario {
   ControllerParams controller;
   std::optional<RobotParams> robot;
   std::vector<Sequence> sequences;
+  Uncertainty uncertainty;  ///< of all of the above
   std::vector<Spring> springs;
   std::vector<AppliedWrench> wrenches;
   std::optional<Drops> drops;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "snug/cell/aligner_feed.hpp"
-#include "snug/cell/ensemble.hpp"
+#include "snug/cell/monte_carlo.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/cell/task.hpp"
 #include "snug/cell/test/demonstrator.hpp"
@@ -78,43 +78,23 @@ TEST(DemoProgram, RefusesUnknownSequencesAndBoxes) {
   }
 }
 
-// ---- ensembles
+// ---- Monte Carlo
 
-TEST(Ensemble, GivesTheSameRunsWhateverTheNumberOfThreads) {
+TEST(MonteCarlo, GivesTheSameRunsWhateverTheNumberOfThreads) {
   RunOptions options = demo_options();
   options.until = 12.0;  // past the first pick
-  EnsembleOptions ensemble;
-  ensemble.count = 3;
-  ensemble.seed = 7;
-  const EnsembleResult alone = run_ensemble(demonstrator(), options, ensemble);
-  ensemble.threads = 2;
-  const EnsembleResult shared = run_ensemble(demonstrator(), options, ensemble);
+  MonteCarloOptions repeated;
+  repeated.count = 3;
+  repeated.seed = 7;
+  const MonteCarloResult alone = run_monte_carlo(demonstrator(), options, repeated);
+  repeated.threads = 2;
+  const MonteCarloResult shared = run_monte_carlo(demonstrator(), options, repeated);
   ASSERT_EQ(alone.runs.size(), 3U);
   ASSERT_EQ(shared.runs.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(alone.runs[i].state_hash, shared.runs[i].state_hash);
   EXPECT_NE(alone.runs[0].state_hash, alone.runs[1].state_hash);
-  ensemble.seed = 8;
-  EXPECT_NE(run_ensemble(demonstrator(), options, ensemble).runs[0].state_hash, alone.runs[0].state_hash);
-}
-
-TEST(Ensemble, ChangesNoMoreThanItSays) {
-  const Perturbation limits;
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    const model::Scenario changed = perturbed(demonstrator(), limits, Rng(seed));
-    const Pose X_AA = demonstrator().aligner->X_WA.inverse() * changed.aligner->X_WA;
-    // 1e-12: rounding
-    EXPECT_LE(std::abs(X_AA.p.x()), limits.aligner_position + 1e-12);
-    EXPECT_LE(std::abs(X_AA.p.y()), limits.aligner_position + 1e-12);
-    EXPECT_LE(Eigen::AngleAxisd(X_AA.R).angle(), limits.aligner_yaw + 1e-12);
-    ASSERT_EQ(changed.parcels.size(), demonstrator().parcels.size());
-    for (std::size_t i = 0; i < changed.parcels.size(); ++i) {
-      const Vector3 change = changed.parcels[i].size - demonstrator().parcels[i].size;
-      EXPECT_LE(change.cwiseAbs().maxCoeff(), limits.parcel_size + 1e-12);
-      const double mass = changed.parcels[i].inertia.mass / demonstrator().parcels[i].inertia.mass;
-      EXPECT_LE(std::abs(mass - 1.0), limits.mass + 1e-12);
-      EXPECT_NE(mass, 1.0);
-    }
-  }
+  repeated.seed = 8;
+  EXPECT_NE(run_monte_carlo(demonstrator(), options, repeated).runs[0].state_hash, alone.runs[0].state_hash);
 }
 
 // ---- options that do not fit

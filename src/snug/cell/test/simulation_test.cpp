@@ -79,27 +79,61 @@ TEST(Simulation, GoesOnWithTheSameBytesWhenItsWorkspaceIsReplacedAgainAndAgain) 
   }
 }
 
-TEST(Simulation, AdoptsAStateOfTheSameCellUnchangedAndKeepsPosesInAnotherOne) {
+TEST(Simulation, IsTakenUpWhereItsBoxesAreBelievedToBeAndTheyStayThere) {
   const Simulation simulation(demonstrator(), "1", {});
   const motion::PreparedProgram plan = simulation.prepare(demo_program());
   CellState state = simulation.make_state();
   CellWorkspace work = simulation.make_workspace();
   run_to_end(simulation, plan, state, work);
-  EXPECT_EQ(simulation.hash(simulation.adopt(simulation, state)), simulation.hash(state));
+  CellAnchor anchor;
+  anchor.X_WE = state.controller.command.X_WE;
+  const auto& parcels = simulation.world().parcels;
+  for (std::size_t i = 0; i < parcels.size(); ++i) {
+    if (!state.world.bodies[static_cast<std::size_t>(parcels[i].index)].is_present) continue;
+    anchor.boxes.push_back({static_cast<int>(i), physics::pose_of(simulation.world().model, state.world, parcels[i])});
+  }
+  ASSERT_FALSE(anchor.boxes.empty());
+  CellState taken_up = simulation.take_up(anchor);
+  EXPECT_EQ(simulation.time(taken_up), 0.0);
+  const motion::PreparedProgram still = simulation.prepare({"still", {{anchor.X_WE, "home", {}, 0}}});
+  for (int i = 0; i < 50; ++i) ASSERT_EQ(simulation.advance(still, taken_up, work).failure, "");
+  for (const CellAnchor::Box& box : anchor.boxes) {
+    const Pose X_WP =
+        physics::pose_of(simulation.world().model, taken_up.world, parcels[static_cast<std::size_t>(box.item)]);
+    EXPECT_LT((X_WP.p - box.X_WP.p).norm(), 5e-4) << "at rest before: contact forces are found anew in 0.4 s";
+  }
+}
 
-  model::Scenario changed = demonstrator();
-  for (model::Parcel& parcel : changed.parcels) {
-    parcel.size *= 0.99;
-    parcel.inertia.com.x() += 0.004;
-  }
-  const Simulation other(changed, "1", {});
-  const CellState adopted = other.adopt(simulation, state);
-  for (const physics::BodyId body : simulation.world().parcels) {
-    const Pose before = physics::pose_of(simulation.world().model, state.world, body);
-    const Pose after = physics::pose_of(other.world().model, adopted.world, body);
-    EXPECT_LT((before.p - after.p).norm(), 1e-12);  // rounding of p_WBcm = X_WB p_BBcm and back
-    EXPECT_LT(angle_between(before.R, after.R), 1e-7);
-  }
+TEST(Simulation, BringsABoxAndTakesAwayWhatStoodThere) {
+  const Simulation simulation(demonstrator(), "1", {});
+  CellState state = simulation.make_state();
+  const auto is_there = [&](int item) {
+    const int body = simulation.world().parcels[static_cast<std::size_t>(item)].index;
+    return state.world.bodies[static_cast<std::size_t>(body)].is_present;
+  };
+  simulation.bring(0, state);
+  EXPECT_TRUE(is_there(0));
+  EXPECT_EQ(state.waiting_item, 0);
+  simulation.bring(3, state);
+  EXPECT_FALSE(is_there(0));
+  EXPECT_TRUE(is_there(3));
+}
+
+TEST(Simulation, BeginsMotionsWhereTheToolIsAndStandsWhenToldTo) {
+  const Simulation simulation(demonstrator(), "1", {});
+  CellState state = simulation.make_state();
+  CellWorkspace work = simulation.make_workspace();
+  Pose X_WE = state.controller.command.X_WE;
+  X_WE.p.x() += 0.2;
+  const motion::PreparedProgram away = simulation.prepare({"away", {{X_WE, "home", {}, 0}}});
+  for (int i = 0; i < 60; ++i) (void)simulation.advance(away, state, work);
+  const motion::ToolState under_way = state.controller.command;
+  ASSERT_GT(under_way.V_WE.linear.norm(), 0.01);
+  simulation.begin_motion(state);
+  EXPECT_EQ(state.controller.command, under_way);
+  simulation.stand(state);
+  EXPECT_EQ(state.controller.command.X_WE, under_way.X_WE);
+  EXPECT_EQ(state.controller.command.V_WE.linear.norm(), 0.0);
 }
 
 TEST(Simulation, RefusesScenariosInWhichNoProgramCanRun) {

@@ -141,8 +141,11 @@ TEST(Environment, ASequenceComesInItsOrder) {
 
 TEST(Environment, VariationIsDrawnAnewForEachSeed) {
   Settings settings = with_mode(Mode::Geometric);
-  settings.variation.parcel_size = 0.002;
-  Environment environment(demonstrator(), settings);
+  settings.varies = true;
+  model::Scenario scenario = demonstrator();
+  scenario.uncertainty = model::no_uncertainty();
+  scenario.uncertainty.size = 0.002;
+  Environment environment(scenario, settings);
   environment.reset(1);
   const Vector3 first = environment.items().front().size;
   environment.reset(2);

@@ -42,6 +42,7 @@ class ScenarioReader {
   [[nodiscard]] SpatialInertia read_parcel_inertia(const MapReader& map, const ParcelType& type,
                                                    const Vector3& size) const;
   void read_aligner(const Value& value);
+  void read_uncertainty(const Value& value);
   void read_tool(const Value& value);
   void read_cup(const Value& value);
   void read_controller(const Value& value);

@@ -1,0 +1,41 @@
+// Observation: what a look at the cell tells: poses with covariance, sizes where they were measured, what was not seen.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/spatial/pose.hpp"
+
+namespace snug::perception {
+
+/// One box as it was seen.
+struct PoseEstimate {
+  std::string item;  ///< id
+  Pose X_WP;
+  /// Of the error (p in W [m], rotation vector in W [rad]), linear first, as `as_vector` orders twists.
+  Matrix6 covariance = Matrix6::Zero();
+  std::optional<Vector3> size;  ///< m, along Px, Py, Pz, where it was measured
+  double size_deviation = 0.0;  ///< m, standard deviation of each edge of `size`
+  bool operator==(const PoseEstimate&) const = default;
+};
+
+struct Observation {
+  double time = 0.0;  ///< s, of the plant
+  std::vector<PoseEstimate> seen;
+  std::vector<std::string> not_seen;  ///< items that were asked for, in the order asked
+  bool operator==(const Observation&) const = default;
+};
+
+/// What is expected before the look: a real estimator needs it to tell boxes of one size apart.
+struct Expectation {
+  std::string item;
+  Vector3 size = Vector3::Constant(0.1);  ///< m
+  std::optional<Pose> X_WP;               ///< absent: no idea
+  bool operator==(const Expectation&) const = default;
+};
+
+/// nullptr when it was not seen.
+[[nodiscard]] const PoseEstimate* find(const Observation& observation, const std::string& item);
+
+}  // namespace snug::perception

@@ -1,0 +1,181 @@
+// Belief: what the session takes the cell for: a nominal world and sampled ones, corrected by what is perceived.
+#include "snug/session/belief.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "snug/cell/drawn_scenario.hpp"
+#include "snug/core/check.hpp"
+#include "snug/core/parallel.hpp"
+
+namespace snug::session {
+namespace {
+
+/// s, boxes of other sizes and stiffnesses come to rest after they were put where they were seen.
+constexpr double kRest = 0.3;
+/// m, what a good world may be off: contact on rough cardboard is not repeatable to less.
+constexpr double kModelError = 0.004;
+/// Of the mean, below which no world's weight falls: one surprise does not make a world impossible.
+constexpr double kLeastWeight = 0.25;
+constexpr double kUnseenPosition = 0.005;  ///< m, standard deviation of what was not seen
+constexpr double kUnseenRotation = 0.02;   ///< rad
+
+model::Scenario coarse(model::Scenario scenario, int factor) {
+  const double step = factor * scenario.time_step, ticks = scenario.controller.tick / step;
+  if (factor > 1 && ticks > 0.99 && std::abs(ticks - std::round(ticks)) < 1e-9) scenario.time_step = step;
+  return scenario;
+}
+
+Matrix6 unseen_covariance() {
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal() << Vector3::Constant(kUnseenPosition * kUnseenPosition),
+      Vector3::Constant(kUnseenRotation * kUnseenRotation);
+  return covariance;
+}
+
+/// A pose drawn from an estimate.
+Pose drawn(const perception::PoseEstimate& seen, Rng& rng) {
+  Vector6 error;
+  for (int i = 0; i < 6; ++i) error[i] = std::sqrt(std::max(0.0, seen.covariance(i, i))) * rng.normal();
+  return {exp_rotation(error.tail<3>()) * seen.X_WP.R, seen.X_WP.p + error.head<3>()};
+}
+
+int index_of(const model::Sequence& sequence, const std::string& item) {
+  const auto found = std::ranges::find(sequence.items, item, &model::Item::parcel);
+  return found == sequence.items.end() ? -1 : static_cast<int>(found - sequence.items.begin());
+}
+
+}  // namespace
+
+Belief::Belief(const model::Scenario& scenario, const std::string& sequence, const BeliefSettings& settings)
+    : settings_(settings), sequence_name_(sequence), rng_(Rng(settings.seed).split("belief")) {
+  const Rng rng(settings.seed);
+  const model::Scenario nominal = cell::with_fixed_arrivals(scenario, sequence);
+  worlds_.push_back({coarse(nominal, settings.coarse_steps), {}, {}, true});
+  sequence_ = *model::find_sequence(worlds_[0].scenario, sequence);
+  for (int i = 0; i < settings.samples; ++i) {
+    const Rng own = rng.split("sample " + std::to_string(i));
+    worlds_.push_back({coarse(cell::draw_scenario(nominal, sequence, own), settings.coarse_steps), {}, {}, true});
+  }
+  for (World& world : worlds_) {
+    world.poses.resize(sequence_.items.size());
+    world.predicted.resize(sequence_.items.size());
+  }
+  weights_.assign(worlds_.size(), 1.0);
+  rollouts_.resize(worlds_.size());
+  boxes_.resize(sequence_.items.size());
+}
+
+std::vector<perception::Expectation> Belief::expectations() const {
+  std::vector<perception::Expectation> expected;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    if (!boxes_[i]) continue;
+    const std::string& id = sequence_.items[i].parcel;
+    expected.push_back({id, model::collision_size(nominal(), *model::find_parcel(nominal(), id)), boxes_[i]->X_WP});
+  }
+  return expected;
+}
+
+void Belief::arrives(int item) {
+  const auto i = static_cast<std::size_t>(item);
+  for (World& world : worlds_) {
+    const model::Sequence& sequence = *model::find_sequence(world.scenario, sequence_name_);
+    world.poses[i] = cell::arrival_pose(world.scenario, sequence.items[i]);
+  }
+  boxes_[i] = BelievedBox{*worlds_[0].poses[i], unseen_covariance(), false};
+}
+
+void Belief::forget(int item) {
+  const auto i = static_cast<std::size_t>(item);
+  boxes_[i].reset();
+  for (World& world : worlds_) world.poses[i] = world.predicted[i] = std::nullopt;
+}
+
+void Belief::measure(int item, const perception::PoseEstimate& seen) {
+  const std::string& id = sequence_.items[static_cast<std::size_t>(item)].parcel;
+  for (std::size_t w = 0; w < worlds_.size(); ++w) {
+    const auto parcel = std::ranges::find(worlds_[w].scenario.parcels, id, &model::Parcel::id);
+    SNUG_CHECK(parcel != worlds_[w].scenario.parcels.end(), "every item is a parcel");
+    // What is seen is the box as it collides.
+    Vector3 size = *seen.size + Vector3::Constant(worlds_[w].scenario.parcel_clearance);
+    for (double& edge : size) edge += w > 0 ? seen.size_deviation * rng_.normal() : 0.0;
+    size = size.cwiseMax(0.5 * parcel->size);
+    if (parcel->size == size) continue;
+    parcel->size = size;
+    worlds_[w].is_stale = true;
+  }
+}
+
+void Belief::see(const perception::Observation& observation) {
+  for (const perception::PoseEstimate& seen : observation.seen) {
+    const int item = index_of(sequence_, seen.item);
+    if (item < 0) continue;
+    const auto i = static_cast<std::size_t>(item);
+    const bool is_new = !boxes_[i] || !boxes_[i]->was_seen;
+    boxes_[i] = BelievedBox{seen.X_WP, seen.covariance, true};
+    if (is_new && seen.size) measure(item, seen);
+    for (std::size_t w = 0; w < worlds_.size(); ++w) worlds_[w].poses[i] = w == 0 ? seen.X_WP : drawn(seen, rng_);
+  }
+  for (const std::string& id : observation.not_seen) {
+    const int item = index_of(sequence_, id);
+    if (item < 0 || !boxes_[static_cast<std::size_t>(item)]) continue;
+    const auto i = static_cast<std::size_t>(item);
+    boxes_[i]->was_seen = false;
+    boxes_[i]->covariance = unseen_covariance();
+    if (worlds_[0].predicted[i]) boxes_[i]->X_WP = *worlds_[0].predicted[i];
+    for (World& world : worlds_) {
+      if (world.predicted[i]) world.poses[i] = world.predicted[i];
+    }
+  }
+}
+
+void Belief::expect(const std::vector<std::vector<std::optional<Pose>>>& predicted) {
+  SNUG_CHECK(predicted.size() == worlds_.size(), "a prediction of every world");
+  for (std::size_t w = 0; w < worlds_.size(); ++w) worlds_[w].predicted = predicted[w];
+}
+
+void Belief::weigh(int item) {
+  const auto i = static_cast<std::size_t>(item);
+  if (!boxes_[i] || !boxes_[i]->was_seen || worlds_.size() < 2) return;
+  const double variance = kModelError * kModelError + boxes_[i]->covariance.topLeftCorner<3, 3>().trace() / 3.0;
+  double sum = 0.0;
+  for (std::size_t w = 1; w < worlds_.size(); ++w) {
+    const std::optional<Pose>& predicted = worlds_[w].predicted[i];
+    const double off = predicted ? (predicted->p - boxes_[i]->X_WP.p).squaredNorm() : 25.0 * variance;
+    weights_[w] *= std::exp(-0.5 * std::min(off / variance, 25.0) / 3.0);  // three coordinates, not independent
+    sum += weights_[w];
+  }
+  const double count = static_cast<double>(worlds_.size() - 1);
+  for (std::size_t w = 1; w < worlds_.size(); ++w) {
+    const double share = sum > 0.0 ? weights_[w] * count / sum : 1.0;
+    weights_[w] = kLeastWeight + (1.0 - kLeastWeight) * share;
+  }
+}
+
+cell::CellAnchor Belief::anchor(const World& world, const plant::Feedback& robot) const {
+  cell::CellAnchor anchor;
+  anchor.X_WE = robot.X_WE;
+  anchor.q = robot.q;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    if (boxes_[i] && world.poses[i]) anchor.boxes.push_back({static_cast<int>(i), *world.poses[i]});
+  }
+  return anchor;
+}
+
+const std::vector<std::unique_ptr<Rollout>>& Belief::take_up(const plant::Feedback& robot) {
+  parallel_for(static_cast<int>(worlds_.size()), settings_.threads, [&](int index, int) {
+    const auto w = static_cast<std::size_t>(index);
+    World& world = worlds_[w];
+    if (world.is_stale || !rollouts_[w]) {
+      cell::SimulationOptions options = settings_.simulation;
+      if (w > 0) options.robot.clear();
+      rollouts_[w] = std::make_unique<Rollout>(world.scenario, sequence_name_, options);
+      world.is_stale = false;
+    }
+    rollouts_[w]->take_up(anchor(world, robot), kRest);
+  });
+  return rollouts_;
+}
+
+}  // namespace snug::session

@@ -1,0 +1,83 @@
+// Belief: what the session takes the cell for: a nominal world and sampled ones, corrected by what is perceived.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/core/rng.hpp"
+#include "snug/packing/container_state.hpp"
+#include "snug/perception/observation.hpp"
+#include "snug/plant/plant.hpp"
+#include "snug/session/rollout.hpp"
+
+namespace snug::session {
+
+struct BeliefSettings {
+  int samples = 8;
+  std::uint64_t seed = 1;
+  int threads = 1;  ///< results do not depend on it
+  /// The physics steps of rollouts are so many times as long as the scenario's, where the controller's tick allows it.
+  int coarse_steps = 2;
+  cell::SimulationOptions simulation;  ///< of the nominal world; sampled ones move the tool without joints
+};
+
+/// Where a box is believed to be.
+struct BelievedBox {
+  Pose X_WP;  ///< mean
+  Matrix6 covariance = Matrix6::Zero();
+  bool was_seen = false;  ///< at the last look
+};
+
+/// World 0 is nominal: the scenario as it is, with what was measured. The others are drawn from its uncertainty by a
+/// seed of the session's own; what is seen replaces what they drew.
+class Belief {
+ public:
+  Belief(const model::Scenario& scenario, const std::string& sequence, const BeliefSettings& settings);
+
+  [[nodiscard]] const model::Sequence& sequence() const { return sequence_; }
+  /// The nominal scenario with sizes as measured so far.
+  [[nodiscard]] const model::Scenario& nominal() const { return worlds_[0].scenario; }
+  [[nodiscard]] int world_count() const { return static_cast<int>(worlds_.size()); }
+  /// Of the worlds, the nominal one included (0); of the others the sum is their number.
+  [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
+  [[nodiscard]] const std::optional<BelievedBox>& box(int item) const { return boxes_[static_cast<std::size_t>(item)]; }
+  [[nodiscard]] std::vector<perception::Expectation> expectations() const;
+
+  /// The item was brought: it stands where each world has boxes arrive, until it is seen.
+  void arrives(int item);
+  /// The box is not in the cell any more.
+  void forget(int item);
+  /// What one look told. Sizes are measured while the item is at the aligner.
+  void see(const perception::Observation& observation);
+  /// Where rollouts left the boxes, world by world: it is believed of those that are not seen at the next look, and
+  /// what is seen then says how well each world predicted.
+  void expect(const std::vector<std::vector<std::optional<Pose>>>& predicted);
+  /// Weighs the sampled worlds by how near they predicted `item` to where it is believed to be now.
+  void weigh(int item);
+
+  /// Rollouts of all worlds, taken up where things are believed to be and the robot says it is.
+  [[nodiscard]] const std::vector<std::unique_ptr<Rollout>>& take_up(const plant::Feedback& robot);
+
+ private:
+  struct World {
+    model::Scenario scenario;
+    std::vector<std::optional<Pose>> poses;      ///< X_WP of the items, where this world has them
+    std::vector<std::optional<Pose>> predicted;  ///< of the last motion that was sent
+    bool is_stale = true;                        ///< its rollout has to be made anew: a size was measured
+  };
+  void measure(int item, const perception::PoseEstimate& seen);
+  [[nodiscard]] cell::CellAnchor anchor(const World& world, const plant::Feedback& robot) const;
+
+  BeliefSettings settings_;
+  std::string sequence_name_;
+  model::Sequence sequence_;
+  std::vector<World> worlds_;
+  std::vector<double> weights_;
+  std::vector<std::unique_ptr<Rollout>> rollouts_;
+  std::vector<std::optional<BelievedBox>> boxes_;
+  Rng rng_;
+};
+
+}  // namespace snug::session

@@ -1,0 +1,291 @@
+// Grasp: ways to turn a box, rehearsed in every rollout.
+#include "snug/session/grasp.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "snug/core/parallel.hpp"
+
+namespace snug::session {
+namespace {
+
+constexpr double kUpright = 0.26;  ///< rad, a box may lie this far from level to be picked again
+
+Vector3 up_axis(const packing::Orientation& orientation) {
+  return orientation.up_sign * Vector3::Unit(static_cast<int>(orientation.up));
+}
+
+/// The orientation that takes the same space with the other end up, and of the two the one whose centre of mass is
+/// nearer.
+packing::Orientation mirrored(const packing::Orientation& orientation, const Vector3& com) {
+  packing::Orientation best = orientation;
+  double nearest = 0.0;
+  for (const int turn : {0, 2}) {
+    packing::Orientation other = orientation;
+    other.up_sign = -orientation.up_sign;
+    // Quarter turns count from different directions when the other end is up: the parity is settled by the extents.
+    other.yaw_quarter = (orientation.yaw_quarter + turn) % 4;
+    if (!packing::extents(other, Vector3(1.0, 2.0, 3.0))
+             .isApprox(packing::extents(orientation, Vector3(1.0, 2.0, 3.0)))) {
+      other.yaw_quarter = (other.yaw_quarter + 1) % 4;
+    }
+    const Vector3 off = packing::rotation(other) * com - packing::rotation(orientation) * com;
+    const double distance = off.head<2>().norm();
+    if (best == orientation || distance < nearest) {
+      best = other;
+      nearest = distance;
+    }
+  }
+  return best;
+}
+
+class GraspPlanner {
+ public:
+  GraspPlanner(const GraspRequest& request, const packing::Orientation& orientation)
+      : request_(request),
+        nominal_(*request.rollouts[0]),
+        travel_(travel_bottom(request.layout, request.packed_top)),
+        X_WP_(request.X_WP) {
+    grasp_.orientation = grasp_.held_as = orientation;
+    grasp_.program.name = "pack";
+    grasp_.episodes.resize(request.rollouts.size());
+    for (std::size_t i = 0; i < request.rollouts.size(); ++i) request.rollouts[i]->restore(request.states[i]);
+  }
+
+  /// False when this way of turning does not apply.
+  bool make(Reorientation reorientation) {
+    grasp_.reorientation = reorientation;
+    const bool applies = reorientation == Reorientation::None        ? pick()
+                         : reorientation == Reorientation::SideGrasp ? pick_side_where_it_stands()
+                         : reorientation == Reorientation::Regrasp   ? regrasp()
+                                                                     : pivot();
+    if (!applies) return false;
+    if (is_fine() && !grasp_.episodes[0].is_complete()) grasp_.problem = GraspProblem::Rollout;
+    if (is_fine()) run_samples();
+    return true;
+  }
+  [[nodiscard]] Grasp take() { return std::move(grasp_); }
+  [[nodiscard]] bool stands() const { return (X_WP_.R * up_axis(grasp_.orientation)).z() > std::cos(kUpright); }
+  [[nodiscard]] bool is_upside_down() const {
+    return (X_WP_.R * up_axis(grasp_.orientation)).z() < -std::cos(kUpright);
+  }
+
+ private:
+  [[nodiscard]] bool is_fine() const { return grasp_.problem == GraspProblem::None; }
+  [[nodiscard]] Matrix3 goal() const { return request_.layout.X_WT.R * packing::rotation(grasp_.held_as); }
+  [[nodiscard]] bool is_first() const { return request_.location == Location::Aligner; }
+
+  void execute(const std::vector<motion::Waypoint>& rows) {
+    const auto& done = grasp_.program.waypoints;
+    append(grasp_.program, drivable(request_.layout, done.empty() ? request_.from : done.back(), rows));
+    merge(grasp_.episodes[0], nominal_.run(grasp_.program));
+  }
+
+  /// Whether it hangs from the cup now.
+  bool holds() {
+    if (!grasp_.episodes[0].is_complete()) {
+      grasp_.problem = GraspProblem::Rollout;
+      return false;
+    }
+    if (!nominal_.is_held(request_.box.item)) {
+      grasp_.problem = GraspProblem::NotHeld;
+      return false;
+    }
+    grasp_.X_PS = nominal_.state().gripper.cup.X_PS;
+    return true;
+  }
+
+  bool pick_from_above(const Matrix3& R_WP_next, PickKind kind) {
+    execute(plan_pick(request_.scenario, request_.layout, request_.box, X_WP_, R_WP_next, travel_, kind));
+    return holds();
+  }
+
+  bool pick() {
+    (void)pick_from_above(goal(), is_first() ? PickKind::First : PickKind::FromAfar);
+    return true;
+  }
+
+  /// By the side that looks along `face`, which is then turned up.
+  void pick_side(const Vector3& face, bool again) {
+    const auto rows =
+        plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
+    if (rows.empty()) {
+      grasp_.problem = GraspProblem::SideTooLow;
+      return;
+    }
+    const auto is_out_of_reach = [&](const motion::Waypoint& row) {
+      return request_.reaches && !request_.reaches(row.X_WE);
+    };
+    if (std::ranges::any_of(rows, is_out_of_reach)) {
+      grasp_.problem = GraspProblem::OutOfReach;
+      return;
+    }
+    execute(rows);
+    if (!holds()) return;
+    execute({plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again)});
+    (void)holds();
+  }
+
+  /// At the aligner the two sides that its plates leave open, on the bench the one toward the robot.
+  [[nodiscard]] std::vector<Vector3> open_faces() const {
+    if (is_first()) {
+      const Matrix3& R_WA = request_.scenario.aligner->X_WA.R;
+      return {R_WA.col(0), R_WA.col(1)};
+    }
+    if (request_.location != Location::Bench || !request_.layout.flip_place) return {};
+    return {-request_.layout.flip_place->direction};
+  }
+
+  bool pick_side_where_it_stands() {
+    for (const Vector3& face : open_faces()) {
+      const double along = (X_WP_.R.transpose() * face).dot(up_axis(grasp_.orientation));
+      if (std::abs(along) < std::cos(kUpright)) continue;
+      if (along < 0.0) grasp_.held_as = mirrored(grasp_.orientation, request_.box.inertia.com);
+      pick_side(face, !is_first());
+      return true;
+    }
+    return false;
+  }
+
+  /// The box was let go on the way: there it has to be looked for before the plan goes on.
+  void look() {
+    if (const std::optional<Pose> seen = nominal_.pose_of(request_.box.item)) X_WP_ = *seen;
+    grasp_.looks.push_back(grasp_.program.waypoints.size());
+    grasp_.seen.push_back(X_WP_);
+    if (!is_upright(X_WP_.R)) grasp_.problem = GraspProblem::DoesNotStand;
+  }
+
+  bool regrasp() {
+    if (!request_.layout.flip_place) return false;
+    const FlipPlace& place = *request_.layout.flip_place;
+    const Matrix3 R_WP = orientation_before_flip(X_WP_.R, up_axis(grasp_.orientation), -place.direction);
+    if (!pick_from_above(R_WP, is_first() ? PickKind::First : PickKind::FromAfar)) return true;
+    execute(plan_set_down(request_.scenario, request_.box, place, R_WP, grasp_.X_PS, travel_));
+    look();
+    if (is_fine()) pick_side(-place.direction, true);
+    return true;
+  }
+
+  /// Upside down takes two rounds.
+  bool pivot() {
+    if (!request_.layout.flip_place) return false;
+    for (int round = 0; round < 4 && is_fine(); ++round) {
+      const Vector3 up_P = up_axis(grasp_.orientation);
+      Vector3 next_up = up_P;
+      if (is_upside_down()) {  // any other axis first
+        int axis = 0;
+        X_WP_.R.row(2).cwiseAbs().minCoeff(&axis);
+        next_up = Vector3::Unit(axis);
+      }
+      const bool is_done = stands();
+      const Matrix3 R_next =
+          is_done ? goal() : orientation_before_flip(X_WP_.R, next_up, request_.layout.flip_place->direction);
+      const PickKind first = is_first() ? PickKind::First : PickKind::FromAfar;
+      if (!pick_from_above(R_next, round > 0 ? PickKind::FromAbove : first) || is_done) break;
+      if (round >= 2) {
+        grasp_.problem = GraspProblem::DoesNotStand;
+        break;
+      }
+      turn_over(next_up);
+    }
+    return true;
+  }
+
+  /// One quarter turn over an edge, let go.
+  void turn_over(const Vector3& up_P) {
+    execute(plan_flip(request_.scenario, request_.box, *request_.layout.flip_place,
+                      orientation_before_flip(X_WP_.R, up_P, request_.layout.flip_place->direction), grasp_.X_PS,
+                      travel_));
+    look();
+  }
+
+  void run_samples() {
+    const int samples = static_cast<int>(request_.rollouts.size()) - 1;
+    parallel_for(samples, request_.threads, [&](int i, int) {
+      const auto slot = static_cast<std::size_t>(i) + 1;
+      merge(grasp_.episodes[slot], request_.rollouts[slot]->run(grasp_.program));
+    });
+    double good = 0.0, all = 0.0;
+    const Matrix3 R_WP = request_.rollouts[0]->pose_of(request_.box.item)->R;
+    for (std::size_t i = 0; i < request_.rollouts.size(); ++i) {
+      const Rollout& rollout = *request_.rollouts[i];
+      grasp_.states.push_back(rollout.state());
+      if (i == 0) continue;
+      const std::optional<Pose> X_WP = rollout.pose_of(request_.box.item);
+      const bool is_good = rollout.is_held(request_.box.item) && X_WP && angle_between(X_WP->R, R_WP) < kUpright;
+      all += request_.weights[i];
+      if (is_good) good += request_.weights[i];
+    }
+    grasp_.success_rate = all > 0.0 ? good / all : 1.0;
+  }
+
+  const GraspRequest& request_;
+  Rollout& nominal_;
+  double travel_;
+  Pose X_WP_;  ///< of the box where it stands, as believed or as the nominal rollout has it
+  Grasp grasp_;
+};
+
+}  // namespace
+
+const char* name_of(Location location) {
+  switch (location) {
+    case Location::Aligner:
+      return "aligner";
+    case Location::Bench:
+      return "bench";
+    case Location::Container:
+      return "container";
+    case Location::Elsewhere:
+      return "elsewhere";
+  }
+  return "";
+}
+
+const char* describe(GraspProblem problem) {
+  switch (problem) {
+    case GraspProblem::None:
+      return "";
+    case GraspProblem::NotHeld:
+      return "the cup did not hold it";
+    case GraspProblem::SideTooLow:
+      return "its side is too low for the cup";
+    case GraspProblem::OutOfReach:
+      return "its side is out of reach";
+    case GraspProblem::DoesNotStand:
+      return "it does not stand where it was put down";
+    case GraspProblem::NoSurface:
+      return "nothing flat to turn it on";
+    case GraspProblem::Rollout:
+      return "the nominal rollout ended early";
+  }
+  return "";
+}
+
+bool is_upright(const Matrix3& R_WP) { return R_WP.row(2).cwiseAbs().maxCoeff() > std::cos(kUpright); }
+
+Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation) {
+  const GraspPlanner first(request, orientation);
+  std::vector<Reorientation> ways{Reorientation::SideGrasp, Reorientation::Regrasp, Reorientation::Pivot};
+  if (first.stands()) ways = {Reorientation::None};
+  if (first.is_upside_down()) ways = {Reorientation::Pivot};
+  Grasp best;
+  best.orientation = orientation;
+  best.problem = GraspProblem::NoSurface;
+  best.episodes.resize(request.rollouts.size());
+  bool is_first = true;
+  for (const Reorientation way : ways) {
+    GraspPlanner planner(request, orientation);
+    if (!planner.make(way)) continue;
+    Grasp grasp = planner.take();
+    const bool is_fine = grasp.problem == GraspProblem::None, was_fine = best.problem == GraspProblem::None;
+    const bool is_better = is_first || (is_fine && (!was_fine || grasp.success_rate > best.success_rate));
+    if (is_better) best = std::move(grasp);
+    is_first = false;
+    if (best.problem == GraspProblem::None && best.success_rate >= 1.0) break;
+  }
+  return best;
+}
+
+}  // namespace snug::session

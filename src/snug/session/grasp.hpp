@@ -1,0 +1,73 @@
+// Grasp: a box taken from where it stands and turned so that it hangs from the cup as it shall stand.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "snug/packing/item.hpp"
+#include "snug/session/item_plan.hpp"
+#include "snug/session/rollout.hpp"
+
+namespace snug::session {
+
+/// Where a box is that is to be picked.
+enum class Location {
+  Aligner,    ///< against its plates
+  Bench,      ///< on the flat surface where boxes are turned
+  Container,  ///< in the container or on its rim
+  Elsewhere,  ///< somewhere the tool may reach
+};
+[[nodiscard]] const char* name_of(Location location);
+
+/// Why a box cannot be held as asked.
+enum class GraspProblem {
+  None,
+  NotHeld,       ///< the cup did not hold it, or lost it
+  SideTooLow,    ///< the side is too low for the cup
+  OutOfReach,    ///< of the robot
+  DoesNotStand,  ///< where it was put down
+  NoSurface,     ///< nothing flat to turn it on
+  Rollout,       ///< the nominal rollout ended early: see its episode
+};
+[[nodiscard]] const char* describe(GraspProblem problem);
+
+/// Rehearsed in all rollouts, but not yet sent.
+struct Grasp {
+  packing::Orientation orientation;  ///< asked for
+  /// As it hangs: the same space and the same place of the centre of mass, but perhaps the other end up.
+  packing::Orientation held_as;
+  Reorientation reorientation = Reorientation::None;
+  GraspProblem problem = GraspProblem::None;
+  motion::Program program;
+  std::vector<std::size_t> looks;       ///< so many waypoints are done when the box is let go on the way: look there
+  std::vector<Pose> seen;               ///< X_WP at each of them in the nominal rollout
+  Pose X_PS;                            ///< lip on the box
+  std::vector<cell::CellState> states;  ///< rollout by rollout
+  std::vector<Episode> episodes;        ///< rollout by rollout
+  double success_rate = 0.0;            ///< share of the samples, by weight, in which it is held
+};
+
+struct GraspRequest {
+  const model::Scenario& scenario;  ///< nominal
+  const CellLayout& layout;
+  std::span<const std::unique_ptr<Rollout>> rollouts;  ///< the first is the nominal one
+  std::span<const cell::CellState> states;             ///< rollout by rollout: from here
+  std::span<const double> weights;                     ///< rollout by rollout; the first is not used
+  motion::Waypoint from;                               ///< where the tool is
+  const PlannedBox& box;
+  Pose X_WP;  ///< where it is believed to stand
+  Location location = Location::Aligner;
+  double packed_top = 0.0;  ///< m, z in T of the highest box in the container
+  int threads = 1;
+  const std::function<bool(const Pose& X_WE)>& reaches;  ///< the tool's poses; empty: all
+};
+/// The first reorientation with which the box is held in every rollout, or the one that does so in most.
+[[nodiscard]] Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation);
+
+/// Standing on one of its faces, so that it can be picked from above.
+[[nodiscard]] bool is_upright(const Matrix3& R_WP);
+
+}  // namespace snug::session

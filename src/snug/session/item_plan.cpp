@@ -1,0 +1,369 @@
+// ItemPlan: from a box and the place it shall have to the rows that bring it there.
+#include "snug/session/item_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "snug/cell/obstacles.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/cup/pick_length.hpp"
+#include "snug/cup/statics.hpp"
+#include "snug/geometry/bounds.hpp"
+#include "snug/motion/row_name.hpp"
+#include "snug/motion/unwinding.hpp"
+
+namespace snug::session {
+namespace {
+
+constexpr double kTravelClearance = 0.06;  ///< m, more than the precision of rows that are passed on the fly
+constexpr double kEntryClearance = 0.01;   ///< m, where the box stops before it goes in
+// The gripper of the demonstrator comes within 0.1 m of the upper arm when the tool is 0.25 m from the first axis, and
+// the arm begins to give way 0.1 m before.
+constexpr double kNearBase = 0.34;       ///< m
+constexpr double kBaseRoom = 0.42;       ///< m
+constexpr double kTurnClearance = 0.03;  ///< m, more, where a box turns in the air
+constexpr double kLipClearance = 0.002;  ///< m
+constexpr double kSealRoom = 0.001;      ///< m, around the disc on which the vacuum acts
+constexpr double kFlipRoom = 0.16;       ///< m, from the middle of a lying box to the edges of its surface
+constexpr double kFlipDrag = 0.08;       ///< m, more where it comes down, before it is dragged back
+constexpr double kLevel = 1e-3;          ///< rad
+constexpr double kPressDepth = 0.03;     ///< m, beyond where an undeformed cup touches the highest corner
+
+/// Bounds in W of the boxes that fixed bodies are made of, where one face lies level.
+std::vector<geometry::Aabb> flat_tops(const model::Scenario& scenario) {
+  std::vector<geometry::Aabb> tops;
+  for (const model::Body& body : scenario.bodies) {
+    if (body.kind != model::BodyKind::Static) continue;
+    for (const model::PlacedShape& placed : body.shapes) {
+      const Pose X_WG = body.X_WB * placed.X_BG;
+      const bool is_level = X_WG.R.row(2).cwiseAbs().maxCoeff() > std::cos(kLevel);
+      if (is_level && std::holds_alternative<geometry::Box>(placed.shape)) {
+        tops.push_back(geometry::bounds(placed.shape, X_WG));
+      }
+    }
+  }
+  return tops;
+}
+
+/// The axis of W that is nearest to the way from `from` to `to`.
+Vector3 main_direction(const Vector3& from, const Vector3& to) {
+  const Vector3 way = to - from;
+  const int axis = std::abs(way.x()) >= std::abs(way.y()) ? 0 : 1;
+  return std::copysign(1.0, way[axis]) * Vector3::Unit(axis);
+}
+
+/// The highest surface that is large enough, near the way from aligner to container.
+std::optional<FlipPlace> find_flip_place(const std::vector<geometry::Aabb>& tops, const Vector3& from,
+                                         const Vector3& to) {
+  const Vector3 middle = 0.5 * (from + to), direction = main_direction(from, to);
+  std::optional<FlipPlace> best;
+  double best_distance = 0.0;
+  for (const geometry::Aabb& top : tops) {
+    // A flipped box is let go further on in `direction` and dragged back to its place: room on that side only.
+    const Vector3 low = top.lower + Vector3::Constant(kFlipRoom) + kFlipDrag * (-direction).cwiseMax(0.0);
+    const Vector3 high = top.upper - Vector3::Constant(kFlipRoom) - kFlipDrag * direction.cwiseMax(0.0);
+    if (low.x() > high.x() || low.y() > high.y()) continue;
+    const Vector3 spot(std::clamp(middle.x(), low.x(), high.x()), std::clamp(middle.y(), low.y(), high.y()),
+                       top.upper.z());
+    const double distance = (spot - middle).head<2>().norm();
+    const bool is_higher = best && spot.z() > best->p_WF.z() + 1e-6;
+    const bool is_as_high = best && std::abs(spot.z() - best->p_WF.z()) <= 1e-6;
+    if (best && !is_higher && !(is_as_high && distance < best_distance)) continue;
+    best = FlipPlace{spot, direction};
+    best_distance = distance;
+  }
+  return best;
+}
+
+double yaw_between(const Matrix3& R_from, const Matrix3& R_to) {
+  const Matrix3 R = R_to * R_from.transpose();
+  return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+}
+
+/// Length beside the box that is free of neighbours is at least this where it can come down and slide.
+constexpr double kSlideRoom = 0.008;       ///< m
+constexpr double kTight = 0.007;           ///< m, a neighbour nearer than this is met on the way down
+constexpr double kOvertravel = 0.005;      ///< m
+constexpr double kLeastNeighbour = 0.012;  ///< m, lower things beside the box do not guide it
+
+struct AxisView {
+  double low = 1.0, high = 1.0;          ///< m, gaps
+  double low_top = 0.0, high_top = 0.0;  ///< m, of the neighbours over the lower face
+  [[nodiscard]] bool low_near() const { return low < kTight && low_top > kLeastNeighbour; }
+  [[nodiscard]] bool high_near() const { return high < kTight && high_top > kLeastNeighbour; }
+};
+
+AxisView view(const packing::Candidate& candidate, int axis) {
+  const auto low = static_cast<std::size_t>(2 * axis), high = low + 1;
+  return {candidate.side_gap[low], candidate.side_gap[high], candidate.side_height[low], candidate.side_height[high]};
+}
+
+}  // namespace
+
+const char* name_of(InsertionSkill skill) {
+  switch (skill) {
+    case InsertionSkill::TopDown:
+      return "top-down";
+    case InsertionSkill::SlideToContact:
+      return "slide to contact";
+    case InsertionSkill::Tilted:
+      return "tilted";
+  }
+  return "";
+}
+
+const char* name_of(Reorientation reorientation) {
+  switch (reorientation) {
+    case Reorientation::None:
+      return "";
+    case Reorientation::SideGrasp:
+      return "side grasp";
+    case Reorientation::Regrasp:
+      return "regrasp";
+    case Reorientation::Pivot:
+      return "pivot";
+  }
+  return "";
+}
+
+CellLayout make_layout(const model::Scenario& scenario) {
+  const model::Container* container = model::find_container(scenario, scenario.target);
+  if (!scenario.aligner || !scenario.tool || container == nullptr) {
+    throw InputError(scenario.source_name, "", "", "a cell with an aligner, a tool and a target container");
+  }
+  CellLayout layout;
+  layout.X_WT = container->X_WT;
+  layout.rim = container->has_walls ? container->inner_size.z() : 0.0;
+  layout.fixed_top = cell::highest_fixed_point(scenario);
+  layout.flip_place = find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p);
+  if (scenario.robot) layout.p_WB = scenario.robot->X_WB.p;
+  layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
+  return layout;
+}
+
+double travel_bottom(const CellLayout& layout, double packed_top) {
+  const double rim = layout.X_WT.p.z() + std::max(layout.rim, packed_top);
+  return std::max(rim, layout.fixed_top) + kTravelClearance;
+}
+
+std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size) {
+  Insertion base;
+  int tight_axis = -1;
+  bool slides = false;
+  for (int axis = 0; axis < 2; ++axis) {
+    const AxisView v = view(candidate, axis);
+    if (v.low_near() && v.high_near()) {
+      if (tight_axis < 0 || view(candidate, tight_axis).low + view(candidate, tight_axis).high > v.low + v.high) {
+        tight_axis = axis;
+      }
+    } else if (v.low_near() && v.high > kSlideRoom) {
+      base.come_from_T[axis] = std::min(0.010, v.high - 0.003);
+      base.overtravel_T[axis] = -kOvertravel;
+      slides = true;
+    } else if (v.high_near() && v.low > kSlideRoom) {
+      base.come_from_T[axis] = -std::min(0.010, v.low - 0.003);
+      base.overtravel_T[axis] = kOvertravel;
+      slides = true;
+    }
+  }
+  base.skill = slides ? InsertionSkill::SlideToContact : InsertionSkill::TopDown;
+  std::vector<Insertion> insertions{base};
+  if (tight_axis >= 0) {
+    const AxisView v = view(candidate, tight_axis);
+    const double bottom = candidate.placement.X_TP.p.z() + motion::lowest_corner(candidate.placement.X_TP.R, size);
+    Insertion tilted = base;
+    tilted.skill = InsertionSkill::Tilted;
+    tilted.edge_height_T = bottom + std::min(v.low_top, v.high_top);
+    const double low_side = v.low_top > v.high_top ? 1.0 : -1.0;
+    tilted.low_side_T[tight_axis] = low_side;
+    // A taller neighbour is what the box is pushed against; among equals the side that goes in first.
+    const double taller = std::abs(v.low_top - v.high_top) > 0.03 ? -low_side : low_side;
+    tilted.push_T = base.overtravel_T;
+    tilted.push_T[tight_axis] = taller * 0.004;
+    tilted.come_from_T[tight_axis] = -taller * 0.004;
+    insertions.push_back(tilted);
+    tilted.low_side_T = -tilted.low_side_T;
+    tilted.push_T[tight_axis] = -tilted.push_T[tight_axis];
+    tilted.come_from_T[tight_axis] = -tilted.come_from_T[tight_axis];
+    insertions.push_back(tilted);
+  } else if (slides) {
+    Insertion gentle = base;
+    gentle.overtravel_T *= 0.4;
+    gentle.gentle = true;
+    insertions.push_back(gentle);
+  }
+  return insertions;
+}
+
+PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item) {
+  const std::string& id = sequence.items[static_cast<std::size_t>(item)].parcel;
+  const model::Parcel& parcel = *model::find_parcel(scenario, id);
+  return {item, id, model::collision_size(scenario, parcel), parcel.inertia};
+}
+
+Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Matrix3& R_WP) {
+  return motion::choose_cup_offset(R_WP, box.size, box.inertia.com, 0.5 * cup.effective_diameter + kSealRoom);
+}
+
+std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                        const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
+                                        double travel, PickKind kind) {
+  motion::PickIntent intent;
+  intent.box = box.id;
+  intent.X_WP = X_WP;
+  intent.size = box.size;
+  intent.cup_offset_P = cup_offset(scenario.cup, box, X_WP.R);
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(X_WP.R, R_WP_next);
+  intent.length = cup::pick_length(scenario.cup);
+  intent.again = kind != PickKind::First;
+  const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);
+  const double top = X_WP.p.z() + 0.5 * height;
+  intent.approach_height = scenario.cup.free_length +
+                           (kind == PickKind::FromAbove ? top + 0.03 : std::max(travel + 0.02, top + kTravelClearance));
+  intent.lift_height = travel + height + scenario.cup.hold_length;
+  return motion::pick_rows(intent);
+}
+
+std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& last,
+                                       const std::vector<motion::Waypoint>& rows) {
+  if (rows.empty()) return rows;
+  const std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw);
+  return layout.p_WB ? motion::with_detours(last, turned, *layout.p_WB, kNearBase, kBaseRoom) : turned;
+}
+
+Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction) {
+  const Vector3 now = R_WP * up_P;
+  const double yaw = std::atan2(direction.y(), direction.x()) - std::atan2(now.y(), now.x());
+  return exp_rotation(Vector3(0.0, 0.0, yaw)) * R_WP;
+}
+
+std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                             const PlannedBox& box, const Pose& X_WP, const Vector3& face,
+                                             const Matrix3& R_WP_next, double travel, bool again) {
+  const model::CupParams& cup = scenario.cup;
+  motion::SidePickIntent intent;
+  intent.box = box.id;
+  intent.X_WP = X_WP;
+  intent.size = box.size;
+  intent.face = face;
+  intent.again = again;
+  const Matrix3 R_WP_up = motion::face_up(X_WP.R, face);
+  intent.cup_offset_P = cup_offset(cup, box, R_WP_up);
+  // The lip stays off what the box stands on; where the side is too low for that it reaches over its upper edge.
+  const double half_height = -motion::lowest_corner(X_WP.R, box.size);
+  const double low = cup.lip_radius + kLipClearance - half_height;
+  const double offset = (X_WP.R * intent.cup_offset_P).z();
+  if (offset < low) intent.cup_offset_P += (low - offset) * X_WP.R.transpose() * Vector3::UnitZ();
+  if (low + cup.lip_radius - half_height > cup.seal.max_overhang - kLipClearance) return {};
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(R_WP_up, R_WP_next);
+  // At the aligner the plates hold the box against the cup. Elsewhere the lip just touches, and pulls the box to
+  // itself.
+  intent.length = again ? cup.free_length : cup::pick_length(cup);
+  intent.lift = std::max(0.02, travel - (X_WP.p.z() - half_height));
+  intent.approach_height = travel + half_height;
+  return motion::side_pick_rows(intent);
+}
+
+motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
+                              const Pose& X_PS, const Vector3& face, double travel, bool again) {
+  const Matrix3 R_WP = motion::face_up(X_WP.R, face);
+  Pose X_WP_up{R_WP, X_WP.p};
+  X_WP_up.p.z() = travel + kTurnClearance - motion::lowest_corner(R_WP, box.size);
+  motion::Waypoint row;
+  row.X_WE = make_tool_for(scenario, box, X_PS)(X_WP_up);
+  row.name = motion::row_name(again ? "PostRePick" : "PostPick", box.id, "_up");
+  row.io.vacuum = true;
+  return row;
+}
+
+std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const CellLayout& layout,
+                                         const PlannedBox& box, const Pose& X_WP, double travel) {
+  const double top = X_WP.p.z() - motion::lowest_corner(X_WP.R, box.size);
+  const double free = scenario.cup.free_length;
+  std::vector<motion::Waypoint> rows(3);
+  for (motion::Waypoint& row : rows) row.X_WE = {motion::upright_tool(layout.neutral_yaw), X_WP.p};
+  rows[0].X_WE.p.z() = rows[2].X_WE.p.z() = std::max(travel, top) + free + 0.02;
+  rows[1].X_WE.p.z() = top + free - kPressDepth;
+  rows[0].name = motion::row_name("PrePlace", box.id, "_press");
+  rows[1].name = motion::row_name("PlaceSlow", box.id, "_press");
+  rows[2].name = motion::row_name("PostPlace", box.id, "_press");
+  return rows;
+}
+
+std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, const PlannedBox& box,
+                                            const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                            double travel) {
+  motion::SetDownIntent intent;
+  intent.box = box.id;
+  intent.size = box.size;
+  intent.X_WP = {R_WP, place.p_WF - motion::lowest_corner(R_WP, box.size) * Vector3::UnitZ()};
+  intent.travel_bottom = travel;
+  intent.tool_for = make_tool_for(scenario, box, X_PS);
+  return motion::set_down_rows(intent);
+}
+
+std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box, const FlipPlace& place,
+                                        const Matrix3& R_WP, const Pose& X_PS, double travel) {
+  motion::FlipIntent intent;
+  intent.box = box.id;
+  intent.size = box.size;
+  intent.p_WF = place.p_WF;
+  intent.direction = place.direction;
+  intent.R_WP = R_WP;
+  intent.travel_bottom = travel;
+  intent.tool_for = make_tool_for(scenario, box, X_PS);
+  intent.X_PE = X_PS * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -scenario.cup.hold_length)};
+  return motion::flip_rows(intent);
+}
+
+motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS) {
+  const model::CupParams& params = scenario.cup;
+  cup::HeldLoad load;
+  load.mass = box.inertia.mass;
+  load.p_SScm = X_PS.inverse() * box.inertia.com;
+  load.stiffness = cup::as_matrix(params.stiffness);
+  load.X_ES2 = Pose{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length - params.centre_from_lip)};
+  load.X_SS1 = Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -params.centre_from_lip)};
+  load.gravity_W = scenario.gravity;
+  const Pose X_ES_rest{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length)};
+  return [load, X_PS, X_ES_rest](const Pose& X_WP) {
+    // The sag depends on how the tool is turned, and that on the sag: a few rounds settle it to below 0.01 degrees.
+    Pose X_ES = X_ES_rest;
+    for (int i = 0; i < 4; ++i) {
+      cup::HeldLoad turned = load;
+      turned.R_WE = X_WP.R * X_PS.R * X_ES.R.transpose();
+      const cup::SettleResult result = cup::settle(turned);
+      if (result.status != cup::SettleStatus::Converged) break;
+      X_ES = result.X_ES;
+    }
+    return X_WP * X_PS * X_ES.inverse();
+  };
+}
+
+std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
+                                         const PlaceRequest& request) {
+  const Matrix3& R_WT = layout.X_WT.R;
+  motion::PlaceIntent intent;
+  intent.box = request.box.id;
+  intent.X_WP = layout.X_WT * request.X_TP;
+  intent.size = request.box.size;
+  intent.tool_for = make_tool_for(scenario, request.box, request.X_PS);
+  intent.travel_bottom = travel_bottom(layout, request.packed_top);
+  const double rim = std::max(layout.rim, request.packed_top);
+  intent.entry_bottom = layout.X_WT.p.z() + rim + kEntryClearance;
+  intent.come_from = R_WT * request.insertion.come_from_T;
+  intent.overtravel = R_WT * request.insertion.overtravel_T;
+  intent.gentle = request.insertion.gentle;
+  intent.press = 0.005;
+  if (request.insertion.skill == InsertionSkill::Tilted) {
+    motion::TiltedEntry entry;
+    entry.low_side = R_WT * request.insertion.low_side_T;
+    entry.push = R_WT * request.insertion.push_T;
+    entry.edge_height = layout.X_WT.p.z() + request.insertion.edge_height_T;
+    intent.tilted = entry;
+  }
+  return motion::place_rows(intent);
+}
+
+}  // namespace snug::session

@@ -1,0 +1,128 @@
+// ItemPlan: from a box and the place it shall have to the rows that bring it there.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/motion/primitives.hpp"
+#include "snug/motion/side_pick.hpp"
+#include "snug/motion/waypoint.hpp"
+#include "snug/packing/placement.hpp"
+
+namespace snug::session {
+
+/// The flat surface on which boxes are flipped.
+struct FlipPlace {
+  Vector3 p_WF = Vector3::Zero();        ///< m, under the middle of the box
+  Vector3 direction = Vector3::UnitX();  ///< unit, where the tool points when it lets go
+};
+
+/// What the plans of all items have in common.
+struct CellLayout {
+  Pose X_WT;                            ///< target container
+  double rim = 0.0;                     ///< m, z in T of the upper edges of its walls; 0 without walls
+  double fixed_top = 0.0;               ///< m, z in W of the highest fixed thing that the tool passes
+  std::optional<FlipPlace> flip_place;  ///< absent: nothing flat is large enough
+  std::optional<Vector3> p_WB;          ///< m, where the robot stands
+  double neutral_yaw = 0.0;             ///< rad, of the tool at its start: half a turn to either side of it is used
+};
+/// Throws InputError for a scenario without aligner, tool or target container.
+[[nodiscard]] CellLayout make_layout(const model::Scenario& scenario);
+
+/// How another face of a box is brought up.
+enum class Reorientation {
+  None,       ///< it is up already
+  SideGrasp,  ///< picked by that face
+  Regrasp,    ///< put on a flat surface, then picked by that face
+  Pivot,      ///< turned over its lower edge on a flat surface, let go, picked again (report Figure 13)
+};
+[[nodiscard]] const char* name_of(Reorientation reorientation);
+
+/// How a box is brought to its place.
+enum class InsertionSkill {
+  TopDown,         ///< straight down
+  SlideToContact,  ///< beside its place, then pushed against its neighbours
+  Tilted,          ///< one side first, levelled while it is pushed
+};
+[[nodiscard]] const char* name_of(InsertionSkill skill);
+
+/// A skill and how much of it.
+struct Insertion {
+  InsertionSkill skill = InsertionSkill::TopDown;
+  Vector3 come_from_T = Vector3::Zero();   ///< m
+  Vector3 overtravel_T = Vector3::Zero();  ///< m
+  Vector3 low_side_T = Vector3::Zero();    ///< Tilted: unit
+  Vector3 push_T = Vector3::Zero();        ///< Tilted: m
+  double edge_height_T = 0.0;              ///< Tilted: m
+  bool gentle = false;
+};
+/// Insertions worth trying for a candidate, the most promising first; never empty.
+[[nodiscard]] std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size);
+
+/// A box of the plan: as the scenario has it.
+struct PlannedBox {
+  int item = 0;  ///< of the sequence
+  std::string id;
+  Vector3 size = Vector3::Constant(0.1);  ///< m, collision size
+  SpatialInertia inertia;
+};
+[[nodiscard]] PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item);
+/// m, in P, from the middle of the upper face to where the cup presses: as near the centre of mass as it seals.
+[[nodiscard]] Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Matrix3& R_WP);
+
+/// Where a pick from above begins.
+enum class PickKind {
+  First,      ///< at the aligner
+  FromAfar,   ///< of a box that was let go before, the tool somewhere else
+  FromAbove,  ///< of a box that was just let go, the tool still over it
+};
+/// Rows that pick the box where it stands, so that it can be brought to stand like `R_WP_next` next. The turn between
+/// both is shared: at the pick the tool is turned from `layout.neutral_yaw` to one side by half of it, then to the
+/// other.
+[[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                                      const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
+                                                      double travel_bottom, PickKind kind);
+/// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.
+[[nodiscard]] std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& before,
+                                                     const std::vector<motion::Waypoint>& rows);
+/// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.
+[[nodiscard]] Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction);
+
+/// Rows that pick the box by the side that looks along `face` (unit, level, in W) and lift it as it stood; `again`: it
+/// was set down before. Empty where the cup would touch what the box stands on or reach too far over its upper edge.
+[[nodiscard]] std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                                           const PlannedBox& box, const Pose& X_WP, const Vector3& face,
+                                                           const Matrix3& R_WP_next, double travel_bottom, bool again);
+/// Row that turns that side up, in the air.
+[[nodiscard]] motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
+                                            const Pose& X_PS, const Vector3& face, double travel_bottom, bool again);
+/// Rows that press once on the middle of the box from above, the vacuum off, so that it comes to stand level.
+[[nodiscard]] std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const CellLayout& layout,
+                                                       const PlannedBox& box, const Pose& X_WP, double travel_bottom);
+/// Rows that put the held box on the flat surface, its orientation R_WP, and let go.
+[[nodiscard]] std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, const PlannedBox& box,
+                                                          const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                                          double travel_bottom);
+/// Rows that turn the held box over its lower edge there and let go.
+[[nodiscard]] std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box,
+                                                      const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                                      double travel_bottom);
+
+/// Tool over a box that hangs still from the cup where `X_PS` is the lip on it.
+[[nodiscard]] motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS);
+
+struct PlaceRequest {
+  PlannedBox box;
+  Pose X_PS;  ///< lip on the held box
+  Pose X_TP;  ///< where it shall rest
+  Insertion insertion;
+  double packed_top = 0.0;  ///< m, z in T of the highest box in the container
+};
+[[nodiscard]] std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
+                                                       const PlaceRequest& request);
+
+/// z in W below which nothing passes that crosses the cell: over fixed things, rim and packed boxes.
+[[nodiscard]] double travel_bottom(const CellLayout& layout, double packed_top);
+
+}  // namespace snug::session

@@ -1,0 +1,218 @@
+// Packer: what is known of an item, where it goes, and which way of bringing it there is sent.
+#include "snug/session/packer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "snug/cell/drawn_scenario.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/motion/primitives.hpp"
+#include "snug/session/reach.hpp"
+#include "snug/session/surroundings.hpp"
+
+namespace snug::session {
+namespace {
+
+constexpr double kAtAligner = 0.05;   ///< m, from where it was seen to arrive, level: still against the plates
+constexpr double kOnBench = 0.20;     ///< m, level, from the middle of the surface where boxes are turned
+constexpr double kOnSurface = 0.03;   ///< m, of its lower face over that surface
+constexpr double kFootprint = 0.030;  ///< m, a middle so far beyond the walls still is the container's affair
+/// Success expected of a motion before anything is rehearsed, and of how many rollouts that is worth. From sessions in
+/// plants 101 and up.
+constexpr double kPriorRate = 0.97;
+constexpr double kPriorCount = 4.0;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+const model::Scenario& checked(const model::Scenario& scenario, const std::string& sequence) {
+  (void)make_layout(scenario);  // says what is missing
+  if (model::find_sequence(scenario, sequence) == nullptr) {
+    throw InputError(scenario.source_name, "--sequence", "'" + sequence + "'", "a sequence of the scenario");
+  }
+  return scenario;
+}
+
+BeliefSettings settings_of(const SessionOptions& options) {
+  BeliefSettings settings;
+  settings.samples = options.samples;
+  settings.seed = options.packing.seed;
+  settings.threads = options.threads;
+  settings.coarse_steps = options.coarse_steps;
+  settings.simulation = options.simulation;
+  return settings;
+}
+
+}  // namespace
+
+Packer::Packer(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options,
+               plant::Plant& plant)
+    : scenario_(checked(scenario, sequence)),
+      options_(options),
+      plant_(plant),
+      layout_(make_layout(scenario)),
+      reaches_(make_tool_reach(scenario)),
+      belief_(scenario, sequence, settings_of(options)),
+      items_(packing::make_items(belief_.nominal(), belief_.sequence())),
+      robot_(plant.read()) {
+  const Matrix3 R_AW = scenario.aligner->X_WA.R.transpose();
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    const Pose X_WP = cell::arrival_pose(belief_.nominal(), belief_.sequence().items[i]);
+    items_[i].arrival = packing::nearest_orientation(R_AW * X_WP.R);
+  }
+  sent_.name = "pack";
+}
+
+packing::ContainerState Packer::container_state() const {
+  packing::ContainerState state = packing::make_container_state(*model::find_container(scenario_, scenario_.target));
+  const Pose X_TW = layout_.X_WT.inverse();
+  const Vector3 half = 0.5 * state.inner_size + Vector3::Constant(kFootprint);
+  for (const int item : order_) {
+    const std::optional<BelievedBox>& box = belief_.box(item);
+    if (!box) continue;
+    const Pose X_TP = X_TW * box->X_WP;
+    if (std::abs(X_TP.p.x()) > half.x() || std::abs(X_TP.p.y()) > half.y() || X_TP.p.z() < 0.0) continue;
+    state.boxes.push_back({items_[static_cast<std::size_t>(item)], X_TP});
+  }
+  return state;
+}
+
+cell::ContainerFit Packer::fit_of(int item, const Pose& X_WP) const {
+  const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const Vector3 inner = model::find_container(scenario_, scenario_.target)->inner_size;
+  return cell::fit_in(inner, box.size, layout_.X_WT.inverse() * X_WP);
+}
+
+bool Packer::is_seen_outside(const std::string& id) const {
+  const int item = static_cast<int>(std::ranges::find(items_, id, &packing::Item::id) - items_.begin());
+  const std::optional<BelievedBox>& box = belief_.box(item);
+  if (!box || !box->was_seen) return false;
+  const double slack = 2.0 * std::sqrt(std::max(0.0, box->covariance(0, 0)));
+  const cell::ContainerFit fit = fit_of(item, box->X_WP);
+  return locate(item) != Location::Container || fit.outside > cell::kPackedBeyondWall + slack ||
+         fit.above_rim > cell::kPackedAboveRim + slack;
+}
+
+void Packer::look() {
+  belief_.see(plant_.perceive(belief_.expectations()));
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    if (belief_.box(static_cast<int>(i))) {
+      items_[i].size = model::find_parcel(belief_.nominal(), items_[i].id)->size;
+    }
+  }
+}
+
+Location Packer::locate(int item) const {
+  const Pose& X_WP = belief_.box(item)->X_WP;
+  const Pose arrival = cell::arrival_pose(belief_.nominal(), belief_.sequence().items[static_cast<std::size_t>(item)]);
+  if ((X_WP.p - arrival.p).norm() < kAtAligner && is_upright(X_WP.R)) return Location::Aligner;
+  const Vector3 p_TP = layout_.X_WT.inverse() * X_WP.p;
+  const Vector3 half = 0.5 * model::find_container(scenario_, scenario_.target)->inner_size;
+  if (std::abs(p_TP.x()) < half.x() + kFootprint && std::abs(p_TP.y()) < half.y() + kFootprint) {
+    return Location::Container;
+  }
+  if (layout_.flip_place) {
+    const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+    const Vector3 off = X_WP.p - layout_.flip_place->p_WF;
+    const double bottom = off.z() + motion::lowest_corner(X_WP.R, box.size);
+    if (off.head<2>().norm() < kOnBench && std::abs(bottom) < kOnSurface) return Location::Bench;
+  }
+  return Location::Elsewhere;
+}
+
+bool Packer::can_be_picked(int item) const {
+  const std::optional<BelievedBox>& box = belief_.box(item);
+  if (!box || !is_upright(box->X_WP.R)) return false;
+  if (!reaches_) return true;
+  const PlannedBox planned = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP.R,
+                              travel_bottom(layout_, highest_top(container_state())), PickKind::FromAfar);
+  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_(row.X_WE); });
+}
+
+/// Percent in the end, on average, when this share of the worlds goes well and the others end here.
+double Packer::utility_of(const packing::Candidate& candidate, double rate) const {
+  const double expected = candidate.expected_percent > 0.0 ? candidate.expected_percent : 100.0;
+  return rate * expected + (1.0 - rate) * packing::filling_percent(container_state());
+}
+
+bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
+  const double rate = best ? best->success_rate : -1.0;
+  return rate >= options_.accepted_rate || attempts >= options_.most_attempts ||
+         (attempts >= options_.max_attempts && rate >= options_.good_rate);
+}
+
+std::optional<Attempt> Packer::best_attempt(int item, Location location,
+                                            const std::vector<packing::Candidate>& candidates, ItemReport& report) {
+  packing::ContainerState state = container_state();
+  std::erase_if(state.boxes, [&](const packing::PlacedBox& box) { return box.item.id == report.id; });
+  const double top = highest_top(state);
+  Rehearsal rehearsal(belief_, layout_, reaches_, options_.limits, options_.least_rate, options_.threads,
+                      {item, belief_.box(item)->X_WP, location, robot_});
+  std::optional<Attempt> best;
+  double best_utility = 0.0;
+  const double clearance = belief_.nominal().parcel_clearance;
+  for (const packing::Candidate& candidate : candidates) {
+    if (best && best_utility >= utility_of(candidate, 1.0)) break;
+    const packing::Candidate placed =
+        measured(state, candidate, items_[static_cast<std::size_t>(item)].size, clearance);
+    for (const Insertion& insertion : choose_insertions(placed, rehearsal.box().size)) {
+      if (is_enough(best, report.attempts)) break;
+      Attempt attempt = rehearsal.attempt(placed, insertion, top);
+      report.attempts += attempt.was_rehearsed ? 1 : 0;
+      report.stops += attempt.was_rehearsed && attempt.was_stopped ? 1 : 0;
+      if (!attempt.was_rehearsed) break;
+      if (report.reason.empty()) report.reason = attempt.text;
+      if (!attempt.succeeded) continue;
+      const double utility = utility_of(placed, attempt.success_rate);
+      if (best && utility <= best_utility + 1e-9) continue;
+      best_utility = utility;
+      best = std::move(attempt);
+    }
+    if (is_enough(best, report.attempts)) break;
+  }
+  if (best && best->success_rate < options_.least_rate) best.reset();
+  return best;
+}
+
+std::optional<Packer::Planned> Packer::plan(int item, const Decide& decide, ItemReport& report) {
+  packing::Item& one = items_[static_cast<std::size_t>(item)];
+  packing::ContainerState state = container_state();
+  std::erase_if(state.boxes, [&](const packing::PlacedBox& box) { return box.item.id == one.id; });
+  const Location location = locate(item);
+  const Matrix3 R = location == Location::Aligner ? scenario_.aligner->X_WA.R : layout_.X_WT.R;
+  one.arrival = packing::nearest_orientation(R.transpose() * belief_.box(item)->X_WP.R);
+  auto start = std::chrono::steady_clock::now();
+  const auto decision = decide(state, one);
+  report.decision_seconds += seconds_since(start);
+  if (!decision) {
+    report.reason = packing::describe(decision.error());
+    report.end = packing::is_hopeless(decision.error()) ? ItemEnd::Hopeless : ItemEnd::NoPlace;
+    return std::nullopt;
+  }
+  start = std::chrono::steady_clock::now();
+  report.reason.clear();
+  std::optional<Attempt> best = best_attempt(item, location, decision->candidates, report);
+  report.rehearsal_seconds += seconds_since(start);
+  if (!best) {
+    report.end = ItemEnd::NoPlace;
+    if (report.reason.empty()) report.reason = "no place where it would come to rest as planned";
+    return std::nullopt;
+  }
+  report.reason.clear();
+  report.planned = best->planned;
+  report.reorientation = best->reorientation;
+  report.skill = best->skill;
+  report.flips = packing::count_flips(one.arrival, best->planned.orientation);
+  report.samples = best->samples;
+  report.success_rate = best->success_rate;
+  report.predicted_success =
+      (best->success_rate * best->samples + kPriorRate * kPriorCount) / (best->samples + kPriorCount);
+  report.predicted = best->predicted;
+  return Planned{std::move(*best), make_planned_box(belief_.nominal(), belief_.sequence(), item)};
+}
+
+}  // namespace snug::session

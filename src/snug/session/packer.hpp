@@ -1,0 +1,94 @@
+// Packer: brings one item in: look, plan, rehearse, send, look, and what is done when that goes wrong.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "snug/session/session.hpp"
+
+namespace snug::session {
+
+/// What decides where an item goes: the agent, or a plan that was made before.
+using Decide = std::function<Expected<packing::Decision, packing::NoPlace>(const packing::ContainerState& state,
+                                                                           const packing::Item& item)>;
+
+class Packer {
+ public:
+  /// Throws InputError for an unknown sequence and for scenarios that cannot be packed.
+  Packer(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options,
+         plant::Plant& plant);
+
+  [[nodiscard]] const std::vector<packing::Item>& items() const { return items_; }
+  [[nodiscard]] const CellLayout& layout() const { return layout_; }
+  [[nodiscard]] const Belief& belief() const { return belief_; }
+  /// What is believed to be in the container.
+  [[nodiscard]] packing::ContainerState container_state() const;
+
+  /// It is seen over the rim, beyond a wall, or not in the container at all.
+  [[nodiscard]] bool is_seen_outside(const std::string& id) const;
+  /// Everything for one item, from its arrival to what became of it.
+  [[nodiscard]] ItemReport bring_in(int item, const Decide& decide);
+  /// The tool back at its start. Empty, or why it did not get there.
+  [[nodiscard]] std::string go_home();
+
+  /// Set when nothing more can be done.
+  [[nodiscard]] std::optional<StopReason> stop_reason() const { return stop_reason_; }
+  [[nodiscard]] const motion::Program& sent() const { return sent_; }
+  [[nodiscard]] double time() const { return robot_.time; }
+
+ private:
+  struct Planned {
+    Attempt attempt;
+    PlannedBox box;
+  };
+  void look();
+  [[nodiscard]] Location locate(int item) const;
+  [[nodiscard]] bool can_be_picked(int item) const;
+  [[nodiscard]] cell::ContainerFit fit_of(int item, const Pose& X_WP) const;
+  [[nodiscard]] std::optional<Planned> plan(int item, const Decide& decide, ItemReport& report);
+  [[nodiscard]] std::optional<Attempt> best_attempt(int item, Location location,
+                                                    const std::vector<packing::Candidate>& candidates,
+                                                    ItemReport& report);
+  [[nodiscard]] double utility_of(const packing::Candidate& candidate, double rate) const;
+  [[nodiscard]] bool is_enough(const std::optional<Attempt>& best, int attempts) const;
+  void submit(const std::string& id, std::vector<motion::Waypoint> waypoints, const plant::Guards& guards,
+              ItemReport& report);
+  /// Stage by stage. False when the box was let go on the way and does not stand where the plan needs it.
+  [[nodiscard]] bool send(const Attempt& attempt, const std::string& id, ItemReport& report);
+  [[nodiscard]] Trouble assess(int item, const packing::Placement& planned,
+                               const std::vector<std::optional<Pose>>& before, ItemReport& report) const;
+  [[nodiscard]] int who_sticks_out(int item) const;
+  /// The tool straight up, vacuum off.
+  void retreat(const std::string& id, ItemReport& report);
+  /// Until nothing is wrong, or nothing more can be done. True: the item is to be planned once more.
+  [[nodiscard]] bool recover(int item, const Planned& planned, const std::vector<std::optional<Pose>>& before,
+                             const Decide& decide, ItemReport& report);
+  /// Look and compare, after a retreat where the motion did not end as it should.
+  [[nodiscard]] Trouble find_trouble(int item, const packing::Placement& planned,
+                                     const std::vector<std::optional<Pose>>& before, ItemReport& report);
+  [[nodiscard]] Situation situation_of(int item, Trouble trouble, const ItemReport& report) const;
+  void resume(const std::string& id, ItemReport& report);
+  void press(int item, ItemReport& report);
+  /// Another box, that sticks out, once more: to a place that is planned anew.
+  void repack(int item, const Decide& decide, ItemReport& report);
+  [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;
+  void give_up(int item, Trouble trouble, ItemReport& report);
+
+  model::Scenario scenario_;
+  SessionOptions options_;
+  plant::Plant& plant_;
+  CellLayout layout_;
+  std::function<bool(const Pose& X_WE)> reaches_;
+  Belief belief_;
+  std::vector<packing::Item> items_;
+  std::vector<int> order_;  ///< items that were sent, in that order
+  std::set<int> left_out_;  ///< of them, those that stick out and that nothing more is done about
+  plant::Feedback robot_;
+  motion::Program sent_;
+  std::vector<motion::Waypoint> last_;  ///< motion
+  std::optional<StopReason> stop_reason_;
+};
+
+}  // namespace snug::session

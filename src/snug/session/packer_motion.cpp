@@ -1,0 +1,314 @@
+// Packer: motions sent, what they came to, and what is done when that is not what was planned.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "snug/motion/row_name.hpp"
+#include "snug/session/packer.hpp"
+#include "snug/session/surroundings.hpp"
+
+namespace snug::session {
+namespace {
+
+constexpr double kAsRehearsed = 0.004;       ///< m, from where the nominal rollout let the box go on the way
+constexpr double kTurnedAsRehearsed = 0.05;  ///< rad
+constexpr double kHeld = 0.3;                ///< share of the vacuum's set point that says that something is held
+constexpr int kMostRounds = 12;              ///< of remedies for one motion
+
+Trouble trouble_of(plant::EndReason reason) {
+  switch (reason) {
+    case plant::EndReason::Completed:
+      return Trouble::None;
+    case plant::EndReason::ForceGuard:
+      return Trouble::ForceGuard;
+    case plant::EndReason::NoSeal:
+      return Trouble::NoSeal;
+    case plant::EndReason::VacuumLost:
+      return Trouble::VacuumLost;
+    case plant::EndReason::ProtectiveStop:
+      return Trouble::ProtectiveStop;
+    case plant::EndReason::Timeout:
+      return Trouble::Timeout;
+    case plant::EndReason::Refused:
+    case plant::EndReason::Fault:
+      return Trouble::PlantFault;
+  }
+  return Trouble::PlantFault;
+}
+
+double tilt_of(const Pose& X_TP) {
+  return angle_between(packing::rotation(packing::nearest_orientation(X_TP.R)), X_TP.R);
+}
+
+/// m, what a look may be off: two standard deviations.
+double slack_of(const BelievedBox& box) { return 2.0 * std::sqrt(std::max(0.0, box.covariance(0, 0))); }
+
+}  // namespace
+
+std::vector<std::optional<Pose>> Packer::believed_poses() const {
+  std::vector<std::optional<Pose>> poses;
+  for (int i = 0; i < static_cast<int>(items_.size()); ++i) {
+    poses.push_back(belief_.box(i) ? std::optional<Pose>(belief_.box(i)->X_WP) : std::nullopt);
+  }
+  return poses;
+}
+
+void Packer::submit(const std::string& id, std::vector<motion::Waypoint> waypoints, const plant::Guards& guards,
+                    ItemReport& report) {
+  last_ = std::move(waypoints);
+  sent_.waypoints.insert(sent_.waypoints.end(), last_.begin(), last_.end());
+  robot_ = plant_.submit({id, last_, guards});
+  report.happened.force = std::max(report.happened.force, robot_.peak_force);
+  report.happened.torque = std::max(report.happened.torque, robot_.peak_torque);
+}
+
+bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& report) {
+  const auto& all = attempt.program.waypoints;
+  const int item = static_cast<int>(std::ranges::find(items_, id, &packing::Item::id) - items_.begin());
+  std::size_t begin = 0;
+  for (std::size_t stage = 0; stage <= attempt.looks.size(); ++stage) {
+    const bool is_last = stage == attempt.looks.size();
+    const std::size_t end = is_last ? all.size() : attempt.looks[stage];
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
+    submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)}, {options_.limits.force, true}, report);
+    if (robot_.end.reason != plant::EndReason::Completed || is_last) return true;
+    look();
+    const std::optional<BelievedBox>& box = belief_.box(item);
+    const Pose& rehearsed = attempt.looked[stage];
+    if (box && box->was_seen &&
+        ((box->X_WP.p - rehearsed.p).norm() > kAsRehearsed + slack_of(*box) ||
+         angle_between(box->X_WP.R, rehearsed.R) > kTurnedAsRehearsed)) {
+      return false;
+    }
+    begin = end;
+  }
+  return true;
+}
+
+int Packer::who_sticks_out(int item) const {
+  const auto is_out = [&](int one) {
+    return !left_out_.contains(one) && is_seen_outside(items_[static_cast<std::size_t>(one)].id);
+  };
+  for (const int other : order_) {
+    if (other == item || !belief_.box(other)) continue;
+    if (locate(other) == Location::Container && is_out(other)) return other;
+  }
+  return is_out(item) ? item : -1;
+}
+
+Trouble Packer::assess(int item, const packing::Placement& planned, const std::vector<std::optional<Pose>>& before,
+                       ItemReport& report) const {
+  const std::optional<BelievedBox>& box = belief_.box(item);
+  if (!box) return Trouble::Gone;
+  const Pose X_TP = layout_.X_WT.inverse() * box->X_WP;
+  report.X_TP = X_TP;
+  report.position_error = (X_TP.p - planned.X_TP.p).head<2>().norm();
+  report.angle_error = angle_between(X_TP.R, planned.X_TP.R);
+  if (!box->was_seen) return Trouble::None;  // nothing is known against it
+  double moved = 0.0;
+  for (const int other : order_) {
+    const std::optional<Pose>& was = before[static_cast<std::size_t>(other)];
+    if (other == item || !was || !belief_.box(other) || !belief_.box(other)->was_seen) continue;
+    moved = std::max(moved, (belief_.box(other)->X_WP.p - was->p).norm() - slack_of(*belief_.box(other)));
+  }
+  report.happened.displacement = std::max(0.0, moved);
+  if (tilt_of(X_TP) > options_.limits.tilt) return Trouble::Leaning;
+  if (who_sticks_out(item) >= 0) return Trouble::SticksOut;
+  if (report.position_error > options_.limits.position || report.angle_error > options_.limits.tilt) {
+    return Trouble::OffPlace;
+  }
+  return moved > options_.limits.displacement ? Trouble::NeighbourMoved : Trouble::None;
+}
+
+void Packer::retreat(const std::string& id, ItemReport& report) {
+  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  motion::Waypoint up;
+  up.X_WE = robot_.X_WE;
+  up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + scenario_.cup.free_length + 0.02);
+  up.name = motion::row_name("PostPlace", id, "_retreat");
+  motion::Waypoint let_go = up;
+  let_go.X_WE.p.z() = robot_.X_WE.p.z();
+  let_go.io.blow_off = true;
+  let_go.name = motion::row_name("Place", id, "_release");
+  plant_.acknowledge();
+  submit(id, {let_go, up}, {std::nullopt, false}, report);
+}
+
+void Packer::give_up(int item, Trouble trouble, ItemReport& report) {
+  const std::optional<BelievedBox>& box = belief_.box(item);
+  const bool is_gone = !box || trouble == Trouble::Gone;
+  const bool is_waiting = box && locate(item) == Location::Aligner;
+  report.end = is_gone ? ItemEnd::Gone : is_waiting ? ItemEnd::NotHeld : ItemEnd::Left;
+  report.reason = name_of(trouble);
+}
+
+Trouble Packer::find_trouble(int item, const packing::Placement& planned,
+                             const std::vector<std::optional<Pose>>& before, ItemReport& report) {
+  const Trouble ended = trouble_of(robot_.end.reason);
+  if (ended != Trouble::None && ended != Trouble::NoSeal && ended != Trouble::VacuumLost) return ended;
+  if (ended != Trouble::None) retreat(report.id, report);
+  look();
+  const Trouble seen = assess(item, planned, before, report);
+  return ended != Trouble::None ? ended : seen;
+}
+
+Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& report) const {
+  Situation at;
+  at.trouble = trouble;
+  at.most_tries = options_.most_tries;
+  at.tries = static_cast<int>(report.sends.size());
+  at.is_held = robot_.io.vacuum && robot_.pressure_gauge < kHeld * scenario_.cup.vacuum.pressure_gauge_hold;
+  at.fits = belief_.box(item) && fit_of(item, belief_.box(item)->X_WP).is_in && who_sticks_out(item) < 0;
+  at.can_be_picked = can_be_picked(item);
+  return at;
+}
+
+void Packer::resume(const std::string& id, ItemReport& report) {
+  plant_.acknowledge();
+  const std::vector<motion::Waypoint> rest(last_.begin() + std::max(0, robot_.end.waypoint), last_.end());
+  submit(id, rest, {options_.limits.force, true}, report);
+}
+
+void Packer::press(int item, ItemReport& report) {
+  const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  submit(box.id, plan_press(belief_.nominal(), layout_, box, belief_.box(item)->X_WP, travel),
+         {options_.press_force, false}, report);
+  // The force that ends a press is what was asked for.
+  if (robot_.end.reason == plant::EndReason::ForceGuard) retreat(box.id, report);
+}
+
+void Packer::repack(int item, const Decide& decide, ItemReport& report) {
+  ItemReport own;
+  own.id = items_[static_cast<std::size_t>(item)].id;
+  const std::optional<Planned> planned = plan(item, decide, own);
+  report.attempts += own.attempts;
+  if (!planned) {
+    left_out_.insert(item);
+    return;
+  }
+  belief_.expect(planned->attempt.ends);
+  (void)send(planned->attempt, own.id, report);
+  if (robot_.end.reason != plant::EndReason::Completed) retreat(own.id, report);
+  look();
+  if (who_sticks_out(item) == item) left_out_.insert(item);
+}
+
+bool Packer::recover(int item, const Planned& planned, const std::vector<std::optional<Pose>>& before,
+                     const Decide& decide, ItemReport& report) {
+  int stops = 0;
+  bool was_pressed = false;
+  const packing::Placement goal = planned.attempt.planned;
+  Trouble trouble = find_trouble(item, goal, before, report);
+  for (int round = 0; round < kMostRounds && trouble != Trouble::None; ++round) {
+    if (report.sends.back().trouble == Trouble::None) report.sends.back().trouble = trouble;
+    // It may be another box that sticks out: then that is pressed, or taken out and packed anew.
+    const int culprit = trouble == Trouble::SticksOut ? who_sticks_out(item) : item;
+    stops += trouble == Trouble::ProtectiveStop ? 1 : 0;
+    Situation at = situation_of(culprit, trouble, report);
+    at.stops = stops;
+    at.was_pressed = was_pressed;
+    const Remedy remedy = choose_remedy(at);
+    const bool is_of_motion = trouble_of(robot_.end.reason) == trouble;
+    std::string detail = is_of_motion ? plant::describe(robot_.end, last_) : std::string();
+    if (culprit != item) detail = items_[static_cast<std::size_t>(culprit)].id;
+    report.recoveries.push_back({robot_.time, report.id, trouble, remedy, std::move(detail)});
+    switch (remedy) {
+      case Remedy::None:
+      case Remedy::Accept:
+        report.end = trouble == Trouble::NeighbourMoved ? ItemEnd::Placed : ItemEnd::Accepted;
+        return false;
+      case Remedy::PickAgain:
+        if (culprit == item) return true;
+        repack(culprit, decide, report);
+        was_pressed = false;
+        break;
+      case Remedy::Skip:
+        left_out_.insert(culprit);
+        if (culprit != item) break;
+        give_up(item, trouble, report);
+        return false;
+      case Remedy::Stop:
+        stop_reason_ = trouble == Trouble::PlantFault ? StopReason::PlantFault : StopReason::RobotStops;
+        give_up(item, trouble, report);
+        return false;
+      case Remedy::Resume:
+        resume(report.id, report);
+        break;
+      case Remedy::Release:
+        retreat(report.id, report);
+        break;
+      case Remedy::PressLevel:
+        was_pressed = true;
+        press(culprit, report);
+        break;
+    }
+    trouble = find_trouble(item, goal, before, report);
+  }
+  if (trouble == Trouble::None) {
+    report.end = ItemEnd::Placed;
+  } else {
+    give_up(item, trouble, report);
+  }
+  return false;
+}
+
+ItemReport Packer::bring_in(int item, const Decide& decide) {
+  ItemReport report;
+  report.id = items_[static_cast<std::size_t>(item)].id;
+  robot_ = plant_.read();
+  report.begin = robot_.time;
+  if (!plant_.bring(report.id)) {
+    report.end = ItemEnd::NotBrought;
+    report.reason = "the plant does not bring it";
+    return report;
+  }
+  belief_.arrives(item);
+  look();
+  for (bool again = true; again && !stop_reason_;) {
+    again = false;
+    if (belief_.box(item) == std::nullopt) break;
+    const std::optional<Planned> planned = plan(item, decide, report);
+    if (!planned) {
+      if (!report.sends.empty()) {  // it lies where it was dropped or let go
+        report.end = fit_of(item, belief_.box(item)->X_WP).is_in ? ItemEnd::Accepted : ItemEnd::Left;
+      }
+      break;
+    }
+    const std::vector<std::optional<Pose>> before = believed_poses();
+    if (std::ranges::find(order_, item) == order_.end()) order_.push_back(item);
+    report.sends.push_back({robot_.time, report.predicted_success, planned->attempt.planned, {}, Trouble::None});
+    belief_.expect(planned->attempt.ends);
+    const bool is_whole = send(planned->attempt, report.id, report);
+    report.sends.back().end = robot_.end;
+    if (!is_whole) {  // planned anew from where the box stands: the loop closed, nothing went wrong
+      report.sends.pop_back();
+      again = report.attempts < 3 * options_.most_attempts;
+      continue;
+    }
+    again = recover(item, *planned, before, decide, report);
+    if (robot_.end.reason == plant::EndReason::Completed) belief_.weigh(item);
+  }
+  const bool is_waiting =
+      report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless || report.end == ItemEnd::NotHeld;
+  if (is_waiting || report.end == ItemEnd::Gone) belief_.forget(item);  // the next arrival takes it away
+  report.done = robot_.time;
+  return report;
+}
+
+std::string Packer::go_home() {
+  motion::Waypoint home;
+  home.X_WE = scenario_.controller.X_WE_start;
+  home.name = "home";
+  motion::Waypoint from;
+  from.X_WE = robot_.X_WE;
+  from.name = "home";
+  motion::Program rows;
+  append(rows, drivable(layout_, from, {home}));
+  ItemReport nobody;
+  submit("", rows.waypoints, {std::nullopt, false}, nobody);
+  if (robot_.end.reason == plant::EndReason::Completed) return {};
+  return "on the way home: " + plant::describe(robot_.end, last_);
+}
+
+}  // namespace snug::session

@@ -1,0 +1,65 @@
+// Reach: whether the scenario's robot can bring a box to a place, by its joints alone.
+#include "snug/session/reach.hpp"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "snug/motion/unwinding.hpp"
+#include "snug/robot/inverse.hpp"
+#include "snug/robot/load_arm.hpp"
+
+namespace snug::session {
+namespace {
+
+class Reach {
+ public:
+  Reach(const model::Scenario& scenario, CellLayout layout, const model::Sequence& sequence,
+        std::function<bool(const Pose& X_WE)> reaches)
+      : layout_(std::move(layout)), cup_(scenario.cup), reaches_(std::move(reaches)) {
+    for (std::size_t i = 0; i < sequence.items.size(); ++i) {
+      boxes_[sequence.items[i].parcel] = make_planned_box(scenario, sequence, static_cast<int>(i));
+    }
+  }
+
+  [[nodiscard]] bool can(const packing::Placement& placement) const {
+    const auto found = boxes_.find(placement.item);
+    if (found == boxes_.end()) return true;
+    const PlannedBox& box = found->second;
+    const Pose X_WP = layout_.X_WT * placement.X_TP;
+    const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);
+    Pose X_WE{motion::upright_tool(layout_.neutral_yaw), X_WP.p + X_WP.R * cup_offset(cup_, box, X_WP.R)};
+    for (const double bottom : {X_WP.p.z() - 0.5 * height, travel_bottom(layout_, 0.0)}) {
+      X_WE.p.z() = bottom + height + cup_.hold_length;
+      if (!reaches_(X_WE)) return false;
+    }
+    return true;
+  }
+
+ private:
+  CellLayout layout_;
+  model::CupParams cup_;
+  std::function<bool(const Pose& X_WE)> reaches_;
+  std::map<std::string, PlannedBox> boxes_;
+};
+
+}  // namespace
+
+std::function<bool(const Pose&)> make_tool_reach(const model::Scenario& scenario) {
+  std::error_code error;
+  if (!scenario.robot || !std::filesystem::exists(robot::urdf_path(scenario), error)) return {};
+  const auto inverse = std::make_shared<const robot::InverseKinematics>(robot::load_arm(scenario));
+  const robot::JointVector posture = robot::joint_vector(scenario.robot->posture);
+  return [inverse, posture](const Pose& X_WE) { return inverse->nearest(X_WE, posture).has_value(); };
+}
+
+std::function<bool(const packing::Placement&)> make_reach(const model::Scenario& scenario, const CellLayout& layout,
+                                                          const model::Sequence& sequence) {
+  auto reaches = make_tool_reach(scenario);
+  if (!reaches) return {};
+  const auto reach = std::make_shared<const Reach>(scenario, layout, sequence, std::move(reaches));
+  return [reach](const packing::Placement& placement) { return reach->can(placement); };
+}
+
+}  // namespace snug::session

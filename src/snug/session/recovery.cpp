@@ -1,0 +1,95 @@
+// Recovery: what went wrong with an item, and what is done about it: a table, docs/packing-execution.md.
+#include "snug/session/recovery.hpp"
+
+namespace snug::session {
+namespace {
+
+Remedy where_it_lies(const Situation& at) {
+  if (at.fits) return Remedy::Accept;
+  if (at.can_be_picked && at.tries < at.most_tries) return Remedy::PickAgain;
+  return Remedy::Skip;
+}
+
+}  // namespace
+
+const char* name_of(Trouble trouble) {
+  switch (trouble) {
+    case Trouble::None:
+      return "none";
+    case Trouble::NoSeal:
+      return "no seal";
+    case Trouble::VacuumLost:
+      return "vacuum lost";
+    case Trouble::ForceGuard:
+      return "force guard";
+    case Trouble::ProtectiveStop:
+      return "protective stop";
+    case Trouble::Timeout:
+      return "timeout";
+    case Trouble::OffPlace:
+      return "off its place";
+    case Trouble::Leaning:
+      return "leaning";
+    case Trouble::NeighbourMoved:
+      return "neighbour moved";
+    case Trouble::SticksOut:
+      return "sticks out";
+    case Trouble::Gone:
+      return "gone";
+    case Trouble::PlantFault:
+      return "plant fault";
+  }
+  return "";
+}
+
+const char* name_of(Remedy remedy) {
+  switch (remedy) {
+    case Remedy::None:
+      return "none";
+    case Remedy::Resume:
+      return "resume";
+    case Remedy::Release:
+      return "release";
+    case Remedy::PickAgain:
+      return "pick again";
+    case Remedy::PressLevel:
+      return "press level";
+    case Remedy::Accept:
+      return "accept";
+    case Remedy::Skip:
+      return "skip";
+    case Remedy::Stop:
+      return "stop";
+  }
+  return "";
+}
+
+Remedy choose_remedy(const Situation& at) {
+  switch (at.trouble) {
+    case Trouble::None:
+      return Remedy::None;
+    case Trouble::PlantFault:
+      return Remedy::Stop;
+    case Trouble::ProtectiveStop:
+      if (at.stops == 1 && at.is_held) return Remedy::Resume;
+      return at.stops <= 3 ? Remedy::Release : Remedy::Stop;
+    case Trouble::ForceGuard:
+    case Trouble::Timeout:
+      return Remedy::Release;
+    case Trouble::NoSeal:
+    case Trouble::VacuumLost:
+    case Trouble::OffPlace:
+      return where_it_lies(at);
+    case Trouble::Leaning:
+    case Trouble::SticksOut:
+      if (!at.was_pressed) return Remedy::PressLevel;
+      return where_it_lies(at);
+    case Trouble::NeighbourMoved:
+      return Remedy::Accept;
+    case Trouble::Gone:
+      return Remedy::Skip;
+  }
+  return Remedy::Stop;
+}
+
+}  // namespace snug::session

@@ -1,0 +1,59 @@
+// Recovery: what went wrong with an item, and what is done about it: a table, docs/packing-execution.md.
+#pragma once
+
+#include <string>
+
+namespace snug::session {
+
+/// What went wrong, as far as the session can tell from the robot's sensors and from a look.
+enum class Trouble {
+  None,
+  NoSeal,          ///< the cup did not seal
+  VacuumLost,      ///< the box fell from the cup
+  ForceGuard,      ///< the tool met more force than it may
+  ProtectiveStop,  ///< the robot stopped itself
+  Timeout,         ///< a waypoint was not reached
+  OffPlace,        ///< it lies further than the limits from where it was planned
+  Leaning,         ///< it leans
+  NeighbourMoved,  ///< it lies where it should, but another box was moved beyond the limit
+  SticksOut,       ///< it, or another box, stands over the rim or beyond a wall
+  Gone,            ///< it is not seen where it could be
+  PlantFault,      ///< the cell itself failed
+};
+[[nodiscard]] const char* name_of(Trouble trouble);
+
+enum class Remedy {
+  None,
+  Resume,      ///< acknowledge the stop, and go on with the rest of the motion
+  Release,     ///< let go where it is, go up, look
+  PickAgain,   ///< look, plan anew, pick it where it lies
+  PressLevel,  ///< press on it from above, look
+  Accept,      ///< it stays where it lies; what follows is planned around it
+  Skip,        ///< it is left, or taken away; the next item comes
+  Stop,        ///< the session ends
+};
+[[nodiscard]] const char* name_of(Remedy remedy);
+
+/// What the choice depends on.
+struct Situation {
+  Trouble trouble = Trouble::None;
+  int tries = 0;               ///< motions that were sent for this item before, this one included
+  int most_tries = 4;          ///< of them
+  int stops = 0;               ///< protective stops of this item, this one included
+  bool is_held = false;        ///< the vacuum says that something hangs from the cup
+  bool fits = false;           ///< it lies in the container, inside walls and rim
+  bool can_be_picked = false;  ///< seen, standing on a face, within reach of the tool
+  bool was_pressed = false;    ///< since it was let go
+};
+[[nodiscard]] Remedy choose_remedy(const Situation& situation);
+
+/// One that was taken: for the result and the list of events.
+struct Recovery {
+  double time = 0.0;  ///< s, of the plant
+  std::string item;
+  Trouble trouble = Trouble::None;
+  Remedy remedy = Remedy::None;
+  std::string detail;
+};
+
+}  // namespace snug::session

@@ -1,0 +1,196 @@
+// Rehearsal: one item's motions tried in the nominal world and in the sampled ones before they are sent.
+#include "snug/session/rehearsal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "snug/core/parallel.hpp"
+
+namespace snug::session {
+namespace {
+
+constexpr double kRest = 0.4;     ///< s, after the last waypoint, before the result is looked at
+constexpr int kFirstSamples = 3;  ///< rehearsed before the others: where most of these fail the others are not asked
+
+/// Along the floor.
+double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
+
+}  // namespace
+
+Rehearsal::Rehearsal(Belief& belief, const CellLayout& layout, const std::function<bool(const Pose& X_WE)>& reaches,
+                     const PlaceLimits& limits, double least_rate, int threads, const RehearsalTask& task)
+    : belief_(belief),
+      layout_(layout),
+      reaches_(reaches),
+      limits_(limits),
+      least_rate_(least_rate),
+      threads_(threads),
+      task_(task),
+      box_(make_planned_box(belief.nominal(), belief.sequence(), task.item)),
+      rollouts_(belief.take_up(task.robot)) {
+  for (const auto& rollout : rollouts_) {
+    states_.push_back(rollout->state());
+    before_.push_back(rollout->poses());
+  }
+}
+
+Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<std::optional<Pose>>& before,
+                                    const Pose& X_TP) const {
+  Outcome outcome;
+  const auto fail = [&outcome](AttemptFailure failure, std::string text) {
+    if (outcome.failure != AttemptFailure::None) return;
+    outcome.failure = failure;
+    outcome.text = std::move(text);
+  };
+  const model::Scenario& scenario = rollout.simulation().scenario();
+  const Vector3 inner = model::find_container(scenario, scenario.target)->inner_size;
+  const Pose X_TW = layout_.X_WT.inverse();
+  const auto fit_of = [&](int item, const Pose& X_WP) {
+    const std::string& id = rollout.simulation().sequence().items[static_cast<std::size_t>(item)].parcel;
+    return cell::fit_in(inner, model::collision_size(scenario, *model::find_parcel(scenario, id)), X_TW * X_WP);
+  };
+  const std::optional<Pose> X_WP = rollout.pose_of(box_.item);
+  if (!X_WP) {
+    fail(AttemptFailure::Gone, "it is gone");
+    return outcome;
+  }
+  const Pose X_TP_is = X_TW * *X_WP;
+  const cell::ContainerFit fit = fit_of(box_.item, *X_WP);
+  if (!fit.is_in || rollout.is_held(box_.item)) {
+    fail(AttemptFailure::SticksOut,
+         rollout.is_held(box_.item)
+             ? std::string("it still hangs from the cup")
+             : fmt::format("it would stick out ({:.0f} mm beyond a wall, {:.0f} mm over the rim)", 1e3 * fit.outside,
+                           1e3 * fit.above_rim));
+  }
+  const double off = level_distance(X_TP_is, X_TP), turned = angle_between(X_TP_is.R, X_TP.R);
+  if (off > limits_.position) fail(AttemptFailure::OffPlace, fmt::format("{:.0f} mm from its place", 1e3 * off));
+  if (turned > limits_.tilt) {
+    fail(AttemptFailure::Tilted, fmt::format("{:.0f} degrees from its place", turned * 180.0 / std::numbers::pi));
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const int item = static_cast<int>(i);
+    if (!before[i] || item == box_.item) continue;
+    const std::optional<Pose> after = rollout.pose_of(item);
+    if (after) outcome.forces.displacement = std::max(outcome.forces.displacement, (after->p - before[i]->p).norm());
+    if (fit_of(item, *before[i]).is_in && !(after && fit_of(item, *after).is_in)) {
+      fail(AttemptFailure::OthersCameOut, "another box would come out of the container");
+    }
+  }
+  if (outcome.forces.displacement > limits_.displacement) {
+    fail(AttemptFailure::OthersMoved,
+         fmt::format("another box would move {:.0f} mm", 1e3 * outcome.forces.displacement));
+  }
+  return outcome;
+}
+
+const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double packed_top) {
+  for (const Grasp& known : grasps_) {
+    if (known.orientation == placement.orientation) return known;
+  }
+  motion::Waypoint from;
+  from.X_WE = task_.robot.X_WE;
+  from.io = task_.robot.io;
+  from.name = "home";
+  grasps_.push_back(plan_grasp({belief_.nominal(), layout_, rollouts_, states_, belief_.weights(), from, box_,
+                                task_.X_WP, task_.location, packed_top, threads_, reaches_},
+                               placement.orientation));
+  return grasps_.back();
+}
+
+/// All samples, or the first alone where most of these fail: the rate of such an attempt is below what is ever sent.
+void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Attempt& attempt) const {
+  const int all = static_cast<int>(rollouts_.size()) - 1;
+  std::vector<Outcome> outcomes(static_cast<std::size_t>(all));
+  const auto rehearse = [&](int first, int last) {
+    parallel_for(last - first, threads_,
+                 [&](int i, int) { outcomes[static_cast<std::size_t>(first + i)] = execute(first + i + 1); });
+    attempt.samples = last;
+  };
+  double good = 0.0, weight = 0.0;
+  const auto count = [&] {
+    good = weight = 0.0;
+    for (int i = 0; i < attempt.samples; ++i) {
+      const double own = belief_.weights()[static_cast<std::size_t>(i) + 1];
+      weight += own;
+      if (outcomes[static_cast<std::size_t>(i)].failure == AttemptFailure::None) good += own;
+    }
+    attempt.success_rate = weight > 0.0 ? good / weight : 1.0;
+  };
+  const int first = std::min(all, kFirstSamples);
+  rehearse(0, first);
+  count();
+  if (attempt.success_rate >= 0.5 * least_rate_ && first < all) {
+    rehearse(first, all);
+    count();
+  }
+  for (int i = 0; i < attempt.samples; ++i) {
+    const Outcome& outcome = outcomes[static_cast<std::size_t>(i)];
+    if (attempt.failure == AttemptFailure::None) {
+      attempt.failure = outcome.failure;
+      attempt.text = outcome.text;
+    }
+    attempt.predicted.force = std::max(attempt.predicted.force, outcome.forces.force);
+    attempt.predicted.torque = std::max(attempt.predicted.torque, outcome.forces.torque);
+    attempt.predicted.displacement = std::max(attempt.predicted.displacement, outcome.forces.displacement);
+  }
+}
+
+Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion& insertion, double packed_top) {
+  Attempt attempt;
+  attempt.planned = candidate.placement;
+  attempt.skill = insertion.skill;
+  const std::size_t known = grasps_.size();
+  const Grasp& grasp = grasp_for(candidate.placement, packed_top);
+  attempt.was_rehearsed = grasp.problem == GraspProblem::None || grasps_.size() > known;
+  if (grasp.problem != GraspProblem::None) {
+    const Episode& nominal = grasp.episodes[0];
+    attempt.failure = AttemptFailure::Grasp;
+    attempt.text = nominal.is_complete() ? describe(grasp.problem) : nominal.text;
+    attempt.was_stopped = nominal.end == RolloutEnd::ProtectiveStop;
+    return attempt;
+  }
+  attempt.reorientation = grasp.reorientation;
+  attempt.planned.orientation = grasp.held_as;
+  attempt.planned.X_TP.R = packing::rotation(grasp.held_as);
+  attempt.program = grasp.program;
+  attempt.looks = grasp.looks;
+  attempt.looked = grasp.seen;
+  attempt.X_PS = grasp.X_PS;
+  const PlaceRequest request{box_, grasp.X_PS, attempt.planned.X_TP, insertion, packed_top};
+  append(attempt.program,
+         drivable(layout_, attempt.program.waypoints.back(), plan_place(belief_.nominal(), layout_, request)));
+  attempt.ends.resize(rollouts_.size());
+  const auto execute = [&](int index) {
+    const auto i = static_cast<std::size_t>(index);
+    Rollout& rollout = *rollouts_[i];
+    rollout.restore(grasp.states[i]);
+    Episode episode = grasp.episodes[i];
+    merge(episode, rollout.run(attempt.program, {limits_.force, false}));
+    if (episode.is_complete()) merge(episode, rollout.settle(attempt.program, kRest));
+    Outcome outcome = judge(rollout, before_[i], attempt.planned.X_TP);
+    outcome.end = episode.end;
+    outcome.forces.force = episode.peak_force;
+    outcome.forces.torque = episode.peak_torque;
+    if (!episode.is_complete() || !episode.arm_contact.empty()) {  // also while boxes came to rest
+      outcome.failure = AttemptFailure::Rollout;
+      outcome.text = episode.is_complete() ? episode.arm_contact : episode.text;
+    }
+    attempt.ends[i] = rollout.poses();
+    return outcome;
+  };
+  const Outcome nominal = execute(0);
+  attempt.failure = nominal.failure;
+  attempt.text = nominal.text;
+  attempt.succeeded = nominal.failure == AttemptFailure::None;
+  attempt.was_stopped = nominal.end == RolloutEnd::ProtectiveStop;
+  attempt.nominal = nominal.forces;
+  if (attempt.succeeded) rehearse_samples(execute, attempt);
+  return attempt;
+}
+
+}  // namespace snug::session

@@ -1,0 +1,108 @@
+// Rehearsal: one item's motions tried in the nominal world and in the sampled ones before they are sent.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "snug/packing/placement.hpp"
+#include "snug/session/belief.hpp"
+#include "snug/session/grasp.hpp"
+
+namespace snug::session {
+
+/// When an item counts as placed.
+struct PlaceLimits {
+  double position = 0.020;                       ///< m, level distance from where it was planned
+  double tilt = 6.0 * std::numbers::pi / 180.0;  ///< rad, from how it was planned
+  double displacement = 0.020;                   ///< m, of a box that was there before
+  double force = 150.0;                          ///< N, of the cup on the box: an attempt is given up
+};
+
+struct AttemptForces {
+  double force = 0.0;         ///< N
+  double torque = 0.0;        ///< Nm
+  double displacement = 0.0;  ///< m, of the other boxes, the largest
+};
+
+/// Why an attempt did not succeed in a rollout.
+enum class AttemptFailure {
+  None,
+  Grasp,         ///< see Attempt::grasp_problem
+  Rollout,       ///< it ended early: force, protective stop, arm contact
+  Gone,          ///< the box left the cell
+  SticksOut,     ///< over the rim or beyond a wall
+  OffPlace,      ///< PlaceLimits::position
+  Tilted,        ///< PlaceLimits::tilt
+  OthersMoved,   ///< PlaceLimits::displacement
+  OthersCameOut  ///< of the container
+};
+
+/// One way to bring one box to one place, rehearsed everywhere but not yet sent.
+struct Attempt {
+  bool was_rehearsed = true;  ///< false: known from an attempt before that the box cannot be held so
+  AttemptFailure failure = AttemptFailure::None;  ///< in the nominal world, else the first of a sampled one
+  std::string text;                               ///< what failed, for people
+  bool succeeded = false;                         ///< in the nominal world
+  bool was_stopped = false;                       ///< by a protective stop of the robot, in the nominal world
+  double success_rate = 0.0;                      ///< of the samples, by weight
+  int samples = 0;                                ///< that were rehearsed
+  Reorientation reorientation = Reorientation::None;
+  InsertionSkill skill = InsertionSkill::TopDown;
+  packing::Placement planned;
+  AttemptForces predicted;  ///< largest of the samples
+  AttemptForces nominal;
+  motion::Program program;
+  std::vector<std::size_t> looks;                      ///< as Grasp::looks
+  std::vector<Pose> looked;                            ///< as Grasp::seen
+  Pose X_PS;                                           ///< lip on the held box, nominal
+  std::vector<std::vector<std::optional<Pose>>> ends;  ///< world by world, X_WP of all items when boxes rest
+};
+
+/// What it is about.
+struct RehearsalTask {
+  int item = 0;
+  Pose X_WP;  ///< where it is believed to be
+  Location location = Location::Aligner;
+  plant::Feedback robot;
+};
+
+class Rehearsal {
+ public:
+  /// Takes all worlds up where they are believed to be.
+  Rehearsal(Belief& belief, const CellLayout& layout, const std::function<bool(const Pose& X_WE)>& reaches,
+            const PlaceLimits& limits, double least_rate, int threads, const RehearsalTask& task);
+
+  [[nodiscard]] Attempt attempt(const packing::Candidate& candidate, const Insertion& insertion, double packed_top);
+  [[nodiscard]] const PlannedBox& box() const { return box_; }
+
+ private:
+  struct Outcome {
+    AttemptFailure failure = AttemptFailure::None;
+    std::string text;
+    RolloutEnd end = RolloutEnd::Completed;
+    AttemptForces forces;
+  };
+  const Grasp& grasp_for(const packing::Placement& placement, double packed_top);
+  [[nodiscard]] Outcome judge(const Rollout& rollout, const std::vector<std::optional<Pose>>& before,
+                              const Pose& X_TP) const;
+  void rehearse_samples(const std::function<Outcome(int)>& execute, Attempt& attempt) const;
+
+  const Belief& belief_;
+  const CellLayout& layout_;
+  const std::function<bool(const Pose& X_WE)>& reaches_;
+  PlaceLimits limits_;
+  double least_rate_;
+  int threads_;
+  RehearsalTask task_;
+  PlannedBox box_;
+  std::span<const std::unique_ptr<Rollout>> rollouts_;
+  std::vector<cell::CellState> states_;  ///< of the rollouts, where they were taken up
+  std::vector<std::vector<std::optional<Pose>>> before_;
+  std::vector<Grasp> grasps_;
+};
+
+}  // namespace snug::session

@@ -1,0 +1,106 @@
+// Rollout: one simulated course of events of a cell that could be: nominal or sampled; runs waypoints, can go back.
+#include "snug/session/rollout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace snug::session {
+namespace {
+
+constexpr double kLongestEpisode = 7200.0;  ///< s
+
+}  // namespace
+
+void merge(Episode& into, const Episode& episode) {
+  into.peak_force = std::max(into.peak_force, episode.peak_force);
+  into.peak_torque = std::max(into.peak_torque, episode.peak_torque);
+  into.duration += episode.duration;
+  if (into.arm_contact.empty()) into.arm_contact = episode.arm_contact;
+  if (!into.is_complete()) return;
+  into.end = episode.end;
+  into.text = episode.text;
+}
+
+void append(motion::Program& program, const std::vector<motion::Waypoint>& waypoints) {
+  for (const motion::Waypoint& waypoint : waypoints) program.waypoints.push_back(motion::as_written(waypoint));
+}
+
+Rollout::Rollout(const model::Scenario& scenario, const std::string& sequence, const cell::SimulationOptions& options)
+    : simulation_(std::make_unique<cell::Simulation>(scenario, sequence, options)),
+      state_(simulation_->make_state()),
+      work_(simulation_->make_workspace()) {}
+
+bool Rollout::advance(const motion::PreparedProgram& plan, Episode& episode) {
+  const cell::CellTick tick = simulation_->advance(plan, state_, work_);
+  if (!tick.failure.empty()) {
+    episode.end = work_.arm.stop ? RolloutEnd::ProtectiveStop : RolloutEnd::Failed;
+    episode.text = tick.failure;
+  }
+  if (episode.arm_contact.empty() && !work_.arm.touches_begun.empty()) {
+    episode.arm_contact = simulation_->describe_touch(work_.arm.touches_begun.front());
+  }
+  episode.peak_force = std::max(episode.peak_force, state_.gripper.F_S.force.norm());
+  episode.peak_torque = std::max(episode.peak_torque, state_.gripper.F_S.torque.norm());
+  return tick.failure.empty();
+}
+
+Episode Rollout::run(const motion::Program& program, const EpisodeLimits& limits) {
+  Episode episode;
+  const motion::PreparedProgram plan = simulation_->prepare(program);
+  const double start = time();
+  const auto fail = [&](RolloutEnd end, std::string text) {
+    episode.end = end;
+    episode.text = std::move(text);
+  };
+  while (episode.is_complete() && !simulation_->is_at_end(plan, state_)) {
+    if (!advance(plan, episode)) break;
+    if (episode.peak_force > limits.force) {
+      fail(RolloutEnd::TooMuchForce, fmt::format("{:.0f} N on the box", episode.peak_force));
+    } else if (!limits.arm_may_touch && !episode.arm_contact.empty()) {
+      fail(RolloutEnd::ArmContact, episode.arm_contact);
+    } else if (time() - start > kLongestEpisode) {
+      fail(RolloutEnd::TooLong, "the waypoints did not end within two hours");
+    }
+  }
+  episode.duration = time() - start;
+  return episode;
+}
+
+Episode Rollout::settle(const motion::Program& program, double seconds) {
+  Episode episode;
+  const motion::PreparedProgram plan = simulation_->prepare(program);
+  const double start = time();
+  while (time() < start + seconds && advance(plan, episode)) {
+  }
+  episode.duration = time() - start;
+  return episode;
+}
+
+void Rollout::take_up(const cell::CellAnchor& anchor, double seconds) {
+  state_ = simulation_->take_up(anchor);
+  motion::Waypoint still;
+  still.X_WE = state_.controller.command.X_WE;
+  still.name = "home";
+  (void)settle({"still", {still}}, seconds);
+  simulation_->stand(state_);
+}
+
+std::optional<Pose> Rollout::pose_of(int item) const {
+  const physics::BodyId body = simulation_->world().parcels[static_cast<std::size_t>(item)];
+  if (!state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) return std::nullopt;
+  return physics::pose_of(simulation_->world().model, state_.world, body);
+}
+
+std::vector<std::optional<Pose>> Rollout::poses() const {
+  std::vector<std::optional<Pose>> poses;
+  const auto count = static_cast<int>(simulation_->sequence().items.size());
+  for (int i = 0; i < count; ++i) poses.push_back(pose_of(i));
+  return poses;
+}
+
+bool Rollout::is_held(int item) const {
+  return state_.gripper.cup.body == simulation_->world().parcels[static_cast<std::size_t>(item)].index;
+}
+
+}  // namespace snug::session

@@ -1,0 +1,213 @@
+// Session: packs a plant, item after item: look, decide, rehearse, send, look, recover.
+#include "snug/session/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "snug/core/input_error.hpp"
+#include "snug/session/packer.hpp"
+#include "snug/session/reach.hpp"
+
+namespace snug::session {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::ranges::sort(values);
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+bool plans_on_paper(const SessionOptions& options) {
+  return !options.ask && (options.agent == "manual" || options.agent == "offline");
+}
+
+class Session {
+ public:
+  Session(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options,
+          plant::Plant& plant, const Progress& progress)
+      : scenario_(scenario), options_(options), progress_(progress), packer_(scenario, sequence, options, plant) {
+    result_.sequence = sequence;
+    result_.agent = options.agent;
+    result_.plant = plant.describe().name;
+  }
+
+  SessionResult pack() {
+    packing::AgentInput input;
+    input.settings = options_.packing;
+    // Plans that are made on paper first have no other place to try.
+    if (!plans_on_paper(options_)) input.settings.last_squeeze = options_.last_squeeze;
+    input.future = options_.future ? *options_.future : packing::make_future_model(scenario_);
+    input.sequence = packer_.items();
+    input.ask = options_.ask;
+    input.is_reachable = make_reach(scenario_, packer_.layout(), packer_.belief().sequence());
+    const std::unique_ptr<packing::Agent> agent = packing::make_agent(options_.agent, std::move(input));
+    if (plans_on_paper(options_)) return execute(plan_on_paper(*agent));
+    int skipped = 0;
+    const int count = static_cast<int>(packer_.items().size());
+    for (int i = 0; i < count && !is_over(); ++i) {
+      ItemReport report =
+          packer_.bring_in(i, [&](const auto& state, const packing::Item& item) { return agent->decide(state, item); });
+      const bool has_no_place = report.end == ItemEnd::NoPlace;
+      if (has_no_place && !result_.percent_before_skips) result_.percent_before_skips = result_.planned_percent;
+      if (has_no_place && skipped++ >= options_.skips) {
+        stop(StopReason::NoPlace, fmt::format("{}: {}", report.id, report.reason));
+      }
+      finish_item(std::move(report), i + 1, count);
+    }
+    return finish();
+  }
+
+  /// Every box of the plan; one that does not come to its place is left out.
+  SessionResult execute(const std::vector<packing::Placement>& plan) {
+    int done = 0;
+    for (const packing::Placement& placement : plan) {
+      const auto& items = packer_.items();
+      const auto item = std::ranges::find(items, placement.item, &packing::Item::id);
+      if (item == items.end()) {
+        throw InputError("plan", "item", placement.item, "an item of sequence " + result_.sequence);
+      }
+      if (is_over()) break;
+      const auto decide = [&](const auto&, const packing::Item&) -> Expected<packing::Decision, packing::NoPlace> {
+        packing::Decision decision;
+        packing::Candidate candidate;
+        candidate.placement = placement;
+        decision.candidates.push_back(candidate);
+        return decision;
+      };
+      finish_item(packer_.bring_in(static_cast<int>(item - items.begin()), decide), ++done,
+                  static_cast<int>(plan.size()));
+    }
+    return finish();
+  }
+
+ private:
+  [[nodiscard]] bool is_over() {
+    if (!is_stopped_ && packer_.stop_reason()) stop(*packer_.stop_reason(), name_of(*packer_.stop_reason()));
+    if (!is_stopped_ && options_.is_interrupted && options_.is_interrupted()) {
+      stop(StopReason::Interrupted, "interrupted");
+    }
+    return is_stopped_;
+  }
+
+  void stop(StopReason reason, std::string text) {
+    is_stopped_ = true;
+    result_.stop_reason = reason;
+    result_.stopped = std::move(text);
+  }
+
+  /// What an agent that re-arranges, or knows the sequence, arrives at before anything is done.
+  std::vector<packing::Placement> plan_on_paper(packing::Agent& agent) {
+    packing::ContainerState paper = packer_.container_state();
+    for (const packing::Item& item : packer_.items()) {
+      const auto start = std::chrono::steady_clock::now();
+      const auto decision = agent.decide(paper, item);
+      paper_seconds_.push_back(seconds_since(start));
+      if (!decision && decision.error() == packing::NoPlace::NotPlanned) continue;
+      if (!decision && packing::is_hopeless(decision.error())) {
+        ItemReport report;
+        report.id = item.id;
+        report.end = ItemEnd::Hopeless;
+        report.reason = packing::describe(decision.error());
+        result_.items.push_back(std::move(report));
+        continue;
+      }
+      if (!decision) {
+        paper_end_ = fmt::format("{}: {}", item.id, packing::describe(decision.error()));
+        break;
+      }
+      paper = packing::with_candidate(std::move(paper), item, decision->candidates.front());
+    }
+    std::vector<packing::Placement> plan;
+    for (const packing::PlacedBox& box : paper.boxes) {
+      const packing::Orientation orientation = packing::nearest_orientation(box.X_TP.R);
+      plan.push_back({box.item.id, box.X_TP, orientation, packing::count_flips(box.item.arrival, orientation)});
+    }
+    return plan;
+  }
+
+  void finish_item(ItemReport report, int item, int items) {
+    if (report.is_packed()) result_.plan.push_back(report.planned);
+    result_.items.push_back(std::move(report));
+    review();
+    count();
+    if (progress_) progress_(result_, item, items);
+  }
+
+  /// What was packed before, and is seen outside now, is not packed any more.
+  void review() {
+    for (ItemReport& item : result_.items) {
+      if (!item.is_packed() || !packer_.is_seen_outside(item.id)) continue;
+      item.end = ItemEnd::Left;
+      item.reason = "it is seen outside the container";
+      std::erase_if(result_.plan, [&](const packing::Placement& one) { return one.item == item.id; });
+    }
+  }
+
+  void count() {
+    std::vector<std::string> packed;
+    for (const ItemReport& item : result_.items) {
+      if (item.is_packed()) packed.push_back(item.id);
+    }
+    const model::Container& container = *model::find_container(scenario_, scenario_.target);
+    result_.planned_percent = model::compute_filling_degree_percent(scenario_, container, packed);
+    result_.duration = packer_.time();
+    result_.program = packer_.sent();
+  }
+
+  SessionResult finish() {
+    (void)is_over();
+    if (!is_stopped_ && !paper_end_.empty()) stop(StopReason::NoPlace, paper_end_);
+    if (!is_stopped_) {
+      const auto left = std::ranges::count_if(result_.items, [](const ItemReport& item) { return !item.is_packed(); });
+      if (packer_.items().empty()) {
+        stop(StopReason::NoItems, "no items");
+      } else if (left == 0) {
+        stop(StopReason::AllPacked, "all items are packed");
+      } else {
+        stop(StopReason::NoMoreItems, fmt::format("no more items, {} not packed", left));
+      }
+    }
+    if (!packer_.sent().waypoints.empty()) result_.failure = packer_.go_home();
+    if (!result_.failure.empty()) result_.stopped += "; " + result_.failure;
+    count();
+    std::vector<double> seconds = std::move(paper_seconds_);
+    if (seconds.empty()) {
+      for (const ItemReport& item : result_.items) seconds.push_back(item.decision_seconds);
+    }
+    result_.decision_seconds_median = median(std::move(seconds));
+    return std::move(result_);
+  }
+
+  const model::Scenario& scenario_;
+  SessionOptions options_;
+  const Progress& progress_;
+  Packer packer_;
+  bool is_stopped_ = false;
+  std::vector<double> paper_seconds_;  ///< of the decisions of a plan on paper
+  std::string paper_end_;
+  SessionResult result_;
+};
+
+}  // namespace
+
+SessionResult pack(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options,
+                   plant::Plant& plant, const Progress& progress) {
+  return Session(scenario, sequence, options, plant, progress).pack();
+}
+
+SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
+                      const std::vector<packing::Placement>& plan, const SessionOptions& options, plant::Plant& plant,
+                      const Progress& progress) {
+  return Session(scenario, sequence, options, plant, progress).execute(plan);
+}
+
+}  // namespace snug::session

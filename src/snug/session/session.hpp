@@ -1,0 +1,131 @@
+// Session: packs a plant, item after item: look, decide, rehearse, send, look, recover.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/packing/agent.hpp"
+#include "snug/plant/plant.hpp"
+#include "snug/session/recovery.hpp"
+#include "snug/session/rehearsal.hpp"
+
+namespace snug::session {
+
+struct SessionOptions {
+  std::string agent = "contact-aware";
+  packing::Ask ask = {};  ///< decides in its place, if set (packing/remote_agent.hpp); `agent` is then its name
+  packing::PackingSettings packing;
+  /// m, of agents that decide as items come (`PackingSettings::last_squeeze`): 1 mm more than the clearance that the
+  /// demonstrator's boxes have in contact (docs/decisions/0005).
+  double last_squeeze = 0.003;
+  int threads = 1;             ///< results do not depend on it
+  int samples = 8;             ///< sampled worlds in which every motion is rehearsed beside the nominal one; 0: none
+  double accepted_rate = 1.0;  ///< success rate at which an attempt is sent at once
+  double good_rate = 0.8;      ///< after `max_attempts`
+  double least_rate = 0.5;     ///< below it not even the best attempt is sent
+  int max_attempts = 10;       ///< for an item: candidates times insertions
+  int most_attempts = 24;      ///< where none was good
+  int most_tries = 4;          ///< motions that are sent for one item, those of recoveries included
+  int skips = 2;               ///< items without a place that are skipped before the session ends
+  int coarse_steps = 2;        ///< BeliefSettings::coarse_steps
+  /// What may follow an item; absent: any parcel of the scenario.
+  std::optional<packing::FutureModel> future;
+  PlaceLimits limits;
+  double press_force = 60.0;  ///< N, force guard of a press from above
+  cell::SimulationOptions simulation{motion::ControllerKind::Faithful, cup::CupMode::Phases, {}};  ///< of rollouts
+  std::function<bool()> is_interrupted;  ///< asked before every item; true ends the session; may be empty
+};
+
+/// What became of an item, as far as the session knows.
+enum class ItemEnd {
+  Placed,     ///< where it was planned, within the limits
+  Accepted,   ///< in the container, but not where it was planned
+  NoPlace,    ///< nothing was found that would come to rest as planned; it was taken away
+  Hopeless,   ///< it would not fit into the empty container either, is too heavy or cannot be held
+  NotHeld,    ///< every pick failed; it was left behind
+  Left,       ///< it lies where it cannot be picked, or the tries were used up
+  Gone,       ///< it is not seen any more
+  NotBrought  ///< the plant did not bring it
+};
+[[nodiscard]] const char* name_of(ItemEnd end);
+
+/// One motion for an item that was sent.
+struct Send {
+  double time = 0.0;               ///< s, of the plant, when it began
+  double predicted_success = 0.0;  ///< 0 .. 1
+  packing::Placement planned;
+  plant::End end;
+  Trouble trouble = Trouble::None;  ///< found when it had ended
+};
+
+struct ItemReport {
+  std::string id;
+  ItemEnd end = ItemEnd::NoPlace;
+  std::string reason;  ///< for people, where it is not placed
+  packing::Placement planned;
+  std::optional<Pose> X_TP;  ///< where it was seen (or is believed to be) in the end
+  Reorientation reorientation = Reorientation::None;
+  InsertionSkill skill = InsertionSkill::TopDown;
+  int flips = 0;
+  int attempts = 0;                ///< that were rehearsed for this item
+  int stops = 0;                   ///< of them that ended with a protective stop of the robot, in the nominal world
+  int samples = 0;                 ///< in which the one that was sent was rehearsed beside the nominal world
+  double success_rate = 0.0;       ///< of these, by weight; means nothing without samples
+  double predicted_success = 0.0;  ///< what the session expects of the motion that was sent
+  AttemptForces predicted;         ///< largest of the samples; means nothing without samples
+  AttemptForces happened;          ///< force and torque on the tool; displacement as it was seen
+  double position_error = 0.0;     ///< m, level, as it was seen
+  double angle_error = 0.0;        ///< rad
+  std::vector<Send> sends;
+  std::vector<Recovery> recoveries;
+  double decision_seconds = 0.0;  ///< wall clock, of the agent alone
+  double rehearsal_seconds = 0.0;
+  double begin = 0.0, done = 0.0;  ///< s, of the plant
+  [[nodiscard]] bool is_packed() const { return end == ItemEnd::Placed || end == ItemEnd::Accepted; }
+};
+
+enum class StopReason {
+  AllPacked,
+  NoMoreItems,  ///< some are not packed
+  NoItems,
+  NoPlace,     ///< for more items than may be skipped
+  RobotStops,  ///< protective stops did not end
+  PlantFault,
+  Interrupted,  ///< by who started it
+};
+[[nodiscard]] const char* name_of(StopReason reason);
+
+struct SessionResult {
+  std::string sequence;
+  std::string agent;
+  std::string plant;  ///< its name
+  std::vector<ItemReport> items;
+  motion::Program program;               ///< every waypoint that was sent
+  std::vector<packing::Placement> plan;  ///< of the items that are packed, in the order of packing
+  double planned_percent = 0.0;          ///< of those
+  double decision_seconds_median = 0.0;
+  double duration = 0.0;  ///< s, of the plant
+  StopReason stop_reason = StopReason::NoItems;
+  std::string stopped;                         ///< the same for people
+  std::string failure;                         ///< empty, or why the robot did not come home in the end
+  std::optional<double> percent_before_skips;  ///< planned_percent when the first item without a place was skipped
+};
+[[nodiscard]] int recovery_count(const SessionResult& result);
+
+/// Called after every item.
+using Progress = std::function<void(const SessionResult& so_far, int item, int items)>;
+
+/// Packs a sequence. Agents that re-arrange or know the sequence (manual, offline) make their plan first, and its boxes
+/// are brought in its order. Throws InputError for an unknown sequence, agent, or a scenario that cannot be packed.
+[[nodiscard]] SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
+                                 const SessionOptions& options, plant::Plant& plant, const Progress& progress = {});
+
+/// The same with the decisions made: each placement is brought about in the best way; boxes that do not come to their
+/// place are left out.
+[[nodiscard]] SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
+                                    const std::vector<packing::Placement>& plan, const SessionOptions& options,
+                                    plant::Plant& plant, const Progress& progress = {});
+
+}  // namespace snug::session

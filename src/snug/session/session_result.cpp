@@ -1,0 +1,54 @@
+// SessionResult: words for how items and sessions end.
+#include "snug/session/session.hpp"
+
+namespace snug::session {
+
+const char* name_of(ItemEnd end) {
+  switch (end) {
+    case ItemEnd::Placed:
+      return "placed";
+    case ItemEnd::Accepted:
+      return "accepted";
+    case ItemEnd::NoPlace:
+      return "no place";
+    case ItemEnd::Hopeless:
+      return "hopeless";
+    case ItemEnd::NotHeld:
+      return "not held";
+    case ItemEnd::Left:
+      return "left";
+    case ItemEnd::Gone:
+      return "gone";
+    case ItemEnd::NotBrought:
+      return "not brought";
+  }
+  return "";
+}
+
+const char* name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::AllPacked:
+      return "all packed";
+    case StopReason::NoMoreItems:
+      return "no more items";
+    case StopReason::NoItems:
+      return "no items";
+    case StopReason::NoPlace:
+      return "no place";
+    case StopReason::RobotStops:
+      return "robot stops";
+    case StopReason::PlantFault:
+      return "plant fault";
+    case StopReason::Interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+int recovery_count(const SessionResult& result) {
+  int count = 0;
+  for (const ItemReport& item : result.items) count += static_cast<int>(item.recoveries.size());
+  return count;
+}
+
+}  // namespace snug::session

@@ -1,0 +1,17 @@
+// Surroundings: what a box meets around the place it shall have: support, neighbours, walls.
+#pragma once
+
+#include "snug/packing/container_state.hpp"
+#include "snug/packing/placement.hpp"
+
+namespace snug::session {
+
+/// The candidate with side_gap and side_height measured in `state`, and z on what carries it there. `size`: of the box,
+/// and `shrink` is taken from every size: boxes collide as if they were smaller by it.
+[[nodiscard]] packing::Candidate measured(const packing::ContainerState& state, packing::Candidate candidate,
+                                          const Vector3& size, double shrink);
+
+/// z in T of the highest corner of all boxes, 0 when there is none.
+[[nodiscard]] double highest_top(const packing::ContainerState& state);
+
+}  // namespace snug::session

@@ -1,0 +1,120 @@
+// Belief: what is seen replaces what was drawn, sizes are learned, and worlds that predict badly lose weight.
+#include "snug/session/belief.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace snug::session {
+namespace {
+
+model::Scenario demonstrator() {
+  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+  scenario.sequences.front().items.resize(3);
+  return scenario;
+}
+
+BeliefSettings quick(int threads = 1) {
+  BeliefSettings settings;
+  settings.samples = 4;
+  settings.threads = threads;
+  return settings;
+}
+
+plant::Feedback at_start(const model::Scenario& scenario) {
+  plant::Feedback robot;
+  robot.X_WE = scenario.controller.X_WE_start;
+  return robot;
+}
+
+perception::Observation seen_at(const Pose& X_WP, std::optional<Vector3> size = {}) {
+  perception::Observation seen;
+  seen.seen.push_back({"BOX027", X_WP, Matrix6::Zero(), size, 0.0});
+  return seen;
+}
+
+TEST(Belief, EveryWorldHasABoxWhereItWasSeen) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  const Pose nominal = belief.box(0)->X_WP;
+  const auto& before = belief.take_up(at_start(scenario));
+  EXPECT_GT((before[1]->pose_of(0)->p - before[0]->pose_of(0)->p).norm(), 1e-4) << "not seen: each draws its own";
+  Pose seen = nominal;
+  seen.p += belief.nominal().aligner->X_WA.R * Vector3(0.002, 0.001, 0.0);
+  belief.see(seen_at(seen));
+  for (const auto& rollout : belief.take_up(at_start(scenario))) {
+    EXPECT_LT((rollout->pose_of(0)->p - seen.p).head<2>().norm(), 1e-3);
+  }
+}
+
+TEST(Belief, SizesAreLearnedByEveryWorld) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  const Vector3 is = Vector3(0.1716, 0.2371, 0.0931);
+  belief.see(seen_at(belief.box(0)->X_WP, is));
+  for (const auto& rollout : belief.take_up(at_start(scenario))) {
+    const model::Scenario& world = rollout->simulation().scenario();
+    EXPECT_TRUE(model::collision_size(world, *model::find_parcel(world, "BOX027")).isApprox(is, 1e-12));
+  }
+}
+
+TEST(Belief, ForgetsWhatIsTakenAway) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  EXPECT_EQ(belief.expectations().size(), 1U);
+  belief.forget(0);
+  EXPECT_TRUE(belief.expectations().empty());
+  for (const auto& rollout : belief.take_up(at_start(scenario))) EXPECT_FALSE(rollout->pose_of(0));
+}
+
+TEST(Belief, WorldsThatPredictedBadlyLoseWeightButNotAll) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  const Pose is = belief.box(0)->X_WP;
+  std::vector<std::vector<std::optional<Pose>>> predicted(5, std::vector<std::optional<Pose>>(3));
+  for (std::size_t w = 0; w < 5; ++w) {
+    Pose X_WP = is;
+    X_WP.p.x() += 0.004 * static_cast<double>(w);
+    predicted[w][0] = X_WP;
+  }
+  belief.expect(predicted);
+  belief.see(seen_at(is));
+  belief.weigh(0);
+  const std::vector<double>& weights = belief.weights();
+  for (std::size_t w = 2; w < 5; ++w) EXPECT_LT(weights[w], weights[w - 1]);
+  EXPECT_GT(weights[4], 0.0);
+  EXPECT_NEAR(std::accumulate(weights.begin() + 1, weights.end(), 0.0), 4.0, 1e-12);
+}
+
+TEST(Belief, WhatIsNotSeenIsBelievedToBeWhereItWasPredicted) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  Pose there = belief.box(0)->X_WP;
+  there.p.x() += 0.1;
+  belief.expect(std::vector<std::vector<std::optional<Pose>>>(5, {there, std::nullopt, std::nullopt}));
+  perception::Observation nothing;
+  nothing.not_seen = {"BOX027"};
+  belief.see(nothing);
+  EXPECT_EQ(belief.box(0)->X_WP, there);
+  EXPECT_FALSE(belief.box(0)->was_seen);
+  EXPECT_GT(belief.box(0)->covariance(0, 0), 0.0);
+}
+
+TEST(Belief, IsTheSameWithAnyNumberOfThreads) {
+  const model::Scenario scenario = demonstrator();
+  Belief one(scenario, "1", quick(1)), two(scenario, "1", quick(2));
+  for (Belief* belief : {&one, &two}) belief->arrives(0);
+  const auto& a = one.take_up(at_start(scenario));
+  const auto& b = two.take_up(at_start(scenario));
+  for (std::size_t w = 0; w < a.size(); ++w) {
+    EXPECT_EQ(a[w]->simulation().hash(a[w]->state()), b[w]->simulation().hash(b[w]->state())) << w;
+  }
+}
+
+}  // namespace
+}  // namespace snug::session

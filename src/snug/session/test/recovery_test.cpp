@@ -1,0 +1,69 @@
+// Recovery: the table of troubles and remedies.
+#include "snug/session/recovery.hpp"
+
+#include <gtest/gtest.h>
+
+namespace snug::session {
+namespace {
+
+Situation at(Trouble trouble) {
+  Situation situation;
+  situation.trouble = trouble;
+  situation.tries = 1;
+  situation.can_be_picked = true;
+  return situation;
+}
+
+TEST(ChooseRemedy, NothingIsDoneAboutNothing) { EXPECT_EQ(choose_remedy(at(Trouble::None)), Remedy::None); }
+
+TEST(ChooseRemedy, WhatDidNotSealOrFellIsPickedAgainWhereItLiesUntilTheTriesAreUsedUp) {
+  for (const Trouble trouble : {Trouble::NoSeal, Trouble::VacuumLost, Trouble::OffPlace}) {
+    Situation situation = at(trouble);
+    for (situation.tries = 1; situation.tries < situation.most_tries; ++situation.tries) {
+      EXPECT_EQ(choose_remedy(situation), Remedy::PickAgain) << name_of(trouble) << " " << situation.tries;
+    }
+    EXPECT_EQ(choose_remedy(situation), Remedy::Skip);
+    situation.tries = 1;
+    situation.can_be_picked = false;
+    EXPECT_EQ(choose_remedy(situation), Remedy::Skip);
+    situation.fits = true;  // it fell into the container, and may stay
+    EXPECT_EQ(choose_remedy(situation), Remedy::Accept);
+  }
+}
+
+TEST(ChooseRemedy, AStopIsResumedOnceThenTheBoxIsLetGoAndAtLastTheSessionEnds) {
+  Situation situation = at(Trouble::ProtectiveStop);
+  situation.is_held = true;
+  situation.stops = 1;
+  EXPECT_EQ(choose_remedy(situation), Remedy::Resume);
+  situation.stops = 2;
+  EXPECT_EQ(choose_remedy(situation), Remedy::Release);
+  situation.stops = 4;
+  EXPECT_EQ(choose_remedy(situation), Remedy::Stop);
+  situation.stops = 1;
+  situation.is_held = false;
+  EXPECT_EQ(choose_remedy(situation), Remedy::Release);
+}
+
+TEST(ChooseRemedy, WhatLeansOrSticksOutIsPressedOnceAndThenTakenOut) {
+  for (const Trouble trouble : {Trouble::Leaning, Trouble::SticksOut}) {
+    Situation situation = at(trouble);
+    EXPECT_EQ(choose_remedy(situation), Remedy::PressLevel);
+    situation.was_pressed = true;
+    EXPECT_EQ(choose_remedy(situation), Remedy::PickAgain);
+    situation.can_be_picked = false;
+    EXPECT_EQ(choose_remedy(situation), Remedy::Skip);
+  }
+}
+
+TEST(ChooseRemedy, EveryTroubleHasARemedyAndAName) {
+  for (int i = 1; i <= static_cast<int>(Trouble::PlantFault); ++i) {
+    const Trouble trouble = static_cast<Trouble>(i);
+    EXPECT_NE(choose_remedy(at(trouble)), Remedy::None) << name_of(trouble);
+    EXPECT_STRNE(name_of(trouble), "");
+    EXPECT_STRNE(name_of(choose_remedy(at(trouble))), "");
+  }
+}
+
+}  // namespace
+}  // namespace snug::session

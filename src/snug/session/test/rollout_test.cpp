@@ -1,0 +1,117 @@
+// Rollouts and reach: parts come to the same bytes as the whole, and the arm may not touch.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "snug/session/reach.hpp"
+#include "snug/session/rollout.hpp"
+
+namespace snug::session {
+namespace {
+
+model::Scenario shortened(std::size_t count) {
+  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+  scenario.sequences.front().items.resize(count);
+  return scenario;
+}
+
+cell::SimulationOptions moved_by(const std::string& robot) {
+  return {motion::ControllerKind::Faithful, cup::CupMode::Phases, robot};
+}
+
+packing::Placement placement_of(const model::Scenario& scenario, const Vector3& p_TP) {
+  packing::Placement placement;
+  placement.item = scenario.sequences.front().items.front().parcel;
+  placement.X_TP.p = p_TP;
+  return placement;
+}
+
+TEST(Reach, IsInTheContainerAndNotFarBehindIt) {
+  const model::Scenario scenario = shortened(1);
+  const CellLayout layout = make_layout(scenario);
+  const auto can = make_reach(scenario, layout, scenario.sequences.front());
+  ASSERT_TRUE(can);
+  for (const double x : {-0.12, 0.0, 0.12}) {
+    for (const double y : {-0.22, 0.0, 0.22}) EXPECT_TRUE(can(placement_of(scenario, Vector3(x, y, 0.05))));
+  }
+  EXPECT_FALSE(can(placement_of(scenario, Vector3(1.0, 0.0, 0.05)))) << "1.5 m from the robot";
+  EXPECT_FALSE(can(placement_of(scenario, Vector3(-0.505, 0.350, 0.3)))) << "in the robot's base";
+}
+
+TEST(Reach, IsNotAskedWithoutARobot) {
+  model::Scenario scenario = shortened(1);
+  scenario.robot->urdf = "nowhere.urdf";
+  EXPECT_FALSE(make_reach(scenario, make_layout(scenario), scenario.sequences.front()));
+  scenario.robot.reset();
+  EXPECT_FALSE(make_reach(scenario, make_layout(scenario), scenario.sequences.front()));
+}
+
+/// From the start to and fro over the container, and down to the bench.
+motion::Program to_and_fro() {
+  motion::Program program{"test", {}};
+  const Pose X_WE = shortened(1).controller.X_WE_start;
+  for (int i = 0; i < 6; ++i) {
+    motion::Waypoint row;
+    row.X_WE = X_WE;
+    row.X_WE.p += Vector3(0.1 * (i % 3), 0.3 * (i % 2), 0.1 * (i % 2));
+    row.name = "home";
+    program.waypoints.push_back(row);
+  }
+  return program;
+}
+
+TEST(Rollout, ComesToTheSameBytesPartByPartWithRestoresAsInOneRun) {
+  const model::Scenario scenario = shortened(2);
+  const motion::Program program = to_and_fro();
+  Rollout whole(scenario, "1", moved_by("")), parts(scenario, "1", moved_by(""));
+  EXPECT_TRUE(whole.run(program).is_complete());
+  motion::Program begun{program.name, {}};
+  for (std::size_t rows = 2; rows <= program.waypoints.size(); rows += 2) {
+    begun.waypoints.assign(program.waypoints.begin(), program.waypoints.begin() + static_cast<std::ptrdiff_t>(rows));
+    const cell::CellState before = parts.state();
+    (void)parts.run(begun);
+    (void)parts.settle(begun, 0.2);  // an attempt that is not taken
+    parts.restore(before);
+    (void)parts.run(begun);
+  }
+  EXPECT_EQ(parts.simulation().hash(parts.state()), whole.simulation().hash(whole.state()));
+  EXPECT_EQ(parts.state().controller, whole.state().controller);
+}
+
+/// A soft post in the middle of the forearm at its start: it touches, but nothing stops the arm for protection.
+model::Scenario with_post(model::Scenario scenario) {
+  const cell::Simulation simulation(scenario, "1", {motion::ControllerKind::Faithful, cup::CupMode::Phases, "ur10"});
+  const robot::ArmModel& arm = simulation.arm()->model();
+  const robot::ArmPose at = robot::forward(arm, simulation.arm()->start());
+  const Vector3 elbow = at.X_WS[3].p, wrist = at.X_WS[4].p;
+  model::Body post = scenario.bodies.front();
+  post.name = "post";
+  post.kind = model::BodyKind::Static;
+  post.X_WB = Pose{Matrix3::Identity(), 0.5 * (elbow + wrist)};
+  post.shapes = {{geometry::Box{Vector3::Constant(0.03)}, Pose{}}};
+  scenario.bodies.push_back(post);
+  scenario.robot->contact_stiffness = 500.0;
+  scenario.robot->protective_stop.tracking_error = 10.0;
+  return scenario;
+}
+
+TEST(Rollout, FailsWhereALinkOfTheArmTouchesSomething) {
+  const model::Scenario scenario = with_post(shortened(1));
+  Rollout rollout(scenario, "1", moved_by("ur10"));
+  motion::Waypoint row;
+  row.X_WE = rollout.simulation().scenario().controller.X_WE_start;
+  row.X_WE.p.x() += 0.05;
+  row.name = "home";
+  const cell::CellState start = rollout.state();
+  const Episode episode = rollout.run({"test", {row}});
+  EXPECT_EQ(episode.end, RolloutEnd::ArmContact);
+  EXPECT_NE(episode.text.find("touches post with"), std::string::npos) << episode.text;
+  EXPECT_NE(episode.text.find("robot/forearm_link"), std::string::npos) << episode.text;
+  rollout.restore(start);
+  EXPECT_EQ(rollout.run({"test", {row}}, {.arm_may_touch = true}).arm_contact, episode.text);
+}
+
+}  // namespace
+}  // namespace snug::session

@@ -1,0 +1,127 @@
+// SimulatedPlant: faults made to happen: seals broken, boxes moved, robots stopped.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "snug/simulated_plant/simulated_plant.hpp"
+
+namespace snug::simulated_plant {
+namespace {
+
+constexpr double kCarried = 0.30;  ///< m, level, from where boxes are picked: the box is on its way
+constexpr double kAside = 0.030;   ///< m
+constexpr double kLowest = 0.002;  ///< m, over what it is put on
+constexpr int kDirections = 8;
+
+}  // namespace
+
+void SimulatedPlant::note(const char* kind, int item, std::string text) {
+  state_.journey.note({simulation_.time(state_),
+                       "fault",
+                       simulation_.sequence().items[static_cast<std::size_t>(item)].parcel,
+                       std::string(kind) + ": " + std::move(text),
+                       {}});
+}
+
+/// What hangs from the cup falls, and nothing seals until the vacuum is switched off.
+void SimulatedPlant::break_suction() {
+  state_.gripper = cell::GripperState{};
+  state_.gripper.cannot_seal = true;
+}
+
+/// 30 mm to the side where it has to be lifted least, over whatever is there.
+void SimulatedPlant::move_aside(int item, FaultKind kind) {
+  const cell::CellWorld& world = simulation_.world();
+  const auto pose_of = [&](std::size_t i) { return physics::pose_of(world.model, state_.world, world.parcels[i]); };
+  const auto half_of = [&](std::size_t i, const Matrix3& R) {
+    const auto& box =
+        std::get<geometry::Box>(world.model.bodies[static_cast<std::size_t>(world.parcels[i].index)].geoms[0].shape);
+    return Vector3(R.cwiseAbs() * box.half);
+  };
+  const auto self = static_cast<std::size_t>(item);
+  const Pose X_WP = pose_of(self);
+  const Vector3 half = half_of(self, X_WP.R);
+  Pose best = X_WP;
+  double least = 1.0;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / kDirections;
+    Vector3 p = X_WP.p + kAside * Vector3(std::cos(angle), std::sin(angle), 0.0);
+    for (std::size_t i = 0; i < world.parcels.size(); ++i) {
+      if (i == self || !state_.world.bodies[static_cast<std::size_t>(world.parcels[i].index)].is_present) continue;
+      const Pose X_other = pose_of(i);
+      const Vector3 room = half + half_of(i, X_other.R), off = (p - X_other.p).cwiseAbs();
+      const bool is_beside = off.x() < room.x() && off.y() < room.y() && off.z() < room.z();
+      if (is_beside) p.z() = std::max(p.z(), X_other.p.z() + room.z() + kLowest);
+    }
+    const model::Container& container = *model::find_container(simulation_.scenario(), simulation_.scenario().target);
+    const Vector3 p_TP = container.X_WT.inverse() * p;
+    const Vector3 beyond = p_TP.cwiseAbs() + half - 0.5 * container.inner_size;
+    double lift = p.z() - X_WP.p.z();
+    if (container.has_walls && std::max(beyond.x(), beyond.y()) > 0.0) lift += 0.5;  // never into a wall
+    if (lift >= least) continue;
+    least = lift;
+    best = {X_WP.R, p};
+  }
+  if (least >= 0.5) best.p = X_WP.p + Vector3(0.0, 0.0, kLowest);
+  physics::set_pose(world.model, state_.world, world.parcels[self], best);
+  note(name_of(kind), item,
+       fmt::format("moved {:.0f} mm aside and lifted {:.0f} mm", 1e3 * (best.p - X_WP.p).head<2>().norm(),
+                   1e3 * (best.p.z() - X_WP.p.z())));
+}
+
+void SimulatedPlant::inject(const motion::PreparedProgram& plan, Course& course) {
+  if (current_ < 0) return;
+  const cell::CellWorld& world = simulation_.world();
+  const physics::BodyId body = world.parcels[static_cast<std::size_t>(current_)];
+  const bool is_held = state_.gripper.cup.body == body.index;
+  if (is_held && pending_.no_seal) {
+    pending_.no_seal = false;
+    break_suction();
+    note("noseal", current_, "the lip leaks");
+    return;
+  }
+  const Vector3 p_picked = simulation_.scenario().aligner ? simulation_.scenario().aligner->X_WA.p : Vector3::Zero();
+  const bool is_carried = is_held && (X_WE().p - p_picked).head<2>().norm() > kCarried;
+  if (is_carried && pending_.stop) {
+    pending_.stop = false;
+    note("stop", current_, "protective stop");
+    course.end = {plant::EndReason::ProtectiveStop, course.row, 0.0, 0.0, "injected"};
+  }
+  if (is_carried && pending_.drop) {
+    pending_.drop = false;
+    break_suction();
+    note("drop", current_, "it falls from the cup");
+  }
+  // The last motion of an item ends with the box let go and the tool over it.
+  const model::Container* container = model::find_container(simulation_.scenario(), simulation_.scenario().target);
+  if (container == nullptr || !state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) return;
+  const Vector3 p_TP = container->X_WT.inverse() * physics::pose_of(world.model, state_.world, body).p;
+  const bool is_in = p_TP.z() > 0.0 && (p_TP.cwiseAbs() - 0.5 * container->inner_size).head<2>().maxCoeff() < 0.0;
+  const bool is_over = is_in && plan.program.waypoints.back().name.starts_with("PostPlace") && !is_held &&
+                       state_.controller.phase == motion::ControllerPhase::Finished;
+  if (!is_over || (!pending_.displace && !pending_.push)) return;
+  int item = current_;
+  if (pending_.push && !pending_.displace) {
+    const Vector3 p = physics::pose_of(world.model, state_.world, body).p;
+    double nearest = 1e9;
+    item = -1;
+    for (const cell::BoxResult& box : boxes()) {
+      const int other = item_of(box.id);
+      if (other == current_ || box.state != cell::BoxState::Packed) continue;
+      const Vector3 p_other =
+          physics::pose_of(world.model, state_.world, world.parcels[static_cast<std::size_t>(other)]).p;
+      if ((p_other - p).norm() >= nearest) continue;
+      nearest = (p_other - p).norm();
+      item = other;
+    }
+  }
+  const FaultKind kind = pending_.displace ? FaultKind::Displace : FaultKind::Push;
+  (pending_.displace ? pending_.displace : pending_.push) = false;
+  if (item < 0) return;
+  move_aside(item, kind);
+  settle(plan);
+}
+
+}  // namespace snug::simulated_plant

@@ -1,0 +1,109 @@
+// RecordedRun: a plant's course once more, call by call, written to a recording: what was sent is known by then.
+#include "snug/simulated_plant/recorded_run.hpp"
+
+#include <algorithm>
+
+namespace snug::simulated_plant {
+namespace {
+
+/// Frames and events in the order of time.
+class Course {
+ public:
+  Course(SimulatedPlant& plant, const RecordedRunOptions& recorded, const cell::RecorderSetup& setup)
+      : plant_(plant),
+        said_(recorded.events),
+        recorder_(plant.simulation().scenario(), plant.simulation().world(), setup) {
+    plant_.watch([this](const cell::CellTick& tick) { add(tick); });
+  }
+  /// Rows of the motions before this one.
+  void begin(int rows) { rows_ = rows; }
+  void close(const std::string& result) {
+    add_events();
+    recorder_.close(result, false);
+  }
+  [[nodiscard]] const std::vector<record::Event>& events() const { return events_; }
+
+ private:
+  void add_events() {
+    const auto& own = plant_.state().journey.events();
+    const double now = plant_.simulation().time(plant_.state());
+    for (; own_ < own.size(); ++own_) events_.push_back(own[own_]);
+    for (; next_ < said_.size() && said_[next_].time <= now; ++next_) events_.push_back(said_[next_]);
+    recorder_.add_events(events_);
+  }
+  void add(const cell::CellTick& tick) {
+    add_events();
+    const cell::FrameInput input{tick.tool.X_WE,
+                                 tick.tool.V_WE,
+                                 tick.X_WE_reference,
+                                 rows_ + tick.row,
+                                 &plant_.state().gripper,
+                                 tick.command,
+                                 plant_.simulation().arm() != nullptr ? &plant_.work().arm : nullptr};
+    (void)recorder_.add_frame(plant_.simulation().world(), plant_.state().world, plant_.work().physics, tick.step,
+                              input);
+  }
+
+  SimulatedPlant& plant_;
+  const std::vector<record::Event>& said_;
+  cell::Recorder recorder_;
+  std::vector<record::Event> events_;
+  std::size_t own_ = 0, next_ = 0;
+  int rows_ = 0;
+};
+
+motion::Program program_of(const std::vector<Call>& calls) {
+  motion::Program program{"pack", {}};
+  for (const Call& call : calls) {
+    const auto& rows = call.motion.waypoints;
+    program.waypoints.insert(program.waypoints.end(), rows.begin(), rows.end());
+  }
+  return program;
+}
+
+}  // namespace
+
+cell::RunResult record(const model::Scenario& scenario, const std::string& sequence,
+                       const SimulatedPlantOptions& options, const std::vector<Call>& calls,
+                       const RecordedRunOptions& recorded) {
+  SimulatedPlant plant(scenario, sequence, options);
+  cell::RecorderSetup setup;
+  setup.file = recorded.file;
+  setup.period = scenario.controller.tick;
+  setup.program_name = "pack";
+  setup.program_text = motion::format_program(program_of(calls));
+  setup.sequence = sequence;
+  setup.settings_json = recorded.settings_json;
+  setup.version = recorded.version;
+  if (const cell::CellArm* arm = plant.simulation().arm()) {
+    for (const robot::Joint& joint : arm->model().joints) setup.joints.push_back(joint.name);
+  }
+  Course course(plant, recorded, setup);
+  int rows = 0;
+  for (const Call& call : calls) {
+    course.begin(rows);
+    rows += static_cast<int>(call.motion.waypoints.size());
+    if (call.kind == Call::Kind::Bring) (void)plant.bring(call.item);
+    if (call.kind == Call::Kind::Submit) (void)plant.submit(call.motion);
+    if (call.kind == Call::Kind::Acknowledge) plant.acknowledge();
+  }
+  cell::RunResult result;
+  result.duration = plant.simulation().time(plant.state());
+  result.boxes = plant.boxes();
+  std::vector<std::string> packed;
+  for (const cell::BoxResult& box : result.boxes) {
+    if (box.state == cell::BoxState::Packed) packed.push_back(box.id);
+  }
+  if (const model::Container* container = model::find_container(scenario, scenario.target)) {
+    result.filling_degree_percent = model::compute_filling_degree_percent(scenario, *container, packed);
+  }
+  result.events = course.events();
+  result.repicks = plant.state().journey.repicks();
+  result.solver = plant.work().solver.summary(plant.simulation().world());
+  result.lost = plant.work().lost;
+  result.state_hash = plant.simulation().hash(plant.state());
+  course.close(recorded.describe ? recorded.describe(result) : "");
+  return result;
+}
+
+}  // namespace snug::simulated_plant

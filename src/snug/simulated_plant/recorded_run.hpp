@@ -1,0 +1,26 @@
+// RecordedRun: a plant's course once more, call by call, written to a recording: what was sent is known by then.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snug/cell/run.hpp"
+#include "snug/simulated_plant/simulated_plant.hpp"
+
+namespace snug::simulated_plant {
+
+struct RecordedRunOptions {
+  OutputFile* file = nullptr;         ///< taken; not owned
+  std::string version;                ///< for the recording
+  std::vector<record::Event> events;  ///< what who packed has to say, ordered by time
+  std::string settings_json = "{}";
+  std::function<std::string(const cell::RunResult&)> describe;  ///< JSON to keep in the recording, or none
+};
+
+/// Runs the calls on a new plant of the same seed: it comes to the same state. Throws InputError for a recording that
+/// cannot be written; OutputError when writing it fails.
+cell::RunResult record(const model::Scenario& scenario, const std::string& sequence,
+                       const SimulatedPlantOptions& options, const std::vector<Call>& calls,
+                       const RecordedRunOptions& recorded);
+
+}  // namespace snug::simulated_plant

@@ -1,0 +1,221 @@
+// SimulatedPlant: a cell drawn from a scenario's uncertainty by a seed of its own, behind the interface of a plant.
+#include "snug/simulated_plant/simulated_plant.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "snug/cell/drawn_scenario.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug::simulated_plant {
+namespace {
+
+constexpr double kNeededVacuum = 0.3;   ///< share of the set point that counts as a seal
+constexpr double kSealPatience = 0.45;  ///< s, with the vacuum on
+constexpr double kStill = 0.003;        ///< m/s, a tool that is slower stands
+constexpr double kSettle = 0.3;         ///< s, after a motion, at least
+constexpr double kLongestSettle = 2.0;  ///< s
+constexpr double kPatience = 60.0;      ///< s, for one waypoint
+
+bool is_finite(const Pose& pose) { return pose.p.allFinite() && pose.R.allFinite(); }
+
+}  // namespace
+
+model::Scenario draw_plant(const model::Scenario& scenario, const std::string& sequence, std::uint64_t seed) {
+  const model::Scenario nominal = cell::with_fixed_arrivals(scenario, sequence);
+  return seed == 0 ? nominal : cell::draw_scenario(nominal, sequence, Rng(seed).split("plant"));
+}
+
+SimulatedPlant::SimulatedPlant(const model::Scenario& scenario, const std::string& sequence,
+                               const SimulatedPlantOptions& options)
+    : options_(options),
+      simulation_(draw_plant(scenario, sequence, options.seed), sequence, options.simulation),
+      state_(simulation_.make_state()),
+      work_(simulation_.make_workspace()),
+      perception_(perception::make_perception(options.perception, options.seed)),
+      was_brought_(simulation_.sequence().items.size(), false) {
+  read_sensors({}, {});
+}
+
+plant::Description SimulatedPlant::describe() const {
+  plant::Description description;
+  description.name =
+      options_.seed == 0 ? "simulated, as the scenario says" : fmt::format("simulated, plant seed {}", options_.seed);
+  if (simulation_.arm() != nullptr) {
+    for (const robot::Joint& joint : simulation_.arm()->model().joints) description.joints.push_back(joint.name);
+  }
+  return description;
+}
+
+Pose SimulatedPlant::X_WE() const {
+  return state_.arm ? state_.arm->machine.tool.X_WE : state_.controller.command.X_WE;
+}
+
+int SimulatedPlant::item_of(const std::string& id) const {
+  const auto& items = simulation_.sequence().items;
+  const auto found = std::ranges::find(items, id, &model::Item::parcel);
+  return found == items.end() ? -1 : static_cast<int>(found - items.begin());
+}
+
+bool SimulatedPlant::bring(const std::string& item) {
+  const int index = item_of(item);
+  if (index < 0 || was_brought_[static_cast<std::size_t>(index)]) return false;
+  calls_.push_back({Call::Kind::Bring, item, {}});
+  was_brought_[static_cast<std::size_t>(index)] = true;
+  simulation_.bring(index, state_);
+  current_ = index;
+  pending_ = {};
+  ++brought_count_;
+  for (const Fault& fault : options_.faults) {
+    if (fault.item != brought_count_) continue;
+    pending_.no_seal |= fault.kind == FaultKind::NoSeal;
+    pending_.drop |= fault.kind == FaultKind::Drop;
+    pending_.stop |= fault.kind == FaultKind::Stop;
+    pending_.displace |= fault.kind == FaultKind::Displace;
+    pending_.push |= fault.kind == FaultKind::Push;
+  }
+  return true;
+}
+
+void SimulatedPlant::acknowledge() {
+  calls_.push_back({Call::Kind::Acknowledge, {}, {}});
+  is_stopped_ = false;
+}
+
+perception::Observation SimulatedPlant::perceive(std::span<const perception::Expectation> expected) {
+  perception::Scene scene;
+  scene.time = simulation_.time(state_);
+  scene.X_WE = X_WE();
+  const cell::CellWorld& world = simulation_.world();
+  for (std::size_t i = 0; i < world.parcels.size(); ++i) {
+    const physics::BodyId body = world.parcels[i];
+    if (!state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) continue;
+    const std::string& id = simulation_.sequence().items[i].parcel;
+    const model::Scenario& scenario = simulation_.scenario();
+    scene.boxes.push_back({id, physics::pose_of(world.model, state_.world, body),
+                           model::collision_size(scenario, *model::find_parcel(scenario, id))});
+  }
+  return perception_->perceive(scene, expected);
+}
+
+void SimulatedPlant::read_sensors(const Course& course, const plant::End& end) {
+  feedback_ = {};
+  feedback_.time = simulation_.time(state_);
+  feedback_.end = end;
+  feedback_.X_WE = X_WE();
+  feedback_.V_WE = state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE;
+  if (state_.arm) {
+    const auto& joints = state_.arm->machine.joints;
+    feedback_.q.assign(joints.q.begin(), joints.q.end());
+    feedback_.qd.assign(joints.qd.begin(), joints.qd.end());
+    for (const record::JointSample& joint : work_.arm.joints) feedback_.torques.push_back(joint.torque);
+    feedback_.torques.resize(feedback_.q.size(), 0.0);
+  }
+  feedback_.pressure_gauge = state_.gripper.cup.pressure_gauge;
+  feedback_.F_E = simulation_.tool_load(state_, work_);
+  feedback_.peak_force = std::max(course.peak_force, feedback_.F_E.force.norm());
+  feedback_.peak_torque = std::max(course.peak_torque, feedback_.F_E.torque.norm());
+  feedback_.io = state_.controller.io;
+}
+
+void SimulatedPlant::check_guards(const plant::Motion& motion, Course& course) {
+  const double now = simulation_.time(state_);
+  const Wrench load = simulation_.tool_load(state_, work_);
+  course.peak_force = std::max(course.peak_force, load.force.norm());
+  course.peak_torque = std::max(course.peak_torque, load.torque.norm());
+  const auto end = [&](plant::EndReason reason, double value, double limit) {
+    if (course.end.reason == plant::EndReason::Completed) course.end = {reason, course.row, value, limit, ""};
+  };
+  if (motion.guards.force && load.force.norm() > *motion.guards.force) {
+    end(plant::EndReason::ForceGuard, load.force.norm(), *motion.guards.force);
+  }
+  const bool is_on = state_.controller.io.vacuum;
+  if (!is_on) {
+    course.vacuum_since = -1.0;
+    course.was_sealed = false;
+    state_.gripper.cannot_seal = false;
+  } else if (course.vacuum_since < 0.0) {
+    course.vacuum_since = now;
+  }
+  const double needed = kNeededVacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold;
+  const double pressure = state_.gripper.cup.pressure_gauge;
+  if (is_on && pressure <= needed) course.was_sealed = true;
+  if (motion.guards.vacuum && is_on && pressure > needed &&
+      (course.was_sealed || now - course.vacuum_since > kSealPatience)) {
+    end(course.was_sealed ? plant::EndReason::VacuumLost : plant::EndReason::NoSeal, pressure, needed);
+  }
+  if (now - course.row_since > kPatience) end(plant::EndReason::Timeout, now - course.row_since, kPatience);
+}
+
+bool SimulatedPlant::advance(const plant::Motion& motion, const motion::PreparedProgram& plan, Course& course) {
+  if (simulation_.is_at_end(plan, state_)) return false;
+  const cell::CellTick tick = simulation_.advance(plan, state_, work_);
+  if (tick.row != course.row) course.row_since = simulation_.time(state_);
+  course.row = tick.row;
+  if (watcher_) watcher_(tick);
+  inject(plan, course);
+  check_guards(motion, course);
+  if (!tick.failure.empty() && work_.arm.stop) {
+    const cell::ProtectiveStop& stop = *work_.arm.stop;
+    course.end = {plant::EndReason::ProtectiveStop, tick.row, stop.value, stop.limit, stop.what + " of " + stop.where};
+  } else if (!tick.failure.empty()) {
+    course.end = {plant::EndReason::Fault, tick.row, 0.0, 0.0, tick.failure};
+    has_failed_ = true;
+  }
+  is_stopped_ |= course.end.reason == plant::EndReason::ProtectiveStop;
+  return course.end.reason == plant::EndReason::Completed;
+}
+
+/// The tool comes to stand, boxes come to rest.
+void SimulatedPlant::settle(const motion::PreparedProgram& plan) {
+  const double start = simulation_.time(state_);
+  for (double now = start; now < start + kLongestSettle; now = simulation_.time(state_)) {
+    const Twist V_WE = state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE;
+    if (now > start + kSettle && V_WE.linear.norm() < kStill) break;
+    const cell::CellTick tick = simulation_.advance(plan, state_, work_);
+    if (watcher_) watcher_(tick);
+    if (!tick.failure.empty()) break;
+  }
+}
+
+plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
+  calls_.push_back({Call::Kind::Submit, {}, motion});
+  const auto refuse = [&](const char* why) {
+    read_sensors({}, {plant::EndReason::Refused, -1, 0.0, 0.0, why});
+    return feedback_;
+  };
+  if (motion.waypoints.empty()) return refuse("no waypoints");
+  if (is_stopped_) return refuse("a protective stop is not acknowledged");
+  if (has_failed_) return refuse("the plant has failed");
+  for (const motion::Waypoint& waypoint : motion.waypoints) {
+    if (!is_finite(waypoint.X_WE)) return refuse("a pose that is not finite");
+  }
+  motion::PreparedProgram plan;
+  try {
+    plan = simulation_.prepare({"motion", motion.waypoints});
+  } catch (const InputError& error) {
+    return refuse(error.what());
+  }
+  simulation_.begin_motion(state_);
+  Course course;
+  course.row_since = simulation_.time(state_);
+  if (state_.controller.io.vacuum) {
+    course.vacuum_since = simulation_.time(state_);
+    course.was_sealed = state_.gripper.cup.body >= 0;
+  }
+  while (advance(motion, plan, course)) {
+  }
+  if (course.end.reason == plant::EndReason::Completed) {
+    course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
+    settle(plan);
+    inject(plan, course);
+  }
+  simulation_.stand(state_);
+  read_sensors(course, course.end);
+  return feedback_;
+}
+
+}  // namespace snug::simulated_plant

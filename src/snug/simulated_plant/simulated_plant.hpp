@@ -1,0 +1,95 @@
+// SimulatedPlant: a cell drawn from a scenario's uncertainty by a seed of its own, behind the interface of a plant.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "snug/cell/simulation.hpp"
+#include "snug/perception/perception.hpp"
+#include "snug/plant/plant.hpp"
+#include "snug/simulated_plant/faults.hpp"
+
+namespace snug::simulated_plant {
+
+struct SimulatedPlantOptions {
+  std::uint64_t seed = 1;  ///< of what is drawn; 0: the cell is exactly what the scenario says
+  perception::Kind perception = perception::Kind::Exact;
+  std::vector<Fault> faults;
+  cell::SimulationOptions simulation{motion::ControllerKind::Faithful, cup::CupMode::Phases, {}};
+};
+
+/// One call that changed the plant, with what it was called with: enough to run the same again.
+struct Call {
+  enum class Kind { Bring, Submit, Acknowledge } kind = Kind::Submit;
+  std::string item;
+  plant::Motion motion;
+};
+
+/// The cell that a seed stands for.
+[[nodiscard]] model::Scenario draw_plant(const model::Scenario& scenario, const std::string& sequence,
+                                         std::uint64_t seed);
+
+class SimulatedPlant final : public plant::Plant {
+ public:
+  /// Throws InputError as cell::Simulation does.
+  SimulatedPlant(const model::Scenario& scenario, const std::string& sequence, const SimulatedPlantOptions& options);
+
+  [[nodiscard]] plant::Description describe() const override;
+  [[nodiscard]] plant::Feedback read() override { return feedback_; }
+  [[nodiscard]] bool bring(const std::string& item) override;
+  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override;
+  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override;
+  void acknowledge() override;
+
+  /// The truth, for scores and recordings alone; no planner has this type.
+  [[nodiscard]] const cell::Simulation& simulation() const { return simulation_; }
+  [[nodiscard]] const cell::CellState& state() const { return state_; }
+  [[nodiscard]] const cell::CellWorkspace& work() const { return work_; }
+  [[nodiscard]] std::vector<cell::BoxResult> boxes() const { return simulation_.boxes(state_); }
+  [[nodiscard]] const std::vector<Call>& calls() const { return calls_; }
+  /// Called after each tick of the controller.
+  void watch(std::function<void(const cell::CellTick&)> watcher) { watcher_ = std::move(watcher); }
+
+ private:
+  struct ItemFaults {
+    bool no_seal = false, drop = false, stop = false, displace = false, push = false;
+  };
+  /// What happens during one motion.
+  struct Course {
+    plant::End end;
+    double peak_force = 0.0, peak_torque = 0.0;
+    double row_since = 0.0;
+    int row = -1;
+    double vacuum_since = -1.0;  ///< s, or -1: it is off
+    bool was_sealed = false;     ///< since then
+  };
+  [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan, Course& course);
+  void settle(const motion::PreparedProgram& plan);
+  void check_guards(const plant::Motion& motion, Course& course);
+  void inject(const motion::PreparedProgram& plan, Course& course);
+  void break_suction();
+  void move_aside(int item, FaultKind kind);
+  void note(const char* kind, int item, std::string text);
+  void read_sensors(const Course& course, const plant::End& end);
+  [[nodiscard]] Pose X_WE() const;
+  [[nodiscard]] int item_of(const std::string& id) const;
+
+  SimulatedPlantOptions options_;
+  cell::Simulation simulation_;
+  cell::CellState state_;
+  cell::CellWorkspace work_;
+  std::unique_ptr<perception::Perception> perception_;
+  plant::Feedback feedback_;
+  std::vector<bool> was_brought_;
+  int brought_count_ = 0;
+  int current_ = -1;    ///< item brought last
+  ItemFaults pending_;  ///< of that item
+  bool is_stopped_ = false;
+  bool has_failed_ = false;
+  std::vector<Call> calls_;
+  std::function<void(const cell::CellTick&)> watcher_;
+};
+
+}  // namespace snug::simulated_plant

@@ -1,0 +1,116 @@
+// SimulatedPlant: the contract of plants with and without the arm, faults, and the truth that is the seed's alone.
+#include "snug/simulated_plant/simulated_plant.hpp"
+
+#include <gtest/gtest.h>
+
+#include "snug/cell/drawn_scenario.hpp"
+#include "snug/cup/pick_length.hpp"
+#include "snug/motion/unwinding.hpp"
+#include "snug/plant/test/suite/plant_contract.hpp"
+
+namespace snug::simulated_plant {
+namespace {
+
+using plant::PlantContract;
+
+const model::Scenario& scenario() {
+  static const model::Scenario one = [] {
+    model::Scenario loaded = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+    loaded.sequences.front().items.resize(3);
+    return loaded;
+  }();
+  return one;
+}
+
+/// z: of E over the upper face of BOX027 where the plain scenario has it.
+motion::Waypoint over_the_box(double z, const char* name, bool vacuum) {
+  const model::Scenario fixed = cell::with_fixed_arrivals(scenario(), "1");
+  const Pose X_WP = cell::arrival_pose(fixed, fixed.sequences.front().items.front());
+  motion::Waypoint waypoint;
+  waypoint.X_WE = {motion::upright_tool(std::numbers::pi), X_WP.p};
+  waypoint.X_WE.p.z() += 0.5 * 0.092 + z;
+  waypoint.name = name;
+  waypoint.io.vacuum = vacuum;
+  return waypoint;
+}
+
+std::vector<motion::Waypoint> pick() {
+  const double pressed = cup::pick_length(scenario().cup);
+  return {over_the_box(0.2, "PrePick(BOX027)", false), over_the_box(pressed, "Box(BOX027)", false),
+          over_the_box(0.3, "PostPick(BOX027)", true)};
+}
+
+plant::PlantCase plant_case(const std::string& name, const std::string& robot) {
+  plant::PlantCase one;
+  one.name = name;
+  one.make = [robot] {
+    SimulatedPlantOptions options;
+    options.seed = 7;
+    options.simulation.robot = robot;
+    return std::make_unique<SimulatedPlant>(scenario(), "1", options);
+  };
+  one.item = "BOX027";
+  one.free_waypoint = over_the_box(0.35, "home", false);
+  one.pick = pick();
+  one.pressing = over_the_box(0.03, "PlaceSlow", false);
+  return one;
+}
+
+INSTANTIATE_TEST_SUITE_P(Simulated, PlantContract,
+                         testing::Values(plant_case("tool_alone", ""), plant_case("with_arm", "ur10")),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(SimulatedPlant, IsTheScenarioItselfWithSeedZeroAndAnotherCellWithEachSeed) {
+  EXPECT_EQ(draw_plant(scenario(), "1", 0), cell::with_fixed_arrivals(scenario(), "1"));
+  EXPECT_EQ(draw_plant(scenario(), "1", 7), draw_plant(scenario(), "1", 7));
+  EXPECT_NE(draw_plant(scenario(), "1", 7), draw_plant(scenario(), "1", 8));
+}
+
+SimulatedPlantOptions with_fault(FaultKind kind) {
+  SimulatedPlantOptions options;
+  options.seed = 7;
+  options.faults = {{kind, 1}};
+  return options;
+}
+
+/// From the pick over the bench, 0.5 m from the aligner.
+plant::Motion carrying() {
+  plant::Motion motion{"BOX027", pick(), {}};
+  motion::Waypoint away = motion.waypoints.back();
+  away.X_WE.p += Vector3(0.5, 0.0, 0.1);
+  away.name = "PrePlace(BOX027)";
+  motion.waypoints.push_back(away);
+  return motion;
+}
+
+TEST(SimulatedPlant, ABoxThatDoesNotSealIsFeltOnceAndPickedTheNextTime) {
+  SimulatedPlant plant(scenario(), "1", with_fault(FaultKind::NoSeal));
+  ASSERT_TRUE(plant.bring("BOX027"));
+  EXPECT_EQ(plant.submit(carrying()).end.reason, plant::EndReason::NoSeal);
+  EXPECT_EQ(plant.submit(carrying()).end.reason, plant::EndReason::Completed);
+}
+
+TEST(SimulatedPlant, ABoxThatDropsIsFeltByItsVacuum) {
+  SimulatedPlant plant(scenario(), "1", with_fault(FaultKind::Drop));
+  ASSERT_TRUE(plant.bring("BOX027"));
+  const plant::Feedback fed = plant.submit(carrying());
+  EXPECT_EQ(fed.end.reason, plant::EndReason::VacuumLost);
+  EXPECT_EQ(fed.end.waypoint, 3);
+  const auto& events = plant.state().journey.events();
+  EXPECT_TRUE(std::ranges::any_of(events, [](const record::Event& event) { return event.kind == "fault"; }));
+}
+
+TEST(SimulatedPlant, AStopHoldsTheBoxAndAsksForAnAcknowledgement) {
+  SimulatedPlant plant(scenario(), "1", with_fault(FaultKind::Stop));
+  ASSERT_TRUE(plant.bring("BOX027"));
+  const plant::Feedback stopped = plant.submit(carrying());
+  EXPECT_EQ(stopped.end.reason, plant::EndReason::ProtectiveStop);
+  EXPECT_LT(stopped.pressure_gauge, -1.0e4);
+  const plant::Motion rest{"BOX027", {carrying().waypoints.back()}, {}};
+  EXPECT_EQ(plant.submit(rest).end.reason, plant::EndReason::Refused);
+  plant.acknowledge();
+  EXPECT_EQ(plant.submit(rest).end.reason, plant::EndReason::Completed);
+}
+
+}  // namespace
+}  // namespace snug::simulated_plant

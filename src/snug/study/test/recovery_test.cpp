@@ -1,0 +1,91 @@
+// Recovery: faults injected into the plant, each with what the session does about it; no box is left in the way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "snug/study/trial.hpp"
+
+namespace snug::study {
+namespace {
+
+using session::Remedy;
+using session::Trouble;
+
+Trial run_with(const char* faults, std::size_t items = 3) {
+  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+  scenario.sequences.front().items.resize(items);
+  session::SessionOptions options;
+  options.packing.decision_time = 0.05;
+  options.samples = 2;
+  simulated_plant::SimulatedPlantOptions plant;
+  plant.seed = 101;
+  plant.faults = simulated_plant::parse_faults(faults);
+  return run_trial(scenario, "1", options, plant);
+}
+
+/// The recoveries of an item, from 1.
+const std::vector<session::Recovery>& recoveries_of(const Trial& trial, std::size_t item) {
+  return trial.session.items.at(item - 1).recoveries;
+}
+
+bool has(const std::vector<session::Recovery>& recoveries, Trouble trouble, Remedy remedy) {
+  return std::ranges::any_of(
+      recoveries, [&](const session::Recovery& one) { return one.trouble == trouble && one.remedy == remedy; });
+}
+
+void expect_nothing_in_the_way(const Trial& trial) {
+  EXPECT_EQ(trial.session.failure, "");
+  for (const cell::BoxResult& box : trial.boxes) {
+    EXPECT_TRUE(box.state == cell::BoxState::Packed || box.state == cell::BoxState::Waiting)
+        << box.id << " is " << cell::name_of(box.state);
+  }
+}
+
+TEST(Recovery, ABoxThatDoesNotSealIsPickedAgain) {
+  const Trial trial = run_with("noseal@2");
+  EXPECT_TRUE(has(recoveries_of(trial, 2), Trouble::NoSeal, Remedy::PickAgain));
+  EXPECT_EQ(trial.executed_boxes, 3) << trial.session.stopped;
+  expect_nothing_in_the_way(trial);
+}
+
+TEST(Recovery, AStopIsAcknowledgedAndTheMotionGoesOn) {
+  const Trial trial = run_with("stop@2");
+  EXPECT_TRUE(has(recoveries_of(trial, 2), Trouble::ProtectiveStop, Remedy::Resume));
+  EXPECT_EQ(trial.executed_boxes, 3) << trial.session.stopped;
+  expect_nothing_in_the_way(trial);
+}
+
+TEST(Recovery, ABoxThatFallsWhileCarriedIsNoticedAndTheSessionGoesOn) {
+  const Trial trial = run_with("drop@2");
+  const auto& recoveries = recoveries_of(trial, 2);
+  EXPECT_TRUE(std::ranges::any_of(recoveries, [](const auto& one) { return one.trouble == Trouble::VacuumLost; }));
+  EXPECT_GE(trial.executed_boxes, 2) << trial.session.stopped;
+  EXPECT_EQ(trial.session.failure, "");
+}
+
+TEST(Recovery, ADisplacedBoxIsSeenAndWhatFollowsIsPlannedAroundIt) {
+  const Trial trial = run_with("displace@2");
+  EXPECT_FALSE(recoveries_of(trial, 2).empty());
+  EXPECT_EQ(trial.executed_boxes, 3) << trial.session.stopped;
+  expect_nothing_in_the_way(trial);
+}
+
+TEST(Recovery, APushedNeighbourIsSeenAndWhatFollowsIsPlannedAroundIt) {
+  const Trial trial = run_with("push@2");
+  EXPECT_FALSE(recoveries_of(trial, 2).empty());
+  EXPECT_EQ(trial.executed_boxes, 3) << trial.session.stopped;
+  expect_nothing_in_the_way(trial);
+}
+
+TEST(Recovery, AllOfThemInOneSession) {
+  const Trial trial = run_with("drop@1,noseal@2,displace@3,stop@4", 5);
+  EXPECT_GE(trial.recoveries, 4);
+  EXPECT_GE(trial.executed_boxes, 4) << trial.session.stopped;
+  const std::vector<record::Event> events = events_of(trial.session);
+  const auto recoveries = std::ranges::count(events, "recovery", &record::Event::kind);
+  EXPECT_EQ(recoveries, trial.recoveries);
+  EXPECT_TRUE(std::ranges::is_sorted(events, {}, &record::Event::time));
+}
+
+}  // namespace
+}  // namespace snug::study

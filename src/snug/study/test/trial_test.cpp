@@ -1,0 +1,145 @@
+// Trial: what a session in a drawn plant promises, on the demonstrator's cell.
+#include "snug/study/trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include "snug/core/input_error.hpp"
+#include "snug/model/other_container.hpp"
+#include "snug/study/monte_carlo.hpp"
+
+namespace snug::study {
+namespace {
+
+using session::ItemEnd;
+using session::SessionOptions;
+using session::StopReason;
+using simulated_plant::SimulatedPlantOptions;
+
+model::Scenario shortened(std::size_t count) {
+  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+  scenario.sequences.front().items.resize(count);
+  return scenario;
+}
+
+SessionOptions quick(int samples = 2) {
+  SessionOptions options;
+  options.packing.decision_time = 0.05;
+  options.samples = samples;
+  return options;
+}
+
+SimulatedPlantOptions plant_seed(std::uint64_t seed) {
+  SimulatedPlantOptions options;
+  options.seed = seed;
+  return options;
+}
+
+TEST(Trial, PacksADrawnPlantAndIsTheSameWithAnyNumberOfThreads) {
+  const model::Scenario scenario = shortened(2);
+  SessionOptions options = quick();
+  const Trial one = run_trial(scenario, "1", options, plant_seed(7));
+  EXPECT_EQ(one.executed_boxes, 2) << one.session.stopped;
+  EXPECT_EQ(one.items_sent, 2);
+  EXPECT_EQ(one.items_as_planned, 2);
+  EXPECT_EQ(one.boxes_lost, 0);
+  EXPECT_EQ(one.session.stop_reason, StopReason::AllPacked);
+  options.threads = options.packing.threads = 2;
+  const Trial two = run_trial(scenario, "1", options, plant_seed(7));
+  EXPECT_EQ(motion::format_program(one.session.program), motion::format_program(two.session.program));
+  EXPECT_EQ(one.state_hash, two.state_hash);
+  EXPECT_NE(run_trial(scenario, "1", options, plant_seed(8)).state_hash, one.state_hash) << "another plant";
+}
+
+TEST(Trial, ItsCallsRepeatedComeToTheSameState) {
+  const model::Scenario scenario = shortened(1);
+  const Trial trial = run_trial(scenario, "1", quick(0), plant_seed(7));
+  simulated_plant::SimulatedPlant again(scenario, "1", trial.plant);
+  for (const simulated_plant::Call& call : trial.calls) {
+    if (call.kind == simulated_plant::Call::Kind::Bring) {
+      EXPECT_TRUE(again.bring(call.item));
+    }
+    if (call.kind == simulated_plant::Call::Kind::Submit) (void)again.submit(call.motion);
+    if (call.kind == simulated_plant::Call::Kind::Acknowledge) again.acknowledge();
+  }
+  EXPECT_EQ(again.simulation().hash(again.state()), trial.state_hash);
+}
+
+TEST(Trial, PacksWithTheArm) {
+  SessionOptions options = quick(0);
+  options.simulation.robot = "ur10";
+  SimulatedPlantOptions plant = plant_seed(7);
+  plant.simulation.robot = "ur10";
+  const Trial trial = run_trial(shortened(1), "1", options, plant);
+  EXPECT_EQ(trial.executed_boxes, 1) << trial.session.stopped;
+  EXPECT_EQ(trial.session.failure, "");
+}
+
+TEST(Trial, PacksWithNoisyPerceptionAndWithNone) {
+  for (const perception::Kind kind : {perception::Kind::Noisy, perception::Kind::DeadReckoning}) {
+    SimulatedPlantOptions plant = plant_seed(7);
+    plant.perception = kind;
+    const Trial trial = run_trial(shortened(2), "1", quick(), plant);
+    EXPECT_EQ(trial.executed_boxes, 2) << perception::name_of(kind) << ": " << trial.session.stopped;
+  }
+}
+
+TEST(Trial, LeavesABoxThatIsTooBigForTheContainerWithAReason) {
+  const Trial trial = run_trial(model::with_container(shortened(18), "150x150x60"), "1", quick(), plant_seed(7));
+  EXPECT_EQ(trial.executed_boxes, 0);
+  EXPECT_EQ(trial.items_sent, 0);
+  ASSERT_EQ(trial.session.items.size(), 18U);
+  for (const session::ItemReport& item : trial.session.items) {
+    EXPECT_EQ(item.reason, "too big for the container") << item.id;
+    EXPECT_EQ(item.end, ItemEnd::Hopeless);
+  }
+  EXPECT_EQ(trial.session.stopped, "no more items, 18 not packed");
+}
+
+TEST(Trial, GoesOnAfterAnItemThatCanNeverFit) {
+  model::Scenario scenario = model::with_container(shortened(18), "320x320x150");  // reads its text anew
+  scenario.sequences.front().items.resize(2);
+  scenario.parcels[14].size = Vector3(0.3, 0.3, 0.2);  // BOX027, the first item
+  ASSERT_EQ(scenario.parcels[14].id, "BOX027");
+  for (const char* agent : {"contact-aware", "margin", "manual", "offline"}) {
+    SCOPED_TRACE(agent);
+    SessionOptions options = quick(0);
+    options.agent = agent;
+    const Trial trial = run_trial(scenario, "1", options, plant_seed(7));
+    ASSERT_EQ(trial.session.items.size(), 2U);
+    EXPECT_EQ(trial.session.items[0].reason, "too big for the container");
+    EXPECT_TRUE(trial.session.items[1].is_packed()) << trial.session.items[1].reason;
+    EXPECT_EQ(trial.executed_boxes, 1);
+  }
+}
+
+TEST(Trial, SaysWhyWhenThereIsNothingToDo) {
+  const Trial nothing = run_trial(shortened(0), "1", quick(), plant_seed(7));
+  EXPECT_EQ(nothing.session.stop_reason, StopReason::NoItems);
+  EXPECT_TRUE(nothing.session.program.waypoints.empty());
+  EXPECT_EQ(repeat(shortened(0), "1", nothing.session.program, nothing.session.plan, {}).items.size(), 0U);
+  model::Scenario heavy = shortened(1);
+  for (model::Parcel& parcel : heavy.parcels) parcel.inertia.mass = 50.0;
+  const Trial lifted = run_trial(heavy, "1", quick(), plant_seed(7));
+  ASSERT_EQ(lifted.session.items.size(), 1U);
+  EXPECT_FALSE(lifted.session.items[0].reason.empty());
+}
+
+TEST(Trial, RefusesAnUnknownSequenceAndAgent) {
+  EXPECT_THROW((void)run_trial(shortened(1), "nine", quick(), plant_seed(7)), InputError);
+  SessionOptions options = quick();
+  options.agent = "nobody";
+  EXPECT_THROW((void)run_trial(shortened(1), "1", options, plant_seed(7)), InputError);
+}
+
+TEST(Trial, AnInterruptedSessionKeepsWhatIsDone) {
+  SessionOptions options = quick(0);
+  int asked = 0;
+  options.is_interrupted = [&] { return ++asked > 1; };
+  const Trial trial = run_trial(shortened(3), "1", options, plant_seed(7));
+  EXPECT_EQ(trial.session.stop_reason, StopReason::Interrupted);
+  EXPECT_EQ(trial.executed_boxes, 1);
+  EXPECT_EQ(trial.session.failure, "");
+}
+
+}  // namespace
+}  // namespace snug::study

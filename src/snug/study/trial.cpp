@@ -1,0 +1,145 @@
+// Trial: a session and the plant it packs, put together, and scored by what is true of the plant.
+#include "snug/study/trial.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snug::study {
+namespace {
+
+using TruePoses = std::vector<std::optional<Pose>>;
+
+class Scorer {
+ public:
+  Scorer(const model::Scenario& scenario, const session::PlaceLimits& limits,
+         const simulated_plant::SimulatedPlant& plant)
+      : scenario_(scenario),
+        container_(*model::find_container(scenario, scenario.target)),
+        limits_(limits),
+        plant_(plant),
+        before_(poses()) {}
+
+  void add(const session::ItemReport& report, Trial& trial) {
+    TrueItem item;
+    item.id = report.id;
+    item.was_sent = !report.sends.empty();
+    const TruePoses now = poses();
+    if (item.was_sent) judge(report, now, item);
+    for (std::size_t i = 0; i < report.sends.size(); ++i) {
+      const bool is_last = i + 1 == report.sends.size();
+      item.succeeded.push_back(is_last && item.is_as_planned && report.sends[i].trouble == session::Trouble::None);
+    }
+    before_ = now;
+    trial.items.push_back(std::move(item));
+  }
+
+  void count(Trial& trial) const {
+    trial.boxes = plant_.boxes();
+    trial.executed_boxes = trial.boxes_lost = trial.items_sent = trial.items_as_planned = 0;
+    std::vector<std::string> packed;
+    for (const cell::BoxResult& box : trial.boxes) {
+      if (box.state == cell::BoxState::Packed) packed.push_back(box.id);
+      if (box.state != cell::BoxState::Packed && box.state != cell::BoxState::Waiting) ++trial.boxes_lost;
+    }
+    trial.executed_boxes = static_cast<int>(packed.size());
+    trial.executed_percent = model::compute_filling_degree_percent(scenario_, container_, packed);
+    for (const TrueItem& item : trial.items) {
+      trial.items_sent += item.was_sent ? 1 : 0;
+      trial.items_as_planned += item.is_as_planned ? 1 : 0;
+    }
+    trial.recoveries = session::recovery_count(trial.session);
+    trial.state_hash = plant_.simulation().hash(plant_.state());
+  }
+
+ private:
+  [[nodiscard]] TruePoses poses() const {
+    TruePoses poses;
+    const cell::CellWorld& world = plant_.simulation().world();
+    for (const physics::BodyId body : world.parcels) {
+      const bool is_there = plant_.state().world.bodies[static_cast<std::size_t>(body.index)].is_present;
+      poses.push_back(is_there ? std::optional<Pose>(physics::pose_of(world.model, plant_.state().world, body))
+                               : std::nullopt);
+    }
+    return poses;
+  }
+
+  [[nodiscard]] bool is_in(std::size_t i, const Pose& X_WP) const {
+    const model::Scenario& drawn = plant_.simulation().scenario();
+    const std::string& id = plant_.simulation().sequence().items[i].parcel;
+    const Vector3 size = model::collision_size(drawn, *model::find_parcel(drawn, id));
+    return cell::fit_in(container_.inner_size, size, container_.X_WT.inverse() * X_WP).is_in;
+  }
+
+  void judge(const session::ItemReport& report, const TruePoses& now, TrueItem& item) const {
+    const auto& items = plant_.simulation().sequence().items;
+    const auto own =
+        static_cast<std::size_t>(std::ranges::find(items, report.id, &model::Item::parcel) - items.begin());
+    bool others_stay = true;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (i == own || !before_[i] || !is_in(i, *before_[i])) continue;
+      others_stay = others_stay && now[i] && is_in(i, *now[i]);
+      if (now[i]) item.displacement = std::max(item.displacement, (now[i]->p - before_[i]->p).norm());
+    }
+    if (!now[own]) return;
+    const Pose X_TP = container_.X_WT.inverse() * *now[own];
+    const Pose& planned = report.sends.back().planned.X_TP;
+    item.position_error = (X_TP.p - planned.p).head<2>().norm();
+    item.angle_error = angle_between(X_TP.R, planned.R);
+    item.is_as_planned = is_in(own, *now[own]) && item.position_error <= limits_.position &&
+                         item.angle_error <= limits_.tilt && others_stay && item.displacement <= limits_.displacement;
+  }
+
+  const model::Scenario& scenario_;
+  const model::Container& container_;
+  session::PlaceLimits limits_;
+  const simulated_plant::SimulatedPlant& plant_;
+  TruePoses before_;
+};
+
+}  // namespace
+
+Trial run_trial(const model::Scenario& scenario, const std::string& sequence, const session::SessionOptions& session,
+                const simulated_plant::SimulatedPlantOptions& options, const TrialProgress& progress) {
+  simulated_plant::SimulatedPlant plant(scenario, sequence, options);
+  Trial trial;
+  trial.seed = session.packing.seed;
+  trial.plant_seed = options.seed;
+  trial.plant = options;
+  Scorer scorer(scenario, session.limits, plant);
+  const auto after_item = [&](const session::SessionResult& so_far, int item, int items) {
+    trial.session = so_far;
+    scorer.add(so_far.items.back(), trial);
+    scorer.count(trial);
+    if (progress) progress(trial, item, items);
+  };
+  trial.session = session::pack(scenario, sequence, session, plant, after_item);
+  scorer.count(trial);
+  trial.calls = plant.calls();
+  return trial;
+}
+
+std::vector<record::Event> events_of(const session::SessionResult& result) {
+  std::vector<record::Event> events;
+  for (const session::ItemReport& item : result.items) {
+    for (const session::Send& send : item.sends) {
+      const Vector3 p = 1e3 * send.planned.X_TP.p;
+      events.push_back({send.time,
+                        "send",
+                        item.id,
+                        fmt::format("planned at ({:.0f}, {:.0f}, {:.0f}) mm, success expected {:.0f} %", p.x(), p.y(),
+                                    p.z(), 100.0 * send.predicted_success),
+                        {{"predicted_success", send.predicted_success}}});
+    }
+    for (const session::Recovery& recovery : item.recoveries) {
+      std::string text = fmt::format("{}: {}", session::name_of(recovery.trouble), session::name_of(recovery.remedy));
+      if (!recovery.detail.empty()) text += " (" + recovery.detail + ")";
+      events.push_back({recovery.time, "recovery", item.id, std::move(text), {}});
+    }
+  }
+  std::ranges::stable_sort(events, {}, &record::Event::time);
+  return events;
+}
+
+}  // namespace snug::study

@@ -1,0 +1,53 @@
+// Trial: a session and the plant it packs, put together, and scored by what is true of the plant.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "snug/session/session.hpp"
+#include "snug/simulated_plant/recorded_run.hpp"
+#include "snug/simulated_plant/simulated_plant.hpp"
+
+namespace snug::study {
+
+/// One item by the plant's truth, when its motions had ended.
+struct TrueItem {
+  std::string id;
+  bool was_sent = false;
+  bool is_as_planned = false;   ///< within the session's limits of its last plan, in the container, nothing else lost
+  double position_error = 0.0;  ///< m, level
+  double angle_error = 0.0;     ///< rad
+  double displacement = 0.0;    ///< m, the farthest that another box was moved
+  std::vector<bool> succeeded;  ///< of each motion that was sent: ended as planned and needed no remedy
+};
+
+struct Trial {
+  session::SessionResult session;
+  std::uint64_t seed = 0;  ///< of the session
+  std::uint64_t plant_seed = 0;
+  int executed_boxes = 0;  ///< packed, by the plant's truth
+  double executed_percent = 0.0;
+  int items_sent = 0;
+  int items_as_planned = 0;
+  int boxes_lost = 0;  ///< that were picked and are not in the container in the end
+  int recoveries = 0;
+  std::vector<TrueItem> items;
+  std::vector<cell::BoxResult> boxes;
+  std::uint64_t state_hash = 0;
+  std::vector<simulated_plant::Call> calls;
+  simulated_plant::SimulatedPlantOptions plant;
+};
+
+/// Called after every item; the session and plant so far.
+using TrialProgress = std::function<void(const Trial& so_far, int item, int items)>;
+
+/// Throws InputError as session::pack and SimulatedPlant do.
+[[nodiscard]] Trial run_trial(const model::Scenario& scenario, const std::string& sequence,
+                              const session::SessionOptions& session,
+                              const simulated_plant::SimulatedPlantOptions& plant, const TrialProgress& progress = {});
+
+/// What the session did, as events of a recording: what it predicted, troubles and remedies.
+[[nodiscard]] std::vector<record::Event> events_of(const session::SessionResult& result);
+
+}  // namespace snug::study
