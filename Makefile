@@ -5,12 +5,12 @@ MODULE ?=
 FOLDER ?= ../shared/data/waypoints
 PREFIX ?= /usr/local
 SCENARIO := scenarios/box-demonstrator.yaml
-SOURCES = $(shell find src apps bench tests examples -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
+SOURCES = $(shell find src apps bench tests examples python -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
 
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)
 
-.PHONY: help setup setup-program setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install package check \
+.PHONY: help setup setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python package check \
   format-check clang fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
 
 help: ## list the verbs
@@ -20,6 +20,8 @@ setup: ## install the Debian and npm packages that are missing (root or sudo)
 	@scripts/install-deps.sh && scripts/install-viewer.sh
 setup-program:
 	@scripts/install-deps.sh program && scripts/install-viewer.sh
+setup-python:
+	@scripts/install-deps.sh python && scripts/install-viewer.sh
 setup-lint:
 	@scripts/install-deps.sh test lint && scripts/install-viewer.sh
 setup-peers:
@@ -44,6 +46,10 @@ test: setup ## build and run every test; MODULE=cup for one module's
 
 acceptance: build ## run the demonstrator's own programs in FOLDER, print README's table of them
 	@python3 tools/acceptance.py "$(FOLDER)"
+
+python: setup-python ## build the Python module and install it: into VENV=DIR, else for /usr/bin/python3
+	@$(call configure-build,python,--log-level=WARNING)
+	@scripts/install-python.sh build-python $(VENV)
 
 install: build ## install the program, its scenarios and the libraries under PREFIX (/usr/local)
 	@cmake --install build --prefix "$(PREFIX)"
@@ -91,4 +97,4 @@ docs: setup-docs ## check every link of the documents, build the documentation s
 	@python3 tools/check_docs.py . && python3 tools/build_site.py build/site
 
 clean: ## remove what the verbs built
-	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz out
+	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz build-python out

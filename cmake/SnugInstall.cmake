@@ -39,6 +39,7 @@ if(SNUG_PROGRAM)
     VERBATIM)
   add_custom_target(snug_manual ALL DEPENDS ${made}/snug.1)
   install(TARGETS snug RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  install(FILES python/snug/agent.py DESTINATION ${CMAKE_INSTALL_DATADIR}/snug/python/snug COMPONENT program)
   install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/snug COMPONENT program)
   install(FILES ${made}/snug.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
   install(FILES ${made}/snug.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME snug

@@ -14,13 +14,23 @@ endif()
 # Same input, same bytes: no fused multiply-add unless written, and no reordering of sums. File names in messages start at
 # the project's folder, so that a program tells nothing of the machine that built it.
 set(SNUG_CODEGEN -ffp-contract=off -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+# For the Python module (preset `python`): code that may stand anywhere and exports nothing, with the speed of a program's.
+option(SNUG_POSITION_INDEPENDENT "Build libraries that can go into the Python module" OFF)
+set(SNUG_LIBRARY_CODEGEN "")
+if(SNUG_POSITION_INDEPENDENT)
+  set(SNUG_LIBRARY_CODEGEN -fPIC -fvisibility=hidden -fvisibility-inlines-hidden -fno-semantic-interposition)
+endif()
 
 # With precompiled headers g++ 12 forgets which code is the library's own and reports the same impossible sizes in std::string
 # there; the preset dev, without them, has these warnings on.
 set(SNUG_FAST_BUILD_WARNINGS -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds -Wno-maybe-uninitialized)
 
+# snug_compile_options(target [LIBRARY]): LIBRARY is what shares the libraries' precompiled headers.
 function(snug_compile_options target)
   target_compile_options(${target} PRIVATE ${SNUG_WARNINGS} ${SNUG_CODEGEN})
+  if("LIBRARY" IN_LIST ARGN)
+    target_compile_options(${target} PRIVATE ${SNUG_LIBRARY_CODEGEN})
+  endif()
   if(SNUG_FAST_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE ${SNUG_FAST_BUILD_WARNINGS})
   endif()
@@ -33,9 +43,9 @@ endfunction()
 # that use them: without (preset dev, the second compiler of .ci/run) each file gets what it includes and nothing else.
 option(SNUG_FAST_BUILD "Precompile the headers that most files read, group files that share one" ${PROJECT_IS_TOP_LEVEL})
 
-# snug_precompile(set HEADERS <...>... LINK libraries...): makes a set for snug_use_precompiled().
+# snug_precompile(set [LIBRARY] HEADERS <...>... LINK libraries...): makes a set for snug_use_precompiled().
 function(snug_precompile set)
-  cmake_parse_arguments(ARG "" "" "HEADERS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "LIBRARY" "" "HEADERS;LINK" ${ARGN})
   if(NOT SNUG_FAST_BUILD)
     return()
   endif()
@@ -44,7 +54,11 @@ function(snug_precompile set)
   add_library(snug_precompiled_${set} OBJECT EXCLUDE_FROM_ALL ${source})
   target_include_directories(snug_precompiled_${set} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(snug_precompiled_${set} PRIVATE ${ARG_LINK})
-  snug_compile_options(snug_precompiled_${set})
+  if(ARG_LIBRARY)
+    snug_compile_options(snug_precompiled_${set} LIBRARY)
+  else()
+    snug_compile_options(snug_precompiled_${set})
+  endif()
   target_precompile_headers(snug_precompiled_${set} PRIVATE ${ARG_HEADERS})
 endfunction()
 
@@ -56,7 +70,7 @@ function(snug_use_precompiled target set)
 endfunction()
 
 snug_find_dependency(Eigen3::Eigen find_package REQUIRED)
-snug_precompile(library LINK Eigen3::Eigen
+snug_precompile(library LIBRARY LINK Eigen3::Eigen
   HEADERS <snug/spatial/pose.hpp> <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU>
           <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <memory> <numbers> <optional> <span>
           <string> <string_view> <utility> <variant> <vector>)
@@ -114,7 +128,7 @@ function(snug_module name)
   target_compile_features(snug_${name} PUBLIC cxx_std_20)
   list(TRANSFORM ARG_DEPENDS PREPEND snug::)
   target_link_libraries(snug_${name} PUBLIC ${ARG_DEPENDS} Eigen3::Eigen PRIVATE ${ARG_LINK})
-  snug_compile_options(snug_${name})
+  snug_compile_options(snug_${name} LIBRARY)
   snug_use_precompiled(snug_${name} library)
   if(SNUG_TESTS)
     add_custom_target(${name}_tests)  # what `make test MODULE=<name>` builds

@@ -4,10 +4,8 @@
 # building. With SNUG_VIEWER off the program is built without the page and says so when it is needed.
 option(SNUG_VIEWER "Build the viewer's page into the program; needs node 18 and the packages of viewer/" ON)
 
-function(snug_embed_viewer target source)
-  if(NOT SNUG_VIEWER)
-    return()
-  endif()
+# snug_viewer_page(): the rule that builds the page, SNUG_VIEWER_PAGE in the caller.
+function(snug_viewer_page)
   set(viewer ${PROJECT_SOURCE_DIR}/viewer)
   set(page ${PROJECT_BINARY_DIR}/viewer/index.html)
   find_program(SNUG_NPM npm)
@@ -24,6 +22,15 @@ function(snug_embed_viewer target source)
     WORKING_DIRECTORY ${viewer}
     COMMENT "Building the viewer's page"
     VERBATIM)
+  set(SNUG_VIEWER_PAGE ${page} PARENT_SCOPE)
+endfunction()
+
+function(snug_embed_viewer target source)
+  if(NOT SNUG_VIEWER)
+    return()
+  endif()
+  snug_viewer_page()
+  set(page ${SNUG_VIEWER_PAGE})
   target_sources(${target} PRIVATE ${page})
   set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${page}
     COMPILE_DEFINITIONS "SNUG_VIEWER_PAGE=\"${page}\"")

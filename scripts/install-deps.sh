@@ -2,8 +2,8 @@
 # install-deps.sh: the one list of Debian 12 packages that snug is built, tested and compared with.
 #
 #   scripts/install-deps.sh              what building, testing and running need: the groups program and test
-#   scripts/install-deps.sh program      what the program needs to be built and to pack; test, lint, fuzz, peers, package, docs:
-#                                        that, and the groups named
+#   scripts/install-deps.sh program      what the program needs to be built and to pack; test, python, cluster, lint, fuzz,
+#                                        peers, package, docs: that, and the groups named
 #   scripts/install-deps.sh --list ...   only print the packages
 #
 # Installs only what is missing, as root or through sudo; with nothing missing it takes a tenth of a second.
@@ -14,8 +14,11 @@ program="make cmake ninja-build g++ pkg-config ccache python3
   zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev libsiconos-numerics-dev
   libtinyxml2-dev libassimp-dev libceres-dev libnlopt-cxx-dev libpng-dev libzmq3-dev libprotobuf-dev protobuf-compiler"
 node="nodejs npm"                   # unless there is a node of 18 or newer already
+python="pybind11-dev python3-dev python3-numpy python3-venv"  # make python
 # make test; chromium also draws `snug picture`
-test="hdf5-tools libbenchmark-dev liborocos-kdl-dev libkdl-parser-dev chromium man-db python3-zmq python3-protobuf"
+test="$python python3-pytest mypy python3-matplotlib hdf5-tools libbenchmark-dev liborocos-kdl-dev libkdl-parser-dev chromium man-db
+  python3-zmq python3-protobuf"
+cluster="slurm-wlm munge"           # the test of studies as jobs of a cluster, which is skipped without
 lint="clang clang-format clang-tidy" # make check, fix, tidy, clang
 fuzz="clang libclang-rt-14-dev"      # make fuzz
 peers="libbullet-dev libmujoco-dev"  # make bench-peers
@@ -30,13 +33,15 @@ for argument in "$@"; do
     --list) only_list=yes ;;
     program) groups="$groups program" ;;
     test) groups="$groups test"; wanted="$wanted $test" ;;
+    python) groups="$groups python"; wanted="$wanted $python" ;;
+    cluster) groups="$groups cluster"; wanted="$wanted $cluster" ;;
     lint) groups="$groups lint"; wanted="$wanted $lint" ;;
     fuzz) groups="$groups fuzz"; wanted="$wanted $fuzz" ;;
     peers) groups="$groups peers"; wanted="$wanted $peers" ;;
     package) groups="$groups package"; wanted="$wanted $package" ;;
     docs) groups="$groups docs"; wanted="$wanted $docs" ;;
     *)
-      echo "install-deps.sh: unknown group '$argument'; expected program, test, lint, fuzz, peers, package, docs or --list" >&2
+      echo "install-deps.sh: unknown group '$argument'; expected program, test, python, cluster, lint, fuzz, peers, package, docs or --list" >&2
       exit 2 ;;
   esac
 done

@@ -15,5 +15,7 @@ if [ -n "$module" ]; then
   ctest --preset release -j "$jobs" -L "^$module\$"
 else
   cmake --build --preset release -j "$jobs" --target all snug_tests
+  cmake --preset python --log-level=WARNING
+  cmake --build --preset python -j "$jobs"
   ctest --preset release -j "$jobs" --output-junit test-results.xml
 fi

@@ -10,6 +10,7 @@
 #include "compare_report.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
+#include "python_agent.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/packing/representatives.hpp"
 
@@ -17,12 +18,13 @@ namespace snug::app {
 namespace {
 
 /// "all" or a list, each checked against what there is.
-std::vector<std::string> choose(const std::string& words, const std::vector<std::string>& known, const char* key) {
+std::vector<std::string> choose(const std::string& words, const std::vector<std::string>& known, const char* key,
+                                bool may_be_python = false) {
   if (words == "all") return known;
   std::vector<std::string> chosen;
   std::stringstream text(words);
   for (std::string word; std::getline(text, word, ',');) {
-    if (std::ranges::find(known, word) == known.end()) {
+    if (std::ranges::find(known, word) == known.end() && !(may_be_python && is_python_agent(word))) {
       throw InputError("command line", key, "'" + word + "'", fmt::format("all, or of {}", fmt::join(known, ", ")));
     }
     chosen.push_back(word);
@@ -66,7 +68,7 @@ int run_compare(const CompareOptions& options) {
   SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
   model::Scenario& scenario = loaded.scenario;
   const std::vector<std::string> sequences = choose_sequences(options, scenario);
-  const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents");
+  const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents", true);
   const std::size_t plants = static_cast<std::size_t>(options.plants);
   const std::size_t runs = agents.size() * sequences.size() * plants;
   const CompareForm form = options.json ? CompareForm::Json : options.csv ? CompareForm::Csv : CompareForm::Table;

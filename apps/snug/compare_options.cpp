@@ -35,7 +35,8 @@ void add_compare(CLI::App& app, Action& action) {
       ->needs(random)
       ->type_name("N")
       ->capture_default_str();
-  verb.add_option("--agents", options->agents, "all, or names separated by commas")
+  verb.add_option("--agents", options->agents,
+                  "all built-in ones, or names separated by commas, module:Class of Python among them")
       ->type_name("NAMES")
       ->capture_default_str();
   verb.add_option("--plants", options->plants,

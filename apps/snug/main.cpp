@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
 #include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
@@ -91,7 +92,9 @@ void occupy_closed_streams() {
   }
 }
 
-int run_guarded(int argc, char** argv) {
+}  // namespace
+
+int snug::app::run_command_line(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const snug::InputError& error) {
@@ -103,13 +106,11 @@ int run_guarded(int argc, char** argv) {
   }
 }
 
-}  // namespace
-
 int main(int argc, char** argv) {
   occupy_closed_streams();
   ::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is like a full disk: said, not died of
   snug::remove_drafts_when_interrupted();
-  const int code = run_guarded(argc, argv);
+  const int code = snug::app::run_command_line(argc, argv);
   const bool is_written = snug::app::flush_stdout();
   return code == snug::app::kSuccess && !is_written ? snug::app::kRunFailed : code;
 }

@@ -25,11 +25,14 @@ bool reads_as(std::string_view text, Number& value) {
 
 }  // namespace
 
-CLI::Validator one_of(std::vector<std::string> words) {
+CLI::Validator one_of(std::vector<std::string> words) { return one_of(std::move(words), ""); }
+
+CLI::Validator one_of(std::vector<std::string> words, const std::string& other) {
   std::string name(kOneOf);
   for (const std::string& word : words) name += (&word == &words.front() ? "" : ",") + word;
   return CLI::Validator(
-      [words = std::move(words)](const std::string& text) {
+      [words = std::move(words), other](const std::string& text) {
+        if (!other.empty() && text.find(':') != std::string::npos) return std::string();
         std::string list;
         for (const std::string& word : words) {
           if (word == text) return std::string();
@@ -37,7 +40,7 @@ CLI::Validator one_of(std::vector<std::string> words) {
         }
         const std::string_view nearest = find_nearest(text, words);
         const std::string hint = nearest.empty() ? "" : "; did you mean " + std::string(nearest) + "?";
-        return "got '" + text + "'; expected one of " + list + hint;
+        return "got '" + text + "'; expected one of " + list + (other.empty() ? "" : ", or " + other) + hint;
       },
       "", name);
 }

@@ -10,6 +10,8 @@ namespace snug::app {
 
 /// The word must be one of these; the message lists them and names the nearest.
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> words);
+/// The same, or any word with a colon; `other` says in messages what that is.
+[[nodiscard]] CLI::Validator one_of(std::vector<std::string> words, const std::string& other);
 /// The words of an option that was checked with `one_of`; else none.
 [[nodiscard]] std::vector<std::string> choices_of(CLI::Option& option);
 /// A finite number above zero.

@@ -12,6 +12,7 @@
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "pack_report.hpp"
+#include "python_agent.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
 #include "snug/core/input_error.hpp"
@@ -87,6 +88,7 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
                                              const std::string& sequence) {
   session::SessionOptions session;
   session.agent = options.agent;
+  if (is_python_agent(options.agent)) session.ask = start_python_agent(options.agent);
   session.packing.seed = options.seed.value_or(loaded.scenario.seed);
   if (options.future == "own") session.future = own_future(loaded, sequence);
   session.packing.decision_time = options.decision_time;

@@ -15,6 +15,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --robot none --json
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --fault drop@3,noseal@5,displace@7,stop@9 -o run.h5
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --perception noisy
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --agent my_agents:LowestFirst
   snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
@@ -79,9 +80,10 @@ void add_pack(CLI::App& app, Action& action) {
   const auto options = std::make_shared<PackOptions>();
   verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
   verb.add_option("--sequence", options->sequence, "item sequence of the scenario")->required()->type_name("NAME");
-  verb.add_option("--agent", options->agent, "who decides")
-      ->check(one_of(packing::agent_names()))
-      ->type_name("NAME")
+  verb.add_option("--agent", options->agent,
+                  "who decides: a built-in agent, or a class written in Python (docs/python.md)")
+      ->check(one_of(packing::agent_names(), "module:Class"))
+      ->type_name("NAME|MODULE:CLASS")
       ->capture_default_str();
   add_packing_options(verb, *options);
   verb.add_option("--monte-carlo", options->monte_carlo,

@@ -1,4 +1,4 @@
-// The words with which several verbs change a scenario: more boxes, another container, a pallet.
+// The words with which several verbs change a scenario: more boxes, another container, a pallet, single keys.
 #include "scenario_options.hpp"
 
 #include <CLI/CLI.hpp>
@@ -6,6 +6,7 @@
 #include "shipped.hpp"
 #include "snug/model/items_file.hpp"
 #include "snug/model/other_container.hpp"
+#include "snug/model/scenario_edit.hpp"
 #include "snug/robot/load_arm.hpp"
 
 namespace snug::app {
@@ -22,6 +23,11 @@ void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes) {
                   "pack a slab without walls, sizes in mm, boxes up to H high (default: the depth of the target)")
       ->type_name("LxW[xH]")
       ->excludes(container);
+  verb.add_option("--set", changes.set,
+                  "a key of the scenario file with another value, such as cup.lip_radius=0.03 or "
+                  "contacts.pairs.box/container.friction=0.1; may be given several times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
 }
 
 NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, const model::Scenario& scenario) {
@@ -34,6 +40,9 @@ NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, con
 SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes) {
   SourcedScenario loaded{model::load_scenario(find_shipped(file)), {}};
   model::Scenario& scenario = loaded.scenario;
+  std::vector<model::KeyValue> values;
+  for (const std::string& words : changes.set) values.push_back(model::parse_key_value(words, "--set"));
+  scenario = model::with_values(scenario, values, "--set");
   if (changes.container) scenario = model::with_container(scenario, *changes.container);
   if (changes.pallet) scenario = model::with_pallet(scenario, *changes.pallet);
   loaded.ends.push_back(scenario.parcels.size());

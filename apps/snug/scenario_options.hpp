@@ -1,4 +1,4 @@
-// The words with which several verbs change a scenario: more boxes, another container, a pallet.
+// The words with which several verbs change a scenario: more boxes, another container, a pallet, single keys.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,11 @@ struct ScenarioChanges {
   std::vector<std::string> items;        ///< files with more boxes and sequences
   std::optional<std::string> container;  ///< name, or LxWxH in mm
   std::optional<std::string> pallet;     ///< LxW or LxWxH in mm
-  [[nodiscard]] bool any() const { return !items.empty() || container || pallet; }
+  std::vector<std::string> set;          ///< KEY=VALUE
+  [[nodiscard]] bool any() const { return !items.empty() || container || pallet || !set.empty(); }
 };
 
-/// --items, --container and --pallet.
+/// --items, --container, --pallet and --set.
 void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes);
 /// What is read for load_changed() and for the robot of the scenario that it returned.
 [[nodiscard]] NamedFiles files_of(const std::string& file, const ScenarioChanges& changes,

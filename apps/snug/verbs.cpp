@@ -25,6 +25,7 @@
 #include "report.hpp"
 #include "serve.hpp"
 #include "simulate.hpp"
+#include "study.hpp"
 #include "validate.hpp"
 #include "view.hpp"
 
@@ -35,6 +36,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_simulate(app, action);
   add_pack(app, action);
   add_compare(app, action);
+  add_study(app, action);
   add_program(app, action);
   add_check(app, action);
   add_serve(app, action);

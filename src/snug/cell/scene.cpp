@@ -5,6 +5,7 @@
 
 #include "snug/cell/resume.hpp"
 #include "snug/cell/scene_input.hpp"
+#include "snug/core/check.hpp"
 
 namespace snug::cell {
 namespace {
@@ -86,6 +87,14 @@ void Scene::drop_next() {
   X_WP.p.z() = highest + drops.clearance + 0.5 * size.z();
   physics::set_present(state_, body, true);
   physics::set_pose(world_.model, state_, body, X_WP);
+}
+
+void Scene::restore(const SceneState& state) {
+  SNUG_CHECK(state.world.bodies.size() == state_.bodies.size(), "a snapshot is of the same scene");
+  state_ = state.world;
+  dropped_ = state.dropped;
+  has_appeared_ = state.has_appeared;
+  lost_ = state.lost;
 }
 
 physics::StepReport Scene::advance() {

@@ -9,6 +9,14 @@
 
 namespace snug::cell {
 
+/// Everything of a scene that changes. A copy is a snapshot.
+struct SceneState {
+  physics::WorldState world;
+  std::size_t dropped = 0;         ///< boxes of the `drops` block that have come
+  std::vector<bool> has_appeared;  ///< of Scenario::bodies
+  std::vector<LostBody> lost;
+};
+
 class Scene {
  public:
   /// At time 0, or where Scenario::initial_state says; throws InputError when that cannot be read.
@@ -24,6 +32,10 @@ class Scene {
   [[nodiscard]] physics::WorldState& state() { return state_; }
   [[nodiscard]] const physics::WorldState& state() const { return state_; }
   [[nodiscard]] const physics::Workspace& work() const { return work_; }
+
+  [[nodiscard]] SceneState snapshot() const { return {state_, dropped_, has_appeared_, lost_}; }
+  /// `state` must be a snapshot of a scene of the same scenario.
+  void restore(const SceneState& state);
 
  private:
   void let_bodies_appear();

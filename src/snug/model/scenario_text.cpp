@@ -16,21 +16,6 @@ YAML::Node as_yaml(const Vector3& v) {
 
 YAML::Node as_yaml(bool value) { return YAML::Node(value ? "true" : "false"); }
 
-std::string written(const YAML::Node& root, const std::string& text, const std::string& why) {
-  // The notes of changes before this one are kept.
-  std::string notes;
-  constexpr std::string_view kMark = "# changed: ";
-  for (std::size_t at = 0; text.compare(at, kMark.size(), kMark) == 0;) {
-    const std::size_t end = text.find('\n', at);
-    if (end == std::string::npos) break;
-    notes += text.substr(at, end + 1 - at);
-    at = end + 1;
-  }
-  std::string line = std::string(kMark) + why;
-  for (char& c : line) c = static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  return notes + line + "\n" + text_of(root);
-}
-
 /// Takes the key away first: a value that is an alias of another would change that too.
 void set(YAML::Node map, const char* key, const YAML::Node& value) {
   map.remove(key);
@@ -54,13 +39,28 @@ std::string text_of(const YAML::Node& root) {
   return std::string(emitter.c_str()) + "\n";
 }
 
+std::string text_of(const YAML::Node& root, const std::string& text, const std::string& why) {
+  // The notes of changes before this one are kept.
+  std::string notes;
+  constexpr std::string_view kMark = "# changed: ";
+  for (std::size_t at = 0; text.compare(at, kMark.size(), kMark) == 0;) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string::npos) break;
+    notes += text.substr(at, end + 1 - at);
+    at = end + 1;
+  }
+  std::string line = std::string(kMark) + why;
+  for (char& c : line) c = static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return notes + line + "\n" + text_of(root);
+}
+
 std::string text_with_items(const std::string& text, const YAML::Node& items, const std::string& why) {
   YAML::Node root = YAML::Load(text);
   for (const char* key : {"parcel_types", "parcels", "sequences"}) {
     if (!items[key]) continue;
     for (const YAML::Node& entry : items[key]) root[key].push_back(entry);
   }
-  return written(root, text, why);
+  return text_of(root, text, why);
 }
 
 std::string text_with_target(const std::string& text, const Container& container, const std::string& why) {
@@ -70,7 +70,7 @@ std::string text_with_target(const std::string& text, const Container& container
   set(entry, "walls", as_yaml(container.has_walls));
   set(entry, "holds_all", as_yaml(container.holds_all));
   set(root, "target", YAML::Node(container.name));
-  return written(root, text, why);
+  return text_of(root, text, why);
 }
 
 YAML::Node as_yaml(const ParcelType& type) {

@@ -5,6 +5,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/packing/internal/agents.hpp"
+#include "snug/packing/remote_agent.hpp"
 
 namespace snug::packing {
 
@@ -40,6 +41,7 @@ std::unique_ptr<Agent> make_agent(std::string_view name, AgentInput input) {
   if (input.future.kinds.size() != input.future.weights.size()) {
     throw InputError("future model", "weights", std::to_string(input.future.weights.size()), "as many as kinds");
   }
+  if (input.ask) return make_remote_agent(name, std::move(input));
   if (name == "margin") return internal::make_margin_agent(std::move(input));
   if (name == "contact-aware") return internal::make_contact_aware_agent(std::move(input));
   if (name == "manual") return internal::make_manual_agent(std::move(input));

@@ -42,11 +42,15 @@ class Agent {
   [[nodiscard]] virtual Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) = 0;
 };
 
+/// Sends a line of JSON to whoever decides elsewhere and returns his answer, a line of JSON.
+using Ask = std::function<std::string(const std::string& line)>;
+
 struct AgentInput {
   PackingSettings settings;
   FutureModel future;                                  ///< contact-aware
   std::vector<Item> sequence;                          ///< offline alone reads it
   std::function<bool(const Placement&)> is_reachable;  ///< absent: everywhere
+  Ask ask = {};  ///< decides instead of a built-in agent (remote_agent.hpp); absent: the agent of that name does
 };
 
 /// Names that make_agent knows.

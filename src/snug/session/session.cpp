@@ -26,7 +26,9 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-bool plans_on_paper(const SessionOptions& options) { return options.agent == "manual" || options.agent == "offline"; }
+bool plans_on_paper(const SessionOptions& options) {
+  return !options.ask && (options.agent == "manual" || options.agent == "offline");
+}
 
 class Session {
  public:
@@ -45,6 +47,7 @@ class Session {
     if (!plans_on_paper(options_)) input.settings.last_squeeze = options_.last_squeeze;
     input.future = options_.future ? *options_.future : packing::make_future_model(scenario_);
     input.sequence = packer_.items();
+    input.ask = options_.ask;
     input.is_reachable = make_reach(scenario_, packer_.layout(), packer_.belief().sequence());
     const std::unique_ptr<packing::Agent> agent = packing::make_agent(options_.agent, std::move(input));
     if (plans_on_paper(options_)) return execute(plan_on_paper(*agent));

@@ -15,6 +15,7 @@ namespace snug::session {
 
 struct SessionOptions {
   std::string agent = "contact-aware";
+  packing::Ask ask = {};  ///< decides in its place, if set (packing/remote_agent.hpp); `agent` is then its name
   packing::PackingSettings packing;
   /// m, of agents that decide as items come (`PackingSettings::last_squeeze`): 1 mm more than the clearance that the
   /// demonstrator's boxes have in contact (docs/decisions/0005).

@@ -11,6 +11,8 @@ namespace snug::model::internal {
 
 /// A tree as text; comments are lost.
 [[nodiscard]] std::string text_of(const YAML::Node& root);
+/// A changed tree as text; comments at its beginning say why, and why it was changed before.
+[[nodiscard]] std::string text_of(const YAML::Node& root, const std::string& text, const std::string& why);
 
 /// The text with the entries of `items` (lists parcel_types, parcels, sequences) behind its own. Comments are lost:
 /// what is left is the same scenario. `why` becomes the first line, a comment.

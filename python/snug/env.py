@@ -1,0 +1,217 @@
+"""Packing as environments in the form of Gymnasium, which need not be installed: one, and many at once on threads.
+
+    env = snug.env.Packing(snug.load_scenario("scenarios/box-demonstrator.yaml"), mode="executed", sequence="1")
+    observation, info = env.reset(seed=7)
+    observation, reward, terminated, truncated, info = env.step(0)
+
+An episode is one container. Each step places the item that waits; the reward is the change of the packed volume, as
+part of the container's inner volume, so that rewards add up to the filling degree. The episode terminates when all
+items are packed, when the next one has no place, and when a placement fails; it is truncated after `max_steps`.
+"""
+from __future__ import annotations
+
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from . import _core, spaces
+from ._errors import refused
+
+Observation = Dict[str, np.ndarray]
+_ORIENTATIONS = 24
+_FAR = 100.0  # m or kg: more than any number of an observation
+
+
+def _observation_space(core: Any, maps: bool, boxes: bool) -> Any:
+    def numbers(*shape: int) -> Any:
+        return spaces.Box(-_FAR, _FAR, shape, np.float32)
+
+    parts = {"item": numbers(6), "candidates": numbers(core.max_candidates, 8),
+             "action_mask": spaces.Box(0, 1, (core.max_candidates,), np.int8)}
+    if maps:
+        parts["height_map"] = numbers(core.rows, core.columns)
+    if boxes:
+        parts["boxes"] = numbers(core.most_boxes, 7)
+    return spaces.Dict(parts)
+
+
+def _action_space(core: Any, action: str, inner_size: np.ndarray) -> Any:
+    if action == "candidate":
+        return spaces.Discrete(core.max_candidates)
+    half = 0.5 * np.asarray(inner_size[:2])
+    return spaces.Box(np.array([0.0, -half[0], -half[1]], np.float32),
+                      np.array([_ORIENTATIONS - 1, half[0], half[1]], np.float32), dtype=np.float32)
+
+
+def _choices(observation: str, action: str) -> Tuple[bool, bool]:
+    if observation not in ("height_map", "boxes", "both"):
+        raise refused("observation", f"'{observation}'", "height_map, boxes or both")
+    if action not in ("candidate", "place"):
+        raise refused("action", f"'{action}'", "candidate or place")
+    return observation != "boxes", observation != "height_map"
+
+
+def _container(scenario: _core.Scenario) -> np.ndarray:
+    if scenario.container is None:
+        raise refused("scenario", f"{scenario.source} without a target", "a container to be packed")
+    return scenario.container["inner_size"]
+
+
+class Packing(spaces.Env):
+    """One container, packed again and again.
+
+    Args:
+        scenario: with a container; mode "executed" needs aligner and tool too.
+        mode: "geometric": a box is where it was lowered; "statics": it is set down there at rest, with contact, and
+            has to stay; "executed": the tool brings it from the aligner, with contact and the compliant cup.
+        sequence: items in this order; None: every parcel of the scenario, in an order drawn from the seed.
+        observation: "height_map", "boxes" or "both".
+        action: "candidate": index of a place that the built-in generator found; "place": [orientation, x, y], where
+            orientation counts 8 * axis up (X, Y, Z) + 4 if its negative end is up + quarter turns, and x, y [m, in T]
+            are the middle of the box, which is lowered there until it rests.
+        resolution: m, edge of a cell of the height map.
+        max_candidates: places offered at most; an episode of an item with more goes on with the lowest.
+        max_steps: the episode is truncated then.
+        max_flips: 1 lets boxes be put on any side (not in mode "executed": the tool brings them as they stand).
+        min_support: part of the lower face that has to rest on something for a place to be offered; 0: any.
+        squeeze: m, boxes are planned this much smaller along Tx and Ty.
+        settle_time: s, in mode "statics".
+        max_displacement, max_tilt: m and rad, how far a box may come to rest from where it was put.
+        vary: True: the cell is drawn anew for each episode, from the scenario's `uncertainty`: sizes, masses, friction,
+            cup, aligner. `scenario.with_values({"uncertainty.size": 0.002})` sets a half width.
+        parameters: this environment's own: size_offset (m), friction_scale, cup_scale, mass_scale.
+
+    Observations (each a copy that is yours; m, kg, frame T; float32):
+        height_map: (rows, columns), height over the floor, row by row along Ty. Cost and size grow with
+            1 / resolution^2: 57 x 37 cells at 10 mm in the demonstrator's container.
+        boxes: (items, 7), low corner, high corner, mass; zeros behind the last.
+        item: size along Ax, Ay, Az as it arrives, mass, upright only (0 or 1), nothing may stand on it (0 or 1).
+        candidates: (max_candidates, 8), low corner, extents, support, orientation; zeros behind the last.
+        action_mask: (max_candidates,), int8, 1 where there is a candidate.
+    """
+
+    metadata: Dict[str, Any] = {"render_modes": []}
+
+    def __init__(self, scenario: _core.Scenario, mode: str = "geometric", *, sequence: Optional[str] = None,
+                 observation: str = "height_map", action: str = "candidate",
+                 parameters: Optional[Mapping[str, float]] = None, render_mode: Optional[str] = None,
+                 **settings: float):
+        self._maps, self._boxes = _choices(observation, action)
+        inner_size = _container(scenario)
+        self._by_candidate = action == "candidate"
+        self.scenario = scenario
+        self.render_mode = render_mode
+        self._core = _core.Environment(scenario, {"mode": mode, "sequence": sequence, **settings},
+                                       dict(parameters or {}), self._maps, self._boxes)
+        self.observation_space = _observation_space(self._core, self._maps, self._boxes)
+        self.action_space = _action_space(self._core, action, inner_size)
+
+    def reset(self, *, seed: Optional[int] = None,
+              options: Optional[Dict[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
+        """A new episode. With a seed the same episodes follow; without, the next of the last seed's."""
+        super().reset(seed=seed)
+        return self._core.reset(int(self.np_random.integers(2**63))), self._info("", 0.0, True)
+
+    def step(self, action: Any) -> Tuple[Observation, float, bool, bool, Dict[str, Any]]:
+        """Places the item that waits. info: reason (why the episode ended, or ""), is_placed, displacement (m),
+        packed_percent, time (s, simulated), candidates (how many there are for the next item)."""
+        if self._by_candidate:
+            index = action.item() if isinstance(action, np.ndarray) else action
+            result = self._core.step_candidate(int(index))
+        else:
+            orientation, x, y = np.asarray(action, dtype=float)
+            if not np.isfinite(orientation):
+                orientation = -1
+            result = self._core.step_place(int(round(float(orientation))), float(x), float(y))
+        observation, reward, terminated, truncated, reason, displacement, is_placed = result
+        return observation, reward, terminated, truncated, self._info(reason, displacement, is_placed)
+
+    def snapshot(self) -> Any:
+        """All that changes, for `restore`; going on from it gives the same bytes."""
+        return self._core.copy()
+
+    def restore(self, snapshot: Any) -> Observation:
+        """Goes back to a snapshot of this environment, as often as you like."""
+        self._core = snapshot.copy()
+        return self._core.observe()
+
+    def boxes(self) -> List[Dict[str, Any]]:
+        """Boxes in the container: id, size, mass, pose X_TP as they are."""
+        return self._core.boxes()
+
+    @property
+    def hash(self) -> int:
+        """Of everything that has an influence on what comes."""
+        return self._core.hash
+
+    def render(self) -> None:
+        """Nothing is drawn: `snug.pack(..., record=...)` and `snug.report` show runs."""
+
+    def _info(self, reason: str, displacement: float, is_placed: bool) -> Dict[str, Any]:
+        core = self._core
+        return {"reason": reason, "is_placed": is_placed, "displacement": displacement,
+                "packed_percent": core.packed_percent, "time": core.time, "candidates": core.candidates}
+
+
+class VectorPacking:
+    """Many containers at once, each with its own scenario, settings, parameters and seed, stepped on threads without
+    the interpreter's lock. What happens does not depend on the number of threads.
+
+    Args:
+        scenario: one for all, or a list of `count`; their containers must have one shape.
+        count: how many environments.
+        threads: at work in a step.
+        parameters: a mapping for all, or a list of `count` (see Packing).
+        The rest as of Packing, for all.
+
+    An environment that has ended begins anew in the next step, whose action it does not look at and whose reward is 0
+    (Gymnasium's next-step reset): the last observation of an episode is the one that its last step returned.
+    Arrays that a step returns are new ones: nothing is written into those that were returned before.
+    """
+
+    def __init__(self, scenario: Any, count: int, mode: str = "geometric", *, threads: int = 1,
+                 sequence: Optional[str] = None, observation: str = "height_map", action: str = "candidate",
+                 parameters: Any = None, **settings: float):
+        maps, boxes = _choices(observation, action)
+        scenarios = list(scenario) if isinstance(scenario, (list, tuple)) else [scenario] * count
+        own = list(parameters) if isinstance(parameters, (list, tuple)) else [parameters or {}] * count
+        if len(scenarios) != count or len(own) != count:
+            raise refused("count", str(count), f"as many scenarios ({len(scenarios)}) and parameters ({len(own)})")
+        inner_size = _container(scenarios[0]) if scenarios else np.zeros(3)
+        self.num_envs = count
+        self._by_candidate = action == "candidate"
+        self._core = _core.VectorEnvironment(scenarios, [{"mode": mode, "sequence": sequence, **settings}] * count,
+                                             [dict(one) for one in own], threads, maps, boxes)
+        self.single_observation_space = _observation_space(self._core, maps, boxes)
+        self.single_action_space = _action_space(self._core, action, inner_size)
+
+    def reset(self, *, seed: Any = 0) -> Tuple[Observation, Dict[str, Any]]:
+        """New episodes; seed: a number, from which those of the environments count up, or one for each."""
+        seeds: Sequence[int] = list(seed) if np.ndim(seed) > 0 else [int(seed) + i for i in range(self.num_envs)]
+        return self._core.reset([int(one) for one in seeds]), {}
+
+    def step(self, actions: Any) -> Tuple[Observation, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]:
+        """Observations with the environments along the first axis; rewards, terminated, truncated of shape (count,)."""
+        if self._by_candidate:
+            observation, reward, terminated, truncated = self._core.step_candidates(actions)
+        else:
+            observation, reward, terminated, truncated = self._core.step_places(actions)
+        return observation, reward, terminated, truncated, {}
+
+    @property
+    def reasons(self) -> List[str]:
+        """Why each episode ended in the last step; "" while it goes on."""
+        return self._core.reasons
+
+    @property
+    def packed_percent(self) -> np.ndarray:
+        """Of each container."""
+        return self._core.packed_percent
+
+    @property
+    def hashes(self) -> List[int]:
+        """As Packing.hash, of each."""
+        return self._core.hashes
+
+    def close(self) -> None:
+        """Nothing to be closed."""

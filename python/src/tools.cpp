@@ -1,0 +1,132 @@
+// Cup and Arm: the law of the suction cup, and the kinematics of a robot's arm.
+#include "core.hpp"
+#include "handles.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/cup/statics.hpp"
+#include "snug/robot/inverse.hpp"
+#include "snug/robot/load_arm.hpp"
+
+namespace snug::python {
+namespace {
+
+struct Cup {
+  explicit Cup(const ScenarioHandle& scenario) : params((*scenario)->cup), K(cup::as_matrix(params.stiffness)) {}
+  model::CupParams params;
+  Matrix6 K;
+
+  [[nodiscard]] py::dict settle(double mass, const Array& com, const Array& tool, const Array& gravity) const {
+    cup::HeldLoad load;
+    load.mass = mass;
+    load.p_SScm = as_vector3(com, "com");
+    load.R_WE = as_pose(tool, "tool").R;
+    load.stiffness = K;
+    load.X_ES2.p = Vector3(0.0, 0.0, params.hold_length - params.centre_from_lip);
+    load.X_SS1.p = Vector3(0.0, 0.0, -params.centre_from_lip);
+    load.gravity_W = as_vector3(gravity, "gravity");
+    const cup::SettleResult result = cup::settle(load);
+    py::dict dict;
+    dict["status"] = cup::name_of(result.status);
+    dict["lip"] = as_array(result.X_ES);
+    dict["is_stable"] = result.is_stable;
+    dict["residual"] = result.residual;
+    dict["load_fraction"] = result.load_fraction;
+    dict["bend"] = result.bend;
+    return dict;
+  }
+};
+
+struct Arm {
+  explicit Arm(robot::ArmModel model) : inverse(model), arm(std::move(model)) {}
+  robot::InverseKinematics inverse;
+  robot::ArmModel arm;
+
+  [[nodiscard]] robot::JointVector joints_of(const Array& q, const char* what) const {
+    if (q.ndim() != 1 || q.size() != arm.joint_count())
+      throw InputError("argument", what, std::to_string(q.size()) + " numbers", std::to_string(arm.joint_count()));
+    robot::JointVector joints(arm.joint_count());
+    for (int i = 0; i < arm.joint_count(); ++i) {
+      joints[i] = q.data()[i];
+      if (!std::isfinite(joints[i]))
+        throw InputError("argument", what, "a number that is not finite", "finite numbers");
+    }
+    return joints;
+  }
+  [[nodiscard]] Array jacobian(const Array& q) const {
+    const robot::Jacobian J = robot::tool_jacobian(arm, robot::forward(arm, joints_of(q, "q")));
+    Array array({static_cast<py::ssize_t>(6), static_cast<py::ssize_t>(J.cols())});
+    for (Eigen::Index r = 0; r < 6; ++r) {
+      for (Eigen::Index c = 0; c < J.cols(); ++c) array.mutable_at(r, c) = J(r, c);
+    }
+    return array;
+  }
+  [[nodiscard]] Array bounds(double robot::Joint::*bound) const {
+    Array array(arm.joint_count());
+    for (int i = 0; i < arm.joint_count(); ++i) array.mutable_at(i) = arm.joints[static_cast<std::size_t>(i)].*bound;
+    return array;
+  }
+};
+
+Array as_array(const robot::JointVector& q) { return Array(static_cast<py::ssize_t>(q.size()), q.data()); }
+
+}  // namespace
+
+void bind_tools(py::module_& m) {
+  py::class_<Cup>(m, "Cup")
+      .def(py::init<const ScenarioHandle&>(), py::arg("scenario"))
+      .def_property_readonly("stiffness", [](const Cup& c) { return as_array(c.K); })
+      .def_property_readonly("damping", [](const Cup& c) { return as_array(cup::as_matrix(c.params.damping)); })
+      .def_property_readonly("hold_length", [](const Cup& c) { return c.params.hold_length; })
+      .def_property_readonly("lip_radius", [](const Cup& c) { return c.params.lip_radius; })
+      .def(
+          "wrench", [](const Cup& c, const Array& H) { return as_array(cup::spring_wrench(as_pose(H, "H"), c.K)); },
+          py::arg("H"))
+      .def(
+          "tangent", [](const Cup& c, const Array& H) { return as_array(cup::spring_tangent(as_pose(H, "H"), c.K)); },
+          py::arg("H"))
+      .def(
+          "potential", [](const Cup& c, const Array& H) { return cup::potential(as_pose(H, "H"), c.K); }, py::arg("H"))
+      .def("settle", &Cup::settle, py::arg("mass"), py::arg("com"), py::arg("tool"), py::arg("gravity"));
+  py::class_<Arm>(m, "Arm")
+      .def(py::init([](const ScenarioHandle& s) { return std::make_unique<Arm>(robot::load_arm(**s)); }),
+           py::arg("scenario"))
+      .def_static(
+          "from_urdf",
+          [](const std::filesystem::path& path, const std::string& tool_frame) {
+            return std::make_unique<Arm>(robot::load_urdf(path, tool_frame));
+          },
+          py::arg("path"), py::arg("tool_frame") = "E")
+      .def_property_readonly("name", [](const Arm& a) { return a.arm.name; })
+      .def_property_readonly("joints",
+                             [](const Arm& a) {
+                               std::vector<std::string> names;
+                               for (const robot::Joint& joint : a.arm.joints) names.push_back(joint.name);
+                               return names;
+                             })
+      .def_property_readonly("lower", [](const Arm& a) { return a.bounds(&robot::Joint::lower); })
+      .def_property_readonly("upper", [](const Arm& a) { return a.bounds(&robot::Joint::upper); })
+      .def_property_readonly("max_speed", [](const Arm& a) { return a.bounds(&robot::Joint::max_speed); })
+      .def(
+          "forward",
+          [](const Arm& a, const Array& q) { return as_array(robot::forward_tool(a.arm, a.joints_of(q, "q"))); },
+          py::arg("q"))
+      .def("jacobian", &Arm::jacobian, py::arg("q"))
+      .def(
+          "inverse",
+          [](const Arm& a, const Array& pose, const Array& near) -> py::object {
+            const auto q = a.inverse.nearest(as_pose(pose, "pose"), a.joints_of(near, "near"));
+            if (!q) return py::none();
+            return as_array(*q);
+          },
+          py::arg("pose"), py::arg("near"))
+      .def(
+          "branches",
+          [](const Arm& a, const Array& pose, const Array& near) {
+            const robot::IkBranches found = a.inverse.branches(as_pose(pose, "pose"), a.joints_of(near, "near"));
+            py::list list;
+            for (int i = 0; i < found.count; ++i) list.append(as_array(found.q[static_cast<std::size_t>(i)]));
+            return list;
+          },
+          py::arg("pose"), py::arg("near"));
+}
+
+}  // namespace snug::python

@@ -1,0 +1,191 @@
+"""Environments: the form of Gymnasium, the three modes, many at once."""
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import snug
+from snug import env, spaces
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def demonstrator():
+    return snug.load_scenario(ROOT / "scenarios" / "box-demonstrator.yaml")
+
+
+def play(environment, seed, choose=lambda n: 0):
+    """Observations and rewards of an episode."""
+    observation, info = environment.reset(seed=seed)
+    history, total, ended = [observation], 0.0, False
+    while not ended:
+        observation, reward, terminated, truncated, info = environment.step(choose(info["candidates"]))
+        history.append(observation)
+        total += reward
+        ended = terminated or truncated
+    return history, total, info
+
+
+@pytest.mark.parametrize("mode", ["geometric", "statics", "executed"])
+def test_rewards_add_up_to_the_filling_degree(demonstrator, mode):
+    environment = env.Packing(demonstrator, mode=mode, sequence="1")
+    _, total, info = play(environment, 3)
+    assert info["reason"]
+    assert 100 * total == pytest.approx(info["packed_percent"])
+    assert info["packed_percent"] > 20
+
+
+@pytest.mark.parametrize("observation", ["height_map", "boxes", "both"])
+def test_observations_lie_in_their_space(demonstrator, observation):
+    environment = env.Packing(demonstrator, observation=observation)
+    history, _, _ = play(environment, 1)
+    for seen in history:
+        assert environment.observation_space.contains(seen)
+        for key, space in environment.observation_space.spaces.items():
+            assert seen[key].dtype == space.dtype and seen[key].shape == space.shape
+
+
+def test_same_seed_same_bytes(demonstrator):
+    first, second = env.Packing(demonstrator), env.Packing(demonstrator)
+    for seed in (0, 1, 2**31):
+        a, total_a, _ = play(first, seed)
+        b, total_b, _ = play(second, seed)
+        assert total_a == total_b and len(a) == len(b)
+        for one, other in zip(a, b):
+            assert all(np.array_equal(one[key], other[key]) for key in one)
+
+
+def test_episodes_differ_without_a_seed_and_repeat_with_it(demonstrator):
+    environment = env.Packing(demonstrator)
+    items = [environment.reset(seed=5)[0]["item"].tolist()] + [environment.reset()[0]["item"].tolist() for _ in range(5)]
+    again = [environment.reset(seed=5)[0]["item"].tolist()] + [environment.reset()[0]["item"].tolist() for _ in range(5)]
+    assert items == again
+    assert len({tuple(item) for item in items}) > 1
+
+
+def test_what_a_step_returned_is_not_written_again(demonstrator):
+    environment = env.Packing(demonstrator, observation="both")
+    observation, _ = environment.reset(seed=1)
+    kept = {key: value.copy() for key, value in observation.items()}
+    for _ in range(4):
+        environment.step(0)
+    environment.reset(seed=2)
+    assert all(np.array_equal(observation[key], kept[key]) for key in kept)
+
+
+def test_an_action_that_cannot_be_done_ends_the_episode(demonstrator):
+    environment = env.Packing(demonstrator)
+    for action in (-1, 10**6, environment.action_space.n - 1):
+        environment.reset(seed=1)
+        _, reward, terminated, truncated, info = environment.step(action)
+        assert terminated and not truncated and reward == 0 and info["reason"]
+
+
+def test_places_are_actions_too(demonstrator):
+    environment = env.Packing(demonstrator, action="place")
+    observation, _ = environment.reset(seed=1)
+    low, size, orientation = (observation["candidates"][0][s] for s in (slice(0, 3), slice(3, 6), 7))
+    _, reward, terminated, _, info = environment.step(np.array([orientation, *(low + size / 2)[:2]]))
+    assert info["is_placed"] and reward > 0 and not terminated
+    environment.reset(seed=1)
+    assert environment.step([np.nan, np.nan, np.inf])[2]
+
+
+def test_truncation(demonstrator):
+    environment = env.Packing(demonstrator, max_steps=2)
+    environment.reset(seed=1)
+    assert environment.step(0)[3] is False
+    assert environment.step(0)[2:4] == (False, True)
+
+
+@pytest.mark.parametrize("mode", ["geometric", "executed"])
+def test_a_snapshot_goes_on_with_the_same_bytes(demonstrator, mode):
+    environment = env.Packing(demonstrator, mode=mode, sequence="1")
+    environment.reset(seed=1)
+    environment.step(0)
+    snapshot = environment.snapshot()
+    environment.step(1)
+    after = environment.hash
+    for _ in range(2):
+        environment.restore(snapshot)
+        environment.step(1)
+        assert environment.hash == after
+
+
+def test_executed_boxes_are_where_they_came_to_rest(demonstrator):
+    environment = env.Packing(demonstrator, mode="executed", sequence="1")
+    environment.reset(seed=1)
+    _, reward, _, _, info = environment.step(0)
+    assert reward > 0 and info["is_placed"] and info["time"] > 1
+    assert 0 < info["displacement"] < 0.02
+
+
+@pytest.mark.parametrize("mode,steps", [("geometric", 60), ("statics", 12)])
+def test_threads_change_nothing(demonstrator, mode, steps):
+    def roll(threads):
+        many = env.VectorPacking(demonstrator, 6, mode=mode, threads=threads,
+                                 parameters=[{"friction_scale": 1 + 0.1 * i, "size_offset": 1e-4 * i} for i in range(6)])
+        observation, _ = many.reset(seed=11)
+        history = []
+        for step in range(steps):
+            counts = np.maximum(observation["action_mask"].sum(axis=1), 1)
+            observation, reward, terminated, truncated, _ = many.step(step % counts)
+            history.append((reward.tolist(), terminated.tolist(), truncated.tolist(), list(many.hashes),
+                            observation["height_map"].tobytes()))
+        return history
+
+    assert roll(1) == roll(2)
+
+
+def test_one_of_many_is_what_it_would_be_alone(demonstrator):
+    many = env.VectorPacking(demonstrator, 3)
+    alone = env.VectorPacking(demonstrator, 1)
+    all_three, _ = many.reset(seed=[7, 8, 9])
+    one, _ = alone.reset(seed=[8])
+    for _ in range(20):
+        assert all(np.array_equal(all_three[key][1], one[key][0]) for key in one)
+        all_three = many.step(np.zeros(3))[0]
+        one = alone.step(np.zeros(1))[0]
+
+
+def test_last_observations_survive_the_reset_in_the_next_step(demonstrator):
+    many = env.VectorPacking(demonstrator, 2)
+    many.reset(seed=1)
+    for _ in range(100):
+        observation, _, terminated, _, _ = many.step([0, 0])
+        if terminated.any():
+            break
+    ended = int(np.argmax(terminated))
+    kept = observation["height_map"][ended].copy()
+    assert kept.max() > 0 and many.reasons[ended]
+    after, reward, terminated, _, _ = many.step([0, 0])
+    assert after["height_map"][ended].max() == 0 and reward[ended] == 0 and not terminated[ended]
+    assert np.array_equal(observation["height_map"][ended], kept)
+
+
+def test_vector_arguments_are_checked(demonstrator):
+    with pytest.raises(snug.InputError):
+        env.VectorPacking(demonstrator, 2, parameters=[{}])
+    with pytest.raises(snug.InputError):
+        env.VectorPacking(demonstrator, 2, threads=0)
+    with pytest.raises(snug.InputError):
+        env.VectorPacking(demonstrator, 2, parameters={"colour": 1})
+    with pytest.raises(snug.InputError):
+        env.VectorPacking(demonstrator, 2).step([0, 0, 0])
+
+
+def test_spaces_sample_and_know_what_they_hold():
+    box = spaces.Box(-1.0, 1.0, (3,), np.float32)
+    assert box.contains(box.sample()) and not box.contains(np.full(3, 2.0, np.float32))
+    four = spaces.Discrete(4)
+    assert {four.sample() for _ in range(100)} == {0, 1, 2, 3} and not four.contains(4)
+    both = spaces.Dict({"box": box, "four": four})
+    assert both.contains(both.sample())
+
+
+@pytest.mark.skipif(not spaces.HAS_GYMNASIUM, reason="gymnasium is not installed")
+def test_the_checker_of_gymnasium_is_content(demonstrator):
+    from gymnasium.utils.env_checker import check_env
+
+    check_env(env.Packing(demonstrator), skip_render_check=True)

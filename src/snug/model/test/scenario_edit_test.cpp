@@ -1,0 +1,84 @@
+// Keys of a scenario set from outside: what changes, what does not, and what is refused.
+#include "snug/model/scenario_edit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scenario_text.hpp"
+
+namespace snug::model {
+namespace {
+
+Scenario demonstrator() { return load_scenario(test::project_file("scenarios/box-demonstrator.yaml")); }
+
+Scenario with(const std::string& key, const std::string& value) {
+  return with_values(demonstrator(), {{key, value}}, "--set");
+}
+
+std::string refusal_of(const std::string& key, const std::string& value) {
+  try {
+    (void)with(key, value);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ScenarioEdit, SetsOneKeyAndLeavesTheRest) {
+  const Scenario before = demonstrator();
+  Scenario after = with("parcel_clearance", "0.001");
+  EXPECT_EQ(after.parcel_clearance, 0.001);
+  EXPECT_EQ(after, parse_scenario(after.source_text, after.source_name));
+  after.parcel_clearance = before.parcel_clearance;
+  after.source_text = before.source_text;
+  EXPECT_EQ(after, before);
+}
+
+TEST(ScenarioEdit, FindsEntriesOfListsByIdByIndexAndByWhatTheyAreBetween) {
+  EXPECT_EQ(find_parcel(with("parcels.BOX013.mass", "0.6"), "BOX013")->inertia.mass, 0.6);
+  EXPECT_EQ(with("parcels.0.mass", "0.6").parcels[0].inertia.mass, 0.6);
+  const Scenario slippery = with("contacts.pairs.box/container.friction", "0.05");
+  const Scenario same = with("contacts.pairs.1.friction", "0.05");
+  EXPECT_EQ(slippery.contact_pairs, same.contact_pairs);
+  EXPECT_NE(slippery.contact_pairs, demonstrator().contact_pairs);
+}
+
+TEST(ScenarioEdit, AddsAKeyThatTheFileLeavesOut) {
+  ASSERT_EQ(demonstrator().solver.max_sweeps, SolverSettings{}.max_sweeps);
+  EXPECT_EQ(with("solver.max_sweeps", "77").solver.max_sweeps, 77);
+  EXPECT_EQ(with("solver.sleep.time", "0.5").solver.sleep.time, 0.5);
+}
+
+TEST(ScenarioEdit, TakesLists) { EXPECT_EQ(with("gravity", "[0.0, 0.0, -1.62]").gravity, Vector3(0.0, 0.0, -1.62)); }
+
+TEST(ScenarioEdit, ChangesOneUserOfAnAliasOnly) {
+  Scenario scenario = demonstrator();
+  std::string& text = scenario.source_text;
+  text = test::replaced(text, "{name: A, pose: {position", "{name: A, pose: &p {position");
+  text = test::replaced(text, "{name: T, pose: {position: [0.505, -0.350, -0.282]}}", "{name: T, pose: *p}");
+  const Scenario shared = parse_scenario(text, "shared");
+  ASSERT_EQ(shared.frames[0].X_WF, shared.frames[1].X_WF);
+  const Scenario changed = with_values(shared, {{"frames.A.pose.yaw_deg", "131"}}, "--set");
+  EXPECT_EQ(changed.frames[1].X_WF, shared.frames[1].X_WF);
+  EXPECT_NE(changed.frames[0].X_WF, shared.frames[0].X_WF);
+}
+
+TEST(ScenarioEdit, RefusesWhatTheReaderRefusesAndNamesTheKey) {
+  EXPECT_NE(refusal_of("parcel_clearanc", "0.001").find("parcel_clearance"), std::string::npos);
+  EXPECT_NE(refusal_of("solver.max_sweeps", "-1").find("max_sweeps"), std::string::npos);
+  EXPECT_NE(refusal_of("solver.max_sweeps", "nan").find("max_sweeps"), std::string::npos);
+  EXPECT_NE(refusal_of("parcels.NOBODY.mass", "1").find("NOBODY"), std::string::npos);
+  EXPECT_NE(refusal_of("parcels.999.mass", "1").find("999"), std::string::npos);
+  EXPECT_NE(refusal_of("seed.x", "1").find("seed"), std::string::npos);
+  EXPECT_NE(refusal_of("solver..x", "1"), "");
+  EXPECT_NE(refusal_of("gravity", "[0, 0"), "");
+  EXPECT_NE(refusal_of("gravity", "&a [*a]"), "");
+}
+
+TEST(ScenarioEdit, ReadsWordsOfTheCommandLine) {
+  EXPECT_EQ(parse_key_value("a.b=c=d", "--set"), KeyValue("a.b", "c=d"));
+  EXPECT_THROW((void)parse_key_value("a.b", "--set"), InputError);
+  EXPECT_THROW((void)parse_key_value("=1", "--set"), InputError);
+}
+
+}  // namespace
+}  // namespace snug::model

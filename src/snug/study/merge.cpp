@@ -1,0 +1,236 @@
+// Merge: chunk by chunk, so that memory does not grow with the study.
+#include "snug/study/merge.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <map>
+#include <unordered_map>
+
+#include "snug/core/csv_cell.hpp"
+
+namespace snug::study {
+namespace {
+
+constexpr std::size_t kMostBuffered = 1 << 20U;
+
+bool is_number(const std::string& text, double& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc{} && end == text.data() + text.size() && !text.empty();
+}
+
+/// A text as CSV: numbers as they are, others quoted where they have to be, none that a spreadsheet would run.
+std::string as_text(const std::string& text) {
+  double number = 0.0;
+  if (is_number(text, number)) return text;
+  std::string safe = text;
+  if (!safe.empty() && std::string_view("=+-@").find(safe[0]) != std::string_view::npos) safe[0] = '_';
+  if (safe.find_first_of(",\"\n\r") == std::string::npos) return safe;
+  std::string quoted = "\"";
+  for (const char c : safe) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+/// A cell as CSV.
+std::string as_text(const Cell& cell) {
+  if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
+  if (const auto* word = std::get_if<std::string>(&cell)) return as_text(*word);
+  return "";
+}
+
+const Cell* find(const RowResult& result, const std::string& name) {
+  const auto found = std::ranges::find(result.values, name, [](const auto& value) { return value.first; });
+  return found != result.values.end() ? &found->second : nullptr;
+}
+
+/// One column of an HDF5 file while it is written: rows are appended in blocks.
+class Column {
+ public:
+  Column(hid_t file, const std::string& name, bool is_text, hsize_t rows) : is_text_(is_text), rows_(rows) {
+    type_ = is_text ? H5Tcopy(H5T_C_S1) : H5Tcopy(H5T_IEEE_F64LE);
+    if (is_text) {
+      H5Tset_size(type_, H5T_VARIABLE);
+      H5Tset_cset(type_, H5T_CSET_UTF8);
+    }
+    const hid_t space = H5Screate_simple(1, &rows_, nullptr);
+    std::string link = name;
+    std::ranges::replace(link, '/', '|');  // a slash would be a group
+    set_ = H5Dcreate2(file, link.c_str(), type_, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Sclose(space);
+    if (set_ < 0) throw OutputError(name, "HDF5 makes no such data set");
+  }
+  Column(const Column&) = delete;
+  Column& operator=(const Column&) = delete;
+  Column(Column&& other) noexcept
+      : is_text_(other.is_text_),
+        rows_(other.rows_),
+        written_(other.written_),
+        set_(std::exchange(other.set_, -1)),
+        type_(std::exchange(other.type_, -1)) {}
+  ~Column() {
+    if (set_ >= 0) H5Dclose(set_);
+    if (type_ >= 0) H5Tclose(type_);
+  }
+
+  void add(const Cell* cell) {
+    if (is_text_) {
+      words_.push_back(cell != nullptr ? as_plain(*cell) : "");
+    } else {
+      const auto* number = cell != nullptr ? std::get_if<double>(cell) : nullptr;
+      numbers_.push_back(number != nullptr ? *number : std::numeric_limits<double>::quiet_NaN());
+    }
+    if (words_.size() + numbers_.size() >= 4096) flush();
+  }
+  void flush() {
+    const hsize_t count = is_text_ ? words_.size() : numbers_.size();
+    if (count == 0) return;
+    const hid_t memory = H5Screate_simple(1, &count, nullptr), space = H5Dget_space(set_);
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, &written_, nullptr, &count, nullptr);
+    std::vector<const char*> texts;
+    for (const std::string& word : words_) texts.push_back(word.c_str());
+    const herr_t status = H5Dwrite(set_, type_, memory, space, H5P_DEFAULT,
+                                   is_text_ ? static_cast<const void*>(texts.data()) : numbers_.data());
+    H5Sclose(space);
+    H5Sclose(memory);
+    if (status < 0) throw OutputError("HDF5", "a column cannot be written");
+    written_ += count;
+    words_.clear();
+    numbers_.clear();
+  }
+
+ private:
+  static std::string as_plain(const Cell& cell) {
+    if (const auto* word = std::get_if<std::string>(&cell)) return *word;
+    return as_text(cell);
+  }
+
+  bool is_text_;
+  hsize_t rows_, written_ = 0;
+  hid_t set_ = -1, type_ = -1;
+  std::vector<std::string> words_;
+  std::vector<double> numbers_;
+};
+
+/// Everything of a row in the order of the columns.
+std::vector<std::pair<std::string, Cell>> fixed_cells(const Study& study, const RowResult& result) {
+  const Row row = row_of(study, result.row);
+  std::vector<std::pair<std::string, Cell>> cells = {{"row", static_cast<double>(row.index)},
+                                                     {"point", static_cast<double>(row.point)},
+                                                     {"repeat", static_cast<double>(row.repeat)},
+                                                     {"row_seed", static_cast<double>(row.seed)}};
+  for (std::size_t i = 0; i < study.factors.size(); ++i) {
+    double number = 0.0;
+    const std::string& text = row.values[i];
+    cells.emplace_back(study.factors[i].name, is_number(text, number) ? Cell(number) : Cell(text));
+  }
+  cells.emplace_back("exit", static_cast<double>(result.exit_code));
+  return cells;
+}
+
+/// Which columns hold words in any row.
+std::map<std::string, bool> find_texts(const Study& study, const Folder& folder) {
+  std::map<std::string, bool> texts;
+  const auto look = [&](const std::string& name, const Cell& cell) {
+    texts[name] = texts[name] || std::holds_alternative<std::string>(cell);
+  };
+  for_each_row(study, folder, [&](const RowResult& result) {
+    for (const auto& [name, cell] : fixed_cells(study, result)) look(name, cell);
+    for (const auto& [name, cell] : result.values) look("values/" + name, cell);
+  });
+  return texts;
+}
+
+}  // namespace
+
+void for_each_row(const Study& study, const Folder& folder, const std::function<void(const RowResult&)>& take) {
+  for (std::uint64_t chunk = 0; chunk < study.chunks(); ++chunk) {
+    for (const auto& [row, result] : folder.read(chunk)) take(result);
+  }
+}
+
+Status status_of(const Study& study, const Folder& folder) {
+  Status status;
+  status.rows = study.rows();
+  status.chunks = study.chunks();
+  const auto size = static_cast<std::uint64_t>(study.chunk);
+  for (std::uint64_t chunk = 0; chunk < status.chunks; ++chunk) {
+    const auto rows = folder.read(chunk);
+    status.done += rows.size();
+    status.chunks_done += rows.size() == std::min(size, status.rows - chunk * size) ? 1 : 0;
+    for (const auto& [row, result] : rows) {
+      status.failed += result.exit_code != 0 ? 1 : 0;
+      status.mean_seconds += result.seconds;
+    }
+  }
+  if (status.done > 0) status.mean_seconds /= static_cast<double>(status.done);
+  return status;
+}
+
+std::vector<std::string> columns_of(const Study& study, const Folder& folder) {
+  std::vector<std::string> names;
+  std::unordered_map<std::string, bool> known;
+  for_each_row(study, folder, [&](const RowResult& result) {
+    for (const auto& [name, cell] : result.values) {
+      if (known.emplace(name, true).second) names.push_back(name);
+    }
+  });
+  return names;
+}
+
+void write_csv(const Study& study, const Folder& folder, OutputFile file) {
+  const std::vector<std::string> columns = columns_of(study, folder);
+  std::string text = "row,point,repeat,row_seed";
+  for (const Factor& factor : study.factors) text += "," + csv_cell(factor.name);
+  text += ",exit";
+  for (const std::string& name : columns) text += "," + csv_cell(name);
+  text += ",error\n";
+  for_each_row(study, folder, [&](const RowResult& result) {
+    const Row row = row_of(study, result.row);
+    text += fmt::format("{},{},{},{}", row.index, row.point, row.repeat, row.seed);
+    for (const std::string& value : row.values) text += "," + as_text(value);
+    text += fmt::format(",{}", result.exit_code);
+    for (const std::string& name : columns) {
+      const Cell* const cell = find(result, name);
+      text += "," + (cell != nullptr ? as_text(*cell) : std::string());
+    }
+    text += "," + as_text(result.error) + "\n";
+    if (text.size() < kMostBuffered) return;
+    file.write(text);
+    text.clear();
+  });
+  file.write(text);
+  file.publish();
+}
+
+void write_hdf5(const Study& study, const Folder& folder, OutputFile file) {
+  const std::vector<std::string> names = columns_of(study, folder);
+  const std::map<std::string, bool> texts = find_texts(study, folder);
+  const hsize_t rows = status_of(study, folder).done;
+  const auto is_text = [&](const std::string& name) { return texts.contains(name) && texts.at(name); };
+  const hid_t h5 = H5Fcreate(file.location().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  if (h5 < 0) throw OutputError(file.path().string(), "HDF5 makes no such file");
+  {
+    std::vector<Column> columns;
+    std::vector<std::string> fixed = {"row", "point", "repeat", "row_seed"};
+    for (const Factor& factor : study.factors) fixed.push_back(factor.name);
+    fixed.emplace_back("exit");
+    for (const std::string& name : fixed) columns.emplace_back(h5, name, is_text(name), rows);
+    for (const std::string& name : names) columns.emplace_back(h5, "result." + name, is_text("values/" + name), rows);
+    columns.emplace_back(h5, "error", true, rows);
+    for_each_row(study, folder, [&](const RowResult& result) {
+      std::size_t at = 0;
+      for (const auto& [name, cell] : fixed_cells(study, result)) columns[at++].add(&cell);
+      for (const std::string& name : names) columns[at++].add(find(result, name));
+      const Cell error = result.error;
+      columns[at].add(&error);
+    });
+    for (Column& column : columns) column.flush();
+  }
+  if (H5Fclose(h5) < 0) throw OutputError(file.path().string(), "HDF5 cannot write it");
+  file.publish();
+}
+
+}  // namespace snug::study

@@ -1,0 +1,32 @@
+// Merge: the tables of a study as one, rows in the order of their indices.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "snug/core/output_file.hpp"
+#include "snug/study/table.hpp"
+
+namespace snug::study {
+
+/// How far a study is.
+struct Status {
+  std::uint64_t rows = 0, done = 0, failed = 0;
+  std::uint64_t chunks = 0, chunks_done = 0;
+  double mean_seconds = 0.0;  ///< wall clock of a row
+};
+[[nodiscard]] Status status_of(const Study& study, const Folder& folder);
+
+/// Calls `take` for every row that is done, in the order of indices; holds one chunk at a time.
+void for_each_row(const Study& study, const Folder& folder, const std::function<void(const RowResult&)>& take);
+
+/// Names of all values, in the order in which rows bring them: lower rows first.
+[[nodiscard]] std::vector<std::string> columns_of(const Study& study, const Folder& folder);
+
+/// row, point, repeat, row_seed, the factors, exit, the values, error: the same bytes whoever did the rows in whatever
+/// order. Rows that are missing are left out. Throws OutputError.
+void write_csv(const Study& study, const Folder& folder, OutputFile file);
+/// The same columns as data sets of an HDF5 file: numbers (NaN: none) or texts.
+void write_hdf5(const Study& study, const Folder& folder, OutputFile file);
+
+}  // namespace snug::study

@@ -1,0 +1,262 @@
+// run_study: a process for each row, its output read through pipes, its result appended to the table of its chunk.
+#include "snug/study/run.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <system_error>
+
+#include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
+
+namespace snug::study {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kMostTries = 3;
+constexpr std::size_t kMostOutput = std::size_t{256} << 20U;  ///< bytes of a row's JSON
+constexpr std::size_t kMostWords = 4096;                      ///< bytes kept of what it says on standard error
+constexpr std::size_t kMostError = 300;
+
+/// A chunk under way.
+struct Chunk {
+  TableWriter table;
+  std::uint64_t left = 0;  ///< rows not finished
+};
+
+/// A row under way.
+struct Job {
+  std::uint64_t row = 0;
+  int tries = 0;
+  std::shared_ptr<Chunk> chunk;
+  pid_t process = -1;
+  int out = -1, error = -1;
+  std::string output, words;
+  Clock::time_point start;
+  bool is_over_time = false;
+};
+
+[[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
+
+/// In the new process: never returns.
+[[noreturn]] void be_row(const Verb& verb, const std::vector<std::string>& words, int out, int error) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a row whose caller is gone has nobody to tell
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  ::dup2(nothing, 0);
+  ::dup2(out, 1);
+  ::dup2(error, 2);
+  ::close_range(3, ~0U, 0);  // tables, with their locks
+  int code = 1;
+  try {
+    code = verb(words);
+  } catch (const std::exception& problem) {
+    std::fprintf(stderr, "%s\n", problem.what());
+  }
+  std::fflush(stdout);
+  std::fflush(stderr);
+  ::_exit(code);
+}
+
+void begin(const Verb& verb, const std::vector<std::string>& words, Job& job) {
+  int out[2], error[2];
+  if (::pipe2(out, O_CLOEXEC) != 0) fail("pipe");
+  if (::pipe2(error, O_CLOEXEC) != 0) fail("pipe");
+  std::fflush(stdout);
+  std::fflush(stderr);
+  job.output.clear();
+  job.words.clear();
+  job.is_over_time = false;
+  job.start = Clock::now();
+  job.process = ::fork();
+  if (job.process < 0) fail("fork");
+  if (job.process == 0) be_row(verb, words, out[1], error[1]);
+  ::close(out[1]);
+  ::close(error[1]);
+  job.out = out[0];
+  job.error = error[0];
+  ++job.tries;
+}
+
+/// Takes what there is; closes at the end.
+void take(int& from, std::string& into, std::size_t most) {
+  char buffer[65536];
+  const ssize_t count = ::read(from, buffer, sizeof buffer);
+  if (count < 0 && (errno == EINTR || errno == EAGAIN)) return;
+  if (count <= 0) {
+    ::close(from);
+    from = -1;
+    return;
+  }
+  if (into.size() < most) into.append(buffer, static_cast<std::size_t>(count));
+}
+
+/// The end of it, without the program's name before it.
+std::string last_words(const std::string& words) {
+  std::string line = words.substr(0, words.find_last_not_of('\n') + 1);
+  const std::size_t mark = std::max(line.rfind("snug: error: "), line.rfind("snug: failed: "));
+  if (mark != std::string::npos) line = line.substr(mark + 6);
+  return printable_end(line, kMostError);
+}
+
+class Runner {
+ public:
+  Runner(const Study& study, const Folder& folder, const Verb& verb, const RunSettings& settings)
+      : study_(study), folder_(folder), verb_(verb), settings_(settings) {}
+
+  RunSummary run() {
+    end_ = std::min(study_.chunks(), settings_.last_chunk == UINT64_MAX ? study_.chunks() : settings_.last_chunk + 1);
+    next_chunk_ = settings_.first_chunk;
+    while (true) {
+      while (static_cast<int>(jobs_.size()) < settings_.processes && find_work()) {
+      }
+      if (jobs_.empty()) break;
+      watch();
+    }
+    return summary_;
+  }
+
+  ~Runner() {
+    for (const Job& job : jobs_) {
+      ::kill(job.process, SIGKILL);
+      ::waitpid(job.process, nullptr, 0);
+      if (job.out >= 0) ::close(job.out);
+      if (job.error >= 0) ::close(job.error);
+    }
+  }
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+
+ private:
+  /// Begins a row, if there is one.
+  bool find_work() {
+    while (waiting_.empty()) {
+      if (next_chunk_ >= end_) return false;
+      open_chunk(next_chunk_++);
+    }
+    Job job = std::move(waiting_.front());
+    waiting_.pop_front();
+    std::vector<std::string> words = words_of(study_, row_of(study_, job.row));
+    words.emplace_back("--json");
+    begin(verb_, words, job);
+    jobs_.push_back(std::move(job));
+    return true;
+  }
+
+  void open_chunk(std::uint64_t index) {
+    const auto size = static_cast<std::uint64_t>(study_.chunk);
+    const std::uint64_t first = index * size, end = std::min(study_.rows(), first + size);
+    if (folder_.read(index).size() == end - first) return;  // without a lock: done is done
+    auto table = TableWriter::open(folder_.table(index));
+    const auto done = folder_.read(index);
+    if (!table) {
+      summary_.left_out += end - first - done.size();
+      return;
+    }
+    const auto chunk = std::make_shared<Chunk>();
+    chunk->table = std::move(*table);
+    for (std::uint64_t row = first; row < end; ++row) {
+      if (done.contains(row)) continue;
+      Job job;
+      job.row = row;
+      job.chunk = chunk;
+      ++chunk->left;
+      waiting_.push_back(std::move(job));
+    }
+    wanted_ += chunk->left;
+  }
+
+  void watch() {
+    std::vector<pollfd> files;
+    for (const Job& job : jobs_) {
+      files.push_back({job.out, POLLIN, 0});
+      files.push_back({job.error, POLLIN, 0});
+    }
+    const int patience = study_.time_limit > 0.0 ? 100 : -1;
+    if (::poll(files.data(), files.size(), patience) < 0 && errno != EINTR) fail("poll");
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      if (files[2 * i].revents != 0) take(jobs_[i].out, jobs_[i].output, kMostOutput);
+      if (files[2 * i + 1].revents != 0) take(jobs_[i].error, jobs_[i].words, kMostWords);
+    }
+    for (std::size_t i = jobs_.size(); i-- > 0;) {
+      Job& job = jobs_[i];
+      const std::chrono::duration<double> taken = Clock::now() - job.start;
+      if (study_.time_limit > 0.0 && taken.count() > study_.time_limit && !job.is_over_time) {
+        job.is_over_time = true;
+        ::kill(job.process, SIGKILL);
+      }
+      if (job.out >= 0 || job.error >= 0) continue;
+      Job ended = std::move(job);
+      jobs_.erase(jobs_.begin() + static_cast<std::ptrdiff_t>(i));
+      finish(std::move(ended), taken.count());
+    }
+  }
+
+  void finish(Job job, double seconds) {
+    int status = 0;
+    while (::waitpid(job.process, &status, 0) < 0 && errno == EINTR) {
+    }
+    const bool was_killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL && !job.is_over_time;
+    if (was_killed) {  // by the system or a person: that says nothing about the row
+      if (job.tries < kMostTries) {
+        waiting_.push_front(std::move(job));
+        return;
+      }
+      ++summary_.left_out;
+      close(*job.chunk);
+      return;
+    }
+    RowResult result;
+    result.row = job.row;
+    result.seconds = seconds;
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    if (job.is_over_time) {
+      result.error = "over its time limit";
+    } else if (WIFSIGNALED(status)) {
+      result.error = "signal " + std::to_string(WTERMSIG(status)) + ": " + last_words(job.words);
+    } else {
+      if (result.exit_code != 0) result.error = last_words(job.words);
+      result.values = values_of(study_, job.output);
+    }
+    if (result.exit_code == 2 && job.row == 0)
+      throw InputError(study_.source, "row 0", result.error,
+                       "rows that can be run: " + command_of(study_, row_of(study_, 0)));
+    job.chunk->table.append(result);
+    close(*job.chunk);
+    ++summary_.done;
+    summary_.failed += result.exit_code != 0 ? 1 : 0;
+    summary_.row_seconds += seconds;
+    if (settings_.progress) settings_.progress(summary_.done, wanted_);
+  }
+
+  static void close(Chunk& chunk) {
+    if (--chunk.left == 0) chunk.table.sync();
+  }
+
+  const Study& study_;
+  const Folder& folder_;
+  const Verb& verb_;
+  const RunSettings& settings_;
+  std::uint64_t next_chunk_ = 0, end_ = 0, wanted_ = 0;
+  std::deque<Job> waiting_;
+  std::vector<Job> jobs_;
+  RunSummary summary_;
+};
+
+}  // namespace
+
+RunSummary run_study(const Study& study, const Folder& folder, const Verb& verb, const RunSettings& settings) {
+  return Runner(study, folder, verb, settings).run();
+}
+
+}  // namespace snug::study

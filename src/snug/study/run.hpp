@@ -1,0 +1,37 @@
+// run_study: the rows that are missing, each in a process of its own, as many at a time as asked for.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "snug/study/table.hpp"
+
+namespace snug::study {
+
+/// Does what the words behind `snug` say, printing to standard output and error, and returns the exit code. Called in a
+/// process of its own that ends afterwards: what it breaks, leaks or aborts is the row's alone.
+using Verb = std::function<int(const std::vector<std::string>& words)>;
+
+struct RunSettings {
+  int processes = 1;  ///< rows at a time; tables do not depend on it, but for the order of their lines
+  std::uint64_t first_chunk = 0;
+  std::uint64_t last_chunk = UINT64_MAX;  ///< included
+  /// Called after every row.
+  std::function<void(std::uint64_t done, std::uint64_t wanted)> progress;
+};
+
+struct RunSummary {
+  std::uint64_t done = 0;      ///< in this call
+  std::uint64_t failed = 0;    ///< of them, with an exit code that is not 0
+  std::uint64_t left_out = 0;  ///< in chunks that others are at work on, or whose process was killed again and again
+  double row_seconds = 0.0;    ///< wall clock, sum over the rows
+};
+
+/// Runs what the tables of `folder` lack. A row whose process is killed (SIGKILL) is tried three times and then left
+/// for another call; any other end is its result. When the very first row of a study cannot be used (exit code 2)
+/// nothing is written and InputError says what the row said. Throws OutputError when a table cannot be written.
+[[nodiscard]] RunSummary run_study(const Study& study, const Folder& folder, const Verb& verb,
+                                   const RunSettings& settings);
+
+}  // namespace snug::study

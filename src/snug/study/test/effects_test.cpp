@@ -1,0 +1,103 @@
+// Effects: known models, chance alone, and the page.
+#include "snug/study/effects.hpp"
+
+#include <cmath>
+
+#include "scene.hpp"
+#include "snug/core/rng.hpp"
+
+namespace snug::study {
+namespace {
+
+/// A folder with results that `model` gives for (x, w, row).
+template <class Model>
+void fill(const Study& study, const Folder& folder, Model model) {
+  for (std::uint64_t i = 0; i < study.rows(); ++i) {
+    const Row row = row_of(study, i);
+    RowResult result;
+    result.row = i;
+    result.values = {{"y", model(std::stod(row.values[0]), row.values[1] == "left", i)}};
+    TableWriter::open(folder.table(i / static_cast<std::uint64_t>(study.chunk)))->append(result);
+  }
+}
+
+TEST(Effects, AnAdditiveModelHasItsSharesAndNoInteraction) {
+  const test::Scratch scratch;
+  const Study study = test::grid(4, 20, 50);
+  const Folder folder(study, scratch.path / "f", true);
+  // x: 0 .. 3 evenly has variance 5/4; w: 0 or 2 evenly has variance 1.
+  fill(study, folder, [](double x, bool is_left, std::uint64_t) { return x + (is_left ? 0.0 : 2.0); });
+  const auto effects = find_effects(study, folder);
+  ASSERT_EQ(effects.size(), 1U);
+  EXPECT_NEAR(effects[0].mean, 2.5, 1e-12);
+  EXPECT_NEAR(effects[0].main[0].share, 1.25 / 2.25, 0.02);
+  EXPECT_NEAR(effects[0].main[1].share, 1.0 / 2.25, 0.02);
+  EXPECT_NEAR(effects[0].interactions[0].share, 0.0, 1e-9);
+  EXPECT_NEAR(effects[0].main[0].levels[3].mean, 4.0, 1e-12);
+  EXPECT_EQ(effects[0].quantiles.front(), 0.0);
+  EXPECT_EQ(effects[0].quantiles.back(), 5.0);
+  EXPECT_EQ(effects[0].worst_values.front(), 0.0);
+  EXPECT_EQ(effects[0].worst.front(), 0U);
+}
+
+TEST(Effects, APureInteractionIsNoMainEffect) {
+  const test::Scratch scratch;
+  const Study study = test::grid(2, 50, 50);
+  const Folder folder(study, scratch.path / "f", true);
+  fill(study, folder, [](double x, bool is_left, std::uint64_t) { return (x > 0.5) == is_left ? 1.0 : -1.0; });
+  const auto effects = find_effects(study, folder);
+  EXPECT_NEAR(effects[0].main[0].share, 0.0, 0.02);
+  EXPECT_NEAR(effects[0].interactions[0].share, 1.0, 0.02);
+}
+
+TEST(Effects, ChanceAloneHasNoShareOnAverage) {
+  double sum = 0.0, pair = 0.0;
+  for (int round = 0; round < 40; ++round) {
+    const test::Scratch scratch;
+    const Study study = test::grid(6, 10, 200);
+    const Folder folder(study, scratch.path / "f", true);
+    Rng rng = Rng(static_cast<std::uint64_t>(round)).split("noise");
+    fill(study, folder, [&](double, bool, std::uint64_t) { return rng.normal(); });
+    const auto effects = find_effects(study, folder);
+    sum += effects[0].main[0].share / 40.0;
+    pair += effects[0].interactions[0].share / 40.0;
+  }
+  // One share varies by about sqrt(2 * 5) / 120 = 0.026: the mean of 40 by 0.004; four times that.
+  EXPECT_NEAR(sum, 0.0, 0.017);
+  EXPECT_NEAR(pair, 0.0, 0.017);
+}
+
+TEST(Effects, RangesOfAFactorHaveAsManyRowsEach) {
+  const test::Scratch scratch;
+  const Study study = parse_study(
+      "verb: fake\ndesign: sobol\nrows: 60\nfactors: [{option: --x, from: 0, to: 1}, {option: --w, values: [left]}]\n",
+      "s.yaml");
+  const Folder folder(study, scratch.path / "f", true);
+  fill(study, folder, [](double x, bool, std::uint64_t) { return x; });
+  const auto effects = find_effects(study, folder);
+  ASSERT_EQ(effects[0].main[0].levels.size(), kMostLevels);
+  for (const Level& level : effects[0].main[0].levels) EXPECT_EQ(level.count, 10U);
+}
+
+TEST(Page, EscapesWhatTheStudySays) {
+  const test::Scratch scratch;
+  Study study = test::grid(2, 2, 50);
+  const Folder folder(study, scratch.path / "f", true);
+  fill(study, folder, [](double x, bool, std::uint64_t) { return x; });
+  study.name = "<script>alert(1)</script>";
+  const std::string page = make_page(study, status_of(study, folder), find_effects(study, folder));
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_NE(page.find("Main effects"), std::string::npos);
+  EXPECT_NE(page.find("snug fake --x 0 --w left --seed"), std::string::npos);
+}
+
+TEST(Page, SaysSoWhenThereIsNothing) {
+  const test::Scratch scratch;
+  const Study study = test::grid(2, 2, 50);
+  const Folder folder(study, scratch.path / "f", true);
+  const std::string page = make_page(study, status_of(study, folder), find_effects(study, folder));
+  EXPECT_NE(page.find("0 of 8 rows"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace snug::study

@@ -1,0 +1,167 @@
+// Running: every row once, whatever is killed, and the same bytes at any number of processes.
+#include "snug/study/run.hpp"
+
+#include <sys/wait.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "scene.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/study/merge.hpp"
+#include "snug/study/slurm.hpp"
+
+namespace snug::study {
+namespace {
+
+std::string merged(const Study& study, const Folder& folder, const std::filesystem::path& path) {
+  write_csv(study, folder, OutputFile(path));
+  return test::read_text(path);
+}
+
+std::size_t count_lines(const std::string& text) { return static_cast<std::size_t>(std::ranges::count(text, '\n')); }
+
+TEST(RunStudy, DoesEveryRowOnceAndMergesTheSameBytesAtAnyNumberOfProcesses) {
+  const test::Scratch scratch;
+  const Study study = test::grid(7, 3, 5);
+  std::string first;
+  for (const int processes : {1, 2, 7}) {
+    const Folder folder(study, scratch.path / std::to_string(processes), true);
+    RunSettings settings;
+    settings.processes = processes;
+    EXPECT_EQ(run_study(study, folder, test::fake, settings).done, 42U);
+    EXPECT_EQ(run_study(study, folder, test::fake, settings).done, 0U) << "what is done is not done again";
+    const std::string text = merged(study, folder, scratch.path / "merged.csv");
+    EXPECT_EQ(count_lines(text), 43U);
+    if (first.empty()) first = text;
+    EXPECT_EQ(text, first);
+  }
+  EXPECT_EQ(first.substr(0, first.find('\n')), "row,point,repeat,row_seed,x,w,exit,y,z,who,deep.b,error");
+  EXPECT_NE(first.find("\n0,0,0,"), std::string::npos);
+}
+
+TEST(RunStudy, GoesOnAfterAKillAnywhere) {
+  const test::Scratch scratch;
+  const Study study = test::grid(10, 2, 8);
+  const Folder whole(study, scratch.path / "whole", true), killed(study, scratch.path / "killed", true);
+  (void)run_study(study, whole, test::fake, {});
+  // Killed after some time, again and again; rows take a while so that kills fall into them.
+  const Verb slow = [](const std::vector<std::string>& words) {
+    ::usleep(3000);
+    return test::fake(words);
+  };
+  int kills = 0;
+  for (; kills < 100 && status_of(study, killed).done < study.rows(); ++kills) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      RunSettings settings;
+      settings.processes = 2;
+      (void)run_study(study, killed, slow, settings);
+      ::_exit(0);
+    }
+    ::usleep(static_cast<useconds_t>(4000 + 1500 * (kills % 9)));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+  }
+  EXPECT_GT(kills, 1);
+  EXPECT_EQ(merged(study, killed, scratch.path / "a.csv"), merged(study, whole, scratch.path / "b.csv"));
+}
+
+TEST(RunStudy, FailuresAreResultsAndSayWhy) {
+  const test::Scratch scratch;
+  const Study study = test::grid(5, 1, 100, "time_limit: 0.5\n");
+  const Folder folder(study, scratch.path / "f", true);
+  const Verb verb = [](const std::vector<std::string>& words) {
+    const int x = std::stoi(words[2]);
+    if (x == 1) throw std::runtime_error("no such luck");
+    if (x == 2) std::abort();
+    if (x == 3) ::usleep(10'000'000);
+    if (x == 4) std::fprintf(stderr, "snug: error: bad\n");
+    if (x == 4) return 2;
+    return test::fake(words);
+  };
+  RunSettings settings;
+  settings.processes = 4;
+  const RunSummary summary = run_study(study, folder, verb, settings);
+  EXPECT_EQ(summary.done, 10U);
+  EXPECT_EQ(summary.failed, 8U);
+  const auto rows = folder.read(0);
+  EXPECT_EQ(rows.at(2).error, "no such luck");
+  EXPECT_EQ(rows.at(2).exit_code, 1);
+  EXPECT_EQ(rows.at(4).exit_code, -1);
+  EXPECT_NE(rows.at(4).error.find("signal 6"), std::string::npos);
+  EXPECT_EQ(rows.at(6).error, "over its time limit");
+  EXPECT_EQ(rows.at(8).error, "error: bad");
+  EXPECT_EQ(rows.at(8).exit_code, 2);
+  EXPECT_EQ(run_study(study, folder, verb, settings).done, 0U);
+}
+
+TEST(RunStudy, ARowWhoseProcessIsKilledIsTriedAgainAndNeverAResult) {
+  const test::Scratch scratch;
+  const Study study = test::grid(3, 1, 100);
+  const Folder folder(study, scratch.path / "f", true);
+  const std::filesystem::path mark = scratch.path / "mark";
+  const Verb once = [&](const std::vector<std::string>& words) {
+    if (words[2] == "1" && !std::filesystem::exists(mark)) {
+      std::ofstream(mark) << "seen";
+      ::raise(SIGKILL);
+    }
+    if (words[2] == "2") ::raise(SIGKILL);
+    return test::fake(words);
+  };
+  const RunSummary summary = run_study(study, folder, once, {});
+  EXPECT_EQ(summary.done, 4U);
+  EXPECT_EQ(summary.left_out, 2U);
+  EXPECT_EQ(status_of(study, folder).done, 4U);
+  EXPECT_EQ(run_study(study, folder, test::fake, {}).done, 2U);
+}
+
+TEST(RunStudy, AFirstRowThatCannotBeUsedEndsItWithTheReason) {
+  const test::Scratch scratch;
+  const Study study = test::grid(3, 1, 2);
+  const Folder folder(study, scratch.path / "f", true);
+  const Verb verb = [](const std::vector<std::string>&) {
+    std::fprintf(stderr, "snug: error: command line: --y: no such option\n");
+    return 2;
+  };
+  try {
+    (void)run_study(study, folder, verb, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no such option"), std::string::npos);
+  }
+  EXPECT_EQ(status_of(study, folder).done, 0U);
+}
+
+TEST(RunStudy, OnlyTheChunksAskedFor) {
+  const test::Scratch scratch;
+  const Study study = test::grid(5, 1, 2);
+  const Folder folder(study, scratch.path / "f", true);
+  RunSettings settings;
+  settings.first_chunk = 1;
+  settings.last_chunk = 3;
+  EXPECT_EQ(run_study(study, folder, test::fake, settings).done, 6U);
+  EXPECT_TRUE(folder.read(0).empty());
+  const ArrayPlan plan = plan_array(study, folder);
+  const std::vector<std::pair<std::uint64_t, std::uint64_t>> expected = {{0, 0}, {4, 4}};
+  EXPECT_EQ(plan.tasks, expected);
+  const ArrayPlan one = plan_array(study, folder, 1);
+  ASSERT_EQ(one.tasks.size(), 1U);
+  EXPECT_EQ(one.tasks[0].first, 0U);
+  EXPECT_EQ(one.tasks[0].second, 4U);
+}
+
+TEST(Slurm, TheScriptDoesEachRangeInATaskOfItsOwn) {
+  const test::Scratch scratch;
+  const Study study = test::grid(5, 1, 2, "slurm: {partition: long, time: '2:00:00'}\n");
+  const Folder folder(study, scratch.path / "it's here", true);
+  const std::string script = array_script(study, folder, plan_array(study, folder), "/opt/snug", "study.yaml");
+  EXPECT_NE(script.find("#SBATCH --array=0-4\n"), std::string::npos);
+  EXPECT_NE(script.find("#SBATCH --partition=long\n"), std::string::npos);
+  EXPECT_NE(script.find("set -- 0-0 1-1 2-2 3-3 4-4\n"), std::string::npos);
+  EXPECT_NE(script.find("exec /opt/snug study study.yaml --dir '"), std::string::npos);
+  EXPECT_NE(script.find("it'\\''s here"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace snug::study

@@ -1,0 +1,219 @@
+#!/usr/bin/env python3
+"""study_test.py: studies as a user meets them: run, killed, gone on with, merged, reported, and as jobs of a cluster. SNUG names
+the program."""
+import csv
+import json
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
+ONE_NODE = ROOT.parent / "shared" / "tools" / "slurm-one-node.sh"
+
+STUDY = """
+name: drops
+verb: simulate
+scenario: {scenario}
+options: {{--until: 0.05}}
+design: {design}
+{rows}
+factors:
+  - {{set: gravity, values: [[0, 0, -9.81], [0, 0, -1.62]]}}
+  - {{set: seed, values: [1, 2, 3]}}
+repeat: {repeat}
+chunk: {chunk}
+"""
+
+
+class Scratch(unittest.TestCase):
+    """A folder that goes away, and studies in it."""
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = Path(scratch.name)
+
+    def snug(self, *words, code=0, **more):
+        result = subprocess.run([SNUG, *map(str, words)], cwd=self.folder, capture_output=True, text=True, check=False,
+                                timeout=280, **more)
+        self.assertEqual(result.returncode, code, result.stderr)
+        return result
+
+    def write(self, name="study.yaml", design="grid", rows="", repeat=2, chunk=4, more=""):
+        (self.folder / name).write_text(STUDY.format(scenario=ROOT / "scenarios" / "drop.yaml", design=design, rows=rows,
+                                                     repeat=repeat, chunk=chunk) + more)
+        return name
+
+    def merged(self, name="study.yaml", *words):
+        self.snug("study", "merge", name, "-o", "merged.csv", *words)
+        return (self.folder / "merged.csv").read_text()
+
+
+class Study(Scratch):
+    def test_every_row_is_what_its_command_says(self):
+        study = self.write()
+        self.snug("study", study)
+        rows = list(csv.DictReader(self.merged().splitlines()))
+        self.assertEqual([int(row["row"]) for row in rows], list(range(12)))
+        self.assertEqual({row["exit"] for row in rows}, {"0"})
+        row = rows[7]
+        alone = self.snug("simulate", ROOT / "scenarios" / "drop.yaml", "--until", "0.05", "--set", f"gravity={row['gravity']}",
+                          "--set", f"seed={row['seed']}", "--seed", row["row_seed"], "--json")
+        self.assertEqual(json.loads(alone.stdout)["state_hash"], row["state_hash"])
+
+    def test_same_bytes_at_any_number_of_threads_and_nothing_is_done_twice(self):
+        study = self.write()
+        texts = []
+        for threads in (1, 3):
+            self.snug("study", study, "--dir", f"d{threads}", "--threads", threads)
+            again = json.loads(self.snug("study", study, "--dir", f"d{threads}", "--json").stdout)
+            self.assertEqual(again["done"], 0)
+            texts.append(self.merged(study, "--dir", f"d{threads}"))
+        self.assertEqual(*texts)
+
+    def test_killed_and_gone_on_with_has_every_row_once(self):
+        study = self.write(repeat=20, chunk=7)
+        self.snug("study", study, "--dir", "whole")
+        for round_ in range(20):
+            process = subprocess.Popen([SNUG, "study", study, "--dir", "killed", "--threads", "2"], cwd=self.folder,
+                                       stdout=subprocess.DEVNULL)
+            time.sleep(0.15 + 0.05 * (round_ % 5))
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        self.snug("study", study, "--dir", "killed")
+        status = json.loads(self.snug("study", "status", study, "--dir", "killed", "--json").stdout)
+        self.assertEqual((status["done"], status["rows"]), (120, 120))
+        self.assertEqual(self.merged(study, "--dir", "killed"), self.merged(study, "--dir", "whole"))
+
+    def test_page_has_effects_and_commands(self):
+        study = self.write(more="outputs: [duration, bodies.1.X_WB.p.2]\n")
+        self.snug("study", study)
+        self.snug("study", "report", study, "-o", "page.html")
+        page = (self.folder / "page.html").read_text()
+        for text in ("Main effects", "Interactions", "Worst rows", "snug simulate", "gravity"):
+            self.assertIn(text, page)
+        self.assertNotIn("<script", page)
+
+    def test_table_as_hdf5(self):
+        study = self.write()
+        self.snug("study", study)
+        self.snug("study", "merge", study, "-o", "merged.h5")
+        if shutil.which("h5dump"):
+            dump = subprocess.run(["h5dump", "-d", "/row", self.folder / "merged.h5"], capture_output=True, text=True, check=True)
+            self.assertIn("11", dump.stdout)
+
+    def test_a_row_that_fails_is_a_result(self):
+        self.write(more="")
+        text = (self.folder / "study.yaml").read_text().replace("values: [1, 2, 3]", "values: [1, 2, x]")
+        (self.folder / "study.yaml").write_text(text)
+        summary = json.loads(self.snug("study", "study.yaml", "--json").stdout)
+        self.assertEqual((summary["done"], summary["failed"]), (12, 4))
+        failed = [row for row in csv.DictReader(self.merged().splitlines()) if row["exit"] != "0"]
+        self.assertTrue(all("seed" in row["error"] for row in failed))
+
+    def test_what_cannot_be_run_is_refused_with_the_reason(self):
+        for change, word in ((("verb: simulate", "verb: simulat"), "simulat"), (("--until", "--untill"), "untill"),
+                             (("design: grid", "design: cube"), "cube"), (("chunk: 4", "chunk: 0"), "chunk")):
+            with self.subTest(word=word):
+                self.write()
+                path = self.folder / "study.yaml"
+                path.write_text(path.read_text().replace(*change))
+                result = self.snug("study", "study.yaml", "--dir", f"d-{word}", code=2)
+                self.assertIn(word, result.stderr)
+        self.snug("study", code=2)
+        self.snug("study", "status", self.write("other.yaml"), code=2)
+        self.snug("study", "merge", "other.yaml", "-o", "x.txt", code=2)
+
+    def test_a_changed_study_is_refused_in_the_folder_of_the_old(self):
+        study = self.write()
+        self.snug("study", study, "--chunks", "0")
+        self.write(repeat=3)
+        self.assertIn("study.study", self.snug("study", study, code=2).stderr)
+
+    def test_script_for_slurm_has_what_is_missing(self):
+        study = self.write(more="slurm: {time: '1:00:00'}\n")
+        self.snug("study", study, "--chunks", "1")
+        script = self.folder / self.snug("study", study, "--slurm", "--dry-run").stdout.strip()
+        text = script.read_text()
+        self.assertIn("#SBATCH --array=0-1\n", text)
+        self.assertIn("set -- 0-0 2-2\n", text)
+        self.assertIn("#SBATCH --time=1:00:00\n", text)
+        subprocess.run(["sh", "-n", script], check=True)
+        subprocess.run(["sh", script], check=True, cwd=self.folder, env=dict(os.environ, SLURM_ARRAY_TASK_ID="1"),
+                       stdout=subprocess.DEVNULL)
+        status = json.loads(self.snug("study", "status", study, "--json").stdout)
+        self.assertEqual(status["done"], 8)
+
+    def test_agents_written_in_python_pack_and_are_compared(self):
+        (self.folder / "mine.py").write_text("class Lowest:\n  def decide(self, state, item, candidates):\n"
+                                             "    print('not an answer')\n    return candidates[:4]\n"
+                                             "class Broken:\n  def decide(self, *_):\n    raise ValueError('oh')\n")
+        scenario = ROOT / "scenarios" / "box-demonstrator.yaml"
+        words = ("--samples", "0", "--decision-time", "0.01", "--robot", "none", "--json")
+        packed = json.loads(self.snug("pack", scenario, "--sequence", "1", "--agent", "mine:Lowest", *words).stdout)
+        self.assertEqual(packed["agent"], "mine:Lowest")
+        self.assertGreaterEqual(packed["executed_boxes"], 4)
+        rows = json.loads(self.snug("compare", scenario, "--sequences", "1", "--agents", "margin,mine:Lowest", *words).stdout)
+        self.assertEqual([row["agent"] for row in rows["rows"]], ["margin", "mine:Lowest"])
+        self.assertIn("ValueError", self.snug("pack", scenario, "--sequence", "1", "--agent", "mine:Broken", *words, code=1).stderr)
+        for agent, word in (("mine:None_", "None_"), ("nowhere:X", "nowhere"), ("margn", "margin")):
+            self.assertIn(word, self.snug("pack", scenario, "--sequence", "1", "--agent", agent, *words, code=2).stderr)
+
+
+@unittest.skipUnless(shutil.which("slurmctld") and shutil.which("munge") and os.geteuid() == 0 and ONE_NODE.exists(),
+                     "Slurm is not installed (scripts/install-deps.sh cluster), or not root")
+class Cluster(Scratch):
+    """One node on loopback; the scheduler is killed and restarted, and so is a process on the node."""
+
+    def test_every_row_once_though_scheduler_and_node_are_killed(self):
+        study = self.write(repeat=334, chunk=100, more="")  # 2004 rows
+        self.snug("study", study, "--dir", "here")
+        state = self.folder / "slurm"
+        self.addCleanup(subprocess.run, [ONE_NODE, "stop", state], check=False, capture_output=True)
+        subprocess.run([ONE_NODE, "start", state], check=True, capture_output=True, timeout=120)
+        environment = dict(os.environ, SLURM_CONF=str(state / "slurm.conf"))
+        self.snug("study", study, "--dir", "cluster", "--slurm", env=environment)
+
+        def done():
+            return json.loads(self.snug("study", "status", study, "--dir", "cluster", "--json").stdout)["done"]
+
+        def wait_for(rows):
+            end = time.monotonic() + 200
+            while done() < rows:
+                self.assertLess(time.monotonic(), end, subprocess.run(["squeue"], env=environment, capture_output=True,
+                                                                      text=True, check=False).stdout)
+                time.sleep(0.5)
+
+        wait_for(200)
+        scheduler = int((state / "slurmctld.pid").read_text())
+        os.kill(scheduler, signal.SIGKILL)
+        victims = [int(pid.name) for pid in Path("/proc").glob("[0-9]*") if self.is_row_of(pid, "cluster")]
+        for victim in victims[:1]:
+            os.kill(victim, signal.SIGKILL)
+        subprocess.run(["slurmctld"], env=environment, check=True)
+        end = time.monotonic() + 150
+        while time.monotonic() < end and subprocess.run(["squeue", "-h"], env=environment, capture_output=True, text=True,
+                                                        check=False).stdout.strip():
+            time.sleep(0.5)
+        if done() < 2004:  # the task whose process was killed has failed; what it left is submitted again
+            self.snug("study", study, "--dir", "cluster", "--slurm", env=environment)
+        wait_for(2004)
+        self.assertEqual(self.merged(study, "--dir", "cluster"), self.merged(study, "--dir", "here"))
+
+    @staticmethod
+    def is_row_of(process, folder):
+        try:
+            words = (process / "cmdline").read_bytes().split(b"\0")
+        except OSError:
+            return False
+        return b"study" in words and folder.encode() in words and b"--chunks" in words
+
+
+if __name__ == "__main__":
+    unittest.main()
