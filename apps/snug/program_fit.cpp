@@ -56,10 +56,11 @@ void warn_misfit(const model::Scenario& scenario, const std::string& sequence_na
     next = std::max(next, place + 1);
   }
   if (!strangers.empty()) {
-    std::fprintf(stderr,
-                 "snug: warning: %s does not fit sequence %s: %zu of the %zu boxes that it picks are not in it (%s first): "
-                 "another sequence?\n",
-                 program.name.c_str(), sequence_name.c_str(), strangers.size(), picks.size(), strangers.front().c_str());
+    std::fprintf(
+        stderr,
+        "snug: warning: %s does not fit sequence %s: %zu of the %zu boxes that it picks are not in it (%s first): "
+        "another sequence?\n",
+        program.name.c_str(), sequence_name.c_str(), strangers.size(), picks.size(), strangers.front().c_str());
   } else if (!late.empty()) {
     std::fprintf(stderr,
                  "snug: warning: %s does not fit sequence %s: it picks %s after a box that comes later: another "

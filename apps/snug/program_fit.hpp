@@ -6,8 +6,8 @@
 
 namespace snug::app {
 
-/// Says on stderr when the boxes that the rows of a program name are not those of the sequence, or come in another order. Of
-/// rows that name no box of the scenario nothing is said.
+/// Says on stderr when the boxes that the rows of a program name are not those of the sequence, or come in another
+/// order. Of rows that name no box of the scenario nothing is said.
 void warn_misfit(const model::Scenario& scenario, const std::string& sequence, const motion::Program& program);
 
 }  // namespace snug::app
