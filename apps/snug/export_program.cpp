@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "program_fit.hpp"
 #include "robot_warnings.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/held_boxes.hpp"
@@ -25,13 +26,18 @@ constexpr const char* kNotExported =
     "not exported: the robot that follows exactly does not do what was simulated: {} (--unchecked exports it all the "
     "same)";
 
+/// The cup that `simulate` has by default for the program.
+cup::CupMode cup_for(const ExportOptions& options) {
+  return is_own_program(motion::load_program(options.input)) ? cup::CupMode::Phases : cup::CupMode::Holding;
+}
+
 /// A program and the robot that is to do it.
 struct LoadedProgram {
   cell::Simulation simulation;
   motion::PreparedProgram plan;  ///< with the tool that lags behind, as it is simulated
 
   LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
-      : simulation(scenario, sequence, {motion::ControllerKind::Faithful, cup::CupMode::Holding, scenario.robot->name}),
+      : simulation(scenario, sequence, {motion::ControllerKind::Faithful, cup_for(options), scenario.robot->name}),
         plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input),
                                                 options.corrections == "none" ? "" : options.corrections))) {}
 

@@ -38,13 +38,6 @@ class TableWriter : public cell::RunObserver {
   std::optional<record::CsvWriter> writer_;
 };
 
-/// Rows of our own programs have the box in brackets (motion::row_name); those of the demonstrator do not.
-bool is_own_program(const motion::Program& program) {
-  return std::ranges::any_of(program.waypoints, [](const motion::Waypoint& row) {
-    return row.name.ends_with(')') || row.name.find(")_") != std::string::npos;
-  });
-}
-
 std::string list_sequences(const model::Scenario& scenario) {
   std::string names;
   for (const model::Sequence& sequence : scenario.sequences) names += (names.empty() ? "" : ", ") + sequence.name;
