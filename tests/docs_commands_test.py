@@ -22,7 +22,7 @@ LONG_COMMANDS = re.compile(r"snug (bench|view|compare|identify (damping|stiffnes
                            r"pack .*--monte-carlo|pack (?!.*--samples 0))")
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
 LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|\\| man |\.\.\./")
-MAY_FAIL = re.compile(r"snug (check|bench)")  # what they say no to is a result (exit code 1)
+MAY_FAIL = re.compile(r"snug (check|bench|export .*--format (urscript|ros-trajectory))")  # what they say no to is a result (exit code 1)
 
 
 def commands_of(text, shell_only):

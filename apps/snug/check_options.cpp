@@ -28,8 +28,9 @@ void add_check(CLI::App& app, Action& action) {
   verb.add_option("--program", options->program, "waypoint file (13 columns)")->required()->type_name("FILE.csv");
   verb.add_option("--sequence", options->sequence, "item sequence, to look at the held boxes too")->type_name("NAME");
   verb.add_option("--robot", options->robot, "the scenario's robot; absent: the one there is")->type_name("NAME");
-  verb.add_option("--controller", options->controller,
-                  "faithful: the demonstrator's timing and lag; ideal: the reference, exactly, as exported programs are done")
+  verb.add_option(
+          "--controller", options->controller,
+          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly, as exported programs are done")
       ->check(one_of({"faithful", "ideal"}))
       ->type_name("KIND")
       ->capture_default_str();

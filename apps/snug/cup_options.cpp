@@ -27,10 +27,12 @@ void add_part(CLI::App& verb, const char* name, const char* about, const char* h
   const auto options = std::make_shared<CupOptions>();
   part.add_option("input", options->input, "file of JSON lines, - for stdin")->type_name("FILE")->capture_default_str();
   part.footer(help);
-  part.callback([options, run, &action] { action = [options, run] {
+  part.callback([options, run, &action] {
+    action = [options, run] {
       options->input = find_shipped(options->input);
       return run(*options);
-    }; });
+    };
+  });
 }
 
 }  // namespace

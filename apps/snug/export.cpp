@@ -21,9 +21,9 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 
 int write_mcap(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
-  const replay::McapTotals totals = replay::export_mcap(reader, file_name(options.input), options.selection,
-                                                        std::move(output), {.compression = options.compression},
-                                                        find_robot(reader, options.input, options.urdf));
+  const replay::McapTotals totals =
+      replay::export_mcap(reader, file_name(options.input), options.selection, std::move(output),
+                          {.compression = options.compression}, find_robot(reader, options.input, options.urdf));
   std::fprintf(stderr, "%s: %zu frames, %llu messages, %.2f MB\n", options.output.c_str(), totals.frames,
                static_cast<unsigned long long>(totals.messages), static_cast<double>(totals.bytes) / 1e6);
   return kSuccess;

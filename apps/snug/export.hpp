@@ -25,7 +25,7 @@ struct ExportOptions {
   std::string sequence;              ///< whose gain; empty: the first
   std::string corrections = "none";  ///< layer of the scenario
   double period = 0.04;              ///< s, between the points of a trajectory
-  bool is_unchecked = false;  ///< not simulated before it is written
+  bool is_unchecked = false;         ///< not simulated before it is written
   control::UrScriptOptions script;
 };
 

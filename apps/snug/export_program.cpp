@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "program_fit.hpp"
 #include "robot_warnings.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/held_boxes.hpp"
@@ -19,9 +20,16 @@
 namespace snug::app {
 namespace {
 
-/// How far a box that is let go may be from where the simulation puts it is not looked at here: that it stays packed is.
+/// How far a box that is let go may be from where the simulation puts it is not looked at here: that it stays packed
+/// is.
 constexpr const char* kNotExported =
-    "not exported: the robot that follows exactly does not do what was simulated: {} (--unchecked exports it all the same)";
+    "not exported: the robot that follows exactly does not do what was simulated: {} (--unchecked exports it all the "
+    "same)";
+
+/// The cup that `simulate` has by default for the program.
+cup::CupMode cup_for(const ExportOptions& options) {
+  return is_own_program(motion::load_program(options.input)) ? cup::CupMode::Phases : cup::CupMode::Holding;
+}
 
 /// A program and the robot that is to do it.
 struct LoadedProgram {
@@ -29,8 +37,7 @@ struct LoadedProgram {
   motion::PreparedProgram plan;  ///< with the tool that lags behind, as it is simulated
 
   LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
-      : simulation(scenario, sequence,
-                   {motion::ControllerKind::Faithful, cup::CupMode::Holding, scenario.robot->name}),
+      : simulation(scenario, sequence, {motion::ControllerKind::Faithful, cup_for(options), scenario.robot->name}),
         plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input),
                                                 options.corrections == "none" ? "" : options.corrections))) {}
 
@@ -42,8 +49,8 @@ struct LoadedProgram {
             simulation.arm()->model(),
             simulation.arm()->start(),
             find_loads(),
-            {fmt::format("snug {}", version_text()), fmt::format("program {}, {} rows{}", options.input,
-                                                                 plan.program.waypoints.size(), layer),
+            {fmt::format("snug {}", version_text()),
+             fmt::format("program {}, {} rows{}", options.input, plan.program.waypoints.size(), layer),
              fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name, simulation.sequence().name,
                          simulation.arm()->model().name)},
             motion::compute_duration(plan, simulation.scenario().controller.X_WE_start)};
@@ -98,8 +105,8 @@ LoadedProgram load(const ExportOptions& options) {
   return {scenario, sequence, options};
 }
 
-/// Whether what is exported may be done: simulates it with contact beside the program as it is simulated otherwise, and says
-/// on stderr what is worse. True with --unchecked.
+/// Whether what is exported may be done: simulates it with contact beside the program as it is simulated otherwise, and
+/// says on stderr what is worse. True with --unchecked.
 bool is_exportable(const LoadedProgram& program, const motion::PreparedProgram& done, const ExportOptions& options) {
   if (options.is_unchecked) return true;
   const cell::Simulation& lagging = program.simulation;
@@ -158,7 +165,8 @@ int write_urscript(const ExportOptions& options, OutputFile output) {
 int write_ros_trajectory(const ExportOptions& options, OutputFile output) {
   return write_run(options, std::move(output),
                    [&](const control::JointRun& run, const robot::ArmModel&, const LoadedProgram& program) {
-                     return control::format_ros_trajectory(run, program.for_robot(program.plan, options), options.period);
+                     return control::format_ros_trajectory(run, program.for_robot(program.plan, options),
+                                                           options.period);
                    });
 }
 

@@ -36,8 +36,7 @@ constexpr std::array kKinds = {
 std::span<const InitKind> init_kinds() { return kKinds; }
 
 int run_init(const InitOptions& options) {
-  const auto kind =
-      std::ranges::find_if(kKinds, [&](const InitKind& known) { return options.kind == known.name; });
+  const auto kind = std::ranges::find_if(kKinds, [&](const InitKind& known) { return options.kind == known.name; });
   SNUG_CHECK(kind != kKinds.end(), "a kind that the parser let pass");
   const std::string name = options.kind + ".yaml";
   const std::string text = read_file(shipped_folder() / "scenarios/init" / name, "a scenario to begin with");
@@ -52,8 +51,8 @@ int run_init(const InitOptions& options) {
     throw InputError(file.string(), "", "a file that is there already: not overwritten", "another folder");
   }
   write_file(OutputFile(file), text);
-  print(fmt::format("{} is written. Next:\n\ncd {}\n{}\nEvery key: docs/scenario.md\n", file.string(),
-                    folder.string(), kind->next));
+  print(fmt::format("{} is written. Next:\n\ncd {}\n{}\nEvery key: docs/scenario.md\n", file.string(), folder.string(),
+                    kind->next));
   return kSuccess;
 }
 

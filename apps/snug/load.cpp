@@ -32,9 +32,10 @@ std::vector<packing::LoadProblem> problems_of(const LoadOptions& options) {
     line.handling.max_load.reset();
   }
   if (limited > 0) {
-    std::fprintf(stderr,
-                 "snug: warning: %d boxes must not carry others, or not much: that is not looked at here (snug pack does)\n",
-                 limited);
+    std::fprintf(
+        stderr,
+        "snug: warning: %d boxes must not carry others, or not much: that is not looked at here (snug pack does)\n",
+        limited);
   }
   return packing::problems_of(
       lines, 1e-3 * Vector3(options.container_mm[0], options.container_mm[1], options.container_mm[2]));

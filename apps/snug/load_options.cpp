@@ -43,7 +43,8 @@ void add_load(CLI::App& app, Action& action) {
   verb.add_flag("--json", options->json, "print JSON: every box, where it lies");
   verb.add_option("-o,--output", options->output, "file to write instead of stdout")->type_name("FILE");
   verb.footer(kLoadHelp);
-  verb.callback([options, &action] { action = [options] {
+  verb.callback([options, &action] {
+    action = [options] {
       options->file = find_shipped(options->file);
       return run_load(*options);
     };

@@ -20,7 +20,7 @@ struct PictureOptions {
   std::string camera = "cell";
   std::string theme = "light";
   std::optional<std::string> urdf;  ///< of the robot in it; absent: looked for
-  std::string show, hide;  ///< parts of the drawing, separated by commas
+  std::string show, hide;           ///< parts of the drawing, separated by commas
 };
 
 void add_picture(CLI::App& app, Action& action);

@@ -38,6 +38,12 @@ std::vector<std::string> picks_of(const model::Scenario& scenario, const motion:
 
 }  // namespace
 
+bool is_own_program(const motion::Program& program) {
+  return std::ranges::any_of(program.waypoints, [](const motion::Waypoint& row) {
+    return row.name.ends_with(')') || row.name.find(")_") != std::string::npos;
+  });
+}
+
 void warn_misfit(const model::Scenario& scenario, const std::string& sequence_name, const motion::Program& program) {
   const model::Sequence* sequence = model::find_sequence(scenario, sequence_name);
   if (sequence == nullptr) return;  // refused elsewhere
@@ -56,10 +62,11 @@ void warn_misfit(const model::Scenario& scenario, const std::string& sequence_na
     next = std::max(next, place + 1);
   }
   if (!strangers.empty()) {
-    std::fprintf(stderr,
-                 "snug: warning: %s does not fit sequence %s: %zu of the %zu boxes that it picks are not in it (%s first): "
-                 "another sequence?\n",
-                 program.name.c_str(), sequence_name.c_str(), strangers.size(), picks.size(), strangers.front().c_str());
+    std::fprintf(
+        stderr,
+        "snug: warning: %s does not fit sequence %s: %zu of the %zu boxes that it picks are not in it (%s first): "
+        "another sequence?\n",
+        program.name.c_str(), sequence_name.c_str(), strangers.size(), picks.size(), strangers.front().c_str());
   } else if (!late.empty()) {
     std::fprintf(stderr,
                  "snug: warning: %s does not fit sequence %s: it picks %s after a box that comes later: another "

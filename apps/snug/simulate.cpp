@@ -38,11 +38,6 @@ class TableWriter : public cell::RunObserver {
   std::optional<record::CsvWriter> writer_;
 };
 
-/// Rows of our own programs have the box in brackets (motion::row_name); those of the demonstrator do not.
-bool is_own_program(const motion::Program& program) {
-  return std::ranges::any_of(program.waypoints, [](const motion::Waypoint& row) { return row.name.ends_with(')') || row.name.find(")_") != std::string::npos; });
-}
-
 std::string list_sequences(const model::Scenario& scenario) {
   std::string names;
   for (const model::Sequence& sequence : scenario.sequences) names += (names.empty() ? "" : ", ") + sequence.name;
@@ -82,7 +77,9 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
     print_robot_warnings(scenario);
   }
   if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
-  const std::string cup = options.cup ? *options.cup : run.program && is_own_program(*run.program) ? "phases" : "holding";
+  const std::string cup = options.cup                                   ? *options.cup
+                          : run.program && is_own_program(*run.program) ? "phases"
+                                                                        : "holding";
   run.simulation.cup = cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;
   run.threads = options.threads.value_or(core_count());

@@ -47,17 +47,19 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--dt", options.dt, "time step, instead of the scenario's")
       ->check(within(1e-6, 0.1))
       ->type_name("SECONDS");
-  verb.add_option("--cup", options.cup,
-                  "holding: attached and released at once; phases: pressure builds up and decays, holds can fail (default: phases, "
-                  "as pack; holding for scenes and for programs with the demonstrator's names, PrePick027 and the like)")
+  verb.add_option(
+          "--cup", options.cup,
+          "holding: attached and released at once; phases: pressure builds up and decays, holds can fail (default: "
+          "phases, "
+          "as pack; holding for scenes and for programs with the demonstrator's names, PrePick027 and the like)")
       ->check(one_of({"holding", "phases"}))
       ->type_name("MODEL");
   verb.add_option("--seed", options.seed, "seed of everything random, instead of the scenario's")
       ->check(whole(0))
       ->type_name("N");
-  verb.add_option(
-          "--threads", options.threads,
-          "threads of repeated runs or of a scene of many bodies; the result does not depend on it (default: all cores)")
+  verb.add_option("--threads", options.threads,
+                  "threads of repeated runs or of a scene of many bodies; the result does not depend on it (default: "
+                  "all cores)")
       ->check(whole(1, kMostThreads))
       ->type_name("N");
 }

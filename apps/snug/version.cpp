@@ -1,7 +1,7 @@
 // version: what this program is; alone in its file, as the commit changes often.
 #include "version.hpp"
 
-#include "version_text.hpp"
+#include <version_text.hpp>
 
 namespace snug::app {
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration {
 

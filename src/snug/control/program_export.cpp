@@ -264,8 +264,7 @@ std::string format_ros_trajectory(const JointRun& run, const RobotProgram& progr
   const double tick = program.plan.settings.tick;
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(period / tick)));
   std::string text = header(program, "rad, rad/s, rad/s^2, s; payloads in kg and m");
-  text +=
-      "# trajectory_msgs/JointTrajectory\nheader:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: ''\njoint_names:\n";
+  text += "# trajectory_msgs/JointTrajectory\nheader:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: ''\njoint_names:\n";
   for (const robot::Joint& joint : program.arm.joints) text += "  - " + joint.name + "\n";
   text += "points:\n";
   const auto point = [&](const robot::JointVector& q, const robot::JointVector& qd, const robot::JointVector& qdd,

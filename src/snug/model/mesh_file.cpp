@@ -74,8 +74,8 @@ void collect_drawn(const aiScene& scene, const aiNode& node, const aiMatrix4x4& 
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
       if (face.mNumIndices != 3) continue;  // lines and points
-      mesh.triangles.push_back({static_cast<int>(face.mIndices[0]), static_cast<int>(face.mIndices[1]),
-                                static_cast<int>(face.mIndices[2])});
+      mesh.triangles.push_back(
+          {static_cast<int>(face.mIndices[0]), static_cast<int>(face.mIndices[1]), static_cast<int>(face.mIndices[2])});
     }
     mesh.rgba = colour_of(scene, part);
     if (!mesh.triangles.empty()) meshes.push_back(std::move(mesh));
@@ -91,9 +91,8 @@ std::vector<DrawnMesh> parse_drawn_meshes(std::string_view bytes, const std::str
   if (!is_known(known) || bytes.size() > kLargestMesh) return meshes;
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene =
-      importer.ReadFileFromMemory(bytes.data(), bytes.size(),
-                                  aiProcess_JoinIdenticalVertices | aiProcess_Triangulate, known.c_str() + 1);
+  const aiScene* scene = importer.ReadFileFromMemory(
+      bytes.data(), bytes.size(), aiProcess_JoinIdenticalVertices | aiProcess_Triangulate, known.c_str() + 1);
   if (scene != nullptr && scene->mRootNode != nullptr) collect_drawn(*scene, *scene->mRootNode, aiMatrix4x4(), meshes);
   return meshes;
 }

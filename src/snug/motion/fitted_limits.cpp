@@ -8,12 +8,13 @@ namespace snug::motion {
 namespace {
 
 constexpr double kLongest = 7200.0;  ///< s
-constexpr double kLeastSpeed = 1e-3, kLeastAcceleration = 1e-3;  ///< m/s or rad/s, m/s^2 or rad/s^2: of what hardly moves
+constexpr double kLeastSpeed = 1e-3,
+                 kLeastAcceleration = 1e-3;  ///< m/s or rad/s, m/s^2 or rad/s^2: of what hardly moves
 
 /// What the simulated tool did on the way to one row.
 struct RowMotion {
-  double duration = 0.0;  ///< s, moving
-  double speed = 0.0;     ///< m/s, peak
+  double duration = 0.0;    ///< s, moving
+  double speed = 0.0;       ///< m/s, peak
   double turn_speed = 0.0;  ///< rad/s, peak
 };
 

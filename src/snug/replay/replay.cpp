@@ -74,8 +74,14 @@ std::string encode_recording(record::RecordingReader& reader, const std::string&
       refuse_values(name, fmt::format("{} contacts that differ", coder.contact_points()), values, most);
     }
   }
-  HeaderInput input{name,          &reader.header(),       reader.events(), reader.result(), reader.is_complete(),
-                    frames.size(), reader.is_interrupted(), robot};
+  HeaderInput input{name,
+                    &reader.header(),
+                    reader.events(),
+                    reader.result(),
+                    reader.is_complete(),
+                    frames.size(),
+                    reader.is_interrupted(),
+                    robot};
   return encode_form(make_header_json(input), coder.finish());
 }
 

@@ -33,8 +33,8 @@ struct MeshFile {
   std::string bytes;  ///< whole
 };
 
-/// The mesh files that the visuals of a URDF name, each once; those not there or beyond `most_bytes` in all are left out.
-/// Throws InputError for a URDF that cannot be read.
+/// The mesh files that the visuals of a URDF name, each once; those not there or beyond `most_bytes` in all are left
+/// out. Throws InputError for a URDF that cannot be read.
 [[nodiscard]] std::vector<MeshFile> read_visual_meshes(const std::filesystem::path& urdf, std::size_t most_bytes);
 
 /// Links that have a look, with their materials' colours. What cannot be drawn (a mesh that is not among `meshes`, a

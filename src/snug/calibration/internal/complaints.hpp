@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration::internal {
 

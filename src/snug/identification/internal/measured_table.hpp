@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::identification::internal {
 

@@ -41,8 +41,8 @@ model::DrawnMesh merge_vertices(const model::DrawnMesh& mesh, double cell) {
   std::vector<int> counts;
   for (const Vector3& vertex : mesh.vertices) {
     const auto of = [&](double x) { return static_cast<std::int64_t>(std::floor(std::clamp(x, -1e3, 1e3) / cell)); };
-    const auto [at, is_new] = cells.try_emplace({of(vertex.x()), of(vertex.y()), of(vertex.z())},
-                                                static_cast<int>(result.vertices.size()));
+    const auto [at, is_new] =
+        cells.try_emplace({of(vertex.x()), of(vertex.y()), of(vertex.z())}, static_cast<int>(result.vertices.size()));
     if (is_new) {
       result.vertices.emplace_back(Vector3::Zero());
       counts.push_back(0);

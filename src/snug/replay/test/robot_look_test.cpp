@@ -12,7 +12,8 @@ namespace {
 model::DrawnMesh make_square(int n) {
   model::DrawnMesh mesh;
   for (int i = 0; i <= n; ++i) {
-    for (int j = 0; j <= n; ++j) mesh.vertices.emplace_back(static_cast<double>(i) / n, static_cast<double>(j) / n, 0.0);
+    for (int j = 0; j <= n; ++j)
+      mesh.vertices.emplace_back(static_cast<double>(i) / n, static_cast<double>(j) / n, 0.0);
   }
   const auto at = [n](int i, int j) { return i * (n + 1) + j; };
   for (int i = 0; i < n; ++i) {

@@ -1,4 +1,5 @@
-// Visuals: shapes, materials and meshes of a URDF as they are drawn; what cannot be drawn is left out and fails nothing.
+// Visuals: shapes, materials and meshes of a URDF as they are drawn; what cannot be drawn is left out and fails
+// nothing.
 #include "snug/robot/visuals.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,8 @@ namespace {
 
 /// One triangle of 1 m, as STL.
 constexpr const char* kTriangle =
-    "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid t\n";
+    "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid "
+    "t\n";
 
 std::string robot_with(const std::string& visuals) {
   return "<robot name='r'><material name='blue'><color rgba='0 0 1 1'/></material><link name='arm'>" + visuals +
@@ -37,9 +39,9 @@ TEST(Visuals, HaveShapesPosesAndColoursOfMaterialsByName) {
 }
 
 TEST(Visuals, OfMeshesAreTrianglesScaledAsTheUrdfSays) {
-  const auto links = parse_visuals(
-      robot_with("<visual><geometry><mesh filename='t.stl' scale='0.5 0.5 0.5'/></geometry></visual>"),
-      {{"t.stl", kTriangle}});
+  const auto links =
+      parse_visuals(robot_with("<visual><geometry><mesh filename='t.stl' scale='0.5 0.5 0.5'/></geometry></visual>"),
+                    {{"t.stl", kTriangle}});
   ASSERT_EQ(links.size(), 1U);
   const auto& mesh = std::get<model::DrawnMesh>(links[0].visuals.at(0).shape);
   EXPECT_EQ(mesh.triangles.size(), 1U);
@@ -49,17 +51,17 @@ TEST(Visuals, OfMeshesAreTrianglesScaledAsTheUrdfSays) {
 }
 
 TEST(Visuals, LeaveOutWhatCannotBeDrawn) {
-  for (const char* visual :
-       {"<visual><geometry><mesh filename='none.stl'/></geometry></visual>", "<visual/>",
-        "<visual><geometry><box size='1 nan 1'/></geometry></visual>",
-        "<visual><geometry><sphere radius='-1'/></geometry></visual>", "<visual><geometry><cone/></geometry></visual>"}) {
+  for (const char* visual : {"<visual><geometry><mesh filename='none.stl'/></geometry></visual>", "<visual/>",
+                             "<visual><geometry><box size='1 nan 1'/></geometry></visual>",
+                             "<visual><geometry><sphere radius='-1'/></geometry></visual>",
+                             "<visual><geometry><cone/></geometry></visual>"}) {
     EXPECT_TRUE(parse_visuals(robot_with(visual), {}).empty()) << visual;
   }
   EXPECT_TRUE(parse_visuals("no XML", {}).empty());
   EXPECT_TRUE(parse_visuals("", {}).empty());
-  EXPECT_TRUE(parse_visuals(robot_with("<visual><geometry><mesh filename='t.stl'/></geometry></visual>"),
-                            {{"t.stl", "broken"}})
-                  .empty());
+  EXPECT_TRUE(
+      parse_visuals(robot_with("<visual><geometry><mesh filename='t.stl'/></geometry></visual>"), {{"t.stl", "broken"}})
+          .empty());
 }
 
 TEST(Visuals, ReadEachMeshFileOnceAndNoneBeyondTheLimit) {
