@@ -10,8 +10,8 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr int kCells = 5;        // a side: the waves' covariance is summed over this many parts of a face
-constexpr int kBorder = 2;       // px: points nearer to the end of what is seen of a face are left out
+constexpr int kCells = 5;   // a side: the waves' covariance is summed over this many parts of a face
+constexpr int kBorder = 2;  // px: points nearer to the end of what is seen of a face are left out
 constexpr int kLeastPoints = 40;
 /// Part of the interreflection's bias that stays: faces end at corners here and there.
 constexpr double kBiasLeft = 0.15;
@@ -19,8 +19,8 @@ constexpr double kBiasLeft = 0.15;
 struct Sums {
   int face = -1;
   double count = 0.0;
-  Vector3 e = Vector3::Zero();        // e, e s, e t
-  Matrix3 G = Matrix3::Zero();        // of (1, s, t)
+  Vector3 e = Vector3::Zero();  // e, e s, e t
+  Matrix3 G = Matrix3::Zero();  // of (1, s, t)
   double depth = 0.0;
   std::array<double, kCells * kCells> number{}, s{}, t{}, col{}, row{};
 };
@@ -70,10 +70,9 @@ Matrix3 covariance_of(const Sums& sums, const Matrix3& inverse, double facing, c
     if (sums.number[i] == 0.0) continue;
     for (std::size_t j = 0; j < sums.number.size(); ++j) {
       if (sums.number[j] == 0.0) continue;
-      const double covariance =
-          errors.wave_covariance(sums.col[i] / sums.number[i] - sums.col[j] / sums.number[j],
-                                 sums.row[i] / sums.number[i] - sums.row[j] / sums.number[j]) *
-          facing * facing;
+      const double covariance = errors.wave_covariance(sums.col[i] / sums.number[i] - sums.col[j] / sums.number[j],
+                                                       sums.row[i] / sums.number[i] - sums.row[j] / sums.number[j]) *
+                                facing * facing;
       shared += covariance * Vector3(sums.number[i], sums.s[i], sums.t[i]) *
                 Vector3(sums.number[j], sums.s[j], sums.t[j]).transpose();
     }
@@ -86,8 +85,8 @@ Matrix3 covariance_of(const Sums& sums, const Matrix3& inverse, double facing, c
   return result;
 }
 
-/// For each surface, the offset within the wide gate around which most of its points lie: a belief is off by more than what
-/// lies beside a box may be lower or higher.
+/// For each surface, the offset within the wide gate around which most of its points lie: a belief is off by more than
+/// what lies beside a box may be lower or higher.
 std::vector<double> common_offsets(const camera::Frame& frame, const Prediction& prediction, double wide_gate) {
   constexpr double kBin = 1e-3;
   constexpr int kWindow = 5;  // bins
