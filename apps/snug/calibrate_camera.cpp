@@ -59,7 +59,7 @@ std::string line(const char* what, const Pose& X, const Matrix6& covariance) {
 
 int run_calibrate_camera(const CalibrateCameraOptions& options) {
   std::optional<OutputFile> output = reserve({{"the input", options.input}}, options.output);
-  const calibration::Table table = calibration::load_table(options.input, calibration::hand_eye_columns());
+  const Table table = load_table(options.input, calibration::hand_eye_columns());
   const calibration::HandEye found = calibration::find_hand_eye(table);
   if (output) write_file(std::move(*output), as_yaml(found, options));
   if (options.json) {

@@ -2,7 +2,8 @@
 // it.
 #pragma once
 
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration {
 
