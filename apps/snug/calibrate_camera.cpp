@@ -37,25 +37,29 @@ std::string as_yaml(const calibration::HandEye& found, const CalibrateCameraOpti
   const Quaternion quat(found.X_WC.R);
   const Vector6 variance = found.covariance.diagonal();
   return fmt::format(
-      "cameras:\n  - name: {}\n    preset: {}\n    pose: {{position: [{:.7f}, {:.7f}, {:.7f}], quat_wxyz: [{:.9f}, {:.9f}, {:.9f}, "
-      "{:.9f}]}}\n    hand_eye: {{position: {:.3g}, rotation_deg: {:.3g}}}  # found by least squares: root mean squares of the axes\n",
-      options.name, options.preset, found.X_WC.p.x(), found.X_WC.p.y(), found.X_WC.p.z(), quat.w(), quat.x(), quat.y(), quat.z(),
-      std::sqrt(variance.head<3>().mean()), std::sqrt(variance.tail<3>().mean()) * 180.0 / std::numbers::pi);
+      "cameras:\n  - name: {}\n    preset: {}\n    pose: {{position: [{:.7f}, {:.7f}, {:.7f}], quat_wxyz: [{:.9f}, "
+      "{:.9f}, {:.9f}, "
+      "{:.9f}]}}\n    hand_eye: {{position: {:.3g}, rotation_deg: {:.3g}}}  # found by least squares: root mean "
+      "squares of the axes\n",
+      options.name, options.preset, found.X_WC.p.x(), found.X_WC.p.y(), found.X_WC.p.z(), quat.w(), quat.x(), quat.y(),
+      quat.z(), std::sqrt(variance.head<3>().mean()), std::sqrt(variance.tail<3>().mean()) * 180.0 / std::numbers::pi);
 }
 
 std::string line(const char* what, const Pose& X, const Matrix6& covariance) {
   const Vector6 sd = covariance.diagonal().cwiseSqrt();
   const Vector3 turn = log_rotation(X.R);
   return fmt::format(
-      "{}: at ({:.3f}, {:.3f}, {:.3f}) mm +- ({:.3f}, {:.3f}, {:.3f}), turned by ({:.5f}, {:.5f}, {:.5f}) rad +- ({:.5f}, {:.5f}, {:.5f})\n", what,
-      1e3 * X.p.x(), 1e3 * X.p.y(), 1e3 * X.p.z(), 1e3 * sd(0), 1e3 * sd(1), 1e3 * sd(2), turn.x(), turn.y(), turn.z(), sd(3), sd(4), sd(5));
+      "{}: at ({:.3f}, {:.3f}, {:.3f}) mm +- ({:.3f}, {:.3f}, {:.3f}), turned by ({:.5f}, {:.5f}, {:.5f}) rad +- "
+      "({:.5f}, {:.5f}, {:.5f})\n",
+      what, 1e3 * X.p.x(), 1e3 * X.p.y(), 1e3 * X.p.z(), 1e3 * sd(0), 1e3 * sd(1), 1e3 * sd(2), turn.x(), turn.y(),
+      turn.z(), sd(3), sd(4), sd(5));
 }
 
 }  // namespace
 
 int run_calibrate_camera(const CalibrateCameraOptions& options) {
   std::optional<OutputFile> output = reserve({{"the input", options.input}}, options.output);
-  const calibration::Table table = calibration::load_table(options.input, calibration::hand_eye_columns());
+  const Table table = load_table(options.input, calibration::hand_eye_columns());
   const calibration::HandEye found = calibration::find_hand_eye(table);
   if (output) write_file(std::move(*output), as_yaml(found, options));
   if (options.json) {
@@ -68,8 +72,8 @@ int run_calibrate_camera(const CalibrateCameraOptions& options) {
     return kSuccess;
   }
   print(line("camera in W", found.X_WC, found.covariance) + line("board in E", found.X_EB, found.board_covariance) +
-        fmt::format("noise of a measured pose {:.3f} mm, {:.3f} mrad; {} rows\n", 1e3 * found.position_noise, 1e3 * found.angle_noise,
-                    table.rows.size()));
+        fmt::format("noise of a measured pose {:.3f} mm, {:.3f} mrad; {} rows\n", 1e3 * found.position_noise,
+                    1e3 * found.angle_noise, table.rows.size()));
   return kSuccess;
 }
 

@@ -108,11 +108,14 @@ void add_camera_poses(CLI::App& verb, Action& action) {
   part.add_option("poses", options->input, "of the tool, and of what it holds as the camera sees it")
       ->required()
       ->type_name("FILE.csv");
-  part.add_option("--name", options->name, "of the camera in what is written")->type_name("NAME")->capture_default_str();
+  part.add_option("--name", options->name, "of the camera in what is written")
+      ->type_name("NAME")
+      ->capture_default_str();
   part.add_option("--preset", options->preset, "of the camera in what is written")
       ->check(one_of({"structured_light", "active_stereo", "ideal"}))
       ->capture_default_str();
-  part.add_option("-o,--output", options->output, "block for a scenario: pose and hand-eye error")->type_name("FILE.yaml");
+  part.add_option("-o,--output", options->output, "block for a scenario: pose and hand-eye error")
+      ->type_name("FILE.yaml");
   part.add_flag("--json", options->json, "the result as one JSON object on stdout");
   part.footer(kCameraPosesHelp);
   part.callback([options, &action] { action = [options] { return run_calibrate_camera(*options); }; });
@@ -121,7 +124,8 @@ void add_camera_poses(CLI::App& verb, Action& action) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("calibrate", "identify the arm, its tool, its sensor or a camera from measurements");
+  CLI::App& verb =
+      *app.add_subcommand("calibrate", "identify the arm, its tool, its sensor or a camera from measurements");
   verb.require_subcommand(1);
   add_kinematics(verb, action);
   add_tool(verb, action);

@@ -83,9 +83,9 @@ int run_camera(const CameraOptions& options) {
   record::RecordingReader reader(options.recording);
   if (reader.frame_count() == 0)
     throw InputError(options.recording, "", "a recording without frames", "at least one frame");
-  const model::Scenario scenario = options.scenario
-                                       ? model::load_scenario(*options.scenario)
-                                       : model::parse_scenario(reader.header().scenario_text, "scenario of " + options.recording);
+  const model::Scenario scenario =
+      options.scenario ? model::load_scenario(*options.scenario)
+                       : model::parse_scenario(reader.header().scenario_text, "scenario of " + options.recording);
   model::CameraParams params = choose_camera(scenario, options.camera, options.scenario.value_or(options.recording));
   camera::CameraDraw draw;
   if (options.exact) {

@@ -26,12 +26,20 @@ void add_camera(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("camera", "what a depth camera of the cell sees at an instant of a recording");
   const auto options = std::make_shared<CameraOptions>();
   verb.add_option("recording", options->recording, "of a run")->required()->type_name("FILE.h5");
-  verb.add_option("-o,--output", options->output, "the frame to write: .png, .ply or .h5")->required()->type_name("FILE");
+  verb.add_option("-o,--output", options->output, "the frame to write: .png, .ply or .h5")
+      ->required()
+      ->type_name("FILE");
   verb.add_option("--time", options->time, "of the instant; without it the end")->type_name("SECONDS");
   verb.add_option("--camera", options->camera, "name in the scenario; without it the first")->type_name("NAME");
-  verb.add_option("--scenario", options->scenario, "with the camera, where the recording's own has none")->type_name("FILE.yaml");
-  verb.add_option("--seed", options->seed, "of the errors that stay with a camera; without it the recording's")->check(whole(0))->type_name("N");
-  verb.add_option("--shot", options->shot, "number of the frame: its noise")->check(whole(0))->type_name("N")->capture_default_str();
+  verb.add_option("--scenario", options->scenario, "with the camera, where the recording's own has none")
+      ->type_name("FILE.yaml");
+  verb.add_option("--seed", options->seed, "of the errors that stay with a camera; without it the recording's")
+      ->check(whole(0))
+      ->type_name("N");
+  verb.add_option("--shot", options->shot, "number of the frame: its noise")
+      ->check(whole(0))
+      ->type_name("N")
+      ->capture_default_str();
   verb.add_option("--threads", options->threads, "at work; the frame does not depend on it")
       ->check(whole(1, kMostThreads))
       ->type_name("N")

@@ -31,7 +31,8 @@ camera::FrameHints make_hints(const PerceiveOptions& options, const model::Scena
     if (!(std::abs(value) < 1e6)) throw InputError("command line", "--intrinsics", fmt::format("{}", value), "pixels");
   if (!(options.intrinsics[0] > 1.0 && options.intrinsics[1] > 1.0))
     throw InputError("command line", "--intrinsics", "a focal length of at most 1 px", "fx fy cx cy in pixels");
-  hints.camera.intrinsics = {options.intrinsics[0], options.intrinsics[1], options.intrinsics[2], options.intrinsics[3]};
+  hints.camera.intrinsics = {options.intrinsics[0], options.intrinsics[1], options.intrinsics[2],
+                             options.intrinsics[3]};
   return hints;
 }
 
@@ -41,8 +42,8 @@ box_estimation::EstimateInput make_input(const PerceiveOptions& options, const m
   box_estimation::EstimateInput input = box_estimation::make_input(scenario, *container);
   for (const model::PlacementEntry& entry : model::load_placements(options.expect, scenario)) {
     const model::Parcel& parcel = *model::find_parcel(scenario, entry.parcel);
-    input.boxes.push_back({entry.parcel, model::collision_size(scenario, parcel), container->X_WT * entry.X_TP, options.spread,
-                           options.spread_deg * std::numbers::pi / 180.0});
+    input.boxes.push_back({entry.parcel, model::collision_size(scenario, parcel), container->X_WT * entry.X_TP,
+                           options.spread, options.spread_deg * std::numbers::pi / 180.0});
   }
   return input;
 }
@@ -90,32 +91,38 @@ ordered_json as_json(const box_estimation::Estimate& estimate) {
                        {"obstacles", ordered_json::array()}};
   for (const box_estimation::BoxEstimate& box : estimate.boxes) json["boxes"].push_back(as_json(box));
   for (const box_estimation::Obstacle& obstacle : estimate.obstacles)
-    json["obstacles"].push_back({{"low_m", as_list(obstacle.low)}, {"high_m", as_list(obstacle.high)}, {"points", obstacle.points}});
+    json["obstacles"].push_back(
+        {{"low_m", as_list(obstacle.low)}, {"high_m", as_list(obstacle.high)}, {"points", obstacle.points}});
   return json;
 }
 
 std::string as_table(const box_estimation::Estimate& estimate) {
   std::string text;
   if (estimate.fault != box_estimation::FrameFault::None)
-    text += fmt::format("frame cannot be used: {} ({:.0f} % of its pixels have a point)\n", name_of(estimate.fault), 100.0 * estimate.point_part);
-  text += fmt::format("{:<12} {:<8} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7}  {}\n", "box", "sight", "x m", "y m", "z m", "sd x mm", "sd y mm", "sd z mm", "points", "findings");
+    text += fmt::format("frame cannot be used: {} ({:.0f} % of its pixels have a point)\n", name_of(estimate.fault),
+                        100.0 * estimate.point_part);
+  text += fmt::format("{:<12} {:<8} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7}  {}\n", "box", "sight", "x m", "y m",
+                      "z m", "sd x mm", "sd y mm", "sd z mm", "points", "findings");
   for (const box_estimation::BoxEstimate& box : estimate.boxes) {
     std::string findings;
     for (const box_estimation::Finding finding : box.findings) findings += fmt::format("{} ", name_of(finding));
     const auto sd = [&box](int i) { return 1e3 * std::sqrt(box.covariance(i, i)); };
-    text += fmt::format("{:<12} {:<8} {:>9.4f} {:>9.4f} {:>9.4f} {:>8.2f} {:>8.2f} {:>8.2f} {:>7}  {}\n", box.id, name_of(box.sight), box.X_WP.p.x(), box.X_WP.p.y(),
-                        box.X_WP.p.z(), sd(0), sd(1), sd(2), box.points, findings);
+    text += fmt::format("{:<12} {:<8} {:>9.4f} {:>9.4f} {:>9.4f} {:>8.2f} {:>8.2f} {:>8.2f} {:>7}  {}\n", box.id,
+                        name_of(box.sight), box.X_WP.p.x(), box.X_WP.p.y(), box.X_WP.p.z(), sd(0), sd(1), sd(2),
+                        box.points, findings);
   }
   for (const box_estimation::Obstacle& obstacle : estimate.obstacles)
-    text += fmt::format("obstacle from ({:.3f}, {:.3f}, {:.3f}) to ({:.3f}, {:.3f}, {:.3f}) m, {} points\n", obstacle.low.x(), obstacle.low.y(), obstacle.low.z(),
-                        obstacle.high.x(), obstacle.high.y(), obstacle.high.z(), obstacle.points);
+    text += fmt::format("obstacle from ({:.3f}, {:.3f}, {:.3f}) to ({:.3f}, {:.3f}, {:.3f}) m, {} points\n",
+                        obstacle.low.x(), obstacle.low.y(), obstacle.low.z(), obstacle.high.x(), obstacle.high.y(),
+                        obstacle.high.z(), obstacle.points);
   return text;
 }
 
 }  // namespace
 
 int run_perceive(const PerceiveOptions& options) {
-  NamedFiles inputs = {{"the frame", options.frame}, {"--scenario", options.scenario}, {"--expect", options.expect}}, outputs;
+  NamedFiles inputs = {{"the frame", options.frame}, {"--scenario", options.scenario}, {"--expect", options.expect}},
+             outputs;
   add_file(outputs, "-o", options.output);
   expect_distinct(inputs, outputs);
   const model::Scenario scenario = model::load_scenario(options.scenario);

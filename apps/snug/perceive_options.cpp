@@ -29,15 +29,23 @@ void add_perceive(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("perceive", "where the boxes are, from a depth frame");
   const auto options = std::make_shared<PerceiveOptions>();
   verb.add_option("frame", options->frame, "of a depth camera")->required()->type_name("FILE");
-  verb.add_option("--scenario", options->scenario, "with the cell, its camera and its boxes")->required()->type_name("FILE.yaml");
+  verb.add_option("--scenario", options->scenario, "with the cell, its camera and its boxes")
+      ->required()
+      ->type_name("FILE.yaml");
   verb.add_option("--expect", options->expect, "which box is believed to be where")->required()->type_name("FILE.yaml");
   verb.add_option("--camera", options->camera, "name in the scenario; without it the first")->type_name("NAME");
-  verb.add_option("--intrinsics", options->intrinsics, "fx fy cx cy of the frame, pixels")->expected(4)->type_name("FX FY CX CY");
-  verb.add_option("--depth-unit", options->depth_unit, "metres of a step of grey, or of a unit of a PLY that is not ours; without it 0.001 of a PNG, 1 of a PLY")
+  verb.add_option("--intrinsics", options->intrinsics, "fx fy cx cy of the frame, pixels")
+      ->expected(4)
+      ->type_name("FX FY CX CY");
+  verb.add_option(
+          "--depth-unit", options->depth_unit,
+          "metres of a step of grey, or of a unit of a PLY that is not ours; without it 0.001 of a PNG, 1 of a PLY")
       ->check(within(1e-7, 1.0))
       ->type_name("M");
-  verb.add_flag("--points-in-camera", options->points_in_camera, "a PLY's points are in the camera's frame, not in the world's");
-  verb.add_flag("--scenario-camera", options->use_scenario_camera, "pose and optics of the scenario, whatever the file says");
+  verb.add_flag("--points-in-camera", options->points_in_camera,
+                "a PLY's points are in the camera's frame, not in the world's");
+  verb.add_flag("--scenario-camera", options->use_scenario_camera,
+                "pose and optics of the scenario, whatever the file says");
   verb.add_option("--spread", options->spread, "standard deviation of what is believed, each coordinate")
       ->check(within(1e-4, 1.0))
       ->type_name("M")

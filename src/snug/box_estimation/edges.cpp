@@ -8,7 +8,7 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr double kInset = 0.04;          // part of an edge's length at either end that is left out
+constexpr double kInset = 0.04;  // part of an edge's length at either end that is left out
 constexpr int kLeastLines = 8;
 constexpr double kLeastPart = 0.35;      // of the lines across an edge on which its end has to be seen
 constexpr int kWindow = 3;               // px, around an edge once it is known roughly
@@ -36,16 +36,23 @@ struct Edge {
 /// One edge as the frame shows it.
 class EdgeSearch {
  public:
-  EdgeSearch(const camera::Frame& frame, const Edge& edge, double tolerance, int reach, const Prediction* neighbours, int body)
-      : frame_(frame), edge_(edge), offset_(edge.n.dot(edge.middle)), tolerance_(tolerance), reach_(reach),
-        neighbours_(neighbours), body_(body) {}
+  EdgeSearch(const camera::Frame& frame, const Edge& edge, double tolerance, int reach, const Prediction* neighbours,
+             int body)
+      : frame_(frame),
+        edge_(edge),
+        offset_(edge.n.dot(edge.middle)),
+        tolerance_(tolerance),
+        reach_(reach),
+        neighbours_(neighbours),
+        body_(body) {}
 
   /// False when the edge is not in the picture.
   bool gather() {
     const Vector3 a = edge_.middle - (0.5 - kInset) * edge_.length * edge_.along;
     const Vector3 b = edge_.middle + (0.5 - kInset) * edge_.length * edge_.along;
     if (!(a.z() > 0.05 && b.z() > 0.05)) return false;
-    const Eigen::Vector2d pa = camera::project(frame_.camera.intrinsics, a), pb = camera::project(frame_.camera.intrinsics, b);
+    const Eigen::Vector2d pa = camera::project(frame_.camera.intrinsics, a),
+                          pb = camera::project(frame_.camera.intrinsics, b);
     const Eigen::Vector2d out = camera::project(frame_.camera.intrinsics, edge_.middle + 0.01 * edge_.outward) -
                                 camera::project(frame_.camera.intrinsics, edge_.middle);
     is_steep_ = std::abs(pb.y() - pa.y()) > std::abs(pb.x() - pa.x());
@@ -76,7 +83,8 @@ class EdgeSearch {
     for (const Line& line : lines_)
       for (const Sample& sample : line.samples) {
         if (sample.kind == Kind::Outside || sample.kind == Kind::Before) continue;
-        const auto bin = static_cast<std::size_t>(std::clamp((sample.s + far) / kBin, 0.0, static_cast<double>(count - 1)));
+        const auto bin =
+            static_cast<std::size_t>(std::clamp((sample.s + far) / kBin, 0.0, static_cast<double>(count - 1)));
         gain[bin] += sample.kind == Kind::On ? 1.0 : sample.kind == Kind::Behind ? -1.0 : -0.5;
       }
     double sum = 0.0, best = 0.0;
@@ -128,7 +136,8 @@ class EdgeSearch {
       }
       ends.emplace_back(line.t, first + (on - 0.5) * step);
     }
-    if (static_cast<double>(ends.size()) < std::max<double>(kLeastLines, kLeastPart * static_cast<double>(lines_.size())))
+    if (static_cast<double>(ends.size()) <
+        std::max<double>(kLeastLines, kLeastPart * static_cast<double>(lines_.size())))
       return std::nullopt;
     return straight_line(ends, drops > steps / 2);
   }
@@ -221,8 +230,9 @@ Rows make_rows(const Edge& edge, const Vector3& middle_of_box, double offset, do
   return rows;
 }
 
-std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, const Edge& edge, const ErrorModel& errors,
-                            const FeatureSettings& settings, const Prediction& prediction, int body, bool& is_coarse) {
+std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, const Edge& edge,
+                            const ErrorModel& errors, const FeatureSettings& settings, const Prediction& prediction,
+                            int body, bool& is_coarse) {
   const double depth = edge.middle.z();
   const double tolerance = std::max(3.5 * errors.point_error(depth), 0.5e-3);
   EdgeSearch search(frame, edge, tolerance, settings.reach, settings.ignores_neighbours ? &prediction : nullptr, body);
@@ -230,7 +240,8 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
   const double rough = search.rough_offset(), step = search.pixel();
   is_coarse = std::abs(rough) > (settings.reach - kWindow - 2) * step;
   if (is_coarse) {
-    // Too near the end of the band to be counted. At its very end all of the band is face, or none: the end lies beyond.
+    // Too near the end of the band to be counted. At its very end all of the band is face, or none: the end lies
+    // beyond.
     const bool is_beyond = std::abs(rough) > (settings.reach - 1.5) * step;
     Rows rows = make_rows(edge, box.X_CP.p, rough, 0.0);
     rows.count = 1;
@@ -243,7 +254,8 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
   Rows rows = make_rows(edge, box.X_CP.p, found->offset + lost, found->slope);
   // The grid of pixels rounds all lines of an edge along it alike, and evens out where the edge crosses it.
   const double rounding = kRoundingError * step / std::max(1.0, search.drift());
-  const double single = found->spread * found->spread + std::pow(kRoundingError * step, 2) * (search.drift() >= 1.0 ? 0.0 : 0.2);
+  const double single =
+      found->spread * found->spread + std::pow(kRoundingError * step, 2) * (search.drift() >= 1.0 ? 0.0 : 0.2);
   const double mean = rounding * rounding + 2.0 * single / found->lines;
   rows.covariance = Vector3(mean, mean / (found->length * found->length), 1.0).asDiagonal();
   (void)kDrop;

@@ -30,7 +30,7 @@ constexpr double kMostBlocked = 0.25;       // of pixels with points above the r
 constexpr double kMovedDistance = 0.010, kMovedAngle = 3.0 * kDegree;
 constexpr double kLeaning = 4.0 * kDegree;
 constexpr double kMostTolerance = 0.02;  // m, of a face from where it was believed to be
-constexpr double kFoundSpread = 0.05;  // m and rad: the belief of a box that was found elsewhere
+constexpr double kFoundSpread = 0.05;    // m and rad: the belief of a box that was found elsewhere
 
 TrackedBox make_tracked(const ExpectedBox& box, const Pose& X_CW) {
   TrackedBox tracked;
@@ -44,7 +44,10 @@ TrackedBox make_tracked(const ExpectedBox& box, const Pose& X_CW) {
 class Estimator {
  public:
   Estimator(const camera::Frame& frame, const EstimateInput& input)
-      : frame_(frame), input_(input), X_CW_(frame.camera.X_WC.inverse()), errors_(frame.camera),
+      : frame_(frame),
+        input_(input),
+        X_CW_(frame.camera.X_WC.inverse()),
+        errors_(frame.camera),
         surroundings_C_(internal::in_camera(input.surroundings, frame.camera.X_WC)),
         range_(internal::pixel_range(frame.camera, input.region_low, input.region_high)),
         tolerance_(std::max(6e-3, 4.0 * errors_.point_error(frame.camera.range.focus))) {}
@@ -199,11 +202,13 @@ class Estimator {
     if (!tracked_.empty()) fit(FitStart::Near, 3);
   }
 
-  /// Found boxes (from `first` on) whose seen sides are as long as others of theirs are turned to match. True when any was.
+  /// Found boxes (from `first` on) whose seen sides are as long as others of theirs are turned to match. True when any
+  /// was.
   bool turn_to_fit(std::size_t first) {
     bool has_turned = false;
     for (std::size_t i = first; i < tracked_.size(); ++i) {
-      const auto turned = internal::turned_to_sizes(tracked_[i], fit_.size_misfit[i], input_.boxes[ids_[i]].X_WP.R.transpose() * frame_.camera.X_WC.R);
+      const auto turned = internal::turned_to_sizes(tracked_[i], fit_.size_misfit[i],
+                                                    input_.boxes[ids_[i]].X_WP.R.transpose() * frame_.camera.X_WC.R);
       if (!turned) continue;
       tracked_[i].X_CP = tracked_[i].X_CP_prior = *turned;
       has_turned = true;
@@ -233,7 +238,8 @@ class Estimator {
 
   void report(Estimate& result) const {
     const Prediction prediction = predict(tracked_);
-    const std::vector<Agreement> agreement = internal::compare(frame_, prediction, std::vector<double>(tracked_.size(), fit_tolerance()));
+    const std::vector<Agreement> agreement =
+        internal::compare(frame_, prediction, std::vector<double>(tracked_.size(), fit_tolerance()));
     for (std::size_t i = 0; i < tracked_.size(); ++i) report_seen(i, agreement[i], result.boxes[ids_[i]]);
     report_others(result);
     const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + 2.5e-3);
@@ -247,7 +253,9 @@ class Estimator {
     estimate.points = a.on;
     estimate.visible_part = alone > 0 ? std::min(1.0, static_cast<double>(a.on) / alone) : 0.0;
     const double spread = std::sqrt(fit_.covariance[i].topLeftCorner<3, 3>().diagonal().maxCoeff());
-    if (a.on < kLeastPoints || estimate.visible_part < kLeastVisible || spread > std::max(kMostSpread, 1.1 * box.position_spread)) return;  // stays hidden, at its belief
+    if (a.on < kLeastPoints || estimate.visible_part < kLeastVisible ||
+        spread > std::max(kMostSpread, 1.1 * box.position_spread))
+      return;  // stays hidden, at its belief
     estimate.sight = Sight::Seen;
     estimate.rms = a.on > 0 ? std::sqrt(a.squares / a.on) : 0.0;
     const Pose X_WP = frame_.camera.X_WC * tracked_[i].X_CP;
@@ -264,7 +272,8 @@ class Estimator {
     if ((distance > kMovedDistance && distance > 3.0 * box.position_spread) ||
         (angle > kMovedAngle && angle > 3.0 * box.rotation_spread))
       estimate.findings.push_back(Finding::Moved);
-    if (estimate.X_WP.R.row(2).cwiseAbs().maxCoeff() < std::cos(kLeaning)) estimate.findings.push_back(Finding::Leaning);
+    if (estimate.X_WP.R.row(2).cwiseAbs().maxCoeff() < std::cos(kLeaning))
+      estimate.findings.push_back(Finding::Leaning);
     const Vector3 reach = estimate.X_WP.R.cwiseAbs() * (0.5 * box.size);
     const Vector3 low = estimate.X_WP.p - reach, high = estimate.X_WP.p + reach;
     const double rim_slack = 0.005;
@@ -273,7 +282,8 @@ class Estimator {
           (high.head<2>().array() > input_.region_high.head<2>().array() + rim_slack).any())
         estimate.findings.push_back(Finding::OnRim);
     const Vector3& misfit = fit_.size_misfit[i];
-    if (fit_.size_error[i] > 4.0 && misfit.array().isFinite().any() && misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > 3e-3)
+    if (fit_.size_error[i] > 4.0 && misfit.array().isFinite().any() &&
+        misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > 3e-3)
       estimate.findings.push_back(Finding::WrongSize);
   }
 
@@ -318,7 +328,9 @@ EstimateInput make_input(const model::Scenario& scenario, const model::Container
   return input;
 }
 
-Estimate estimate_boxes(const camera::Frame& frame, const EstimateInput& input) { return Estimator(frame, input).run(); }
+Estimate estimate_boxes(const camera::Frame& frame, const EstimateInput& input) {
+  return Estimator(frame, input).run();
+}
 
 const char* name_of(Sight sight) {
   constexpr const char* kNames[] = {"seen", "hidden", "missing"};

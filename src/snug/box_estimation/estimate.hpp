@@ -19,7 +19,7 @@ struct ExpectedBox {
 };
 
 struct EstimateInput {
-  camera::Scene surroundings;           ///< what stands still and where it is: container, benches
+  camera::Scene surroundings;  ///< what stands still and where it is: container, benches
   std::vector<ExpectedBox> boxes;
   Vector3 region_low = Vector3::Constant(-1e3);  ///< m, W: points outside are not looked at
   Vector3 region_high = Vector3::Constant(1e3);
@@ -36,37 +36,39 @@ enum class Sight {
 
 /// What a session has to know beside the pose.
 enum class Finding {
-  Moved,      ///< not where it was believed to be: beyond three standard deviations of the belief, and 10 mm or 3 degrees
-  Leaning,    ///< no axis within 4 degrees of the vertical
-  OnRim,      ///< reaches over a wall of the container, lower than it stands high
-  WrongSize,  ///< edges that were seen are farther apart or nearer than its size, beyond four standard deviations and 3 mm
+  Moved,    ///< not where it was believed to be: beyond three standard deviations of the belief, and 10 mm or 3 degrees
+  Leaning,  ///< no axis within 4 degrees of the vertical
+  OnRim,    ///< reaches over a wall of the container, lower than it stands high
+  WrongSize,  ///< edges that were seen are farther apart or nearer than its size, beyond four standard deviations and 3
+              ///< mm
 };
 
 struct BoxEstimate {
   std::string id;
   Sight sight = Sight::Hidden;
-  Pose X_WP;                                ///< hidden and missing boxes: as believed
-  /// Of [translation; rotation vector], both in W, the rotation about the box's middle: m^2, m rad, rad^2. A depth frame
-  /// does not tell the ends of a box apart: the pose is that of its four equal ones which is nearest to the belief.
+  Pose X_WP;  ///< hidden and missing boxes: as believed
+  /// Of [translation; rotation vector], both in W, the rotation about the box's middle: m^2, m rad, rad^2. A depth
+  /// frame does not tell the ends of a box apart: the pose is that of its four equal ones which is nearest to the
+  /// belief.
   Matrix6 covariance = Matrix6::Zero();
-  int points = 0;                           ///< that lie on it
-  double visible_part = 0.0;                ///< of the points that it would have alone in the frame, 0 .. 1
-  double rms = 0.0;                         ///< m, of its points from its faces
+  int points = 0;             ///< that lie on it
+  double visible_part = 0.0;  ///< of the points that it would have alone in the frame, 0 .. 1
+  double rms = 0.0;           ///< m, of its points from its faces
   std::vector<Finding> findings;
 };
 
 /// Something that is neither surroundings nor an expected box.
 struct Obstacle {
-  Vector3 low = Vector3::Zero();   ///< m, W: extent of its points
+  Vector3 low = Vector3::Zero();  ///< m, W: extent of its points
   Vector3 high = Vector3::Zero();
   int points = 0;
 };
 
 /// Highest point seen over each cell of a level grid, over the region; NaN where nothing was seen.
 struct HeightMap {
-  double cell = 0.005;                       ///< m
-  Eigen::Vector2d origin = {0.0, 0.0};       ///< m, W: corner of cell (0, 0)
-  camera::Grid2<float> height;               ///< m, W; rows along y, columns along x
+  double cell = 0.005;                  ///< m
+  Eigen::Vector2d origin = {0.0, 0.0};  ///< m, W: corner of cell (0, 0)
+  camera::Grid2<float> height;          ///< m, W; rows along y, columns along x
 };
 
 enum class FrameFault {

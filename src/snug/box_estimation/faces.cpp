@@ -10,17 +10,20 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr int kCells = 5;        // a side: the waves' covariance is summed over this many parts of a face
-constexpr int kBorder = 2;       // px: points nearer to the end of what is seen of a face are left out
+constexpr int kCells = 5;   // a side: the waves' covariance is summed over this many parts of a face
+constexpr int kBorder = 2;  // px: points nearer to the end of what is seen of a face are left out
 constexpr int kLeastPoints = 40;
 /// Part of the interreflection's bias that stays: faces end at corners here and there.
 constexpr double kBiasLeft = 0.15;
+/// The same for faces seen from the side: their lower ends are corners with what the box stands on.
+constexpr double kSideBiasLeft = 0.5;
+constexpr double kSideFacing = 0.7;
 
 struct Sums {
   int face = -1;
   double count = 0.0;
-  Vector3 e = Vector3::Zero();        // e, e s, e t
-  Matrix3 G = Matrix3::Zero();        // of (1, s, t)
+  Vector3 e = Vector3::Zero();  // e, e s, e t
+  Matrix3 G = Matrix3::Zero();  // of (1, s, t)
   double depth = 0.0;
   std::array<double, kCells * kCells> number{}, s{}, t{}, col{}, row{};
 };
@@ -62,32 +65,36 @@ void add_point(Sums& sums, const FaceFrame& f, const Vector3& p, double e, int c
 }
 
 /// Covariance of offset and tilts: points' own noise, and waves that neighbours share.
-Matrix3 covariance_of(const Sums& sums, const Matrix3& inverse, double facing, const ErrorModel& errors,
-                      const model::CameraParams& camera) {
+Matrix3 covariance_of(const Sums& sums, const FaceFrame& f, const Matrix3& inverse, double facing,
+                      const ErrorModel& errors, const model::CameraParams& camera) {
   const double noise = errors.point_noise(sums.depth / sums.count) * facing;
   Matrix3 shared = Matrix3::Zero();
   for (std::size_t i = 0; i < sums.number.size(); ++i) {
     if (sums.number[i] == 0.0) continue;
     for (std::size_t j = 0; j < sums.number.size(); ++j) {
       if (sums.number[j] == 0.0) continue;
-      const double covariance =
-          errors.wave_covariance(sums.col[i] / sums.number[i] - sums.col[j] / sums.number[j],
-                                 sums.row[i] / sums.number[i] - sums.row[j] / sums.number[j]) *
-          facing * facing;
+      const double covariance = errors.wave_covariance(sums.col[i] / sums.number[i] - sums.col[j] / sums.number[j],
+                                                       sums.row[i] / sums.number[i] - sums.row[j] / sums.number[j]) *
+                                facing * facing;
       shared += covariance * Vector3(sums.number[i], sums.s[i], sums.t[i]) *
                 Vector3(sums.number[j], sums.s[j], sums.t[j]).transpose();
     }
   }
   Matrix3 result = noise * noise * errors.likeness() * inverse + inverse * shared * inverse;
-  const double left = kBiasLeft * camera.errors.interreflection.bias;
+  const bool is_side = facing < kSideFacing;
+  const double left = (is_side ? kSideBiasLeft : kBiasLeft) * camera.errors.interreflection.bias;
   result(0, 0) += left * left + 1e-10;  // single precision
   result(1, 1) += 1e-10;
   result(2, 2) += 1e-10;
+  if (is_side) {
+    result(1, 1) += std::pow(2.0 * left / f.half_u, 2);
+    result(2, 2) += std::pow(2.0 * left / f.half_v, 2);
+  }
   return result;
 }
 
-/// For each surface, the offset within the wide gate around which most of its points lie: a belief is off by more than what
-/// lies beside a box may be lower or higher.
+/// For each surface, the offset within the wide gate around which most of its points lie: a belief is off by more than
+/// what lies beside a box may be lower or higher.
 std::vector<double> common_offsets(const camera::Frame& frame, const Prediction& prediction, double wide_gate) {
   constexpr double kBin = 1e-3;
   constexpr int kWindow = 5;  // bins
@@ -170,7 +177,7 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
     const Matrix3 inverse = G.inverse();
     feature.rows.measured = inverse * sums[i].e;
     const double facing = std::abs(surface.offset) / f.centre.z();  // n . ray at the middle of the face
-    feature.rows.covariance = covariance_of(sums[i], inverse, facing, errors, frame.camera);
+    feature.rows.covariance = covariance_of(sums[i], f, inverse, facing, errors, frame.camera);
     const Vector3 arm = f.centre - boxes[static_cast<std::size_t>(feature.box)].X_CP.p;
     feature.rows.J.row(0) << f.n.transpose(), arm.cross(f.n).transpose();
     feature.rows.J.row(1) << Vector3::Zero().transpose(), f.u.cross(f.n).transpose();

@@ -56,7 +56,9 @@ class System {
   }
 
   [[nodiscard]] Eigen::VectorXd solve() const { return H_.ldlt().solve(g_); }
-  [[nodiscard]] Eigen::MatrixXd covariance() const { return H_.ldlt().solve(Eigen::MatrixXd::Identity(H_.rows(), H_.cols())); }
+  [[nodiscard]] Eigen::MatrixXd covariance() const {
+    return H_.ldlt().solve(Eigen::MatrixXd::Identity(H_.rows(), H_.cols()));
+  }
 
  private:
   static Eigen::Index size(std::size_t boxes) { return 6 * static_cast<Eigen::Index>(boxes); }
@@ -65,7 +67,8 @@ class System {
 };
 
 void add_overlaps(const std::vector<TrackedBox>& boxes, const camera::Scene& surroundings_C, System& system) {
-  const auto add = [&](int a, int b, const geometry::Shape& A, const Pose& X_CA, const geometry::Shape& B, const Pose& X_CB) {
+  const auto add = [&](int a, int b, const geometry::Shape& A, const Pose& X_CA, const geometry::Shape& B,
+                       const Pose& X_CB) {
     if ((X_CA.p - X_CB.p).norm() > geometry::bounding_radius(A) + geometry::bounding_radius(B)) return;
     geometry::PairCache cache;
     geometry::Manifold manifold;
@@ -111,8 +114,8 @@ FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const c
   for (int step = 0; step < steps && !boxes.empty(); ++step) {
     const bool is_last = step + 1 == steps;
     FeatureSettings settings;
-    // From a belief that is off by centimetres to the camera's noise: first the planes alone, since edges are looked for in
-    // them. From rough poses on, edges at once: without them boxes would go back to the belief.
+    // From a belief that is off by centimetres to the camera's noise: first the planes alone, since edges are looked
+    // for in them. From rough poses on, edges at once: without them boxes would go back to the belief.
     const int left = steps - 1 - step;
     const bool planes_only = start == FitStart::Belief && step == 0;
     settings.wide_gate = planes_only ? 0.025 : step <= 1 ? 0.008 : 0.0;
@@ -122,7 +125,8 @@ FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const c
     const Prediction prediction = predict(frame, range, surroundings_C, boxes);
     System system(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) system.add_prior(static_cast<int>(i), boxes[i]);
-    for (const FaceFeature& face : fit_faces(frame, prediction, boxes, errors, settings)) system.add(face.box, face.rows);
+    for (const FaceFeature& face : fit_faces(frame, prediction, boxes, errors, settings))
+      system.add(face.box, face.rows);
     std::vector<EdgeFeature> edges;
     if (!planes_only) edges = find_edges(frame, prediction, boxes, errors, settings);
     for (const EdgeFeature& edge : edges)
@@ -137,7 +141,8 @@ FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const c
     if (!is_last) continue;
     const Eigen::MatrixXd covariance = system.covariance();
     for (std::size_t i = 0; i < boxes.size(); ++i)
-      result.covariance.push_back(covariance.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)));
+      result.covariance.push_back(
+          covariance.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)));
     note_size(edges, boxes, result);
   }
   result.boxes = std::move(boxes);
@@ -153,7 +158,8 @@ std::optional<Pose> turned_to_sizes(const TrackedBox& box, const Vector3& size_m
     double sum = 0.0;
     for (int k = 0; k < 3; ++k) {
       const double seen = 2.0 * box.half(k) + size_misfit(k);
-      if (k != depth_axis && std::isfinite(seen)) sum += std::abs(seen - 2.0 * box.half(order[static_cast<std::size_t>(k)]));
+      if (k != depth_axis && std::isfinite(seen))
+        sum += std::abs(seen - 2.0 * box.half(order[static_cast<std::size_t>(k)]));
     }
     return sum;
   };

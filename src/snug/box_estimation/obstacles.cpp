@@ -13,7 +13,8 @@ constexpr int kLeastPoints = 250;  // of an obstacle: at 1 mm a pixel 16 mm x 16
 constexpr int kLargestMap = 2000;  // cells a side
 
 Vector3 point_at(const camera::Frame& frame, int row, int col) {
-  return frame.camera.X_WC * Vector3(static_cast<double>(frame.depth(row, col)) * camera::pixel_ray(frame.camera.intrinsics, col, row));
+  return frame.camera.X_WC *
+         Vector3(static_cast<double>(frame.depth(row, col)) * camera::pixel_ray(frame.camera.intrinsics, col, row));
 }
 
 bool is_inside(const EstimateInput& input, const Vector3& p) {
@@ -56,7 +57,8 @@ std::vector<Obstacle> find_obstacles(const camera::Frame& frame, const EstimateI
       }
       if (obstacle.points >= kLeastPoints) obstacles.push_back(obstacle);
     }
-  std::stable_sort(obstacles.begin(), obstacles.end(), [](const Obstacle& a, const Obstacle& b) { return a.points > b.points; });
+  std::stable_sort(obstacles.begin(), obstacles.end(),
+                   [](const Obstacle& a, const Obstacle& b) { return a.points > b.points; });
   return obstacles;
 }
 
@@ -72,7 +74,8 @@ HeightMap make_height_map(const camera::Frame& frame, const EstimateInput& input
       if (frame.depth(r, c) == 0.0F) continue;
       const Vector3 p = point_at(frame, r, c);
       if (!is_inside(input, p)) continue;
-      const int row = static_cast<int>((p.y() - map.origin.y()) / map.cell), col = static_cast<int>((p.x() - map.origin.x()) / map.cell);
+      const int row = static_cast<int>((p.y() - map.origin.y()) / map.cell),
+                col = static_cast<int>((p.x() - map.origin.x()) / map.cell);
       if (!map.height.is_inside(row, col)) continue;
       float& height = map.height(row, col);
       if (!(height > static_cast<float>(p.z()))) height = static_cast<float>(p.z());

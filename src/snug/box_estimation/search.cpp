@@ -14,18 +14,18 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr int kBlock = 6;             // px, side of the blocks that patches grow from
+constexpr int kBlock = 6;              // px, side of the blocks that patches grow from
 constexpr double kSameNormal = 0.985;  // cosine between neighbouring blocks of a patch: 10 degrees
 constexpr int kLeastBlocks = 6;
-constexpr double kFit = 0.007;        // m: by so much a patch may be wider or narrower than a face
+constexpr double kFit = 0.007;         // m: by so much a patch may be wider or narrower than a face
 constexpr double kSizeError = 0.0020;  // m, standard deviation of the side of a rectangle around a patch
-constexpr int kSamples = 14;          // a side, of a face that is compared with the frame
+constexpr int kSamples = 14;           // a side, of a face that is compared with the frame
 
 struct Block {
   int count = 0;
   Vector3 sum = Vector3::Zero();
   Matrix3 squares = Matrix3::Zero();
-  Vector3 n = Vector3::Zero();   // toward the camera; zero: not flat
+  Vector3 n = Vector3::Zero();  // toward the camera; zero: not flat
   Vector3 mean = Vector3::Zero();
   int patch = -1;
 };
@@ -48,8 +48,12 @@ bool fit_plane(int count, const Vector3& sum, const Matrix3& squares, double noi
 
 class Patches {
  public:
-  Patches(const camera::Frame& frame, const Prediction& prediction, const camera::Grid2<std::uint8_t>& mask, double noise)
-      : frame_(frame), range_(prediction.range), mask_(mask), noise_(noise),
+  Patches(const camera::Frame& frame, const Prediction& prediction, const camera::Grid2<std::uint8_t>& mask,
+          double noise)
+      : frame_(frame),
+        range_(prediction.range),
+        mask_(mask),
+        noise_(noise),
         blocks_(range_.rows() / kBlock, range_.cols() / kBlock) {
     for (int r = 0; r < blocks_.rows(); ++r)
       for (int c = 0; c < blocks_.cols(); ++c) fill(r, c);
@@ -111,7 +115,8 @@ class Patches {
         if (!is_free(r + dr, c + dc)) continue;
         const Block& next = blocks_(r + dr, c + dc);
         const double step = std::max(4.0 * noise_, 1.5e-3);
-        if (next.n.dot(here.n) < kSameNormal - 2.0 * noise_ / 6e-3 || std::abs(n.dot(next.mean - mean)) > step) continue;
+        if (next.n.dot(here.n) < kSameNormal - 2.0 * noise_ / 6e-3 || std::abs(n.dot(next.mean - mean)) > step)
+          continue;
         blocks_(r + dr, c + dc).patch = id;
         open.emplace_back(r + dr, c + dc);
       }
@@ -152,7 +157,7 @@ class Patches {
 
 /// Smallest rectangle around most points of a patch, in its plane.
 struct Rectangle {
-  Vector3 centre, u, v;  // in C
+  Vector3 centre, u, v;              // in C
   double width = 0.0, height = 0.0;  // m, along u and v
 };
 
@@ -196,7 +201,8 @@ class Judge {
   Judge(const camera::Frame& frame, const Prediction& prediction, const camera::Grid2<std::uint8_t>& mask, double noise)
       : frame_(frame), range_(prediction.range), mask_(mask), tolerance_(std::max(4.0 * noise, 4e-3)) {}
 
-  /// Area of it that is seen where it should be, m^2, less three times what is seen through, less what other things explain.
+  /// Area of it that is seen where it should be, m^2, less three times what is seen through, less what other things
+  /// explain.
   [[nodiscard]] double score(const Vector3& half, const Pose& X_CP, double& part_on) const {
     double on = 0.0, through = 0.0, taken = 0.0, all = 0.0;
     for (int face = 0; face < 6; ++face) {
@@ -219,7 +225,8 @@ class Judge {
   }
 
  private:
-  void add(const Vector3& p, double area, double facing, double& on, double& through, double& taken, double& all) const {
+  void add(const Vector3& p, double area, double facing, double& on, double& through, double& taken,
+           double& all) const {
     const Eigen::Vector2d pixel = camera::project(frame_.camera.intrinsics, p);
     const int col = static_cast<int>(std::lround(pixel.x())), row = static_cast<int>(std::lround(pixel.y()));
     if (!frame_.depth.is_inside(row, col)) return;
@@ -242,14 +249,16 @@ class Judge {
   double tolerance_;
 };
 
-/// By how much a place is less likely because the box would be in something, or stand on nothing. Rough poses are off by
-/// some millimetres.
+/// By how much a place is less likely because the box would be in something, or stand on nothing. Rough poses are off
+/// by some millimetres.
 double standing(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
   constexpr double kSlack = 0.006;
   const geometry::Shape box = geometry::Box{half};
   double least = kSlack;
   for (const camera::SceneShape& solid : solids_C) {
-    if ((X_CP.p - solid.X_WG.p).norm() > geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + kSlack) continue;
+    if ((X_CP.p - solid.X_WG.p).norm() >
+        geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + kSlack)
+      continue;
     geometry::PairCache cache;
     geometry::Manifold manifold;
     geometry::collide(box, X_CP, solid.shape, solid.X_WG, kSlack, cache, manifold);
@@ -309,8 +318,9 @@ camera::Grid2<std::uint8_t> unexplained(const camera::Frame& frame, const Predic
 }
 
 std::vector<FoundBox> find_boxes(const camera::Frame& frame, const Prediction& prediction,
-                                 const camera::Grid2<std::uint8_t>& unexplained_points, const std::vector<Wanted>& wanted,
-                                 const std::vector<camera::SceneShape>& solids_C, const ErrorModel& errors) {
+                                 const camera::Grid2<std::uint8_t>& unexplained_points,
+                                 const std::vector<Wanted>& wanted, const std::vector<camera::SceneShape>& solids_C,
+                                 const ErrorModel& errors) {
   const double noise = errors.point_error(frame.camera.range.focus);
   const std::vector<Patch> patches = Patches(frame, prediction, unexplained_points, noise).grow();
   const Judge judge(frame, prediction, unexplained_points, noise);
@@ -334,7 +344,8 @@ std::vector<FoundBox> find_boxes(const camera::Frame& frame, const Prediction& p
       if (best.score > 6e-4) candidates.push_back(best);
     }
   }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const FoundBox& a, const FoundBox& b) { return a.score > b.score; });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const FoundBox& a, const FoundBox& b) { return a.score > b.score; });
   std::vector<FoundBox> found;
   for (const FoundBox& candidate : candidates) {
     const double radius = wanted[static_cast<std::size_t>(candidate.wanted)].half.minCoeff();

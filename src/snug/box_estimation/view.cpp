@@ -20,7 +20,9 @@ PixelRange pixel_range(const model::CameraParams& camera, const Vector3& low, co
     low_row = std::min(low_row, pixel.y());
     high_row = std::max(high_row, pixel.y());
   }
-  const auto clamp = [](double value, int most) { return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(most))); };
+  const auto clamp = [](double value, int most) {
+    return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(most)));
+  };
   return {clamp(std::floor(low_row), all.end_row), clamp(std::ceil(high_row) + 1.0, all.end_row),
           clamp(std::floor(low_col), all.end_col), clamp(std::ceil(high_col) + 1.0, all.end_col)};
 }

@@ -23,12 +23,14 @@ struct Pair {
 /// q (x) p = left(q) p = right(p) q, with w first.
 Matrix4 left(const Quaternion& q) {
   Matrix4 m;
-  m << q.w(), -q.x(), -q.y(), -q.z(), q.x(), q.w(), -q.z(), q.y(), q.y(), q.z(), q.w(), -q.x(), q.z(), -q.y(), q.x(), q.w();
+  m << q.w(), -q.x(), -q.y(), -q.z(), q.x(), q.w(), -q.z(), q.y(), q.y(), q.z(), q.w(), -q.x(), q.z(), -q.y(), q.x(),
+      q.w();
   return m;
 }
 Matrix4 right(const Quaternion& p) {
   Matrix4 m;
-  m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), p.z(), -p.y(), p.y(), -p.z(), p.w(), p.x(), p.z(), p.y(), -p.x(), p.w();
+  m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), p.z(), -p.y(), p.y(), -p.z(), p.w(), p.x(), p.z(), p.y(), -p.x(),
+      p.w();
   return m;
 }
 
@@ -77,7 +79,9 @@ Vector6 residual(const Pair& pair, const Pose& X_WC, const Pose& X_EB) {
   return r;
 }
 
-Pose moved(const Pose& X, const Vector6& step) { return {orthonormalized(exp_rotation(step.tail<3>()) * X.R), X.p + step.head<3>()}; }
+Pose moved(const Pose& X, const Vector6& step) {
+  return {orthonormalized(exp_rotation(step.tail<3>()) * X.R), X.p + step.head<3>()};
+}
 
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 using Vector12 = Eigen::Matrix<double, 12, 1>;
@@ -86,7 +90,8 @@ using Vector12 = Eigen::Matrix<double, 12, 1>;
 Matrix12 improve(const std::vector<Pair>& pairs, double position_noise, double angle_noise, Pose& X_WC, Pose& X_EB) {
   constexpr double kStep = 1e-6;
   Vector6 weights;
-  weights << Vector3::Constant(1.0 / (position_noise * position_noise)), Vector3::Constant(1.0 / (angle_noise * angle_noise));
+  weights << Vector3::Constant(1.0 / (position_noise * position_noise)),
+      Vector3::Constant(1.0 / (angle_noise * angle_noise));
   Matrix12 H = Matrix12::Zero();
   Vector12 g = Vector12::Zero();
   for (const Pair& pair : pairs) {
@@ -152,7 +157,8 @@ HandEye find_hand_eye(const Table& table) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Vector6 r = residual(pairs[i], found.X_WC, found.X_EB);
     // Of so few rows one that is off makes the noise larger too: 4 of its standard deviations are many.
-    if (r.head<3>().norm() > 4.0 * std::sqrt(3.0) * found.position_noise || r.tail<3>().norm() > 4.0 * std::sqrt(3.0) * found.angle_noise)
+    if (r.head<3>().norm() > 4.0 * std::sqrt(3.0) * found.position_noise ||
+        r.tail<3>().norm() > 4.0 * std::sqrt(3.0) * found.angle_noise)
       outliers.push_back(i);
   }
   internal::check_outliers(table, outliers);

@@ -1,7 +1,9 @@
-// Hand-eye: where a camera that stands in the cell is, from poses of a board, or of a box, that the robot holds before it.
+// Hand-eye: where a camera that stands in the cell is, from poses of a board, or of a box, that the robot holds before
+// it.
 #pragma once
 
 #include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration {
 
@@ -15,10 +17,10 @@ struct HandEye {
   double angle_noise = 0.0;                    ///< rad, about each axis
 };
 
-/// Columns x,y,z,rx,ry,rz: pose of the tool in W; cx,cy,cz,crx,cry,crz: pose of the board in C, as the camera measured it
-/// (m; rotation vectors, rad). Least squares of X_WE X_EB = X_WC X_CB, weighed by what is left over. InputError when
-/// there are fewer than four rows, when the tool is turned about fewer than two axes, or when some rows do not belong to
-/// the rest (the lines are named).
+/// Columns x,y,z,rx,ry,rz: pose of the tool in W; cx,cy,cz,crx,cry,crz: pose of the board in C, as the camera measured
+/// it (m; rotation vectors, rad). Least squares of X_WE X_EB = X_WC X_CB, weighed by what is left over. InputError when
+/// there are fewer than four rows, when the tool is turned about fewer than two axes, or when some rows do not belong
+/// to the rest (the lines are named).
 [[nodiscard]] HandEye find_hand_eye(const Table& poses);
 
 /// Columns that find_hand_eye needs.

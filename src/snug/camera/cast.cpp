@@ -24,12 +24,12 @@ struct Line {
 struct Solid {
   int shape = 0;
   bool is_curved = false;
-  int first_row = 0, end_row = 0;    // rows that it may be seen in
-  int first_col = 0, end_col = 0;    // columns, curved ones only
-  std::vector<int> front;            // surfaces
-  std::vector<Vector3> back;         // 1/z >= back . (col, row, 1)
-  std::vector<Vector3> edge_on;      // edge_on . (col, row, 1) <= 0
-  int surface = -1;                  // of a curved one
+  int first_row = 0, end_row = 0;  // rows that it may be seen in
+  int first_col = 0, end_col = 0;  // columns, curved ones only
+  std::vector<int> front;          // surfaces
+  std::vector<Vector3> back;       // 1/z >= back . (col, row, 1)
+  std::vector<Vector3> edge_on;    // edge_on . (col, row, 1) <= 0
+  int surface = -1;                // of a curved one
   geometry::Shape const* geometry = nullptr;
   Pose X_CG;
 };

@@ -11,19 +11,19 @@
 namespace snug::camera {
 
 struct Frame {
-  model::CameraParams camera;       ///< pose and optics as they are believed to be
-  Grid2<float> depth;               ///< m along the optical axis; 0: no point
-  Grid2<std::uint8_t> intensity;    ///< 0 .. 255; empty where the camera gave none
+  model::CameraParams camera;     ///< pose and optics as they are believed to be
+  Grid2<float> depth;             ///< m along the optical axis; 0: no point
+  Grid2<std::uint8_t> intensity;  ///< 0 .. 255; empty where the camera gave none
   bool operator==(const Frame&) const = default;
 };
 
 /// Known of simulated frames only; no estimator reads it.
 struct FrameTruth {
-  Pose X_WC;                        ///< where the camera really is
-  Grid2<float> depth;               ///< m, without errors; 0: nothing there
-  Grid2<std::int16_t> label;        ///< index into names; -1: nothing there
-  std::vector<std::string> names;   ///< of the bodies
-  std::vector<Pose> X_WB;           ///< where they are
+  Pose X_WC;                       ///< where the camera really is
+  Grid2<float> depth;              ///< m, without errors; 0: nothing there
+  Grid2<std::int16_t> label;       ///< index into names; -1: nothing there
+  std::vector<std::string> names;  ///< of the bodies
+  std::vector<Pose> X_WB;          ///< where they are
 };
 
 struct RenderedFrame {

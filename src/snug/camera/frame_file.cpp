@@ -25,7 +25,8 @@ Frame load_frame(const std::filesystem::path& path, const FrameHints& hints) {
   const std::string expected = "a frame (PNG, PLY or HDF5)";
   const std::string bytes = read_file(path, expected, internal::kLargestFile);
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return internal::read_png(bytes, path.string(), hints);
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n")) return internal::read_ply(bytes, path.string(), hints);
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n"))
+    return internal::read_ply(bytes, path.string(), hints);
   if (bytes.starts_with("\x89HDF\r\n\x1a\n")) return internal::read_h5(path, hints);
   throw InputError(path.string(), "", "a file that begins like none of them", expected);
 }

@@ -21,8 +21,8 @@ inline constexpr double kPngUnit = 1e-4;
 /// Points in W (double precision would be false: float), intensity, and, with the truth, the label; binary, little
 /// endian. Row and column stand beside each point, so that the frame can be read back.
 [[nodiscard]] std::string format_ply(const Frame& frame, const FrameTruth* truth);
-/// Datasets depth, intensity, truth/depth, truth/label, truth/poses; camera as JSON in the attribute "camera". Writes to
-/// the draft of `file`; the caller publishes.
+/// Datasets depth, intensity, truth/depth, truth/label, truth/poses; camera as JSON in the attribute "camera". Writes
+/// to the draft of `file`; the caller publishes.
 void write_h5(OutputFile& file, const Frame& frame, const FrameTruth* truth);
 
 /// How to read a picture that does not say it itself.

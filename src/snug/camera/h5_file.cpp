@@ -80,7 +80,9 @@ void write_poses(hid_t group, const FrameTruth& truth, const std::filesystem::pa
 
 template <class T>
 Grid2<T> read_grid(hid_t file, const char* name, hid_t type, const std::string& path) {
-  const auto refuse = [&](const std::string& got) { throw InputError(path, name, got, "a picture of at most 8192 x 8192"); };
+  const auto refuse = [&](const std::string& got) {
+    throw InputError(path, name, got, "a picture of at most 8192 x 8192");
+  };
   const Id set(H5Dopen2(file, name, H5P_DEFAULT));
   if (!set.is_open()) refuse("no such dataset");
   const Id space(H5Dget_space(set.get())), settings(H5Dget_create_plist(set.get()));

@@ -18,6 +18,7 @@ std::vector<float> edge_loss(const model::PointLoss& loss) {
 }
 
 GrazingLoss::GrazingLoss(const model::PointLoss& loss)
-    : onset_(static_cast<float>(std::cos(loss.grazing_onset))), full_(static_cast<float>(std::cos(loss.grazing_full))) {}
+    : onset_(static_cast<float>(std::cos(loss.grazing_onset))),
+      full_(static_cast<float>(std::cos(loss.grazing_full))) {}
 
 }  // namespace snug::camera

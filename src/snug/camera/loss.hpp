@@ -7,7 +7,8 @@
 
 namespace snug::camera {
 
-/// Probability that a point 1, 2, ... pixels from an edge of depth is lost (1: beside it); ends where it is below 0.5 %.
+/// Probability that a point 1, 2, ... pixels from an edge of depth is lost (1: beside it); ends where it is below 0.5
+/// %.
 [[nodiscard]] std::vector<float> edge_loss(const model::PointLoss& loss);
 
 /// How many points are lost on faces that are seen from the side.

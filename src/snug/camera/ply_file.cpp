@@ -29,7 +29,8 @@ struct Property {
 std::size_t size_of(const std::string& type) {
   if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
   if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
-  if (type == "int" || type == "uint" || type == "int32" || type == "uint32" || type == "float" || type == "float32") return 4;
+  if (type == "int" || type == "uint" || type == "int32" || type == "uint32" || type == "float" || type == "float32")
+    return 4;
   if (type == "double" || type == "float64") return 8;
   return 0;
 }
@@ -90,7 +91,8 @@ class Reader {
   }
 
   [[noreturn]] void refuse(const std::string& got) const {
-    throw InputError(name_, "", got, "a PLY (ascii or binary_little_endian) whose vertices, its first element, have x, y, z");
+    throw InputError(name_, "", got,
+                     "a PLY (ascii or binary_little_endian) whose vertices, its first element, have x, y, z");
   }
 
  private:
@@ -124,8 +126,10 @@ class Reader {
         in_vertex = what == "vertex";
         if (in_vertex && (count < 0 || count > 8192LL * 8192)) refuse("an absurd number of vertices");
         if (in_vertex && !header_.properties.empty()) refuse("vertices twice");
-        if (in_vertex) header_.count = static_cast<std::size_t>(count);
-        else if (header_.properties.empty()) refuse("an element before the vertices");
+        if (in_vertex)
+          header_.count = static_cast<std::size_t>(count);
+        else if (header_.properties.empty())
+          refuse("an element before the vertices");
       } else if (word == "property" && in_vertex) {
         Property property;
         words >> property.type >> property.name;
@@ -189,7 +193,8 @@ Frame internal::read_ply(const std::string& bytes, const std::string& name, cons
   if (is_ours) parse_camera(header.camera, name, frame.camera);
   const model::CameraParams& camera = frame.camera;
   frame.depth = Grid2<float>(camera.height, camera.width);
-  const int x = header.find("x"), y = header.find("y"), z = header.find("z"), row = header.find("row"), col = header.find("col");
+  const int x = header.find("x"), y = header.find("y"), z = header.find("z"), row = header.find("row"),
+            col = header.find("col");
   const Pose X_CW = camera.X_WC.inverse();
   const bool in_camera = hints.points_are_in_camera && header.camera.empty();
   const double unit = header.camera.empty() ? hints.depth_unit.value_or(1.0) : 1.0;

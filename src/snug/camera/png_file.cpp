@@ -79,7 +79,8 @@ void complain(png_structp png, png_const_charp why) {
 
 /// Nothing with a destructor lives between setjmp and what may jump: `raster` and `source` are the caller's.
 bool read_raster(Source& source, Raster& raster) {
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, complain, [](png_structp, png_const_charp) {});
+  png_structp png =
+      png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, complain, [](png_structp, png_const_charp) {});
   if (png == nullptr) return false;
   png_infop info = png_create_info_struct(png);
   if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
@@ -139,7 +140,8 @@ Frame internal::read_png(const std::string& bytes, const std::string& name, cons
   const double unit = hints.depth_unit.value_or(raster.text.empty() ? 1e-3 : kPngUnit);
   frame.depth = Grid2<float>(raster.rows, raster.cols);
   for (std::size_t i = 0; i < frame.depth.values().size(); ++i) {
-    const auto high = std::bit_cast<std::uint8_t>(raster.bytes[2 * i]), low = std::bit_cast<std::uint8_t>(raster.bytes[2 * i + 1]);
+    const auto high = std::bit_cast<std::uint8_t>(raster.bytes[2 * i]),
+               low = std::bit_cast<std::uint8_t>(raster.bytes[2 * i + 1]);
     frame.depth.values()[i] = usable(frame.camera, unit * (256.0 * high + low));
   }
   return frame;

@@ -18,9 +18,9 @@ using internal::low_uniform;
 using internal::pixel_bits;
 
 constexpr int kRowsPerJob = 32;
-constexpr double kReaches = 3.0;       // of interreflection: what is left at that many is 5 %
-constexpr int kFarthestCorner = 200;   // px
-constexpr double kLitDepth = 3e-3;     // m: what the projector sees within this of a point is the point
+constexpr double kReaches = 3.0;      // of interreflection: what is left at that many is 5 %
+constexpr int kFarthestCorner = 200;  // px
+constexpr double kLitDepth = 3e-3;    // m: what the projector sees within this of a point is the point
 
 /// The camera as it is: pose and focal lengths with their errors.
 CastView true_view(const model::CameraParams& camera, const CameraDraw& draw) {
@@ -64,8 +64,13 @@ float grey_of(const std::string& name) {
 class Shot {
  public:
   Shot(const Scene& scene, const model::CameraParams& camera, const CameraDraw& draw, std::uint64_t shot, int threads)
-      : scene_(scene), camera_(camera), draw_(draw), view_(true_view(camera, draw)), threads_(threads),
-        cast_(cast(scene, view_, threads)), grazing_loss_(camera.errors.loss) {
+      : scene_(scene),
+        camera_(camera),
+        draw_(draw),
+        view_(true_view(camera, draw)),
+        threads_(threads),
+        cast_(cast(scene, view_, threads)),
+        grazing_loss_(camera.errors.loss) {
     Rng rng = Rng(shot).split("shot of " + camera.name);
     noise_key_ = rng.next();
     wave_key_ = rng.next();
@@ -131,7 +136,8 @@ class Shot {
       out.truth.label(row, col) = static_cast<std::int16_t>(surface.body);
       const double x = (col - view_.optics.cx) / view_.optics.fx;
       const float length = std::sqrt(static_cast<float>(1.0 + x * x + y * y));
-      const float cosine = surface.is_flat() ? static_cast<float>(-surface.offset) * w / length : round_cosine(row, col, length);
+      const float cosine =
+          surface.is_flat() ? static_cast<float>(-surface.offset) * w / length : round_cosine(row, col, length);
       const bool is_lit = !projector_ || sees(*projector_, x, y, z, surface);
       const auto focus = static_cast<float>(camera_.range.focus);
       const float light = 220.0F * greys_[static_cast<std::size_t>(surface.body)] * cosine * (is_lit ? 1.0F : 0.3F) *
@@ -180,7 +186,9 @@ class Shot {
     if (static_cast<double>(more >> 32) * 0x1.0p-32 >= camera_.errors.mixed_pixels.probability) return z;
     const double part = static_cast<double>(more & 0xffffffffU) * 0x1.0p-32;
     int r = row, c = col;
-    const auto has = [this](int a, int b, int border) { return borders_.is_inside(a, b) && (borders_(a, b) & border) != 0; };
+    const auto has = [this](int a, int b, int border) {
+      return borders_.is_inside(a, b) && (borders_(a, b) & border) != 0;
+    };
     if (has(row, col, internal::kJumpRight))
       ++c;
     else if (has(row, col - 1, internal::kJumpRight))
@@ -194,8 +202,7 @@ class Shot {
   }
 
   /// Whether the projector's picture has this surface, or another as deep, where the point is in it.
-  [[nodiscard]] bool sees(const Projector& projector, double x, double y, float z,
-                          const Surface& surface) const {
+  [[nodiscard]] bool sees(const Projector& projector, double x, double y, float z, const Surface& surface) const {
     const double z_L = z - camera_.p_CL.z();
     if (!(z_L > 0.0)) return false;
     const CastView& view = projector.view;

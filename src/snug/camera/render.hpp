@@ -11,9 +11,9 @@ namespace snug::camera {
 
 /// The errors that stay the same for one camera: drawn from what its maker states.
 struct CameraDraw {
-  Pose X_CD;                       ///< from where the camera is believed to be to where it is
-  double scale = 0.0;              ///< of lengths, as a fraction: what it says is (1 + scale) times what is
-  std::uint64_t wave_seed = 0;     ///< of its global waves
+  Pose X_CD;                    ///< from where the camera is believed to be to where it is
+  double scale = 0.0;           ///< of lengths, as a fraction: what it says is (1 + scale) times what is
+  std::uint64_t wave_seed = 0;  ///< of its global waves
 };
 
 /// The camera of a seed. A camera of the same name and seed is the same one.

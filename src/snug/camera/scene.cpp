@@ -18,12 +18,14 @@ geometry::Shape make_shape(const record::ShapeInfo& info, const std::string& bod
       if (!is_size(info.half.minCoeff()) || !is_size(info.half.maxCoeff())) refuse("a box without size");
       return geometry::Box{info.half};
     case record::ShapeKind::Capsule:
-      if (!is_size(info.radius) || !(info.half_length >= 0.0 && info.half_length < 1e4)) refuse("a capsule without size");
+      if (!is_size(info.radius) || !(info.half_length >= 0.0 && info.half_length < 1e4))
+        refuse("a capsule without size");
       return geometry::Capsule{info.half_length, info.radius};
     case record::ShapeKind::Cylinder:
       if (!is_size(info.radius) || !is_size(info.half_length)) refuse("a cylinder without size");
       return geometry::Cylinder{info.half_length, info.radius};
-    case record::ShapeKind::Hull: break;
+    case record::ShapeKind::Hull:
+      break;
   }
   auto hull = geometry::make_convex_hull(info.vertices);
   if (!hull) refuse("a hull without volume");

@@ -30,8 +30,8 @@ int add_box(Scene& scene, const std::string& name, const Pose& X_WB, const Vecto
 /// Containers, static bodies and the aligner's plates of a scenario: what stands still.
 [[nodiscard]] Scene make_surroundings(const model::Scenario& scenario);
 
-/// All bodies that are present in a frame of a recording. Shapes that cannot be (hulls without volume, sizes that are not
-/// positive) throw InputError with `name`, the recording's.
+/// All bodies that are present in a frame of a recording. Shapes that cannot be (hulls without volume, sizes that are
+/// not positive) throw InputError with `name`, the recording's.
 [[nodiscard]] Scene make_scene(const record::RecordingHeader& header, const record::Frame& frame,
                                const std::string& name);
 

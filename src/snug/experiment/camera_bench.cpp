@@ -44,8 +44,10 @@ std::vector<Visibility> visibility(const camera::RenderedFrame& shot, const std:
     if (bodies[i] < 0) continue;
     camera::Scene alone;
     camera::add_box(alone, "", boxes[i].X_WP, boxes[i].size);
-    const camera::Cast cast = camera::cast(alone, {shot.truth.X_WC, params.intrinsics, params.height, params.width, 0, 0});
-    const auto all = std::count_if(cast.surface.values().begin(), cast.surface.values().end(), [](std::int32_t s) { return s >= 0; });
+    const camera::Cast cast =
+        camera::cast(alone, {shot.truth.X_WC, params.intrinsics, params.height, params.width, 0, 0});
+    const auto all = std::count_if(cast.surface.values().begin(), cast.surface.values().end(),
+                                   [](std::int32_t s) { return s >= 0; });
     result[i].pixels = pixels[static_cast<std::size_t>(bodies[i])];
     result[i].part = all > 0 ? static_cast<double>(result[i].pixels) / static_cast<double>(all) : 0.0;
   }
@@ -61,7 +63,8 @@ box_estimation::EstimateInput expect_boxes(const model::Scenario& scenario, cons
   const model::Container& container = *model::find_container(scenario, scenario.target);
   box_estimation::EstimateInput input = box_estimation::make_input(scenario, container);
   for (const SceneBox& box : scene.boxes) {
-    const Pose belief{exp_rotation(normals(rng, kBeliefRotation)) * box.X_WP_before.R, box.X_WP_before.p + normals(rng, kBeliefPosition)};
+    const Pose belief{exp_rotation(normals(rng, kBeliefRotation)) * box.X_WP_before.R,
+                      box.X_WP_before.p + normals(rng, kBeliefPosition)};
     input.boxes.push_back({box.id, box.size, belief, kBeliefPosition, kBeliefRotation});
   }
   return input;
@@ -78,12 +81,13 @@ double at_part(const std::vector<double>& sorted, double part) {
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(part * static_cast<double>(sorted.size())))];
 }
 
-/// How far the corners of a box are from those of the same box elsewhere, m: the largest of the distances to the nearest. Boxes
-/// with edges of nearly the same length are nearly the same turned.
+/// How far the corners of a box are from those of the same box elsewhere, m: the largest of the distances to the
+/// nearest. Boxes with edges of nearly the same length are nearly the same turned.
 double corner_distance(const Vector3& size, const Pose& X_WA, const Pose& X_WB) {
   double largest = 0.0;
   const auto corner = [&size](int i) {
-    return Vector3(0.5 * size.cwiseProduct(Vector3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1)));
+    return Vector3(0.5 *
+                   size.cwiseProduct(Vector3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1)));
   };
   for (int i = 0; i < 8; ++i) {
     double nearest = 1e9;
@@ -101,19 +105,23 @@ void judge_box(const SceneBox& box, const BoxEstimate& estimate, const Visibilit
     ++score.disturbed;
     score.disturbed_found += estimate.sight == Sight::Missing ? 1 : 0;
     if (trial.print && estimate.sight != Sight::Missing)
-      std::fprintf(stderr, "seed %llu %s taken but %s points %d\n", static_cast<unsigned long long>(seed), box.id.c_str(), name_of(estimate.sight), estimate.points);
+      std::fprintf(stderr, "seed %llu %s taken but %s points %d\n", static_cast<unsigned long long>(seed),
+                   box.id.c_str(), name_of(estimate.sight), estimate.points);
     return;
   }
   if (seen.pixels < kHiddenPixels) {
     ++score.hidden;
     score.hidden_seen += is_seen ? 1 : 0;
-    if (trial.print && is_seen) std::fprintf(stderr, "seed %llu %s hidden but seen points %d\n", static_cast<unsigned long long>(seed), box.id.c_str(), estimate.points);
+    if (trial.print && is_seen)
+      std::fprintf(stderr, "seed %llu %s hidden but seen points %d\n", static_cast<unsigned long long>(seed),
+                   box.id.c_str(), estimate.points);
   }
   const Matrix3 R = box_estimation::nearest_equal_rotation(estimate.X_WP.R, box.X_WP.R);
   const Vector3 off = estimate.X_WP.p - box.X_WP.p, turn = log_rotation(R * box.X_WP.R.transpose());
   if (is_seen && off.norm() > 0.02) ++score.wrong;
   if (is_visible && box.was_disturbed) {
-    const bool has_moved = (box.X_WP.p - box.X_WP_before.p).norm() > 0.015 || angle_between(box.X_WP.R, box.X_WP_before.R) > 0.08;
+    const bool has_moved =
+        (box.X_WP.p - box.X_WP_before.p).norm() > 0.015 || angle_between(box.X_WP.R, box.X_WP_before.R) > 0.08;
     if (has_moved) {
       ++score.disturbed;
       const bool is_found = is_seen && corner_distance(box.size, estimate.X_WP, box.X_WP) < 0.010;
@@ -122,10 +130,15 @@ void judge_box(const SceneBox& box, const BoxEstimate& estimate, const Visibilit
     }
   }
   if (trial.print && is_visible && (!is_seen || off.norm() > 0.004 || turn.norm() > 0.02))
-    std::fprintf(stderr, "seed %llu %s%s %s part %.2f px %d: off %.1f %.1f %.1f mm, %.2f %.2f %.2f deg, sigma %.2f %.2f %.2f mm, %.2f deg; visible by estimate %.2f points %d rms %.2f mm\n",
-                 static_cast<unsigned long long>(seed), box.id.c_str(), box.was_disturbed ? " (moved)" : "", name_of(estimate.sight), seen.part, seen.pixels, 1e3 * off.x(),
-                 1e3 * off.y(), 1e3 * off.z(), kDegrees * turn.x(), kDegrees * turn.y(), kDegrees * turn.z(), 1e3 * std::sqrt(estimate.covariance(0, 0)),
-                 1e3 * std::sqrt(estimate.covariance(1, 1)), 1e3 * std::sqrt(estimate.covariance(2, 2)), kDegrees * std::sqrt(estimate.covariance(5, 5)), estimate.visible_part, estimate.points, 1e3 * estimate.rms);
+    std::fprintf(stderr,
+                 "seed %llu %s%s %s part %.2f px %d: off %.1f %.1f %.1f mm, %.2f %.2f %.2f deg, sigma %.2f %.2f %.2f "
+                 "mm, %.2f deg; visible by estimate %.2f points %d rms %.2f mm\n",
+                 static_cast<unsigned long long>(seed), box.id.c_str(), box.was_disturbed ? " (moved)" : "",
+                 name_of(estimate.sight), seen.part, seen.pixels, 1e3 * off.x(), 1e3 * off.y(), 1e3 * off.z(),
+                 kDegrees * turn.x(), kDegrees * turn.y(), kDegrees * turn.z(),
+                 1e3 * std::sqrt(estimate.covariance(0, 0)), 1e3 * std::sqrt(estimate.covariance(1, 1)),
+                 1e3 * std::sqrt(estimate.covariance(2, 2)), kDegrees * std::sqrt(estimate.covariance(5, 5)),
+                 estimate.visible_part, estimate.points, 1e3 * estimate.rms);
   if (!is_visible) return;
   ++score.visible;
   if (!is_seen) return;
@@ -148,7 +161,8 @@ CameraScore score_camera(const model::Scenario& scenario, const model::CameraPar
     Rng rng = Rng(seed).split("camera trial");
     camera::Scene view = camera::make_surroundings(scenario);
     std::vector<int> bodies;
-    for (const SceneBox& box : scene.boxes) bodies.push_back(box.is_gone ? -1 : camera::add_box(view, box.id, box.X_WP, box.size));
+    for (const SceneBox& box : scene.boxes)
+      bodies.push_back(box.is_gone ? -1 : camera::add_box(view, box.id, box.X_WP, box.size));
     const double start = cpu_seconds();
     const camera::RenderedFrame shot = camera::render(view, params, camera::draw_camera(params, seed), seed);
     render_ms.push_back(1e3 * (cpu_seconds() - start));
@@ -160,7 +174,8 @@ CameraScore score_camera(const model::Scenario& scenario, const model::CameraPar
     score.foreign += static_cast<int>(estimate.obstacles.size());
     score.foreign_frames += estimate.obstacles.empty() ? 0 : 1;
     const std::vector<Visibility> seen = visibility(shot, bodies, scene.boxes);
-    for (std::size_t k = 0; k < scene.boxes.size(); ++k) judge_box(scene.boxes[k], estimate.boxes[k], seen[k], trial, seed, score);
+    for (std::size_t k = 0; k < scene.boxes.size(); ++k)
+      judge_box(scene.boxes[k], estimate.boxes[k], seen[k], trial, seed, score);
   }
   std::sort(score.position_mm.begin(), score.position_mm.end());
   std::sort(score.angle_deg.begin(), score.angle_deg.end());
@@ -214,7 +229,8 @@ void measure_at_rest(const model::Scenario& scenario, const model::CameraParams&
   add("estimate_ms", score.estimate_ms, "ms", 300.0);
 }
 
-void measure_disturbed(const model::Scenario& scenario, const model::CameraParams& camera, std::vector<Figure>& figures) {
+void measure_disturbed(const model::Scenario& scenario, const model::CameraParams& camera,
+                       std::vector<Figure>& figures) {
   const std::pair<const char*, Disturbance> kinds[] = {
       {"moved", Disturbance::Moved}, {"tipped", Disturbance::Tipped}, {"taken", Disturbance::Taken}};
   std::uint64_t seed = kJudgeSeed + 200;
@@ -222,7 +238,8 @@ void measure_disturbed(const model::Scenario& scenario, const model::CameraParam
     const CameraScore score = score_camera(scenario, camera, {seed, kScenes, 15, kind, false});
     const double found = percent(score.disturbed_found, score.disturbed);
     figures.push_back({fmt::format("camera.{}.found_percent", name), found, "%", ">= 99", found >= 99.0});
-    figures.push_back({fmt::format("camera.{}.more_than_20mm_off", name), static_cast<double>(score.wrong), "boxes", "", true});
+    figures.push_back(
+        {fmt::format("camera.{}.more_than_20mm_off", name), static_cast<double>(score.wrong), "boxes", "", true});
     seed += 200;
   }
 }

@@ -57,9 +57,9 @@ struct PointNoise {
 
 /// Smooth errors along the optical axis: a plane is seen wavy. Distances are between knots of a cubic spline.
 struct Planarity {
-  double local = 0.0;           ///< m, standard deviation of waves that are others in each frame
-  double local_length = 12.0;   ///< px
-  double global = 0.0;          ///< m, standard deviation of waves that belong to the camera
+  double local = 0.0;            ///< m, standard deviation of waves that are others in each frame
+  double local_length = 12.0;    ///< px
+  double global = 0.0;           ///< m, standard deviation of waves that belong to the camera
   double global_length = 180.0;  ///< px
 
   template <class Archive>

@@ -177,11 +177,11 @@ void ScenarioReader::check_materials_meet(const Value& at) const {
 
 void ScenarioReader::read() {
   const MapReader map =
-      root_.map("scenario", {"name",          "gravity",    "time_step",  "duration",   "seed",
-                             "solver",        "materials",  "contacts",   "frames",     "parcel_clearance",
-                             "parcel_types",  "parcels",    "containers", "target",     "bodies",
-                             "aligner",       "tool",       "cup",        "controller", "sequences",
-                             "springs",       "drops",      "robot",      "wrenches",   "record_period",
+      root_.map("scenario", {"name",          "gravity",     "time_step",  "duration",   "seed",
+                             "solver",        "materials",   "contacts",   "frames",     "parcel_clearance",
+                             "parcel_types",  "parcels",     "containers", "target",     "bodies",
+                             "aligner",       "tool",        "cup",        "controller", "sequences",
+                             "springs",       "drops",       "robot",      "wrenches",   "record_period",
                              "initial_state", "uncertainty", "cameras"});
   const auto each = [&map](const char* key, auto&& read_one) {
     if (const auto values = map.find(key))

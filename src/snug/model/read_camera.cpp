@@ -31,9 +31,9 @@ void check_optics(const MapReader& map, const CameraParams& camera) {
   const CameraIntrinsics& optics = camera.intrinsics;
   const double side = std::max(camera.width, camera.height);
   // A field of view between 0.6 and 170 degrees, its middle not far outside the picture.
-  const bool is_fine = std::min(optics.fx, optics.fy) >= 0.05 * side && std::max(optics.fx, optics.fy) <= 100.0 * side &&
-                       std::abs(optics.cx - 0.5 * camera.width) <= 2.0 * side &&
-                       std::abs(optics.cy - 0.5 * camera.height) <= 2.0 * side;
+  const bool is_fine =
+      std::min(optics.fx, optics.fy) >= 0.05 * side && std::max(optics.fx, optics.fy) <= 100.0 * side &&
+      std::abs(optics.cx - 0.5 * camera.width) <= 2.0 * side && std::abs(optics.cy - 0.5 * camera.height) <= 2.0 * side;
   if (!is_fine)
     (map.has("intrinsics") ? map.require("intrinsics") : map.self())
         .fail("fx " + to_text(optics.fx) + ", fy " + to_text(optics.fy) + ", cx " + to_text(optics.cx) + ", cy " +
@@ -49,8 +49,7 @@ void check_errors(const MapReader& map, const CameraErrors& errors) {
   if (errors.noise.precision > kLargestError || errors.noise.correlation > 8.0)
     complain("noise", "precision in metres, at most 0.1; correlation in pixels, at most 8");
   const Planarity& waves = errors.planarity;
-  if (std::max(waves.local, waves.global) > kLargestError)
-    complain("planarity", "errors in metres, at most 0.1");
+  if (std::max(waves.local, waves.global) > kLargestError) complain("planarity", "errors in metres, at most 0.1");
   for (const double length : {waves.local_length, waves.global_length})
     if (length < 2.0 || length > kLongestWave) complain("planarity", "lengths in pixels, 2 to 10000");
   if (errors.trueness.dimension > 0.05 || errors.trueness.position > kLargestError)

@@ -9,6 +9,7 @@ namespace snug::box_estimation::internal {
 [[nodiscard]] std::vector<Obstacle> find_obstacles(const camera::Frame& frame, const EstimateInput& input,
                                                    const PixelRange& range,
                                                    const camera::Grid2<std::uint8_t>& unexplained_points);
-[[nodiscard]] HeightMap make_height_map(const camera::Frame& frame, const EstimateInput& input, const PixelRange& range);
+[[nodiscard]] HeightMap make_height_map(const camera::Frame& frame, const EstimateInput& input,
+                                        const PixelRange& range);
 
 }  // namespace snug::box_estimation::internal

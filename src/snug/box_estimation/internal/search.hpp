@@ -9,7 +9,7 @@ namespace snug::box_estimation::internal {
 
 /// A box that is looked for.
 struct Wanted {
-  int box = 0;     ///< index of the caller
+  int box = 0;  ///< index of the caller
   Vector3 half = Vector3::Zero();
   Pose X_CP_prior;
 };
@@ -29,6 +29,7 @@ struct FoundBox {
 [[nodiscard]] std::vector<FoundBox> find_boxes(const camera::Frame& frame, const Prediction& prediction,
                                                const camera::Grid2<std::uint8_t>& unexplained_points,
                                                const std::vector<Wanted>& wanted,
-                                               const std::vector<camera::SceneShape>& solids_C, const ErrorModel& errors);
+                                               const std::vector<camera::SceneShape>& solids_C,
+                                               const ErrorModel& errors);
 
 }  // namespace snug::box_estimation::internal

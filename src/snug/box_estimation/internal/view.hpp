@@ -30,22 +30,22 @@ struct PixelRange {
 
 /// What is seen of surroundings and tracked boxes. Bodies: first the surroundings', then the boxes in their order.
 struct Prediction {
-  camera::Cast cast;        ///< of the pixels of `range`
+  camera::Cast cast;  ///< of the pixels of `range`
   PixelRange range;
-  int first_box = 0;        ///< body of box 0
+  int first_box = 0;  ///< body of box 0
 };
-[[nodiscard]] Prediction predict(const camera::Frame& frame, const PixelRange& range, const camera::Scene& surroundings_C,
-                                 const std::vector<TrackedBox>& boxes);
+[[nodiscard]] Prediction predict(const camera::Frame& frame, const PixelRange& range,
+                                 const camera::Scene& surroundings_C, const std::vector<TrackedBox>& boxes);
 /// The surroundings with poses in C.
 [[nodiscard]] camera::Scene in_camera(const camera::Scene& scene, const Pose& X_WC);
 
 /// How the points in the pixels of one box compare with it.
 struct Agreement {
-  int pixels = 0;      ///< where it should be seen
-  int on = 0;          ///< points that lie on it
-  int nearer = 0;      ///< points before it
-  int farther = 0;     ///< points behind it: seen through
-  int missing = 0;     ///< no point
+  int pixels = 0;        ///< where it should be seen
+  int on = 0;            ///< points that lie on it
+  int nearer = 0;        ///< points before it
+  int farther = 0;       ///< points behind it: seen through
+  int missing = 0;       ///< no point
   double squares = 0.0;  ///< m^2, of the distances of points that lie on it
   /// Of the points that tell whether it is there: what is before it may be anything.
   [[nodiscard]] double part_on() const { return on > 0 ? static_cast<double>(on) / (on + farther) : 0.0; }

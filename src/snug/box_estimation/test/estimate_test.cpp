@@ -31,7 +31,9 @@ struct Box {
   Pose X_WP;
 };
 
-Pose level(double x, double y, double z, double yaw = 0.0) { return {exp_rotation(Vector3(0, 0, yaw)), Vector3(x, y, z)}; }
+Pose level(double x, double y, double z, double yaw = 0.0) {
+  return {exp_rotation(Vector3(0, 0, yaw)), Vector3(x, y, z)};
+}
 
 /// Three boxes of different heights, 20 mm apart and more.
 std::vector<Box> three_boxes() {
@@ -55,7 +57,11 @@ EstimateInput expect(const Cell& cell, const std::vector<Box>& boxes, std::uint6
   EstimateInput input = make_input(cell.scenario, cell.scenario.containers.front());
   Rng rng = Rng(seed).split("belief");
   for (const Box& box : boxes)
-    input.boxes.push_back({box.id, box.size, {exp_rotation(normals(rng, 0.02)) * box.X_WP.R, box.X_WP.p + normals(rng, 0.004)}, 0.004, 0.02});
+    input.boxes.push_back({box.id,
+                           box.size,
+                           {exp_rotation(normals(rng, 0.02)) * box.X_WP.R, box.X_WP.p + normals(rng, 0.004)},
+                           0.004,
+                           0.02});
   return input;
 }
 
@@ -126,7 +132,8 @@ TEST(EstimateBoxes, ReportsWhatNobodyExpectsAsAnObstacleOfItsHeight) {
   for (const BoxEstimate& box : estimate.boxes) EXPECT_EQ(box.sight, Sight::Seen);
   const HeightMap& map = estimate.heights;
   const auto height = [&map](double x, double y) {
-    return map.height(static_cast<int>((y - map.origin.y()) / map.cell), static_cast<int>((x - map.origin.x()) / map.cell));
+    return map.height(static_cast<int>((y - map.origin.y()) / map.cell),
+                      static_cast<int>((x - map.origin.x()) / map.cell));
   };
   EXPECT_NEAR(height(0.13, -0.22), 0.12, 2e-3);
   EXPECT_NEAR(height(0.0, 0.28), 0.0, 2e-3);

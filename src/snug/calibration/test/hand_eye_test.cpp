@@ -15,7 +15,8 @@ Vector3 normal3(Rng& rng, double size) {
 }
 
 /// Rows of a board that the tool holds before a camera 1 m over it, measured with noise.
-Table make_table(Rng& rng, const Pose& X_WC, const Pose& X_EB, int rows, double position_noise, double angle_noise, bool one_axis) {
+Table make_table(Rng& rng, const Pose& X_WC, const Pose& X_EB, int rows, double position_noise, double angle_noise,
+                 bool one_axis) {
   Table table;
   table.name = "board.csv";
   table.columns = hand_eye_columns();

@@ -15,7 +15,8 @@ struct Round {
 };
 
 Round round_of(const geometry::Shape& shape) {
-  if (const auto* capsule = std::get_if<geometry::Capsule>(&shape)) return {capsule->half_length, capsule->radius, true};
+  if (const auto* capsule = std::get_if<geometry::Capsule>(&shape))
+    return {capsule->half_length, capsule->radius, true};
   const auto* cylinder = std::get_if<geometry::Cylinder>(&shape);
   SNUG_CHECK(cylinder != nullptr, "a capsule or a cylinder");
   return {cylinder->half_length, cylinder->radius, false};

@@ -10,9 +10,9 @@ namespace snug::camera::internal {
 namespace {
 
 constexpr int kRowsPerJob = 32;
-constexpr double kJump = 2.5e-3;      // m: two pixels farther apart than their surfaces explain are an edge of depth
-constexpr double kRoundJump = 5e-3;   // m: the same where a surface is curved
-constexpr double kMeet = 1e-7;        // 1/m
+constexpr double kJump = 2.5e-3;     // m: two pixels farther apart than their surfaces explain are an edge of depth
+constexpr double kRoundJump = 5e-3;  // m: the same where a surface is curved
+constexpr double kMeet = 1e-7;       // 1/m
 
 std::uint8_t border_between(const Cast& cast, int row, int col, int row_b, int col_b, std::uint8_t jump,
                             std::uint8_t corner) {
@@ -36,7 +36,8 @@ std::uint8_t border_between(const Cast& cast, int row, int col, int row_b, int c
 /// Distance along one line of pixels, forth and back. `step` leads from a pixel to the next, `is_source` and `stops`
 /// tell of the border behind a pixel (toward the next).
 template <class IsSource, class Stops>
-void spread(std::uint8_t* line, int count, std::ptrdiff_t step, int most, const IsSource& is_source, const Stops& stops) {
+void spread(std::uint8_t* line, int count, std::ptrdiff_t step, int most, const IsSource& is_source,
+            const Stops& stops) {
   const auto limit = static_cast<std::uint8_t>(most + 1);
   for (int pass = 0; pass < 2; ++pass) {
     std::uint8_t d = limit;
@@ -88,7 +89,8 @@ Grid2<std::uint8_t> edge_distance(const Grid2<std::uint8_t>& borders, int most, 
   const auto lower = [&](int r, int c, int d) {
     if (borders.is_inside(r, c)) distance(r, c) = std::min(distance(r, c), static_cast<std::uint8_t>(d));
   };
-  // From each edge outward; edges are few. Blocks of rows do not write into each other's rows: each looks a little beyond.
+  // From each edge outward; edges are few. Blocks of rows do not write into each other's rows: each looks a little
+  // beyond.
   parallel_for((rows + kRowsPerJob - 1) / kRowsPerJob, threads, [&](int job, int) {
     const int first = job * kRowsPerJob, end = std::min(rows, first + kRowsPerJob);
     for (int r = std::max(0, first - most); r < std::min(rows, end + most); ++r) {

@@ -9,7 +9,7 @@ namespace snug::camera::internal {
 
 /// Between a pixel and its neighbour to the right or below.
 enum Border : std::uint8_t {
-  kJumpRight = 1,    ///< an edge of depth
+  kJumpRight = 1,  ///< an edge of depth
   kJumpBelow = 2,
   kCornerRight = 4,  ///< two surfaces that meet and look at each other
   kCornerBelow = 8,

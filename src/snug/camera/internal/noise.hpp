@@ -16,9 +16,7 @@ namespace snug::camera::internal {
 }
 
 /// Uniform in [0, 1) from the lowest 16 bits.
-[[nodiscard]] inline float low_uniform(std::uint64_t bits) {
-  return static_cast<float>(bits & 0xffffU) * 0x1.0p-16F;
-}
+[[nodiscard]] inline float low_uniform(std::uint64_t bits) { return static_cast<float>(bits & 0xffffU) * 0x1.0p-16F; }
 
 /// Mean 0, variance 1: the sum of four uniforms of 12 bits each, the highest 48. Tails end at 3.46.
 [[nodiscard]] inline float near_normal(std::uint64_t bits) {

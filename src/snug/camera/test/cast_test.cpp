@@ -41,7 +41,8 @@ TEST(Cast, SeesBoxesWhereARayThroughTheirSlabsDoes) {
   for (int scene_index = 0; scene_index < 20; ++scene_index) {
     Scene scene;
     for (int i = 0; i < 6; ++i)
-      add_box(scene, "b", random_pose(rng, 0.3, rng.uniform(0.6, 1.4)), 2.0 * Vector3(rng.uniform(0.02, 0.15), rng.uniform(0.02, 0.15), rng.uniform(0.02, 0.15)));
+      add_box(scene, "b", random_pose(rng, 0.3, rng.uniform(0.6, 1.4)),
+              2.0 * Vector3(rng.uniform(0.02, 0.15), rng.uniform(0.02, 0.15), rng.uniform(0.02, 0.15)));
     const Cast seen = cast(scene, view);
     int hits = 0;
     for (int r = 0; r < view.rows; ++r)
@@ -54,7 +55,8 @@ TEST(Cast, SeesBoxesWhereARayThroughTheirSlabsDoes) {
         }
         const float w = seen.inverse_depth(r, c);
         hits += z > 0.0 ? 1 : 0;
-        // Rounding of single precision: 1e-7 of the depth, at grazing faces some tens of that. A ray along an edge may miss.
+        // Rounding of single precision: 1e-7 of the depth, at grazing faces some tens of that. A ray along an edge may
+        // miss.
         if (z > 0.0 && w > 0.0F) {
           ASSERT_NEAR(1.0 / w, z, 3e-6) << r << " " << c;
         }
@@ -82,7 +84,8 @@ TEST(Cast, BoxAsHullIsSeenAsTheBox) {
     const Pose X_WB = random_pose(rng, 0.1, 1.0);
     std::vector<Vector3> corners;
     for (int k = 0; k < 8; ++k)
-      corners.push_back(half.cwiseProduct(Vector3((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1)));
+      corners.push_back(
+          half.cwiseProduct(Vector3((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1)));
     Scene box, hull;
     add_box(box, "b", X_WB, 2.0 * half);
     add_body(hull, "b", X_WB, {{*geometry::make_convex_hull(corners), {}}});
@@ -115,7 +118,8 @@ TEST(Cast, BallAndCylinderHaveTheirClosedForms) {
   const Cast end = cast(disc, view);
   for (int r = 0; r < view.rows; ++r)
     for (int c = 0; c < view.cols; ++c) {
-      const double radius = 0.9 * std::hypot((c - view.optics.cx) / view.optics.fx, (r - view.optics.cy) / view.optics.fy);
+      const double radius =
+          0.9 * std::hypot((c - view.optics.cx) / view.optics.fx, (r - view.optics.cy) / view.optics.fy);
       if (std::abs(radius - 0.1) < 1e-9) continue;
       EXPECT_EQ(end.inverse_depth(r, c) > 0.0F, radius < 0.1);
       if (radius < 0.1) {
@@ -135,7 +139,8 @@ TEST(Cast, NoRaySlipsThroughTheSeamBetweenBoxesThatTouch) {
 TEST(Cast, GivesTheSameBytesAtAnyNumberOfThreads) {
   Rng rng = Rng(5).split("threads");
   Scene scene;
-  for (int i = 0; i < 30; ++i) add_box(scene, "b", random_pose(rng, 0.4, rng.uniform(0.5, 1.5)), Vector3(0.1, 0.2, 0.06));
+  for (int i = 0; i < 30; ++i)
+    add_box(scene, "b", random_pose(rng, 0.4, rng.uniform(0.5, 1.5)), Vector3(0.1, 0.2, 0.06));
   const Cast one = cast(scene, small_view(), 1), three = cast(scene, small_view(), 3);
   EXPECT_EQ(one.inverse_depth, three.inverse_depth);
   EXPECT_EQ(one.surface, three.surface);

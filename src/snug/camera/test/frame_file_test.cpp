@@ -27,7 +27,8 @@ RenderedFrame small_shot() {
 class FrameFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("snug-frame-test-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = fs::temp_directory_path() /
+              ("snug-frame-test-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -74,12 +75,14 @@ TEST_F(FrameFile, CloudsOfOthersArePutIntoTheCamerasPicture) {
   hints.camera = small_shot().frame.camera;
   hints.points_are_in_camera = true;
   hints.depth_unit = 1e-3;
-  const Frame frame = load_frame(write("mm.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                                                 "property float z\nend_header\n0 0 900\nnan nan nan\n8.5 -8.5 1020\n"),
+  const Frame frame = load_frame(write("mm.ply",
+                                       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                       "property float z\nend_header\n0 0 900\nnan nan nan\n8.5 -8.5 1020\n"),
                                  hints);
   EXPECT_FLOAT_EQ(frame.depth(24, 32), 0.9F);
   EXPECT_FLOAT_EQ(frame.depth(23, 32), 1.02F);
-  EXPECT_EQ(std::count_if(frame.depth.values().begin(), frame.depth.values().end(), [](float z) { return z > 0.0F; }), 2);
+  EXPECT_EQ(std::count_if(frame.depth.values().begin(), frame.depth.values().end(), [](float z) { return z > 0.0F; }),
+            2);
 }
 
 TEST_F(FrameFile, WhatCannotBeAFrameIsRefused) {
@@ -91,16 +94,20 @@ TEST_F(FrameFile, WhatCannotBeAFrameIsRefused) {
   expect_refused(write("cut.png", png.substr(0, png.size() / 2)), "cut.png");
   expect_refused(write("grey8.png", format_intensity_png(shot.frame)), "16");
   expect_refused(write("cut.ply", ply.substr(0, ply.size() - 10)), "too early");
-  expect_refused(write("noxyz.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"), "no property y");
-  expect_refused(write("huge.ply", "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n"), "absurd");
-  expect_refused(write("list.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n"), "list");
+  expect_refused(write("noxyz.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
+                 "no property y");
+  expect_refused(write("huge.ply", "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n"),
+                 "absurd");
+  expect_refused(write("list.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n"),
+                 "list");
   expect_refused(write("bad.h5", "\x89HDF\r\n\x1a\n and no more"), "bad.h5");
   FrameHints other;
   other.camera = shot.frame.camera;
   other.camera.width = 65;
   other.camera_is_given = true;
   expect_refused(write("size.png", png), "64 x 48", other);
-  for (const std::string slip : {"{", "{}", R"({"size_px":[1e9,1]})", R"({"size_px":[4,4],"intrinsics_px":[0,1,2,3]})"}) {
+  for (const std::string slip :
+       {"{", "{}", R"({"size_px":[1e9,1]})", R"({"size_px":[4,4],"intrinsics_px":[0,1,2,3]})"}) {
     model::CameraParams camera;
     EXPECT_THROW(parse_camera(slip, "c", camera), InputError) << slip;
   }

@@ -29,7 +29,7 @@ struct Moments {
 };
 
 Moments moments(const RenderedFrame& shot) {
-  const Grid2<float> &z = shot.frame.depth, &truth = shot.truth.depth;
+  const Grid2<float>&z = shot.frame.depth, &truth = shot.truth.depth;
   double sum = 0.0, squares = 0.0, products = 0.0;
   int count = 0, pairs = 0;
   for (int r = 0; r < z.rows(); ++r)
@@ -62,12 +62,15 @@ TEST(Render, PointNoiseHasTheStatedPrecisionAndCorrelation) {
     model::CameraParams camera = ideal_camera();
     camera.errors.noise = {1e-3, correlation};
     const Moments near = moments(render(wall(0.9), camera, {}, 7)), far = moments(render(wall(1.35), camera, {}, 7));
-    // 120 000 points, some twenty of them alike at most: 1 / sqrt(2 * 6000) = 0.9 % of a standard deviation; 3.5 of these.
+    // 120 000 points, some twenty of them alike at most: 1 / sqrt(2 * 6000) = 0.9 % of a standard deviation; 3.5 of
+    // these.
     EXPECT_NEAR(near.deviation, 1e-3, 0.032e-3);
     EXPECT_NEAR(far.deviation, 1e-3 * 1.5 * 1.5, 0.075e-3);
     // A Gaussian at whole pixels against itself one pixel on.
     double same = 0.0, shifted = 0.0;
-    const auto weight = [&](int i) { return correlation > 0.0 ? std::exp(-0.5 * i * i / (correlation * correlation)) : i == 0 ? 1.0 : 0.0; };
+    const auto weight = [&](int i) {
+      return correlation > 0.0 ? std::exp(-0.5 * i * i / (correlation * correlation)) : i == 0 ? 1.0 : 0.0;
+    };
     for (int i = -20; i <= 20; ++i) {
       same += weight(i) * weight(i);
       shifted += weight(i) * weight(i + 1);
@@ -162,7 +165,8 @@ TEST(Render, LosesPointsAtEdgesGrazingFacesAndAtRandom) {
   }
   const std::vector<float> stated = edge_loss(camera.errors.loss);
   EXPECT_NEAR(stated[0], 0.8 * std::exp(-std::pow(0.5 / 1.5, 2)), 1e-6);
-  for (int d = 0; d < 3; ++d) EXPECT_NEAR(lost[d], stated[static_cast<std::size_t>(d)], 0.026);  // 4 standard errors of 6000
+  for (int d = 0; d < 3; ++d)
+    EXPECT_NEAR(lost[d], stated[static_cast<std::size_t>(d)], 0.026);  // 4 standard errors of 6000
   camera = ideal_camera();
   camera.errors.loss.grazing_onset = 1.0;
   camera.errors.loss.grazing_full = 1.2;
@@ -189,8 +193,8 @@ TEST(Render, ShadowIsAsWideAsTheTwoRaysSay) {
   Scene scene = wall(1.0);
   add_box(scene, "plate", {Matrix3::Identity(), Vector3(0, 0, 0.8005)}, Vector3(0.2, 0.2, 0.001));
   const RenderedFrame shot = render(scene, camera, {}, 1);
-  // Ray from (-0.1, 0) over the plate's right edge (0.1, 0.8) meets the wall at 0.15; the camera sees the wall from 0.125
-  // on. On the left the projector sees under the plate as far as 0.1 + ..., the camera less: no shadow.
+  // Ray from (-0.1, 0) over the plate's right edge (0.1, 0.8) meets the wall at 0.15; the camera sees the wall from
+  // 0.125 on. On the left the projector sees under the plate as far as 0.1 + ..., the camera less: no shadow.
   int right = 0, left = 0;
   for (int c = 0; c < 400; ++c) {
     if (shot.truth.label(150, c) != 0 || shot.frame.depth(150, c) > 0.0F) continue;
@@ -208,7 +212,9 @@ TEST(Render, CornersBendTowardTheCamera) {
   const RenderedFrame shot = render(scene, camera, {}, 1);
   int first = 0;
   while (shot.truth.label(150, first) == 1) ++first;  // the wall's first column: the corner
-  const auto bias = [&](int col) { return static_cast<double>(shot.truth.depth(150, col)) - shot.frame.depth(150, col); };
+  const auto bias = [&](int col) {
+    return static_cast<double>(shot.truth.depth(150, col)) - shot.frame.depth(150, col);
+  };
   EXPECT_NEAR(bias(first), 2e-3, 0.25e-3);  // half a pixel from the corner, its normal nearly along the ray
   for (int d = 0; d < 20; ++d) {
     EXPECT_NEAR(bias(first + d), 2e-3 * std::exp(-((d + 0.5) * 0.9 / 400) / 0.02) / std::cos(0.12), 0.06e-3) << d;
@@ -241,7 +247,8 @@ TEST(Render, GivesTheSameBytesAtAnyNumberOfThreads) {
   Scene scene = wall(1.0);
   Rng rng = Rng(9).split("boxes");
   for (int i = 0; i < 12; ++i)
-    add_box(scene, "b" + std::to_string(i), {exp_rotation(Vector3(0, 0, rng.normal())), Vector3(rng.uniform(-0.3, 0.3), rng.uniform(-0.2, 0.2), 0.9)},
+    add_box(scene, "b" + std::to_string(i),
+            {exp_rotation(Vector3(0, 0, rng.normal())), Vector3(rng.uniform(-0.3, 0.3), rng.uniform(-0.2, 0.2), 0.9)},
             Vector3(0.1, 0.15, 0.1));
   const CameraDraw draw = draw_camera(camera, 1);
   const RenderedFrame one = render(scene, camera, draw, 1, 1), three = render(scene, camera, draw, 1, 3);

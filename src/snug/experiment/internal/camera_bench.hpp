@@ -14,11 +14,11 @@ struct CameraScore {
   std::vector<double> position_mm, angle_deg;  ///< of visible boxes that were reported seen, sorted
   std::vector<double> chi_square;              ///< of the same, six degrees of freedom
   int visible = 0, visible_seen = 0;
-  int hidden = 0, hidden_seen = 0;             ///< the truth has (almost) nothing in view: kHiddenPixels
-  int disturbed = 0, disturbed_found = 0;      ///< visible ones that were moved, tipped or taken away, and those noticed
-  int wrong = 0;                               ///< reported seen, more than 20 mm off
-  int foreign = 0, foreign_frames = 0;         ///< obstacles reported where there are none; frames with any
-  double render_ms = 0.0, estimate_ms = 0.0;   ///< CPU time, the median
+  int hidden = 0, hidden_seen = 0;            ///< the truth has (almost) nothing in view: kHiddenPixels
+  int disturbed = 0, disturbed_found = 0;     ///< visible ones that were moved, tipped or taken away, and those noticed
+  int wrong = 0;                              ///< reported seen, more than 20 mm off
+  int foreign = 0, foreign_frames = 0;        ///< obstacles reported where there are none; frames with any
+  double render_ms = 0.0, estimate_ms = 0.0;  ///< CPU time, the median
 };
 
 struct CameraTrial {

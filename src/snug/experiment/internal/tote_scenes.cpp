@@ -13,7 +13,7 @@
 namespace snug::experiment::internal {
 namespace {
 
-constexpr double kSettle = 0.8;         // s
+constexpr double kSettle = 0.8;           // s
 constexpr double kSettleAfterFall = 1.5;  // s
 
 struct Placed {
@@ -32,11 +32,13 @@ std::vector<Placed> plan(const model::Scenario& scenario, Rng& rng, int count) {
   packing::ContainerState state = packing::make_container_state(container);
   std::vector<const model::Parcel*> order;
   for (const model::Parcel& parcel : scenario.parcels) order.push_back(&parcel);
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[static_cast<std::size_t>(rng.index(static_cast<int>(i)))]);
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(rng.index(static_cast<int>(i)))]);
   std::vector<Placed> placed;
   for (const model::Parcel* parcel : order) {
     if (static_cast<int>(placed.size()) >= count) break;
-    const auto up = std::array{model::UpAxis::X, model::UpAxis::Z, model::UpAxis::Z}[static_cast<std::size_t>(rng.index(3))];
+    const auto up =
+        std::array{model::UpAxis::X, model::UpAxis::Z, model::UpAxis::Z}[static_cast<std::size_t>(rng.index(3))];
     model::Item arrival;
     arrival.parcel = parcel->id;
     arrival.up = up;
@@ -44,7 +46,8 @@ std::vector<Placed> plan(const model::Scenario& scenario, Rng& rng, int count) {
     const auto decision = agent->decide(state, item);
     if (!decision) continue;
     // Not always the best: scenes differ more.
-    const auto choice = static_cast<std::size_t>(rng.index(static_cast<int>(std::min<std::size_t>(3, decision->candidates.size()))));
+    const auto choice =
+        static_cast<std::size_t>(rng.index(static_cast<int>(std::min<std::size_t>(3, decision->candidates.size()))));
     const packing::Candidate& candidate = decision->candidates[choice];
     state = packing::with_candidate(std::move(state), item, candidate);
     placed.push_back({parcel, container.X_WT * candidate.placement.X_TP});
@@ -91,7 +94,8 @@ void disturb(const model::Scenario& scenario, Rng& rng, Disturbance disturbance,
     const double room = std::max(0.0, half - r - 0.003);
     return rng.uniform(-room, room);
   };
-  const Vector3 p_T(within(0.5 * container.inner_size.x(), reach.x()), within(0.5 * container.inner_size.y(), reach.y()), 0.0);
+  const Vector3 p_T(within(0.5 * container.inner_size.x(), reach.x()),
+                    within(0.5 * container.inner_size.y(), reach.y()), 0.0);
   box.X_WP = {R, container.X_WT * p_T};
   box.X_WP.p.z() = top + reach.z() + 0.005;
 }
@@ -108,13 +112,16 @@ ToteScene make_tote_scene(const model::Scenario& scenario, std::uint64_t seed, i
   settle(scenario, placed, kSettle);
   ToteScene scene;
   for (const Placed& one : placed)
-    scene.boxes.push_back({one.parcel->id, model::collision_size(scenario, *one.parcel), one.X_WP, false, one.X_WP, false});
+    scene.boxes.push_back(
+        {one.parcel->id, model::collision_size(scenario, *one.parcel), one.X_WP, false, one.X_WP, false});
   if (disturbance == Disturbance::None || placed.empty()) return scene;
   // One of the three highest.
   std::vector<std::size_t> order(placed.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return top_of(placed[a]) > top_of(placed[b]); });
-  const std::size_t chosen = order[static_cast<std::size_t>(rng.index(static_cast<int>(std::min<std::size_t>(3, order.size()))))];
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return top_of(placed[a]) > top_of(placed[b]); });
+  const std::size_t chosen =
+      order[static_cast<std::size_t>(rng.index(static_cast<int>(std::min<std::size_t>(3, order.size()))))];
   if (disturbance == Disturbance::Taken) {
     scene.boxes[chosen].is_gone = true;
     placed.erase(placed.begin() + static_cast<std::ptrdiff_t>(chosen));
