@@ -762,7 +762,7 @@ class Identify(unittest.TestCase):
 
     def test_help_names_the_parts_and_has_examples(self):
         self.assertIn("stiffness", snug("identify", "--help").stdout)
-        for part in ("stiffness", "damping", "pluck"):
+        for part in ("stiffness", "damping", "pluck", "scene"):
             self.assertIn("Examples:", snug("identify", part, "--help").stdout)
 
     @unittest.skipUnless(CUP_DATA.exists(), f"no reference data at {CUP_DATA}")
@@ -823,6 +823,58 @@ class Identify(unittest.TestCase):
                              (["pluck", "--amplitude", "1", "-o", self.path / "p.json"], ["0.03 m"])):
             with self.subTest(words=words):
                 self.assert_refused(snug("identify", *words), *parts)
+
+    TOSSES = ROOT / "scenarios" / "tosses" / "task.yaml"
+
+    def test_scene_is_evaluated_on_recordings_of_the_task_or_on_others(self):
+        example = self.TOSSES.parent / "example.csv"
+        own = snug("identify", "scene", self.TOSSES, "--evaluate", "--json")
+        self.assertEqual((own.returncode, own.stderr), (0, ""))
+        error = json.loads(own.stdout)
+        # The example is what the task's cube does, seen with noise: what is left is noise of the start.
+        self.assertLess(error["position_mm"], 4.0)
+        self.assertLess(error["rotation_deg"], 3.0)
+        self.assertGreaterEqual(error["right_orientation_percent"], 90.0)
+        self.assertGreater(error["cost"], 0.0)
+        given = snug("identify", "scene", self.TOSSES, "--recordings", example, "--evaluate", "--json", "--threads", 1)
+        self.assertEqual(given.stdout, own.stdout, "the same at any number of threads")
+        floor = json.loads(snug("identify", "scene", self.TOSSES, "--floor", "--json").stdout)
+        self.assertLess(floor["position_mm"], 4.0)
+
+    def small_task(self, low=0.05):
+        task = self.path / "task.yaml"
+        lines = [line for line in self.TOSSES.read_text().replace("cube.yaml", str(self.TOSSES.parent / "cube.yaml")).replace(
+            "[example.csv]", f"[{self.TOSSES.parent / 'example.csv'}]").splitlines()]
+        kept = [line for line in lines if "{name:" not in line or "name: friction" in line or "name: damping" in line]
+        task.write_text("\n".join(kept).replace("value: 0.17209, bounds: [0.05", f"value: 0.25, bounds: [{low}") + "\n")
+        return task
+
+    def test_scene_finds_a_planted_friction_and_writes_task_and_scenario(self):
+        task, found, scenario, log = self.small_task(), self.path / "found.yaml", self.path / "cell.yaml", self.path / "log.csv"
+        words = ("identify", "scene", task, "--local", 60, "--log", log)
+        result = snug(*words, "-o", found, "--scenario", scenario, "--json")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        fit = json.loads(result.stdout)
+        for key in ("chi2_per_dof", "held_back_error", "cost"):
+            self.assertIsInstance(fit[key], float)
+        friction = fit["parameters"][0]
+        self.assertEqual(set(friction) - {"record_instead"}, {"name", "value", "standard_error", "verdict"})
+        self.assertAlmostEqual(friction["value"], 0.17209, delta=0.02)
+        self.assertEqual([row["name"] for row in fit["sensitivity"]], ["friction", "damping"])
+        again = snug("identify", "scene", found, "--evaluate", "--json")
+        self.assertAlmostEqual(json.loads(again.stdout)["cost"], (8 * fit["cost"] + 2 * fit["held_back_error"]) / 10, delta=0.5)
+        self.assertEqual(snug("simulate", scenario, "--until", "0.01", "--json").returncode, 0)
+        self.assertEqual(snug(*words, "--json").stdout, result.stdout, "the same from its log")
+        self.assert_refused(snug("identify", "scene", self.small_task(0.06), "--log", log), "the log of another task")
+
+    def test_scene_tasks_that_cannot_be_used_are_refused(self):
+        for old, new, parts in (("- {body: cube", "- {body: cub", ["'cube'"]), ("toss, time", "tos, time", ["column 'tos'"]),
+                                ("pairs[0]", "pairs[3]", ["pairs[3]", "'3'"]), ("loss: distance", "loss: far", ["squares"]),
+                                ("example.csv", "none.csv", ["none.csv"])):
+            with self.subTest(new=new):
+                task = self.small_task()
+                task.write_text(task.read_text().replace(old, new))
+                self.assert_refused(snug("identify", "scene", task, "--evaluate"), *parts)
 
 
 class OtherCells(unittest.TestCase):

@@ -14,8 +14,9 @@ import unittest
 from pathlib import Path
 
 import cli_test
-from cli_test import CELL, DROP, LOAD, ROOT, SNUG, snug
+from cli_test import CELL, DROP, LOAD, ROOT, SENSORS, SNUG, snug
 
+TASK = ROOT / "scenarios" / "tosses" / "task.yaml"
 ORDERS = ROOT / "scenarios" / "orders-example.csv"
 PLACEMENTS = ROOT / "scenarios" / "demo-placements.yaml"
 QUICK = ("--samples", 0, "--decision-time", 0.02, "--robot", "none")
@@ -49,6 +50,16 @@ class Folder(unittest.TestCase):
         self.assertEqual(snug("program", CELL, PLACEMENTS, "--sequence", "1", "-o", path).returncode, 0)
         return path
 
+    def make_archive(self, recording, name="measured.h5"):
+        path = self.folder / name
+        self.assertEqual(snug("measure", recording, "--sensors", SENSORS, "-o", path).returncode, 0)
+        return path
+
+    def make_swing(self):
+        path = self.folder / "swing.json"
+        self.assertEqual(snug("identify", "pluck", "--repeat", 1, "-o", path).returncode, 0)
+        return path
+
     def one_box(self):
         path = self.folder / "one.csv"
         path.write_text("order,length_mm,width_mm,height_mm,mass_kg\none,120,110,105,0.3\n")
@@ -66,7 +77,8 @@ class StandardOutput(Folder):
     def printing_verbs(self):
         (self.folder / "load.jsonl").write_text(json.dumps(LOAD) + "\n")
         (self.folder / "touches.csv").write_text("x,y,z,rx,ry,rz\n")
-        program = self.make_program()
+        program, recording = self.make_program(), self.make_recording("whole.h5", 6)
+        archive, swing = self.make_archive(recording), self.make_swing()
         small = ("--items", ORDERS, "--container", "220x220x120", *QUICK)
         return (("--help",), ("--version",), (), ("simulate", "--help"), ("simulate", DROP, "--until", 0.02),
                 ("simulate", DROP, "--until", 0.02, "--json"), ("pack", CELL, "--sequence", "kitchen", *small),
@@ -75,7 +87,10 @@ class StandardOutput(Folder):
                 ("items", "sequence", CELL), ("items", "sequence", CELL, "--sequences", 200),
                 ("load", self.one_box(), "--container", 400, 300, 200, "--time", 0.01),
                 ("cup", "settle", self.folder / "load.jsonl"), ("bench", "--only", "s1"),
-                ("check", CELL, "--program", program, "--sequence", "1"))
+                ("check", CELL, "--program", program, "--sequence", "1"),
+                ("identify", "damping", swing), ("identify", "damping", swing, "--json"),
+                ("identify", "scene", TASK, "--evaluate"), ("archive", "list", archive), ("archive", "check", archive),
+                ("validate", "--simulated", recording, "--measured", archive))
 
     def test_full_device_is_exit_1_with_the_reason_in_every_verb(self):
         with open("/dev/full", "w") as full:
@@ -112,6 +127,8 @@ class WholeFiles(Folder):
     def writers(self):
         """Words that end with the option whose file they write; all over before a second has passed."""
         recording, program = self.make_recording(), self.make_program()
+        whole = self.make_recording("whole.h5", 6)
+        archive, swing = self.make_archive(whole), self.make_swing()
         small = ("pack", CELL, "--items", self.one_box(), "--sequence", "one", *QUICK)
         return {"run.html": ("report", recording, "-o"), "run.svg": ("plot", recording, "--what", "speed", "-o"),
                 "run.mcap": ("export", recording, "--format", "mcap", "-o"),
@@ -122,6 +139,11 @@ class WholeFiles(Folder):
                 "types.yaml": ("items", "reduce", ORDERS, "-o"), "drawn.yaml": ("items", "sequence", CELL, "-o"),
                 "load.json": ("load", self.one_box(), "--container", 400, 300, 200, "--time", 0.01, "--json", "-o"),
                 "arm.urdf": ("calibrate", "ft", self.readings(), "-o"),
+                "again.h5": ("measure", whole, "--sensors", SENSORS, "-o"),
+                "page.html": ("validate", "--simulated", whole, "--measured", archive, "-o"),
+                "errors.csv": ("validate", "--simulated", whole, "--measured", archive, "--csv"),
+                "merged.h5": ("archive", "merge", archive, "-o"), "cup.yaml": ("identify", "damping", swing, "-o"),
+                "pluck.json": ("identify", "pluck", "--repeat", 1, "-o"),
                 "packed.csv": (*small, "--program"), "packed.json": (*small, "--plan"), "packed.h5": (*small, "-o")}
 
     def readings(self):
@@ -283,6 +305,8 @@ class TwoWriters(Folder):
             with self.subTest(option=option):
                 self.assert_busy(*words, option, output)
         self.assert_busy("program", CELL, PLACEMENTS, "--sequence", "1", "-o", outputs[0])
+        self.assert_busy("identify", "pluck", "-o", outputs[1])
+        self.assert_busy("identify", "scene", TASK, "-o", outputs[1])
 
 
 class SameFile(Folder):
@@ -316,6 +340,13 @@ class SameFile(Folder):
                               (("calibrate", "kinematics", "--urdf", arm, "--yaml", places, "--write-yaml"), places),
                               (("calibrate", "tool", points, "--urdf", arm, "-o"), points),
                               (("calibrate", "ft", points, "--urdf", arm, "-o"), arm),
+                              (("measure", recording, "--sensors", SENSORS, "-o"), recording),
+                              (("validate", "--simulated", recording, "--measured", orders, "-o"), recording),
+                              (("validate", "--simulated", recording, "--measured", orders, "--csv"), orders),
+                              (("archive", "convert", orders, "-o"), orders), (("archive", "merge", recording, "-o"), recording),
+                              (("identify", "stiffness", points, "-o"), points), (("identify", "damping", points, "-o"), points),
+                              (("identify", "scene", TASK, "--recordings", points, "--log"), points),
+                              (("identify", "scene", TASK, "--recordings", points, "-o"), points),
                               (("view", "--no-open", "--live", cell, "--program", program, "--sequence", "1", "-o"), program)):
             link, hard = self.folder / "link", self.folder / "hard"
             link.symlink_to(output)

@@ -16,24 +16,24 @@ and reports how far joint origins moved in their parents' frames. Three sources,
   --poses:  measurements, CSV with header q1,...,q6,x,y,z,rx,ry,rz (rad; m; rotation vector in rad; 10 rows or more);
             deviations with their standard deviations
 Examples:
-  snug calibrate kinematics --deltas calibration.conf -o ur10-calibrated.urdf --json
-  snug calibrate kinematics --yaml calibration.yaml --angles euler-xyz -o ur10-calibrated.urdf
-  snug calibrate kinematics --poses tracker.csv --base base --end tool0 -o ur10-calibrated.urdf)";
+  snug calibrate kinematics --deltas scenarios/examples/calibration.conf -o ur10-calibrated.urdf --json
+  snug calibrate kinematics --yaml scenarios/examples/calibration.yaml --angles euler-xyz -o ur10-calibrated.urdf
+  snug calibrate kinematics --poses scenarios/examples/tracker.csv --base base --end tool0 -o ur10-calibrated.urdf)";
 
 constexpr const char* kToolHelp =
     R"(The CSV has a header x,y,z,rx,ry,rz (m; rotation vector in rad) and one row for each touch of one and the same point
 with the tip, the tool turned differently each time; four or more.
 Examples:
-  snug calibrate tool touches.csv
-  snug calibrate tool touches.csv --tip-in-tool 0 0 0.05 -o ur10-bent.urdf --json)";
+  snug calibrate tool scenarios/examples/touches.csv
+  snug calibrate tool scenarios/examples/touches.csv --tip-in-tool 0 0 0.05 -o ur10-bent.urdf --json)";
 
 constexpr const char* kSensorHelp =
     R"(The CSV has a header rx,ry,rz,fx,fy,fz,tx,ty,tz: orientation of the sensor's frame in the world (rotation vector, rad)
 and its reading at rest (N, Nm; a hanging load pulls along gravity). Four or more orientations, each axis up and down.
 Only ratios of mass and scales show: without --mass the scales have the geometric mean 1.
 Examples:
-  snug calibrate ft readings.csv
-  snug calibrate ft readings.csv --mass 1.02 -o ur10-weighed.urdf --json)";
+  snug calibrate ft scenarios/examples/readings.csv
+  snug calibrate ft scenarios/examples/readings.csv --mass 1.02 -o ur10-weighed.urdf --json)";
 
 void add_common(CLI::App& part, CalibrateOptions& options, const char* output) {
   part.add_option("--urdf", options.urdf, "the nominal arm; the shipped UR10 unless given")->type_name("FILE.urdf");

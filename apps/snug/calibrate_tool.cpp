@@ -53,7 +53,7 @@ int run_calibrate_tool(const CalibrateToolOptions& options) {
   if (flange_link.segment != nominal.arm.joint_count())
     throw InputError("command line", "--flange", options.flange, "a link behind the last joint");
   const calibration::ToolTip tip =
-      calibration::find_tool_tip(calibration::load_table(options.input, calibration::tool_tip_columns()));
+      calibration::find_tool_tip(load_table(options.input, calibration::tool_tip_columns()));
   const Pose X_FE = flange_link.X_SL.inverse() * nominal.arm.X_SE;
   const Vector3 tip_in_tool(options.tip_in_tool[0], options.tip_in_tool[1], options.tip_in_tool[2]);
   const Vector3 p_FE = tip.p_FQ - X_FE.R * tip_in_tool;
@@ -88,8 +88,8 @@ int run_calibrate_sensor(const CalibrateSensorOptions& options) {
   std::optional<OutputFile> output =
       reserve({{"the input", options.input}, {"the nominal URDF", nominal.path}}, options.output);
   const int sensor = require_link(nominal.arm, "--sensor", options.sensor);
-  const calibration::ForceSensorFit fit = calibration::fit_force_sensor(
-      calibration::load_table(options.input, calibration::force_sensor_columns()), options.mass);
+  const calibration::ForceSensorFit fit =
+      calibration::fit_force_sensor(load_table(options.input, calibration::force_sensor_columns()), options.mass);
   if (output)
     write_file(std::move(*output), calibration::format_urdf_with_load(
                                        nominal.path, nominal.arm, sensor, fit.mass, fit.com,

@@ -2,8 +2,8 @@
 #include "identify.hpp"
 
 #include <fmt/format.h>
+#include <fmt/printf.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -66,22 +66,22 @@ void add_errors(ordered_json& json, double chi2_per_dof, int degrees_of_freedom,
   json["held_back_rotation_deg"] = kDegrees * held_back.rotation;
 }
 
-void print(const std::vector<Parameter>& parameters) {
+void show(const std::vector<Parameter>& parameters) {
   for (const Parameter& parameter : parameters) {
-    std::printf("  %-9s %12.6g +- %-9.2g %-8s %s\n", parameter.name.c_str(), parameter.value, parameter.standard_error,
-                parameter.unit.c_str(), name_of(parameter.verdict));
-    if (!parameter.advice.empty()) std::printf("            record instead: %s\n", parameter.advice.c_str());
+    print(fmt::sprintf("  %-9s %12.6g +- %-9.2g %-8s %s\n", parameter.name.c_str(), parameter.value,
+                       parameter.standard_error, parameter.unit.c_str(), name_of(parameter.verdict)));
+    if (!parameter.advice.empty()) print(fmt::sprintf("            record instead: %s\n", parameter.advice.c_str()));
   }
 }
 
 void print_errors(double chi2_per_dof, const HeldBackError& held_back, bool noise_is_given) {
-  std::printf("misfit: chi2 per degree of freedom %.3f with the noise %s%s\n", chi2_per_dof,
-              noise_is_given ? "given" : "assumed (the demonstrator's sensors)",
-              chi2_per_dof > 2.0   ? ": more than noise; standard errors are enlarged"
-              : chi2_per_dof < 0.5 ? ": less than noise; it is smaller than said"
-                                   : "");
-  std::printf("held back: %.3f mm, %.3f degrees rms, %.3f times the noise\n", 1e3 * held_back.position,
-              kDegrees * held_back.rotation, held_back.relative);
+  print(fmt::sprintf("misfit: chi2 per degree of freedom %.3f with the noise %s%s\n", chi2_per_dof,
+                     noise_is_given ? "given" : "assumed (the demonstrator's sensors)",
+                     chi2_per_dof > 2.0   ? ": more than noise; standard errors are enlarged"
+                     : chi2_per_dof < 0.5 ? ": less than noise; it is smaller than said"
+                                          : ""));
+  print(fmt::sprintf("held back: %.3f mm, %.3f degrees rms, %.3f times the noise\n", 1e3 * held_back.position,
+                     kDegrees * held_back.rotation, held_back.relative));
 }
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -130,19 +130,20 @@ ordered_json describe(const identification::StiffnessFit& fit, const HeldBackErr
   return json;
 }
 
-void print(const identification::StiffnessFit& fit, const HeldBackError& held_back, bool noise_is_given) {
-  std::printf("stiffness from %d poses, method %s, wrench of the %s\n", fit.poses, name_of(fit.method),
-              fit.wrench == identification::WrenchSource::Sensor ? "sensor" : "payload's gravity");
-  print(fit.parameters);
+void show(const identification::StiffnessFit& fit, const HeldBackError& held_back, bool noise_is_given) {
+  print(fmt::sprintf("stiffness from %d poses, method %s, wrench of the %s\n", fit.poses, name_of(fit.method),
+                     fit.wrench == identification::WrenchSource::Sensor ? "sensor" : "payload's gravity"));
+  show(fit.parameters);
   print_errors(fit.chi2_per_dof, held_back, noise_is_given);
-  std::printf("residuals: %.3f mm, %.3f degrees rms, measured less predicted pose\n", 1e3 * fit.position,
-              kDegrees * fit.rotation);
+  print(fmt::sprintf("residuals: %.3f mm, %.3f degrees rms, measured less predicted pose\n", 1e3 * fit.position,
+                     kDegrees * fit.rotation));
   if (fit.symmetry)
-    std::printf("symmetry: the same from all sides is %s (p = %.3g; worst: %s)\n",
-                fit.symmetry->is_supported ? "supported" : "NOT supported", fit.symmetry->p_value,
-                fit.symmetry->worst.c_str());
+    print(fmt::sprintf("symmetry: the same from all sides is %s (p = %.3g; worst: %s)\n",
+                       fit.symmetry->is_supported ? "supported" : "NOT supported", fit.symmetry->p_value,
+                       fit.symmetry->worst.c_str()));
   if (!fit.outliers.empty())
-    std::printf("left out, beyond 6 standard deviations of the rest: poses %s\n", indices(fit.outliers).c_str());
+    print(
+        fmt::sprintf("left out, beyond 6 standard deviations of the rest: poses %s\n", indices(fit.outliers).c_str()));
 }
 
 /// The five numbers of a fit with 21 have the errors of the entries they are read from.
@@ -197,19 +198,20 @@ ordered_json describe(const identification::DampingFit& fit, const HeldBackError
   return json;
 }
 
-void print(const identification::DampingFit& fit, const HeldBackError& held_back, bool noise_is_given) {
-  std::printf("damping from %zu release%s, %s when the records begin\n", fit.releases.size(),
-              fit.releases.size() == 1 ? "" : "s",
-              fit.start == identification::ReleaseStart::Moving ? "moving" : "at rest");
-  print(fit.parameters);
+void show(const identification::DampingFit& fit, const HeldBackError& held_back, bool noise_is_given) {
+  print(fmt::sprintf("damping from %zu release%s, %s when the records begin\n", fit.releases.size(),
+                     fit.releases.size() == 1 ? "" : "s",
+                     fit.start == identification::ReleaseStart::Moving ? "moving" : "at rest"));
+  show(fit.parameters);
   print_errors(fit.chi2_per_dof, held_back, noise_is_given);
   for (const identification::ReleaseFit& release : fit.releases) {
-    std::printf("%s: chi2 per degree of freedom %.3f, residuals %.3f mm, %.3f degrees", release.name.c_str(),
-                release.chi2_per_dof, 1e3 * release.position, kDegrees * release.rotation);
-    std::printf(release.outliers.empty() ? "\n" : ", samples left out: %s\n", indices(release.outliers).c_str());
-    if (!fit.releases_agree) print(release.parameters);
+    print(fmt::sprintf("%s: chi2 per degree of freedom %.3f, residuals %.3f mm, %.3f degrees", release.name.c_str(),
+                       release.chi2_per_dof, 1e3 * release.position, kDegrees * release.rotation));
+    print(
+        fmt::sprintf(release.outliers.empty() ? "\n" : ", samples left out: %s\n", indices(release.outliers).c_str()));
+    if (!fit.releases_agree) show(release.parameters);
   }
-  if (!fit.releases_agree) std::printf("the releases contradict each other: no one damping fits them all\n");
+  if (!fit.releases_agree) print(fmt::sprintf("the releases contradict each other: no one damping fits them all\n"));
 }
 
 }  // namespace
@@ -229,9 +231,9 @@ int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
                    {fmt::format("Stiffness from {} ({} poses, {}, chi2 per degree of freedom {:.3f})",
                                 file_name(options.input), fit.poses, name_of(fit.method), fit.chi2_per_dof)}));
   if (options.json)
-    std::printf("%s\n", describe(fit, held_back, poses.noise_is_given).dump(2).c_str());
+    print(describe(fit, held_back, poses.noise_is_given).dump(2) + "\n");
   else
-    print(fit, held_back, poses.noise_is_given);
+    show(fit, held_back, poses.noise_is_given);
   return kSuccess;
 }
 
@@ -258,9 +260,9 @@ int run_identify_damping(const IdentifyDampingOptions& options) {
                          file_name(options.inputs.front()), options.inputs.size() > 1 ? " and others" : "",
                          releases.size(), fit.chi2_per_dof)}));
   if (options.json)
-    std::printf("%s\n", describe(fit, held_back, releases.front().noise_is_given).dump(2).c_str());
+    print(describe(fit, held_back, releases.front().noise_is_given).dump(2) + "\n");
   else
-    print(fit, held_back, releases.front().noise_is_given);
+    show(fit, held_back, releases.front().noise_is_given);
   return kSuccess;
 }
 
@@ -318,9 +320,9 @@ int run_identify_pluck(const IdentifyPluckOptions& options) {
   NamedFiles inputs;
   add_file(inputs, "--scenario", options.scenario);
   write_file(*reserve(inputs, options.output), identification::format_releases(releases));
-  std::printf("%s: %llu releases %s by %g %s, %g kg, %zu samples each\n", options.output->c_str(),
-              static_cast<unsigned long long>(options.repeat), options.direction.c_str(), pluck.amplitude,
-              is_turn ? "rad" : "m", box.mass, releases.front().times.size());
+  print(fmt::sprintf("%s: %llu releases %s by %g %s, %g kg, %zu samples each\n", options.output->c_str(),
+                     static_cast<unsigned long long>(options.repeat), options.direction.c_str(), pluck.amplitude,
+                     is_turn ? "rad" : "m", box.mass, releases.front().times.size()));
   return kSuccess;
 }
 

@@ -40,9 +40,23 @@ struct IdentifyPluckOptions : IdentifyOptions {
   std::uint64_t seed = 1;
 };
 
+struct IdentifySceneOptions {
+  std::string task;
+  std::vector<std::string> recordings;                        ///< those of the task unless given
+  bool floor = false;                                         ///< only the error that noise of the start sets
+  bool evaluate = false;                                      ///< only the errors of the task's present values
+  std::optional<std::uint64_t> global, local, scatter, seed;  ///< instead of the task's
+  std::optional<std::string> log;                             ///< of points tried
+  std::optional<std::string> output;                          ///< the task with the values found
+  std::optional<std::string> scenario;                        ///< the scenario with the values found
+  std::uint64_t threads = 0;
+  bool json = false;
+};
+
 void add_identify(CLI::App& app, Action& action);
 [[nodiscard]] int run_identify_stiffness(const IdentifyStiffnessOptions& options);
 [[nodiscard]] int run_identify_damping(const IdentifyDampingOptions& options);
+[[nodiscard]] int run_identify_scene(const IdentifySceneOptions& options);
 [[nodiscard]] int run_identify_pluck(const IdentifyPluckOptions& options);
 
 }  // namespace snug::app

@@ -15,16 +15,17 @@ left out and named by index. Verdicts: identified (standard error below 5 %), we
 Methods: compliance, closed form, the default; wrench, closed form, exact without noise, biased low with it;
 errors-in-variables, maximum likelihood, the best error bars.
 Examples:
-  snug identify stiffness poses.json
-  snug identify stiffness poses.csv --method errors-in-variables --wrench gravity -o cup.yaml
-  snug identify stiffness poses.json --parameters 21 --json)";
+  snug identify stiffness scenarios/examples/poses.json
+  snug identify stiffness scenarios/examples/poses.json --method errors-in-variables --wrench gravity -o cup.yaml
+  snug identify stiffness scenarios/examples/poses.json --parameters 21 --json)";
 
 constexpr const char* kDampingHelp =
     R"(Each release: poses of the lip in the gripper's frame after a held box was displaced and let go, gripper at rest; mass, centre
 of mass and inertia of the box. Files: docs/formats.md, releases. Stiffness is that of the file, else of --scenario.
 Examples:
-  snug identify damping swings.json pluck.json --scenario cell.yaml -o cup.yaml
-  snug identify damping swings.json --release 2 --json)";
+  snug identify pluck --scenario scenarios/box-demonstrator.yaml --parcel BOX013 -o pluck.json
+  snug identify damping pluck.json --scenario scenarios/box-demonstrator.yaml -o cup.yaml
+  snug identify damping pluck.json --release 0 --json)";
 
 constexpr const char* kPluckHelp =
     R"(Swings say little about damping along the cup's axis. This writes the experiment that does, as sensors would record it
@@ -33,6 +34,14 @@ the others. What it is identified with: snug identify damping.
 Examples:
   snug identify pluck --scenario scenarios/box-demonstrator.yaml --parcel BOX013 -o pluck.json
   snug identify damping pluck.json)";
+
+constexpr const char* kSceneHelp =
+    R"(The task names a scenario, the bodies that were recorded, and which numbers of the scenario are open, with bounds. First
+comes what each of them changes; combinations that the recordings cannot tell are named and left alone. Then the search, and
+standard errors. Each fifth recording is held back and predicted. Task files: docs/identification.md.
+Examples:
+  snug identify scene scenarios/tosses/task.yaml --recordings tosses.csv --evaluate --json
+  snug identify scene scenarios/tosses/task.yaml --recordings tosses.csv --local 100 --log points.csv -o found.yaml)";
 
 void add_scenario(CLI::App& part, IdentifyOptions& options) {
   part.add_option("--scenario", options.scenario,
@@ -121,6 +130,30 @@ void add_pluck(CLI::App& verb, Action& action) {
   part.callback([options, &action] { action = [options] { return run_identify_pluck(*options); }; });
 }
 
+void add_scene(CLI::App& verb, Action& action) {
+  CLI::App& part = *verb.add_subcommand("scene", "numbers of a scenario, from recordings of its bodies");
+  const auto options = std::make_shared<IdentifySceneOptions>();
+  part.add_option("task", options->task, "what is open, and what was recorded")->required()->type_name("TASK.yaml");
+  part.add_option("--recordings", options->recordings, "instead of those that the task names")->type_name("FILE");
+  part.add_flag("--evaluate", options->evaluate, "only the errors of the task's present values on all recordings");
+  part.add_flag("--floor", options->floor, "only the error that noise of the start alone sets, at the present values")
+      ->excludes("--evaluate");
+  part.add_option("--scatter", options->scatter, "points spread over the bounds first")->check(whole(0, 1000000));
+  part.add_option("--global", options->global, "evaluations of the global search")->check(whole(0, 1000000));
+  part.add_option("--local", options->local, "evaluations of the local search")->check(whole(0, 1000000));
+  part.add_option("--seed", options->seed, "of the searches")->check(whole(0));
+  part.add_option("--log", options->log, "points tried are added to it; what is in it already is not computed again")
+      ->type_name("FILE.csv");
+  part.add_option("--threads", options->threads, "0: one for each core; the result does not depend on it")
+      ->check(whole(0, 1024))
+      ->capture_default_str();
+  part.add_option("-o,--output", options->output, "the task with the values found")->type_name("TASK.yaml");
+  part.add_option("--scenario", options->scenario, "the scenario with the values found")->type_name("SCENARIO.yaml");
+  part.add_flag("--json", options->json, "the result as one JSON object on stdout");
+  part.footer(kSceneHelp);
+  part.callback([options, &action] { action = [options] { return run_identify_scene(*options); }; });
+}
+
 }  // namespace
 
 void add_identify(CLI::App& app, Action& action) {
@@ -129,6 +162,7 @@ void add_identify(CLI::App& app, Action& action) {
   add_stiffness(verb, action);
   add_damping(verb, action);
   add_pluck(verb, action);
+  add_scene(verb, action);
   verb.footer(
       "`snug identify stiffness --help` and so on tell files and methods; docs/theory/identification.md the rest.");
 }

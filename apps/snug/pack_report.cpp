@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -216,8 +217,9 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
             {"duration", result.duration},
             {"state_hash", fmt::format("{:016x}", trial.state_hash)}};
   json["items"] = Json::array();
-  for (std::size_t i = 0; i < result.items.size(); ++i) {
-    json["items"].push_back(as_json(result.items[i], i < trial.items.size() ? trial.items[i] : study::TrueItem{}));
+  for (const session::ItemReport& item : result.items) {  // those left out on paper have no truth
+    const auto truth = std::ranges::find(trial.items, item.id, &study::TrueItem::id);
+    json["items"].push_back(as_json(item, truth != trial.items.end() ? *truth : study::TrueItem{}));
   }
   if (repeated.count > 0) json["monte_carlo"] = as_json(repeated);
   return json.dump(2) + "\n";

@@ -11,6 +11,7 @@
 #include "cup.hpp"
 #include "export.hpp"
 #include "identify.hpp"
+#include "init.hpp"
 #include "items.hpp"
 #include "load.hpp"
 #include "manual.hpp"
@@ -28,6 +29,7 @@
 namespace snug::app {
 
 void add_verbs(CLI::App& app, Action& action) {
+  add_init(app, action);
   add_simulate(app, action);
   add_pack(app, action);
   add_compare(app, action);

@@ -99,11 +99,15 @@ class BulletEngine final : public Engine {
     shapes_.push_back(std::make_unique<btBoxShape>(to_bullet(box.half)));
     btVector3 inertia(0, 0, 0);
     if (box.mass > 0) shapes_.back()->calculateLocalInertia(box.mass, inertia);
+    inertia *= box.inertia_factor;
     bodies_.push_back(std::make_unique<btRigidBody>(box.mass, nullptr, shapes_.back().get(), inertia));
     btRigidBody& body = *bodies_.back();
     body.setWorldTransform(to_bullet(box.X_WB));
     body.setInterpolationWorldTransform(to_bullet(box.X_WB));
     set_contact(body, scene, box.mass > 0);
+    // Bullet adds the softness of both bodies as springs in a row: only what is fixed has it.
+    if (!(box.mass > 0) && scene.box_container.stiffness > 0.0)
+      body.setContactStiffnessAndDamping(scene.box_container.stiffness, scene.box_container.damping);
     body.setActivationState(DISABLE_DEACTIVATION);
     if (box.is_present) world_->addRigidBody(&body);
   }

@@ -28,6 +28,14 @@ std::string geom_xml(const BoxBody& box, const Scene& scene) {
       fmt::format(R"(type="box" size="{} {} {}" friction="{} 0.005 0.0001")", box.half.x(), box.half.y(), box.half.z(),
                   is_box ? scene.box_box.friction : scene.box_container.friction);
   if (!is_box) return fmt::format("<geom {} {} priority=\"1\"/>\n", place, geom);
+  if (box.inertia_factor != 1.0) {
+    const Vector3 square = (2.0 * box.half).cwiseAbs2();
+    const Vector3 moments = Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) *
+                            box.inertia_factor * box.mass / 12.0;
+    return fmt::format(
+        "<body {}><freejoint/><inertial pos=\"0 0 0\" mass=\"{}\" diaginertia=\"{} {} {}\"/><geom {}/></body>\n", place,
+        box.mass, moments.x(), moments.y(), moments.z(), geom);
+  }
   return fmt::format("<body {}><freejoint/><geom {} mass=\"{}\"/></body>\n", place, geom, box.mass);
 }
 
@@ -35,8 +43,13 @@ std::string scene_xml(const Scene& scene, const MujocoSettings& settings, double
   std::string bodies;
   for (const BoxBody& box : scene.bodies) bodies += geom_xml(box, scene);
   if (scene.has_plane) {
-    bodies += fmt::format(R"(<geom type="plane" size="5 5 1" pos="0 0 {}" friction="{} 0.005 0.0001" priority="1"/>)",
-                          scene.plane_height, scene.box_container.friction);
+    const Contact& contact = scene.box_container;
+    const std::string soft = contact.time_constant > 0.0
+                                 ? fmt::format("solref=\"{} {}\"", contact.time_constant, contact.damping_ratio)
+                                 : "";
+    bodies +=
+        fmt::format(R"(<geom type="plane" size="5 5 1" pos="0 0 {}" friction="{} 0.005 0.0001" priority="1" {}/>)",
+                    scene.plane_height, contact.friction, soft);
   }
   return fmt::format(
       R"(<mujoco><size njmax="1600" nconmax="400"/>

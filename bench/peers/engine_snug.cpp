@@ -28,7 +28,8 @@ class SnugEngine final : public Engine {
     model_.gravity = scene.gravity;
     model_.material_count = 2;
     const physics::ContactLaw box_box{scene.box_box.friction, scene.box_box.restitution, 0.0, 0.0};
-    const physics::ContactLaw box_fixed{scene.box_container.friction, scene.box_container.restitution, 0.0, 0.0};
+    const Contact& fixed = scene.box_container;
+    const physics::ContactLaw box_fixed{fixed.friction, fixed.restitution, fixed.stiffness, fixed.damping};
     model_.laws = {box_box, box_fixed, box_fixed, box_fixed};
     for (const BoxBody& box : scene.bodies) model_.bodies.push_back(body_of(box));
     plane_ = static_cast<int>(model_.bodies.size());
@@ -116,9 +117,9 @@ class SnugEngine final : public Engine {
     body.inertia.mass = std::max(box.mass, 1.0);
     if (box.mass > 0.0) {
       body.inertia.mass = box.mass;
-      body.inertia.inertia =
-          (Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) * box.mass / 12.0)
-              .asDiagonal();
+      body.inertia.inertia = (Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) *
+                              box.inertia_factor * box.mass / 12.0)
+                                 .asDiagonal();
     }
     body.geoms = {{geometry::Box{box.half}, Pose{}, box.mass > 0.0 ? kBox : kFixed, true}};
     body.X_WB = box.X_WB;

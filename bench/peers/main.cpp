@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "peers/measure.hpp"
+#include "peers/tosses.hpp"
 
 namespace {
 
@@ -34,14 +35,17 @@ std::vector<Candidate> candidates() {
 }
 
 constexpr const char* kUsage = R"(usage: bench_peers [--json] [--engine NAME]... [--scene s1|s2|s3|s4|s5|s6]...
+       bench_peers --tosses FILE.csv [--evaluations N] [--json] [--engine NAME]...
 Runs the scenes in the engines named (default: all in all) and prints the figures that bench/README.md explains.
   bench_peers --scene s1 --engine bullet-si50
   bench_peers --json > peers.json
+  bench_peers --tosses tosses.csv --evaluations 150   (real cube tosses, each engine tuned alike)
 )";
 
 struct Options {
   bool is_json = false;
   std::vector<std::string> engines, scenes;
+  snug::peers::TossOptions tosses;  ///< no file: the scenes
 };
 
 bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
@@ -58,6 +62,11 @@ std::string parse(int argc, char** argv, Options& options) {
       options.is_json = true;
     } else if ((word == "--engine" || word == "--scene") && i + 1 < argc) {
       (word == "--engine" ? options.engines : options.scenes).emplace_back(argv[++i]);
+    } else if (word == "--tosses" && i + 1 < argc) {
+      options.tosses.file = argv[++i];
+    } else if (word == "--evaluations" && i + 1 < argc) {
+      options.tosses.evaluations = std::atoi(argv[++i]);
+      if (options.tosses.evaluations < 1) return fmt::format("--evaluations '{}': expected a number above 0", argv[i]);
     } else {
       return fmt::format("unknown or incomplete argument '{}'", word);
     }
@@ -95,6 +104,11 @@ Table run_all(const Options& options) {
   for (const Candidate& candidate : candidates()) {
     if (!is_wanted(options.engines, candidate.name)) continue;
     table.engines.push_back(candidate.name);
+    if (!options.tosses.file.empty()) {
+      fmt::print(stderr, "{} tosses\n", candidate.name);
+      for (const Result& result : measure_tosses(candidate.make, options.tosses)) add(table, candidate.name, result);
+      continue;
+    }
     for (const std::string& scene : kScenes) {
       if (!is_wanted(options.scenes, scene)) continue;
       fmt::print(stderr, "{} {}\n", candidate.name, scene);

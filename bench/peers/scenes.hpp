@@ -12,6 +12,10 @@ namespace snug::peers {
 struct Contact {
   double friction = 0.2;
   double restitution = 0.05;
+  /// Softness, as far as an engine has it; 0: its default. Snug: N/m and N s/m of a patch; Bullet: of a point.
+  double stiffness = 0.0, damping = 0.0;
+  /// The same for MuJoCo, whose contacts are springs by their time constant, s (solref).
+  double time_constant = 0.0, damping_ratio = 1.0;
 };
 
 /// A solid box of uniform density; the body frame is at its centre.
@@ -21,6 +25,7 @@ struct BoxBody {
   double mass = 0.0;                       ///< kg; 0: fixed to the world
   Pose X_WB{};                             ///< at the start, at rest
   bool is_present = true;                  ///< false: enters with Engine::insert
+  double inertia_factor = 1.0;             ///< of the moments of a solid box
 };
 
 /// Boxes, optionally on a plane. Fixed things (mass 0 and the plane) are the container, the others are boxes.

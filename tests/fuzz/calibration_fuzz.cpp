@@ -2,7 +2,7 @@
 #include "fuzz.hpp"
 #include "snug/calibration/dh.hpp"
 #include "snug/calibration/exact_arm.hpp"
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
 #include "snug/robot/arm.hpp"
 
 namespace {
@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::expect_answer([&] {
     switch (data[0]) {
       case 't':
-        (void)calibration::parse_table(text, "x.csv", {"x", "y", "z", "rx", "ry", "rz"});
+        (void)parse_table(text, "x.csv", {"x", "y", "z", "rx", "ry", "rz"});
         break;
       case 'd':
         (void)calibration::parse_deltas(text, "x.conf");

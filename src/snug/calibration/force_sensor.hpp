@@ -3,7 +3,8 @@
 
 #include <optional>
 
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration {
 

@@ -8,6 +8,7 @@
 #include "snug/calibration/internal/complaints.hpp"
 #include "snug/calibration/internal/frames.hpp"
 #include "snug/calibration/internal/linear_fit.hpp"
+#include "snug/calibration/internal/pose_row.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/numerics/least_squares.hpp"
 #include "snug/numerics/outliers.hpp"
@@ -187,7 +188,7 @@ PosePairs make_pose_pairs(Table table, const robot::ArmModel& arm) {
   internal::check_poses(table, n);
   for (const std::vector<double>& row : table.rows) {
     pairs.q.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(n)));
-    pairs.X_BF.push_back(row_pose(row, n));
+    pairs.X_BF.push_back(internal::row_pose(row, n));
   }
   pairs.table = std::move(table);
   return pairs;

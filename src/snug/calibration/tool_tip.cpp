@@ -4,6 +4,7 @@
 #include "snug/calibration/internal/complaints.hpp"
 #include "snug/calibration/internal/frames.hpp"
 #include "snug/calibration/internal/linear_fit.hpp"
+#include "snug/calibration/internal/pose_row.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::calibration {
@@ -17,7 +18,7 @@ ToolTip find_tool_tip(const Table& table) {
   Eigen::MatrixXd A(3 * rows, 6);
   Eigen::VectorXd b(3 * rows);
   for (Eigen::Index k = 0; k < rows; ++k) {
-    const Pose X_WF = row_pose(table.rows[static_cast<std::size_t>(k)], 0);
+    const Pose X_WF = internal::row_pose(table.rows[static_cast<std::size_t>(k)], 0);
     A.block<3, 3>(3 * k, 0) = X_WF.R;
     A.block<3, 3>(3 * k, 3) = -Matrix3::Identity();
     b.segment<3>(3 * k) = -X_WF.p;

@@ -1,7 +1,8 @@
 // Tool tip: where the tip of a tool is, from poses of the flange in which it touched one and the same point.
 #pragma once
 
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration {
 

@@ -9,6 +9,7 @@
 
 #include "snug/cup/law.hpp"
 #include "snug/experiment/internal/cpu_time.hpp"
+#include "snug/experiment/internal/planted_bench.hpp"
 #include "snug/identification/damping.hpp"
 #include "snug/identification/stiffness.hpp"
 #include "snug/identification/virtual_experiments.hpp"
@@ -220,6 +221,7 @@ void measure_identification(const BenchOptions& options, std::vector<Figure>& fi
     figures.push_back({"identification.reference_decays", 0.0, "%", "", true, "no " + decays.string()});
   measure_plucks(figures);
   measure_payload(figures);
+  measure_planted(options, figures);
 }
 
 }  // namespace snug::experiment::internal

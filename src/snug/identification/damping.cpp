@@ -10,6 +10,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/cup/law.hpp"
 #include "snug/identification/free_swing.hpp"
+#include "snug/identification/internal/release_model.hpp"
 #include "snug/identification/internal/stiffness_form.hpp"
 #include "snug/numerics/least_squares.hpp"
 #include "snug/numerics/outliers.hpp"
@@ -17,130 +18,11 @@
 namespace snug::identification {
 namespace {
 
-using internal::Form;
+using internal::ReleaseModel;
+using internal::Unknowns;
 
 constexpr double kPriorWidth = 1000.0;  // times the prior's own size
 constexpr double kRejects = 3.29;       // deviations of chi-square by which releases contradict: about 1 in 1000
-
-/// Which numbers are looked for, and where they stay when the data do not know them.
-struct Unknowns {
-  std::vector<Matrix6> damping;
-  std::vector<Matrix6> stiffness;
-  Eigen::VectorXd prior;  ///< damping first
-  Eigen::VectorXd scale;
-  std::vector<std::string> names, units;
-};
-
-Unknowns make_unknowns(const DampingOptions& options, const Matrix6& K) {
-  const Form& form = internal::form_of(StiffnessForm::Symmetric);
-  const Matrix6 D = cup::as_matrix(options.prior);
-  Unknowns unknowns;
-  std::vector<double> prior, scale;
-  const auto add = [&](std::vector<Matrix6>& bases, const Matrix6& matrix, std::size_t i, std::string name,
-                       std::string unit) {
-    bases.push_back(form.numbers[i].basis);
-    prior.push_back(form.numbers_of(matrix)[static_cast<Eigen::Index>(i)]);
-    scale.push_back(form.scale_in(matrix)[static_cast<Eigen::Index>(i)]);
-    unknowns.names.push_back(std::move(name));
-    unknowns.units.push_back(std::move(unit));
-  };
-  const char* names[] = {"d_lat", "d_ax", "d_bend", "d_tors", "d_c"};
-  const char* units[] = {"Ns/m", "Ns/m", "Nms/rad", "Nms/rad", "Ns/rad"};
-  for (std::size_t i = 0; i < (options.with_coupling ? 5U : 4U); ++i) add(unknowns.damping, D, i, names[i], units[i]);
-  for (std::size_t i = 0; options.with_stiffness && i < form.numbers.size(); ++i)
-    add(unknowns.stiffness, K, i, form.numbers[i].name, form.numbers[i].unit);
-  unknowns.prior = Eigen::Map<const Eigen::VectorXd>(prior.data(), static_cast<Eigen::Index>(prior.size()));
-  unknowns.scale = Eigen::Map<const Eigen::VectorXd>(scale.data(), static_cast<Eigen::Index>(scale.size()));
-  return unknowns;
-}
-
-/// Sum of bases times numbers from `first` on.
-Matrix6 sum_of(const std::vector<Matrix6>& bases, const Eigen::VectorXd& theta, Eigen::Index first) {
-  Matrix6 sum = Matrix6::Zero();
-  for (std::size_t i = 0; i < bases.size(); ++i) sum += theta[first + static_cast<Eigen::Index>(i)] * bases[i];
-  return sum;
-}
-
-/// One release against its simulation.
-class ReleaseModel {
- public:
-  ReleaseModel(const Release& release, const Unknowns& unknowns, const DampingOptions& options, bool is_moving)
-      : release_(release), unknowns_(unknowns), is_moving_(is_moving) {
-    swing_.load_S = release.load_S;
-    swing_.R_WE = release.R_WE;
-    swing_.frames = release.frames;
-    swing_.gravity_W = release.gravity_W;
-    swing_.K = release.K.value_or(options.K);
-    coupling_ = cup::as_matrix({.coupling = options.with_coupling ? 0.0 : options.prior.coupling});
-    directions_.damping = unknowns.damping;
-    directions_.stiffness = unknowns.stiffness;
-    directions_.by_start = true;
-    directions_.by_velocity = is_moving;
-    to_S_ = cup::wrench_transform(release.frames.X_SS1).transpose().inverse();
-    const MeasurementNoise least;
-    position_ = std::max(release.noise.position, 1e-6 * least.position);
-    rotation_ = std::max(release.noise.rotation, 1e-6 * least.rotation);
-  }
-
-  [[nodiscard]] Eigen::Index own() const { return is_moving_ ? 12 : 6; }
-
-  /// Rows after those of the samples: what is known of the start.
-  [[nodiscard]] Eigen::Index more_rows() const { return release_.X_ES_start ? 6 : 0; }
-
-  /// Six numbers a sample, in units of the noise: place in E, turn in S. `own`: body twist of S1 from the start as
-  /// known (or the first measured pose) to the true one, in units of millimetre and milliradian, and first velocity of
-  /// S1.
-  void evaluate(const Eigen::VectorXd& theta, const Eigen::VectorXd& own, std::size_t samples, Eigen::VectorXd& r,
-                Eigen::MatrixXd* J) const {
-    FreeSwing swing = swing_;
-    const auto count = static_cast<Eigen::Index>(unknowns_.damping.size());
-    swing.D = sum_of(unknowns_.damping, theta, 0) + coupling_;
-    if (!unknowns_.stiffness.empty()) swing.K = sum_of(unknowns_.stiffness, theta, count);
-    const Vector6 shift = to_S_ * (kOwnScale * own.head<6>());
-    const Pose& measured = release_.X_ES_start ? *release_.X_ES_start : release_.X_ES.front();
-    const Pose start{measured.R * exp_rotation(shift.tail<3>()), measured.p + measured.R * shift.head<3>()};
-    const Vector6 velocity = is_moving_ ? Vector6(own.tail<6>()) : Vector6(Vector6::Zero());
-    const std::vector<double> times(release_.times.begin(),
-                                    release_.times.begin() + static_cast<std::ptrdiff_t>(samples));
-    const std::vector<SwingSample> simulated =
-        simulate_swing(swing, start, velocity, times, J != nullptr ? directions_ : SwingDirections{});
-    for (std::size_t i = 0; i < samples; ++i) {
-      const auto row = 6 * static_cast<Eigen::Index>(i);
-      const Pose& X_ES = simulated[i].X_ES;
-      const Vector3 turn = log_rotation(release_.X_ES[i].R.transpose() * X_ES.R);
-      r.segment<3>(row) = (X_ES.p - release_.X_ES[i].p) / position_;
-      r.segment<3>(row + 3) = turn / rotation_;
-      if (J == nullptr) continue;
-      J->middleRows<3>(row) = X_ES.R * simulated[i].by_what.topRows<3>() / position_;
-      J->middleRows<3>(row + 3) = (Matrix3::Identity() + 0.5 * skew(turn) + skew(turn) * skew(turn) / 12.0) *
-                                  simulated[i].by_what.bottomRows<3>() / rotation_;
-    }
-    if (J != nullptr) J->middleCols(theta.size(), 6) *= kOwnScale;
-    if (more_rows() == 0 || r.size() == 6 * static_cast<Eigen::Index>(samples)) return;
-    Vector6 weight;
-    weight << Vector3::Constant(kKnownBetter / position_), Vector3::Constant(kKnownBetter / rotation_);
-    r.tail<6>() = weight.cwiseProduct(shift);
-    if (J == nullptr) return;
-    J->bottomRows<6>().setZero();
-    J->bottomRows<6>().middleCols(theta.size(), 6) = kOwnScale * weight.asDiagonal() * to_S_;
-  }
-
-  [[nodiscard]] double position_noise() const { return position_; }
-  [[nodiscard]] double rotation_noise() const { return rotation_; }
-
- private:
-  static constexpr double kOwnScale = 1e-3;
-  static constexpr double kKnownBetter = 20.0;  // a start held for a second at 360 Hz: the mean of 400 samples
-
-  const Release& release_;
-  const Unknowns& unknowns_;
-  bool is_moving_;
-  FreeSwing swing_;
-  Matrix6 coupling_;
-  SwingDirections directions_;
-  Matrix6 to_S_;
-  double position_ = 1.0, rotation_ = 1.0;
-};
 
 /// A set of releases, the samples of each that count, and how they start.
 struct Problem {
@@ -274,10 +156,10 @@ const char* advice_for(const std::string& name) {
 
 std::vector<Parameter> make_parameters(const Unknowns& unknowns, const Eigen::VectorXd& theta,
                                        const Eigen::MatrixXd& covariance) {
-  const Form& form = internal::form_of(StiffnessForm::Symmetric);
+  const internal::Form& form = internal::form_of(StiffnessForm::Symmetric);
   std::vector<Parameter> parameters;
   const auto judge_all = [&](const std::vector<Matrix6>& bases, Eigen::Index first) {
-    const Eigen::VectorXd scale = form.scale_in(sum_of(bases, theta, first));
+    const Eigen::VectorXd scale = form.scale_in(internal::sum_of(bases, theta, first));
     for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(bases.size()); ++i) {
       const auto at = static_cast<std::size_t>(first + i);
       const double error = std::sqrt(std::max(0.0, covariance(first + i, first + i)));
@@ -319,7 +201,7 @@ ReleaseFit describe(const Problem& problem, std::size_t k, const Solution& solut
 
 Problem make_problem(const std::vector<Release>& releases, const DampingOptions& options, bool is_moving) {
   const Matrix6 K = releases.front().K.value_or(options.K);
-  Problem problem{releases, options, make_unknowns(options, K), {}, is_moving};
+  Problem problem{releases, options, internal::make_unknowns(options, K), {}, is_moving};
   for (const Release& release : releases) problem.is_used.emplace_back(release.times.size(), char{1});
   return problem;
 }

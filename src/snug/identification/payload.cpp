@@ -66,7 +66,7 @@ PayloadEstimator::PayloadEstimator(const PayloadSettings& settings) : settings_(
 void PayloadEstimator::add(const PayloadSample& sample) {
   SNUG_CHECK(instants_.empty() || sample.time > instants_.back().time, "time must grow");
   const Pose X_ES = sample.X_ES ? *sample.X_ES : lip_under_wrench(settings_.K, settings_.frames, sample.wrench_E);
-  instants_.push_back({sample.time, sample.X_WE * X_ES, wrench_at(X_ES, sample.wrench_E)});
+  instants_.push_back({sample.time, sample.X_WE * X_ES, wrench_at(X_ES, sample.wrench_E), sample.X_WE.p});
   if (instants_.back().time - instants_.front().time < settings_.window * (1.0 - 1e-9)) return;
   balance();
   const double half = instants_.front().time + 0.5 * settings_.window * (1.0 - 1e-9);
@@ -77,10 +77,13 @@ void PayloadEstimator::add(const PayloadSample& sample) {
 
 void PayloadEstimator::balance() {
   const double start = instants_.front().time, span = instants_.back().time - start;
-  const Vector3 origin = instants_.front().X_WS.p;  // torques about a point that stands still, near the load
+  // Torques about a point that stands still, and so near where the sensor measures them that the noise of forces, at a
+  // lever, is not among that of torques.
+  const Vector3 origin = instants_[instants_.size() / 2].p_WE;
   const Vector3& g = settings_.gravity_W;
   Row3 force = Row3::Zero(), torque = Row3::Zero();
   Vector3 force_sum = Vector3::Zero(), torque_sum = Vector3::Zero();
+  double lever_square = 0.0;  // sum of phi^2 times the sensor's distance^2, times dt^2
   for (std::size_t k = 0; k < instants_.size(); ++k) {
     const Instant& at = instants_[k];
     const double before = k > 0 ? at.time - instants_[k - 1].time : 0.0;
@@ -88,6 +91,7 @@ void PayloadEstimator::balance() {
     const double dt = 0.5 * (before + after), s = (at.time - start) / span;
     const double phi = std::pow(std::sin(kPi * s), 2) * dt;
     const double phi_second = 2.0 * std::pow(kPi / span, 2) * std::cos(2.0 * kPi * s) * dt;
+    lever_square += phi * phi * (at.p_WE - origin).squaredNorm();
     const Matrix3& R = at.X_WS.R;
     const Vector3 q = at.X_WS.p - origin;
     const Vector3 f = R * at.wrench_S.head<3>();
@@ -124,7 +128,7 @@ void PayloadEstimator::balance() {
       kOverlap *
       ((std::pow(noise.torque, 2) + kLever * kLever * turning + std::pow(mass * g.norm() * noise.position, 2)) *
            of_wrench +
-       kLever * kLever * shake * of_pose);
+       2.0 / 3.0 * lever_square * std::pow(noise.force, 2) + kLever * kLever * shake * of_pose);
   information_ += force.transpose() * force / force_variance + torque.transpose() * torque / torque_variance;
   weighted_ += force.transpose() * force_sum / force_variance + torque.transpose() * torque_sum / torque_variance;
   ++windows_;
@@ -133,7 +137,18 @@ void PayloadEstimator::balance() {
 PayloadEstimate PayloadEstimator::estimate() const {
   PayloadEstimate result;
   result.windows = windows_;
-  const Eigen::LDLT<Eigen::Matrix<double, kUnknowns, kUnknowns>> factor(information_);
+  using Information = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  Information information = information_;
+  // What is expected of inertia over mass, once the mass is known well enough to say what that means in kg m^2.
+  const double rough = std::max(Eigen::LDLT<Information>(information_).solve(weighted_)[0], 1e-3);
+  for (int i = 0; i < 6; ++i) {
+    Eigen::Matrix<double, kUnknowns, 1> row = Eigen::Matrix<double, kUnknowns, 1>::Zero();
+    row[4 + i] = 1.0;
+    if (i < 3) row[0] = -settings_.gyration_square;
+    const double deviation = (i < 3 ? 1.0 : 0.5) * settings_.gyration_square_prior * rough;
+    information += row * row.transpose() / (deviation * deviation);
+  }
+  const Eigen::LDLT<Information> factor(information);
   const Eigen::Matrix<double, kUnknowns, 1> x = factor.solve(weighted_);
   const Eigen::Matrix<double, kUnknowns, kUnknowns> all =
       factor.solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());

@@ -97,7 +97,7 @@ Release read_case(const JsonValue& root, const JsonValue& entry, const std::stri
 }
 
 /// Columns that tell what hangs and how: the same in every row.
-void require_constant(const calibration::Table& table, std::size_t first) {
+void require_constant(const Table& table, std::size_t first) {
   for (std::size_t row = 1; row < table.rows.size(); ++row) {
     for (std::size_t column = first; column < table.columns.size(); ++column) {
       if (table.rows[row][column] == table.rows[0][column]) continue;
@@ -133,10 +133,10 @@ std::vector<Release> parse_releases_json(std::string_view text, const std::strin
 }
 
 std::vector<Release> parse_releases_csv(const std::string& text, const std::string& name, const model::CupParams& cup) {
-  const calibration::Table table = calibration::parse_table(
-      text, name,
-      {"t",     "x",   "y",   "z",   "qw",  "qx",  "qy",  "qz",         "mass",       "com_x",      "com_y",
-       "com_z", "ixx", "iyy", "izz", "ixy", "ixz", "iyz", "gripper_qw", "gripper_qx", "gripper_qy", "gripper_qz"});
+  const Table table =
+      parse_table(text, name, {"t",    "x",     "y",          "z",          "qw",         "qx",        "qy",  "qz",
+                               "mass", "com_x", "com_y",      "com_z",      "ixx",        "iyy",       "izz", "ixy",
+                               "ixz",  "iyz",   "gripper_qw", "gripper_qx", "gripper_qy", "gripper_qz"});
   constexpr std::size_t kLoad = 8, kInertia = 12, kGripper = 18;
   if (table.rows.empty()) throw InputError(name, "", "no rows", "one row for each sample");
   require_constant(table, kLoad);

@@ -95,7 +95,7 @@ StaticPoses parse_static_poses_csv(const std::string& text, const std::string& n
   const std::vector<std::string> wrench{"fx", "fy", "fz", "tx", "ty", "tz"};
   std::vector<std::string> optional = load;
   optional.insert(optional.end(), wrench.begin(), wrench.end());
-  const calibration::Table table = calibration::parse_table(text, name, lip, optional);
+  const Table table = parse_table(text, name, lip, optional);
   const auto load_at = internal::find_group(table, load), wrench_at = internal::find_group(table, wrench);
   if (table.rows.empty()) throw InputError(name, "", "no rows", "one row for each pose");
   StaticPoses poses;

@@ -17,9 +17,6 @@ YAML::Node as_yaml(const Vector3& v) {
 YAML::Node as_yaml(bool value) { return YAML::Node(value ? "true" : "false"); }
 
 std::string written(const YAML::Node& root, const std::string& text, const std::string& why) {
-  YAML::Emitter emitter;
-  emitter << root;
-  SNUG_CHECK(emitter.good(), "a tree that was read can be written");
   // The notes of changes before this one are kept.
   std::string notes;
   constexpr std::string_view kMark = "# changed: ";
@@ -31,7 +28,7 @@ std::string written(const YAML::Node& root, const std::string& text, const std::
   }
   std::string line = std::string(kMark) + why;
   for (char& c : line) c = static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  return notes + line + "\n" + emitter.c_str() + "\n";
+  return notes + line + "\n" + text_of(root);
 }
 
 /// Takes the key away first: a value that is an alias of another would change that too.
@@ -49,6 +46,13 @@ YAML::Node find_entry(const YAML::Node& root, const std::string& container) {
 }
 
 }  // namespace
+
+std::string text_of(const YAML::Node& root) {
+  YAML::Emitter emitter;
+  emitter << root;
+  SNUG_CHECK(emitter.good(), "a tree that was read can be written");
+  return std::string(emitter.c_str()) + "\n";
+}
 
 std::string text_with_items(const std::string& text, const YAML::Node& items, const std::string& why) {
   YAML::Node root = YAML::Load(text);

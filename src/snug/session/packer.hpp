@@ -71,6 +71,8 @@ class Packer {
   [[nodiscard]] Situation situation_of(int item, Trouble trouble, const ItemReport& report) const;
   void resume(const std::string& id, ItemReport& report);
   void press(int item, ItemReport& report);
+  /// The held box, as it hangs for `planned`, to the bench.
+  void set_down(const Planned& planned, ItemReport& report);
   /// Another box, that sticks out, once more: to a place that is planned anew.
   void repack(int item, const Decide& decide, ItemReport& report);
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;

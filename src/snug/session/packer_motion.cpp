@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/motion/primitives.hpp"
 #include "snug/motion/row_name.hpp"
 #include "snug/session/packer.hpp"
 #include "snug/session/surroundings.hpp"
@@ -158,6 +159,7 @@ Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& repo
   at.most_tries = options_.most_tries;
   at.tries = static_cast<int>(report.sends.size());
   at.is_held = robot_.io.vacuum && robot_.pressure_gauge < kHeld * scenario_.cup.vacuum.pressure_gauge_hold;
+  at.can_set_down = layout_.flip_place.has_value();
   at.fits = belief_.box(item) && fit_of(item, belief_.box(item)->X_WP).is_in && who_sticks_out(item) < 0;
   at.can_be_picked = can_be_picked(item);
   return at;
@@ -176,6 +178,25 @@ void Packer::press(int item, ItemReport& report) {
          {options_.press_force, false}, report);
   // The force that ends a press is what was asked for.
   if (robot_.end.reason == plant::EndReason::ForceGuard) retreat(box.id, report);
+}
+
+void Packer::set_down(const Planned& planned, ItemReport& report) {
+  const PlannedBox& box = planned.box;
+  const Matrix3 R_WP = layout_.X_WT.R * planned.attempt.planned.X_TP.R;
+  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  motion::Waypoint here;
+  here.X_WE = robot_.X_WE;
+  here.io.vacuum = true;
+  here.name = motion::row_name("PostPick", box.id, "_up");
+  motion::Waypoint up = here;
+  const double hanging = -2.0 * motion::lowest_corner(R_WP, box.size) + scenario_.cup.hold_length;
+  up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + hanging);
+  std::vector<motion::Waypoint> rows{up};
+  const auto down = plan_set_down(belief_.nominal(), box, *layout_.flip_place, R_WP, planned.attempt.X_PS, travel);
+  rows.insert(rows.end(), down.begin(), down.end());
+  motion::Program program;
+  append(program, drivable(layout_, here, rows));
+  submit(box.id, program.waypoints, {std::nullopt, true}, report);
 }
 
 void Packer::repack(int item, const Decide& decide, ItemReport& report) {
@@ -234,6 +255,12 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
         return false;
       case Remedy::Resume:
         resume(report.id, report);
+        break;
+      case Remedy::SetDown:
+        set_down(planned, report);
+        if (robot_.end.reason != plant::EndReason::Completed) break;
+        look();
+        if (can_be_picked(item)) return true;
         break;
       case Remedy::Release:
         retreat(report.id, report);

@@ -48,6 +48,8 @@ const char* name_of(Remedy remedy) {
       return "none";
     case Remedy::Resume:
       return "resume";
+    case Remedy::SetDown:
+      return "set down";
     case Remedy::Release:
       return "release";
     case Remedy::PickAgain:
@@ -75,7 +77,7 @@ Remedy choose_remedy(const Situation& at) {
       return at.stops <= 3 ? Remedy::Release : Remedy::Stop;
     case Trouble::ForceGuard:
     case Trouble::Timeout:
-      return Remedy::Release;
+      return at.is_held && at.can_set_down && at.tries < at.most_tries ? Remedy::SetDown : Remedy::Release;
     case Trouble::NoSeal:
     case Trouble::VacuumLost:
     case Trouble::OffPlace:

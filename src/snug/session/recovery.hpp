@@ -25,6 +25,7 @@ enum class Trouble {
 enum class Remedy {
   None,
   Resume,      ///< acknowledge the stop, and go on with the rest of the motion
+  SetDown,     ///< go up with the box, put it down on the bench, look, plan anew
   Release,     ///< let go where it is, go up, look
   PickAgain,   ///< look, plan anew, pick it where it lies
   PressLevel,  ///< press on it from above, look
@@ -41,6 +42,7 @@ struct Situation {
   int most_tries = 4;          ///< of them
   int stops = 0;               ///< protective stops of this item, this one included
   bool is_held = false;        ///< the vacuum says that something hangs from the cup
+  bool can_set_down = false;   ///< there is a bench to put it on
   bool fits = false;           ///< it lies in the container, inside walls and rim
   bool can_be_picked = false;  ///< seen, standing on a face, within reach of the tool
   bool was_pressed = false;    ///< since it was let go

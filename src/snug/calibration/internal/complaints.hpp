@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration::internal {
 

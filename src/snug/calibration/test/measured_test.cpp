@@ -268,20 +268,6 @@ TEST(ForceSensor, RefusesReadingsAgainstGravity) {
   expect_refused([&] { (void)fit_force_sensor(table, std::nullopt); }, "check signs and frames");
 }
 
-// --- tables --------------------------------------------------------------------------------------------------------
-
-TEST(Table, ReadsColumnsInAnyOrderAndRefusesWhatIsBroken) {
-  const Table table = parse_table("# touches\n\nb, c,a\n1,2,3\n+4,5e-1,6\n", "t.csv", {"a", "b"});
-  EXPECT_EQ(table.rows, (std::vector<std::vector<double>>{{3, 1}, {6, 4}}));
-  EXPECT_EQ(table.where(1), "t.csv:5");
-  expect_refused([] { (void)parse_table("", "t.csv", {"a"}); }, "no header");
-  expect_refused([] { (void)parse_table("a,b\n1,2\n", "t.csv", {"a", "c"}); }, "column 'c'");
-  expect_refused([] { (void)parse_table("a,a\n1,2\n", "t.csv", {"a"}); }, "twice");
-  expect_refused([] { (void)parse_table("a,b\n1\n", "t.csv", {"a"}); }, "t.csv:2");
-  for (const char* cell : {"", "nan", "inf", "1e300", "1mm", "--1"})
-    expect_refused([&] { (void)parse_table(std::string("a,b\n") + cell + ",1\n", "t.csv", {"a"}); }, "t.csv:2: a");
-}
-
 // --- other units, other arms -----------------------------------------------------------------------------------------
 
 TEST(Units, OfPosesAndJointsAreRefusedWithLineAndColumn) {

@@ -8,7 +8,7 @@
 
 namespace snug::identification::internal {
 
-std::optional<std::size_t> find_group(const calibration::Table& table, const std::vector<std::string>& group) {
+std::optional<std::size_t> find_group(const Table& table, const std::vector<std::string>& group) {
   std::string missing;
   std::optional<std::size_t> first;
   for (const std::string& column : group) {
@@ -23,12 +23,12 @@ std::optional<std::size_t> find_group(const calibration::Table& table, const std
                    "all columns of a group, or none");
 }
 
-Vector3 vector_at(const calibration::Table& table, std::size_t row, std::size_t first) {
+Vector3 vector_at(const Table& table, std::size_t row, std::size_t first) {
   const std::vector<double>& cells = table.rows[row];
   return {cells[first], cells[first + 1], cells[first + 2]};
 }
 
-Matrix3 rotation_at(const calibration::Table& table, std::size_t row, std::size_t first) {
+Matrix3 rotation_at(const Table& table, std::size_t row, std::size_t first) {
   Matrix3 R;
   if (!rotation_from_quaternion(table.rows[row].data() + first, R))
     throw InputError(table.where(row), table.columns[first], "four numbers that are no rotation",

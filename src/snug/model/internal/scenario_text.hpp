@@ -9,6 +9,9 @@
 
 namespace snug::model::internal {
 
+/// A tree as text; comments are lost.
+[[nodiscard]] std::string text_of(const YAML::Node& root);
+
 /// The text with the entries of `items` (lists parcel_types, parcels, sequences) behind its own. Comments are lost:
 /// what is left is the same scenario. `why` becomes the first line, a comment.
 [[nodiscard]] std::string text_with_items(const std::string& text, const YAML::Node& items, const std::string& why);

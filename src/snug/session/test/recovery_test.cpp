@@ -56,6 +56,19 @@ TEST(ChooseRemedy, WhatLeansOrSticksOutIsPressedOnceAndThenTakenOut) {
   }
 }
 
+TEST(ChooseRemedy, ABoxThatMeetsTooMuchForceIsPutDownOnTheBenchWhereThereIsOne) {
+  for (const Trouble trouble : {Trouble::ForceGuard, Trouble::Timeout}) {
+    Situation situation = at(trouble);
+    EXPECT_EQ(choose_remedy(situation), Remedy::Release) << "nothing is held";
+    situation.is_held = true;
+    EXPECT_EQ(choose_remedy(situation), Remedy::Release) << "no bench";
+    situation.can_set_down = true;
+    EXPECT_EQ(choose_remedy(situation), Remedy::SetDown);
+    situation.tries = situation.most_tries;
+    EXPECT_EQ(choose_remedy(situation), Remedy::Release);
+  }
+}
+
 TEST(ChooseRemedy, EveryTroubleHasARemedyAndAName) {
   for (int i = 1; i <= static_cast<int>(Trouble::PlantFault); ++i) {
     const Trouble trouble = static_cast<Trouble>(i);

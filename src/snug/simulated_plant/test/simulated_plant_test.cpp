@@ -58,7 +58,7 @@ plant::PlantCase plant_case(const std::string& name, const std::string& robot) {
 
 INSTANTIATE_TEST_SUITE_P(Simulated, PlantContract,
                          testing::Values(plant_case("tool_alone", ""), plant_case("with_arm", "ur10")),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 TEST(SimulatedPlant, IsTheScenarioItselfWithSeedZeroAndAnotherCellWithEachSeed) {
   EXPECT_EQ(draw_plant(scenario(), "1", 0), cell::with_fixed_arrivals(scenario(), "1"));

@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "snug/spatial/pose.hpp"
-
-namespace snug::calibration {
+namespace snug {
 
 /// Rows of numbers under named columns.
 struct Table {
@@ -28,7 +26,4 @@ struct Table {
 [[nodiscard]] Table parse_table(const std::string& text, const std::string& name,
                                 const std::vector<std::string>& columns, const std::vector<std::string>& optional = {});
 
-/// Pose from six numbers from `first` on: x, y, z [m], rx, ry, rz (rotation vector, rad).
-[[nodiscard]] Pose row_pose(const std::vector<double>& row, std::size_t first);
-
-}  // namespace snug::calibration
+}  // namespace snug

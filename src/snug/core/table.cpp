@@ -1,5 +1,5 @@
 // Table: measured numbers from a CSV with a header.
-#include "snug/calibration/table.hpp"
+#include "snug/core/table.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -10,7 +10,7 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 
-namespace snug::calibration {
+namespace snug {
 namespace {
 
 std::vector<std::string> split(const std::string& line) {
@@ -93,8 +93,4 @@ Table load_table(const std::filesystem::path& path, const std::vector<std::strin
   return parse_table(read_file(path, "a table of measurements (CSV)"), path.string(), columns, optional);
 }
 
-Pose row_pose(const std::vector<double>& row, std::size_t first) {
-  return {exp_rotation({row[first + 3], row[first + 4], row[first + 5]}), {row[first], row[first + 1], row[first + 2]}};
-}
-
-}  // namespace snug::calibration
+}  // namespace snug

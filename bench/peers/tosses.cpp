@@ -1,0 +1,177 @@
+// Tosses: the same search and the same figures for every engine.
+#include "peers/tosses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <thread>
+
+#include "snug/core/parallel.hpp"
+#include "snug/identification/free_flight.hpp"
+#include "snug/identification/recorded_motion.hpp"
+#include "snug/numerics/bounded_search.hpp"
+
+namespace snug::peers {
+namespace {
+
+constexpr double kEdge = 0.1048, kMass = 0.370, kMoment = 8.1e-4;  // m, kg, kg m^2: as the source of the data says
+constexpr double kRatio = 0.05;                                    // m/rad
+constexpr double kMargin = 0.002;                                  // m: nearer to the board a corner may touch
+constexpr int kFlight = 25;                                        // samples of the free flight, at most
+constexpr double kStep = 1e-3;                                     // s
+constexpr std::size_t kHeldBack = 5;                               // each fifth toss
+constexpr double kRight = std::numbers::pi / 6.0;                  // rad, at the end
+
+/// Unknowns, and what an engine makes of them.
+struct Numbers {
+  static constexpr int kCount = 6;
+  static Eigen::VectorXd lower() { return (Eigen::VectorXd(kCount) << 0.05, 0.0, 0.0, 0.95, 0.7, -0.005).finished(); }
+  static Eigen::VectorXd upper() { return (Eigen::VectorXd(kCount) << 0.40, 1.0, 1.0, 1.02, 1.5, 0.005).finished(); }
+  static Eigen::VectorXd start() { return (Eigen::VectorXd(kCount) << 0.18, 0.5, 0.3, 0.99, 1.1, 0.0).finished(); }
+};
+
+Scene scene_of(const Eigen::VectorXd& x) {
+  Scene scene;
+  scene.name = "toss";
+  scene.has_plane = true;
+  scene.plane_height = x[5];
+  Contact contact;
+  contact.friction = x[0];
+  contact.restitution = 1e-9;                          // Bullet divides by it
+  contact.stiffness = 2e3 * std::pow(30.0, x[1]);      // 2 to 60 kN/m
+  contact.damping = 200.0 * x[2];                      // Ns/m
+  contact.time_constant = 0.02 * std::pow(0.1, x[1]);  // 20 to 2 ms
+  contact.damping_ratio = 0.1 + 1.9 * x[2];
+  scene.box_container = contact;
+  scene.box_box = contact;
+  BoxBody cube{"cube", Vector3::Constant(0.5 * kEdge * x[3]), kMass, {}};
+  const double solid = kMass * std::pow(kEdge * x[3], 2) / 6.0;
+  cube.inertia_factor = x[4] * kMoment / solid;
+  cube.X_WB.p.z() = 1.0;
+  scene.bodies.push_back(cube);
+  return scene;
+}
+
+struct Toss {
+  std::vector<double> times;
+  std::vector<Pose> poses;
+  identification::FlightStart start;
+};
+
+std::size_t count_flight(const identification::RecordedBody& body) {
+  std::size_t k = 0;
+  for (; k < std::min<std::size_t>(body.poses.size(), kFlight); ++k) {
+    const Pose X = body.poses[k].pose();
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 8; ++i) {
+      const Vector3 corner((i & 1) ? 1.0 : -1.0, (i & 2) ? 1.0 : -1.0, (i & 4) ? 1.0 : -1.0);
+      lowest = std::min(lowest, (X * Vector3(0.5 * kEdge * corner)).z());
+    }
+    if (lowest <= kMargin) break;
+  }
+  return k;
+}
+
+std::vector<Toss> load(const std::filesystem::path& file) {
+  model::SceneTask task;
+  task.recording_column = "toss";
+  task.tracked = {{"cube", {"x", "y", "z", "qw", "qx", "qy", "qz"}, {}, {}}};
+  const SpatialInertia inertia{kMass, Vector3::Zero(), Matrix3(kMoment * Matrix3::Identity())};
+  std::vector<Toss> tosses;
+  for (const identification::RecordedMotion& motion : identification::load_motions(task, {file})) {
+    Toss& toss = tosses.emplace_back();
+    const identification::RecordedBody& body = motion.tracked.front();
+    for (std::size_t k = 0; k < motion.times.size(); ++k) {
+      toss.times.push_back(motion.times[k] - motion.times.front());
+      toss.poses.push_back(body.poses[k].pose());
+    }
+    const std::size_t flight = std::max<std::size_t>(3, count_flight(body));
+    toss.start = identification::fit_free_flight(std::span(motion.times).first(flight),
+                                                 std::span(body.poses).first(flight), inertia, {0.0, 0.0, -9.81});
+  }
+  return tosses;
+}
+
+struct Error {
+  double position = 1.0, rotation = 1.0;  // m, rad: what an engine that gave up counts as
+  bool is_right = false;
+};
+
+Error predict(Engine& engine, const Toss& toss) {
+  engine.set_motion(0, toss.start.X_WB, toss.start.V_WB);
+  Error error{0.0, 0.0, false};
+  Pose before = engine.pose(0), now = before;
+  double angle = 0.0;
+  int steps = 0;
+  for (std::size_t k = 1; k < toss.times.size(); ++k) {
+    while (steps * kStep < toss.times[k] - 1e-9) {
+      before = now;
+      engine.step();
+      if (engine.has_failed()) return {};
+      now = engine.pose(0);
+      ++steps;
+    }
+    const double share = 1.0 - (steps * kStep - toss.times[k]) / kStep;
+    const Vector3 p = before.p + share * (now.p - before.p);
+    const Matrix3 R = before.R * exp_rotation(share * log_rotation(before.R.transpose() * now.R));
+    angle = angle_between(R, toss.poses[k].R);
+    error.position += (p - toss.poses[k].p).norm();
+    error.rotation += angle;
+  }
+  const auto count = static_cast<double>(toss.times.size() - 1);
+  error.position /= count;
+  error.rotation /= count;
+  error.is_right = angle <= kRight;
+  return error;
+}
+
+}  // namespace
+
+std::vector<Result> measure_tosses(const std::function<std::unique_ptr<Engine>()>& make, const TossOptions& options) {
+  const std::vector<Toss> tosses = load(options.file);
+  std::vector<std::size_t> all(tosses.size()), fitted, held;
+  for (std::size_t i = 0; i < tosses.size(); ++i) {
+    all[i] = i;
+    (i % kHeldBack == kHeldBack - 1 ? held : fitted).push_back(i);
+  }
+  const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const auto predict_all = [&](const Eigen::VectorXd& x, const std::vector<std::size_t>& which) {
+    const Scene scene = scene_of(x);
+    std::vector<Error> errors(which.size());
+    parallel_for(static_cast<int>(which.size()), threads, [&](int i, int) {
+      const std::unique_ptr<Engine> engine = make();
+      engine->build(scene, kStep);
+      errors[static_cast<std::size_t>(i)] = predict(*engine, tosses[which[static_cast<std::size_t>(i)]]);
+    });
+    return errors;
+  };
+  const auto cost = [&](const Eigen::VectorXd& x) {
+    double sum = 0.0;
+    for (const Error& error : predict_all(x, fitted)) sum += error.position + kRatio * error.rotation;
+    return 1e3 * sum / static_cast<double>(fitted.size());
+  };
+  numerics::SearchOptions search;
+  search.evaluations = options.evaluations;
+  const numerics::SearchResult found =
+      numerics::minimize_bounded(cost, Numbers::start(), Numbers::lower(), Numbers::upper(), search);
+  std::vector<Result> results;
+  const auto add = [&](const std::string& name, const std::vector<std::size_t>& which) {
+    double position = 0.0, rotation = 0.0, right = 0.0;
+    for (const Error& error : predict_all(found.x, which)) {
+      position += error.position, rotation += error.rotation, right += error.is_right ? 1.0 : 0.0;
+    }
+    const auto count = static_cast<double>(which.size());
+    results.push_back({"tosses." + name + ".position_mm", 1e3 * position / count, "mm"});
+    results.push_back({"tosses." + name + ".rotation_deg", 180.0 / std::numbers::pi * rotation / count, "deg"});
+    results.push_back({"tosses." + name + ".right_face_percent", 100.0 * right / count, "%"});
+  };
+  add("all", all);
+  add("held_back", held);
+  const char* names[] = {"friction", "softness", "damping", "edge", "moments", "height_m"};
+  for (int i = 0; i < Numbers::kCount; ++i)
+    results.push_back({std::string("tosses.found.") + names[i], found.x[i], "1"});
+  return results;
+}
+
+}  // namespace snug::peers

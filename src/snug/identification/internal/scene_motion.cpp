@@ -1,0 +1,162 @@
+// simulate_scene: the bodies of a scenario, started as a recording says.
+#include "snug/identification/internal/scene_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "snug/cell/scene.hpp"
+#include "snug/geometry/manifold.hpp"
+#include "snug/identification/free_flight.hpp"
+#include "snug/record/archive.hpp"
+
+namespace snug::identification::internal {
+namespace {
+
+/// The pose between two, `share` of the way from the first.
+record::PoseSample between(const Pose& from, const Pose& to, double share) {
+  return Pose{from.R * exp_rotation(share * log_rotation(from.R.transpose() * to.R)), from.p + share * (to.p - from.p)};
+}
+
+FlightStart start_of(const model::Scenario& scenario, const model::SceneTask& task, const RecordedMotion& motion,
+                     const RecordedBody& recorded, std::size_t flight) {
+  const model::Body& body = *model::find_body(scenario, recorded.body);
+  if (task.start.from == model::StartFrom::Scenario) return {body.X_WB, body.V_WB};
+  if (task.start.from == model::StartFrom::FreeFlight && flight >= 3)
+    return fit_free_flight(std::span(motion.times).first(flight), std::span(recorded.poses).first(flight), body.inertia,
+                           scenario.gravity);
+  FlightStart start{recorded.poses.front().pose(), {}};
+  if (!recorded.twists.empty()) {
+    start.V_WB = recorded.twists.front();
+  } else if (motion.times.size() > 1) {
+    const Pose next = recorded.poses[1].pose();
+    const double span = motion.times[1] - motion.times[0];
+    start.V_WB = {(next.p - start.X_WB.p) / span, log_rotation(next.R * start.X_WB.R.transpose()) / span};
+  }
+  return start;
+}
+
+/// Kinematic bodies go where the recording has them.
+void drive(model::Scenario& scenario, const RecordedMotion& motion) {
+  for (const RecordedBody& recorded : motion.kinematic) {
+    for (model::Body& body : scenario.bodies) {
+      if (body.name != recorded.body) continue;
+      model::PosePath path;
+      for (std::size_t k = 0; k < motion.times.size(); ++k)
+        if (record::is_tracked(recorded.poses[k]))
+          path.points.push_back({motion.times[k] - motion.times.front(), recorded.poses[k].pose()});
+      if (path.points.empty()) continue;
+      body.X_WB = path.points.front().X_WB;
+      body.path = std::move(path);
+    }
+  }
+}
+
+}  // namespace
+
+OwnValues::OwnValues(const model::OwnSettings& settings, const Eigen::VectorXd& values) {
+  if (values.size() == 0) return;
+  Eigen::Index at = 0;
+  const auto take3 = [&](double deviation, Vector3& to) {
+    if (!(deviation > 0.0)) return;
+    to = values.segment<3>(at);
+    at += 3;
+  };
+  take3(settings.velocity, start.linear);
+  take3(settings.angular_velocity, start.angular);
+  if (settings.delay > 0.0) delay = values[at++];
+  take3(settings.bias, bias);
+}
+
+Eigen::VectorXd own_deviation(const model::OwnSettings& settings) {
+  std::vector<double> deviation;
+  const auto add = [&](double value, int count) {
+    if (value > 0.0) deviation.insert(deviation.end(), static_cast<std::size_t>(count), value);
+  };
+  add(settings.velocity, 3);
+  add(settings.angular_velocity, 3);
+  add(settings.delay, 1);
+  add(settings.bias, 3);
+  return Eigen::Map<const Eigen::VectorXd>(deviation.data(), static_cast<Eigen::Index>(deviation.size()));
+}
+
+std::size_t sample_count(const model::SceneTask& task, const RecordedMotion& motion) {
+  if (!task.simulation_time) return motion.times.size();
+  const double start = task.start.from == model::StartFrom::Scenario ? 0.0 : motion.times.front();
+  const auto end = std::upper_bound(motion.times.begin(), motion.times.end(), start + *task.simulation_time + 1e-9);
+  return std::max<std::size_t>(1, static_cast<std::size_t>(end - motion.times.begin()));
+}
+
+std::size_t count_flight_rows(const model::Scenario& scenario, const RecordedBody& recorded,
+                              const model::StartSettings& start) {
+  const model::Body& body = *model::find_body(scenario, recorded.body);
+  const std::size_t most = std::min(recorded.poses.size(), static_cast<std::size_t>(start.samples));
+  for (std::size_t k = 0; k < most; ++k) {
+    if (!record::is_tracked(recorded.poses[k])) return k;
+    const Pose X_WB = recorded.poses[k].pose();
+    for (const model::Body& other : scenario.bodies) {
+      if (other.name == body.name) continue;
+      for (const model::PlacedShape& a : body.shapes) {
+        for (const model::PlacedShape& b : other.shapes) {
+          geometry::PairCache cache;
+          geometry::Manifold manifold;
+          geometry::collide(a.shape, X_WB * a.X_BG, b.shape, other.X_WB * b.X_BG, start.margin, cache, manifold);
+          if (manifold.count > 0) return k;
+        }
+      }
+    }
+  }
+  return most;
+}
+
+SimulatedMotion simulate_scene(const model::Scenario& given, const model::SceneTask& task, const RecordedMotion& motion,
+                               const std::vector<std::size_t>& flights, const OwnValues& own) {
+  model::Scenario driven;
+  const bool is_driven = !motion.kinematic.empty();
+  if (is_driven) {
+    driven = given;
+    drive(driven, motion);
+  }
+  const model::Scenario& scenario = is_driven ? driven : given;
+  cell::Scene scene(scenario);
+  const physics::WorldModel& world = scene.world().model;
+  std::vector<physics::BodyId> ids;
+  for (std::size_t b = 0; b < motion.tracked.size(); ++b) {
+    ids.push_back(cell::find_body(scene.world(), motion.tracked[b].body));
+    const FlightStart start = start_of(scenario, task, motion, motion.tracked[b], flights.empty() ? 0 : flights[b]);
+    physics::set_pose(world, scene.state(), ids[b], start.X_WB);
+    physics::set_twist(world, scene.state(), ids[b],
+                       {start.V_WB.linear + own.start.linear, start.V_WB.angular + own.start.angular});
+  }
+  const double origin = task.start.from == model::StartFrom::Scenario ? 0.0 : motion.times.front();
+  const std::size_t count = sample_count(task, motion);
+  const bool has_result = task.only_final_state && motion.tracked.front().result.has_value();
+  SimulatedMotion simulated;
+  simulated.bodies.assign(ids.size(), std::vector<record::PoseSample>(motion.times.size(), record::lost_pose()));
+  std::vector<Pose> before(ids.size()), now(ids.size());
+  const auto look = [&](std::vector<Pose>& poses) {
+    for (std::size_t b = 0; b < ids.size(); ++b) poses[b] = physics::pose_of(world, scene.state(), ids[b]);
+  };
+  look(now);
+  before = now;
+  double time = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    // What stood in the recording then happened a delay earlier.
+    const bool is_end = has_result && k + 1 == count && task.simulation_time.has_value();
+    const double wanted = is_end ? *task.simulation_time : motion.times[k] - origin - own.delay;
+    while (time < wanted - 1e-9) {
+      before = now;
+      const physics::StepReport report = scene.advance();
+      time = scene.state().time(world);
+      if (report.status != physics::StepStatus::Converged && report.status != physics::StepStatus::NotConverged) {
+        simulated.failure = "the simulation lost a body or its numbers";
+        return simulated;
+      }
+      look(now);
+    }
+    const double share = 1.0 - std::clamp((time - wanted) / world.settings.dt, 0.0, 1.0);
+    for (std::size_t b = 0; b < ids.size(); ++b) simulated.bodies[b][k] = between(before[b], now[b], share);
+  }
+  return simulated;
+}
+
+}  // namespace snug::identification::internal

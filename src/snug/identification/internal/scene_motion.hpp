@@ -1,0 +1,46 @@
+// simulate_scene, simulate_program: where tracked bodies would have been at the times of a recording.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snug/identification/recorded_motion.hpp"
+#include "snug/model/scenario.hpp"
+#include "snug/model/scene_task.hpp"
+
+namespace snug::identification::internal {
+
+/// What a recording has of its own, by name.
+struct OwnValues {
+  /// `values`: in the order of own_deviation(); empty: all zero.
+  OwnValues(const model::OwnSettings& settings, const Eigen::VectorXd& values);
+  Twist start;                     ///< added to the start twist of each tracked body
+  double delay = 0.0;              ///< s
+  Vector3 bias = Vector3::Zero();  ///< m
+};
+/// Standard deviations expected of velocity (3), angular velocity (3), delay, bias (3), as far as they are fitted.
+[[nodiscard]] Eigen::VectorXd own_deviation(const model::OwnSettings& settings);
+
+struct SimulatedMotion {
+  /// X_WB by tracked body at each time of the recording; not a number where the simulation does not reach.
+  std::vector<std::vector<record::PoseSample>> bodies;
+  std::string failure;
+};
+
+/// Samples of a recording that lie within the simulation's time; at least one.
+[[nodiscard]] std::size_t sample_count(const model::SceneTask& task, const RecordedMotion& motion);
+/// The first of them that is compared.
+[[nodiscard]] std::size_t first_sample_of(const model::SceneTask& task, const RecordedMotion& motion);
+
+/// Rows of a body before it may touch another one, as the scenario has their shapes; at most those asked for.
+[[nodiscard]] std::size_t count_flight_rows(const model::Scenario& scenario, const RecordedBody& body,
+                                            const model::StartSettings& start);
+
+/// `flights`: rows of free flight of each tracked body, with StartFrom::FreeFlight.
+[[nodiscard]] SimulatedMotion simulate_scene(const model::Scenario& scenario, const model::SceneTask& task,
+                                             const RecordedMotion& motion, const std::vector<std::size_t>& flights,
+                                             const OwnValues& own);
+[[nodiscard]] SimulatedMotion simulate_program(const model::Scenario& scenario, const model::SceneTask& task,
+                                               const RecordedMotion& motion, const OwnValues& own);
+
+}  // namespace snug::identification::internal

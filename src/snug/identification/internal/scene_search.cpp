@@ -1,0 +1,469 @@
+// SceneSearch: on the mean cost without derivatives, on residuals with differences.
+#include "snug/identification/internal/scene_search.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "snug/core/rng.hpp"
+#include "snug/identification/internal/scene_motion.hpp"
+#include "snug/numerics/bounded_search.hpp"
+
+namespace snug::identification::internal {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kRescuePoints = 20;       // scattered for each free parameter when a fit fails
+constexpr double kOwnStep = 0.01;       // of what is expected of an own unknown, for differences
+constexpr double kFirstSubplex = 0.05;  // of the span
+
+std::string identity_of(const SceneExperiment& experiment) {
+  const model::SceneTask& task = experiment.task();
+  std::string what = task.text;
+  for (const RecordedMotion& motion : experiment.motions()) {
+    what += motion.name;
+    for (const RecordedBody& body : motion.tracked)
+      for (const record::PoseSample& pose : body.poses)
+        what.append(reinterpret_cast<const char*>(pose.p.data()), sizeof(double) * 3);
+  }
+  return what;
+}
+
+}  // namespace
+
+std::vector<MotionError> evaluate_all(const SceneExperiment& experiment, const Eigen::VectorXd& values) {
+  const std::vector<Eigen::VectorXd> points{values};
+  const std::size_t count = experiment.motions().size();
+  std::vector<SceneExperiment::Job> jobs(count);
+  for (std::size_t m = 0; m < count; ++m) jobs[m].motion = m;
+  std::vector<MotionError> now = experiment.evaluate(points, jobs);
+  const Eigen::VectorXd deviation = experiment.own_deviation();
+  if (deviation.size() == 0) return now;
+  // Levenberg-Marquardt of each recording alone, all recordings in step.
+  constexpr int kIterations = 8;
+  std::vector<double> damping(count, 1e-3);
+  for (std::size_t m = 0; m < count; ++m) jobs[m].own = Eigen::VectorXd::Zero(deviation.size());
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    std::vector<SceneExperiment::Job> moved;
+    for (const SceneExperiment::Job& job : jobs) {
+      for (Eigen::Index j = 0; j < 2 * deviation.size(); ++j) {
+        moved.push_back(job);
+        moved.back().own[j / 2] += (j % 2 == 0 ? kOwnStep : -kOwnStep) * deviation[j / 2];
+      }
+    }
+    const std::vector<MotionError> around = experiment.evaluate(points, moved);
+    std::vector<SceneExperiment::Job> tried = jobs;
+    for (std::size_t m = 0; m < count; ++m) {
+      if (!now[m].failure.empty()) continue;
+      Eigen::MatrixXd J(now[m].residuals.size(), deviation.size());
+      bool is_whole = true;
+      for (Eigen::Index j = 0; j < deviation.size(); ++j) {
+        const std::size_t at = 2 * (m * static_cast<std::size_t>(deviation.size()) + static_cast<std::size_t>(j));
+        is_whole = is_whole && around[at].failure.empty() && around[at + 1].failure.empty();
+        if (is_whole) J.col(j) = (around[at].residuals - around[at + 1].residuals) / (2.0 * kOwnStep * deviation[j]);
+      }
+      if (!is_whole) continue;
+      Eigen::MatrixXd normal = J.transpose() * J;
+      normal.diagonal() *= 1.0 + damping[m];
+      tried[m].own -= normal.ldlt().solve(J.transpose() * now[m].residuals);
+    }
+    const std::vector<MotionError> then = experiment.evaluate(points, tried);
+    for (std::size_t m = 0; m < count; ++m) {
+      const bool is_better = then[m].failure.empty() && now[m].failure.empty() &&
+                             then[m].residuals.squaredNorm() < now[m].residuals.squaredNorm();
+      damping[m] *= is_better ? 0.1 : 10.0;
+      if (!is_better) continue;
+      jobs[m] = tried[m];
+      now[m] = then[m];
+    }
+  }
+  return now;
+}
+
+SceneSearch::SceneSearch(const SceneExperiment& experiment, const SceneFitOptions& options,
+                         std::vector<std::size_t> free)
+    : experiment_(experiment),
+      options_(options),
+      free_(std::move(free)),
+      best_(experiment.start()),
+      best_cost_(std::numeric_limits<double>::infinity()),
+      log_(options.log, options.log.empty() ? std::string() : identity_of(experiment)) {
+  const auto each = static_cast<std::size_t>(experiment.task().search.held_back);
+  const std::size_t count = experiment.motions().size();
+  holds_ends_ = each > 0 && count < each && experiment.task().loss == model::TaskLoss::Squares &&
+                !experiment.task().only_final_state;
+  for (std::size_t m = 0; m < count; ++m)
+    (each > 0 && count >= each && m % each == each - 1 ? held_ : fitted_).push_back(m);
+  restrict_to(std::vector<std::size_t>(free_));
+}
+
+void SceneSearch::restrict_to(const std::vector<std::size_t>& free) {
+  free_ = free;
+  const auto n = static_cast<Eigen::Index>(free_.size());
+  lower_.resize(n), upper_.resize(n), step_.resize(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const model::TaskParameter& parameter = experiment_.task().parameters[free_[static_cast<std::size_t>(j)]];
+    lower_[j] = parameter.low, upper_[j] = parameter.high, step_[j] = parameter.step;
+  }
+}
+
+Eigen::VectorXd SceneSearch::full(const Eigen::VectorXd& free_values) const {
+  Eigen::VectorXd values = best_;
+  for (std::size_t j = 0; j < free_.size(); ++j)
+    values[static_cast<Eigen::Index>(free_[j])] = free_values[static_cast<Eigen::Index>(j)];
+  return values;
+}
+
+Eigen::VectorXd SceneSearch::free_of(const Eigen::VectorXd& values) const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(free_.size()));
+  for (std::size_t j = 0; j < free_.size(); ++j)
+    result[static_cast<Eigen::Index>(j)] = values[static_cast<Eigen::Index>(free_[j])];
+  return result;
+}
+
+Eigen::Index SceneSearch::held_rows(std::size_t motion) const {
+  if (!holds_ends_) return 0;
+  return experiment_.samples_of(motion) / experiment_.task().search.held_back;
+}
+
+numerics::BatchedProblem SceneSearch::problem() const {
+  numerics::BatchedProblem problem;
+  problem.start = free_of(best_);
+  problem.lower = lower_, problem.upper = upper_, problem.step = step_;
+  const Eigen::VectorXd deviation = experiment_.own_deviation();
+  for (const std::size_t m : fitted_)
+    problem.terms.push_back(
+        {experiment_.residuals_of(m), Eigen::VectorXd::Zero(deviation.size()), kOwnStep * deviation});
+  problem.evaluate = [this](const std::vector<numerics::BatchedProblem::Job>& batch) {
+    std::vector<Eigen::VectorXd> points;
+    std::vector<SceneExperiment::Job> jobs;
+    for (const numerics::BatchedProblem::Job& job : batch) {
+      // Jobs of one point stand near each other.
+      const Eigen::VectorXd values = full(job.shared);
+      std::size_t at = points.size();
+      for (std::size_t back = 1; back <= std::min<std::size_t>(3, points.size()); ++back)
+        if (points[points.size() - back] == values) at = points.size() - back;
+      if (at == points.size() && !points.empty() && points.front() == values) at = 0;
+      if (at == points.size()) points.push_back(values);
+      jobs.push_back({at, fitted_[job.term], job.own});
+    }
+    evaluations_ += static_cast<int>(points.size());
+    if (options_.progress) options_.progress({evaluations_, best_cost_, "least squares"});
+    std::vector<Eigen::VectorXd> residuals;
+    std::vector<MotionError> errors = experiment_.evaluate(points, jobs);
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      const std::size_t m = jobs[k].motion;
+      Eigen::VectorXd& r = errors[k].residuals;
+      // The rows of one body grow with time; with several bodies each would have to be cut. Time first, then bodies.
+      const Eigen::Index held = held_rows(m),
+                         bodies = static_cast<Eigen::Index>(experiment_.motions()[m].tracked.size());
+      if (held > 0 && r.size() > 0) {
+        const Eigen::Index rows = experiment_.samples_of(m) / bodies, cut = held / bodies;
+        for (Eigen::Index b = 0; b < bodies; ++b) r.segment((b + 1) * rows - cut, cut).setZero();
+      }
+      residuals.push_back(std::move(r));
+    }
+    return residuals;
+  };
+  return problem;
+}
+
+SceneSearch::Derivatives SceneSearch::differentiate() const {
+  const numerics::BatchedProblem at = problem();
+  std::vector<Eigen::VectorXd> own;
+  for (const numerics::BatchedProblem::Term& term : at.terms) own.push_back(term.own);
+  const numerics::BatchedDerivatives found = numerics::differentiate(at, at.start, own);
+  const auto n = at.start.size();
+  Derivatives result{numerics::shared_information(found, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  const model::SceneTask& task = experiment_.task();
+  const int positions = task.use_position ? 3 : 0, each = positions + (task.use_rotation ? 3 : 0);
+  double samples = 0.0;
+  for (std::size_t i = 0; i < found.jacobians.size(); ++i) {
+    const Eigen::MatrixXd& J = found.jacobians[i];
+    if (J.cols() < n) continue;
+    const Eigen::Index rows = experiment_.samples_of(fitted_[i]);
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      Eigen::VectorXd& sum = row % each < positions ? result.position_rms : result.rotation_rms;
+      sum += J.row(row).head(n).transpose().cwiseAbs2();
+    }
+    samples += static_cast<double>(rows) / each;
+  }
+  const double rotation_noise = task.position_noise / task.rotation_position_ratio;
+  result.position_rms = task.position_noise * (result.position_rms / std::max(1.0, samples)).cwiseSqrt();
+  result.rotation_rms = rotation_noise * (result.rotation_rms / std::max(1.0, samples)).cwiseSqrt();
+  return result;
+}
+
+void SceneSearch::take(const Eigen::VectorXd& free_values, double cost, const char* phase) {
+  if (cost < best_cost_) {
+    best_ = full(free_values);
+    best_cost_ = cost;
+  }
+  if (options_.progress) options_.progress({evaluations_, best_cost_, phase});
+}
+
+std::vector<double> SceneSearch::costs(const std::vector<Eigen::VectorXd>& points, const char* phase) {
+  std::vector<double> result(points.size(), kNaN);
+  std::vector<std::size_t> open;
+  std::vector<Eigen::VectorXd> values;
+  std::vector<SceneExperiment::Job> jobs;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::VectorXd all = full(points[i]);
+    if (const auto known = log_.find(all)) {
+      result[i] = *known;
+      continue;
+    }
+    for (const std::size_t m : fitted_) jobs.push_back({values.size(), m, {}});
+    open.push_back(i);
+    values.push_back(all);
+  }
+  const std::vector<MotionError> errors = experiment_.evaluate(values, jobs);
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    double sum = 0.0;
+    for (std::size_t m = 0; m < fitted_.size(); ++m) sum += experiment_.cost_of(errors[k * fitted_.size() + m]);
+    result[open[k]] = sum / static_cast<double>(fitted_.size());
+    log_.add(values[k], result[open[k]]);
+  }
+  evaluations_ += static_cast<int>(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) take(points[i], result[i], phase);
+  return result;
+}
+
+double SceneSearch::cost(const Eigen::VectorXd& point, const char* phase) { return costs({point}, phase).front(); }
+
+std::vector<Eigen::VectorXd> SceneSearch::scattered(int count) const {
+  Rng rng = Rng(experiment_.task().search.seed).split("scatter");
+  std::vector<Eigen::VectorXd> points(static_cast<std::size_t>(count), Eigen::VectorXd(lower_.size()));
+  for (Eigen::Index j = 0; j < lower_.size(); ++j) {
+    std::vector<int> order(static_cast<std::size_t>(count));
+    std::iota(order.begin(), order.end(), 0);
+    for (int i = count - 1; i > 0; --i)
+      std::swap(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(rng.index(i + 1))]);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i][j] = lower_[j] + (upper_[j] - lower_[j]) * (order[i] + rng.uniform()) / count;
+  }
+  return points;
+}
+
+std::string SceneSearch::search_distance() {
+  const model::SearchSettings& settings = experiment_.task().search;
+  (void)cost(free_of(best_), "start");
+  if (settings.scatter > 0) (void)costs(scattered(settings.scatter), "scatter");
+  numerics::SearchOptions search;
+  search.seed = settings.seed;
+  std::string message = "nothing was searched";
+  if (settings.global > 0) {
+    search.method = numerics::SearchMethod::ControlledRandom;
+    search.evaluations = settings.global;
+    const auto global = [this](const Eigen::VectorXd& x) { return cost(x, "global"); };
+    message = "global: " + numerics::minimize_bounded(global, free_of(best_), lower_, upper_, search).message;
+  }
+  if (settings.local > 0) {
+    search.method = numerics::SearchMethod::Subplex;
+    search.evaluations = settings.local;
+    search.step = kFirstSubplex * (upper_ - lower_);
+    const auto local = [this](const Eigen::VectorXd& x) { return cost(x, "local"); };
+    const numerics::SearchResult found = numerics::minimize_bounded(local, free_of(best_), lower_, upper_, search);
+    message = (settings.global > 0 ? message + "; local: " : "local: ") + found.message;
+  }
+  return message;
+}
+
+double SceneSearch::least_squares_from(const Eigen::VectorXd& start, std::string& message) {
+  numerics::BatchedProblem from = problem();
+  from.start = start;
+  numerics::BatchedOptions options;
+  const auto each = static_cast<int>(2 * free_.size() + 1);
+  options.max_iterations = std::max(1, experiment_.task().search.local / each);
+  const numerics::BatchedResult found = numerics::solve_batched(from, options);
+  if (found.information.size() == 0) {
+    message = "no simulation from there: " + found.message;
+    return std::numeric_limits<double>::infinity();
+  }
+  // best_ is compared by squares here, not by the mean cost of points scattered before.
+  const double least = found.cost;
+  if (least < best_cost_) {
+    best_ = full(found.x);
+    best_cost_ = least;
+    message = found.message;
+  }
+  return least;
+}
+
+std::string SceneSearch::search_squares(double rescue) {
+  const model::SearchSettings& settings = experiment_.task().search;
+  const Eigen::VectorXd start = free_of(best_);
+  double freedom = -static_cast<double>(free_.size());
+  for (const std::size_t m : fitted_) freedom += static_cast<double>(experiment_.samples_of(m) - held_rows(m));
+  freedom = std::max(1.0, freedom);
+  std::string message;
+  best_cost_ = std::numeric_limits<double>::infinity();
+  (void)least_squares_from(start, message);
+  int points = settings.scatter;
+  if (points == 0 && best_cost_ / freedom > rescue) points = kRescuePoints * static_cast<int>(free_.size());
+  if (points == 0) return message;
+  const Eigen::VectorXd after_first = best_;
+  const double first_cost = best_cost_;
+  // The three best of the points scattered are starts of their own.
+  const std::vector<Eigen::VectorXd> tried = scattered(points);
+  const std::vector<double> found = costs(tried, "scatter");
+  std::vector<std::size_t> order(tried.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return found[a] < found[b]; });
+  best_ = after_first;
+  best_cost_ = first_cost;
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && best_cost_ / freedom > 1.2; ++k)
+    (void)least_squares_from(tried[order[k]], message);
+  return message;
+}
+
+double SceneSearch::chi2_per_dof(const std::vector<MotionError>& errors) const {
+  double sum = 0.0, freedom = -static_cast<double>(free_.size());
+  const Eigen::Index own = experiment_.own_deviation().size();
+  for (std::size_t k = 0; k < fitted_.size(); ++k) {
+    const std::size_t m = fitted_[k];
+    if (!errors[m].failure.empty()) return std::numeric_limits<double>::infinity();
+    sum += errors[m].residuals.squaredNorm();
+    freedom += static_cast<double>(errors[m].residuals.size() - own);
+  }
+  return sum / std::max(1.0, freedom);
+}
+
+SplitErrors SceneSearch::errors_at(const Eigen::VectorXd& values) const {
+  const std::vector<MotionError> errors = evaluate_all(experiment_, values);
+  const auto pick = [&](const std::vector<std::size_t>& list) {
+    std::vector<MotionError> some;
+    for (const std::size_t m : list) some.push_back(errors[m]);
+    return experiment_.summarize(some);
+  };
+  SplitErrors split;
+  split.fitted = pick(fitted_);
+  split.held_back_error = kNaN;
+  if (!held_.empty()) {
+    split.held_back = pick(held_);
+    split.held_back_error = split.held_back.cost;
+  } else if (holds_ends_) {
+    double sum = 0.0, samples = 0.0;
+    const model::SceneTask& task = experiment_.task();
+    const int each = (task.use_position ? 3 : 0) + (task.use_rotation ? 3 : 0);
+    for (const std::size_t m : fitted_) {
+      const auto bodies = static_cast<Eigen::Index>(experiment_.motions()[m].tracked.size());
+      const Eigen::Index rows = experiment_.samples_of(m) / bodies, cut = held_rows(m) / bodies;
+      if (errors[m].residuals.size() < rows * bodies) continue;
+      for (Eigen::Index b = 0; b < bodies; ++b)
+        sum += errors[m].residuals.segment((b + 1) * rows - cut, cut).squaredNorm();
+      samples += static_cast<double>(cut * bodies) / each;
+    }
+    split.held_back_error = 1e3 * task.position_noise * std::sqrt(sum / std::max(1.0, samples));
+  }
+  split.chi2_per_dof = chi2_per_dof(errors);
+  return split;
+}
+
+Eigen::MatrixXd SceneSearch::covariance() {
+  Eigen::MatrixXd of_free;
+  if (experiment_.task().loss == model::TaskLoss::Distance) {
+    of_free = distance_covariance();
+  } else {
+    const Derivatives at = differentiate();
+    const double chi2 = chi2_per_dof(evaluate_all(experiment_, best_));
+    of_free = at.information.ldlt().solve(Eigen::MatrixXd::Identity(lower_.size(), lower_.size())) *
+              std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
+  }
+  const auto all = static_cast<Eigen::Index>(experiment_.task().parameters.size());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    for (std::size_t j = 0; j < free_.size(); ++j)
+      result(static_cast<Eigen::Index>(free_[i]), static_cast<Eigen::Index>(free_[j])) =
+          of_free(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  return result;
+}
+
+Eigen::VectorXd SceneSearch::curvature_steps(const Eigen::VectorXd& middle) {
+  // The cost is rough, and its curvature is seen only where it rises by more than that: steps double until it does.
+  constexpr double kRise = 0.05;  // of the cost
+  Eigen::VectorXd h = (5.0 * step_).cwiseMin(0.25 * (upper_ - lower_));
+  const Eigen::VectorXd most = 0.25 * (upper_ - lower_);
+  const double least = cost(middle, "standard errors");
+  for (bool grows = true; grows;) {
+    std::vector<Eigen::VectorXd> points;
+    for (Eigen::Index i = 0; i < h.size(); ++i) {
+      for (const double sign : {1.0, -1.0}) {
+        points.push_back(middle);
+        points.back()[i] = std::clamp(points.back()[i] + sign * h[i], lower_[i], upper_[i]);
+      }
+    }
+    const std::vector<double> found = costs(points, "standard errors");
+    grows = false;
+    for (Eigen::Index i = 0; i < h.size(); ++i) {
+      const auto at = static_cast<std::size_t>(2 * i);
+      if (0.5 * (found[at] + found[at + 1]) - least >= kRise * least || h[i] >= most[i]) continue;
+      h[i] = std::min(2.0 * h[i], most[i]);
+      grows = true;
+    }
+  }
+  return h;
+}
+
+Eigen::MatrixXd SceneSearch::distance_covariance() {
+  // An M-estimate: C = H^-1 S H^-1 / N, S the scatter of the recordings' slopes, H the curvature of the mean
+  // (docs/theory/identification.md, 9). In units of the steps h.
+  const Eigen::VectorXd found = best_;  // what is tried here is no search
+  const Eigen::VectorXd h = curvature_steps(free_of(found));
+  best_ = found;
+  const Eigen::VectorXd x = free_of(found).cwiseMax(lower_ + h).cwiseMin(upper_ - h);  // all points are within bounds
+  const auto n = x.size();
+  const auto count = static_cast<Eigen::Index>(fitted_.size());
+  std::vector<Eigen::VectorXd> points{full(x)};
+  const auto add = [&](Eigen::Index i, Eigen::Index j, double sign) {
+    Eigen::VectorXd y = x;
+    y[i] += sign * h[i];
+    if (j != i) y[j] += sign * h[j];
+    points.push_back(full(y));
+  };
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (const double sign : {1.0, -1.0}) add(i, i, sign);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < i; ++j)
+      for (const double sign : {1.0, -1.0}) add(i, j, sign);
+  std::vector<SceneExperiment::Job> jobs;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (const std::size_t m : fitted_) jobs.push_back({p, m, {}});
+  evaluations_ += static_cast<int>(points.size());
+  const std::vector<MotionError> errors = experiment_.evaluate(points, jobs);
+  const auto cost_at = [&](Eigen::Index point, Eigen::Index motion) {
+    return experiment_.cost_of(errors[static_cast<std::size_t>(point * count + motion)]);
+  };
+  Eigen::MatrixXd slopes(count, n), H(n, n);
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(points.size()));
+  for (Eigen::Index p = 0; p < mean.size(); ++p)
+    for (Eigen::Index m = 0; m < count; ++m) mean[p] += cost_at(p, m) / static_cast<double>(count);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index m = 0; m < count; ++m) slopes(m, i) = 0.5 * (cost_at(1 + 2 * i, m) - cost_at(2 + 2 * i, m));
+    H(i, i) = mean[1 + 2 * i] - 2.0 * mean[0] + mean[2 + 2 * i];
+  }
+  Eigen::Index p = 1 + 2 * n;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j, p += 2) {
+      // f(+,+) + f(-,-) - f(+i) - f(-i) - f(+j) - f(-j) + 2 f = 2 H_ij
+      const double sum =
+          mean[p] + mean[p + 1] - mean[1 + 2 * i] - mean[2 + 2 * i] - mean[1 + 2 * j] - mean[2 + 2 * j] + 2.0 * mean[0];
+      H(i, j) = H(j, i) = 0.5 * sum;
+    }
+  }
+  slopes.rowwise() -= slopes.colwise().mean().eval();
+  const Eigen::MatrixXd S = slopes.transpose() * slopes / std::max(1.0, static_cast<double>(count - 1));
+  // A direction with less than a tenth of the curvature of the axes is not seen above the roughness: it gets that much.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
+  const double least = std::max(0.1 * H.diagonal().cwiseMax(0.0).mean(), 1e-12);
+  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([least](double v) { return 1.0 / std::max(v, least); });
+  const Eigen::MatrixXd H_inverse =
+      h.asDiagonal() * (eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose());
+  return H_inverse * S * H_inverse.transpose() / static_cast<double>(count);
+}
+
+}  // namespace snug::identification::internal

@@ -1,0 +1,80 @@
+// SceneSearch: the searches of identify_scene, with what they have found so far.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snug/identification/internal/search_log.hpp"
+#include "snug/identification/scene_fit.hpp"
+#include "snug/numerics/batched_least_squares.hpp"
+
+namespace snug::identification::internal {
+
+struct SplitErrors {
+  SceneError fitted, held_back;
+  double held_back_error = 0.0;  ///< mm; not a number when nothing is held back
+  double chi2_per_dof = 0.0;     ///< of what is fitted
+};
+
+/// Own unknowns are fitted to each recording, then its errors are returned.
+[[nodiscard]] std::vector<MotionError> evaluate_all(const SceneExperiment& experiment, const Eigen::VectorXd& values);
+
+class SceneSearch {
+ public:
+  SceneSearch(const SceneExperiment& experiment, const SceneFitOptions& options, std::vector<std::size_t> free);
+
+  [[nodiscard]] const SceneExperiment& experiment() const { return experiment_; }
+  /// Indices of the task's parameters that are searched.
+  [[nodiscard]] const std::vector<std::size_t>& free() const { return free_; }
+  /// The others stay where they are.
+  void restrict_to(const std::vector<std::size_t>& free);
+  [[nodiscard]] const Eigen::VectorXd& best() const { return best_; }
+  [[nodiscard]] int evaluations() const { return evaluations_; }
+
+  struct Derivatives {
+    Eigen::MatrixXd information;   ///< of the free parameters, in units of the noise declared
+    Eigen::VectorXd position_rms;  ///< m for each unit of each free parameter
+    Eigen::VectorXd rotation_rms;  ///< rad
+  };
+  [[nodiscard]] Derivatives differentiate() const;
+
+  /// Scatter, controlled random search, subplex, on the mean cost. Returns how it ended.
+  std::string search_distance();
+  /// Scatter, then least squares from the start and from the best point found. Where chi2 per degree of freedom stays
+  /// above `rescue`, points are scattered even if none were asked for.
+  std::string search_squares(double rescue);
+  /// Of all parameters; zero where one is not free. Squares: inverse information, enlarged by chi2 per degree of
+  /// freedom above 1. Distance: from the scatter of the recordings' slopes and the curvature of the mean.
+  [[nodiscard]] Eigen::MatrixXd covariance();
+  [[nodiscard]] SplitErrors errors_at(const Eigen::VectorXd& values) const;
+
+ private:
+  [[nodiscard]] Eigen::VectorXd full(const Eigen::VectorXd& free_values) const;
+  [[nodiscard]] Eigen::VectorXd free_of(const Eigen::VectorXd& values) const;
+  [[nodiscard]] numerics::BatchedProblem problem() const;
+  /// Mean cost over the recordings fitted, of each point; known ones come from the log.
+  std::vector<double> costs(const std::vector<Eigen::VectorXd>& points, const char* phase);
+  double cost(const Eigen::VectorXd& point, const char* phase);
+  /// Latin hypercube over the bounds.
+  [[nodiscard]] std::vector<Eigen::VectorXd> scattered(int count) const;
+  void take(const Eigen::VectorXd& free_values, double cost, const char* phase);
+  double least_squares_from(const Eigen::VectorXd& start, std::string& message);
+  [[nodiscard]] Eigen::MatrixXd distance_covariance();
+  /// Shifts of the free parameters at which the mean cost has risen by more than its roughness.
+  [[nodiscard]] Eigen::VectorXd curvature_steps(const Eigen::VectorXd& middle);
+  [[nodiscard]] double chi2_per_dof(const std::vector<MotionError>& errors) const;
+  /// Rows of a recording's residuals that are not fitted but predicted, where no whole recordings are held back.
+  [[nodiscard]] Eigen::Index held_rows(std::size_t motion) const;
+
+  const SceneExperiment& experiment_;
+  const SceneFitOptions& options_;
+  std::vector<std::size_t> free_;
+  std::vector<std::size_t> fitted_, held_;  ///< recordings
+  bool holds_ends_ = false;                 ///< the end of each recording is held back instead
+  Eigen::VectorXd best_, lower_, upper_, step_;
+  double best_cost_;
+  mutable int evaluations_ = 0;
+  SearchLog log_;
+};
+
+}  // namespace snug::identification::internal

@@ -1,0 +1,155 @@
+// RecordedMotion: from tables.
+#include "snug/identification/recorded_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/table.hpp"
+#include "snug/identification/internal/measured_table.hpp"
+#include "snug/identification/internal/program_motion.hpp"
+#include "snug/validation/measurement.hpp"
+
+namespace snug::identification {
+namespace {
+
+/// Where the columns of a body stand in the table.
+struct BodyColumns {
+  std::size_t pose = 0, velocity = 0, result = 0;
+  bool has_velocity = false, has_result = false;
+};
+
+/// Adds the names and says where the first of them is.
+std::size_t add_columns(std::vector<std::string>& columns, const std::vector<std::string>& names,
+                        const std::string& where) {
+  const std::size_t first = columns.size();
+  for (const std::string& name : names) {
+    if (std::find(columns.begin(), columns.end(), name) != columns.end())
+      throw InputError(where, "column '" + name + "'", "it twice", "each column of the recording for one thing");
+    columns.push_back(name);
+  }
+  return first;
+}
+
+BodyColumns add_object(std::vector<std::string>& columns, const model::RecordedObject& object,
+                       const std::string& where) {
+  BodyColumns at;
+  at.pose = add_columns(columns, object.columns, where);
+  at.has_velocity = !object.velocities.empty();
+  if (at.has_velocity) at.velocity = add_columns(columns, object.velocities, where);
+  at.has_result = !object.result.empty();
+  if (at.has_result) at.result = add_columns(columns, object.result, where);
+  return at;
+}
+
+record::PoseSample pose_at(const Table& table, std::size_t row, std::size_t first) {
+  return Pose{internal::rotation_at(table, row, first + 3), internal::vector_at(table, row, first)};
+}
+
+void add_row(const Table& table, std::size_t row, const BodyColumns& columns, RecordedBody& body) {
+  body.poses.push_back(pose_at(table, row, columns.pose));
+  if (columns.has_velocity)
+    body.twists.push_back(
+        {internal::vector_at(table, row, columns.velocity), internal::vector_at(table, row, columns.velocity + 3)});
+  if (columns.has_result) body.result = pose_at(table, row, columns.result);
+}
+
+}  // namespace
+
+std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const std::string& text,
+                                          const std::string& name) {
+  const std::string where = task.path.string();
+  std::vector<std::string> names;
+  (void)add_columns(names, {task.time_column}, where);
+  if (!task.recording_column.empty()) (void)add_columns(names, {task.recording_column}, where);
+  std::vector<BodyColumns> tracked, kinematic;
+  for (const model::RecordedObject& object : task.tracked) tracked.push_back(add_object(names, object, where));
+  for (const model::RecordedObject& object : task.kinematic) kinematic.push_back(add_object(names, object, where));
+  const Table table = parse_table(text, name, names);
+  std::vector<RecordedMotion> motions;
+  std::map<double, std::size_t> place;  // of each number in the recording column
+  const std::string file = std::filesystem::path(name).filename().string();
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const double key = task.recording_column.empty() ? 0.0 : table.rows[row][1];
+    const auto [found, is_new] = place.emplace(key, motions.size());
+    if (is_new) {
+      RecordedMotion& motion = motions.emplace_back();
+      motion.name = task.recording_column.empty() ? file : fmt::format("{}, {} {}", file, task.recording_column, key);
+      for (const model::RecordedObject& object : task.tracked) motion.tracked.push_back({object.body, {}, {}, {}});
+      for (const model::RecordedObject& object : task.kinematic) motion.kinematic.push_back({object.body, {}, {}, {}});
+    }
+    RecordedMotion& motion = motions[found->second];
+    const double time = table.rows[row][0];
+    if (!motion.times.empty() && time <= motion.times.back())
+      throw InputError(table.where(row), task.time_column, fmt::format("{} after {}", time, motion.times.back()),
+                       "times that grow within a recording");
+    motion.times.push_back(time);
+    for (std::size_t i = 0; i < tracked.size(); ++i) add_row(table, row, tracked[i], motion.tracked[i]);
+    for (std::size_t i = 0; i < kinematic.size(); ++i) add_row(table, row, kinematic[i], motion.kinematic[i]);
+  }
+  if (motions.empty()) throw InputError(name, "", "no rows", "at least one recording");
+  for (const RecordedMotion& motion : motions) {
+    const bool has_result = motion.tracked.front().result.has_value();
+    if (motion.times.size() < 2 && !(task.only_final_state && has_result))
+      throw InputError(name, motion.name, "a single row", "at least two rows of each recording");
+  }
+  return motions;
+}
+
+std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, const record::Recording& simulated,
+                                               const std::vector<record::ArchiveRecording>& recordings,
+                                               const std::string& where) {
+  constexpr std::size_t kEach = 6;  // of samples at 360 Hz: boxes move at some Hz
+  const validation::SimulatedRun run = validation::make_run(simulated, "simulation");
+  std::vector<RecordedMotion> motions;
+  for (const record::ArchiveRecording& recording : recordings) {
+    if (recording.motion_capture.times.empty()) continue;
+    const validation::Measurement measured = validation::align(run, recording, {}, where);
+    if (!measured.has_poses())
+      throw InputError(where, recording.name, "poses whose clock is not found", "a run of this program");
+    RecordedMotion& motion = motions.emplace_back();
+    motion.name = recording.name;
+    const double end = task.simulation_time.value_or(run.times.back());
+    for (std::size_t k = 0; k < measured.pose_times.size(); k += kEach)
+      if (measured.pose_times[k] >= 0.0 && measured.pose_times[k] <= end)
+        motion.times.push_back(measured.pose_times[k]);
+    for (const model::RecordedObject& object : task.tracked) {
+      const int index = record::find_body(run.header, object.body);
+      if (index < 0 || measured.bodies[static_cast<std::size_t>(index)].empty())
+        throw InputError(where, recording.name, "no poses of '" + object.body + "'", "those of every tracked object");
+      RecordedBody& body = motion.tracked.emplace_back();
+      body.body = object.body;
+      const std::vector<record::PoseSample>& poses = measured.bodies[static_cast<std::size_t>(index)];
+      for (std::size_t k = 0; k < measured.pose_times.size(); k += kEach)
+        if (measured.pose_times[k] >= 0.0 && measured.pose_times[k] <= end) body.poses.push_back(poses[k]);
+    }
+    if (motion.times.size() < 2)
+      throw InputError(where, recording.name, "hardly any poses", "some of the time simulated");
+  }
+  if (motions.empty()) throw InputError(where, "", "no poses", "at least one recording of a sequence");
+  return motions;
+}
+
+std::vector<RecordedMotion> load_motions(const model::SceneTask& task,
+                                         const std::vector<std::filesystem::path>& files) {
+  std::vector<RecordedMotion> motions;
+  std::optional<internal::CapturedRun> run;  // whose clock archives are brought to
+  for (const std::filesystem::path& file : files) {
+    if (task.program && file.extension() == ".h5") {
+      if (!run)
+        run = internal::capture_program(model::load_scenario(task.scenario), *task.program, task.simulation_time);
+      for (RecordedMotion& motion :
+           internal::motions_of_archive(task, run->recording, record::load_archive(file).recordings, file.string()))
+        motions.push_back(std::move(motion));
+      continue;
+    }
+    for (RecordedMotion& motion : parse_motions(task, read_file(file, "a recording (CSV)"), file.string()))
+      motions.push_back(std::move(motion));
+  }
+  return motions;
+}
+
+}  // namespace snug::identification

@@ -1,0 +1,48 @@
+// RecordedMotion: where bodies were, as a recording of an experiment tells it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/model/scene_task.hpp"
+#include "snug/record/archive.hpp"
+#include "snug/record/recording.hpp"
+
+namespace snug::identification {
+
+/// One body of a recording. All in W.
+struct RecordedBody {
+  std::string body;
+  std::vector<record::PoseSample> poses;     ///< X_WB at each time; not a number where it was not seen
+  std::vector<Twist> twists;                 ///< as long, or empty: not recorded
+  std::optional<record::PoseSample> result;  ///< where it came to rest, when the recording says so
+  bool operator==(const RecordedBody&) const = default;
+};
+
+struct RecordedMotion {
+  std::string name;                     ///< "train.csv, toss 12"
+  std::vector<double> times;            ///< s, growing
+  std::vector<RecordedBody> tracked;    ///< in the order of the task
+  std::vector<RecordedBody> kinematic;  ///< in the order of the task
+  bool operator==(const RecordedMotion&) const = default;
+};
+
+/// Reads the recordings of a task: tables (CSV) with its columns, one recording for each number in its recording
+/// column; of a program's run also archives (HDF5), whose clocks are found by simulating the scenario. Throws
+/// InputError with file, line and column for what is missing, no rotation, or out of order in time.
+[[nodiscard]] std::vector<RecordedMotion> load_motions(const model::SceneTask& task,
+                                                       const std::vector<std::filesystem::path>& files);
+[[nodiscard]] std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const std::string& text,
+                                                        const std::string& name);
+
+/// What an archive recorded of the task's bodies, on the clock of the simulation of the task's scenario: one motion for
+/// each recording of a sequence. Throws InputError for a tracked body that was not recorded, and where no clock is
+/// found.
+[[nodiscard]] std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task,
+                                                             const record::Recording& simulated,
+                                                             const std::vector<record::ArchiveRecording>& recordings,
+                                                             const std::string& where);
+
+}  // namespace snug::identification

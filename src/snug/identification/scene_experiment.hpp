@@ -1,0 +1,89 @@
+// SceneExperiment: recordings beside simulations of a scenario whose numbers are still open.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "snug/identification/recorded_motion.hpp"
+#include "snug/model/scenario.hpp"
+#include "snug/model/scene_task.hpp"
+
+namespace snug::identification {
+
+/// How far the simulation of one recording is from it.
+struct MotionError {
+  double position = 0.0;         ///< m, mean over samples and bodies
+  double rotation = 0.0;         ///< rad
+  double position_square = 0.0;  ///< m^2, mean of squares
+  double rotation_square = 0.0;  ///< rad^2
+  double end_position = 0.0;     ///< m, of the last sample
+  double end_rotation = 0.0;     ///< rad
+  double right = 0.0;            ///< share of the bodies whose orientation is right at the end
+  Eigen::VectorXd residuals;     ///< in units of the noise, those of own unknowns against what is expected of them last
+  std::string failure;           ///< empty, or why there is no simulation
+};
+
+/// Mean over recordings, each counted once.
+struct SceneError {
+  double position_mm = 0.0;
+  double rotation_deg = 0.0;
+  double end_position_mm = 0.0;
+  double end_rotation_deg = 0.0;
+  double right_orientation_percent = 0.0;
+  double cost = 0.0;  ///< mm, see cost_of
+  int recordings = 0, failed = 0;
+  bool operator==(const SceneError&) const = default;
+};
+
+class SceneExperiment {
+ public:
+  /// Throws InputError when task, scenario and recordings do not fit: unknown bodies, paths that lead nowhere, values
+  /// that the scenario cannot have.
+  SceneExperiment(model::SceneTask task, std::vector<RecordedMotion> motions, int threads);
+
+  struct Job {
+    std::size_t point = 0;     ///< of `points`
+    std::size_t motion = 0;    ///< recording
+    Eigen::VectorXd own = {};  ///< its own unknowns; empty: all zero
+  };
+  /// `points`: values of all parameters of the task, in its order. Each job is a simulation; the result does not depend
+  /// on the number of threads. What cannot be simulated says so.
+  [[nodiscard]] std::vector<MotionError> evaluate(std::span<const Eigen::VectorXd> points,
+                                                  std::span<const Job> jobs) const;
+  /// Errors that the noise of the start alone sets: each recording is replaced by its own simulation, the poses of its
+  /// free flight get noise as large as those recorded are off theirs, and it is predicted again. Needs
+  /// StartFrom::FreeFlight and at least four rows of flight; recordings with fewer count as failed.
+  [[nodiscard]] std::vector<MotionError> evaluate_floor(const Eigen::VectorXd& values, std::uint64_t seed) const;
+  /// The scenario at these values. Throws InputError when it cannot be.
+  [[nodiscard]] model::Scenario scenario_at(const Eigen::VectorXd& values) const;
+
+  [[nodiscard]] const model::SceneTask& task() const { return task_; }
+  [[nodiscard]] const std::vector<RecordedMotion>& motions() const { return motions_; }
+  [[nodiscard]] Eigen::VectorXd start() const;          ///< values of the task
+  [[nodiscard]] Eigen::VectorXd own_deviation() const;  ///< expected of the own unknowns; empty when there are none
+  [[nodiscard]] Eigen::Index residuals_of(std::size_t motion) const;
+  /// Numbers measured in a recording: residuals less those that stand for expectations.
+  [[nodiscard]] Eigen::Index samples_of(std::size_t motion) const;
+
+  /// mm: with TaskLoss::Distance the mean distance of centres and, times the ratio, of angles; with Squares the root of
+  /// the mean of both squared.
+  [[nodiscard]] double cost_of(const MotionError& error) const;
+  [[nodiscard]] SceneError summarize(std::span<const MotionError> errors) const;
+
+ private:
+  [[nodiscard]] MotionError simulate(const model::Scenario& scenario, std::size_t motion,
+                                     const Eigen::VectorXd& own) const;
+  void check_bodies() const;
+  void find_flights();
+
+  model::SceneTask task_;
+  std::vector<RecordedMotion> motions_;
+  int threads_ = 1;
+  model::Scenario base_;
+  std::vector<std::vector<double>> base_numbers_;  ///< of each parameter's paths, for scales and offsets
+  std::vector<std::vector<std::size_t>> flights_;  ///< rows before the first touch, of each motion's bodies
+};
+
+}  // namespace snug::identification

@@ -1,0 +1,66 @@
+// identify_scene: numbers of a scenario with which simulated bodies follow recorded ones.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "snug/identification/parameter.hpp"
+#include "snug/identification/scene_experiment.hpp"
+
+namespace snug::identification {
+
+/// What one step of a parameter does to the simulations, at the start.
+struct Sensitivity {
+  std::string name;
+  double step = 0.0;
+  double position_mm = 0.0;  ///< root mean square over all samples
+  double rotation_deg = 0.0;
+  double error_alone = 0.0;     ///< standard error if it were the only unknown
+  double error_together = 0.0;  ///< with all others unknown too; infinite where the data cannot tell
+};
+
+/// A combination of parameters that the recordings do not tell. Shares are of what the bounds span; signs matter.
+struct UnknownDirection {
+  std::vector<std::pair<std::string, double>> shares;
+  double error = 0.0;  ///< standard error along it, in spans of the bounds
+};
+
+struct SceneFitProgress {
+  int evaluations = 0;  ///< of the whole set
+  double cost = 0.0;    ///< best so far
+  const char* phase = "";
+};
+
+struct SceneFitOptions {
+  /// Evaluated points are added to it, and those of an earlier run are not computed again; empty: none.
+  std::filesystem::path log;
+  std::function<void(const SceneFitProgress&)> progress;
+  bool with_errors = true;  ///< standard errors, which need more simulations
+};
+
+struct SceneFit {
+  std::vector<Parameter> parameters;  ///< all of the task, in its order
+  Eigen::VectorXd values;             ///< of all parameters
+  Eigen::MatrixXd covariance;         ///< of all; zero where one was not fitted
+  double chi2_per_dof = 0.0;          ///< with the noise declared
+  double held_back_error = 0.0;       ///< mm, cost on what was kept out of the fit; not a number when nothing was
+  SceneError before, fitted,
+      held_back;  ///< at the start and at the end; of the recordings fitted, and of those held back
+  std::vector<Sensitivity> sensitivity;
+  std::vector<UnknownDirection> unknown;
+  int evaluations = 0;
+  bool is_trusted = true;  ///< false: the simulation misses the recordings by far more than noise
+  std::string message;     ///< how the search ended
+};
+
+/// Held back: each so many-th recording of the task; where there are too few recordings, the end of each.
+/// The same experiment gives the same numbers at any number of threads. Throws InputError for a log of another task.
+[[nodiscard]] SceneFit identify_scene(const SceneExperiment& experiment, const SceneFitOptions& options = {});
+
+/// Errors of the task's present values on all recordings; own unknowns are fitted to each recording first.
+[[nodiscard]] std::vector<MotionError> evaluate_scene(const SceneExperiment& experiment, const Eigen::VectorXd& values);
+
+}  // namespace snug::identification

@@ -1,0 +1,249 @@
+// Tests of scene identification: planted numbers come back, what recordings do not tell is refused by name.
+#include "snug/identification/scene_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "snug/cell/scene.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/rng.hpp"
+#include "snug/identification/free_flight.hpp"
+#include "snug/model/number_edit.hpp"
+
+namespace snug::identification {
+namespace {
+
+constexpr double kPositionNoise = 0.0002, kRotationNoise = 0.002;  // m, rad: motion capture
+
+/// A box is thrown onto a floor: it flies, hits, slides and comes to rest.
+constexpr const char* kThrown = R"(name: thrown
+duration: 1.0
+materials:
+  - {name: box}
+  - {name: floor}
+contacts:
+  pairs:
+    - {between: [box, floor], friction: 0.3, restitution: 0.2}
+bodies:
+  - {name: floor, kind: static, size: [20, 20, 0.2], material: floor, pose: {position: [0, 0, -0.1]}}
+  - name: parcel
+    size: [0.2, 0.16, 0.1]
+    mass: 0.8
+    material: box
+    com: [0, 0, 0]
+    inertia: [0.0025, 0.0035, 0.0045]
+    pose: {position: [0, 0, 0.12]}
+    twist: {linear: [1.2, 0.3, 0], angular: [0, 0, 1.0]}
+)";
+
+class SceneFitTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("snug-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "scene.yaml") << kThrown;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] model::SceneTask task(const std::string& more) const {
+    return model::parse_scene_task(
+        "scenario: scene.yaml\ntracked_objects: [{body: parcel}]\n"
+        "start: {from: scenario}\nnoise: {position: 0.0002, rotation_deg: 0.1146}\n" +
+            more,
+        folder_ / "task.yaml");
+  }
+
+  /// What 180 Hz motion capture would have seen with these numbers.
+  [[nodiscard]] RecordedMotion record(const std::vector<model::NumberEdit>& truth, std::uint64_t seed,
+                                      double noise = 1.0) const {
+    cell::Scene scene(model::with_numbers(model::load_scenario(folder_ / "scene.yaml"), truth));
+    const physics::BodyId id = cell::find_body(scene.world(), "parcel");
+    Rng rng = Rng(seed).split("recorded");
+    RecordedMotion motion;
+    motion.name = "virtual";
+    motion.tracked.push_back({"parcel", {}, {}, {}});
+    const auto normal3 = [&](double deviation) {
+      const double x = rng.normal(), y = rng.normal(), z = rng.normal();
+      return Vector3(noise * deviation * Vector3(x, y, z));
+    };
+    for (int i = 0; i <= 700; ++i) {
+      if (i % 5 == 0) {
+        Pose X = physics::pose_of(scene.world().model, scene.state(), id);
+        X.p += normal3(kPositionNoise);
+        X.R = X.R * exp_rotation(normal3(kRotationNoise));
+        motion.times.push_back(i * 1e-3);
+        motion.tracked[0].poses.emplace_back(X);
+      }
+      (void)scene.advance();
+    }
+    return motion;
+  }
+
+  std::filesystem::path folder_;
+};
+
+constexpr const char* kTwo = R"(search: {local: 100, held_back: 5}
+parameters:
+  - {name: friction, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.8], step: 0.002}
+  - {name: restitution, path: "contacts.pairs[0].restitution", value: 0.2, bounds: [0, 0.9], step: 0.002}
+)";
+
+TEST_F(SceneFitTest, FindsPlantedFrictionAndRestitutionWithIntervalsThatCover) {
+  const std::vector<model::NumberEdit> truth{{"contacts.pairs[0].friction", 0.41},
+                                             {"contacts.pairs[0].restitution", 0.35}};
+  const SceneExperiment experiment(task(kTwo), {record(truth, 1), record(truth, 2)}, 2);
+  const SceneFit fit = identify_scene(experiment);
+  ASSERT_EQ(fit.parameters.size(), 2U);
+  EXPECT_NEAR(fit.values[0], 0.41, 0.01);
+  EXPECT_NEAR(fit.values[1], 0.35, 0.03);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(fit.parameters[static_cast<std::size_t>(i)].verdict, Verdict::Identified);
+    // Four standard errors: one case in ten thousand.
+    EXPECT_LE(std::abs(fit.values[i] - truth[static_cast<std::size_t>(i)].value),
+              4.0 * std::sqrt(fit.covariance(i, i)));
+  }
+  EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.15);
+  EXPECT_TRUE(fit.is_trusted);
+  EXPECT_LT(fit.held_back_error, 1.0);  // mm; with noise of 0.35 mm in all
+}
+
+TEST_F(SceneFitTest, GivesTheSameBytesAtAnyNumberOfThreads) {
+  const std::vector<model::NumberEdit> truth{{"contacts.pairs[0].friction", 0.35}};
+  const std::vector<RecordedMotion> motions{record(truth, 3), record(truth, 4)};
+  const SceneFit one = identify_scene(SceneExperiment(task(kTwo), motions, 1));
+  const SceneFit three = identify_scene(SceneExperiment(task(kTwo), motions, 3));
+  EXPECT_EQ(one.values, three.values);
+  EXPECT_EQ(one.parameters, three.parameters);
+  EXPECT_EQ(one.evaluations, three.evaluations);
+}
+
+TEST_F(SceneFitTest, RefusesByNameWhatTheRecordingsDoNotTell) {
+  // Mass and inertia together change nothing where only gravity and dry friction act.
+  const model::SceneTask both = task(R"(search: {local: 60}
+parameters:
+  - {name: friction, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.8], step: 0.002}
+  - {name: weight, form: scale, paths: [bodies.parcel.mass, "bodies.parcel.inertia[0]", "bodies.parcel.inertia[1]", "bodies.parcel.inertia[2]"], value: 1.5, bounds: [0.5, 2]}
+)");
+  const SceneFit fit = identify_scene(SceneExperiment(both, {record({}, 5)}, 2));
+  ASSERT_EQ(fit.unknown.size(), 1U);
+  ASSERT_EQ(fit.unknown[0].shares.size(), 1U);
+  EXPECT_EQ(fit.unknown[0].shares[0].first, "weight");
+  EXPECT_EQ(fit.parameters[1].verdict, Verdict::NotIdentifiable);
+  EXPECT_EQ(fit.values[1], 1.5);  // left alone
+  EXPECT_TRUE(std::isinf(fit.parameters[1].standard_error));
+  EXPECT_NEAR(fit.values[0], 0.3, 0.01);
+}
+
+TEST_F(SceneFitTest, FindsOwnStartVelocityAndDelayOfEachRecording) {
+  const std::vector<model::NumberEdit> truth{{"contacts.pairs[0].friction", 0.25},
+                                             {"bodies.parcel.twist.linear[0]", 1.27}};
+  std::vector<RecordedMotion> motions{record(truth, 6), record(truth, 7)};
+  for (double& time : motions[0].times) time += 0.004;  // its clock is late
+  const model::SceneTask own = task(R"(own: {velocity: 0.1, delay: 0.01}
+search: {local: 100, held_back: 0}
+parameters:
+  - {name: friction, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.8], step: 0.002}
+)");
+  const SceneFit fit = identify_scene(SceneExperiment(own, motions, 2));
+  EXPECT_NEAR(fit.values[0], 0.25, 0.01);
+  EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.2);
+}
+
+TEST_F(SceneFitTest, FindsACentreOfMassThatIsAside) {
+  const std::vector<model::NumberEdit> truth{{"bodies.parcel.com[0]", 0.012}, {"bodies.parcel.com[1]", -0.007}};
+  const model::SceneTask com = task(R"(search: {local: 100, held_back: 0}
+parameters:
+  - {name: com_x, path: "bodies.parcel.com[0]", value: 0, bounds: [-0.03, 0.03], step: 0.0005}
+  - {name: com_y, path: "bodies.parcel.com[1]", value: 0, bounds: [-0.03, 0.03], step: 0.0005}
+)");
+  const SceneFit fit = identify_scene(SceneExperiment(com, {record(truth, 8), record(truth, 9)}, 2));
+  EXPECT_NEAR(fit.values[0], 0.012, 0.002);
+  EXPECT_NEAR(fit.values[1], -0.007, 0.002);
+}
+
+TEST_F(SceneFitTest, SaysThatItCannotBeTrustedWhenTheSceneIsAnother) {
+  // The floor is another one than the scenario has, and nothing that may move explains it.
+  const model::SceneTask wrong = task(R"(search: {local: 40, held_back: 0}
+parameters:
+  - {name: restitution, path: "contacts.pairs[0].restitution", value: 0.2, bounds: [0, 0.9], step: 0.002}
+)");
+  const SceneFit fit = identify_scene(SceneExperiment(wrong, {record({{"contacts.pairs[0].friction", 0.6}}, 10)}, 2));
+  EXPECT_FALSE(fit.is_trusted);
+  EXPECT_EQ(fit.parameters[0].verdict, Verdict::NotIdentifiable);
+}
+
+TEST_F(SceneFitTest, GoesOnFromItsLogWithoutComputingAgain) {
+  const std::string text = std::string("loss: distance\n") + kTwo;
+  const std::vector<RecordedMotion> motions{record({{"contacts.pairs[0].friction", 0.4}}, 11)};
+  SceneFitOptions options;
+  options.log = folder_ / "points.csv";
+  options.with_errors = false;
+  const SceneFit first = identify_scene(SceneExperiment(task(text), motions, 2), options);
+  std::ifstream file(options.log);
+  const std::string before(std::istreambuf_iterator<char>(file), {});
+  const SceneFit second = identify_scene(SceneExperiment(task(text), motions, 2), options);
+  std::ifstream again(options.log);
+  EXPECT_EQ(before, std::string(std::istreambuf_iterator<char>(again), {}));  // nothing new
+  EXPECT_EQ(first.values, second.values);
+  EXPECT_NEAR(first.values[0], 0.4, 0.01);
+  // The log of another problem is refused.
+  std::ofstream(options.log) << "something else\n";
+  EXPECT_THROW((void)identify_scene(SceneExperiment(task(text), motions, 2), options), InputError);
+}
+
+TEST_F(SceneFitTest, SaysWhichBodyAndWhichPathIsWrong) {
+  const auto message = [&](const std::string& more) {
+    try {
+      const SceneExperiment experiment(task(more), {record({}, 12)}, 1);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  const std::string path = message("parameters: [{name: a, path: contacts.pears.friction, value: 1, bounds: [0, 2]}]");
+  EXPECT_NE(path.find("nearest is 'pairs'"), std::string::npos) << path;
+  const std::string key =
+      message("parameters: [{name: a, path: \"contacts.pairs[0].frictoin\", value: 1, bounds: [0, 2]}]");
+  EXPECT_NE(key.find("friction"), std::string::npos) << key;
+  const std::string list = message("parameters: [{name: a, path: bodies.parcel.size, value: 1, bounds: [0, 2]}]");
+  EXPECT_NE(list.find("single number"), std::string::npos) << list;
+}
+
+TEST(FreeFlight, IsFoundFromPosesOfATumblingBody) {
+  const SpatialInertia inertia{0.8, Vector3(0.01, -0.02, 0.03), Vector3(0.002, 0.003, 0.004).asDiagonal()};
+  const Vector3 gravity(0.0, 0.0, -9.81), w0(3.0, -6.0, 2.0), v0(1.0, 0.5, 2.0);
+  // A second opinion: Euler's equations by many small steps.
+  Pose X{exp_rotation(Vector3(0.3, 0.2, -0.4)), Vector3(0.1, 0.2, 0.5)};
+  const Pose start = X;
+  Vector3 p_cm = X * inertia.com, v = v0, w_B = X.R.transpose() * w0;
+  std::vector<double> times;
+  std::vector<record::PoseSample> poses;
+  constexpr int kSmall = 2000;
+  constexpr double kDt = 0.1 / kSmall;
+  for (int i = 0; i <= kSmall; ++i) {
+    if (i % 200 == 0) {
+      times.push_back(5.0 + i * kDt);
+      poses.emplace_back(Pose{X.R, p_cm - X.R * inertia.com});
+    }
+    const auto slope = [&](const Vector3& w) {
+      return Vector3(inertia.inertia.diagonal().cwiseInverse().cwiseProduct(-w.cross(inertia.inertia * w)));
+    };
+    const Vector3 middle = w_B + 0.5 * kDt * slope(w_B);
+    X.R = X.R * exp_rotation(kDt * middle);
+    w_B += kDt * slope(middle);
+    p_cm += kDt * v + 0.5 * kDt * kDt * gravity;
+    v += kDt * gravity;
+  }
+  const FlightStart found = fit_free_flight(times, poses, inertia, gravity);
+  // The integration of the fit: steps of 5 ms.
+  EXPECT_LE((found.X_WB.p - start.p).norm(), 1e-6);
+  EXPECT_LE(angle_between(found.X_WB.R, start.R), 1e-5);
+  EXPECT_LE((found.V_WB.angular - w0).norm(), 1e-3);
+  EXPECT_LE((found.V_WB.linear - (v0 - w0.cross(start.R * inertia.com))).norm(), 1e-4);
+}
+
+}  // namespace
+}  // namespace snug::identification

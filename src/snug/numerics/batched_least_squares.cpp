@@ -1,0 +1,209 @@
+// solve_batched: Ceres with differences that are evaluated as one batch before each iteration.
+#include "snug/numerics/batched_least_squares.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <memory>
+
+#include "snug/core/check.hpp"
+
+namespace snug::numerics {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// What the batch found at the unknowns of last time.
+struct Batch {
+  const BatchedProblem& problem;
+  BatchedDerivatives found;
+  bool has_jacobians = false;
+};
+
+std::vector<Eigen::VectorXd> evaluate_at(const BatchedProblem& problem, const Eigen::VectorXd& shared,
+                                         const std::vector<Eigen::VectorXd>& own) {
+  std::vector<BatchedProblem::Job> jobs;
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) jobs.push_back({i, shared, own[i]});
+  return problem.evaluate(jobs);
+}
+
+/// Shared unknowns, then those of each term.
+std::vector<Eigen::VectorXd> own_parts(const BatchedProblem& problem, const Eigen::VectorXd& unknowns) {
+  std::vector<Eigen::VectorXd> own;
+  Eigen::Index first = problem.start.size();
+  for (const BatchedProblem::Term& term : problem.terms) {
+    own.push_back(unknowns.segment(first, term.own.size()));
+    first += term.own.size();
+  }
+  return own;
+}
+
+/// Ceres asks for residuals and derivatives term by term; before it does, this computes all of them at once.
+class Prepare final : public ceres::EvaluationCallback {
+ public:
+  Prepare(Batch& batch, const Eigen::VectorXd& unknowns) : batch_(batch), unknowns_(unknowns) {}
+  void PrepareForEvaluation(bool with_jacobians, bool is_new_point) override {
+    if (!is_new_point && (batch_.has_jacobians || !with_jacobians)) return;
+    const Eigen::VectorXd shared = unknowns_.head(batch_.problem.start.size());
+    const std::vector<Eigen::VectorXd> own = own_parts(batch_.problem, unknowns_);
+    if (with_jacobians)
+      batch_.found = differentiate(batch_.problem, shared, own);
+    else
+      batch_.found = {evaluate_at(batch_.problem, shared, own), {}};
+    batch_.has_jacobians = with_jacobians;
+  }
+
+ private:
+  Batch& batch_;
+  const Eigen::VectorXd& unknowns_;  ///< where Ceres keeps them
+};
+
+class TermCost final : public ceres::CostFunction {
+ public:
+  TermCost(const Batch& batch, std::size_t term) : batch_(batch), term_(term) {
+    const BatchedProblem::Term& of = batch.problem.terms[term];
+    set_num_residuals(static_cast<int>(of.residuals));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(batch.problem.start.size()));
+    if (of.own.size() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.own.size()));
+  }
+
+  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+    const Eigen::VectorXd& r = batch_.found.residuals[term_];
+    if (r.size() != num_residuals() || !r.allFinite()) return false;
+    Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
+    if (jacobians == nullptr) return true;
+    const Eigen::MatrixXd& J = batch_.found.jacobians[term_];
+    if (J.rows() != r.size() || !J.allFinite()) return false;
+    const Eigen::Index n = batch_.problem.start.size(), own = J.cols() - n;
+    if (jacobians[0] != nullptr) Eigen::Map<RowMajor>(jacobians[0], r.size(), n) = J.leftCols(n);
+    if (own > 0 && jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], r.size(), own) = J.rightCols(own);
+    return true;
+  }
+
+ private:
+  const Batch& batch_;
+  std::size_t term_;
+};
+
+}  // namespace
+
+BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
+                                 const std::vector<Eigen::VectorXd>& own) {
+  const Eigen::Index n = shared.size();
+  std::vector<BatchedProblem::Job> jobs;
+  struct Column {
+    std::size_t term, plus, minus;
+    Eigen::Index column;
+    double span;
+  };
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) jobs.push_back({i, shared, own[i]});
+  const Eigen::VectorXd up = (shared + problem.step).cwiseMin(problem.upper);
+  const Eigen::VectorXd down = (shared - problem.step).cwiseMax(problem.lower);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < problem.terms.size(); ++i) {
+      BatchedProblem::Job plus{i, shared, own[i]}, minus = plus;
+      plus.shared[j] = up[j], minus.shared[j] = down[j];
+      columns.push_back({i, jobs.size(), jobs.size() + 1, j, up[j] - down[j]});
+      jobs.push_back(std::move(plus));
+      jobs.push_back(std::move(minus));
+    }
+  }
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
+    for (Eigen::Index j = 0; j < own[i].size(); ++j) {
+      const double h = problem.terms[i].own_step[j];
+      BatchedProblem::Job plus{i, shared, own[i]}, minus = plus;
+      plus.own[j] += h, minus.own[j] -= h;
+      columns.push_back({i, jobs.size(), jobs.size() + 1, n + j, 2.0 * h});
+      jobs.push_back(std::move(plus));
+      jobs.push_back(std::move(minus));
+    }
+  }
+  std::vector<Eigen::VectorXd> values = problem.evaluate(jobs);
+  SNUG_CHECK(values.size() == jobs.size(), "each job of a batch has residuals");
+  BatchedDerivatives found;
+  for (std::size_t i = 0; i < problem.terms.size(); ++i)
+    found.jacobians.emplace_back(values[i].size(), n + own[i].size());
+  for (const Column& column : columns) {
+    const Eigen::VectorXd &plus = values[column.plus], &minus = values[column.minus];
+    Eigen::MatrixXd& J = found.jacobians[column.term];
+    if (plus.size() != J.rows() || minus.size() != J.rows())
+      J.resize(0, 0);
+    else if (J.cols() > 0)
+      J.col(column.column) = (plus - minus) / column.span;
+  }
+  values.resize(problem.terms.size());
+  found.residuals = std::move(values);
+  return found;
+}
+
+Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n) {
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  for (const Eigen::MatrixXd& J : at.jacobians) {
+    if (J.cols() < n) continue;
+    Eigen::MatrixXd shared = J.leftCols(n);
+    if (J.cols() > n) {
+      const Eigen::MatrixXd own = J.rightCols(J.cols() - n);
+      shared -= own * own.colPivHouseholderQr().solve(shared);
+    }
+    information += shared.transpose() * shared;
+  }
+  return information;
+}
+
+BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& options) {
+  Batch batch{given, {}, false};
+  // In one run of memory, as Ceres sorts unknowns by their addresses.
+  Eigen::Index count = given.start.size();
+  for (const BatchedProblem::Term& term : given.terms) count += term.own.size();
+  Eigen::VectorXd unknowns(count);
+  unknowns.head(given.start.size()) = given.start;
+  Prepare prepare(batch, unknowns);
+  ceres::Problem::Options ownership;
+  ownership.evaluation_callback = &prepare;
+  ceres::Problem problem(ownership);
+  auto* ordering = new ceres::ParameterBlockOrdering;  // Ceres takes it over
+  ordering->AddElementToGroup(unknowns.data(), 1);
+  Eigen::Index first = given.start.size();
+  for (std::size_t i = 0; i < given.terms.size(); ++i) {
+    std::vector<double*> blocks{unknowns.data()};
+    const Eigen::VectorXd& own = given.terms[i].own;
+    if (own.size() > 0) {
+      unknowns.segment(first, own.size()) = own;
+      blocks.push_back(unknowns.data() + first);
+      ordering->AddElementToGroup(blocks.back(), 0);
+      first += own.size();
+    }
+    auto loss = options.loss_scale > 0.0 ? std::make_unique<ceres::CauchyLoss>(options.loss_scale) : nullptr;
+    problem.AddResidualBlock(new TermCost(batch, i), loss.release(), blocks);
+  }
+  for (int j = 0; j < static_cast<int>(given.start.size()); ++j) {
+    problem.SetParameterLowerBound(unknowns.data(), j, given.lower[j]);
+    problem.SetParameterUpperBound(unknowns.data(), j, given.upper[j]);
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = count > given.start.size() ? ceres::DENSE_SCHUR : ceres::DENSE_QR;
+  solver.linear_solver_ordering.reset(ordering);
+  solver.num_threads = 1;
+  solver.logging_type = ceres::SILENT;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.tolerance;
+  solver.parameter_tolerance = options.tolerance;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  BatchedResult result;
+  result.x = unknowns.head(given.start.size());
+  result.own = own_parts(given, unknowns);
+  result.has_converged = summary.IsSolutionUsable() && result.x.allFinite() &&
+                         (summary.termination_type == ceres::CONVERGENCE || summary.iterations.size() > 1);
+  result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  result.message = summary.message;
+  if (!summary.IsSolutionUsable()) return result;
+  const BatchedDerivatives at = differentiate(given, result.x, result.own);
+  for (const Eigen::VectorXd& r : at.residuals) result.cost += r.squaredNorm();
+  result.information = shared_information(at, given.start.size());
+  return result;
+}
+
+}  // namespace snug::numerics

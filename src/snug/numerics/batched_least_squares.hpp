@@ -1,0 +1,58 @@
+// solve_batched: bounded least squares of simulations, whose derivatives are differences computed many at a time.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace snug::numerics {
+
+/// Residuals of terms that share some unknowns and own others (LeastSquaresTerm), evaluated as a batch.
+struct BatchedProblem {
+  Eigen::VectorXd start, lower, upper, step;  ///< shared unknowns; step: of their central differences
+  struct Term {
+    Eigen::Index residuals = 1;
+    Eigen::VectorXd own, own_step;  ///< often empty
+  };
+  std::vector<Term> terms;
+
+  struct Job {
+    std::size_t term = 0;
+    Eigen::VectorXd shared, own;
+  };
+  /// Residuals of each job, in their order; empty where a simulation failed. May use as many threads as it likes.
+  std::function<std::vector<Eigen::VectorXd>(const std::vector<Job>&)> evaluate;
+};
+
+struct BatchedOptions {
+  double tolerance = 1e-8;  ///< relative, of cost and unknowns: differences know no more
+  int max_iterations = 30;
+  double loss_scale = 0.0;  ///< residuals of a term whose norm is larger weigh less and less; 0: plain squares
+};
+
+struct BatchedResult {
+  Eigen::VectorXd x;
+  std::vector<Eigen::VectorXd> own;
+  double cost = 0.0;            ///< sum of squares
+  Eigen::MatrixXd information;  ///< of the shared unknowns, own ones eliminated (LeastSquaresResult)
+  bool has_converged = false;
+  int iterations = 0;
+  std::string message;
+};
+
+/// Levenberg-Marquardt within bounds (Ceres), one thread of its own: the same residuals give the same bytes.
+[[nodiscard]] BatchedResult solve_batched(const BatchedProblem& problem, const BatchedOptions& options = {});
+
+/// Derivatives of all terms at a point, by differences: [shared, own] columns; empty where a simulation failed. Steps
+/// that would leave the bounds go to the bound only.
+struct BatchedDerivatives {
+  std::vector<Eigen::VectorXd> residuals;
+  std::vector<Eigen::MatrixXd> jacobians;
+};
+[[nodiscard]] BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
+                                               const std::vector<Eigen::VectorXd>& own);
+/// J^T J of the shared unknowns with those of each term eliminated.
+[[nodiscard]] Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index shared);
+
+}  // namespace snug::numerics

@@ -1,0 +1,95 @@
+// Tests of searches without derivatives and of batched least squares, on functions whose least is known.
+#include "snug/numerics/bounded_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "snug/numerics/batched_least_squares.hpp"
+
+namespace snug::numerics {
+namespace {
+
+using Eigen::VectorXd;
+
+VectorXd two(double a, double b) { return (VectorXd(2) << a, b).finished(); }
+
+TEST(BoundedSearch, FindsTheLeastOfABentValley) {
+  const auto rosenbrock = [](const VectorXd& x) {
+    return 100.0 * std::pow(x[1] - x[0] * x[0], 2) + std::pow(1.0 - x[0], 2);
+  };
+  for (const SearchMethod method : {SearchMethod::Subplex, SearchMethod::ControlledRandom}) {
+    SearchOptions options;
+    options.method = method;
+    options.evaluations = 5000;
+    options.tolerance = 1e-7;
+    const SearchResult found = minimize_bounded(rosenbrock, two(-1.0, 1.5), two(-2.0, -2.0), two(2.0, 2.0), options);
+    EXPECT_NEAR(found.x[0], 1.0, 1e-2);
+    EXPECT_NEAR(found.x[1], 1.0, 2e-2);
+    EXPECT_EQ(minimize_bounded(rosenbrock, two(-1.0, 1.5), two(-2.0, -2.0), two(2.0, 2.0), options).x, found.x);
+  }
+}
+
+TEST(BoundedSearch, StaysWithinBoundsAndTakesNoNumberAsTheWorst) {
+  bool has_left = false;
+  const auto cost = [&](const VectorXd& x) {
+    has_left = has_left || x.minCoeff() < 0.5 || x.maxCoeff() > 2.0;
+    return x[0] > 1.5 ? std::numeric_limits<double>::quiet_NaN() : x.sum();
+  };
+  const SearchResult found = minimize_bounded(cost, two(1.0, 1.0), two(0.5, 0.5), two(2.0, 2.0), {});
+  EXPECT_FALSE(has_left);
+  EXPECT_NEAR(found.cost, 1.0, 1e-3);
+}
+
+/// Decays a exp(-b t) + c of which each term has a c of its own.
+BatchedProblem decays(const VectorXd& truth) {
+  BatchedProblem problem;
+  problem.start = two(0.5, 0.3);
+  problem.lower = two(0.1, 0.1);
+  problem.upper = two(5.0, 5.0);
+  problem.step = two(1e-5, 1e-5);
+  for (int i = 0; i < 3; ++i) problem.terms.push_back({20, VectorXd::Zero(1), VectorXd::Constant(1, 1e-5)});
+  problem.evaluate = [truth](const std::vector<BatchedProblem::Job>& jobs) {
+    std::vector<VectorXd> residuals;
+    for (const BatchedProblem::Job& job : jobs) {
+      VectorXd r(20);
+      for (int k = 0; k < 20; ++k) {
+        const double t = 0.1 * k, own = 0.4 * static_cast<double>(job.term);
+        r[k] = job.shared[0] * std::exp(-job.shared[1] * t) + job.own[0] - truth[0] * std::exp(-truth[1] * t) - own;
+      }
+      residuals.push_back(r);
+    }
+    return residuals;
+  };
+  return problem;
+}
+
+TEST(BatchedLeastSquares, FindsSharedAndOwnUnknowns) {
+  const BatchedResult found = solve_batched(decays(two(2.0, 1.3)));
+  EXPECT_TRUE(found.has_converged);
+  EXPECT_NEAR(found.x[0], 2.0, 1e-6);
+  EXPECT_NEAR(found.x[1], 1.3, 1e-6);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found.own[i][0], 0.4 * static_cast<double>(i), 1e-6);
+  // What the own unknowns explain is no information: less than with all of them known.
+  const BatchedDerivatives at = differentiate(decays(two(2.0, 1.3)), found.x, found.own);
+  Eigen::MatrixXd alone = Eigen::MatrixXd::Zero(2, 2);
+  for (const Eigen::MatrixXd& J : at.jacobians) alone += J.leftCols(2).transpose() * J.leftCols(2);
+  EXPECT_LT(found.information(0, 0), alone(0, 0));
+}
+
+TEST(BatchedLeastSquares, EndsAtABoundWhenTheLeastIsBeyond) {
+  BatchedProblem problem = decays(two(2.0, 1.3));
+  problem.upper = two(5.0, 1.0);
+  const BatchedResult found = solve_batched(problem);
+  EXPECT_NEAR(found.x[1], 1.0, 1e-6);
+}
+
+TEST(BatchedLeastSquares, SaysSoWhenNothingCanBeSimulated) {
+  BatchedProblem problem = decays(two(2.0, 1.3));
+  problem.evaluate = [](const std::vector<BatchedProblem::Job>& jobs) { return std::vector<VectorXd>(jobs.size()); };
+  EXPECT_FALSE(solve_batched(problem).has_converged);
+}
+
+}  // namespace
+}  // namespace snug::numerics
