@@ -10,7 +10,7 @@ SOURCES = $(shell find src apps bench tests examples -name '*.hpp' -o -name '*.c
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)
 
-.PHONY: help setup setup-program setup-lint setup-peers setup-package setup-fuzz build demo test acceptance install package check \
+.PHONY: help setup setup-program setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install package check \
   format-check clang fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
 
 help: ## list the verbs
@@ -26,6 +26,9 @@ setup-peers:
 	@scripts/install-deps.sh peers && scripts/install-viewer.sh
 setup-package:
 	@scripts/install-deps.sh package && scripts/install-viewer.sh
+
+setup-docs:
+	@scripts/install-deps.sh docs
 
 setup-fuzz:
 	@scripts/install-deps.sh test fuzz && scripts/install-viewer.sh
@@ -84,8 +87,8 @@ bench: build ## how fast and how accurate the physics is, beside its targets
 bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run
 	@$(call configure-build,bench) && build-bench/bench_peers
 
-docs: setup ## check that every link in the documents leads somewhere
-	@python3 tools/check_docs.py .
+docs: setup-docs ## check every link of the documents, build the documentation site: build/site/index.html
+	@python3 tools/check_docs.py . && python3 tools/build_site.py build/site
 
 clean: ## remove what the verbs built
 	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz out

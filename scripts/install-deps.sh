@@ -2,7 +2,7 @@
 # install-deps.sh: the one list of Debian 12 packages that snug is built, tested and compared with.
 #
 #   scripts/install-deps.sh              what building, testing and running need: the groups program and test
-#   scripts/install-deps.sh program      what the program needs to be built and to pack; test, lint, fuzz, peers, package:
+#   scripts/install-deps.sh program      what the program needs to be built and to pack; test, lint, fuzz, peers, package, docs:
 #                                        that, and the groups named
 #   scripts/install-deps.sh --list ...   only print the packages
 #
@@ -12,7 +12,7 @@ set -eu
 program="make cmake ninja-build g++ pkg-config ccache python3
   libeigen3-dev libexpected-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libhdf5-dev libcli11-dev
   zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev libsiconos-numerics-dev
-  libtinyxml2-dev libassimp-dev libceres-dev libnlopt-cxx-dev"
+  libtinyxml2-dev libassimp-dev libceres-dev libnlopt-cxx-dev libpng-dev"
 node="nodejs npm"                   # unless there is a node of 18 or newer already
 # make test; chromium also draws `snug picture`
 test="hdf5-tools libbenchmark-dev liborocos-kdl-dev libkdl-parser-dev chromium man-db"
@@ -20,6 +20,7 @@ lint="clang clang-format clang-tidy" # make check, fix, tidy, clang
 fuzz="clang libclang-rt-14-dev"      # make fuzz
 peers="libbullet-dev libmujoco-dev"  # make bench-peers
 package="dpkg-dev file"              # make package
+docs="python3-sphinx python3-myst-parser furo" # make docs
 
 wanted="$program"
 groups=""
@@ -33,8 +34,9 @@ for argument in "$@"; do
     fuzz) groups="$groups fuzz"; wanted="$wanted $fuzz" ;;
     peers) groups="$groups peers"; wanted="$wanted $peers" ;;
     package) groups="$groups package"; wanted="$wanted $package" ;;
+    docs) groups="$groups docs"; wanted="$wanted $docs" ;;
     *)
-      echo "install-deps.sh: unknown group '$argument'; expected program, test, lint, fuzz, peers, package or --list" >&2
+      echo "install-deps.sh: unknown group '$argument'; expected program, test, lint, fuzz, peers, package, docs or --list" >&2
       exit 2 ;;
   esac
 done

@@ -34,6 +34,7 @@ void add_convert(CLI::App& verb, Action& action) {
   part.footer(
       "Each source of an archive becomes a table of its own, as each has a clock of its own.\n"
       "Examples:\n  snug archive convert measured.h5 -o tables\n"
+      "  snug export run.h5 --format csv -o log.csv\n"
       "  snug archive convert log.csv --name Rec_20230511T093000Z --sequence 1 -o one.h5");
   part.callback([options, &action] { action = [options] { return run_archive_convert(*options); }; });
 }

@@ -15,6 +15,7 @@ struct CheckOptions {
   std::string program;
   std::optional<std::string> sequence;
   std::optional<std::string> robot;
+  std::string controller = "faithful";  ///< or ideal
   std::string corrections = "none";
   bool json = false;
 };

@@ -16,7 +16,7 @@ everything that stands in the cell. Margins of collisions are distances, negativ
 inside is said beside them. Rows with one finding stand in one line. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
 Examples:
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1
-  snug check scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json)";
+  snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --controller ideal --json)";
 
 }  // namespace
 
@@ -28,6 +28,12 @@ void add_check(CLI::App& app, Action& action) {
   verb.add_option("--program", options->program, "waypoint file (13 columns)")->required()->type_name("FILE.csv");
   verb.add_option("--sequence", options->sequence, "item sequence, to look at the held boxes too")->type_name("NAME");
   verb.add_option("--robot", options->robot, "the scenario's robot; absent: the one there is")->type_name("NAME");
+  verb.add_option(
+          "--controller", options->controller,
+          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly, as exported programs are done")
+      ->check(one_of({"faithful", "ideal"}))
+      ->type_name("KIND")
+      ->capture_default_str();
   verb.add_option("--corrections", options->corrections, "site corrections: a layer of the scenario, or none")
       ->type_name("LAYER")
       ->capture_default_str();

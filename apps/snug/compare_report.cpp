@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "snug/core/csv_cell.hpp"
+#include "snug/model/reported_agent.hpp"
 
 namespace snug::app {
 namespace {
@@ -67,7 +68,7 @@ const model::Reported* find_reported(const model::Sequence& sequence, const std:
   return found != sequence.reported.end() ? &*found : nullptr;
 }
 
-std::string label_of(const std::string& reporter) { return "reported, " + reporter; }
+std::string label_of(const std::string& reporter) { return "reported, " + model::split_agent(reporter).name; }
 
 std::string cell_of(int boxes, double percent) { return fmt::format("  {:3} / {:5.2f}", boxes, percent); }
 

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "shipped.hpp"
+
 #include "cup.hpp"
 
 namespace snug::app {
@@ -11,13 +13,13 @@ constexpr const char* kEvaluateHelp =
     R"(Each line: {"R": 3x3, "o": [3], "K": 6x6, "S_R_S1": 3x3, "S_o_S1": [3]}; matrices as rows, SI units, linear part first.
 The answer has the wrench on the package in S and in S1, and the stored energy V.
 Example:
-  snug cup evaluate deformations.jsonl)";
+  snug cup evaluate scenarios/examples/deformations.jsonl)";
 
 constexpr const char* kSettleHelp =
     R"(Each line: {"W_R_E": 3x3, "mass": kg, "com_S": [3], "K": 6x6, "E_H_S2": {"R", "o"}, "S_H_S1": {"R", "o"}}.
 The answer has the pose of the lip, E_R_S and E_o_S, and whether the load stays there: stable.
 Example:
-  snug cup settle loads.jsonl)";
+  snug cup settle scenarios/examples/loads.jsonl)";
 
 void add_part(CLI::App& verb, const char* name, const char* about, const char* help, int (*run)(const CupOptions&),
               Action& action) {
@@ -25,7 +27,12 @@ void add_part(CLI::App& verb, const char* name, const char* about, const char* h
   const auto options = std::make_shared<CupOptions>();
   part.add_option("input", options->input, "file of JSON lines, - for stdin")->type_name("FILE")->capture_default_str();
   part.footer(help);
-  part.callback([options, run, &action] { action = [options, run] { return run(*options); }; });
+  part.callback([options, run, &action] {
+    action = [options, run] {
+      options->input = find_shipped(options->input);
+      return run(*options);
+    };
+  });
 }
 
 }  // namespace

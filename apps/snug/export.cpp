@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "export_program.hpp"
+#include "robot_files.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/csv.hpp"
@@ -20,8 +21,9 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 
 int write_mcap(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
-  const replay::McapTotals totals = replay::export_mcap(reader, file_name(options.input), options.selection,
-                                                        std::move(output), {.compression = options.compression});
+  const replay::McapTotals totals =
+      replay::export_mcap(reader, file_name(options.input), options.selection, std::move(output),
+                          {.compression = options.compression}, find_robot(reader, options.input, options.urdf));
   std::fprintf(stderr, "%s: %zu frames, %llu messages, %.2f MB\n", options.output.c_str(), totals.frames,
                static_cast<unsigned long long>(totals.messages), static_cast<double>(totals.bytes) / 1e6);
   return kSuccess;
@@ -31,11 +33,14 @@ int write_csv(const ExportOptions& options, OutputFile output) {
   record::RecordingReader reader(options.input);
   record::CsvWriter writer(std::move(output), reader.header());
   record::Frame frame;
-  for (const std::size_t index : replay::select_frames(reader, file_name(options.input), options.selection)) {
+  const std::vector<std::size_t> frames = replay::select_frames(reader, file_name(options.input), options.selection);
+  for (const std::size_t index : frames) {
     reader.read_frame(index, frame);
     writer.append(frame);
   }
   writer.close();
+  std::fprintf(stderr, "%s: %zu rows, %.3f s to %.3f s\n", options.output.c_str(), frames.size(),
+               reader.times()[frames.front()], reader.times()[frames.back()]);
   return kSuccess;
 }
 

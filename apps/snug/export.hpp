@@ -18,12 +18,14 @@ struct ExportOptions {
   std::string output;
   replay::Selection selection;
   replay::McapCompression compression = replay::McapCompression::Zstd;
+  std::optional<std::string> urdf;  ///< of the robot in a recording; absent: looked for
   // of programs
   std::string scenario;  ///< its robot, limits and gains
   ScenarioChanges changes;
   std::string sequence;              ///< whose gain; empty: the first
   std::string corrections = "none";  ///< layer of the scenario
   double period = 0.04;              ///< s, between the points of a trajectory
+  bool is_unchecked = false;         ///< not simulated before it is written
   control::UrScriptOptions script;
 };
 

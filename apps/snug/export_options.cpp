@@ -48,6 +48,10 @@ void add_export(CLI::App& app, Action& action) {
   verb.add_option("--corrections", options->corrections, "of a program: a layer of the scenario, or none")
       ->type_name("LAYER")
       ->capture_default_str();
+  verb.add_flag(
+      "--unchecked", options->is_unchecked,
+      "of a program: write it without simulating it first; otherwise it is refused where the robot stops or a box "
+      "is lost");
   verb.add_option("--period", options->period, "of ros-trajectory: time between points")
       ->check(within(1e-3, 100.0))
       ->type_name("SECONDS")
@@ -70,6 +74,9 @@ void add_export(CLI::App& app, Action& action) {
       ->check(positive())
       ->type_name("SECONDS")
       ->capture_default_str();
+  verb.add_option("--urdf", options->urdf,
+                  "of a recording: how the robot in it looks (default: the file that its scenario names)")
+      ->type_name("FILE.urdf");
   verb.footer(footer + kExportExamples);
   verb.callback([options, compression, &action] {
     action = [options, compression] {

@@ -1,31 +1,67 @@
 // export of programs: for the controllers of real robots.
 #include "export_program.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 
+#include "program_fit.hpp"
 #include "robot_warnings.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/held_boxes.hpp"
+#include "snug/cell/program_trial.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/control/program_export.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/motion/fitted_limits.hpp"
+#include "version.hpp"
 
 namespace snug::app {
 namespace {
 
+/// How far a box that is let go may be from where the simulation puts it is not looked at here: that it stays packed
+/// is.
+constexpr const char* kNotExported =
+    "not exported: the robot that follows exactly does not do what was simulated: {} (--unchecked exports it all the "
+    "same)";
+
+/// The cup that `simulate` has by default for the program.
+cup::CupMode cup_for(const ExportOptions& options) {
+  return is_own_program(motion::load_program(options.input)) ? cup::CupMode::Phases : cup::CupMode::Holding;
+}
+
 /// A program and the robot that is to do it.
 struct LoadedProgram {
   cell::Simulation simulation;
-  motion::PreparedProgram plan;
+  motion::PreparedProgram plan;  ///< with the tool that lags behind, as it is simulated
 
   LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
-      : simulation(scenario, sequence, {motion::ControllerKind::Faithful, cup::CupMode::Holding, scenario.robot->name}),
+      : simulation(scenario, sequence, {motion::ControllerKind::Faithful, cup_for(options), scenario.robot->name}),
         plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input),
                                                 options.corrections == "none" ? "" : options.corrections))) {}
 
-  [[nodiscard]] control::RobotProgram for_robot() const {
-    return {plan, simulation.arm()->model(), simulation.arm()->start(), find_loads()};
+  /// `done`: the motion that is written, as simulated or fitted to that.
+  [[nodiscard]] control::RobotProgram for_robot(const motion::PreparedProgram& done,
+                                                const ExportOptions& options) const {
+    const std::string layer = options.corrections == "none" ? "" : ", corrections " + options.corrections;
+    return {done,
+            simulation.arm()->model(),
+            simulation.arm()->start(),
+            find_loads(),
+            {fmt::format("snug {}", version_text()),
+             fmt::format("program {}, {} rows{}", options.input, plan.program.waypoints.size(), layer),
+             fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name, simulation.sequence().name,
+                         simulation.arm()->model().name)},
+            motion::compute_duration(plan, simulation.scenario().controller.X_WE_start)};
+  }
+
+  /// The program for a robot that follows exactly: the same rows with speeds and accelerations of the simulated motion.
+  [[nodiscard]] motion::PreparedProgram fitted() const {
+    motion::PreparedProgram exact = plan;
+    exact.settings.kind = motion::ControllerKind::Ideal;
+    exact.row_limits = motion::fit_limits(plan, simulation.scenario().controller.X_WE_start);
+    return exact;
   }
 
  private:
@@ -69,6 +105,24 @@ LoadedProgram load(const ExportOptions& options) {
   return {scenario, sequence, options};
 }
 
+/// Whether what is exported may be done: simulates it with contact beside the program as it is simulated otherwise, and
+/// says on stderr what is worse. True with --unchecked.
+bool is_exportable(const LoadedProgram& program, const motion::PreparedProgram& done, const ExportOptions& options) {
+  if (options.is_unchecked) return true;
+  const cell::Simulation& lagging = program.simulation;
+  const cell::MotionTrial wanted = cell::try_motion(lagging, program.plan);
+  cell::MotionTrial trial = wanted;
+  if (done.settings.kind == motion::ControllerKind::Ideal) {
+    cell::SimulationOptions exact = lagging.options();
+    exact.controller = motion::ControllerKind::Ideal;
+    trial = cell::try_motion(cell::Simulation(lagging.scenario(), lagging.sequence().name, exact), done);
+  }
+  const std::string worse = cell::compare_trials(wanted, trial);
+  if (worse.empty()) return true;
+  std::fprintf(stderr, "snug: %s\n", fmt::format(fmt::runtime(kNotExported), worse).c_str());
+  return false;
+}
+
 /// Runs the program through the joints and writes what `format` makes of it; nothing when the robot cannot do it.
 template <class Format>
 int write_run(const ExportOptions& options, OutputFile output, Format format) {
@@ -82,7 +136,10 @@ int write_run(const ExportOptions& options, OutputFile output, Format format) {
                  program.plan.program.waypoints[row].name.c_str());
     return kRunFailed;
   }
+  if (!is_exportable(program, program.plan, options)) return kRunFailed;
   write_file(std::move(output), format(run, arm.model(), program));
+  std::fprintf(stderr, "%s: %zu rows, %.1f s\n", options.output.c_str(), program.plan.program.waypoints.size(),
+               static_cast<double>(run.samples.size()) * program.plan.settings.tick);
   return kSuccess;
 }
 
@@ -94,7 +151,9 @@ int write_urscript(const ExportOptions& options, OutputFile output) {
                      "another output than --vacuum-output");
   }
   const LoadedProgram program = load(options);
-  const control::UrScript script = control::format_urscript(program.for_robot(), options.script);
+  const motion::PreparedProgram fitted = program.fitted();
+  const control::UrScript script = control::format_urscript(program.for_robot(fitted, options), options.script);
+  if (!is_exportable(program, fitted, options)) return kRunFailed;
   write_file(std::move(output), script.text);
   std::fprintf(stderr,
                "%s: %d moves, %.1f s nominal from stop to stop; %.1f s simulated, with a controller that lags behind "
@@ -106,7 +165,8 @@ int write_urscript(const ExportOptions& options, OutputFile output) {
 int write_ros_trajectory(const ExportOptions& options, OutputFile output) {
   return write_run(options, std::move(output),
                    [&](const control::JointRun& run, const robot::ArmModel&, const LoadedProgram& program) {
-                     return control::format_ros_trajectory(run, program.for_robot(), options.period);
+                     return control::format_ros_trajectory(run, program.for_robot(program.plan, options),
+                                                           options.period);
                    });
 }
 

@@ -15,16 +15,17 @@ left out and named by index. Verdicts: identified (standard error below 5 %), we
 Methods: compliance, closed form, the default; wrench, closed form, exact without noise, biased low with it;
 errors-in-variables, maximum likelihood, the best error bars.
 Examples:
-  snug identify stiffness poses.json
-  snug identify stiffness poses.csv --method errors-in-variables --wrench gravity -o cup.yaml
-  snug identify stiffness poses.json --parameters 21 --json)";
+  snug identify stiffness scenarios/examples/poses.json
+  snug identify stiffness scenarios/examples/poses.json --method errors-in-variables --wrench gravity -o cup.yaml
+  snug identify stiffness scenarios/examples/poses.json --parameters 21 --json)";
 
 constexpr const char* kDampingHelp =
     R"(Each release: poses of the lip in the gripper's frame after a held box was displaced and let go, gripper at rest; mass, centre
 of mass and inertia of the box. Files: docs/formats.md, releases. Stiffness is that of the file, else of --scenario.
 Examples:
-  snug identify damping swings.json pluck.json --scenario cell.yaml -o cup.yaml
-  snug identify damping swings.json --release 2 --json)";
+  snug identify pluck --scenario scenarios/box-demonstrator.yaml --parcel BOX013 -o pluck.json
+  snug identify damping pluck.json --scenario scenarios/box-demonstrator.yaml -o cup.yaml
+  snug identify damping pluck.json --release 0 --json)";
 
 constexpr const char* kPluckHelp =
     R"(Swings say little about damping along the cup's axis. This writes the experiment that does, as sensors would record it

@@ -113,7 +113,8 @@ std::string boxes_as_yaml(const model::Scenario& drawn_from, const std::vector<m
 int run_items_reduce(const ItemsReduceOptions& options) {
   std::optional<OutputFile> output = reserve({{"the orders", options.orders}}, options.output);
   const packing::ReductionSettings settings{options.count, 0.01 * options.group_percent, 0.01 * options.cover_percent};
-  const packing::Reduction reduction = packing::reduce_items(model::load_orders(options.orders), settings);
+  const packing::Reduction reduction =
+      packing::reduce_items(model::load_orders(find_shipped(options.orders)), settings);
   if (output) write_file(std::move(*output), as_yaml(reduction));
   if (options.json) {
     print(as_json(reduction));

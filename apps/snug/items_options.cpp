@@ -13,7 +13,7 @@ constexpr const char* kReduceHelp =
     R"(Report section 3.1.1: boxes of nearly equal size and mass become one, the most frequent of these are kept, and it is
 said how many of all boxes have a representative near their size. ORDERS is a CSV with a header or JSON in the BED-BPP form.
 Example:
-  snug items reduce orders.csv --count 4 -o types.yaml)";
+  snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml)";
 
 constexpr const char* kSequenceHelp =
     R"(Report section 3.1.2: boxes of the scenario in random order, as few as reach the theoretical filling degree.
@@ -22,6 +22,13 @@ Example:
   snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
   snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
   snug items sequence scenarios/box-demonstrator.yaml --all --name random --sequences 50 -o random.yaml)";
+
+constexpr const char* kItemsHelp =
+    R"(Examples:
+  snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml
+  snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
+  snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
+`snug items reduce --help` and `snug items sequence --help` tell more.)";
 
 void add_reduce(CLI::App& parent, Action& action) {
   CLI::App& verb = *parent.add_subcommand("reduce", "few boxes that stand for those of many orders");
@@ -87,6 +94,7 @@ void add_items(CLI::App& app, Action& action) {
   verb.require_subcommand(1);
   add_reduce(verb, action);
   add_sequence(verb, action);
+  verb.footer(kItemsHelp);
 }
 
 }  // namespace snug::app

@@ -23,7 +23,20 @@ std::vector<packing::LoadProblem> problems_of(const LoadOptions& options) {
   if (options.container_mm.empty()) {
     throw InputError("command line", "--container", "nothing", "length, width and height in mm, for orders");
   }
-  const auto lines = model::load_orders(options.file);
+  auto lines = model::load_orders(options.file);
+  int limited = 0;
+  for (model::OrderLine& line : lines) {
+    if (!line.handling.no_stack && !line.handling.max_load) continue;
+    limited += line.count;
+    line.handling.no_stack = false;
+    line.handling.max_load.reset();
+  }
+  if (limited > 0) {
+    std::fprintf(
+        stderr,
+        "snug: warning: %d boxes must not carry others, or not much: that is not looked at here (snug pack does)\n",
+        limited);
+  }
   return packing::problems_of(
       lines, 1e-3 * Vector3(options.container_mm[0], options.container_mm[1], options.container_mm[2]));
 }

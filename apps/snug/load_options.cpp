@@ -5,6 +5,7 @@
 #include "load.hpp"
 #include "options.hpp"
 #include "ranges.hpp"
+#include "shipped.hpp"
 
 namespace snug::app {
 namespace {
@@ -16,8 +17,9 @@ FILE is one of
   .csv   orders with a header, .json orders in the BED-BPP form: one problem for each order, with --container
 The time is turned into a fixed amount of work: the same input gives the same load, on any machine and any number of threads.
 Examples:
-  snug load BR1.txt --first 10 --time 30
-  snug load orders.json --container 1200 800 1450 --json -o loads.json)";
+  snug load scenarios/examples/containers.txt --time 2
+  snug load scenarios/orders-example.csv --container 600 400 300 --time 2
+  snug load scenarios/examples/orders.json --container 1200 800 1450 --json -o loads.json)";
 
 }  // namespace
 
@@ -41,7 +43,12 @@ void add_load(CLI::App& app, Action& action) {
   verb.add_flag("--json", options->json, "print JSON: every box, where it lies");
   verb.add_option("-o,--output", options->output, "file to write instead of stdout")->type_name("FILE");
   verb.footer(kLoadHelp);
-  verb.callback([options, &action] { action = [options] { return run_load(*options); }; });
+  verb.callback([options, &action] {
+    action = [options] {
+      options->file = find_shipped(options->file);
+      return run_load(*options);
+    };
+  });
 }
 
 }  // namespace snug::app

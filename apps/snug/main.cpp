@@ -17,15 +17,17 @@
 #include "snug/core/text.hpp"
 #include "verb.hpp"
 #include "verbs.hpp"
+#include "version.hpp"
 
 namespace {
 
 using snug::app::Action;
 
 constexpr const char* kExamples = R"(Examples:
-  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
+  snug init cell my-cell
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --program program.csv -o run.h5
+  snug report run.h5 -o run.html
   snug simulate scenarios/drop.yaml --until 5 --json
-  snug cup evaluate deformations.jsonl
 `snug VERB --help` tells the options of a verb. Data goes to stdout, messages to stderr.
 Exit codes:
   0  done; boxes that were not packed, with their reasons, are a result too
@@ -57,7 +59,7 @@ void check_words(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   CLI::App app("snug simulates how a robot with a suction cup packs boxes, contact included.", "snug");
-  app.set_version_flag("--version", "snug " SNUG_VERSION);
+  app.set_version_flag("--version", std::string("snug ") + snug::app::version_text());
   app.require_subcommand(0, 1);
   app.footer(kExamples);
   Action action;

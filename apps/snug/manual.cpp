@@ -1,5 +1,6 @@
 // manual: the manual page, made from what `--help` of each verb says.
 #include "manual.hpp"
+#include "version.hpp"
 
 #include <fmt/format.h>
 
@@ -91,7 +92,7 @@ void add_manual(CLI::App& app, Action& action) {
   verb.footer(kManualExamples);
   verb.callback([&app, &action] {
     action = [&app] {
-      std::fputs(format_manual(list_commands(app), SNUG_VERSION).c_str(), stdout);
+      std::fputs(format_manual(list_commands(app), version_text()).c_str(), stdout);
       return kSuccess;
     };
   });

@@ -14,7 +14,7 @@ of its own, wrenches with bias and drift, encoders; each source on a clock of it
 repetition each; --repetitions measures one recording that often, with noise, losses and clocks drawn anew.
 Examples:
   snug measure run.h5 --sensors scenarios/sensors/demonstrator.yaml -o measured.h5 --repetitions 3
-  snug measure a.h5 b.h5 c.h5 --sensors scenarios/sensors/demonstrator.yaml --seed 7 -o measured.h5 --truth truth.json)";
+  snug measure run.h5 again.h5 --sensors scenarios/sensors/demonstrator.yaml --seed 7 -o two.h5 --truth truth.json)";
 
 }  // namespace
 

@@ -19,6 +19,7 @@
 #include "snug/core/write_file.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/study/monte_carlo.hpp"
+#include "version.hpp"
 
 namespace snug::app {
 namespace {
@@ -27,7 +28,7 @@ namespace {
 void record(const model::Scenario& scenario, const study::Trial& trial, OutputFile& file) {
   simulated_plant::RecordedRunOptions recorded;
   recorded.file = &file;
-  recorded.version = SNUG_VERSION;
+  recorded.version = version_text();
   recorded.events = study::events_of(trial.session);
   const std::string& robot = trial.plant.simulation.robot;
   recorded.settings_json =

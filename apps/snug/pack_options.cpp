@@ -19,7 +19,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --program out.csv --plan out.json --monte-carlo 10
-  snug simulate scenarios/box-demonstrator.yaml --program out.csv --sequence 2 --cup phases
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1
 Programs of such a run need the same --items, --container and --pallet in simulate, check and export; recordings hold them.)";
 
 }  // namespace

@@ -19,6 +19,7 @@
 
 #include "browser.hpp"
 #include "outputs.hpp"
+#include "robot_files.hpp"
 #include "snug/core/descriptor.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
@@ -79,7 +80,8 @@ class Studio {
   Studio(const PictureOptions& options, record::RecordingReader& reader)
       : browser_(find_browser(), folder_.path() / "profile", options.width, options.height) {
     const std::string name = fs::path(options.recording).filename().string();
-    const replay::PageRecording recording{name, replay::encode_recording(reader, name, {})};
+    const replay::RobotDescription robot = find_robot(reader, options.recording, options.urdf);
+    const replay::PageRecording recording{name, replay::encode_recording(reader, name, {}, robot)};
     const fs::path page = folder_.path() / "page.html";
     write_file(page, replay::assemble_page(viewer_page(), {&recording, 1}));
     browser_.open(fmt::format("file://{}#picture=1&t={}&camera={}&theme={}&show={}&hide={}&size={}x{}", page.string(),
@@ -113,6 +115,15 @@ class Studio {
 void expect_finite(const char* option, const std::optional<double>& value) {
   if (!value || std::isfinite(*value)) return;
   throw InputError("command line", option, fmt::format("{}", *value), "a finite number of seconds");
+}
+
+/// A picture of an instant that was not recorded would show another.
+void expect_recorded(const PictureOptions& options, const record::RecordingReader& reader) {
+  const double first = reader.times().front(), last = reader.times().back();
+  constexpr double kRounding = 1e-6;  // s, of times as people write them
+  if (!options.time || (*options.time >= first - kRounding && *options.time <= last + kRounding)) return;
+  throw InputError("command line", "--time", fmt::format("{}", *options.time),
+                   fmt::format("an instant of {}: {:.3f} s to {:.3f} s", options.recording, first, last));
 }
 
 /// Instants of the frames of a video.
@@ -201,12 +212,16 @@ int run_picture(const PictureOptions& options) {
   if (reader.frame_count() == 0) {
     throw InputError(options.recording, "", "a recording without frames", "at least one frame");
   }
+  expect_recorded(options, reader);
   heed_interruption();
   try {
     if (!options.video.empty()) {
       draw_video(options, reader);
     } else {
-      write_file(std::move(*output), Studio(options, reader).take_picture());
+      const std::string picture = Studio(options, reader).take_picture();
+      write_file(std::move(*output), picture);
+      std::fprintf(stderr, "%s: %dx%d at %.3f s, camera %s\n", options.output.c_str(), options.width, options.height,
+                   options.time.value_or(reader.times().back()), options.camera.c_str());
     }
   } catch (const BrowserError& error) {
     std::fprintf(stderr, "snug: failed: %s\n", error.what());

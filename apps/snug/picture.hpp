@@ -19,7 +19,8 @@ struct PictureOptions {
   int width = 1280, height = 800;
   std::string camera = "cell";
   std::string theme = "light";
-  std::string show, hide;  ///< parts of the drawing, separated by commas
+  std::optional<std::string> urdf;  ///< of the robot in it; absent: looked for
+  std::string show, hide;           ///< parts of the drawing, separated by commas
 };
 
 void add_picture(CLI::App& app, Action& action);

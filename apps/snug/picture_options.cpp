@@ -16,7 +16,7 @@ constexpr const char* kPictureExamples = R"(Examples:
   snug picture run.h5 -o end.png --camera top
   snug picture run.h5 --time 12.3 --size 1920x1080 --show frames,wrenches -o pick.png
   snug picture run.h5 --video frames --fps 25 --from 40 --to 60
-  ffmpeg -framerate 25 -i frames/frame-%06d.png -pix_fmt yuv420p run.mp4      (makes a film of the last))";
+  ffmpeg -framerate 25 -i frames/frame-%06d.png -pix_fmt yuv420p run.mp4      # makes a film of the last)";
 
 // Pictures a second, and times as fast as it was.
 constexpr double kSlowest = 1e-3;
@@ -73,6 +73,8 @@ void add_picture(CLI::App& app, Action& action) {
                   "parts to draw: names, contacts, forces, wrenches, ghost, frames, trace, xray, robot, walls, shadows")
       ->type_name("A,B");
   verb.add_option("--hide", options->hide, "parts to leave out")->type_name("A,B");
+  verb.add_option("--urdf", options->urdf, "how the robot in it looks (default: the file that its scenario names)")
+      ->type_name("FILE.urdf");
   verb.footer(kPictureExamples);
   verb.callback([options, size, &action] {
     action = [options, size] {

@@ -1,6 +1,7 @@
 // plot: quantities of a recording as an SVG for papers.
 #include "plot.hpp"
 
+#include <cstdio>
 #include <filesystem>
 
 #include "outputs.hpp"
@@ -32,6 +33,8 @@ int run_plot(const PlotOptions& options) {
   figure.width_mm = options.width_mm;
   figure.panel_height_mm = options.height_mm;
   write_file(std::move(output), replay::draw_svg(figure));
+  std::fprintf(stderr, "%s: %zu panels over %s, %.0f mm wide\n", options.output.c_str(), figure.panels.size(),
+               options.recordings.size() > 1 ? "two recordings" : "one recording", figure.width_mm);
   return kSuccess;
 }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kPlotExamples = R"(Examples:
   snug plot run.h5 --what wrench -o wrench.svg
   snug plot run.h5 --what pose:BOX027 --from 2 --to 20 -o box.svg
-  snug plot stiff.h5 soft.h5 --what tool --what speed --width 85 -o compare.svg)";
+  snug plot run.h5 again.h5 --what tool --what speed --width 85 -o compare.svg)";
 
 }  // namespace
 

@@ -17,7 +17,9 @@ void add_program(CLI::App& app, Action& action) {
       ->type_name("NAME");
   add_scenario_changes(verb, options->changes);
   verb.add_option("-o,--output", options->output, "file to write; default: stdout")->type_name("FILE.csv");
-  verb.footer("Example:\n  snug program scenarios/box-demonstrator.yaml placements.yaml --sequence 1 -o program.csv");
+  verb.footer(
+      "Example:\n  snug program scenarios/box-demonstrator.yaml scenarios/demo-placements.yaml --sequence 1 -o "
+      "program.csv");
   verb.callback([options, &action] { action = [options] { return run_program(*options); }; });
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "outputs.hpp"
+#include "robot_files.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/replay/page.hpp"
@@ -23,7 +24,8 @@ int run_report(const ReportOptions& options) {
   for (const std::string& path : options.recordings) {
     record::RecordingReader reader(path);
     const std::string name = std::filesystem::path(path).filename().string();
-    recordings.push_back({name, replay::encode_recording(reader, name, options.selection)});
+    const replay::RobotDescription robot = find_robot(reader, path, options.urdf);
+    recordings.push_back({name, replay::encode_recording(reader, name, options.selection, robot)});
   }
   const std::string html = replay::assemble_page(page, recordings);
   write_file(std::move(output), html);

@@ -14,6 +14,7 @@ struct ReportOptions {
   std::vector<std::string> recordings;  ///< one, or one and a second to lay over it
   std::string output;
   replay::Selection selection;
+  std::optional<std::string> urdf;  ///< of the robot in it; absent: looked for
 };
 
 void add_report(CLI::App& app, Action& action);

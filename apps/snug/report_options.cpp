@@ -11,8 +11,8 @@ namespace {
 
 constexpr const char* kReportExamples = R"(Examples:
   snug report run.h5 -o run.html
-  snug report stiff.h5 soft.h5 -o compare.html       the second is laid over the first
-  snug report long.h5 -o part.html --from 40 --to 60)";
+  snug report run.h5 again.h5 -o both.html       # the second is laid over the first
+  snug report run.h5 -o part.html --from 40 --to 60)";
 
 }  // namespace
 
@@ -32,6 +32,8 @@ void add_report(CLI::App& app, Action& action) {
       ->type_name("FILE.h5");
   verb.add_option("-o,--output", options->output, "the page to write")->required()->type_name("FILE.html");
   add_selection_options(verb, options->selection);
+  verb.add_option("--urdf", options->urdf, "how the robot in it looks (default: the file that its scenario names)")
+      ->type_name("FILE.urdf");
   verb.footer(kReportExamples);
   verb.callback([options, &action] { action = [options] { return run_report(*options); }; });
 }

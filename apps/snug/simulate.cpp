@@ -1,9 +1,11 @@
 // simulate: loads what the options name, runs it, prints what became of it.
 #include "simulate.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
+#include "program_fit.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
 #include "snug/cell/monte_carlo.hpp"
@@ -14,6 +16,7 @@
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
+#include "version.hpp"
 
 namespace snug::app {
 namespace {
@@ -61,6 +64,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
     run.program_text = read_file(*options.program, "a program file (CSV)");
     run.program = motion::parse_program(run.program_text, *options.program);
     if (!options.sequence) throw InputError("command line", "--sequence", "nothing", list_sequences(scenario));
+    warn_misfit(scenario, *options.sequence, *run.program);
   } else if (options.robot) {
     throw InputError("command line", "--robot", "'" + *options.robot + "' without --program", "both or none");
   } else if (options.sequence) {
@@ -73,10 +77,13 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
     print_robot_warnings(scenario);
   }
   if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
-  if (options.cup) run.simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
+  const std::string cup = options.cup                                   ? *options.cup
+                          : run.program && is_own_program(*run.program) ? "phases"
+                                                                        : "holding";
+  run.simulation.cup = cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   run.until = options.until;
   run.threads = options.threads.value_or(core_count());
-  run.version = SNUG_VERSION;
+  run.version = version_text();
   run.describe = [](const cell::RunResult& result) { return format_json(result); };
   return run;
 }

@@ -11,10 +11,11 @@ namespace {
 
 constexpr const char* kSimulateExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
-  snug simulate scenarios/box-demonstrator.yaml --program poses2real.csv --sequence 2 --corrections seq2-5 --json
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --corrections seq1 --json
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --monte-carlo 20 --seed 7
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --robot ur10 --csv joints.csv
-  snug simulate scenarios/box-demonstrator.yaml --container 400x300x200 --program out.csv --sequence 1 --cup phases
+  snug pack scenarios/box-demonstrator.yaml --container 400x300x200 --sequence 1 --samples 0 --program small.csv
+  snug simulate scenarios/box-demonstrator.yaml --container 400x300x200 --program small.csv --sequence 1
   snug simulate scenarios/slide.yaml --until 5 --csv slide.csv)";
 
 }  // namespace
@@ -46,16 +47,19 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--dt", options.dt, "time step, instead of the scenario's")
       ->check(within(1e-6, 0.1))
       ->type_name("SECONDS");
-  verb.add_option("--cup", options.cup,
-                  "holding: attached and released at once; phases: pressure builds up and decays, holds can fail")
+  verb.add_option(
+          "--cup", options.cup,
+          "holding: attached and released at once; phases: pressure builds up and decays, holds can fail (default: "
+          "phases, "
+          "as pack; holding for scenes and for programs with the demonstrator's names, PrePick027 and the like)")
       ->check(one_of({"holding", "phases"}))
       ->type_name("MODEL");
   verb.add_option("--seed", options.seed, "seed of everything random, instead of the scenario's")
       ->check(whole(0))
       ->type_name("N");
-  verb.add_option(
-          "--threads", options.threads,
-          "threads of repeated runs or of a scene of many bodies; the result does not depend on it (default: all cores)")
+  verb.add_option("--threads", options.threads,
+                  "threads of repeated runs or of a scene of many bodies; the result does not depend on it (default: "
+                  "all cores)")
       ->check(whole(1, kMostThreads))
       ->type_name("N");
 }

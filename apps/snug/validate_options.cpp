@@ -14,6 +14,7 @@ dropped, lost markers counted) and report (the demonstrator's rules). Clocks are
 Examples:
   snug validate --simulated run.h5 --measured measured.h5 -o validation.html
   snug validate --simulated run.h5 --measured measured.h5 --svg figures --csv errors.csv --json
+  snug export run.h5 --format csv -o log.csv
   snug validate --simulated run.h5 --measured log.csv --shift mocap=0.35 --windows scenarios/sensors/report-windows.csv)";
 
 }  // namespace

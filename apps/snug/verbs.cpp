@@ -4,17 +4,20 @@
 #include "archive.hpp"
 #include "bench.hpp"
 #include "calibrate.hpp"
+#include "camera.hpp"
 #include "check.hpp"
 #include "compare.hpp"
 #include "completion.hpp"
 #include "cup.hpp"
 #include "export.hpp"
 #include "identify.hpp"
+#include "init.hpp"
 #include "items.hpp"
 #include "load.hpp"
 #include "manual.hpp"
 #include "measure.hpp"
 #include "pack.hpp"
+#include "perceive.hpp"
 #include "picture.hpp"
 #include "plot.hpp"
 #include "program.hpp"
@@ -26,6 +29,7 @@
 namespace snug::app {
 
 void add_verbs(CLI::App& app, Action& action) {
+  add_init(app, action);
   add_simulate(app, action);
   add_pack(app, action);
   add_compare(app, action);
@@ -39,6 +43,8 @@ void add_verbs(CLI::App& app, Action& action) {
   add_items(app, action);
   add_load(app, action);
   add_cup(app, action);
+  add_camera(app, action);
+  add_perceive(app, action);
   add_calibrate(app, action);
   add_measure(app, action);
   add_archive(app, action);

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "robot_files.hpp"
 #include "run_report.hpp"
 #include "viewer_page.hpp"
 
@@ -74,7 +75,8 @@ int view_recordings(const ViewOptions& options) {
   for (const std::string& path : options.recordings) {
     record::RecordingReader reader(path);
     const std::string name = std::filesystem::path(path).filename().string();
-    content.recordings.push_back({name, replay::encode_recording(reader, name, options.selection)});
+    const replay::RobotDescription robot = find_robot(reader, path, options.urdf);
+    content.recordings.push_back({name, replay::encode_recording(reader, name, options.selection, robot)});
   }
   serve::Server server(options.server, std::move(content));
   const StopSignal signal([&] { server.stop(); });

@@ -19,6 +19,7 @@ struct ViewOptions {
   bool opens_browser = true;
   serve::ServerSettings server;
   replay::Selection selection;
+  std::optional<std::string> urdf;  ///< of the robot in a recording; absent: looked for
 };
 
 void add_view(CLI::App& app, Action& action);

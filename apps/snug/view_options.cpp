@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kViewExamples = R"(Examples:
   snug view run.h5
-  snug view stiff.h5 soft.h5                         the second is laid over the first
+  snug view run.h5 again.h5                          # the second is laid over the first
   snug view --live scenarios/drop.yaml --speed 0.2 --paused
   snug view --live scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
 Ctrl-C ends it. The page is served to this machine only, unless --host names another of its addresses.)";
@@ -60,6 +60,8 @@ void add_view(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb.add_flag("--no-open", *is_quiet, "open no browser, only say the address");
   add_selection_options(verb, options->selection);
+  verb.add_option("--urdf", options->urdf, "how the robot in it looks (default: the file that its scenario names)")
+      ->type_name("FILE.urdf");
   verb.footer(kViewExamples);
   verb.callback([options, is_quiet, &action] {
     action = [options, is_quiet] {

@@ -1,11 +1,13 @@
 // Main: finds the recordings in the page, decodes them and shows them, or says why not.
 
+import { acceptDrops } from "./drop";
 import { askServer, followLive } from "./live";
 import { decodeBase64, decodeReplay } from "./replay/decode";
 import { ReplayError } from "./replay/errors";
 import { Replay } from "./replay/replay";
 import { CAMERA_NAMES, type CameraName } from "./scene/cameras";
 import type { Theme } from "./scene/palette";
+import type { SectionAxis } from "./scene/section";
 import type { ViewOption } from "./scene/view";
 import { App } from "./ui/app";
 import { make } from "./ui/dom";
@@ -27,6 +29,12 @@ interface Handle {
   pause(): void;
   fps(): number;
   drawCalls(): number;
+  /** Cuts the drawing open along an axis of the container, at a part of its length from 0 to 1. */
+  section(axis: SectionAxis, part?: number): void;
+  /** Distance and its parts, as the legend says it; empty before two points were clicked. */
+  measured(): string;
+  /** What the plots show of the time, s; null is the whole run. */
+  plotted(): [number, number] | null;
 }
 
 declare global {
@@ -86,6 +94,9 @@ function handleOf(app: App): Handle {
     pause: () => app.player.pause(),
     fps: () => app.view.fps(),
     drawCalls: () => app.view.drawCalls,
+    section: (axis, part) => app.setSection(axis, part),
+    measured: () => app.view.measure.text(),
+    plotted: () => app.plots.shown,
   };
 }
 
@@ -117,8 +128,20 @@ function showError(error: unknown): void {
   document.getElementById("app")!.replaceChildren(make("div", "error", card));
 }
 
+let current: App | null = null;
+
+/** A message that goes away by itself, when what is shown stays. */
+function toast(error: unknown): void {
+  const known = error instanceof ReplayError ? error : new ReplayError("This page failed", String(error));
+  const note = make("div", "toast", `${known.title}: ${known.detail}${known.hint ? ` ${known.hint}` : ""}`);
+  note.setAttribute("role", "alert");
+  document.body.append(note);
+  window.setTimeout(() => note.remove(), 8000);
+}
+
 function show(first: Replay, second: Replay | null): App {
-  const app = new App(first, second, theme(), fragment.has("picture"));
+  current?.dispose();
+  const app = (current = new App(first, second, theme(), fragment.has("picture")));
   document.getElementById("app")!.replaceChildren(app.element);
   document.title = `snug: ${first.header.name}`;
   app.start();
@@ -131,6 +154,7 @@ function show(first: Replay, second: Replay | null): App {
 async function main(): Promise<void> {
   performance.mark("snug:start");
   document.documentElement.dataset.theme = theme();
+  acceptDrops({ current: () => current?.replay ?? null, show, fail: (error) => (current ? toast(error) : showError(error)) });
   let replays = await recordingsInPage();
   if (replays.length === 0 && location.protocol.startsWith("http")) {
     const served = await askServer();
@@ -139,7 +163,7 @@ async function main(): Promise<void> {
   }
   const [first, second] = replays;
   if (!first) {
-    throw new ReplayError("There is no recording in this page", "It is the page without a run.", "Make one with `snug report RECORDING.h5 -o report.html`.");
+    throw new ReplayError("There is no recording in this page", "It is the page without a run.", "Drop a recording (.h5) or a report (.html) onto it, or make one with `snug report RECORDING.h5 -o report.html`.");
   }
   if (first.frames === 0) throw new ReplayError("This recording is empty", "It has no frame.", "Was the run stopped before its first second?");
   performance.mark("snug:decoded");

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "snug/model/scenario.hpp"
+#include "snug/motion/controller.hpp"
 #include "snug/motion/waypoint.hpp"
 
 namespace snug::cell {
@@ -22,7 +23,7 @@ struct CheckFinding {
   double margin = 0.0;     ///< to the limit, of collisions to the body; negative: beyond it, inside it
   double allowance = 0.0;  ///< how far it may be beyond, in the same unit
   std::string unit;
-  double time = 0.0;  ///< s, in the timing of the faithful controller
+  double time = 0.0;  ///< s, in the timing of the controller
 };
 
 /// Findings of one kind and thing, of all rows.
@@ -34,8 +35,9 @@ struct CheckGroup {
 struct CheckOptions {
   std::string sequence = {};  ///< whose boxes are held; empty: held boxes are not looked at
   std::string robot = {};     ///< name of the scenario's robot; empty: the one that there is
-  double path_step = 0.01;    ///< m, and 1 rad counts as 0.3 m: between two looks
-  double range = 0.05;        ///< m, up to which distances are measured
+  motion::ControllerKind controller = motion::ControllerKind::Faithful;
+  double path_step = 0.01;  ///< m, and 1 rad counts as 0.3 m: between two looks
+  double range = 0.05;      ///< m, up to which distances are measured
   double allowance = 0.03;  ///< m, that cup and held box may press into something; the demonstrator's flips press 20 mm
 };
 

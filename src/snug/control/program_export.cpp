@@ -13,12 +13,14 @@
 #include "snug/core/check.hpp"
 #include "snug/core/csv_cell.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 #include "snug/robot/dynamics.hpp"
 #include "snug/robot/ur_inverse.hpp"
 
 namespace snug::control {
 namespace {
 
+constexpr std::size_t kLongestNote = 200;
 constexpr double kFlyBy = 0.05;  ///< m, precision from which a row is passed without a stop
 // Of the shorter of the moves on either side: two blends on one move then leave a tenth of it between them. (A
 // controller skips a waypoint whose blend overlaps another.)
@@ -132,6 +134,27 @@ std::string payload(const RobotProgram& program, const std::optional<CarriedLoad
   return fmt::format("set_payload({:.4f}, [{:.5f}, {:.5f}, {:.5f}])\n", mass, com.x(), com.y(), com.z());
 }
 
+/// Comments: what it was made of, units, and the loads that it carries with the rows they are carried on the way to.
+std::string header(const RobotProgram& program, const std::string& units) {
+  std::string text;
+  for (const std::string& note : program.notes) text += "# " + printable(note, kLongestNote) + "\n";
+  text += "# units: " + units + "\n";
+  text += "# payload table, gripper and box, centre of mass in tool0:\n";
+  const auto line = [&](const std::string& rows, const std::optional<CarriedLoad>& load) {
+    std::string words = payload(program, load);
+    words.pop_back();
+    text += fmt::format("#   {:<16} {}\n", rows, words);
+  };
+  line("gripper alone", std::nullopt);
+  for (std::size_t i = 0; i < program.loads.size();) {
+    std::size_t end = i + 1;
+    while (end < program.loads.size() && program.loads[end] == program.loads[i]) ++end;
+    if (program.loads[i]) line(fmt::format("rows {}-{}", i + 1, end), program.loads[i]);
+    i = end;
+  }
+  return text;
+}
+
 const char* script_word(bool value) { return value ? "True" : "False"; }
 
 /// Text that can stand between the quotes of a script or of YAML.
@@ -197,16 +220,20 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
     }
     if (!row.moves) continue;
     body +=
-        fmt::format("  movel({}, a={:.3f}, v={:.3f}{}{})\n", ur_pose(X_BaseW * waypoint.X_WE), limits.max_acceleration,
+        fmt::format("  movel({}, a={:.5f}, v={:.5f}{}{})\n", ur_pose(X_BaseW * waypoint.X_WE), limits.max_acceleration,
                     limits.max_speed, row.turn_decides ? fmt::format(", t={:.3f}", row.duration) : "",
                     row.blend > 0.0 ? fmt::format(", r={:.4f}", row.blend) : "");
     script.nominal_duration += row.duration;
     ++script.moves;
   }
-  script.simulated_duration = motion::compute_duration(plan, X_WE_start, kLongestProgram);
+  script.simulated_duration = program.simulated_duration > 0.0
+                                  ? program.simulated_duration
+                                  : motion::compute_duration(plan, X_WE_start, kLongestProgram);
 
   std::string& text = script.text;
-  text = "def snug_program():\n";
+  text = header(program, "m, m/s, m/s^2, rad, s; payloads in kg and m; poses in the controller's base frame");
+  text += fmt::format("# tool: set_tcp({})\n", tcp);
+  text += "def snug_program():\n";
   text +=
       fmt::format("  # {:.1f} s nominal from the start pose: {} moves from stop to stop (blends make them shorter),\n",
                   script.nominal_duration, script.moves);
@@ -236,8 +263,8 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
 std::string format_ros_trajectory(const JointRun& run, const RobotProgram& program, double period) {
   const double tick = program.plan.settings.tick;
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(period / tick)));
-  std::string text =
-      "# trajectory_msgs/JointTrajectory\nheader:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: ''\njoint_names:\n";
+  std::string text = header(program, "rad, rad/s, rad/s^2, s; payloads in kg and m");
+  text += "# trajectory_msgs/JointTrajectory\nheader:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: ''\njoint_names:\n";
   for (const robot::Joint& joint : program.arm.joints) text += "  - " + joint.name + "\n";
   text += "points:\n";
   const auto point = [&](const robot::JointVector& q, const robot::JointVector& qd, const robot::JointVector& qdd,

@@ -22,6 +22,10 @@ struct RobotProgram {
   const robot::ArmModel& arm;
   robot::JointVector q_start;                     ///< from where the program begins
   std::vector<std::optional<CarriedLoad>> loads;  ///< one for each row
+  /// What it was made of, a line each: program, sequence, version. Comments at the head of what is written.
+  std::vector<std::string> notes = {};
+  /// s, of the program as it was simulated, whose limits `plan` may have been fitted to; 0: that of `plan`.
+  double simulated_duration = 0.0;
 };
 
 struct UrScriptOptions {

@@ -44,14 +44,62 @@ std::vector<Vector3> extreme_points(const std::vector<Vector3>& points, int coun
   return chosen;
 }
 
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// The library knows fifty more forms, few of them tried with files that are wrong.
+bool is_known(const std::string& ending) { return ending == ".stl" || ending == ".dae" || ending == ".obj"; }
+
+std::optional<std::array<double, 4>> colour_of(const aiScene& scene, const aiMesh& part) {
+  aiColor4D colour;
+  if (part.mMaterialIndex >= scene.mNumMaterials ||
+      scene.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_COLOR_DIFFUSE, colour) != AI_SUCCESS)
+    return std::nullopt;
+  const auto within = [](float x) { return std::isfinite(x) ? std::clamp(static_cast<double>(x), 0.0, 1.0) : 1.0; };
+  return std::array<double, 4>{within(colour.r), within(colour.g), within(colour.b), within(colour.a)};
+}
+
+void collect_drawn(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, std::vector<DrawnMesh>& meshes) {
+  const aiMatrix4x4 transform = above * node.mTransformation;
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+    const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
+    DrawnMesh mesh;
+    for (unsigned v = 0; v < part.mNumVertices; ++v) {
+      const aiVector3D p = transform * part.mVertices[v];
+      mesh.vertices.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+      if (!mesh.vertices.back().allFinite()) return;
+    }
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      if (face.mNumIndices != 3) continue;  // lines and points
+      mesh.triangles.push_back(
+          {static_cast<int>(face.mIndices[0]), static_cast<int>(face.mIndices[1]), static_cast<int>(face.mIndices[2])});
+    }
+    mesh.rgba = colour_of(scene, part);
+    if (!mesh.triangles.empty()) meshes.push_back(std::move(mesh));
+  }
+  for (unsigned c = 0; c < node.mNumChildren; ++c) collect_drawn(scene, *node.mChildren[c], transform, meshes);
+}
+
 }  // namespace
+
+std::vector<DrawnMesh> parse_drawn_meshes(std::string_view bytes, const std::string& ending) {
+  std::vector<DrawnMesh> meshes;
+  const std::string known = lower(ending);
+  if (!is_known(known) || bytes.size() > kLargestMesh) return meshes;
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene = importer.ReadFileFromMemory(
+      bytes.data(), bytes.size(), aiProcess_JoinIdenticalVertices | aiProcess_Triangulate, known.c_str() + 1);
+  if (scene != nullptr && scene->mRootNode != nullptr) collect_drawn(*scene, *scene->mRootNode, aiMatrix4x4(), meshes);
+  return meshes;
+}
 
 MeshParts read_mesh_parts(const std::filesystem::path& path) {
   MeshParts mesh;
-  // The library knows fifty more forms, few of them tried with files that are wrong.
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (ending != ".stl" && ending != ".dae" && ending != ".obj") {
+  if (!is_known(lower(path.extension().string()))) {
     mesh.error = "not a file of these forms";
     return mesh;
   }

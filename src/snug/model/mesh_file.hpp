@@ -1,9 +1,12 @@
 // Mesh files as convex hulls: what a shape of a scenario or a link of a robot names.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "snug/geometry/convex_hull.hpp"
@@ -18,6 +21,16 @@ struct MeshParts {
   std::string error;
 };
 [[nodiscard]] MeshParts read_mesh_parts(const std::filesystem::path& path);
+
+/// A part of a mesh file as it is drawn: triangles between vertices, m, in the file's own axes.
+struct DrawnMesh {
+  std::vector<Vector3> vertices;
+  std::vector<std::array<int, 3>> triangles;
+  std::optional<std::array<double, 4>> rgba;  ///< of its material, 0 .. 1
+};
+/// The parts of a mesh file that is held in memory; `ending`: .stl, .obj or .dae, in any case. Empty for what cannot be
+/// read: a look is worth no failed run.
+[[nodiscard]] std::vector<DrawnMesh> parse_drawn_meshes(std::string_view bytes, const std::string& ending);
 
 /// The convex hull of points; with too many corners that of those farthest in evenly spread directions, which cuts a
 /// little off (docs/theory/robot.md).

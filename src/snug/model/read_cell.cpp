@@ -216,7 +216,7 @@ void ScenarioReader::read_controller(const Value& value) {
       const MapReader row = entry.map("limit", keys_with<MoveLimits>({"prefix"}));
       MoveLimits limit;
       const Value prefix = row.require("prefix");
-      limit.prefix = prefix.name();
+      limit.prefix = prefix.name_or_empty();
       for (const MoveLimits& known : controller.limits) check_new_name(prefix, "limit", known.prefix == limit.prefix);
       for (const std::string& key : field_keys<MoveLimits>()) (void)row.require(key);
       read_fields(row, limit);

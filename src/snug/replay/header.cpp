@@ -6,8 +6,10 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/geometry/convex_hull.hpp"
+#include "snug/model/reported_agent.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
+#include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/replay.hpp"
 
 namespace snug::replay {
@@ -101,17 +103,53 @@ Json tool_as_json(const record::RecordingHeader& header) {
   return {{"body", body}, {"shapes", shapes_as_json(header.bodies[static_cast<std::size_t>(body)].shapes)}};
 }
 
+/// To a tenth of a millimetre: a page shows no more.
+double rounded(double metres) { return std::round(metres * 1e4) / 1e4; }
+
+Json mesh_as_json(const model::DrawnMesh& mesh, const Json& pose) {
+  Json vertices = Json::array(), triangles = Json::array();
+  for (const Vector3& v : mesh.vertices) vertices.push_back({rounded(v.x()), rounded(v.y()), rounded(v.z())});
+  for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
+  return {{"kind", "mesh"}, {"pose", pose}, {"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}};
+}
+
+Json visual_as_json(const robot::Visual& visual) {
+  const Json pose = as_json(record::PoseSample(visual.X_LG));
+  Json shape;
+  if (const auto* box = std::get_if<geometry::Box>(&visual.shape)) {
+    shape = {{"kind", "box"}, {"pose", pose}, {"half", as_json(box->half)}};
+  } else if (const auto* capsule = std::get_if<geometry::Capsule>(&visual.shape)) {
+    shape = {{"kind", "capsule"}, {"pose", pose}, {"radius", capsule->radius}, {"half_length", capsule->half_length}};
+  } else if (const auto* cylinder = std::get_if<geometry::Cylinder>(&visual.shape)) {
+    shape = {
+        {"kind", "cylinder"}, {"pose", pose}, {"radius", cylinder->radius}, {"half_length", cylinder->half_length}};
+  } else {
+    shape = mesh_as_json(std::get<model::DrawnMesh>(visual.shape), pose);
+  }
+  return {{"colour", {visual.rgba[0], visual.rgba[1], visual.rgba[2]}}, {"shape", std::move(shape)}};
+}
+
+Json looks_as_json(const record::RecordingHeader& header, const RobotDescription& robot) {
+  Json looks = Json::array();
+  for (const internal::LinkLook& look : internal::find_looks(header, robot)) {
+    Json parts = Json::array();
+    for (const robot::Visual& visual : look.visuals) parts.push_back(visual_as_json(visual));
+    looks.push_back({{"body", look.body}, {"parts", std::move(parts)}});
+  }
+  return looks;
+}
+
 /// Links of a robot are kinematic bodies whose names begin with this.
 constexpr const char* kLinkPrefix = "robot/";
 
-Json robot_as_json(const record::RecordingHeader& header) {
+Json robot_as_json(const record::RecordingHeader& header, const RobotDescription& robot) {
   Json links = Json::array();
   for (std::size_t i = 0; i < header.bodies.size(); ++i) {
     const record::BodyInfo& body = header.bodies[i];
     if (body.kind != record::BodyKind::Dynamic && body.name.starts_with(kLinkPrefix)) links.push_back(i);
   }
   if (links.empty()) return nullptr;
-  return {{"links", std::move(links)}};
+  return {{"links", std::move(links)}, {"looks", looks_as_json(header, robot)}};
 }
 
 Json frames_as_json(const std::optional<model::Scenario>& scenario) {
@@ -155,12 +193,14 @@ Json reported_as_json(const std::optional<model::Scenario>& scenario, const std:
   if (!first.filling_percent) return nullptr;
   Json agents = Json::array();
   for (const model::Reported& one : sequence->reported) {
-    if (one.filling_percent) agents.push_back({{"agent", one.agent}, {"filling_percent", *one.filling_percent}});
+    const auto [name, about] = model::split_agent(one.agent);
+    if (one.filling_percent)
+      agents.push_back({{"agent", name}, {"about", about}, {"filling_percent", *one.filling_percent}});
   }
   Json table = {{"filling_percent", *first.filling_percent},
                 {"boxes", nullptr},
                 {"same_boxes_percent", nullptr},
-                {"agent", first.agent},
+                {"agent", model::split_agent(first.agent).name},
                 {"agents", std::move(agents)}};
   if (first.packed_count) {
     table["boxes"] = *first.packed_count;
@@ -279,7 +319,7 @@ std::string make_header_json(const HeaderInput& input) {
   json["bodies"] = bodies_as_json(header);
   json["container"] = container_as_json(header.container);
   json["tool"] = tool_as_json(header);
-  json["robot"] = robot_as_json(header);
+  json["robot"] = robot_as_json(header, input.robot);
   json["cup"] = nullptr;
   if (scenario && scenario->tool) {
     json["cup"] = {{"lip_radius", scenario->cup.lip_radius},

@@ -10,12 +10,16 @@
 #include "snug/motion/waypoint.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/replay/internal/mcap_scene.hpp"
+#include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/mcap_schemas.hpp"
 
 namespace snug::replay {
 namespace {
 
 using internal::JsonText;
+
+/// Of the robot: viewers of MCAP run on graphics cards.
+constexpr std::size_t kMostTriangles = 200'000;
 
 /// One topic: times grow strictly, whatever the recording's rounding and coincidences.
 class Topic {
@@ -56,7 +60,7 @@ std::vector<std::string> row_names(const record::RecordingHeader& header) {
 
 class Exporter {
  public:
-  Exporter(McapWriter& writer, const record::RecordingHeader& header);
+  Exporter(McapWriter& writer, const record::RecordingHeader& header, const RobotDescription& robot);
   void add(const record::Frame& frame);
   void add(const record::Event& event);
 
@@ -66,6 +70,8 @@ class Exporter {
   void write_tool(std::uint64_t ns, const record::Frame& frame);
   void write_scene(std::uint64_t ns, const record::Frame& frame);
   void write_program(std::uint64_t ns, int row);
+  /// The URDF and how its links look: once, each fixed to the frame of its link.
+  void write_robot(std::uint64_t ns);
   /// Ends the message and hands it on.
   void send(Topic& topic, std::uint64_t ns) {
     topic.write(ns, text_.str());
@@ -73,11 +79,13 @@ class Exporter {
   }
 
   const record::RecordingHeader& header_;
+  const RobotDescription& robot_;
   std::optional<model::Scenario> scenario_;
   std::vector<std::string> row_names_;
   Topic tf_static_, tf_, scene_, cup_scene_, events_, program_;
   Topic tool_pose_, tool_command_, tool_twist_, cup_state_, cup_wrench_, flange_wrench_, solver_;
-  std::optional<Topic> joints_;
+  std::optional<Topic> joints_, description_, robot_scene_;
+  std::vector<internal::LinkLook> looks_;
   JsonText text_;
   bool is_first_ = true;
   std::vector<bool> present_;
@@ -85,8 +93,9 @@ class Exporter {
   int row_ = -1;
 };
 
-Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header)
+Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header, const RobotDescription& robot)
     : header_(header),
+      robot_(robot),
       scenario_(scenario_of(header)),
       row_names_(row_names(header)),
       tf_static_(writer, "/tf_static", McapSchema::FrameTransforms),
@@ -103,6 +112,18 @@ Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header)
       flange_wrench_(writer, "/flange/wrench", McapSchema::WrenchStamped),
       solver_(writer, "/solver", McapSchema::SolverState) {
   if (!header.joints.empty()) joints_.emplace(writer, "/joint_states", McapSchema::JointState);
+  if (robot.urdf.empty()) return;
+  description_.emplace(writer, "/robot_description", McapSchema::String);
+  looks_ = internal::find_looks(header, robot, kMostTriangles);
+  if (!looks_.empty()) robot_scene_.emplace(writer, "/robot/scene", McapSchema::SceneUpdate);
+}
+
+void Exporter::write_robot(std::uint64_t ns) {
+  if (description_) {
+    text_.raw("{\"data\":").quoted(robot_.urdf).raw("}");
+    send(*description_, ns);
+  }
+  if (robot_scene_) robot_scene_->write(ns, internal::robot_message(ns, header_, looks_));
 }
 
 void Exporter::write_static_frames(std::uint64_t ns, const record::Frame& frame) {
@@ -169,7 +190,7 @@ void Exporter::write_tool(std::uint64_t ns, const record::Frame& frame) {
 void Exporter::write_scene(std::uint64_t ns, const record::Frame& frame) {
   std::vector<bool> present;
   for (const record::BodySample& body : frame.bodies) present.push_back(body.present);
-  if (is_first_ || present != present_) scene_.write(ns, internal::scene_message(ns, header_, frame));
+  if (is_first_ || present != present_) scene_.write(ns, internal::scene_message(ns, header_, frame, looks_));
   present_ = std::move(present);
   if (!scenario_ || !scenario_->tool) return;
   const auto looks_alike = [](const record::CupSample& a, const record::CupSample& b) {
@@ -193,7 +214,10 @@ void Exporter::write_program(std::uint64_t ns, int row) {
 
 void Exporter::add(const record::Frame& frame) {
   const std::uint64_t ns = internal::to_ns(frame.time);
-  if (is_first_) write_static_frames(ns, frame);
+  if (is_first_) {
+    write_static_frames(ns, frame);
+    write_robot(ns);
+  }
   write_moving_frames(ns, frame);
   write_scene(ns, frame);
   write_program(ns, frame.program_row);
@@ -217,7 +241,8 @@ std::vector<record::Event> events_within(const std::vector<record::Event>& all, 
   return events;
 }
 
-void attach_sources(McapWriter& writer, const record::RecordingReader& reader, const std::string& name) {
+void attach_sources(McapWriter& writer, const record::RecordingReader& reader, const std::string& name,
+                    const RobotDescription& robot) {
   const record::RecordingHeader& header = reader.header();
   writer.add_metadata("snug", {{"recording", name},
                                {"snug_version", header.version},
@@ -229,16 +254,20 @@ void attach_sources(McapWriter& writer, const record::RecordingReader& reader, c
                                {"interrupted", reader.is_interrupted() ? "true" : "false"}});
   if (!header.scenario_text.empty()) writer.attach("scenario.yaml", "application/yaml", header.scenario_text);
   if (!header.program_text.empty()) writer.attach("program.csv", "text/csv", header.program_text);
+  if (!robot.urdf.empty()) writer.attach("robot.urdf", "application/xml", robot.urdf);
+  for (const robot::MeshFile& mesh : robot.meshes) {
+    writer.attach(mesh.name, "application/octet-stream", mesh.bytes);
+  }
   if (!reader.result().empty()) writer.attach("result.json", "application/json", reader.result());
 }
 
 }  // namespace
 
 McapTotals export_mcap(record::RecordingReader& reader, const std::string& name, const Selection& selection,
-                       OutputFile file, const McapSettings& settings) {
+                       OutputFile file, const McapSettings& settings, const RobotDescription& robot) {
   const std::vector<std::size_t> frames = select_frames(reader, name, selection);
   McapWriter writer(std::move(file), settings);
-  Exporter exporter(writer, reader.header());
+  Exporter exporter(writer, reader.header(), robot);
   const bool is_whole = selection == Selection{};
   const std::vector<double>& times = reader.times();
   const std::vector<record::Event> events =
@@ -252,7 +281,7 @@ McapTotals export_mcap(record::RecordingReader& reader, const std::string& name,
     exporter.add(frame);
   }
   for (; next < events.size(); ++next) exporter.add(events[next]);
-  attach_sources(writer, reader, name);
+  attach_sources(writer, reader, name, robot);
   writer.close();
   return {writer.size(), writer.message_count(), frames.size()};
 }

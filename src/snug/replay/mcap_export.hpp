@@ -15,9 +15,10 @@ struct McapTotals {
   std::size_t frames = 0;
 };
 
-/// Topics and messages: docs/formats.md, "MCAP". `name` is that of the recording. Throws InputError for a recording
+/// Topics and messages: docs/formats.md, "MCAP". `name` is that of the recording; `robot`
+/// is drawn as it is described. Throws InputError for a recording
 /// without such frames.
 McapTotals export_mcap(record::RecordingReader& reader, const std::string& name, const Selection& selection,
-                       OutputFile file, const McapSettings& settings = {});
+                       OutputFile file, const McapSettings& settings = {}, const RobotDescription& robot = {});
 
 }  // namespace snug::replay

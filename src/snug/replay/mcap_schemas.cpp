@@ -116,6 +116,8 @@ std::string schema_name(McapSchema schema) {
       return "geometry_msgs/WrenchStamped";
     case McapSchema::JointState:
       return "sensor_msgs/JointState";
+    case McapSchema::String:
+      return "std_msgs/String";
     case McapSchema::CupState:
       return "snug.CupState";
     case McapSchema::SolverState:
@@ -157,6 +159,8 @@ std::string schema_text(McapSchema schema) {
                                    {"position", list_of(number())},
                                    {"velocity", list_of(number())},
                                    {"effort", list_of(number())}});
+    case McapSchema::String:
+      return of("a text: the URDF of the robot", {{"data", text()}});
     case McapSchema::CupState:
       return of("suction cup: commands, gauge pressure, body held, deformation while it holds", cup_state());
     case McapSchema::SolverState:

@@ -13,6 +13,7 @@ enum class McapSchema {
   TwistStamped,
   WrenchStamped,
   JointState,
+  String,
   CupState,
   SolverState,
   ProgramState,

@@ -60,7 +60,8 @@ std::vector<std::size_t> select_frames(const record::RecordingReader& reader, co
   return frames;
 }
 
-std::string encode_recording(record::RecordingReader& reader, const std::string& name, const Selection& selection) {
+std::string encode_recording(record::RecordingReader& reader, const std::string& name, const Selection& selection,
+                             const RobotDescription& robot) {
   const std::vector<std::size_t> frames = select_frames(reader, name, selection);
   refuse_huge(reader, frames.size(), name);
   FrameCoder coder(reader.header());
@@ -73,8 +74,14 @@ std::string encode_recording(record::RecordingReader& reader, const std::string&
       refuse_values(name, fmt::format("{} contacts that differ", coder.contact_points()), values, most);
     }
   }
-  HeaderInput input{name,          &reader.header(),       reader.events(), reader.result(), reader.is_complete(),
-                    frames.size(), reader.is_interrupted()};
+  HeaderInput input{name,
+                    &reader.header(),
+                    reader.events(),
+                    reader.result(),
+                    reader.is_complete(),
+                    frames.size(),
+                    reader.is_interrupted(),
+                    robot};
   return encode_form(make_header_json(input), coder.finish());
 }
 

@@ -8,6 +8,7 @@
 
 #include "snug/record/reader.hpp"
 #include "snug/replay/form.hpp"
+#include "snug/replay/robot_description.hpp"
 
 namespace snug::replay {
 
@@ -32,13 +33,14 @@ struct HeaderInput {
   bool is_complete = false;
   std::size_t frames = 0;
   bool is_interrupted = false;
+  RobotDescription robot = {};
 };
 [[nodiscard]] std::string make_header_json(const HeaderInput& input);
 
 /// The frames of `selection` of a recording called `name`, in the replay form of docs/formats.md. Throws InputError for
 /// a recording without such frames, and for one of more than kMaxValues numbers, saying what to do.
 [[nodiscard]] std::string encode_recording(record::RecordingReader& reader, const std::string& name,
-                                           const Selection& selection = {});
+                                           const Selection& selection = {}, const RobotDescription& robot = {});
 
 /// The indices of the frames selected, growing. Throws InputError naming `name` when there are none.
 [[nodiscard]] std::vector<std::size_t> select_frames(const record::RecordingReader& reader, const std::string& name,

@@ -6,7 +6,6 @@
 #include "snug/robot/internal/urdf.hpp"
 
 namespace snug::robot::internal {
-namespace {
 
 std::filesystem::path find_mesh(const Element& mesh) {
   const std::string name = mesh.text("filename");
@@ -30,8 +29,6 @@ std::filesystem::path find_mesh(const Element& mesh) {
               "a mesh file, path relative to the URDF");
   return path;
 }
-
-}  // namespace
 
 geometry::ConvexHull read_mesh_hull(const Element& mesh) {
   const std::filesystem::path path = find_mesh(mesh);

@@ -18,7 +18,15 @@ export type Shape =
   | { kind: "box"; pose: PoseRow; half: [number, number, number] }
   | { kind: "capsule"; pose: PoseRow; radius: number; half_length: number }
   | { kind: "cylinder"; pose: PoseRow; radius: number; half_length: number }
-  | { kind: "hull"; pose: PoseRow; vertices: [number, number, number][]; triangles: [number, number, number][] };
+  | { kind: "hull"; pose: PoseRow; vertices: [number, number, number][]; triangles: [number, number, number][] }
+  | { kind: "mesh"; pose: PoseRow; vertices: [number, number, number][]; triangles: [number, number, number][] };
+
+/** How a link of a robot looks, in the place of the shapes that it touches with. */
+export interface Look {
+  /** Row of the bodies. */
+  body: number;
+  parts: { colour: [number, number, number]; shape: Shape }[];
+}
 
 export interface Body {
   name: string;
@@ -56,7 +64,7 @@ export interface RunResult {
     boxes: number | null;
     same_boxes_percent: number | null;
     agent?: string; // whose these are
-    agents?: { agent: string; filling_percent: number }[];
+    agents?: { agent: string; about?: string; filling_percent: number }[];
   } | null;
 }
 
@@ -79,7 +87,7 @@ export interface Header {
   bodies: Body[];
   container: { name: string; pose: [PoseRow, PoseRow]; inner_size: [number, number, number] } | null;
   tool: { body: number; shapes: Shape[] } | null;
-  robot: { links: number[] } | null;
+  robot: { links: number[]; looks?: Look[] } | null;
   cup: { lip_radius: number; free_length: number; hold_length: number } | null;
   frames_named: { name: string; letter: string; X_W: PoseRow }[];
   events: ReplayEvent[];

@@ -132,7 +132,13 @@ export class Replay {
     return this.contacts_;
   }
 
+  /** Whether something carried boxes: a scene of bodies alone has channels of a tool that never moves. */
+  get hasTool(): boolean {
+    return this.header.tool !== null || this.header.cup !== null;
+  }
+
   channel(name: string): Channel | undefined {
+    if (!this.hasTool && /^(tool|cup|flange)\./.test(name)) return undefined;
     const channel = this.channels_.get(name);
     return channel && channel.rows > 0 ? channel : undefined;
   }

@@ -1,33 +1,70 @@
 // Cameras: the views of the scene (cell, top, side, tool, free) and how they are framed.
 
-import { Box3, OrthographicCamera, PerspectiveCamera, Vector3 } from "three";
+import { Box3, OrthographicCamera, PerspectiveCamera, Vector3, type Matrix4 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Shape } from "../replay/header";
 import type { Replay } from "../replay/replay";
 import { matrixOf } from "./maths";
+import { chooseDirection, extentOf } from "./viewpoint";
 
 export type CameraName = "cell" | "top" | "side" | "tool";
 export const CAMERA_NAMES: CameraName[] = ["cell", "top", "side", "tool"];
 
-/** Where things happen: all that moves during the run, and the container. */
+/** A body that is farther from where things were at first than so many times their extent has left the scene. */
+const GONE = 2;
+
+/** Adds the corners of the boxes around the shapes of a body. */
+function addBody(box: Box3, shapes: Shape[], X_WB: Matrix4): void {
+  const around = new Box3();
+  for (const shape of shapes) {
+    const { half, centre } = extentOf(shape);
+    around.set(centre.clone().sub(half), centre.clone().add(half)).applyMatrix4(X_WB.clone().multiply(matrixOf(shape.pose)));
+    box.union(around);
+  }
+}
+
+/** Fixed bodies of a scene without container that are not much wider than what moves: not a floor, which is as wide as one likes. */
+function addFixed(box: Box3, replay: Replay): void {
+  const pose = new Float64Array(7);
+  const around = new Box3();
+  const moving = box.getSize(new Vector3());
+  const widest = box.isEmpty() ? Infinity : 3 * Math.max(moving.x, moving.y, moving.z);
+  replay.bodies.forEach((body, k) => {
+    if (body.kind !== "static" || !replay.bodyPose(k, 0, pose)) return;
+    addBody(around.makeEmpty(), body.shapes, matrixOf(pose));
+    const size = around.getSize(new Vector3());
+    if (Math.max(size.x, size.y) < widest) box.union(around);
+  });
+}
+
+/** Where things happen: all that moves during the run with its whole extent, and the container or, without one, what stands there. */
 export function interestBox(replay: Replay): Box3 {
   const box = new Box3();
   const pose = new Float64Array(7);
-  const step = Math.max(1, Math.floor(replay.frames / 400));
-  const at = new Vector3();
   const container = containerBox(replay);
   if (container) box.union(container);
-  replay.bodies.forEach((body, k) => {
-    if (body.kind === "static") return;
-    for (let frame = 0; frame < replay.frames; frame += step) {
-      if (!replay.bodyPose(k, frame, pose)) continue;
-      at.set(pose[0]!, pose[1]!, pose[2]!);
-      if (at.length() < 3 && at.z > -0.6) box.expandByPoint(at);
-    }
-  });
+  const movers = replay.bodies.map((body, k) => ({ body, k })).filter(({ body }) => body.kind !== "static");
+  const firsts = new Map<number, number>();
+  for (const { body, k } of movers) {
+    const present = replay.channel(`body.${k}.present`);
+    let frame = 0;
+    while (present && present.rows > 1 && frame < replay.frames - 1 && present.at(0, frame) !== 1) ++frame;
+    firsts.set(k, frame);
+    if (replay.bodyPose(k, frame, pose)) addBody(box, body.shapes, matrixOf(pose));
+  }
+  if (!container) addFixed(box, replay);
   if (box.isEmpty()) box.set(new Vector3(-0.5, -0.5, 0), new Vector3(0.5, 0.5, 0.5));
+  const reach = box.clone().expandByScalar(GONE * Math.max(0.5, box.getSize(new Vector3()).length() / 2));
+  const step = Math.max(1, Math.floor(replay.frames / 200));
+  const at = new Vector3();
+  for (const { body, k } of movers) {
+    for (let frame = firsts.get(k)!; frame < replay.frames; frame += step) {
+      if (!replay.bodyPose(k, frame, pose) || !reach.containsPoint(at.set(pose[0]!, pose[1]!, pose[2]!))) continue;
+      if (at.z > (container?.min.z ?? -Infinity) - 0.6) addBody(box, body.shapes, matrixOf(pose));
+    }
+  }
   const size = box.getSize(new Vector3());
-  box.expandByScalar(Math.max(0.05, 0.05 * Math.max(size.x, size.y, size.z)));
-  return box;
+  return box.expandByScalar((container ? 0.03 : 0.15) * Math.max(size.x, size.y, size.z));
 }
 
 /** Axis-aligned box of the inner container in W. */
@@ -72,6 +109,8 @@ export class Cameras {
   private readonly perspective_ = new PerspectiveCamera(32, 1, 0.02, 30);
   private aspect_ = 1;
   private readonly follow_ = new Vector3();
+  private away_: Vector3 | null = null;
+  private framed_ = 0;
 
   constructor(
     private readonly replay: Replay,
@@ -128,8 +167,12 @@ export class Cameras {
   /** All that happens in the middle of the view, as near as its corners allow. */
   private frameCell(): void {
     const { min, max } = interestBox(this.replay);
+    const reach = max.distanceTo(min);
+    this.perspective_.near = Math.min(0.02, reach / 50);
+    this.perspective_.far = Math.max(30, 12 * reach);
+    this.controls.maxDistance = Math.max(20, 6 * reach);
     const corners = [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [min.z, max.z].map((z) => new Vector3(x, y, z))));
-    const away = new Vector3(0.36, -0.94, 0.88).normalize();
+    const away = this.direction().clone();
     const right = new Vector3(0, 0, 1).cross(away).normalize();
     const up = away.clone().cross(right);
     const slopeUp = Math.tan((this.perspective_.fov * Math.PI) / 360);
@@ -147,6 +190,16 @@ export class Cameras {
     }
     this.controls.target.copy(centre);
     this.active.position.copy(centre).addScaledVector(away, distance);
+    this.active.updateProjectionMatrix();
+  }
+
+  /** From where the cell is seen: chosen once, and again when a live run has brought more. */
+  private direction(): Vector3 {
+    if (!this.away_ || this.replay.frames > 2 * this.framed_) {
+      this.away_ = chooseDirection(this.replay);
+      this.framed_ = this.replay.frames;
+    }
+    return this.away_;
   }
 
   private frameTool(tool: Vector3): void {

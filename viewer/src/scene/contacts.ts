@@ -1,7 +1,7 @@
-// Contacts: a mark at each point, coloured by its state, and an arrow for its force; three draw calls for all.
+// Contacts: a mark at each point, coloured by its state, and an arrow for its force; pale where something is before them.
 
 import {
-  Color, ConeGeometry, CylinderGeometry, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, OctahedronGeometry,
+  Color, ConeGeometry, CylinderGeometry, DynamicDrawUsage, GreaterDepth, Group, InstancedMesh, Matrix4, MeshBasicMaterial, OctahedronGeometry,
   Quaternion, Vector3, type BufferGeometry,
 } from "three";
 import type { Replay } from "../replay/replay";
@@ -33,36 +33,49 @@ export type PixelSize = (point: Vector3) => number;
 
 const UP = new Vector3(0, 1, 0);
 
-/** A pool of instances that grows when more are asked for. */
+/** How much is seen of what is behind something. */
+const HIDDEN = 0.22;
+
+/** A pool of instances that grows when more are asked for; drawn as they are, and as ghosts where something is before them. */
 class Pool {
   mesh: InstancedMesh;
+  private hidden_: InstancedMesh;
   count = 0;
   constructor(
     private readonly parent: Group,
     private readonly geometry: BufferGeometry,
-    private readonly material: MeshBasicMaterial,
     private readonly order: number,
     private capacity: number,
   ) {
-    this.mesh = this.make();
+    [this.mesh, this.hidden_] = this.make();
   }
 
-  private make(): InstancedMesh {
-    const mesh = new InstancedMesh(this.geometry, this.material, this.capacity);
+  private make(): [InstancedMesh, InstancedMesh] {
+    const shown = new MeshBasicMaterial({ depthWrite: false, transparent: true });
+    const ghost = new MeshBasicMaterial({ depthWrite: false, transparent: true, opacity: HIDDEN, depthFunc: GreaterDepth });
+    const mesh = new InstancedMesh(this.geometry, shown, this.capacity);
     mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     mesh.setColorAt(0, new Color());
-    mesh.frustumCulled = false;
-    mesh.renderOrder = this.order;
-    this.parent.add(mesh);
-    return mesh;
+    const hidden = new InstancedMesh(this.geometry, ghost, 0);
+    hidden.instanceMatrix = mesh.instanceMatrix;
+    hidden.instanceColor = mesh.instanceColor;
+    for (const [k, part] of [hidden, mesh].entries()) {
+      part.frustumCulled = false;
+      part.renderOrder = this.order + 0.1 * k;
+      this.parent.add(part);
+    }
+    return [mesh, hidden];
   }
 
   reserve(count: number): void {
     if (count <= this.capacity) return;
-    this.parent.remove(this.mesh);
-    this.mesh.dispose();
+    for (const part of [this.mesh, this.hidden_]) {
+      this.parent.remove(part);
+      (part.material as MeshBasicMaterial).dispose();
+      part.dispose();
+    }
     this.capacity = Math.max(count, 2 * this.capacity);
-    this.mesh = this.make();
+    [this.mesh, this.hidden_] = this.make();
   }
 
   add(matrix: Matrix4, colour: Color): void {
@@ -72,8 +85,10 @@ class Pool {
   }
 
   finish(): void {
-    this.mesh.count = this.count;
-    this.mesh.visible = this.count > 0;
+    for (const part of [this.mesh, this.hidden_]) {
+      part.count = this.count;
+      part.visible = this.count > 0;
+    }
     this.mesh.instanceMatrix.needsUpdate = true;
     if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
   }
@@ -104,12 +119,11 @@ export class Contacts {
   readonly drawn = { awake: 0, resting: 0 };
 
   constructor(palette: Palette) {
-    const material = (): MeshBasicMaterial => new MeshBasicMaterial({ depthTest: false, depthWrite: false, transparent: true });
     const shaft = new CylinderGeometry(1, 1, 1, 8, 1, true).translate(0, 0.5, 0);
     const head = new ConeGeometry(1, 1, 12).translate(0, -0.5, 0);
-    this.points_ = new Pool(this.group, new OctahedronGeometry(1, 1), material(), 12, 128);
-    this.shafts_ = new Pool(this.group, shaft, material(), 10, 128);
-    this.heads_ = new Pool(this.group, head, material(), 11, 128);
+    this.points_ = new Pool(this.group, new OctahedronGeometry(1, 1), 12, 128);
+    this.shafts_ = new Pool(this.group, shaft, 10, 128);
+    this.heads_ = new Pool(this.group, head, 11, 128);
     this.setPalette(palette);
   }
 

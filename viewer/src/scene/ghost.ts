@@ -1,6 +1,6 @@
 // Ghost: where the command has the tool and the held box, and where the command would have put a box when it was released.
 
-import { Group, Matrix4, Mesh, MeshLambertMaterial, Vector3 } from "three";
+import { BoxGeometry, Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Vector3 } from "three";
 import type { Replay } from "../replay/replay";
 import type { Boxes } from "./boxes";
 import { CupState } from "./cup";
@@ -63,11 +63,18 @@ export class Plans {
     }
   }
 
-  /** The place that a box is on its way to, or the last one it was put at. */
+  /** The place that a carried box is on its way to; else the one where it was put last, or will be put first. */
   placeAt(body: number, time: number): PlannedPlace | null {
     this.learn();
     const places = this.places_.get(body) ?? [];
-    return places.find((place) => place.time >= time) ?? places[places.length - 1] ?? null;
+    const next = places.find((place) => place.time >= time);
+    if (this.isCarried(body, time)) return next ?? places[places.length - 1] ?? null;
+    return places.filter((place) => place.time < time).pop() ?? next ?? null;
+  }
+
+  /** Whether the cup holds the box. */
+  isCarried(body: number, time: number): boolean {
+    return body >= 0 && this.replay.attachedBody(this.replay.frameAt(time)) === body;
   }
 
   /** How far the box is at a frame from its planned place. */
@@ -81,13 +88,16 @@ export class Plans {
     return { millimetres: [1000 * d.x, 1000 * d.y, 1000 * d.z], degrees };
   }
 
-  /** The same in words; empty while it is not known. */
+  /** The same in words; of a box that has not been put there yet only that it will be; empty while no place is known. */
   textAt(body: number, name: string, frame: number): string {
-    const place = this.placeAt(body, this.replay.timeOf(frame));
-    const offset = place && this.offsetAt(body, frame, place);
+    const time = this.replay.timeOf(frame);
+    const place = this.placeAt(body, time);
+    if (!place) return "";
+    if (this.isCarried(body, time) || place.time >= time) return `planned place of ${name}`;
+    const offset = this.offsetAt(body, frame, place);
     if (!offset) return "";
     const [x, y, z] = offset.millimetres.map((v) => v.toFixed(1).replace(/^-(0\.0)$/, "$1"));
-    return `planned place of ${name}: off by ${x}, ${y}, ${z} mm, ${offset.degrees.toFixed(1)}°`;
+    return `${name} lies ${x}, ${y}, ${z} mm and ${offset.degrees.toFixed(1)}° from its planned place`;
   }
 }
 
@@ -95,6 +105,7 @@ export class Ghost {
   readonly group = new Group();
   private readonly boxes_: Outlines;
   private readonly place_: Outlines;
+  private readonly body_: Mesh<BoxGeometry, MeshBasicMaterial>;
   private readonly tool_: Mesh | null;
   private readonly pose_ = new Float64Array(7);
 
@@ -106,7 +117,10 @@ export class Ghost {
     this.boxes_ = new Outlines(1, palette.ghost, true, 0.9);
     this.place_ = new Outlines(1, palette.select, true, 0.9);
     this.tool_ = this.makeTool(palette);
-    this.group.add(this.boxes_.lines, this.place_.lines);
+    this.body_ = new Mesh(new BoxGeometry(2, 2, 2), new MeshBasicMaterial({ color: palette.select, transparent: true, opacity: 0.16, depthWrite: false, fog: false }));
+    this.body_.matrixAutoUpdate = false;
+    this.body_.renderOrder = 6;
+    this.group.add(this.boxes_.lines, this.place_.lines, this.body_);
     if (this.tool_) this.group.add(this.tool_);
   }
 
@@ -125,6 +139,7 @@ export class Ghost {
   setPalette(palette: Palette): void {
     this.boxes_.setColour(palette.ghost);
     this.place_.setColour(palette.select);
+    this.body_.material.color.set(palette.select);
     if (this.tool_) (this.tool_.material as MeshLambertMaterial).color.set(palette.ghost);
   }
 
@@ -138,15 +153,28 @@ export class Ghost {
       if (hasCommand) matrixOf(this.pose_, this.tool_.matrix);
       this.tool_.matrixWorldNeedsUpdate = true;
     }
+    this.body_.visible = false;
     if (isOn) {
+      const time = this.replay.timeOf(frame);
       const held = this.replay.attachedBody(frame);
       const X_WPc = this.plans.commanded(held, frame);
       if (X_WPc) addBox(this.boxes_, boxes, held, X_WPc);
-      const place = marked < 0 ? null : this.plans.placeAt(marked, this.replay.timeOf(frame));
+      const place = marked < 0 ? null : this.plans.placeAt(marked, time);
       if (place) addBox(this.place_, boxes, marked, place.X_WP.clone());
+      if (place && this.plans.isCarried(marked, time)) this.showBody(boxes, marked, place.X_WP);
     }
     this.boxes_.finish();
     this.place_.finish();
+  }
+
+  /** The box itself, seen through, where it is going to be. */
+  private showBody(boxes: Boxes, body: number, X_WP: Matrix4): void {
+    const half = boxes.halfOf(body);
+    const X = boxes.shapePoseOf(body);
+    if (!half || !X) return;
+    this.body_.matrix.copy(X_WP).multiply(X).scale(half);
+    this.body_.matrixWorldNeedsUpdate = true;
+    this.body_.visible = true;
   }
 }
 

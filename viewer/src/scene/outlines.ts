@@ -1,14 +1,22 @@
 // Outlines: wire boxes, rewritten each frame, in one draw call: the ghost of the commanded pose, a second recording.
 
-import { BufferGeometry, DynamicDrawUsage, Float32BufferAttribute, LineBasicMaterial, LineDashedMaterial, LineSegments, Matrix4, Vector3 } from "three";
+import {
+  BufferGeometry, DynamicDrawUsage, Float32BufferAttribute, GreaterDepth, Group, LessEqualDepth, LineBasicMaterial, LineDashedMaterial,
+  LineSegments, Matrix4, Vector3,
+} from "three";
 import { CORNERS } from "./boxes";
 
-const EDGES: [number, number][] = [
+export const EDGES: [number, number][] = [
   [0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7],
 ];
 
+/** How much is seen of lines that are behind something. */
+const HIDDEN = 0.25;
+
 export class Outlines {
-  readonly lines: LineSegments<BufferGeometry, LineBasicMaterial | LineDashedMaterial>;
+  /** The lines, and once more as ghosts where something is before them. */
+  readonly lines = new Group();
+  private readonly parts_: LineSegments<BufferGeometry, LineBasicMaterial | LineDashedMaterial>[];
   private position_: Float32BufferAttribute;
   private used_ = 0;
   private readonly corners_ = CORNERS.map(() => new Vector3());
@@ -18,16 +26,19 @@ export class Outlines {
     this.position_.setUsage(DynamicDrawUsage);
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", this.position_);
-    const material = isDashed
-      ? new LineDashedMaterial({ color: colour, dashSize: 0.012, gapSize: 0.008, transparent: true, opacity, depthTest: false })
-      : new LineBasicMaterial({ color: colour, transparent: true, opacity, depthTest: false });
-    this.lines = new LineSegments(geometry, material);
-    this.lines.frustumCulled = false;
-    this.lines.renderOrder = 7;
+    this.parts_ = [false, true].map((isHidden) => {
+      const look = { color: colour, transparent: true, opacity: isHidden ? HIDDEN * opacity : opacity, depthWrite: false, depthFunc: isHidden ? GreaterDepth : LessEqualDepth };
+      const material = isDashed ? new LineDashedMaterial({ ...look, dashSize: 0.012, gapSize: 0.008 }) : new LineBasicMaterial(look);
+      const lines = new LineSegments(geometry, material);
+      lines.frustumCulled = false;
+      lines.renderOrder = 7;
+      this.lines.add(lines);
+      return lines;
+    });
   }
 
   setColour(colour: string): void {
-    this.lines.material.color.set(colour);
+    for (const part of this.parts_) part.material.color.set(colour);
   }
 
   begin(): void {
@@ -48,9 +59,10 @@ export class Outlines {
   }
 
   finish(): void {
-    this.lines.geometry.setDrawRange(0, this.used_);
+    const [first] = this.parts_;
+    first!.geometry.setDrawRange(0, this.used_);
     this.lines.visible = this.used_ > 0;
     this.position_.needsUpdate = true;
-    if (this.lines.material instanceof LineDashedMaterial && this.used_ > 0) this.lines.computeLineDistances();
+    if (first!.material instanceof LineDashedMaterial && this.used_ > 0) first!.computeLineDistances();
   }
 }

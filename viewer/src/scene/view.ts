@@ -15,16 +15,21 @@ import { Labels, type Label } from "./labels";
 import { aimLight, setLight } from "./lit";
 import { labelsOf, triadsOf } from "./marks";
 import { matrixOf } from "./maths";
+import { Measure } from "./measure";
 import { Movers } from "./movers";
 import { availableOptions, defaultOptions, type ViewOption, type ViewOptions } from "./options";
 import { isSoftwareRenderer, Pace } from "./pace";
 import { BoxColours, PALETTES, type Palette, type Theme } from "./palette";
 import { Robot } from "./robot";
 import { Second } from "./second";
+import { Section, type SectionAxis } from "./section";
 import { Statics } from "./statics";
 import { placeSun, SUN } from "./sun";
 import { Trace, type TracePoint } from "./trace";
 import { Triads } from "./triads";
+
+/** A click so near to the corner of a box means that corner. */
+const SNAP_PIXELS = 14;
 
 export interface Picked {
   body: number;
@@ -57,11 +62,14 @@ export class View {
   private readonly ghost_: Ghost;
   private readonly second_: Second;
   private readonly trace_: Trace;
+  readonly measure: Measure;
+  readonly section: Section;
   tracePoint: TracePoint | null = null;
   private palette_: Palette;
   private frame_ = 0;
   private selected_ = -1;
   private isScheduled_ = false;
+  private isDisposed_ = false;
   private sharpTimer_ = 0;
   private readonly pace_ = new Pace();
   private width_ = 1;
@@ -100,7 +108,10 @@ export class View {
     this.ghost_ = new Ghost(replay, this.plans, this.palette_);
     this.second_ = new Second(second, this.palette_);
     this.trace_ = new Trace(this.palette_.trace);
+    this.measure = new Measure(this.palette_);
+    this.section = new Section(replay, this.boxes_, this.colours, this.palette_);
     this.scene_.add(
+      this.measure.group, this.section.group,
       this.hemisphere_, this.sun_, this.sun_.target, this.statics_.group, this.boxes_.group, this.movers_.group, this.trace_.group,
       this.second_.outlines.lines, this.ghost_.group, this.contacts_.group, this.triads_.group,
     );
@@ -147,7 +158,7 @@ export class View {
     this.hemisphere_.groundColor.set(p.groundLight);
     this.hemisphere_.intensity = p.ambient;
     this.sun_.intensity = p.sun;
-    for (const part of [this.statics_, this.boxes_, this.movers_, this.cup_, this.contacts_, this.robot_, this.ghost_]) part?.setPalette(p);
+    for (const part of [this.statics_, this.boxes_, this.movers_, this.cup_, this.contacts_, this.robot_, this.ghost_, this.measure, this.section]) part?.setPalette(p);
     this.second_.outlines.setColour(p.second);
     this.trace_.setColour(p.trace);
     this.invalidate();
@@ -211,7 +222,7 @@ export class View {
     const at = { frame, X_WE: this.hasTool_ ? this.X_WE_ : null, X_WS: this.hasTool_ && this.cup_ ? this.X_WS_ : null, selected, marked };
     const triads = options.frames ? triadsOf(replay, at) : [];
     this.triads_.update(triads);
-    return labelsOf(replay, this.boxes_, at, triads, options);
+    return [...labelsOf(replay, this.boxes_, at, triads, options), ...this.measure.labels()];
   }
 
   resize(width: number, height: number): void {
@@ -250,6 +261,7 @@ export class View {
     this.isScheduled_ = true;
     requestAnimationFrame(() => {
       this.isScheduled_ = false;
+      if (this.isDisposed_) return;
       if (this.isSoftware && !this.isPicture) this.sharpenWhenStill();
       this.render();
     });
@@ -276,6 +288,9 @@ export class View {
       this.pixelSize_,
     );
     const labels = this.markFrames();
+    this.measure.update(this.pixelSize_);
+    this.renderer_.clippingPlanes = this.section.planes(this.cameras.active.position);
+    this.section.update(this.frame_);
     this.renderer_.render(this.scene_, this.cameras.active);
     this.updateCopy();
     this.labels_.update(labels, this.cameras.active, this.width_, this.height_);
@@ -338,13 +353,48 @@ export class View {
     return { body, corner };
   }
 
+  /** The point of a surface under a point of the canvas (CSS pixels); of a box its corner, if that is near. */
+  surfacePoint(x: number, y: number): Vector3 | null {
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2((2 * x) / this.width_ - 1, 1 - (2 * y) / this.height_), this.cameras.active);
+    this.boxes_.mesh.boundingSphere = null;
+    const shown = this.renderer_.clippingPlanes;
+    const [hit] = ray
+      .intersectObjects([this.boxes_.mesh, this.statics_.group, this.movers_.group, this.section.group])
+      .filter(({ object, point }) => object instanceof Mesh && shown.every((plane) => plane.distanceToPoint(point) > -1e-3));
+    if (!hit) return null;
+    if (hit.object !== this.boxes_.mesh || hit.instanceId === undefined) return hit.point;
+    const X = new Matrix4();
+    this.boxes_.mesh.getMatrixAt(hit.instanceId, X);
+    const local = hit.point.clone().applyMatrix4(X.clone().invert());
+    const corner = new Vector3(Math.sign(local.x), Math.sign(local.y), Math.sign(local.z)).applyMatrix4(X);
+    return corner.distanceTo(hit.point) < SNAP_PIXELS * this.pixelSize_(corner) ? corner : hit.point;
+  }
+
+  /** Cuts the drawing open along an axis of the container, at a part of its length. */
+  setSection(axis: SectionAxis, part = this.section.part): void {
+    this.section.axis = axis;
+    this.section.part = Math.min(1, Math.max(0, part));
+    this.invalidate();
+  }
+
+  /** Gives back what the drawing holds of the browser. */
+  dispose(): void {
+    window.clearTimeout(this.sharpTimer_);
+    this.isDisposed_ = true;
+    this.cameras.controls.dispose();
+    this.renderer_.dispose();
+    this.renderer_.forceContextLoss();
+  }
+
   /** Draws the container at a frame from above or the side (report Figure 20) onto a canvas. */
   drawContainer(target: HTMLCanvasElement, from: "top" | "side", frame: number): void {
     const box = containerBox(this.replay);
     if (!box) return;
     const { options } = this;
     const before = { frame: this.frame_, options: { ...options } };
-    const hidden = [this.movers_.group, this.cup_?.group, this.robot_?.group, this.trace_.group, this.contacts_.group, this.triads_.group,
+    this.renderer_.clippingPlanes = [];
+    const hidden = [this.measure.group, this.section.group, this.movers_.group, this.cup_?.group, this.robot_?.group, this.trace_.group, this.contacts_.group, this.triads_.group,
       this.ghost_.group, this.second_.outlines.lines].filter((o) => o !== undefined && o !== null);
     const shown = hidden.map((o) => o.visible);
     this.boxes_.update(this.replay, frame);

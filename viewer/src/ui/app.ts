@@ -3,6 +3,7 @@
 import type { Replay } from "../replay/replay";
 import type { CameraName } from "../scene/cameras";
 import type { Theme } from "../scene/palette";
+import { SECTION_AXES, type SectionAxis } from "../scene/section";
 import { CAMERA_NAMES, View, type ViewOption } from "../scene/view";
 import { About } from "./about";
 import { button, make } from "./dom";
@@ -11,7 +12,7 @@ import { Journey } from "./journey";
 import { Legend } from "./legend";
 import { Player } from "./player";
 import { Plots } from "./plots";
-import { endPanel, headline } from "./summary";
+import { endPanel, headline, warningLine } from "./summary";
 import { Timeline } from "./timeline";
 
 const OPTION_TEXTS: Record<ViewOption, string> = {
@@ -32,8 +33,13 @@ export class App {
   private readonly legend_: Legend;
   private readonly cameraButtons_ = new Map<CameraName, HTMLButtonElement>();
   private readonly optionBoxes_ = new Map<ViewOption, HTMLInputElement>();
-  private readonly stage_ = make("main", "stage");
+  private readonly stage_ = make("div", "drawing");
+  private readonly sectionBoxes_ = new Map<SectionAxis, HTMLButtonElement>();
+  private readonly measureButton_: HTMLButtonElement;
+  private isMeasuring_ = false;
+  private readonly gone_ = new AbortController();
   private readonly end_: HTMLElement | null;
+  private readonly resizes_: ResizeObserver;
 
   constructor(
     readonly replay: Replay,
@@ -54,10 +60,15 @@ export class App {
     this.end_ = endPanel(replay, second, this.view, () => this.about_.show("container"));
     const side = make("div", "side", this.journey.element, ...(this.end_ ? [this.end_] : []));
     this.journey.onSelect = (box) => this.plots.setBox(box);
-    this.stage_.append(this.view.element, this.toolbar(), this.legend_.element);
-    this.element.append(this.header(), side, this.stage_, this.plots.element, this.timeline_.element, this.about_.element, this.help_);
+    this.plots.onWide = (isWide) => this.element.classList.toggle("wide", isWide);
+    this.measureButton_ = button("measure", "Distance between two points: click them (m)", () => this.setMeasuring(!this.isMeasuring_));
+    this.stage_.append(this.view.element);
+    const stage = make("main", "stage", this.toolbar(), this.stage_, this.legend_.element);
+    const warnings = warningLine(replay, () => this.about_.show("run"));
+    this.element.append(this.header(), ...(warnings ? [warnings] : []), side, stage, this.plots.element, this.timeline_.element, this.about_.element, this.help_);
     this.player.onChange(() => this.view.setFrame(this.player.frame));
-    new ResizeObserver(() => this.fit()).observe(this.stage_);
+    this.resizes_ = new ResizeObserver(() => this.fit());
+    this.resizes_.observe(this.stage_);
     this.listen();
   }
 
@@ -83,7 +94,15 @@ export class App {
 
   /** Something more to press, beside the cameras. */
   addTool(element: HTMLElement): void {
-    this.stage_.querySelector(".toolbar")!.append(element);
+    this.element.querySelector(".toolbar")!.append(element);
+  }
+
+  /** Before another takes its place. */
+  dispose(): void {
+    this.player.pause();
+    this.gone_.abort();
+    this.resizes_.disconnect();
+    this.view.dispose();
   }
 
   private drawEnd(): void {
@@ -97,7 +116,8 @@ export class App {
   private header(): HTMLElement {
     const bar = make("header", "bar", headline(this.replay));
     bar.append(
-      button("about this run", "What ran: settings, program, scenario, boxes (i)", () => this.about_.toggle()),
+      button("plots", "Plots, wide (w)", () => this.plots.setWide(!this.plots.isWide), "for-plots"),
+      button("about", "What ran: settings, program, scenario, boxes (i)", () => this.about_.toggle()),
       button("◐", "Light or dark (d)", () => this.setTheme(this.theme_ === "light" ? "dark" : "light")),
       button("?", "Keys and colours (?)", () => this.showHelp()),
     );
@@ -111,17 +131,52 @@ export class App {
       this.cameraButtons_.set(name, choose);
       cameras.append(choose);
     }
-    const menu = make("details", "options", make("summary", "", "show"));
+    const panel = make("div", "panel");
     for (const option of this.view.available) {
       const box = make("input");
       box.type = "checkbox";
       box.checked = this.view.options[option];
       box.addEventListener("change", () => this.setOption(option, box.checked));
       this.optionBoxes_.set(option, box);
-      menu.append(make("label", "", box, OPTION_TEXTS[option]));
+      panel.append(make("label", "", box, OPTION_TEXTS[option]));
     }
-    menu.append(this.arrowScale());
-    return make("nav", "toolbar", cameras, menu);
+    panel.append(this.arrowScale());
+    const menu = make("details", "options", make("summary", "", "show"), panel);
+    return make("nav", "toolbar", cameras, menu, this.sections(), this.measureButton_);
+  }
+
+  /** Along which axis of the container the drawing is cut open, and where. */
+  private sections(): HTMLElement {
+    const slider = make("input");
+    slider.type = "range";
+    [slider.min, slider.max, slider.step, slider.value] = ["0", "1", "0.005", "0.5"];
+    slider.title = "From one side of the container to the other";
+    slider.addEventListener("input", () => this.view.setSection(this.view.section.axis, Number(slider.value)));
+    const axes = make("div", "cameras");
+    for (const axis of SECTION_AXES) {
+      const choose = button(axis, axis === "off" ? "Nothing is cut away" : `Cut open along ${axis} of the container`, () => this.setSection(axis));
+      choose.classList.toggle("on", axis === this.view.section.axis);
+      this.sectionBoxes_.set(axis, choose);
+      axes.append(choose);
+    }
+    return make("details", "options section", make("summary", "", "section"), make("div", "panel", axes, slider));
+  }
+
+  setSection(axis: SectionAxis, part?: number): void {
+    this.view.setSection(axis, part);
+    for (const [key, element] of this.sectionBoxes_) element.classList.toggle("on", key === axis);
+  }
+
+  private nextSection(): void {
+    this.setSection(SECTION_AXES[(SECTION_AXES.indexOf(this.view.section.axis) + 1) % SECTION_AXES.length]!);
+  }
+
+  setMeasuring(on: boolean): void {
+    this.isMeasuring_ = on;
+    this.measureButton_.classList.toggle("on", on);
+    this.stage_.classList.toggle("measuring", on);
+    if (!on) this.view.measure.clear();
+    this.view.invalidate();
   }
 
   private arrowScale(): HTMLElement {
@@ -168,10 +223,16 @@ export class App {
       if (Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return;
       this.click(e.offsetX, e.offsetY, e.shiftKey);
     });
-    window.addEventListener("keydown", (e) => this.key(e));
+    window.addEventListener("keydown", (e) => this.key(e), { signal: this.gone_.signal });
   }
 
   private click(x: number, y: number, isTrace: boolean): void {
+    if (this.isMeasuring_) {
+      const point = this.view.surfacePoint(x, y);
+      if (point) this.view.measure.add(point);
+      this.view.invalidate();
+      return;
+    }
     const picked = this.view.pick(x, y);
     if (picked && isTrace) {
       this.view.setTracePoint(this.view.cornerPoint(picked.body, picked.corner));
@@ -205,7 +266,11 @@ export class App {
       f: () => this.setOption("frames", !this.view.options.frames),
       r: () => this.setOption("robot", !this.view.options.robot),
       x: () => this.setOption("xray", !this.view.options.xray),
+      w: () => this.plots.setWide(!this.plots.isWide),
+      m: () => this.setMeasuring(!this.isMeasuring_),
+      s: () => this.nextSection(),
       Escape: () => {
+        this.setMeasuring(false);
         this.help_.hidden = true;
         this.about_.hide();
       },

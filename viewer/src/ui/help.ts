@@ -15,6 +15,9 @@ const KEYS: [string, string][] = [
   ["r x", "the robot; see-through boxes"],
   ["i", "about this run: settings, program, scenario"],
   ["c", "container at the end, from above and the side"],
+  ["w", "wide plots, or the usual column"],
+  ["m", "measure: the distance between two points that are clicked"],
+  ["s", "section: cut the container open along x, y, z, or not"],
   ["d", "light or dark"],
   ["p n", "live: pause or resume the run; one frame of it"],
   ["? esc", "this help; close"],
@@ -22,9 +25,10 @@ const KEYS: [string, string][] = [
 
 const MOUSE: [string, string][] = [
   ["drag", "turn; with the right button move; wheel zooms"],
-  ["click a box", "select it: its plots, its journey, its planned place"],
+  ["click a box", "select it: its plots, its events, its planned place"],
   ["shift-click", "trace of the corner of the box"],
-  ["plot", "hover reads numbers, click sets the time, drag zooms, double click shows all"],
+  ["plot", "hover reads numbers, click sets the time, drag zooms, ↩ goes back, double click shows the whole run; the list chooses a window that follows the time"],
+  ["drop a file", "a recording (.h5) or a report (.html): opens it, or lays it over this run"],
 ];
 
 export function helpOverlay(palette: () => Palette): HTMLElement {
@@ -41,7 +45,7 @@ export function helpOverlay(palette: () => Palette): HTMLElement {
       [p.cupWrench, "force of the cup on the box"],
       [p.flangeWrench, "force on the flange"],
       [p.ghost, "dashed: where the command has the tool and the held box"],
-      [p.select, "dashed: where the command at its release would have put the box, the cup undeformed"],
+      [p.select, "dashed, a ghost while the box is carried: its planned place, where the command at its release would have put it, the cup undeformed"],
       [p.trace, "trace: shift-click a corner of a box"],
     ] as const) {
       const swatch = make("i", "swatch");

@@ -16,10 +16,13 @@ export class Legend {
   private readonly trace_ = make("div", "item");
   private readonly place_ = make("div", "item");
   private readonly states_ = make("div", "states");
+  private readonly rest_ = make("div", "item", make("i", "dot pale"), "at rest");
+  private readonly measure_ = make("div", "item measured");
   private text_ = "";
 
   constructor(private readonly view: View) {
-    this.element.append(this.states_, this.forces_, this.place_, this.trace_, this.count_);
+    this.rest_.title = "Contacts of boxes that sleep, as they were recorded last";
+    this.element.append(this.measure_, this.states_, this.forces_, this.count_, this.place_, this.trace_);
     this.setPalette();
     view.onAfterRender = () => this.update();
   }
@@ -34,7 +37,7 @@ export class Legend {
     const hasState = this.view.replay.contacts?.state !== undefined;
     this.states_.replaceChildren(
       ...(hasState
-        ? [item(p.sticking, "sticking"), item(p.sliding, "sliding"), item(p.open, "separating"), item("", "fainter: at rest, as recorded last", "dot pale")]
+        ? [item(p.sticking, "sticking"), item(p.sliding, "sliding"), item(p.open, "separating"), this.rest_]
         : [item(p.unknown, "contact")]),
     );
     const dashed = make("i", "dashes");
@@ -59,9 +62,13 @@ export class Legend {
     const { awake, resting } = view.contactsDrawn;
     const offset = options.ghost ? view.offsetText() : "";
     const trace = options.trace && view.tracePoint ? (view.tracePoint.kind === "tool" ? "trace of E" : `trace of ${view.tracePoint.label}`) : "";
-    const text = [hasContacts, hasForces, newtons, width.toFixed(0), awake, resting, offset, trace].join();
+    const measured = view.measure.text();
+    const text = [hasContacts, hasForces, newtons, width.toFixed(0), awake, resting, offset, trace, measured].join();
     if (text === this.text_) return;
     this.text_ = text;
+    this.measure_.hidden = measured === "";
+    this.measure_.textContent = measured;
+    this.rest_.hidden = resting === 0;
     this.states_.hidden = !hasContacts;
     this.forces_.hidden = !hasForces;
     this.bar_.style.width = `${width.toFixed(0)}px`;
@@ -70,8 +77,8 @@ export class Legend {
     this.count_.textContent = `${awake} contact points${resting ? `, ${resting} at rest` : ""}`;
     this.place_.hidden = offset === "";
     this.place_.lastElementChild!.textContent = offset;
+    this.place_.title = offset;
     this.trace_.hidden = trace === "";
     this.trace_.lastElementChild!.textContent = trace;
-    this.element.hidden = !hasContacts && !hasForces && offset === "" && trace === "";
   }
 }

@@ -1,15 +1,26 @@
-// Plots: a column of time series under one time cursor, with what they are at that time; a second recording is drawn dashed.
+// Plots: a column of time series under one time cursor, with what they are at that time; a second recording is drawn dashed. What is
+// shown of the time is the whole run, a window that follows the cursor, or a stretch that was dragged.
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Replay } from "../replay/replay";
 import { SERIES, type Theme } from "../scene/palette";
-import { digits, make } from "./dom";
+import { button, digits, make } from "./dom";
 import type { Player } from "./player";
 import { figuresOf, thin, type Figure, type Group } from "./series";
 
 const HEIGHT = 106;
+const HEIGHT_WIDE = 150;
 const POINTS = 1600;
+/** Lengths of the window that follows the cursor, s; 0 is the whole run. */
+const WINDOWS = [0, 120, 60, 20, 5, 1];
+/** Of longer runs a column of this width shows a window at first, s. */
+const LONG = 60;
+const FIRST_WINDOW = 20;
+/** Where the cursor stands in the window, of its length. */
+const CURSOR_AT = 0.6;
+/** Curves are read for so many windows, and again when the cursor leaves them. */
+const AHEAD = 3;
 const TITLES: Record<Group, string> = {
   box: "Box", tool: "Tool", cup: "Cup", flange: "Flange", robot: "Robot", contacts: "Contacts and solver",
 };
@@ -21,16 +32,35 @@ interface Reading {
   replay: Replay;
 }
 
+type Range = [number, number];
+
+/** One drawing, and how to read its curves again for a stretch of time. */
+interface Drawn {
+  plot: uPlot;
+  host: HTMLElement;
+  read: (range: Range | null) => uPlot.AlignedData;
+  loaded: Range | null;
+}
+
 export class Plots {
   readonly element = make("aside", "plots");
-  private plots_: uPlot[] = [];
+  /** Asks for a wide view of the plots, or for the usual one. */
+  onWide: (isWide: boolean) => void = () => {};
+  private plots_: Drawn[] = [];
   private readings_: Reading[] = [];
-  private readonly when_ = make("p", "when");
+  private readonly when_ = make("span");
+  private readonly window_ = make("select", "window");
+  private readonly back_: HTMLButtonElement;
+  private readonly wide_: HTMLButtonElement;
+  private readonly bar_: HTMLElement;
   private box_ = "";
   private theme_: Theme;
   private width_ = 0;
-  /** What is shown of the time, s; null is all of it. */
-  private range_: [number, number] | null = null;
+  /** The stretch that was dragged, s; null: none, then the window follows the cursor. */
+  private range_: Range | null = null;
+  /** Stretches shown before it, for the way back. */
+  private before_: (Range | null)[] = [];
+  private isWide_ = false;
   private zoomTimer_ = 0;
   /** Time under the mouse, s; null when it is elsewhere. */
   private hover_: number | null = null;
@@ -43,16 +73,54 @@ export class Plots {
     theme: Theme,
   ) {
     this.theme_ = theme;
+    this.back_ = button("↩", "Back to what was shown before (double click on a plot: the whole run)", () => this.goBack(), "back");
+    this.wide_ = button("wide", "Wide plots, or the usual column (w)", () => this.setWide(!this.isWide_));
+    this.bar_ = make("div", "when", this.when_, this.window_, this.back_, this.wide_);
+    this.window_.title = "How much of the time the plots show around the cursor";
+    this.window_.addEventListener("change", () => this.zoom(null));
     player.onSlowChange(() => this.moveCursor());
     this.element.addEventListener("mouseleave", () => {
       this.hover_ = null;
       this.read();
     });
+    this.element.addEventListener("scroll", () => this.follow());
+    this.offerWindows();
+  }
+
+  /** The windows that are shorter than the run. */
+  private offerWindows(): void {
+    const length = this.replay.end - this.replay.start;
+    const chosen = this.window_.options.length ? Number(this.window_.value) : length > LONG ? FIRST_WINDOW : 0;
+    this.window_.replaceChildren(...WINDOWS.filter((w) => w === 0 || w < length).map((w) => new Option(w === 0 ? "whole run" : `${w} s`, String(w))));
+    this.window_.value = String(chosen);
+    if (this.window_.value === "") this.window_.value = "0";
   }
 
   /** Makes the plots, and again whenever their column changes its width. */
   start(): void {
     new ResizeObserver(() => this.fit()).observe(this.element);
+  }
+
+  get isWide(): boolean {
+    return this.isWide_;
+  }
+
+  setWide(isWide: boolean): void {
+    this.isWide_ = isWide;
+    this.wide_.classList.toggle("on", isWide);
+    this.onWide(isWide);
+    this.width_ = 0; // another height too
+    this.fit();
+  }
+
+  /** What is shown of the time, s; null is all of it. */
+  get shown(): Range | null {
+    if (this.range_) return this.range_;
+    const length = Number(this.window_.value);
+    const { start, end } = this.replay;
+    if (!(length > 0) || length >= end - start) return null;
+    const begin = Math.min(Math.max(this.player.time - CURSOR_AT * length, start), end - length);
+    return [begin, begin + length];
   }
 
   setTheme(theme: Theme): void {
@@ -68,7 +136,8 @@ export class Plots {
 
   /** Draws all curves again: a live run grows. */
   refresh(): void {
-    this.zoom(this.range_);
+    this.offerWindows();
+    this.rebuild();
   }
 
   private fit(): void {
@@ -76,18 +145,25 @@ export class Plots {
     if (width < 60 || Math.abs(width - this.width_) < 2) return;
     this.width_ = width;
     if (this.plots_.length === 0) this.build();
-    else for (const plot of this.plots_) plot.setSize({ width, height: HEIGHT });
+    else for (const { plot } of this.plots_) plot.setSize({ width, height: this.height });
+  }
+
+  private get height(): number {
+    return this.isWide_ ? HEIGHT_WIDE : HEIGHT;
   }
 
   private build(): void {
-    for (const plot of this.plots_) plot.destroy();
+    for (const { plot } of this.plots_) plot.destroy();
     this.plots_ = [];
     this.readings_ = [];
-    this.element.replaceChildren(this.when_);
+    this.back_.hidden = this.before_.length === 0;
+    this.element.replaceChildren(this.bar_);
     if (this.width_ === 0) return;
     const figures = figuresOf(this.box_).filter((figure) => figure.values(this.replay) !== null || (this.second && figure.values(this.second) !== null));
-    for (const group of new Set(figures.map((figure) => figure.group))) this.addGroup(group, figures.filter((figure) => figure.group === group));
-    if (figures.length === 0) this.element.append(make("p", "empty", "This recording has no tool, no cup and no contacts to plot."));
+    const groups = new Set(figures.map((figure) => figure.group));
+    if (groups.size === 1) this.closed_.clear(); // there is nothing else to see
+    for (const group of groups) this.addGroup(group, figures.filter((figure) => figure.group === group));
+    if (figures.length === 0) this.element.append(make("p", "empty", "Nothing to plot yet: select a box to plot where it is."));
     this.moveCursor();
   }
 
@@ -108,17 +184,13 @@ export class Plots {
   }
 
   private add(figure: Figure, parent: HTMLElement): void {
-    const tables: uPlot.AlignedData[] = [];
     const series: uPlot.Series[] = [{ label: "t [s]" }];
     const readings: Reading[] = [];
     for (const [r, replay] of [this.replay, this.second].entries()) {
       const values = replay ? figure.values(replay) : null;
       if (!replay || !values) continue;
       values.forEach((value, k) => {
-        const [begin, stop] = this.range_ ? [replay.frameAt(this.range_[0]), replay.frameAt(this.range_[1]) + 1] : [0, replay.frames];
-        const [times, numbers] = thin(replay, value, POINTS, begin, stop);
-        if (numbers.every((v) => v === null)) return;
-        tables.push([times, numbers]);
+        if (!hasNumbers(replay, value)) return;
         readings.push({ text: make("output"), value, replay });
         series.push({
           label: figure.names[k]!,
@@ -131,16 +203,51 @@ export class Plots {
         });
       });
     }
-    if (tables.length === 0) return;
+    if (readings.length === 0) return;
+    const read = (range: Range | null): uPlot.AlignedData =>
+      uPlot.join(
+        readings.map(({ value, replay }): uPlot.AlignedData => {
+          const [begin, stop] = range ? [replay.frameAt(range[0]), replay.frameAt(range[1]) + 1] : [0, replay.frames];
+          return thin(replay, value, POINTS, begin, stop);
+        }),
+      );
     const host = make("figure", "plot", this.caption(figure, series.slice(1), readings));
     parent.append(host);
-    const plot = new uPlot(this.options(series, figure.unit), uPlot.join(tables), host);
+    const loaded = this.around(this.shown);
+    const plot = new uPlot(this.options(series, figure.unit), read(loaded), host);
     plot.over.addEventListener("click", () => {
       const left = plot.cursor.left ?? -1;
       if (left >= 0) this.player.setTime(plot.posToVal(left, "x"));
     });
-    this.plots_.push(plot);
+    this.plots_.push({ plot, host, read, loaded });
     this.readings_.push(...readings);
+  }
+
+  /** The stretch whose curves are read to show a window: wider, so that the cursor can move. */
+  private around(shown: Range | null): Range | null {
+    if (!shown || this.range_) return shown;
+    const more = (AHEAD - 1) * 0.5 * (shown[1] - shown[0]);
+    return [shown[0] - more, shown[1] + more];
+  }
+
+  /** Moves the window of the plots that are in view to where the cursor is. */
+  private follow(): void {
+    const shown = this.shown;
+    if (!shown) return;
+    const [top, bottom] = [this.element.scrollTop - this.height, this.element.scrollTop + this.element.clientHeight];
+    for (const drawn of this.plots_) {
+      const { plot, host } = drawn;
+      if (host.offsetTop < top || host.offsetTop > bottom) continue;
+      const { min, max } = plot.scales.x!;
+      if (min === shown[0] && max === shown[1]) continue;
+      plot.batch(() => {
+        if (!drawn.loaded || shown[0] < drawn.loaded[0] || shown[1] > drawn.loaded[1]) {
+          drawn.loaded = this.around(shown);
+          plot.setData(drawn.read(drawn.loaded), false);
+        }
+        plot.setScale("x", { min: shown[0], max: shown[1] });
+      });
+    }
   }
 
   /** Title and unit, and for each curve its name in its colour with its number at the time. */
@@ -159,11 +266,22 @@ export class Plots {
     return caption;
   }
 
-  /** Shows a stretch of time in all plots, with all frames that fit; null shows the whole run. */
-  zoom(range: [number, number] | null): void {
+  /** Shows a stretch of time in all plots, with all frames that fit; null shows the window again. */
+  zoom(range: Range | null): void {
+    if (range) this.before_.push(this.range_);
+    else this.before_ = [];
+    this.range_ = range;
+    this.rebuild();
+  }
+
+  private goBack(): void {
+    this.range_ = this.before_.pop() ?? null;
+    this.rebuild();
+  }
+
+  private rebuild(): void {
     window.clearTimeout(this.zoomTimer_);
     this.zoomTimer_ = window.setTimeout(() => {
-      this.range_ = range;
       const scroll = this.element.scrollTop;
       this.build();
       this.element.scrollTop = scroll;
@@ -177,7 +295,7 @@ export class Plots {
     const axis = { stroke: ink, font: "10px system-ui, sans-serif", grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1, size: 4 } };
     return {
       width: this.width_,
-      height: HEIGHT,
+      height: this.height,
       series,
       padding: [5, 8, 0, 0],
       legend: { show: false },
@@ -186,13 +304,14 @@ export class Plots {
         drag: { x: true, y: false, setScale: false },
         bind: {
           dblclick: () => () => {
+            this.window_.value = "0";
             this.zoom(null);
             return null;
           },
         },
       },
       scales: {
-        x: this.range_ ? { time: false, range: this.range_ } : { time: false },
+        x: { time: false, range: (_, low, high) => this.shown ?? [low, high] },
         // What does not change at all is drawn in the middle of a stretch that can be read.
         y: { range: (_, low, high) => (Number.isFinite(low) && high - low < 1e-12 ? [low - 1, high + 1] : uPlot.rangeNum(low ?? 0, high ?? 1, 0.06, false)) },
       },
@@ -213,6 +332,7 @@ export class Plots {
         setSelect: [
           (plot: uPlot) => {
             const { left, width } = plot.select;
+            if (!plot.over.matches(":hover")) return; // the others only follow
             if (width > 3) this.zoom([plot.posToVal(left, "x"), plot.posToVal(left + width, "x")]);
           },
         ],
@@ -234,7 +354,7 @@ export class Plots {
   /** Writes the numbers of all curves at the time under the mouse, else at the time cursor. */
   private read(): void {
     const time = this.hover_ ?? this.player.time;
-    this.when_.textContent = this.hover_ === null ? `numbers at ${time.toFixed(3)} s` : `numbers under the mouse, at ${time.toFixed(3)} s`;
+    this.when_.textContent = this.hover_ === null ? `numbers at ${time.toFixed(3)} s` : `under the mouse, ${time.toFixed(3)} s`;
     for (const { text, value, replay } of this.readings_) {
       const shown = digits(value(replay.frameAt(time)));
       if (text.textContent !== shown) text.textContent = shown;
@@ -242,9 +362,16 @@ export class Plots {
   }
 
   private moveCursor(): void {
-    for (const plot of this.plots_) this.drawCursor(plot);
+    this.follow();
+    for (const { plot } of this.plots_) this.drawCursor(plot);
     this.read();
   }
+}
+
+/** Whether a curve has a number anywhere. */
+function hasNumbers(replay: Replay, value: (frame: number) => number): boolean {
+  for (let frame = 0; frame < replay.frames; ++frame) if (Number.isFinite(value(frame))) return true;
+  return false;
 }
 
 const tick = (value: number): string => String(Number(value.toPrecision(6)));

@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { deflateSync, inflateSync } from "node:zlib";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { open, openBrowser } from "../support/browser";
+import { open, openBrowser, pageWith } from "../support/browser";
 import { poseIn, readTable, repository, snug } from "../support/program";
 
 interface Handle {
@@ -133,7 +133,7 @@ describe("the report of a real run", () => {
     expect(await page.textContent(".about")).toContain("box-demonstrator");
     await page.click(".about .tabs >> text=Container");
     await expect.poll(() => page.locator(".about canvas").count()).toBe(2);
-    expect(await page.textContent(".about .fill")).toMatch(/this run\d+\.\d\d %.*I\.AM\.75\.66 %.*State of the Art32\.21 %.*Manual Operator75\.66 %/);
+    expect(await page.textContent(".about .fill")).toMatch(/this run.*\d+\.\d\d %.*I\.AM\. the report's robot, programmed by hand75\.66 %.*counted as this run.*State of the Art.*32\.21 %.*Manual Operator.*75\.66 %/);
     await page.click(".about .tabs >> text=Settings");
     expect(await page.textContent(".about table")).toContain("controller");
     await page.click(".about .tabs >> text=Scenario");
@@ -159,6 +159,34 @@ describe("the report of a real run", () => {
     await page.keyboard.press("f");
     await expect.poll(() => page.locator(".label.frame").count()).toBe(0);
     expect(errors).toEqual([]);
+  });
+});
+
+describe("the recording itself, dropped onto the page", () => {
+  it("is read there: every box where the run had it", async () => {
+    const opened = await open(browser, pageWith("for-drop", []));
+    await opened.page.evaluate(
+      (base64) => {
+        const raw = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([raw], "r.h5"));
+        document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
+      },
+      readFileSync(join(folder, "r.h5")).toString("base64"),
+    );
+    await expect.poll(() => opened.page.title(), { timeout: 30_000 }).toBe("snug: r.h5");
+    expect(await opened.page.evaluate(() => window.snug.frames)).toBe(table.get("t")!.length);
+    expect(await opened.page.textContent(".headline")).toMatch(/sequence 1packed \d+ of \d+/);
+    for (const row of [0, 5000, table.get("t")!.length - 1]) {
+      for (const box of boxes.slice(0, 4)) {
+        const found = await opened.page.evaluate(([t, name]) => (window.snug.setTime(t), window.snug.bodyPose(name)), [table.get("t")![row]!, box] as const);
+        const truth = poseIn(table, box, row);
+        if (!Number.isFinite(truth.p[0])) expect(found).toBeNull();
+        else truth.p.forEach((v, c) => expect(Math.abs(found!.p[c]! - v)).toBeLessThan(METRES));
+      }
+    }
+    expect(opened.errors).toEqual([]);
+    await opened.close();
   });
 });
 

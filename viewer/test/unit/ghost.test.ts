@@ -51,3 +51,11 @@ describe("Plans", () => {
     expect(offset.degrees).toBeLessThan(0.01);
   });
 });
+
+describe("what is said of a planned place", () => {
+  it("is no error while the box is carried, and where it lies afterwards", async () => {
+    const plans = new Plans(await make());
+    expect(plans.textAt(0, "7", 2)).toBe("planned place of 7");
+    expect(plans.textAt(0, "7", 9)).toMatch(/^7 lies -3\.0, 0\.0, 10\.0 mm and 0\.0° from its planned place$/);
+  });
+});

@@ -57,6 +57,8 @@ class Value {
   [[nodiscard]] bool boolean() const;
   /// Non-empty, at most 120 printable characters.
   [[nodiscard]] std::string name() const;
+  /// A name, or "".
+  [[nodiscard]] std::string name_or_empty() const { return is_scalar() && node_.Scalar().empty() ? "" : name(); }
   /// One of the given words; the index of the one that stands here.
   [[nodiscard]] std::size_t choice(const std::vector<std::string>& words) const;
 

@@ -1,6 +1,7 @@
 // What a viewer draws of a recording, as foxglove.SceneUpdate.
 #include "snug/replay/internal/mcap_scene.hpp"
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -121,6 +122,38 @@ Json body_entity(std::uint64_t ns, const record::BodyInfo& body, bool is_contain
   return entity;
 }
 
+void add_mesh(Json& entity, const model::DrawnMesh& mesh, const PoseSample& X, const Json& color) {
+  Json points = Json::array(), indices = Json::array();
+  for (const Vector3& vertex : mesh.vertices) points.push_back(as_json(vertex));
+  for (const auto& triangle : mesh.triangles) {
+    for (const int corner : triangle) indices.push_back(corner);
+  }
+  entity["triangles"].push_back({{"pose", as_json(X)},
+                                 {"points", std::move(points)},
+                                 {"color", color},
+                                 {"colors", Json::array()},
+                                 {"indices", std::move(indices)}});
+}
+
+void add_visual(Json& entity, const robot::Visual& visual) {
+  const Json color = as_json(visual.rgba);
+  record::ShapeInfo shape;
+  shape.X_BG = visual.X_LG;
+  if (const auto* box = std::get_if<geometry::Box>(&visual.shape)) {
+    entity["cubes"].push_back(solid(shape.X_BG, 2.0 * box->half, color));
+  } else if (const auto* capsule = std::get_if<geometry::Capsule>(&visual.shape)) {
+    shape.radius = capsule->radius;
+    shape.half_length = capsule->half_length;
+    add_capsule(entity, shape, color);
+  } else if (const auto* cylinder = std::get_if<geometry::Cylinder>(&visual.shape)) {
+    shape.radius = cylinder->radius;
+    shape.half_length = cylinder->half_length;
+    add_cylinder(entity, shape, color);
+  } else {
+    add_mesh(entity, std::get<model::DrawnMesh>(visual.shape), shape.X_BG, color);
+  }
+}
+
 std::string update(std::uint64_t ns, Json entities) {
   const Json deletions = Json::array({{{"timestamp", time_json(ns)}, {"type", kDeleteAll}, {"id", ""}}});
   const Json message = {{"deletions", deletions}, {"entities", std::move(entities)}};
@@ -129,10 +162,23 @@ std::string update(std::uint64_t ns, Json entities) {
 
 }  // namespace
 
-std::string scene_message(std::uint64_t ns, const record::RecordingHeader& header, const record::Frame& frame) {
+std::string robot_message(std::uint64_t ns, const record::RecordingHeader& header, const std::vector<LinkLook>& looks) {
+  Json entities = Json::array();
+  for (const LinkLook& look : looks) {
+    const std::string& name = header.bodies[static_cast<std::size_t>(look.body)].name;
+    Json entity = make_entity(ns, name, name);
+    for (const robot::Visual& visual : look.visuals) add_visual(entity, visual);
+    entities.push_back(std::move(entity));
+  }
+  return update(ns, std::move(entities));
+}
+
+std::string scene_message(std::uint64_t ns, const record::RecordingHeader& header, const record::Frame& frame,
+                          const std::vector<LinkLook>& looks) {
   Json entities = Json::array();
   for (std::size_t i = 0; i < header.bodies.size(); ++i) {
     const record::BodyInfo& body = header.bodies[i];
+    if (std::ranges::find(looks, static_cast<int>(i), &LinkLook::body) != looks.end()) continue;
     if (frame.bodies[i].present) entities.push_back(body_entity(ns, body, body.name == header.container.name));
   }
   return update(ns, std::move(entities));

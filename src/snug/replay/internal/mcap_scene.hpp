@@ -5,12 +5,18 @@
 #include <string>
 
 #include "snug/record/recording.hpp"
+#include "snug/replay/internal/robot_look.hpp"
 
 namespace snug::replay::internal {
 
 /// All bodies that are there in `frame`, each fixed to the frame of its name, in the place of all drawn before.
+/// Not those that have a look of their own.
 [[nodiscard]] std::string scene_message(std::uint64_t ns, const record::RecordingHeader& header,
-                                        const record::Frame& frame);
+                                        const record::Frame& frame, const std::vector<LinkLook>& looks = {});
+
+/// The links of the robot as they look, each fixed to the frame of its body.
+[[nodiscard]] std::string robot_message(std::uint64_t ns, const record::RecordingHeader& header,
+                                        const std::vector<LinkLook>& looks);
 
 /// What the drawing of the cup needs beside the frame.
 struct CupLook {

@@ -62,6 +62,8 @@ class Element {
 [[nodiscard]] std::vector<model::PlacedShape> read_shapes(const Element& link);
 /// Points of a mesh file's hull, m, at most geometry::kMaxHullVertices of them; scaled.
 [[nodiscard]] geometry::ConvexHull read_mesh_hull(const Element& mesh);
+/// The file that a <mesh> names, which is there; package:// is a folder of that name above the URDF.
+[[nodiscard]] std::filesystem::path find_mesh(const Element& mesh);
 /// R = Rz(yaw) Ry(pitch) Rx(roll).
 [[nodiscard]] Matrix3 rpy_rotation(const Vector3& rpy);
 

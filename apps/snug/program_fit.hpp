@@ -1,0 +1,16 @@
+// program_fit: whether a program is one for the sequence that it is run with.
+#pragma once
+
+#include "snug/model/scenario.hpp"
+#include "snug/motion/waypoint.hpp"
+
+namespace snug::app {
+
+/// Says on stderr when the boxes that the rows of a program name are not those of the sequence, or come in another
+/// order. Of rows that name no box of the scenario nothing is said.
+void warn_misfit(const model::Scenario& scenario, const std::string& sequence, const motion::Program& program);
+
+/// Whether a program is one of ours: its rows have the box in brackets (motion::row_name), those of the demonstrator do not.
+[[nodiscard]] bool is_own_program(const motion::Program& program);
+
+}  // namespace snug::app

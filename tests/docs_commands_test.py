@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""docs_commands_test.py: every command of README, the documents and of --help runs, on files that are shipped or that a command before it has made.
+
+A command that takes long is let run for LONG seconds: it has then read its input and all its words. SNUG_LONG=1 waits for its end.
+Commands that are no tests of the program (make, cmake, git, apt, downloads) are left out.
+"""
+import os
+import re
+import shlex
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
+LONG = 8.0  # s
+WAIT = 3600.0 if os.environ.get("SNUG_LONG") else LONG
+
+# Of these the beginning is enough: minutes of computing, or servers that end with Ctrl-C.
+LONG_COMMANDS = re.compile(r"snug (bench|view|compare|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
+                           r"pack .*--monte-carlo|pack (?!.*--samples 0))")
+# Not commands of snug: shells, other programs, and places of the reader's own machine.
+LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|\\| man |\.\.\./")
+MAY_FAIL = re.compile(r"snug (check|bench|export .*--format (urscript|ros-trajectory))")  # what they say no to is a result (exit code 1)
+
+
+def commands_of(text, shell_only):
+    """Lines that call snug: of ```sh blocks of a document, or anywhere in a help text."""
+    lines = re.findall(r"```(?:sh|shell|console)\n(.*?)```", text, re.S) if shell_only else [text]
+    for line in "\n".join(lines).replace("\\\n", " ").splitlines():
+        line = re.sub(r"(^|\s)#.*", "", line).strip().removeprefix("$ ")
+        line = re.sub(r"^build/snug\b", "snug", line)
+        if line and not LEFT_OUT.search(line) and line.split()[0] in ("snug", "python3", "mkdir"):
+            yield line
+
+
+def documents():
+    yield from sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "src" / "snug").glob("*/README.md"), ROOT / "viewer" / "README.md",
+                       ROOT / "scenarios" / "examples" / "README.md"])
+
+
+def verbs():
+    """Every verb and part of a verb, as words."""
+    def parts(words):
+        text = subprocess.run([SNUG, *words, "--help"], capture_output=True, text=True, check=True).stdout
+        found = re.search(r"^(?:SUBCOMMANDS|Subcommands):\n(.*?)(?:\n\n|\Z)", text, re.S | re.M)
+        return re.findall(r"^  (\w[\w-]*)", found.group(1), re.M) if found else []
+    for verb in parts([]):
+        yield [verb]
+        for part in parts([verb]):
+            yield [verb, part]
+
+
+class Commands(unittest.TestCase):
+    """A folder as a reader has it who has followed README: the shipped scenarios, a program, two recordings, measurements."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.path = Path(cls.folder.name)
+        (cls.path / "scenarios").symlink_to(ROOT / "scenarios")
+        cell = "scenarios/box-demonstrator.yaml"
+        for words in (["pack", cell, "--sequence", "1", "--samples", "0", "--program", "program.csv", "-o", "run.h5"],
+                      ["simulate", cell, "--program", "program.csv", "--sequence", "1", "-o", "again.h5"],
+                      ["measure", "run.h5", "--sensors", "scenarios/sensors/demonstrator.yaml", "--repetitions", "2", "-o", "measured.h5"]):
+            result = subprocess.run([SNUG, *words], cwd=cls.path, capture_output=True, text=True, check=False)
+            assert result.returncode == 0, result.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def run_command(self, line, folder):
+        environment = {**os.environ, "PATH": f"{Path(SNUG).resolve().parent}:{os.environ['PATH']}"}
+        is_long = LONG_COMMANDS.search(line) is not None
+        with subprocess.Popen(line, shell=True, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                              start_new_session=True) as process:
+            try:
+                _, errors = process.communicate(timeout=WAIT if is_long else 280)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, 9)
+                process.communicate()
+                self.assertTrue(is_long, f"{line}: takes too long for a test: list it among LONG_COMMANDS")
+                return
+        allowed = (0, 1) if MAY_FAIL.search(line) else (0,)
+        self.assertIn(process.returncode, allowed, f"{line}\n{errors}")
+
+    def run_all(self, lines):
+        lines = list(lines)
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            for file in self.path.iterdir():
+                (folder / file.name).symlink_to(file)
+            for line in lines:
+                with self.subTest(command=line):
+                    for word in shlex.split(line):  # outputs replace what was prepared, not what it leads to
+                        if (folder / word).is_symlink() and word in ("program.csv", "run.h5", "again.h5", "measured.h5") and f"-o {word}" in line:
+                            (folder / word).unlink()
+                    self.run_command(line, folder)
+        return len(lines)
+
+    def test_of_readme_and_documents(self):
+        count = sum(self.run_all(commands_of(path.read_text(encoding="utf-8"), True)) for path in documents())
+        self.assertGreater(count, 20)
+
+    def test_of_help_without_a_verb(self):
+        text = subprocess.run([SNUG, "--help"], capture_output=True, text=True, check=True).stdout
+        self.assertGreater(self.run_all(commands_of(text, False)), 2)
+
+    def test_of_help_of_every_verb(self):
+        for words in verbs():
+            text = subprocess.run([SNUG, *words, "--help"], capture_output=True, text=True, check=True).stdout
+            self.run_all(line for line in commands_of(text, False) if line.split()[1:2] != ["VERB"])
+
+    def test_every_verb_that_takes_a_file_shows_an_example(self):
+        for words in verbs():
+            text = subprocess.run([SNUG, *words, "--help"], capture_output=True, text=True, check=True).stdout
+            if "FILE" in text or "SCENARIO" in text or "DIR" in text:
+                self.assertIn("snug " + words[0], text, " ".join(words))
+
+
+class Init(unittest.TestCase):
+    """What `snug init` writes runs by the commands that it prints."""
+
+    def begin(self, kind):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = Path(folder.name) / "new" / "folder"
+        result = subprocess.run([SNUG, "init", kind, path], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return path, re.findall(r"^(snug .*)$", result.stdout, re.M)
+
+    def run_next(self, path, lines):
+        for line in lines:
+            words = [SNUG, *shlex.split(line)[1:]]
+            result = subprocess.run(words, cwd=path, capture_output=True, text=True, check=False)
+            self.assertEqual(result.returncode, 0, f"{line}\n{result.stderr}")
+            yield result.stdout
+
+    def test_cell_packs_all_its_boxes(self):
+        path, lines = self.begin("cell")
+        out = "".join(self.run_next(path, lines))
+        self.assertIn("executed           6 boxes", out)
+        self.assertTrue((path / "run.html").stat().st_size > 1e5)
+
+    def test_pallet_packs_all_its_boxes(self):
+        path, lines = self.begin("pallet")
+        self.assertIn("executed           6 boxes", "".join(self.run_next(path, lines)))
+
+    def test_scene_runs_and_its_bodies_come_to_rest(self):
+        path, lines = self.begin("scene")
+        out = "".join(self.run_next(path, lines))
+        speeds = [float(row.split()[-1]) for row in re.findall(r"^(?:slider|lower|upper) .*$", out, re.M)]
+        self.assertEqual(len(speeds), 3)
+        self.assertLess(max(speeds), 0.01)
+
+    def test_does_not_overwrite(self):
+        path, _ = self.begin("scene")
+        result = subprocess.run([SNUG, "init", "scene", path], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("not overwritten", result.stderr)
+
+    def test_unknown_kind_names_the_kinds(self):
+        result = subprocess.run([SNUG, "init", "robot", "x"], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("cell", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
