@@ -11,8 +11,10 @@ void add_bench(CLI::App& app, Action& action) {
   const auto options = std::make_shared<BenchOptions>();
   verb.add_flag("--json", options->json, "print the figures as JSON");
   verb.add_option("--only", options->only, "only figures whose name starts so, such as s3")->type_name("NAME");
+  verb.add_option("figures", options->only, "the same as --only")->type_name("NAME")->excludes("--only");
   verb.footer(
-      "Examples:\n  snug bench\n  snug bench --json --only s1\n  snug bench --only packing\n  snug bench --only "
+      "Examples:\n  snug bench\n  snug bench --json --only s1\n  snug bench camera\n  snug bench --only packing\n  "
+      "snug bench --only "
       "identification");
   verb.callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }

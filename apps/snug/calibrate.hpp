@@ -40,8 +40,17 @@ struct CalibrateSensorOptions : CalibrateOptions {
   std::optional<double> mass;  ///< kg
 };
 
+struct CalibrateCameraOptions {
+  std::string input;
+  std::optional<std::string> output;  ///< block for a scenario (YAML)
+  std::string name = "tote";
+  std::string preset = "structured_light";
+  bool json = false;
+};
+
 void add_calibrate(CLI::App& app, Action& action);
 [[nodiscard]] int run_calibrate_kinematics(const CalibrateKinematicsOptions& options);
+[[nodiscard]] int run_calibrate_camera(const CalibrateCameraOptions& options);
 [[nodiscard]] int run_calibrate_tool(const CalibrateToolOptions& options);
 [[nodiscard]] int run_calibrate_sensor(const CalibrateSensorOptions& options);
 

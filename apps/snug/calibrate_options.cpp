@@ -35,6 +35,14 @@ Examples:
   snug calibrate ft scenarios/examples/readings.csv
   snug calibrate ft scenarios/examples/readings.csv --mass 1.02 -o ur10-weighed.urdf --json)";
 
+constexpr const char* kCameraPosesHelp =
+    R"(The CSV has a header x,y,z,rx,ry,rz,cx,cy,cz,crx,cry,crz: pose of the tool in the world, and pose in the camera of what the
+tool holds: a board, or a box that `snug perceive` measured (m; rotation vectors in rad). Four rows or more, the tool turned about two
+axes at least. What is held need not be known where it sits: that is found too.
+Examples:
+  snug calibrate camera board.csv
+  snug calibrate camera board.csv --name tote -o camera.yaml --json)";
+
 void add_common(CLI::App& part, CalibrateOptions& options, const char* output) {
   part.add_option("--urdf", options.urdf, "the nominal arm; the shipped UR10 unless given")->type_name("FILE.urdf");
   part.add_option("--tool-frame", options.tool_frame, "link of the URDF that is the tool")
@@ -94,14 +102,35 @@ void add_sensor(CLI::App& verb, Action& action) {
   part.callback([options, &action] { action = [options] { return run_calibrate_sensor(*options); }; });
 }
 
+void add_camera_poses(CLI::App& verb, Action& action) {
+  CLI::App& part = *verb.add_subcommand("camera", "where a camera is that stands in the cell (hand-eye)");
+  const auto options = std::make_shared<CalibrateCameraOptions>();
+  part.add_option("poses", options->input, "of the tool, and of what it holds as the camera sees it")
+      ->required()
+      ->type_name("FILE.csv");
+  part.add_option("--name", options->name, "of the camera in what is written")
+      ->type_name("NAME")
+      ->capture_default_str();
+  part.add_option("--preset", options->preset, "of the camera in what is written")
+      ->check(one_of({"structured_light", "active_stereo", "ideal"}))
+      ->capture_default_str();
+  part.add_option("-o,--output", options->output, "block for a scenario: pose and hand-eye error")
+      ->type_name("FILE.yaml");
+  part.add_flag("--json", options->json, "the result as one JSON object on stdout");
+  part.footer(kCameraPosesHelp);
+  part.callback([options, &action] { action = [options] { return run_calibrate_camera(*options); }; });
+}
+
 }  // namespace
 
 void add_calibrate(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("calibrate", "identify the arm, its tool or its sensor from measurements");
+  CLI::App& verb =
+      *app.add_subcommand("calibrate", "identify the arm, its tool, its sensor or a camera from measurements");
   verb.require_subcommand(1);
   add_kinematics(verb, action);
   add_tool(verb, action);
   add_sensor(verb, action);
+  add_camera_poses(verb, action);
   verb.footer("`snug calibrate kinematics --help` and so on tell the files and units; docs/calibration.md the rest.");
 }
 

@@ -4,6 +4,7 @@
 #include "archive.hpp"
 #include "bench.hpp"
 #include "calibrate.hpp"
+#include "camera.hpp"
 #include "check.hpp"
 #include "compare.hpp"
 #include "completion.hpp"
@@ -17,6 +18,7 @@
 #include "manual.hpp"
 #include "measure.hpp"
 #include "pack.hpp"
+#include "perceive.hpp"
 #include "picture.hpp"
 #include "plot.hpp"
 #include "program.hpp"
@@ -45,6 +47,8 @@ void add_verbs(CLI::App& app, Action& action) {
   add_items(app, action);
   add_load(app, action);
   add_cup(app, action);
+  add_camera(app, action);
+  add_perceive(app, action);
   add_calibrate(app, action);
   add_measure(app, action);
   add_archive(app, action);

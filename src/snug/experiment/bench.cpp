@@ -11,6 +11,7 @@
 
 #include "snug/cell/run.hpp"
 #include "snug/experiment/internal/arm_bench.hpp"
+#include "snug/experiment/internal/camera_bench.hpp"
 #include "snug/experiment/internal/click_bench.hpp"
 #include "snug/experiment/internal/identification_bench.hpp"
 #include "snug/experiment/internal/packing_bench.hpp"
@@ -136,6 +137,7 @@ std::vector<Figure> run_bench(const BenchOptions& options) {
                                                     {"arm", measure_arm},
                                                     {"click", internal::measure_click},
                                                     {"packing", measure_packing},
+                                                    {"camera", internal::measure_camera},
                                                     {"validation", measure_validation},
                                                     {"identification", internal::measure_identification}};
   std::vector<Figure> figures;

@@ -177,12 +177,12 @@ void ScenarioReader::check_materials_meet(const Value& at) const {
 
 void ScenarioReader::read() {
   const MapReader map =
-      root_.map("scenario", {"name",          "gravity",    "time_step",  "duration",   "seed",
-                             "solver",        "materials",  "contacts",   "frames",     "parcel_clearance",
-                             "parcel_types",  "parcels",    "containers", "target",     "bodies",
-                             "aligner",       "tool",       "cup",        "controller", "sequences",
-                             "springs",       "drops",      "robot",      "wrenches",   "record_period",
-                             "initial_state", "uncertainty"});
+      root_.map("scenario", {"name",          "gravity",     "time_step",  "duration",   "seed",
+                             "solver",        "materials",   "contacts",   "frames",     "parcel_clearance",
+                             "parcel_types",  "parcels",     "containers", "target",     "bodies",
+                             "aligner",       "tool",        "cup",        "controller", "sequences",
+                             "springs",       "drops",       "robot",      "wrenches",   "record_period",
+                             "initial_state", "uncertainty", "cameras"});
   const auto each = [&map](const char* key, auto&& read_one) {
     if (const auto values = map.find(key))
       for (const Value& value : values->list()) read_one(value);
@@ -198,6 +198,7 @@ void ScenarioReader::read() {
   if (const auto aligner = map.find("aligner")) read_aligner(*aligner);
   if (const auto tool = map.find("tool")) read_tool(*tool);
   if (const auto cup = map.find("cup")) read_cup(*cup);
+  each("cameras", [this](const Value& value) { read_camera(value); });
   if (const auto controller = map.find("controller")) read_controller(*controller);
   if (const auto robot = map.find("robot")) read_robot(*robot);
   each("sequences", [this](const Value& value) { read_sequence(value); });

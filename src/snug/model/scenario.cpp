@@ -86,6 +86,10 @@ const Body* find_body(const Scenario& scenario, std::string_view name) {
   return find_named(scenario.bodies, &Body::name, name);
 }
 
+const CameraParams* find_camera(const Scenario& scenario, std::string_view name) {
+  return find_named(scenario.cameras, &CameraParams::name, name);
+}
+
 const CorrectionLayer* find_correction_layer(const Scenario& scenario, std::string_view name) {
   return find_named(scenario.controller.correction_layers, &CorrectionLayer::name, name);
 }

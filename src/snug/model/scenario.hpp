@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "snug/model/body.hpp"
+#include "snug/model/camera_params.hpp"
 #include "snug/model/controller_params.hpp"
 #include "snug/model/cup_params.hpp"
 #include "snug/model/material.hpp"
@@ -114,6 +115,7 @@ struct Scenario {
   CupParams cup;
   ControllerParams controller;
   std::optional<RobotParams> robot;
+  std::vector<CameraParams> cameras;
   std::vector<Sequence> sequences;
   Uncertainty uncertainty;  ///< of all of the above
   std::vector<Spring> springs;
@@ -138,6 +140,7 @@ struct Scenario {
 [[nodiscard]] const ParcelType* find_parcel_type(const Scenario& scenario, std::string_view name);
 [[nodiscard]] const Container* find_container(const Scenario& scenario, std::string_view name);
 [[nodiscard]] const Sequence* find_sequence(const Scenario& scenario, std::string_view name);
+[[nodiscard]] const CameraParams* find_camera(const Scenario& scenario, std::string_view name);
 [[nodiscard]] const Body* find_body(const Scenario& scenario, std::string_view name);
 [[nodiscard]] const CorrectionLayer* find_correction_layer(const Scenario& scenario, std::string_view name);
 

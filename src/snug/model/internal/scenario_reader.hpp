@@ -51,6 +51,8 @@ class ScenarioReader {
   [[nodiscard]] Item read_item(const Value& value) const;
   // read_robot.cpp
   void read_robot(const Value& value);
+  // read_camera.cpp
+  void read_camera(const Value& value);
   // checks.cpp
   void check_parcel_fits(const Value& value, const Parcel& parcel) const;
   void check_drops_fit(const Value& value, const Drops& drops) const;

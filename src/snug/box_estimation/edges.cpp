@@ -1,0 +1,304 @@
+// find_edges: where a face ends, line of pixels by line of pixels.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "snug/box_estimation/internal/features.hpp"
+
+namespace snug::box_estimation::internal {
+namespace {
+
+constexpr double kInset = 0.04;  // part of an edge's length at either end that is left out
+constexpr int kLeastLines = 8;
+constexpr double kLeastPart = 0.35;      // of the lines across an edge on which its end has to be seen
+constexpr int kWindow = 3;               // px, around an edge once it is known roughly
+constexpr double kRoundingError = 0.29;  // px, standard deviation of where a grid of pixels puts an end
+constexpr double kDrop = 2.5e-3;         // m: an edge of depth that loses points
+
+enum class Kind : std::uint8_t { Outside, On, Before, Behind, None };  // None: no point
+
+struct Sample {
+  double s = 0.0;  // m, from the edge, outward, in the face's plane
+  Kind kind = Kind::Outside;
+};
+
+/// Samples across the edge along one row or column, from inside to outside.
+struct Line {
+  double t = 0.0;  // m, along the edge from its middle
+  std::vector<Sample> samples;
+};
+
+struct Edge {
+  Vector3 middle, along, outward, n;  // in C; n the face's normal
+  double length = 0.0;
+};
+
+/// One edge as the frame shows it.
+class EdgeSearch {
+ public:
+  EdgeSearch(const camera::Frame& frame, const Edge& edge, double tolerance, int reach, const Prediction* neighbours,
+             int body)
+      : frame_(frame),
+        edge_(edge),
+        offset_(edge.n.dot(edge.middle)),
+        tolerance_(tolerance),
+        reach_(reach),
+        neighbours_(neighbours),
+        body_(body) {}
+
+  /// False when the edge is not in the picture.
+  bool gather() {
+    const Vector3 a = edge_.middle - (0.5 - kInset) * edge_.length * edge_.along;
+    const Vector3 b = edge_.middle + (0.5 - kInset) * edge_.length * edge_.along;
+    if (!(a.z() > 0.05 && b.z() > 0.05)) return false;
+    const Eigen::Vector2d pa = camera::project(frame_.camera.intrinsics, a),
+                          pb = camera::project(frame_.camera.intrinsics, b);
+    const Eigen::Vector2d out = camera::project(frame_.camera.intrinsics, edge_.middle + 0.01 * edge_.outward) -
+                                camera::project(frame_.camera.intrinsics, edge_.middle);
+    is_steep_ = std::abs(pb.y() - pa.y()) > std::abs(pb.x() - pa.x());
+    const int major = is_steep_ ? 1 : 0, minor = 1 - major;
+    const int sign = out(minor) >= 0.0 ? 1 : -1;
+    const double span = pb(major) - pa(major);
+    if (std::abs(span) < kLeastLines) return false;
+    drift_ = std::abs(pb(minor) - pa(minor));
+    const int from = static_cast<int>(std::ceil(std::min(pa(major), pb(major))));
+    const int to = static_cast<int>(std::floor(std::max(pa(major), pb(major))));
+    for (int k = from; k <= to; ++k) {
+      const double at = pa(minor) + (pb(minor) - pa(minor)) * (k - pa(major)) / span;
+      const int middle = static_cast<int>(std::lround(at));
+      Line line;
+      for (int d = -reach_; d <= reach_; ++d) line.samples.push_back(sample(k, middle + sign * d, line));
+      if (line.samples.size() >= 2) lines_.push_back(std::move(line));
+    }
+    return static_cast<int>(lines_.size()) >= kLeastLines;
+  }
+
+  /// Where most lines agree that the face ends: the offset that leaves the fewest points of the face outside and the
+  /// fewest others inside. Points before the face tell nothing.
+  [[nodiscard]] double rough_offset() const {
+    constexpr double kBin = 0.4e-3;
+    const double far = reach_ * pixel() + kBin;
+    const auto count = static_cast<std::size_t>(2.0 * far / kBin) + 1;
+    std::vector<double> gain(count, 0.0);
+    for (const Line& line : lines_)
+      for (const Sample& sample : line.samples) {
+        if (sample.kind == Kind::Outside || sample.kind == Kind::Before) continue;
+        const auto bin =
+            static_cast<std::size_t>(std::clamp((sample.s + far) / kBin, 0.0, static_cast<double>(count - 1)));
+        gain[bin] += sample.kind == Kind::On ? 1.0 : sample.kind == Kind::Behind ? -1.0 : -0.5;
+      }
+    double sum = 0.0, best = 0.0;
+    std::size_t best_bin = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      sum += gain[i];
+      if (sum > best) {
+        best = sum;
+        best_bin = i + 1;
+      }
+    }
+    return static_cast<double>(best_bin) * kBin - far;
+  }
+
+  struct Found {
+    double offset = 0.0, slope = 0.0;  // m, rad
+    double lines = 0.0;                // used
+    double length = 0.0;               // m, standard deviation of where along the edge they are
+    bool is_drop = true;               // an edge of depth that loses points
+    double spread = 0.0;               // m, of single lines
+  };
+
+  /// Counts the points of the face in a window around the rough end, on each line.
+  [[nodiscard]] std::optional<Found> refine(double rough) const {
+    const double step = pixel();
+    std::vector<Eigen::Vector2d> ends;  // t, s
+    int drops = 0, steps = 0;
+    for (const Line& line : lines_) {
+      int on = 0, outer_on = 0, inner_off = 0, inside = 0;
+      bool is_blocked = false;
+      double first = 1e9;
+      for (const Sample& sample : line.samples) {
+        const double d = (sample.s - rough) / step;  // px
+        if (sample.kind == Kind::Outside) continue;
+        if (d > -kWindow - 2.5 && d < kWindow + 1.5 && sample.kind == Kind::Before) is_blocked = true;
+        if (d >= -kWindow - 2.5 && d < -kWindow && sample.kind != Kind::On) ++inner_off;
+        if (d < -kWindow || d >= kWindow) continue;
+        first = std::min(first, sample.s);
+        ++inside;
+        on += sample.kind == Kind::On ? 1 : 0;
+        outer_on += sample.kind == Kind::On && d > kWindow - 1.5 ? 1 : 0;
+      }
+      if (is_blocked || outer_on > 0 || inner_off > 1 || inside < 2 * kWindow - 1) continue;
+      for (const Sample& sample : line.samples) {
+        const double d = (sample.s - rough) / step;
+        if (d < 0.5 || d > 4.0) continue;
+        drops += sample.kind == Kind::Behind || sample.kind == Kind::None ? 1 : 0;
+        ++steps;
+      }
+      ends.emplace_back(line.t, first + (on - 0.5) * step);
+    }
+    if (static_cast<double>(ends.size()) <
+        std::max<double>(kLeastLines, kLeastPart * static_cast<double>(lines_.size())))
+      return std::nullopt;
+    return straight_line(ends, drops > steps / 2);
+  }
+
+  [[nodiscard]] double pixel() const {
+    return std::abs(edge_.middle.z()) / (is_steep_ ? frame_.camera.intrinsics.fx : frame_.camera.intrinsics.fy);
+  }
+  [[nodiscard]] double drift() const { return drift_; }
+
+ private:
+  Sample sample(int major, int minor, Line& line) const {
+    const int row = is_steep_ ? major : minor, col = is_steep_ ? minor : major;
+    if (!frame_.depth.is_inside(row, col)) return {};
+    const Vector3 ray = camera::pixel_ray(frame_.camera.intrinsics, col, row);
+    const double z = offset_ / edge_.n.dot(ray);
+    if (!(z > 0.05)) return {};
+    const Vector3 from_middle = z * ray - edge_.middle;
+    line.t = edge_.along.dot(from_middle);
+    Sample result{edge_.outward.dot(from_middle), Kind::None};
+    const double depth = frame_.depth(row, col);
+    if (depth == 0.0) return result;
+    const double off = offset_ * (depth / z - 1.0);
+    result.kind = std::abs(off) <= tolerance_ ? Kind::On : depth < z ? Kind::Before : Kind::Behind;
+    if (result.kind == Kind::On && result.s > 0.0 && is_neighbour(row, col)) result.kind = Kind::Before;
+    return result;
+  }
+
+  /// Whether another box should be seen in a pixel.
+  [[nodiscard]] bool is_neighbour(int row, int col) const {
+    if (neighbours_ == nullptr) return false;
+    const int r = row - neighbours_->range.first_row, c = col - neighbours_->range.first_col;
+    if (!neighbours_->cast.surface.is_inside(r, c)) return false;
+    const std::int32_t s = neighbours_->cast.surface(r, c);
+    if (s < 0) return false;
+    const int body = neighbours_->cast.surfaces[static_cast<std::size_t>(s)].body;
+    return body >= neighbours_->first_box && body != body_;
+  }
+
+  /// Through the ends by least squares, twice: those beyond three standard deviations are left out the second time.
+  [[nodiscard]] static std::optional<Found> straight_line(const std::vector<Eigen::Vector2d>& ends, bool is_drop) {
+    Found found;
+    found.is_drop = is_drop;
+    double limit = 1e9;
+    for (int pass = 0; pass < 3; ++pass) {
+      double n = 0, t = 0, tt = 0, s = 0, ts = 0, squares = 0;
+      for (const Eigen::Vector2d& end : ends) {
+        const double residual = end.y() - found.offset - found.slope * end.x();
+        if (std::abs(residual) > limit) continue;
+        n += 1.0;
+        t += end.x();
+        tt += end.x() * end.x();
+        s += end.y();
+        ts += end.x() * end.y();
+      }
+      const double determinant = n * tt - t * t;
+      if (n < kLeastLines || !(determinant > 0.0)) return std::nullopt;
+      found.slope = (n * ts - t * s) / determinant;
+      found.offset = (s - found.slope * t) / n;
+      found.lines = n;
+      found.length = std::sqrt(determinant) / n;
+      for (const Eigen::Vector2d& end : ends) {
+        const double residual = end.y() - found.offset - found.slope * end.x();
+        if (std::abs(residual) <= limit) squares += residual * residual;
+      }
+      found.spread = std::sqrt(squares / n);
+      limit = std::max(3.0 * found.spread, 1e-4);
+    }
+    return found;
+  }
+
+  const camera::Frame& frame_;
+  Edge edge_;
+  double offset_, tolerance_;
+  int reach_;
+  const Prediction* neighbours_;  ///< null: not looked at
+  int body_;
+  bool is_steep_ = false;
+  double drift_ = 0.0;  // px, by which the edge crosses the grid of pixels
+  std::vector<Line> lines_;
+};
+
+/// Rows of the fit from offset and slope.
+Rows make_rows(const Edge& edge, const Vector3& middle_of_box, double offset, double slope) {
+  Rows rows;
+  rows.count = 2;
+  const Vector3 arm = edge.middle - middle_of_box;
+  rows.J.row(0) << edge.outward.transpose(), arm.cross(edge.outward).transpose();
+  rows.J.row(1) << Vector3::Zero().transpose(), edge.along.cross(edge.outward).transpose();
+  rows.measured = Vector3(offset, slope, 0.0);
+  return rows;
+}
+
+std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, const Edge& edge,
+                            const ErrorModel& errors, const FeatureSettings& settings, const Prediction& prediction,
+                            int body, bool& is_coarse) {
+  const double depth = edge.middle.z();
+  const double tolerance = std::max(3.5 * errors.point_error(depth), 0.5e-3);
+  EdgeSearch search(frame, edge, tolerance, settings.reach, settings.ignores_neighbours ? &prediction : nullptr, body);
+  if (!search.gather()) return std::nullopt;
+  const double rough = search.rough_offset(), step = search.pixel();
+  is_coarse = std::abs(rough) > (settings.reach - kWindow - 2) * step;
+  if (is_coarse) {
+    // Too near the end of the band to be counted. At its very end all of the band is face, or none: the end lies
+    // beyond.
+    const bool is_beyond = std::abs(rough) > (settings.reach - 1.5) * step;
+    Rows rows = make_rows(edge, box.X_CP.p, rough, 0.0);
+    rows.count = 1;
+    rows.covariance = Matrix3::Identity() * std::pow((is_beyond ? 0.3 * settings.reach : 2.0) * step, 2);
+    return rows;
+  }
+  const auto found = search.refine(rough);
+  if (!found) return std::nullopt;
+  const double lost = found->is_drop ? errors.edge_shift() * step : 0.0;
+  Rows rows = make_rows(edge, box.X_CP.p, found->offset + lost, found->slope);
+  // The grid of pixels rounds all lines of an edge along it alike, and evens out where the edge crosses it.
+  const double rounding = kRoundingError * step / std::max(1.0, search.drift());
+  const double single =
+      found->spread * found->spread + std::pow(kRoundingError * step, 2) * (search.drift() >= 1.0 ? 0.0 : 0.2);
+  const double mean = rounding * rounding + 2.0 * single / found->lines;
+  rows.covariance = Vector3(mean, mean / (found->length * found->length), 1.0).asDiagonal();
+  (void)kDrop;
+  return rows;
+}
+
+}  // namespace
+
+std::vector<EdgeFeature> find_edges(const camera::Frame& frame, const Prediction& prediction,
+                                    const std::vector<TrackedBox>& boxes, const ErrorModel& errors,
+                                    const FeatureSettings& settings) {
+  std::vector<int> seen(prediction.cast.surfaces.size(), 0);
+  for (const std::int32_t s : prediction.cast.surface.values())
+    if (s >= 0) ++seen[static_cast<std::size_t>(s)];
+  std::vector<EdgeFeature> features;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const camera::Surface& surface = prediction.cast.surfaces[i];
+    if (surface.body < prediction.first_box || seen[i] < 200) continue;
+    const int index = surface.body - prediction.first_box;
+    const TrackedBox& box = boxes[static_cast<std::size_t>(index)];
+    const int axis = surface.face / 2;
+    const double facing = std::abs(surface.offset) / (box.X_CP.p + box.half(axis) * surface.n_C).norm();
+    if (facing < 0.5) continue;  // seen too flat: its pixels are long
+    for (int k = 1; k <= 2; ++k)
+      for (int side = 0; side < 2; ++side) {
+        const int across = (axis + k) % 3, along = 3 - axis - across;
+        Edge edge;
+        edge.n = surface.n_C;
+        edge.outward = box.X_CP.R.col(across) * (side == 1 ? 1.0 : -1.0);
+        edge.along = box.X_CP.R.col(along);
+        edge.length = 2.0 * box.half(along);
+        edge.middle = box.X_CP.p + box.half(axis) * surface.n_C + box.half(across) * edge.outward;
+        EdgeFeature feature;
+        const auto rows = measure(frame, box, edge, errors, settings, prediction, surface.body, feature.is_coarse);
+        if (!rows) continue;
+        feature.box = index;
+        feature.axis = across;
+        feature.side = side;
+        feature.rows = *rows;
+        features.push_back(feature);
+      }
+  }
+  return features;
+}
+
+}  // namespace snug::box_estimation::internal

@@ -1,0 +1,363 @@
+// estimate_boxes: track those that are where they were, look for the others, then say what is known of each.
+#include "snug/box_estimation/estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "snug/box_estimation/internal/joint_fit.hpp"
+#include "snug/box_estimation/internal/obstacles.hpp"
+#include "snug/box_estimation/internal/search.hpp"
+
+namespace snug::box_estimation {
+namespace {
+
+using internal::Agreement;
+using internal::ErrorModel;
+using internal::FitStart;
+using internal::Prediction;
+using internal::TrackedBox;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr int kLeastPoints = 150;           // on a box, to say that it was seen
+constexpr double kLeastPartOn = 0.6;        // of the points where a box should be, to fit it from where it was believed
+constexpr double kLeastPartOnAfter = 0.85;  // the same after the fit
+constexpr double kLeastOfPixels = 0.08;     // of the pixels where it should be seen
+constexpr double kMostSpread = 0.015;       // m: a pose less sure than this was not seen
+constexpr double kLeastVisible = 0.04;      // of what a box would show alone
+constexpr double kLeastFramePart = 0.5;     // of pixels with a point
+constexpr double kMostBlocked = 0.25;       // of pixels with points above the region
+constexpr double kMovedDistance = 0.010, kMovedAngle = 3.0 * kDegree;
+constexpr double kLeaning = 4.0 * kDegree;
+constexpr double kMostTolerance = 0.02;  // m, of a face from where it was believed to be
+constexpr double kFoundSpread = 0.05;    // m and rad: the belief of a box that was found elsewhere
+
+TrackedBox make_tracked(const ExpectedBox& box, const Pose& X_CW) {
+  TrackedBox tracked;
+  tracked.half = 0.5 * box.size;
+  tracked.X_CP = tracked.X_CP_prior = X_CW * box.X_WP;
+  tracked.prior_information.topLeftCorner<3, 3>() = Matrix3::Identity() / std::pow(box.position_spread, 2);
+  tracked.prior_information.bottomRightCorner<3, 3>() = Matrix3::Identity() / std::pow(box.rotation_spread, 2);
+  return tracked;
+}
+
+class Estimator {
+ public:
+  Estimator(const camera::Frame& frame, const EstimateInput& input)
+      : frame_(frame),
+        input_(input),
+        X_CW_(frame.camera.X_WC.inverse()),
+        errors_(frame.camera),
+        surroundings_C_(internal::in_camera(input.surroundings, frame.camera.X_WC)),
+        range_(internal::pixel_range(frame.camera, input.region_low, input.region_high)),
+        tolerance_(std::max(6e-3, 4.0 * errors_.point_error(frame.camera.range.focus))) {}
+
+  Estimate run() {
+    Estimate result;
+    for (const ExpectedBox& box : input_.boxes) {
+      BoxEstimate& estimate = result.boxes.emplace_back();
+      estimate.id = box.id;
+      estimate.X_WP = box.X_WP;
+      estimate.covariance = belief(box);
+    }
+    result.fault = judge_frame(result.point_part);
+    if (result.fault != FrameFault::None) return result;
+    track();
+    look_for_others();
+    drop_bad_fits();
+    report(result);
+    return result;
+  }
+
+ private:
+  static Matrix6 belief(const ExpectedBox& box) {
+    Matrix6 covariance = Matrix6::Zero();
+    covariance.topLeftCorner<3, 3>() = Matrix3::Identity() * std::pow(box.position_spread, 2);
+    covariance.bottomRightCorner<3, 3>() = Matrix3::Identity() * std::pow(box.rotation_spread, 2);
+    return covariance;
+  }
+
+  FrameFault judge_frame(double& part) const {
+    int points = 0, blocked = 0;
+    for (int r = range_.first_row; r < range_.end_row; ++r)
+      for (int c = range_.first_col; c < range_.end_col; ++c) {
+        const double depth = frame_.depth(r, c);
+        if (depth == 0.0) continue;
+        ++points;
+        const Vector3 p_C = depth * camera::pixel_ray(frame_.camera.intrinsics, c, r);
+        const double z = frame_.camera.X_WC.R.row(2).dot(p_C) + frame_.camera.X_WC.p.z();
+        blocked += z > input_.region_high.z() ? 1 : 0;
+      }
+    const int pixels = range_.rows() * range_.cols();
+    part = pixels > 0 ? static_cast<double>(points) / pixels : 0.0;
+    if (part < kLeastFramePart) return FrameFault::TooFewPoints;
+    return blocked > kMostBlocked * pixels ? FrameFault::ViewBlocked : FrameFault::None;
+  }
+
+  [[nodiscard]] Prediction predict(const std::vector<TrackedBox>& boxes) const {
+    return internal::predict(frame_, range_, surroundings_C_, boxes);
+  }
+
+  /// How far a face may be from where the belief has it, m.
+  [[nodiscard]] double belief_tolerance(const ExpectedBox& box) const {
+    const double spread = std::hypot(box.position_spread, 0.5 * box.rotation_spread * box.size.norm());
+    return std::min(kMostTolerance, 2.5 * spread) + tolerance_;
+  }
+
+  [[nodiscard]] std::vector<Agreement> compare(const std::vector<TrackedBox>& boxes) const {
+    return internal::compare(frame_, predict(boxes), std::vector<double>(boxes.size(), fit_tolerance()));
+  }
+
+  static bool agrees(const Agreement& a, double least_part_on) {
+    return a.on >= kLeastPoints && a.part_on() >= least_part_on && a.on >= kLeastOfPixels * a.pixels;
+  }
+
+  /// Boxes that the frame shows about where they are believed to be.
+  void track() {
+    std::vector<TrackedBox> all;
+    std::vector<double> tolerances;
+    for (const ExpectedBox& box : input_.boxes) {
+      all.push_back(make_tracked(box, X_CW_));
+      tolerances.push_back(belief_tolerance(box));
+    }
+    const std::vector<Agreement> agreement = internal::compare(frame_, predict(all), tolerances);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Agreement& a = agreement[i];
+      if (agrees(a, kLeastPartOn)) {
+        tracked_.push_back(all[i]);
+        ids_.push_back(i);
+      } else {
+        others_.push_back(i);
+      }
+    }
+    fit(FitStart::Belief, 6);
+    keep_good();
+  }
+
+  /// Those that agree with the frame.
+  void keep_good() {
+    std::vector<bool> is_good;
+    for (const Agreement& a : compare(tracked_)) is_good.push_back(agrees(a, kLeastPartOnAfter));
+    keep(is_good);
+  }
+
+  /// m, from a face after the fit.
+  [[nodiscard]] double fit_tolerance() const {
+    return std::max(2.5e-3, 4.0 * errors_.point_error(frame_.camera.range.focus));
+  }
+
+  void fit(internal::FitStart start, int steps) {
+    fit_ = internal::fit_boxes(frame_, range_, surroundings_C_, tracked_, errors_, start, steps);
+    tracked_ = fit_.boxes;
+  }
+
+  /// Boxes that are not kept are looked for, or were never seen.
+  void keep(const std::vector<bool>& is_good) {
+    std::vector<TrackedBox> boxes;
+    std::vector<std::size_t> ids;
+    for (std::size_t i = 0; i < tracked_.size(); ++i) {
+      if (is_good[i]) {
+        boxes.push_back(tracked_[i]);
+        ids.push_back(ids_[i]);
+      } else {
+        others_.push_back(ids_[i]);
+      }
+    }
+    tracked_ = boxes;
+    ids_ = ids;
+  }
+
+  /// What is seen of the place where box i is believed to be, among the tracked ones.
+  [[nodiscard]] Agreement look_at_belief(std::size_t i) const {
+    std::vector<TrackedBox> boxes = tracked_;
+    boxes.push_back(make_tracked(input_.boxes[i], X_CW_));
+    std::vector<double> tolerances(tracked_.size(), fit_tolerance());
+    tolerances.push_back(belief_tolerance(input_.boxes[i]));
+    return internal::compare(frame_, predict(boxes), tolerances).back();
+  }
+
+  /// Boxes that are evidently not where they were believed to be: looked for among what nothing explains. A box whose
+  /// place is covered may well be there.
+  void look_for_others() {
+    for (int round = 0; round < 3 && !others_.empty(); ++round) {
+      std::sort(others_.begin(), others_.end());
+      const Prediction prediction = predict(tracked_);
+      const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + 1.5e-3);
+      std::vector<internal::Wanted> wanted;
+      for (const std::size_t i : others_) {
+        const Agreement a = look_at_belief(i);
+        if (a.on + a.farther < std::max(kLeastPoints, a.nearer)) continue;
+        wanted.push_back({static_cast<int>(i), 0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP});
+      }
+      std::vector<camera::SceneShape> solids = surroundings_C_.shapes;
+      for (const TrackedBox& box : tracked_) solids.push_back({geometry::Box{box.half}, box.X_CP, 0});
+      const auto found = internal::find_boxes(frame_, prediction, mask, wanted, solids, errors_);
+      if (found.empty()) break;
+      const std::size_t before = tracked_.size();
+      for (const internal::FoundBox& one : found) add_found(wanted[static_cast<std::size_t>(one.wanted)], one.X_CP);
+      fit(FitStart::Near, 4);
+      if (turn_to_fit(before)) fit(FitStart::Near, 3);
+      keep_good();
+    }
+    if (!tracked_.empty()) fit(FitStart::Near, 3);
+  }
+
+  /// Found boxes (from `first` on) whose seen sides are as long as others of theirs are turned to match. True when any
+  /// was.
+  bool turn_to_fit(std::size_t first) {
+    bool has_turned = false;
+    for (std::size_t i = first; i < tracked_.size(); ++i) {
+      const auto turned = internal::turned_to_sizes(tracked_[i], fit_.size_misfit[i],
+                                                    input_.boxes[ids_[i]].X_WP.R.transpose() * frame_.camera.X_WC.R);
+      if (!turned) continue;
+      tracked_[i].X_CP = tracked_[i].X_CP_prior = *turned;
+      has_turned = true;
+    }
+    return has_turned;
+  }
+
+  void add_found(const internal::Wanted& wanted, const Pose& X_CP) {
+    const auto index = static_cast<std::size_t>(wanted.box);
+    TrackedBox box = make_tracked(input_.boxes[index], X_CW_);
+    box.X_CP = box.X_CP_prior = X_CP;
+    box.prior_information = Matrix6::Identity() / (kFoundSpread * kFoundSpread);
+    tracked_.push_back(box);
+    ids_.push_back(index);
+    std::erase(others_, index);
+  }
+
+  /// Until all that are left agree with the frame.
+  void drop_bad_fits() {
+    for (int round = 0; round < 3; ++round) {
+      const std::size_t before = tracked_.size();
+      keep_good();
+      if (tracked_.size() == before) return;
+      fit(FitStart::Near, 3);
+    }
+  }
+
+  void report(Estimate& result) const {
+    const Prediction prediction = predict(tracked_);
+    const std::vector<Agreement> agreement =
+        internal::compare(frame_, prediction, std::vector<double>(tracked_.size(), fit_tolerance()));
+    for (std::size_t i = 0; i < tracked_.size(); ++i) report_seen(i, agreement[i], result.boxes[ids_[i]]);
+    report_others(result);
+    const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + 2.5e-3);
+    result.obstacles = internal::find_obstacles(frame_, input_, range_, mask);
+    result.heights = internal::make_height_map(frame_, input_, range_);
+  }
+
+  void report_seen(std::size_t i, const Agreement& a, BoxEstimate& estimate) const {
+    const ExpectedBox& box = input_.boxes[ids_[i]];
+    const int alone = pixels_alone(tracked_[i]);
+    estimate.points = a.on;
+    estimate.visible_part = alone > 0 ? std::min(1.0, static_cast<double>(a.on) / alone) : 0.0;
+    const double spread = std::sqrt(fit_.covariance[i].topLeftCorner<3, 3>().diagonal().maxCoeff());
+    if (a.on < kLeastPoints || estimate.visible_part < kLeastVisible ||
+        spread > std::max(kMostSpread, 1.1 * box.position_spread))
+      return;  // stays hidden, at its belief
+    estimate.sight = Sight::Seen;
+    estimate.rms = a.on > 0 ? std::sqrt(a.squares / a.on) : 0.0;
+    const Pose X_WP = frame_.camera.X_WC * tracked_[i].X_CP;
+    estimate.X_WP = {nearest_equal_rotation(X_WP.R, box.X_WP.R), X_WP.p};
+    Matrix6 turn = Matrix6::Zero();
+    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = frame_.camera.X_WC.R;
+    const Matrix6 covariance = fit_.covariance[i] + errors_.shared_covariance(tracked_[i].X_CP.p);
+    estimate.covariance = turn * covariance * turn.transpose();
+    add_findings(i, box, estimate);
+  }
+
+  void add_findings(std::size_t i, const ExpectedBox& box, BoxEstimate& estimate) const {
+    const double distance = (estimate.X_WP.p - box.X_WP.p).norm(), angle = angle_between(estimate.X_WP.R, box.X_WP.R);
+    if ((distance > kMovedDistance && distance > 3.0 * box.position_spread) ||
+        (angle > kMovedAngle && angle > 3.0 * box.rotation_spread))
+      estimate.findings.push_back(Finding::Moved);
+    if (estimate.X_WP.R.row(2).cwiseAbs().maxCoeff() < std::cos(kLeaning))
+      estimate.findings.push_back(Finding::Leaning);
+    const Vector3 reach = estimate.X_WP.R.cwiseAbs() * (0.5 * box.size);
+    const Vector3 low = estimate.X_WP.p - reach, high = estimate.X_WP.p + reach;
+    const double rim_slack = 0.005;
+    if (high.z() > input_.region_high.z() - 0.001 && input_.region_high.z() < 1e2)
+      if ((low.head<2>().array() < input_.region_low.head<2>().array() - rim_slack).any() ||
+          (high.head<2>().array() > input_.region_high.head<2>().array() + rim_slack).any())
+        estimate.findings.push_back(Finding::OnRim);
+    const Vector3& misfit = fit_.size_misfit[i];
+    if (fit_.size_error[i] > 4.0 && misfit.array().isFinite().any() &&
+        misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > 3e-3)
+      estimate.findings.push_back(Finding::WrongSize);
+  }
+
+  [[nodiscard]] int pixels_alone(const TrackedBox& box) const {
+    const Prediction alone = internal::predict(frame_, range_, camera::Scene{}, {box});
+    int pixels = 0;
+    for (const std::int32_t s : alone.cast.surface.values()) pixels += s >= 0 ? 1 : 0;
+    return pixels;
+  }
+
+  /// Of those that were not found: is the place where each should be seen, and empty?
+  void report_others(Estimate& result) const {
+    for (const std::size_t i : others_) {
+      const Agreement a = look_at_belief(i);
+      const int points = a.on + a.nearer + a.farther;
+      if (points >= kLeastPoints && a.farther > 0.7 * points) result.boxes[i].sight = Sight::Missing;
+    }
+  }
+
+  const camera::Frame& frame_;
+  const EstimateInput& input_;
+  Pose X_CW_;
+  ErrorModel errors_;
+  camera::Scene surroundings_C_;
+  internal::PixelRange range_;
+  double tolerance_;
+  std::vector<TrackedBox> tracked_;
+  std::vector<std::size_t> ids_;     ///< of the input, for each tracked box
+  std::vector<std::size_t> others_;  ///< not tracked
+  internal::FitResult fit_;
+};
+
+}  // namespace
+
+EstimateInput make_input(const model::Scenario& scenario, const model::Container& container) {
+  EstimateInput input;
+  input.surroundings = camera::make_surroundings(scenario);
+  const Vector3 half = 0.5 * (container.X_WT.R.cwiseAbs() * container.inner_size);
+  const Vector3 middle = container.X_WT * Vector3(0.0, 0.0, 0.5 * container.inner_size.z());
+  input.region_low = middle - half;
+  input.region_high = middle + half;
+  return input;
+}
+
+Estimate estimate_boxes(const camera::Frame& frame, const EstimateInput& input) {
+  return Estimator(frame, input).run();
+}
+
+const char* name_of(Sight sight) {
+  constexpr const char* kNames[] = {"seen", "hidden", "missing"};
+  return kNames[static_cast<int>(sight)];
+}
+
+const char* name_of(Finding finding) {
+  constexpr const char* kNames[] = {"moved", "leaning", "on_rim", "wrong_size"};
+  return kNames[static_cast<int>(finding)];
+}
+
+const char* name_of(FrameFault fault) {
+  constexpr const char* kNames[] = {"none", "too_few_points", "view_blocked"};
+  return kNames[static_cast<int>(fault)];
+}
+
+Matrix3 nearest_equal_rotation(const Matrix3& R_WP, const Matrix3& R_WP_near) {
+  Matrix3 best = R_WP;
+  double least = 1e9;
+  for (const Vector3& signs : {Vector3(1, 1, 1), Vector3(1, -1, -1), Vector3(-1, 1, -1), Vector3(-1, -1, 1)}) {
+    const Matrix3 R = R_WP * signs.asDiagonal();
+    const double angle = angle_between(R, R_WP_near);
+    if (angle >= least - 1e-12) continue;
+    least = angle;
+    best = R;
+  }
+  return best;
+}
+
+}  // namespace snug::box_estimation

@@ -1,0 +1,32 @@
+// fit_boxes: all boxes at once, from planes, edges, beliefs, and that solids do not overlap.
+#pragma once
+
+#include "snug/box_estimation/internal/view.hpp"
+
+namespace snug::box_estimation::internal {
+
+struct FitResult {
+  std::vector<TrackedBox> boxes;
+  std::vector<Matrix6> covariance;  ///< in C, [translation; rotation about the box's middle]
+  /// m, along each axis of P by how much farther apart opposite edges are than the box is long; NaN where not both were
+  /// seen.
+  std::vector<Vector3> size_misfit;
+  std::vector<double> size_error;  ///< the largest of them, in standard deviations
+};
+
+enum class FitStart {
+  Belief,  ///< off by centimetres
+  Near,    ///< off by millimetres
+};
+
+/// Gauss-Newton steps, each with a new prediction and narrower gates. `surroundings_C`: in C.
+[[nodiscard]] FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range,
+                                  const camera::Scene& surroundings_C, std::vector<TrackedBox> boxes,
+                                  const ErrorModel& errors, FitStart start, int steps);
+
+/// The pose in which the box's sides match what was seen of them better than they do now, its seen face in the same
+/// plane; none when they match best as it is. `R_PC_believed`: of poses that are equal, the one nearest to it.
+[[nodiscard]] std::optional<Pose> turned_to_sizes(const TrackedBox& box, const Vector3& size_misfit,
+                                                  const Matrix3& R_PC_believed);
+
+}  // namespace snug::box_estimation::internal

@@ -1,0 +1,163 @@
+// estimate_boxes: on scenes whose truth is known by construction.
+#include "snug/box_estimation/estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "snug/camera/render.hpp"
+
+namespace snug::box_estimation {
+namespace {
+
+/// A container of 0.4 x 0.6 x 0.25 m with its floor at z = 0, a camera 1 m over it.
+struct Cell {
+  model::Scenario scenario;
+  model::CameraParams camera;
+  Cell(const std::string& preset = "structured_light") {
+    model::Container container;
+    container.name = "tote";
+    container.inner_size = Vector3(0.4, 0.6, 0.25);
+    scenario.containers.push_back(container);
+    camera = model::make_camera(preset);
+    camera.name = "test";
+    camera.X_WC = {(Matrix3() << 0, 1, 0, 1, 0, 0, 0, 0, -1).finished(), Vector3(0, 0, 1.0)};
+  }
+};
+
+struct Box {
+  std::string id;
+  Vector3 size;
+  Pose X_WP;
+};
+
+Pose level(double x, double y, double z, double yaw = 0.0) {
+  return {exp_rotation(Vector3(0, 0, yaw)), Vector3(x, y, z)};
+}
+
+/// Three boxes of different heights, 20 mm apart and more.
+std::vector<Box> three_boxes() {
+  return {{"a", Vector3(0.20, 0.15, 0.10), level(-0.05, -0.15, 0.05, 0.1)},
+          {"b", Vector3(0.10, 0.12, 0.06), level(0.08, 0.10, 0.03, -0.4)},
+          {"c", Vector3(0.16, 0.10, 0.08), level(-0.10, 0.15, 0.04, 0.02)}};
+}
+
+camera::Frame look(const Cell& cell, const std::vector<Box>& boxes, std::uint64_t seed) {
+  camera::Scene scene = camera::make_surroundings(cell.scenario);
+  for (const Box& box : boxes) camera::add_box(scene, box.id, box.X_WP, box.size);
+  return camera::render(scene, cell.camera, camera::draw_camera(cell.camera, seed), seed).frame;
+}
+
+Vector3 normals(Rng& rng, double size) {
+  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
+  return size * Vector3(x, y, z);
+}
+
+EstimateInput expect(const Cell& cell, const std::vector<Box>& boxes, std::uint64_t seed) {
+  EstimateInput input = make_input(cell.scenario, cell.scenario.containers.front());
+  Rng rng = Rng(seed).split("belief");
+  for (const Box& box : boxes)
+    input.boxes.push_back({box.id,
+                           box.size,
+                           {exp_rotation(normals(rng, 0.02)) * box.X_WP.R, box.X_WP.p + normals(rng, 0.004)},
+                           0.004,
+                           0.02});
+  return input;
+}
+
+TEST(EstimateBoxes, FindsBoxesInAPerfectFrameToATenthOfAMillimetre) {
+  const Cell cell("ideal");
+  const std::vector<Box> boxes = three_boxes();
+  const Estimate estimate = estimate_boxes(look(cell, boxes, 1), expect(cell, boxes, 1));
+  ASSERT_EQ(estimate.fault, FrameFault::None);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    SCOPED_TRACE(boxes[i].id);
+    EXPECT_EQ(estimate.boxes[i].sight, Sight::Seen);
+    // Along the optical axis rounding alone; across it the grid of pixels, 1 mm, evened out along edges of a hundred.
+    EXPECT_NEAR(estimate.boxes[i].X_WP.p.z(), boxes[i].X_WP.p.z(), 0.1e-3);
+    EXPECT_LT((estimate.boxes[i].X_WP.p - boxes[i].X_WP.p).norm(), 0.4e-3);
+    EXPECT_LT(angle_between(estimate.boxes[i].X_WP.R, boxes[i].X_WP.R), 0.004);
+  }
+  EXPECT_TRUE(estimate.obstacles.empty());
+}
+
+TEST(EstimateBoxes, ErrorsAreAsLargeAsTheirCovarianceSays) {
+  const Cell cell;
+  const std::vector<Box> boxes = three_boxes();
+  double sum = 0.0;
+  constexpr int kFrames = 40;
+  for (std::uint64_t seed = 1; seed <= kFrames; ++seed) {
+    const Estimate estimate = estimate_boxes(look(cell, boxes, seed), expect(cell, boxes, seed));
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const BoxEstimate& box = estimate.boxes[i];
+      ASSERT_EQ(box.sight, Sight::Seen) << seed;
+      Vector6 off;
+      off << box.X_WP.p - boxes[i].X_WP.p, log_rotation(box.X_WP.R * boxes[i].X_WP.R.transpose());
+      EXPECT_LT(off.head<3>().norm(), 3e-3);
+      sum += off.dot(box.covariance.ldlt().solve(off)) / (6.0 * kFrames * static_cast<double>(boxes.size()));
+    }
+  }
+  // One value of six degrees for each camera (its boxes share its errors): 40 of them, four standard errors.
+  EXPECT_NEAR(sum, 1.0, 4.0 * std::sqrt(2.0 / (6.0 * kFrames)));
+}
+
+TEST(EstimateBoxes, SaysWhatIsHiddenMissingOrMoved) {
+  const Cell cell;
+  std::vector<Box> boxes = three_boxes();
+  boxes.push_back({"under", Vector3(0.10, 0.08, 0.04), level(0.08, -0.15, 0.02)});
+  boxes.push_back({"over", Vector3(0.20, 0.16, 0.05), level(0.08, -0.15, 0.065)});
+  EstimateInput input = expect(cell, boxes, 3);
+  std::vector<Box> real = boxes;
+  real[1].X_WP = level(0.12, 0.22, 0.03, 0.3);  // b was moved by hand
+  real.erase(real.begin() + 2);                 // c was taken away
+  const Estimate estimate = estimate_boxes(look(cell, real, 3), input);
+  EXPECT_EQ(estimate.boxes[1].sight, Sight::Seen);
+  EXPECT_LT((estimate.boxes[1].X_WP.p - real[1].X_WP.p).norm(), 2e-3);
+  EXPECT_EQ(estimate.boxes[1].findings, std::vector<Finding>{Finding::Moved});
+  EXPECT_EQ(estimate.boxes[2].sight, Sight::Missing);
+  EXPECT_EQ(estimate.boxes[3].sight, Sight::Hidden);
+  EXPECT_EQ(estimate.boxes[3].X_WP, input.boxes[3].X_WP);
+  EXPECT_EQ(estimate.boxes[4].sight, Sight::Seen);
+}
+
+TEST(EstimateBoxes, ReportsWhatNobodyExpectsAsAnObstacleOfItsHeight) {
+  const Cell cell;
+  const std::vector<Box> boxes = three_boxes();
+  std::vector<Box> real = boxes;
+  real.push_back({"stranger", Vector3(0.09, 0.09, 0.12), level(0.13, -0.22, 0.06)});
+  const Estimate estimate = estimate_boxes(look(cell, real, 4), expect(cell, boxes, 4));
+  ASSERT_EQ(estimate.obstacles.size(), 1u);
+  EXPECT_NEAR(estimate.obstacles[0].high.z(), 0.12, 2e-3);
+  EXPECT_NEAR(estimate.obstacles[0].low.x(), 0.085, 5e-3);
+  for (const BoxEstimate& box : estimate.boxes) EXPECT_EQ(box.sight, Sight::Seen);
+  const HeightMap& map = estimate.heights;
+  const auto height = [&map](double x, double y) {
+    return map.height(static_cast<int>((y - map.origin.y()) / map.cell),
+                      static_cast<int>((x - map.origin.x()) / map.cell));
+  };
+  EXPECT_NEAR(height(0.13, -0.22), 0.12, 2e-3);
+  EXPECT_NEAR(height(0.0, 0.28), 0.0, 2e-3);
+}
+
+TEST(EstimateBoxes, RefusesFramesThatTellNothing) {
+  const Cell cell;
+  const std::vector<Box> boxes = three_boxes();
+  const EstimateInput input = expect(cell, boxes, 5);
+  camera::Frame empty = look(cell, boxes, 5);
+  for (float& depth : empty.depth.values()) depth = 0.0F;
+  const Estimate none = estimate_boxes(empty, input);
+  EXPECT_EQ(none.fault, FrameFault::TooFewPoints);
+  for (const BoxEstimate& box : none.boxes) EXPECT_EQ(box.sight, Sight::Hidden);
+  std::vector<Box> blocked = boxes;  // an arm over half of the container
+  blocked.push_back({"arm", Vector3(0.4, 0.3, 0.1), level(0.0, 0.15, 0.5)});
+  EXPECT_EQ(estimate_boxes(look(cell, blocked, 5), input).fault, FrameFault::ViewBlocked);
+}
+
+TEST(EstimateBoxes, EqualRotationsAreTheFourOfACuboid) {
+  const Matrix3 R = exp_rotation(Vector3(0.3, -0.2, 0.9));
+  for (const Vector3& axis : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)})
+    EXPECT_LT(angle_between(nearest_equal_rotation(R * exp_rotation(3.14159265358979 * axis), R), R), 1e-6);
+}
+
+}  // namespace
+}  // namespace snug::box_estimation

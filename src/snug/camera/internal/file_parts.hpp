@@ -1,0 +1,22 @@
+// Readers and writers of the single formats.
+#pragma once
+
+#include <string>
+
+#include "snug/camera/frame_file.hpp"
+
+namespace snug::camera::internal {
+
+inline constexpr int kLargestSide = 8192;  ///< px
+inline constexpr std::size_t kLargestFile = std::size_t{1} << 30U;
+
+[[nodiscard]] Frame read_png(const std::string& bytes, const std::string& name, const FrameHints& hints);
+[[nodiscard]] Frame read_ply(const std::string& bytes, const std::string& name, const FrameHints& hints);
+[[nodiscard]] Frame read_h5(const std::filesystem::path& path, const FrameHints& hints);
+
+/// Throws unless the picture has the size that the camera says.
+void expect_size(const model::CameraParams& camera, int cols, int rows, const std::string& name);
+/// `depth` where it is a point within the working range, else 0.
+[[nodiscard]] float usable(const model::CameraParams& camera, double depth);
+
+}  // namespace snug::camera::internal

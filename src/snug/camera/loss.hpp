@@ -1,0 +1,28 @@
+// What part of the points near edges of depth and on grazing faces is lost: for the renderer, and for who reads frames.
+#pragma once
+
+#include <vector>
+
+#include "snug/model/camera_params.hpp"
+
+namespace snug::camera {
+
+/// Probability that a point 1, 2, ... pixels from an edge of depth is lost (1: beside it); ends where it is below 0.5
+/// %.
+[[nodiscard]] std::vector<float> edge_loss(const model::PointLoss& loss);
+
+/// How many points are lost on faces that are seen from the side.
+class GrazingLoss {
+ public:
+  explicit GrazingLoss(const model::PointLoss& loss);
+  /// Probability under this cosine between normal and ray: none up to the onset, linear in the cosine from there.
+  [[nodiscard]] float operator()(float cosine) const {
+    if (cosine >= onset_) return 0.0F;
+    return cosine <= full_ ? 1.0F : (onset_ - cosine) / (onset_ - full_);
+  }
+
+ private:
+  float onset_, full_;  ///< cosines
+};
+
+}  // namespace snug::camera
