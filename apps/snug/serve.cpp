@@ -16,6 +16,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/record/writer.hpp"
 #include "stop_signal.hpp"
+#include "version.hpp"
 #include "view.hpp"
 #include "viewer_page.hpp"
 
@@ -168,7 +169,7 @@ class Serving {
 
   cell::OutsideRunOptions begin(int run) {
     cell::OutsideRunOptions run_options;
-    run_options.version = SNUG_VERSION;
+    run_options.version = version_text();
     run_options.describe = [](const cell::RunResult& result) { return format_json(result); };
     if (options_.record) {
       if (run > 1) record_ = record::reserve_recording(name_of_run(*options_.record, run));

@@ -11,9 +11,8 @@
 
 #include "snug/cell/run.hpp"
 #include "snug/experiment/internal/arm_bench.hpp"
-#include "snug/experiment/internal/click_bench.hpp"
-#include "snug/experiment/internal/cpu_time.hpp"
 #include "snug/experiment/internal/camera_bench.hpp"
+#include "snug/experiment/internal/click_bench.hpp"
 #include "snug/experiment/internal/identification_bench.hpp"
 #include "snug/experiment/internal/packing_bench.hpp"
 #include "snug/experiment/internal/robot_figures.hpp"

@@ -142,7 +142,7 @@ std::vector<RecordedMotion> load_motions(const model::SceneTask& task,
       if (!run)
         run = internal::capture_program(model::load_scenario(task.scenario), *task.program, task.simulation_time);
       for (RecordedMotion& motion :
-           internal::motions_of_archive(task, run->recording, record::load_archive(file).recordings, file.string()))
+           motions_of_archive(task, run->recording, record::load_archive(file).recordings, file.string()))
         motions.push_back(std::move(motion));
       continue;
     }
