@@ -12,10 +12,10 @@ set -eu
 program="make cmake ninja-build g++ pkg-config ccache python3
   libeigen3-dev libexpected-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libhdf5-dev libcli11-dev
   zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev libsiconos-numerics-dev
-  libtinyxml2-dev libassimp-dev libceres-dev libnlopt-cxx-dev libpng-dev"
+  libtinyxml2-dev libassimp-dev libceres-dev libnlopt-cxx-dev libpng-dev libzmq3-dev libprotobuf-dev protobuf-compiler"
 node="nodejs npm"                   # unless there is a node of 18 or newer already
 # make test; chromium also draws `snug picture`
-test="hdf5-tools libbenchmark-dev liborocos-kdl-dev libkdl-parser-dev chromium man-db"
+test="hdf5-tools libbenchmark-dev liborocos-kdl-dev libkdl-parser-dev chromium man-db python3-zmq python3-protobuf"
 lint="clang clang-format clang-tidy" # make check, fix, tidy, clang
 fuzz="clang libclang-rt-14-dev"      # make fuzz
 peers="libbullet-dev libmujoco-dev"  # make bench-peers

@@ -208,6 +208,7 @@ std::string format_json(const cell::RunResult& result) {
   document["lost"] = lost_as_json(result.lost);
   document["protective_stop"] = result.stop ? stop_as_json(*result.stop) : Json(nullptr);
   document["interrupted"] = result.is_interrupted;
+  if (!result.ended_by.empty()) document["ended_by"] = result.ended_by;
   document["warnings"] = result.warnings;
   document["failure"] = result.failure;
   return document.dump(2) + "\n";

@@ -8,6 +8,7 @@
 #include "check.hpp"
 #include "compare.hpp"
 #include "completion.hpp"
+#include "control.hpp"
 #include "cup.hpp"
 #include "export.hpp"
 #include "identify.hpp"
@@ -22,6 +23,7 @@
 #include "plot.hpp"
 #include "program.hpp"
 #include "report.hpp"
+#include "serve.hpp"
 #include "simulate.hpp"
 #include "validate.hpp"
 #include "view.hpp"
@@ -35,6 +37,8 @@ void add_verbs(CLI::App& app, Action& action) {
   add_compare(app, action);
   add_program(app, action);
   add_check(app, action);
+  add_serve(app, action);
+  add_control(app, action);
   add_report(app, action);
   add_view(app, action);
   add_plot(app, action);

@@ -1,8 +1,6 @@
 // view: the page of the report, served on this machine: for recordings, or for a simulation that goes on.
 #include "view.hpp"
 
-#include <semaphore.h>
-#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 
@@ -15,44 +13,13 @@
 
 #include "robot_files.hpp"
 #include "run_report.hpp"
+#include "stop_signal.hpp"
 #include "viewer_page.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
 namespace snug::app {
 namespace {
-
-sem_t g_stop;  ///< posted by the handler: one of the few things that a handler may do
-
-/// Waits for Ctrl-C in a thread of its own, so that stopping may lock and wait like any other code. A handler, as
-/// libraries have threads of their own that a blocked signal would be given to. The second Ctrl-C ends the program at
-/// once.
-class StopSignal {
- public:
-  explicit StopSignal(std::function<void()> stop) {
-    ::sem_init(&g_stop, 0, 0);
-    struct sigaction action {};
-    action.sa_handler = [](int) { ::sem_post(&g_stop); };
-    action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
-    for (const int signal : kSignals) ::sigaction(signal, &action, nullptr);
-    thread_ = std::thread([stop = std::move(stop)] {
-      while (::sem_wait(&g_stop) != 0) continue;  // another signal woke it up
-      stop();
-    });
-  }
-  ~StopSignal() {
-    for (const int signal : kSignals) ::signal(signal, SIG_DFL);
-    ::sem_post(&g_stop);  // harmless when the thread has ended
-    thread_.join();
-    ::sem_destroy(&g_stop);
-  }
-  StopSignal(const StopSignal&) = delete;
-  StopSignal& operator=(const StopSignal&) = delete;
-
- private:
-  static constexpr int kSignals[] = {SIGINT, SIGTERM};
-  std::thread thread_;
-};
 
 void open_browser(const std::string& address) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
@@ -62,11 +29,6 @@ void open_browser(const std::string& address) {
   if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, words, environ) == 0) {
     std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
   }
-}
-
-void announce(const serve::Server& server, const ViewOptions& options) {
-  std::fprintf(stderr, "snug: showing at %s (Ctrl-C ends it)\n", server.address().c_str());
-  if (options.opens_browser) open_browser(server.address());
 }
 
 int view_recordings(const ViewOptions& options) {
@@ -80,7 +42,7 @@ int view_recordings(const ViewOptions& options) {
   }
   serve::Server server(options.server, std::move(content));
   const StopSignal signal([&] { server.stop(); });
-  announce(server, options);
+  announce(server, options.opens_browser);
   server.run();
   return kSuccess;
 }
@@ -153,7 +115,7 @@ int view_live(const ViewOptions& options) {
   });
   simulation.start([&] { server.stop(); });
   while (!live.wait_for(0, std::chrono::milliseconds(200)) && !live.is_over()) continue;  // bad input shows here
-  if (!live.is_over() || live.whole_form()) announce(server, options);
+  if (!live.is_over() || live.whole_form()) announce(server, options.opens_browser);
   server.run();
   const cell::RunResult& result = simulation.result();
   print(format_table(result));
@@ -163,6 +125,11 @@ int view_live(const ViewOptions& options) {
 }
 
 }  // namespace
+
+void announce(const serve::Server& server, bool opens_browser) {
+  std::fprintf(stderr, "snug: showing at %s (Ctrl-C ends it)\n", server.address().c_str());
+  if (opens_browser) open_browser(server.address());
+}
 
 int run_view(const ViewOptions& options) {
   return options.run.scenario.empty() ? view_recordings(options) : view_live(options);

@@ -23,6 +23,8 @@ struct ViewOptions {
 };
 
 void add_view(CLI::App& app, Action& action);
+/// Says on stderr where the page is, and opens it.
+void announce(const serve::Server& server, bool opens_browser);
 /// Serves until the program is told to stop (Ctrl-C).
 [[nodiscard]] int run_view(const ViewOptions& options);
 

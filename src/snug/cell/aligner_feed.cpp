@@ -36,39 +36,58 @@ Vector3 face_middle(const Pose& X_WP, const Vector3& size, const Vector3& direct
   return X_WP.p + 0.5 * sign * size[axis] * X_WP.R.col(axis);
 }
 
-Pose pose_in_corner(const model::Scenario& scenario, const model::Item& item, const std::optional<Pose>& X_WE_pick) {
+Matrix3 rotation_in_corner(const model::Item& item, int quarter) {
+  return model::standing_rotation(item.up, item.up_sign, item.yaw.value_or(quarter * 0.5 * std::numbers::pi));
+}
+
+Vector3 size_of(const model::Scenario& scenario, const model::Item& item) {
+  return model::collision_size(scenario, *model::find_parcel(scenario, item.parcel));
+}
+
+}  // namespace
+
+int choose_quarter(const model::Scenario& scenario, const model::Item& item, const std::optional<Pose>& X_WE_pick) {
   SNUG_CHECK(scenario.aligner.has_value(), "a sequence needs an aligner");
   const model::Aligner& aligner = *scenario.aligner;
-  const Vector3 size = model::collision_size(scenario, *model::find_parcel(scenario, item.parcel));
-  const bool by_pick = !item.yaw && aligner.yaw_rule == model::YawRule::NearestPick && X_WE_pick;
-  if (!by_pick) {
-    return model::standing_pose(aligner, size, model::standing_rotation(item.up, item.up_sign, item.yaw.value_or(0.0)));
-  }
+  if (item.yaw || aligner.yaw_rule != model::YawRule::NearestPick || !X_WE_pick) return 0;
+  const Vector3 size = size_of(scenario, item);
   // Where the tool touches, as far as its waypoint tells.
   const Vector3 direction = X_WE_pick->R.col(2);
   const Vector3 touched = X_WE_pick->p + cup::pick_length(scenario.cup) * direction;
-  Pose best;
+  int best = 0;
   double best_distance = std::numeric_limits<double>::infinity();
-  for (int turn = 0; turn < 4; ++turn) {
-    const Matrix3 R_AP = model::standing_rotation(item.up, item.up_sign, turn * 0.5 * std::numbers::pi);
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Matrix3 R_AP = rotation_in_corner(item, quarter);
     if (!agrees_with_heavy_side(item, aligner, R_AP)) continue;
     const Pose X_WP = model::standing_pose(aligner, size, R_AP);
     const double distance = (face_middle(X_WP, size, direction) - touched).head<2>().norm();
     if (distance < best_distance - 1e-9) {
       best_distance = distance;
-      best = X_WP;
+      best = quarter;
     }
   }
   return best;
 }
 
-}  // namespace
+Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item, int quarter) {
+  SNUG_CHECK(scenario.aligner.has_value(), "a sequence needs an aligner");
+  const model::Aligner& aligner = *scenario.aligner;
+  Pose X_WP = model::standing_pose(aligner, size_of(scenario, item), rotation_in_corner(item, quarter));
+  if (item.turn != 0.0) X_WP.R = exp_rotation(Vector3(0.0, 0.0, item.turn)) * X_WP.R;
+  X_WP.p += aligner.X_WA.R * item.shift_A;
+  return X_WP;
+}
 
 Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item, const std::optional<Pose>& X_WE_pick) {
-  Pose X_WP = pose_in_corner(scenario, item, X_WE_pick);
-  if (item.turn != 0.0) X_WP.R = exp_rotation(Vector3(0.0, 0.0, item.turn)) * X_WP.R;
-  X_WP.p += scenario.aligner->X_WA.R * item.shift_A;
-  return X_WP;
+  return pose_at_aligner(scenario, item, choose_quarter(scenario, item, X_WE_pick));
+}
+
+std::optional<Pose> next_pick(const motion::Program& program, int row) {
+  const auto& rows = program.waypoints;
+  for (auto i = static_cast<std::size_t>(row) + 1; i < rows.size(); ++i) {
+    if (rows[i].io.vacuum) return rows[i - 1].X_WE;
+  }
+  return std::nullopt;
 }
 
 int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view kind) {

@@ -5,14 +5,25 @@
 #include <string_view>
 
 #include "snug/model/scenario.hpp"
+#include "snug/motion/waypoint.hpp"
 
 namespace snug::cell {
 
-/// X_WP of an item at the aligner: in its corner, the axis up that the sequence says; the quarter turn from the
-/// sequence, or by the aligner's rule from `X_WE_pick`, the waypoint of the pick: the middle of the face that the tool
-/// points at is as near to where it touches as can be. The scenario must have an aligner (checked).
+/// How many quarter turns about the vertical, 0 .. 3, an item stands turned by where the sequence leaves that open: by
+/// the aligner's rule from `X_WE_pick`, the waypoint of the pick: the middle of the face that the tool points at is as
+/// near to where it touches as can be. 0 where the sequence or the rule leaves no choice.
+[[nodiscard]] int choose_quarter(const model::Scenario& scenario, const model::Item& item,
+                                 const std::optional<Pose>& X_WE_pick);
+
+/// X_WP of an item at the aligner: in its corner, the axis up that the sequence says, turned as the sequence says or by
+/// these quarter turns. The scenario must have an aligner (checked).
+[[nodiscard]] Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item, int quarter);
+/// Turned as `choose_quarter` says.
 [[nodiscard]] Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item,
                                    const std::optional<Pose>& X_WE_pick);
+
+/// The waypoint of the pick that a departure toward `row` leads to: where the cup is when the vacuum comes on next.
+[[nodiscard]] std::optional<Pose> next_pick(const motion::Program& program, int row);
 
 /// Index of the item that a row of this kind ("PrePick") is for, by its name as `motion::names_box` reads it, or -1.
 [[nodiscard]] int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view kind);

@@ -42,6 +42,8 @@ JointVector start_joints(const model::Scenario& scenario, const robot::ArmModel&
   return solution.q;
 }
 
+// rad (m) or rad/s (m/s), by which a joint may be beyond its limits: rounding.
+constexpr double kRounding = 1e-9;
 // N, of a link against something: less is rounding.
 constexpr double kTouch = 0.5;
 // s, after which links that no longer touch have parted: shorter gaps are bounces.
@@ -59,8 +61,9 @@ void add_touch(physics::BodyId link, physics::BodyId other, double force, std::v
 }  // namespace
 
 std::string describe(const ProtectiveStop& stop) {
-  std::string text =
-      fmt::format("protective stop at {:.3f} s toward {} (row {}): ", stop.time, stop.waypoint, stop.row + 1);
+  std::string text = fmt::format("protective stop at {:.3f} s", stop.time);
+  if (stop.row >= 0) text += fmt::format(" toward {} (row {})", stop.waypoint, stop.row + 1);
+  text += ": ";
   text += stop.what == "stuck" ? fmt::format("stuck {:.3f} m from it", stop.value)
                                : fmt::format("{} of {}: {:.4g} {}, limit {:.4g} {}", stop.what, stop.where, stop.value,
                                              stop.unit, stop.limit, stop.unit);
@@ -106,7 +109,8 @@ void CellArm::attach(const CellWorld& world) {
 }
 
 ArmState CellArm::make_state(std::uint64_t seed, const JointVector& q) const {
-  return {machine_.make_state(controller_, q), Rng(seed).split("force sensor"), {}};
+  const JointVector none = JointVector::Zero(model().joint_count());
+  return {machine_.make_state(controller_, q), Rng(seed).split("force sensor"), {}, {q, none, none}};
 }
 
 void CellArm::stand(ArmState& state) const { state.machine = machine_.make_state(controller_, state.machine.joints.q); }
@@ -119,8 +123,16 @@ control::MachineTick CellArm::tick(const motion::PreparedProgram& plan, motion::
   return tick;
 }
 
-JointVector CellArm::joints_at(const control::JointState& start, const JointVector& qdd, double time) const {
-  return start.q + time * (start.qd + 0.5 * time * qdd);
+JointVector CellArm::driven_accelerations(const control::DriveCommand& command, const control::JointMotion& motion,
+                                          const OutsideDrive& outside) const {
+  return control::compute_torque_accelerations(model(), command, motion, outside.torques_felt + outside.torques_fixed,
+                                               gravity_);
+}
+
+JointVector CellArm::torques_of(const robot::ArmPose& at, const ArmLoads& loads) const {
+  const robot::Jacobian J_WE = robot::tool_jacobian(model(), at);
+  return J_WE.topRows<3>().transpose() * loads.F_Eo_W.force + J_WE.bottomRows<3>().transpose() * loads.F_Eo_W.torque +
+         loads.torques;
 }
 
 void CellArm::aim(const CellWorld& world, const robot::ArmPose& at,
@@ -277,8 +289,38 @@ Wrench CellArm::disturbed(const Wrench& F, double time, Rng& noise) const {
   return read;
 }
 
-void CellArm::read(const CellWorld& world, const motion::PreparedProgram& plan, const control::MachineTick& tick,
-                   double time, ArmLoads& loads, ArmState& state, ArmReading& reading) const {
+std::optional<ProtectiveStop> CellArm::find_stop(const ArmState& state, const ArmTask& task, const ArmReading& reading,
+                                                 double sensor_force, double sensor_torque, double yielded) const {
+  std::optional<ProtectiveStop> found;
+  const auto stop = [&](std::string what, std::string where, double value, double limit, const char* unit) {
+    if (found || !(value > limit)) return;
+    found = ProtectiveStop{std::move(what), std::move(where), value, limit, unit, 0.0, task.row, "", "", ""};
+    if (task.waypoint != nullptr) found->waypoint = task.waypoint->name;
+  };
+  const control::JointState& joints = state.machine.joints;
+  for (Eigen::Index j = 0; j < joints.q.size(); ++j) {
+    const robot::Joint& joint = model().joints[static_cast<std::size_t>(j)];
+    const bool turns = joint.kind == robot::JointKind::Revolute;
+    const double torque = std::abs(reading.joints[static_cast<std::size_t>(j)].torque);
+    stop("joint torque", joint.name, torque, params_.protective_stop.torque_fraction * joint.max_effort,
+         turns ? "Nm" : "N");
+    if (task.outside == nullptr) continue;
+    stop("joint speed", joint.name, std::abs(joints.qd[j]), joint.max_speed + kRounding, turns ? "rad/s" : "m/s");
+    stop("joint range", joint.name, joints.q[j], joint.upper + kRounding, turns ? "rad" : "m");
+    stop("joint range", joint.name, -joints.q[j], -joint.lower + kRounding, turns ? "rad" : "m");
+  }
+  const std::string& sensor = params_.sensor_frame;
+  stop("sensor force", sensor, sensor_force, params_.protective_stop.sensor_force, "N");
+  stop("sensor torque", sensor, sensor_torque, params_.protective_stop.sensor_torque, "Nm");
+  stop("tracking error", "the joints", yielded, params_.protective_stop.tracking_error, "rad");
+  if (task.is_stuck && task.waypoint != nullptr) {
+    stop("stuck", task.waypoint->name, (task.waypoint->X_WE.p - state.machine.tool.X_WE.p).norm(), -1.0, "m");
+  }
+  return found;
+}
+
+void CellArm::read(const CellWorld& world, const ArmTask& task, double time, ArmLoads& loads, ArmState& state,
+                   ArmReading& reading) const {
   const control::JointState& joints = state.machine.joints;
   const robot::ArmPose at = robot::forward(model(), joints.q);
   const double share = 1.0 / std::max(1, loads.steps);
@@ -287,14 +329,17 @@ void CellArm::read(const CellWorld& world, const motion::PreparedProgram& plan, 
   if (loads.torques.size() == 0) loads.torques.setZero(model().joint_count());
   loads.torques *= share;
   reading.contacts.clear();
-  reading.control = tick.joints;
+  reading.control = task.control;
+  const ArmLoads moving = loads;
   const double yielded = touch_obstacles(world, at, loads, reading);
+  if (task.outside != nullptr) state.outside.torques_fixed = torques_of(at, loads) - torques_of(at, moving);
 
   const robot::ArmMotion motion{joints.q, joints.qd, joints.qdd};
   const JointVector zero = JointVector::Zero(joints.q.size());
   const JointVector torques = robot::inverse_dynamics(model(), motion, loads.F_Eo_W, gravity_) - loads.torques;
   const Wrench F_sensor = robot::sensor_wrench(model(), motion, sensor_link_, load_, loads.F_Eo_W, gravity_);
   const Wrench weight = robot::sensor_wrench(model(), {joints.q, zero, zero}, sensor_link_, load_, Wrench{}, gravity_);
+  reading.F_Eo_W = loads.F_Eo_W;
   reading.F_sensor = disturbed(F_sensor, time, state.noise);
   reading.joints.resize(static_cast<std::size_t>(joints.q.size()));
   for (Eigen::Index j = 0; j < joints.q.size(); ++j) {
@@ -302,33 +347,17 @@ void CellArm::read(const CellWorld& world, const motion::PreparedProgram& plan, 
   }
 
   follow_touches(time, loads, state, reading);
-  reading.stop.reset();
-  const auto stop = [&](std::string what, std::string where, double value, double limit, const char* unit) {
-    if (reading.stop || !(value > limit)) return;
-    ProtectiveStop found{std::move(what), std::move(where), value, limit, unit, time, tick.program.row, "", "", ""};
-    if (found.row >= 0) found.waypoint = plan.program.waypoints[static_cast<std::size_t>(found.row)].name;
-    if (loads.worst_force > 0.0) {
-      found.touching = fmt::format("{} with {}, {:.0f} N", name_of(world, loads.worst_other),
-                                   name_of(world, loads.worst_part), loads.worst_force);
-    }
-    for (int i = 0; i < tick.joints.active_count; ++i) {
-      found.limited_by +=
-          (i == 0 ? "limited by " : ", ") + controller_.describe(tick.joints.active[static_cast<std::size_t>(i)]);
-    }
-    reading.stop = std::move(found);
-  };
-  for (Eigen::Index j = 0; j < joints.q.size(); ++j) {
-    const robot::Joint& joint = model().joints[static_cast<std::size_t>(j)];
-    stop("joint torque", joint.name, std::abs(torques[j]), params_.protective_stop.torque_fraction * joint.max_effort,
-         joint.kind == robot::JointKind::Revolute ? "Nm" : "N");
+  reading.stop = find_stop(state, task, reading, (F_sensor.force - weight.force).norm(),
+                           (F_sensor.torque - weight.torque).norm(), yielded);
+  if (!reading.stop) return;
+  reading.stop->time = time;
+  if (loads.worst_force > 0.0) {
+    reading.stop->touching = fmt::format("{} with {}, {:.0f} N", name_of(world, loads.worst_other),
+                                         name_of(world, loads.worst_part), loads.worst_force);
   }
-  const std::string& sensor = params_.sensor_frame;
-  stop("sensor force", sensor, (F_sensor.force - weight.force).norm(), params_.protective_stop.sensor_force, "N");
-  stop("sensor torque", sensor, (F_sensor.torque - weight.torque).norm(), params_.protective_stop.sensor_torque, "Nm");
-  stop("tracking error", "the joints", yielded, params_.protective_stop.tracking_error, "rad");
-  if (tick.outcome == "Stuck" && tick.program.row >= 0) {
-    const motion::Waypoint& row = plan.program.waypoints[static_cast<std::size_t>(tick.program.row)];
-    stop("stuck", row.name, (row.X_WE.p - at.X_WE.p).norm(), -1.0, "m");
+  for (int i = 0; i < task.control.active_count; ++i) {
+    reading.stop->limited_by +=
+        (i == 0 ? "limited by " : ", ") + controller_.describe(task.control.active[static_cast<std::size_t>(i)]);
   }
 }
 

@@ -24,22 +24,32 @@ struct ArmTouch {
   double force = 0.0;  ///< N, the largest so far
 };
 
+/// What a controller outside of the cell has the joints do. Its loads are what acted on the arm last.
+struct OutsideDrive {
+  robot::JointVector position_before;  ///< JointDrive::follow
+  robot::JointVector torques_felt;   ///< at the joints, Nm (N): of contacts and of what the cup holds, in the last step
+  robot::JointVector torques_fixed;  ///< likewise: of what never moves, at the end of the last tick
+};
+
 /// Everything of the arm that changes. Copying it is a snapshot.
 struct ArmState {
   control::MachineState machine;
   Rng noise{0};                   ///< of the force sensor
   std::vector<ArmTouch> touches;  ///< that have not ended
+  OutsideDrive outside;
 };
 
 /// Why the arm stopped.
 struct ProtectiveStop {
-  std::string what;   ///< "joint torque", "sensor force", "sensor torque", "tracking error", "stuck"
+  /// "joint torque", "sensor force", "sensor torque", "tracking error", "stuck"; of joints that are driven from
+  /// outside also "joint speed", "joint range"
+  std::string what;
   std::string where;  ///< joint, sensor or waypoint
   double value = 0.0;
   double limit = 0.0;
   std::string unit;
   double time = 0.0;       ///< s
-  int row = -1;            ///< of the program, aimed at
+  int row = -1;            ///< of the program, aimed at; -1 without one
   std::string waypoint;    ///< its name
   std::string touching;    ///< what the arm touched, with force, or empty
   std::string limited_by;  ///< limits of the controller that were active, or empty
@@ -60,9 +70,19 @@ struct ArmLoads {
   std::vector<ArmTouch> touches;
 };
 
+/// What the arm is about in a tick: a row of a program, or what it is told from outside.
+struct ArmTask {
+  int row = -1;                                    ///< of the program, aimed at
+  const motion::Waypoint* waypoint = nullptr;      ///< of that row; none: driven from outside
+  bool is_stuck = false;                           ///< the row was not reached in time
+  control::JointTick control = {};                 ///< of a program
+  const control::DriveCommand* outside = nullptr;  ///< not owned
+};
+
 /// What the arm does and feels at the end of a tick.
 struct ArmReading {
   std::vector<record::JointSample> joints;
+  Wrench F_Eo_W;                                 ///< on the tool, about E's origin: mean over the tick
   Wrench F_sensor;                               ///< with noise, bias and drift; in the sensor's frame
   std::vector<physics::ContactReport> contacts;  ///< of links and gripper with what never moves
   control::JointTick control;
@@ -91,17 +111,20 @@ class CellArm {
   /// One tick of the controller. `program` is brought up to date.
   [[nodiscard]] control::MachineTick tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
                                           ArmState& state, control::JointControllerWork& work) const;
-  /// The joints `time` s after `start`, on the way to the end of the tick.
-  [[nodiscard]] robot::JointVector joints_at(const control::JointState& start, const robot::JointVector& qdd,
-                                             double time) const;
+  /// Accelerations at `motion` of joints that are driven from outside, those under torque by what acts on the arm.
+  [[nodiscard]] robot::JointVector driven_accelerations(const control::DriveCommand& command,
+                                                        const control::JointMotion& motion,
+                                                        const OutsideDrive& outside) const;
+  /// Loads on the tool and on the links, at the joints, Nm (N).
+  [[nodiscard]] robot::JointVector torques_of(const robot::ArmPose& at, const ArmLoads& loads) const;
   /// Poses of the tool and of the arm's bodies, in the order of CellWorld: targets for one physics step.
   void aim(const CellWorld& world, const robot::ArmPose& at, std::vector<physics::KinematicTarget>& targets) const;
   /// Adds what acted on tool and links in one physics step.
   void add_loads(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
                  const GripperState& gripper, const robot::ArmPose& at, ArmLoads& loads) const;
   /// Contacts with what never moves, sensor, torques and limits, at the end of a tick.
-  void read(const CellWorld& world, const motion::PreparedProgram& plan, const control::MachineTick& tick, double time,
-            ArmLoads& loads, ArmState& state, ArmReading& reading) const;
+  void read(const CellWorld& world, const ArmTask& task, double time, ArmLoads& loads, ArmState& state,
+            ArmReading& reading) const;
 
  private:
   struct Obstacle {
@@ -116,6 +139,9 @@ class CellArm {
   };
   [[nodiscard]] double touch_obstacles(const CellWorld& world, const robot::ArmPose& at, ArmLoads& loads,
                                        ArmReading& reading) const;
+  [[nodiscard]] std::optional<ProtectiveStop> find_stop(const ArmState& state, const ArmTask& task,
+                                                        const ArmReading& reading, double sensor_force,
+                                                        double sensor_torque, double yielded) const;
   void follow_touches(double time, const ArmLoads& loads, ArmState& state, ArmReading& reading) const;
   void add_force(const robot::ArmPose& at, int segment, const Vector3& p_WQ, const Vector3& force_W, bool is_tool,
                  ArmLoads& loads) const;

@@ -62,6 +62,7 @@ struct RunResult {
   std::uint64_t state_hash = 0;
   std::optional<ProtectiveStop> stop;  ///< with a robot: the limit that ended the run
   bool is_interrupted = false;         ///< the observer ended the run early
+  std::string ended_by = {};           ///< of a run that is driven from outside: who or what ended it
   std::vector<std::string> warnings;   ///< what the result is to be taken with
   /// Empty, or why the run had to stop (body, time, last contacts) or failed though it went on to its end.
   std::string failure;

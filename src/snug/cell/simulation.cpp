@@ -9,19 +9,12 @@
 
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/scene_input.hpp"
+#include "snug/core/check.hpp"
 #include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::cell {
 namespace {
-
-const model::Sequence& sequence_of(const model::Scenario& scenario, const std::string& name) {
-  if (const model::Sequence* sequence = model::find_sequence(scenario, name)) return *sequence;
-  std::vector<std::string> names;
-  for (const model::Sequence& sequence : scenario.sequences) names.push_back(sequence.name);
-  throw InputError(scenario.source_name, "--sequence", "'" + name + "'",
-                   "one of " + fmt::format("{}", fmt::join(names, ", ")));
-}
 
 int substeps_of(const model::Scenario& scenario) {
   const double ratio = scenario.controller.tick / scenario.time_step;
@@ -46,6 +39,48 @@ std::unique_ptr<CellArm> make_arm(model::Scenario& scenario, const model::Sequen
   return arm;
 }
 
+/// Joints under torque through a tick, one physics step after the other.
+class TorqueSteps {
+ public:
+  TorqueSteps(const CellArm& arm, const control::DriveCommand* command, const control::JointMotion& start, double dt)
+      : arm_(arm), command_(command), dt_(dt), start_(start), now_(start) {
+    if (command == nullptr) return;
+    any_ = std::find(command->kinds.begin(), command->kinds.end(), control::DriveKind::Torque) != command->kinds.end();
+  }
+  [[nodiscard]] bool any() const { return any_; }
+  /// Puts where they are at the end of the next step into `now`, where the other joints are.
+  void step(const OutsideDrive& outside, control::JointMotion& now) {
+    if (!any_) return;
+    ++steps_;
+    control::JointMotion at = now;
+    for_each([&](Eigen::Index j) {
+      at.q[j] = now_.q[j];
+      at.qd[j] = now_.qd[j];
+    });
+    const robot::JointVector qdd = arm_.driven_accelerations(*command_, at, outside);
+    for_each([&](Eigen::Index j) {
+      now.qd[j] = now_.qd[j] += dt_ * qdd[j];
+      now.q[j] = now_.q[j] += dt_ * now_.qd[j];
+      now.qdd[j] = (now_.qd[j] - start_.qd[j]) / (dt_ * steps_);
+    });
+  }
+
+ private:
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (std::size_t j = 0; j < command_->kinds.size(); ++j) {
+      if (command_->kinds[j] == control::DriveKind::Torque) visit(static_cast<Eigen::Index>(j));
+    }
+  }
+
+  const CellArm& arm_;
+  const control::DriveCommand* command_;
+  double dt_;
+  control::JointMotion start_, now_;
+  int steps_ = 0;
+  bool any_ = false;
+};
+
 /// The scenario itself, once it is known that programs can run in it.
 model::Scenario runnable(model::Scenario scenario) {
   if (!scenario.tool) throw InputError(scenario.source_name, "tool", "", "a tool, to run a program");
@@ -55,10 +90,36 @@ model::Scenario runnable(model::Scenario scenario) {
 
 }  // namespace
 
+const model::Sequence& require_sequence(const model::Scenario& scenario, const std::string& name) {
+  if (const model::Sequence* sequence = model::find_sequence(scenario, name)) return *sequence;
+  std::vector<std::string> names;
+  for (const model::Sequence& sequence : scenario.sequences) names.push_back(sequence.name);
+  throw InputError(scenario.source_name, "--sequence", "'" + name + "'",
+                   "one of " + fmt::format("{}", fmt::join(names, ", ")));
+}
+
+motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Sequence& sequence,
+                                motion::ControllerKind controller, motion::Program program) {
+  const model::ControllerParams& params = scenario.controller;
+  motion::ControllerSettings settings;
+  settings.kind = controller;
+  settings.tick = params.tick;
+  settings.task_stiffness = sequence.task_stiffness.value_or(params.task_stiffness);
+  settings.vacuum_wait = params.vacuum_wait;
+  settings.convergence_deg_per_metre = params.convergence_deg_per_metre;
+  // A scenario without limits has the defaults for every name.
+  for (const model::MoveLimits& limits : params.limits.empty() ? std::vector(1, model::MoveLimits{}) : params.limits) {
+    settings.limits.push_back({limits.prefix,
+                               {limits.precision, limits.max_acceleration, limits.max_speed, limits.max_turn_speed,
+                                limits.max_turn_acceleration}});
+  }
+  return motion::prepare(std::move(program), std::move(settings));
+}
+
 Simulation::Simulation(model::Scenario scenario, const std::string& sequence, const SimulationOptions& options)
     : scenario_(runnable(std::move(scenario))),
       options_(options),
-      sequence_(sequence_of(scenario_, sequence)),
+      sequence_(require_sequence(scenario_, sequence)),
       substeps_(substeps_of(scenario_)),
       arm_(make_arm(scenario_, sequence_, options.robot)),
       world_(build_world(scenario_, arm_ ? WorldOptions{&sequence_, true, &arm_->model(), arm_->start()}
@@ -77,29 +138,16 @@ CellState Simulation::make_state() const {
 }
 
 motion::PreparedProgram Simulation::prepare(motion::Program program) const {
-  const model::ControllerParams& params = scenario_.controller;
-  motion::ControllerSettings settings;
-  settings.kind = options_.controller;
-  settings.tick = params.tick;
-  settings.task_stiffness = sequence_.task_stiffness.value_or(params.task_stiffness);
-  settings.vacuum_wait = params.vacuum_wait;
-  settings.convergence_deg_per_metre = params.convergence_deg_per_metre;
-  // A scenario without limits has the defaults for every name.
-  for (const model::MoveLimits& limits : params.limits.empty() ? std::vector(1, model::MoveLimits{}) : params.limits) {
-    settings.limits.push_back({limits.prefix,
-                               {limits.precision, limits.max_acceleration, limits.max_speed, limits.max_turn_speed,
-                                limits.max_turn_acceleration}});
-  }
-  return motion::prepare(std::move(program), std::move(settings));
+  return cell::prepare(scenario_, sequence_, options_.controller, std::move(program));
 }
 
-/// Where the cup will be when the vacuum comes on next: the pick that a departure leads to.
-std::optional<Pose> Simulation::next_pick(const motion::PreparedProgram& plan, int row) const {
-  const auto& rows = plan.program.waypoints;
-  for (auto i = static_cast<std::size_t>(row) + 1; i < rows.size(); ++i) {
-    if (rows[i].io.vacuum) return rows[i - 1].X_WE;
-  }
-  return std::nullopt;
+ArmReading Simulation::read_still(const CellState& state) const {
+  SNUG_CHECK(arm_ != nullptr && state.arm, "a cell without a robot has no arm to read");
+  ArmState arm = *state.arm;
+  ArmLoads loads;
+  ArmReading reading;
+  arm_->read(world_, {}, time(state), loads, arm, reading);
+  return reading;
 }
 
 /// A box appears when the program starts toward it; one that was left there is taken away.
@@ -107,8 +155,13 @@ void Simulation::depart(const motion::PreparedProgram& plan, int row, CellState&
   const std::string& name = plan.program.waypoints[static_cast<std::size_t>(row)].name;
   const int item = find_item(sequence_, name, "PrePick");
   if (item < 0) return;
+  const std::optional<Pose> X_WE_pick = next_pick(plan.program, row);
+  (void)feed(item, choose_quarter(scenario_, sequence_.items[static_cast<std::size_t>(item)], X_WE_pick), state);
+}
+
+bool Simulation::feed(int item, int quarter, CellState& state) const {
   const physics::BodyId body = world_.parcels[static_cast<std::size_t>(item)];
-  if (state.world.bodies[static_cast<std::size_t>(body.index)].is_present) return;
+  if (state.world.bodies[static_cast<std::size_t>(body.index)].is_present) return false;
   const double now = time(state);
   if (state.waiting_item >= 0) {
     const physics::BodyId waiting = world_.parcels[static_cast<std::size_t>(state.waiting_item)];
@@ -117,16 +170,14 @@ void Simulation::depart(const motion::PreparedProgram& plan, int row, CellState&
       state.journey.box_removed(state.waiting_item, now);
     }
   }
-  physics::set_present(state.world, body, true);
-  physics::set_pose(world_.model, state.world, body,
-                    pose_at_aligner(scenario_, sequence_.items[static_cast<std::size_t>(item)], next_pick(plan, row)));
-  physics::set_twist(world_.model, state.world, body, Twist{});
+  place(body, pose_at_aligner(scenario_, sequence_.items[static_cast<std::size_t>(item)], quarter), state);
   state.waiting_item = item;
   state.journey.box_appeared(item, now);
+  return true;
 }
 
 CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& state, CellWorkspace& work) const {
-  const motion::ToolState start = arm_ ? state.arm->machine.tool : state.controller.command;
+  const motion::ToolState start = tool_of(state);
   control::JointState joints;
   control::MachineTick machine;
   motion::ControllerOutput out;
@@ -144,47 +195,82 @@ CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& sta
   tick.tool = start;
   tick.X_WE_reference = out.X_WE_reference;
   tick.command = {out.io.vacuum, out.io.blow_off};
-  if (arm_) {
-    advance_arm(plan, joints, machine, state, work, tick);
-  } else {
-    advance_tool(plan, start, out.tool, state, work, tick);
+  const motion::Waypoint& waypoint = plan.program.waypoints[static_cast<std::size_t>(std::max(0, out.row))];
+  if (!arm_) {
+    advance_tool(waypoint.name, start, out.tool, state, work, tick);
+    return tick;
   }
+  const ArmTask task{out.row, &waypoint, machine.outcome == "Stuck", machine.joints};
+  advance_arm(task, joints, {joints.qd, state.arm->machine.joints.qdd}, state, work, tick);
   return tick;
 }
 
-void Simulation::advance_tool(const motion::PreparedProgram& plan, const motion::ToolState& start,
-                              const motion::ToolState& end, CellState& state, CellWorkspace& work,
-                              CellTick& tick) const {
+CellTick Simulation::advance(const OutsideCommand& command, CellState& state, CellWorkspace& work) const {
+  SNUG_CHECK(arm_ != nullptr && command.joints.target.allFinite() &&
+                 command.joints.target.size() == arm_->model().joint_count() &&
+                 static_cast<int>(command.joints.kinds.size()) == arm_->model().joint_count(),
+             "joints that are driven need finite targets");
+  control::MachineState& machine = state.arm->machine;
+  const control::JointMotion start = machine.joints;
+  const control::JointWay way =
+      arm_->controller().drive().follow(command.joints, state.arm->outside.position_before, machine.joints);
+  CellTick tick;
+  tick.tool = machine.tool;
+  tick.command = command.cup;
+  ArmTask task;
+  task.outside = &command.joints;
+  advance_arm(task, start, way, state, work, tick);
+  tick.X_WE_reference = tick.tool.X_WE;
+  return tick;
+}
+
+void Simulation::advance_tool(const std::string& waypoint, const motion::ToolState& start, const motion::ToolState& end,
+                              CellState& state, CellWorkspace& work, CellTick& tick) const {
   for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
     const motion::ToolState next =
         k + 1 == substeps_ ? end
-                           : motion::interpolate(start, end, plan.settings.tick,
+                           : motion::interpolate(start, end, scenario_.controller.tick,
                                                  static_cast<double>(k + 1) / static_cast<double>(substeps_));
     work.targets.assign(1, {world_.tool, next.X_WE});
-    advance_step(plan, tick.tool, state, work, tick);
+    advance_step(waypoint, tick.tool, state, work, tick);
     tick.tool = next;
   }
 }
 
-/// The joints' accelerations are constant over the tick: so are the ways of tool and links.
-void Simulation::advance_arm(const motion::PreparedProgram& plan, const control::JointState& start,
-                             const control::MachineTick& machine, CellState& state, CellWorkspace& work,
-                             CellTick& tick) const {
-  const control::JointState& end = state.arm->machine.joints;
+/// The joints' accelerations are constant over the tick, those of joints under torque over a step: so are the ways of
+/// tool and links.
+void Simulation::advance_arm(const ArmTask& task, const control::JointMotion& start, const control::JointWay& way,
+                             CellState& state, CellWorkspace& work, CellTick& tick) const {
+  const std::string waypoint = task.waypoint != nullptr ? task.waypoint->name : "";
+  control::JointMotion& end = state.arm->machine.joints;
+  TorqueSteps torque(*arm_, task.outside, start, scenario_.controller.tick / substeps_);
   ArmLoads loads;
   for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
     const bool is_last = k + 1 == substeps_;
-    const double elapsed = plan.settings.tick * static_cast<double>(k + 1) / static_cast<double>(substeps_);
-    const robot::JointVector q = is_last ? end.q : arm_->joints_at(start, end.qdd, elapsed);
-    const robot::JointVector qd = is_last ? end.qd : robot::JointVector(start.qd + elapsed * end.qdd);
-    const robot::ArmPose at = robot::forward(arm_->model(), q);
+    const double elapsed = scenario_.controller.tick * static_cast<double>(k + 1) / static_cast<double>(substeps_);
+    control::JointMotion now = end;
+    if (!is_last) {
+      now.q = start.q + elapsed * (way.v + 0.5 * elapsed * way.a);
+      now.qd = way.v + elapsed * way.a;
+    }
+    torque.step(state.arm->outside, now);
+    if (is_last) end = now;
+    const robot::ArmPose at = robot::forward(arm_->model(), now.q);
     arm_->aim(world_, at, work.targets);
-    advance_step(plan, tick.tool, state, work, tick);
+    advance_step(waypoint, tick.tool, state, work, tick);
+    const robot::JointVector before = torque.any() ? arm_->torques_of(at, loads) : robot::JointVector();
     arm_->add_loads(world_, state.world, work.physics, state.gripper, at, loads);
-    const Vector6 V_WE = robot::tool_jacobian(arm_->model(), at) * qd;
+    if (torque.any()) state.arm->outside.torques_felt = arm_->torques_of(at, loads) - before;
+    const Vector6 V_WE = robot::tool_jacobian(arm_->model(), at) * now.qd;
     tick.tool = {at.X_WE, twist_from(V_WE)};
   }
-  arm_->read(world_, plan, machine, time(state), loads, *state.arm, work.arm);
+  if (task.outside != nullptr) state.arm->machine.tool = tick.tool;
+  read_arm(task, loads, state, work, tick);
+}
+
+void Simulation::read_arm(const ArmTask& task, ArmLoads& loads, CellState& state, CellWorkspace& work,
+                          CellTick& tick) const {
+  arm_->read(world_, task, time(state), loads, *state.arm, work.arm);
   for (const ArmTouch& touch : work.arm.touches_begun) note_touch(touch, false, state);
   for (const ArmTouch& touch : work.arm.touches_ended) note_touch(touch, true, state);
   if (!work.arm.stop || !tick.failure.empty()) return;
@@ -222,12 +308,11 @@ void Simulation::end_touches(CellState& state) const {
   state.arm->touches.clear();
 }
 
-void Simulation::advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, CellState& state,
+void Simulation::advance_step(const std::string& waypoint, const motion::ToolState& tool, CellState& state,
                               CellWorkspace& work, CellTick& tick) const {
   work.events.clear();
   gripper_.prepare(state.world, tool.X_WE, tool.V_WE, tick.command, world_.model.settings.dt, state.gripper,
                    work.gripper, work.events);
-  const std::string& waypoint = plan.program.waypoints[static_cast<std::size_t>(std::max(0, tick.row))].name;
   for (const GripperEvent& event : work.events) {
     state.journey.add(event, time(state), world_, state.world, tool.X_WE, waypoint);
     if (state.waiting_item >= 0 && event.kind == GripperEvent::Kind::Seal &&
@@ -266,7 +351,6 @@ std::uint64_t Simulation::hash(const CellState& state) const {
   Hash hash;
   hash.add(physics::hash_of(state.world));
   hash.add(state.gripper.cup.pressure_gauge);
-  hash.add(static_cast<std::uint64_t>(state.controller.row + 1));
   if (state.arm) {
     for (const double q : state.arm->machine.joints.q) hash.add(q);
   }

@@ -68,6 +68,18 @@ struct CellAnchor {
   std::vector<double> q;   ///< rad; with a robot these count, if given, and X_WE does not
 };
 
+/// The sequence of this name. Throws InputError, with the names that there are.
+[[nodiscard]] const model::Sequence& require_sequence(const model::Scenario& scenario, const std::string& name);
+/// The program with the limits and gains of scenario and sequence. Throws as motion::prepare.
+[[nodiscard]] motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Sequence& sequence,
+                                              motion::ControllerKind controller, motion::Program program);
+
+/// What a controller outside of the cell commands for one tick.
+struct OutsideCommand {
+  control::DriveCommand joints;
+  cup::CupCommand cup;
+};
+
 class Simulation {
  public:
   /// Throws InputError for a scenario without tool or aligner, an unknown sequence, and a controller tick that is no
@@ -91,11 +103,20 @@ class Simulation {
   [[nodiscard]] CellWorkspace make_workspace(int threads = 1) const {
     return CellWorkspace(world_.model, scenario_.solver.contact_limits, threads);
   }
-  /// The program with the limits and gains of scenario and sequence. Throws as motion::prepare.
+  /// cell::prepare of this cell's scenario and sequence.
   [[nodiscard]] motion::PreparedProgram prepare(motion::Program program) const;
+  /// What the arm's sensors read in this state, as if it had been still for a tick. With a robot only.
+  [[nodiscard]] ArmReading read_still(const CellState& state) const;
 
   /// One controller tick and its physics steps.
   CellTick advance(const motion::PreparedProgram& plan, CellState& state, CellWorkspace& work) const;
+  /// One controller tick, the joints following targets from outside, and its physics steps. With a robot only; every
+  /// target is finite and there is one for each joint (checked).
+  CellTick advance(const OutsideCommand& command, CellState& state, CellWorkspace& work) const;
+  /// The item comes to the aligner as for a program, turned by this many quarter turns where the sequence leaves that
+  /// open
+  /// (`choose_quarter`); one that waits there and is not held is taken away. False: it came before.
+  bool feed(int item, int quarter, CellState& state) const;
   /// "robot/forearm_link touches tote with 12 N"
   [[nodiscard]] std::string describe_touch(const ArmTouch& touch) const;
   /// To be called when a run ends: touches of the arm that go on become events as if they ended now.
@@ -119,18 +140,18 @@ class Simulation {
   [[nodiscard]] std::uint64_t hash(const CellState& state) const;
 
  private:
-  [[nodiscard]] std::optional<Pose> next_pick(const motion::PreparedProgram& plan, int row) const;
   void depart(const motion::PreparedProgram& plan, int row, CellState& state) const;
   void place(physics::BodyId body, const Pose& X_WB, CellState& state) const;
   [[nodiscard]] motion::ToolState tool_of(const CellState& state) const;
-  /// work.targets: where tool and links are at the end of the step.
-  void advance_step(const motion::PreparedProgram& plan, const motion::ToolState& tool, CellState& state,
-                    CellWorkspace& work, CellTick& tick) const;
-  void advance_tool(const motion::PreparedProgram& plan, const motion::ToolState& start, const motion::ToolState& end,
+  /// work.targets: where tool and links are at the end of the step. `waypoint`: aimed at, for events.
+  void advance_step(const std::string& waypoint, const motion::ToolState& tool, CellState& state, CellWorkspace& work,
+                    CellTick& tick) const;
+  void advance_tool(const std::string& waypoint, const motion::ToolState& start, const motion::ToolState& end,
                     CellState& state, CellWorkspace& work, CellTick& tick) const;
   void note_touch(const ArmTouch& touch, bool has_ended, CellState& state) const;
-  void advance_arm(const motion::PreparedProgram& plan, const control::JointState& start,
-                   const control::MachineTick& machine, CellState& state, CellWorkspace& work, CellTick& tick) const;
+  void advance_arm(const ArmTask& task, const control::JointMotion& start, const control::JointWay& way,
+                   CellState& state, CellWorkspace& work, CellTick& tick) const;
+  void read_arm(const ArmTask& task, ArmLoads& loads, CellState& state, CellWorkspace& work, CellTick& tick) const;
 
   model::Scenario scenario_;
   SimulationOptions options_;

@@ -34,16 +34,6 @@ constexpr double kLookAhead = 1e-4;
 // A row that the joints can hardly move, m per rad: it says nothing.
 constexpr double kDeadRow = 1e-6;
 
-/// Largest speed from which `room` [rad or m] >= 0 is enough to stop with `deceleration`, speeds held for a tick.
-double stopping_speed(double room, double deceleration, double dt) {
-  return deceleration * (std::sqrt(dt * dt + 2.0 * room / deceleration) - dt);
-}
-
-void integrate(double dt, JointState& state) {
-  state.q += dt * (state.qd + 0.5 * dt * state.qdd);
-  state.qd += dt * state.qdd;
-}
-
 Vector6 desired_acceleration(const ToolTarget& target, const Pose& X_WE, const Vector6& V_WE, double stiffness,
                              double dt) {
   Vector6 error;
@@ -58,6 +48,7 @@ Vector6 desired_acceleration(const ToolTarget& target, const Pose& X_WE, const V
 JointController::JointController(robot::ArmModel arm, JointControllerSettings settings)
     : arm_(std::move(arm)),
       settings_(std::move(settings)),
+      drive_(arm_, settings_.params.max_joint_acceleration, settings_.tick),
       clearance_(arm_, settings_.carried, settings_.params.self_collision, settings_.where) {
   const int n = arm_.joint_count();
   posture_.setZero(n);
@@ -205,26 +196,20 @@ JointTick JointController::tick(const ToolTarget& target, JointState& state, Joi
   work.solver.solve(work.problem, work.result);
   report.rounds = work.result.rounds;
   if (work.result.status == numerics::QpStatus::Solved) {
-    state.qdd = work.result.x;
     state.held_ticks = 0;
     report_active(work, report);
+    drive_.follow_speed(state.qd + settings_.tick * work.result.x, state);
   } else {
     report.is_holding = true;
     ++state.held_ticks;
     if (work.result.worst_row >= 0) report.worst = work.rows[static_cast<std::size_t>(work.result.worst_row)];
     report.violation = work.result.violation;
     brake(state);
-    return report;
   }
-  integrate(settings_.tick, state);
   return report;
 }
 
-void JointController::brake(JointState& state) const {
-  const double a_max = settings_.params.max_joint_acceleration;
-  state.qdd = (-state.qd / settings_.tick).cwiseMax(-a_max).cwiseMin(a_max);
-  integrate(settings_.tick, state);
-}
+void JointController::brake(JointState& state) const { drive_.follow_speed(JointVector::Zero(state.q.size()), state); }
 
 std::string JointController::describe(const LimitId& limit) const {
   if (limit.index < 0) return "the solver";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "snug/control/clearance.hpp"
+#include "snug/control/joint_drive.hpp"
 #include "snug/model/robot_params.hpp"
 #include "snug/numerics/qp.hpp"
 #include "snug/robot/kinematics.hpp"
@@ -31,11 +32,8 @@ struct LimitId {
   bool operator==(const LimitId&) const = default;
 };
 
-/// Everything of the controller that changes. Copying it is a snapshot.
-struct JointState {
-  robot::JointVector q;    ///< commanded, rad (m)
-  robot::JointVector qd;   ///< commanded, rad/s (m/s)
-  robot::JointVector qdd;  ///< over the last tick, rad/s^2 (m/s^2)
+/// Everything of the controller that changes: what it commands, and what it remembers. Copying it is a snapshot.
+struct JointState : JointMotion {
   /// Damping chosen when a joint came near its lower (even entries) or upper limit; 0: it is not near.
   std::array<double, 2 * robot::kMaxJoints> damping{};
   std::int64_t held_ticks = 0;  ///< in a row, without a solution
@@ -77,11 +75,12 @@ class JointController {
 
   [[nodiscard]] const robot::ArmModel& arm() const { return arm_; }
   [[nodiscard]] const JointControllerSettings& settings() const { return settings_; }
+  [[nodiscard]] const JointDrive& drive() const { return drive_; }
   [[nodiscard]] const Clearance& clearance() const { return clearance_; }
 
   /// At rest at q.
   [[nodiscard]] JointState make_state(const robot::JointVector& q) const;
-  /// Chooses the accelerations of the coming tick and integrates them: state at its end.
+  /// Chooses the accelerations of the coming tick; the drives follow the speeds that they lead to: state at its end.
   JointTick tick(const ToolTarget& target, JointState& state, JointControllerWork& work) const;
 
   /// One tick without a task: every joint brakes as hard as it may, then stands.
@@ -101,6 +100,7 @@ class JointController {
 
   robot::ArmModel arm_;
   JointControllerSettings settings_;
+  JointDrive drive_;
   Clearance clearance_;
   robot::JointVector posture_;
 };

@@ -8,25 +8,21 @@
 #include "snug/core/check.hpp"
 
 namespace snug::control {
-namespace {
-
-motion::ToolState tool_of(const robot::ArmModel& arm, const JointState& joints) {
+motion::ToolState tool_at(const robot::ArmModel& arm, const JointMotion& joints) {
   const robot::ArmPose at = robot::forward(arm, joints.q);
   const Vector6 V_WE = robot::tool_jacobian(arm, at) * joints.qd;
   return {at.X_WE, twist_from(V_WE)};
 }
 
-}  // namespace
-
 void StateContext::follow(const ToolTarget& target) {
   tick.joints = controller.tick(target, machine.joints, work);
-  machine.tool = tool_of(controller.arm(), machine.joints);
+  machine.tool = tool_at(controller.arm(), machine.joints);
   tick.has_commanded = true;
 }
 
 void StateContext::stand() {
   controller.brake(machine.joints);
-  machine.tool = tool_of(controller.arm(), machine.joints);
+  machine.tool = tool_at(controller.arm(), machine.joints);
   tick.program.tool = machine.tool;
   tick.program.X_WE_reference = machine.program.X_WE_reference;
   tick.program.io = machine.program.io;
@@ -51,7 +47,7 @@ StateMachine::StateMachine(std::vector<std::unique_ptr<State>> states, std::vect
 MachineState StateMachine::make_state(const JointController& controller, const robot::JointVector& q) const {
   MachineState machine;
   machine.joints = controller.make_state(q);
-  machine.tool = tool_of(controller.arm(), machine.joints);
+  machine.tool = tool_at(controller.arm(), machine.joints);
   machine.program = motion::make_controller_state(machine.tool.X_WE);
   return machine;
 }

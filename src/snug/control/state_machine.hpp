@@ -21,6 +21,9 @@ struct MachineState {
   bool operator==(const MachineState&) const = default;
 };
 
+/// Where joints like this put the tool.
+[[nodiscard]] motion::ToolState tool_at(const robot::ArmModel& arm, const JointMotion& joints);
+
 /// What one tick did.
 struct MachineTick {
   motion::ControllerOutput program;

@@ -12,6 +12,7 @@
 #include "snug/cell/run.hpp"
 #include "snug/experiment/internal/arm_bench.hpp"
 #include "snug/experiment/internal/camera_bench.hpp"
+#include "snug/experiment/internal/click_bench.hpp"
 #include "snug/experiment/internal/identification_bench.hpp"
 #include "snug/experiment/internal/packing_bench.hpp"
 #include "snug/experiment/internal/robot_figures.hpp"
@@ -134,6 +135,7 @@ std::vector<Figure> run_bench(const BenchOptions& options) {
                                                     {"program", measure_program},
                                                     {"robot", internal::measure_robot},
                                                     {"arm", measure_arm},
+                                                    {"click", internal::measure_click},
                                                     {"packing", measure_packing},
                                                     {"camera", internal::measure_camera},
                                                     {"validation", measure_validation},

@@ -80,18 +80,6 @@ class LoggedRotation {
   Quaternion previous_ = Quaternion(1.0, 0.0, 0.0, 0.0);
 };
 
-/// "BOX024" is logged as "box024"; other names as they are, but with what would break the table, or run in it,
-/// replaced.
-std::string column_prefix(const std::string& name) {
-  std::string prefix = csv_cell(name);
-  const bool is_numbered_box = name.size() > 3 && std::isdigit(static_cast<unsigned char>(name[3])) != 0 &&
-                               (name.starts_with("BOX") || name.starts_with("Box"));
-  if (is_numbered_box) prefix.replace(0, 3, "box");
-  for (char& c : prefix)
-    if (c == ' ') c = '_';
-  return prefix;
-}
-
 void name_columns(Table& table, const std::string& prefix, std::string_view suffixes) {
   for (const char suffix : suffixes) table.cell(prefix + '_' + suffix);
 }
@@ -118,8 +106,8 @@ void write_names(Table& table, const RecordingHeader& header) {
   for (const char* name : {"program_row", "contacts", "solver_residual", "solver_iterations", "solver_status"})
     table.cell(name);
   for (const BodyInfo& body : header.bodies)
-    if (body.kind != BodyKind::Static) name_pose(table, column_prefix(body.name) + "_FloatingBase");
-  if (!header.container.name.empty()) name_pose(table, column_prefix(header.container.name) + "_FloatingBase");
+    if (body.kind != BodyKind::Static) name_pose(table, log_name(body.name) + "_FloatingBase");
+  if (!header.container.name.empty()) name_pose(table, log_name(header.container.name) + "_FloatingBase");
   for (const char* part : {"qIn", "alphaIn", "tauIn"})
     for (std::size_t i = 0; i < header.joints.size(); ++i) table.cell(std::string(part) + '_' + std::to_string(i));
   table.end_row();
@@ -166,7 +154,7 @@ class FrameRows {
     if (cup.attached_body < 0)
       table.empty_cells(1);
     else
-      table.cell(column_prefix(header_.bodies[static_cast<std::size_t>(cup.attached_body)].name));
+      table.cell(log_name(header_.bodies[static_cast<std::size_t>(cup.attached_body)].name));
     table.cell(cup.length);
     table.cell(cup.bend);
     write_pose(table, cup_, cup.X_ES);
@@ -189,6 +177,16 @@ class FrameRows {
 };
 
 }  // namespace
+
+std::string log_name(const std::string& name) {
+  std::string prefix = csv_cell(name);
+  const bool is_numbered_box = name.size() > 3 && std::isdigit(static_cast<unsigned char>(name[3])) != 0 &&
+                               (name.starts_with("BOX") || name.starts_with("Box"));
+  if (is_numbered_box) prefix.replace(0, 3, "box");
+  for (char& c : prefix)
+    if (c == ' ') c = '_';
+  return prefix;
+}
 
 struct CsvWriter::Impl {
   Impl(OutputFile file, const RecordingHeader& recording_header)

@@ -2,11 +2,16 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "snug/core/output_file.hpp"
 #include "snug/record/recording.hpp"
 
 namespace snug::record {
+
+/// The name under which tables and logs have a body: "BOX024" is "box024", as the demonstrator logs it; other names as
+/// they are, but with what would break a table, or run in it, replaced.
+[[nodiscard]] std::string log_name(const std::string& name);
 
 /// Writes frames as docs/formats.md describes: separator ';', first column t [s] strictly increasing, an empty cell
 /// where a value is missing (body not in the cell, not a number). Numbers read back to the same double.

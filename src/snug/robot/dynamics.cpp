@@ -50,8 +50,9 @@ Wrench inertial_wrench(const SpatialInertia& body, const Pose& X_WB, const Vecto
   return F;
 }
 
-JointVector solve_torques(const ArmModel& arm, const ArmPose& at, const SegmentMotions& motions,
-                          const Wrench& F_Eo_W) noexcept {
+/// `forces`: that the joints pass on, in W; may be absent.
+JointVector solve_torques(const ArmModel& arm, const ArmPose& at, const SegmentMotions& motions, const Wrench& F_Eo_W,
+                          std::array<Vector3, kMaxJoints>* forces = nullptr) noexcept {
   const int n = arm.joint_count();
   JointVector tau(n);
   // Inward: the wrench that segment i needs from its joint, about its origin.
@@ -65,6 +66,7 @@ JointVector solve_torques(const ArmModel& arm, const ArmPose& at, const SegmentM
     needed.force += own.force;
     about = origin;
     const bool turns = arm.joints[k - 1].kind == JointKind::Revolute;
+    if (forces != nullptr) (*forces)[k - 1] = needed.force;
     tau(i - 1) = at.axis_W[k - 1].dot(turns ? needed.torque : needed.force);
   }
   return tau;
@@ -76,6 +78,16 @@ JointVector inverse_dynamics(const ArmModel& arm, const ArmMotion& motion, const
                              const Vector3& gravity_W) noexcept {
   const ArmPose at = forward(arm, motion.q);
   return solve_torques(arm, at, move_segments(arm, at, motion.qd, motion.qdd, gravity_W), F_Eo_W);
+}
+
+std::array<Vector3, kMaxJoints> joint_forces(const ArmModel& arm, const ArmMotion& motion, const Wrench& F_Eo_W,
+                                             const Vector3& gravity_W) noexcept {
+  const ArmPose at = forward(arm, motion.q);
+  std::array<Vector3, kMaxJoints> forces;
+  forces.fill(Vector3::Zero());
+  (void)solve_torques(arm, at, move_segments(arm, at, motion.qd, motion.qdd, gravity_W), F_Eo_W, &forces);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) forces[i] = at.X_WS[i + 1].R.transpose() * forces[i];
+  return forces;
 }
 
 JointMatrix mass_matrix(const ArmModel& arm, const JointVector& q) noexcept {

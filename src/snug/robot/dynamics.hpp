@@ -18,6 +18,11 @@ struct ArmMotion {
 [[nodiscard]] JointVector inverse_dynamics(const ArmModel& arm, const ArmMotion& motion, const Wrench& F_Eo_W,
                                            const Vector3& gravity_W) noexcept;
 
+/// Force that each joint passes on to the segment that it moves, N, in that segment's frame; zero behind the last. The
+/// parameters are those of inverse_dynamics.
+[[nodiscard]] std::array<Vector3, kMaxJoints> joint_forces(const ArmModel& arm, const ArmMotion& motion,
+                                                           const Wrench& F_Eo_W, const Vector3& gravity_W) noexcept;
+
 /// M(q), symmetric positive definite.
 [[nodiscard]] JointMatrix mass_matrix(const ArmModel& arm, const JointVector& q) noexcept;
 

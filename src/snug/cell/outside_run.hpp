@@ -1,0 +1,49 @@
+// OutsideRun: the cell driven by a controller outside of it, tick by tick, recorded as any other run.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "snug/cell/run.hpp"
+
+namespace snug::cell {
+
+struct OutsideRunOptions {
+  OutputFile* record_file = nullptr;  ///< from record::reserve_recording(), or none; taken; not owned
+  RunObserver* observer = nullptr;    ///< sees each frame and event; not owned
+  std::string version;                ///< for the recording
+  std::function<std::string(const RunResult&)> describe;  ///< JSON to keep in the recording, or none
+};
+
+class OutsideRun {
+ public:
+  /// At time 0. The simulation has a robot (checked) and outlives the run. Throws as Recorder.
+  OutsideRun(const Simulation& simulation, const OutsideRunOptions& options);
+  ~OutsideRun();
+  OutsideRun(const OutsideRun&) = delete;
+  OutsideRun& operator=(const OutsideRun&) = delete;
+
+  /// As Simulation::advance. After a failure only finish() may follow (checked).
+  const CellTick& advance(const OutsideCommand& command);
+  /// As Simulation::feed.
+  bool feed(int item, int quarter);
+
+  [[nodiscard]] double time() const;
+  [[nodiscard]] const CellState& state() const;
+  /// Of the last tick; nothing before the first.
+  [[nodiscard]] const ArmReading& reading() const;
+  /// Why the last tick was the last; empty while the run may go on.
+  [[nodiscard]] const std::string& failure() const;
+  /// The observer wants the run to stop.
+  [[nodiscard]] bool is_stopped() const;
+
+  /// Ends the run and closes the recording. To be called once. Throws OutputError.
+  [[nodiscard]] RunResult finish(const std::string& ended_by);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace snug::cell

@@ -1,0 +1,106 @@
+// Client: the asking side of CLICK: one controller, connected to one simulator.
+#include "snug/click/client.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "snug/click/internal/socket.hpp"
+
+namespace snug::click {
+namespace {
+
+using Reason = Unexpected<std::string>;
+
+constexpr std::int64_t kMostBytes = std::int64_t{16} << 20;  ///< of an answer
+constexpr int kLinger = 200;                                 ///< ms, for what was said last
+
+/// The answer as one of the kind that was asked for.
+template <class T>
+Expected<T, std::string> expect(Expected<Message, std::string> answer, const char* what) {
+  if (!answer) return Reason(std::move(answer.error()));
+  if (auto* expected = std::get_if<T>(&*answer)) return std::move(*expected);
+  if (const auto* error = std::get_if<Error>(&*answer)) return Reason("the simulator says: " + error->text);
+  if (std::holds_alternative<Reset>(*answer)) return Reason("the simulator was reset");
+  return Reason(fmt::format("the simulator answered {} by a {}", what, name_of(*answer)));
+}
+
+}  // namespace
+
+struct Client::Impl {
+  Impl(const std::string& address, double seconds) : endpoint(address), patience(seconds) {
+    internal::check_endpoint(endpoint);
+    socket = internal::make_socket(context.get(), ZMQ_REQ, kLinger);
+    internal::set(socket.get(), ZMQ_MAXMSGSIZE, kMostBytes);
+    internal::set(socket.get(), ZMQ_IPV6, endpoint.starts_with("tcp://[") ? 1 : 0);
+    const int milliseconds = static_cast<int>(1e3 * patience);
+    internal::set(socket.get(), ZMQ_RCVTIMEO, milliseconds);
+    internal::set(socket.get(), ZMQ_SNDTIMEO, milliseconds);
+    if (zmq_connect(socket.get(), endpoint.c_str()) != 0) {
+      // check_endpoint said yes: what is left is a host that cannot be.
+      throw std::runtime_error(endpoint + ": " + zmq_strerror(errno));
+    }
+  }
+
+  std::string endpoint;
+  double patience;
+  internal::Context context = internal::make_context();
+  internal::Socket socket;
+};
+
+Client::Client(const std::string& endpoint, double patience) : impl_(std::make_unique<Impl>(endpoint, patience)) {}
+Client::~Client() = default;
+Client::Client(Client&&) noexcept = default;
+Client& Client::operator=(Client&&) noexcept = default;
+
+Expected<Message, std::string> Client::request(const Message& message) {
+  const std::string frame = encode(message);
+  const auto fail = [&](const char* what) {
+    return Reason(errno == EAGAIN ? fmt::format("{}: nobody answers within {} s", impl_->endpoint, impl_->patience)
+                                  : fmt::format("{}: {}: {}", impl_->endpoint, what, zmq_strerror(errno)));
+  };
+  if (zmq_send(impl_->socket.get(), frame.data(), frame.size(), 0) < 0) return fail("sending");
+  zmq_msg_t answer;
+  zmq_msg_init(&answer);
+  if (zmq_msg_recv(&answer, impl_->socket.get(), 0) < 0) {
+    zmq_msg_close(&answer);
+    return fail("receiving");
+  }
+  const std::string bytes(static_cast<const char*>(zmq_msg_data(&answer)), zmq_msg_size(&answer));
+  zmq_msg_close(&answer);
+  return decode(bytes);
+}
+
+Expected<Handshake, std::string> Client::shake_hands() {
+  auto handshake = expect<Handshake>(request(HandshakeInit{}), "the handshake");
+  if (!handshake) return handshake;
+  if (handshake->version != kVersion) {
+    return Reason(fmt::format("the simulator speaks version {}, not {}", handshake->version, kVersion));
+  }
+  for (const auto& [name, object] : handshake->objects) {
+    if (object.controls.size() != object.control_types.size()) {
+      return Reason(fmt::format("object '{}' has {} joints to control and {} types for them", name,
+                                object.controls.size(), object.control_types.size()));
+    }
+  }
+  return handshake;
+}
+
+Expected<Sensor, std::string> Client::sense() { return expect<Sensor>(request(SensorRequest{}), "a SensorRequest"); }
+
+Expected<Sensor, std::string> Client::control(const Control& control) {
+  return expect<Sensor>(request(control), "a Control");
+}
+
+std::string Client::reset() {
+  const auto answer = expect<Reset>(request(Reset{}), "a Reset");
+  return answer ? "" : answer.error();
+}
+
+void Client::report_error(const std::string& text) {
+  const std::string frame = encode(Error{text});
+  (void)zmq_send(impl_->socket.get(), frame.data(), frame.size(), ZMQ_DONTWAIT);
+}
+
+}  // namespace snug::click

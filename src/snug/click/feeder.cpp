@@ -1,0 +1,36 @@
+// Feeder: brings the boxes of the sequence to the aligner, one after the other, for controllers that do not.
+#include "snug/click/feeder.hpp"
+
+#include <optional>
+
+#include "snug/cell/aligner_feed.hpp"
+
+namespace snug::click {
+namespace {
+
+constexpr double kToolRoom = 0.25;  ///< m, around E: gripper and cup
+
+double radius_of(const model::Scenario& scenario, const model::Item& item) {
+  return 0.5 * model::collision_size(scenario, *model::find_parcel(scenario, item.parcel)).norm();
+}
+
+}  // namespace
+
+int Feeder::next(const cell::Simulation& simulation, const cell::CellState& state) const {
+  const std::vector<model::Item>& items = simulation.sequence().items;
+  if (next_ >= static_cast<int>(items.size()) || state.waiting_item >= 0) return -1;
+  const model::Item& item = items[static_cast<std::size_t>(next_)];
+  const model::Scenario& scenario = simulation.scenario();
+  const Vector3 p_WP = cell::pose_at_aligner(scenario, item, 0).p;
+  const double radius = radius_of(scenario, item);
+  if (state.arm && (state.arm->machine.tool.X_WE.p - p_WP).norm() < radius + kToolRoom) return -1;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const physics::BodyId other = simulation.world().parcels[i];
+    if (!state.world.bodies[static_cast<std::size_t>(other.index)].is_present) continue;
+    const Vector3 p_WO = physics::pose_of(simulation.world().model, state.world, other).p;
+    if ((p_WO - p_WP).norm() < radius + radius_of(scenario, items[i])) return -1;
+  }
+  return next_;
+}
+
+}  // namespace snug::click

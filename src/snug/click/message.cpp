@@ -1,0 +1,445 @@
+// The messages of CLICK as plain data, and as the bytes of a frame.
+#include "snug/click/message.hpp"
+
+#include <click.pb.h>
+#include <fmt/format.h>
+#include <google/protobuf/arena.h>
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <google/protobuf/stubs/logging.h>
+
+#include <array>
+#include <climits>
+#include <cstddef>
+#include <optional>
+#include <type_traits>
+
+#include "snug/core/check.hpp"
+
+namespace snug::click {
+namespace {
+
+namespace wire = ::click::protobuf;
+using Reason = Unexpected<std::string>;
+
+/// Where a message of usual size lives without the heap: reading and writing them is a good part of a round trip.
+class Room {
+ public:
+  Room() : arena_(options()) {}
+  template <class Wire>
+  [[nodiscard]] Wire* make() {
+    return google::protobuf::Arena::CreateMessage<Wire>(&arena_);
+  }
+
+ private:
+  [[nodiscard]] google::protobuf::ArenaOptions options() {
+    google::protobuf::ArenaOptions options;
+    options.initial_block = block_.data();
+    options.initial_block_size = block_.size();
+    return options;
+  }
+  alignas(std::max_align_t) std::array<char, 131072> block_;
+  google::protobuf::Arena arena_;
+};
+
+wire::ValueType_Kind as_wire(ValueType type) { return static_cast<wire::ValueType_Kind>(static_cast<int>(type)); }
+
+// ---- what is sent
+
+wire::Vec3* put(const Vector3& v, wire::Vec3* out) {
+  out->mutable_arr()->Add(v.data(), v.data() + 3);
+  return out;
+}
+
+void put(const SensorValue& value, wire::Sensor* out) {
+  switch (value.type) {
+    case ValueType::Angle:
+      return out->set_angle(value.scalar);
+    case ValueType::AngularVelocity1D:
+      return out->set_angularvelocity1d(value.scalar);
+    case ValueType::Torque1D:
+      return out->set_torque1d(value.scalar);
+    case ValueType::Force1D:
+      return out->set_force1d(value.scalar);
+    case ValueType::Activated:
+      return out->set_activated(value.is_active);
+    case ValueType::Position:
+      return (void)put(value.vector, out->mutable_position());
+    case ValueType::Rpy:
+      return (void)put(value.vector, out->mutable_rpy());
+    case ValueType::Acceleration3D:
+      return (void)put(value.vector, out->mutable_acceleration3d());
+    case ValueType::Force3D:
+      return (void)put(value.vector, out->mutable_force3d());
+    case ValueType::Torque3D:
+      return (void)put(value.vector, out->mutable_torque3d());
+    case ValueType::AngularAcceleration3D:
+      return (void)put(value.vector, out->mutable_angularacceleration3d());
+    case ValueType::Velocity3D:
+      return (void)put(value.vector, out->mutable_velocity3d());
+    case ValueType::AngularVelocity3D:
+      return (void)put(value.vector, out->mutable_angularvelocity3d());
+    case ValueType::Multiple:
+      break;
+  }
+  SNUG_CHECK(false, "a sensor has one type");
+}
+
+/// The older scene-wide type: that of all joints, or Multiple.
+ValueType common_type(const Handshake& handshake) {
+  std::optional<ValueType> common;
+  for (const auto& [name, object] : handshake.objects) {
+    for (const ValueType type : object.control_types) {
+      if (common && *common != type) return ValueType::Multiple;
+      common = type;
+    }
+  }
+  return common.value_or(ValueType::Multiple);
+}
+
+void put(const ObjectDescription& object, wire::HandshakeMessage_Object* out) {
+  for (const std::string& name : object.controls) out->add_controlsinorder(name);
+  for (const ValueType type : object.control_types) out->add_controltypesinorder(as_wire(type));
+  for (const std::string& name : object.joints) out->add_jointsensorsinorder(name);
+  for (const ValueType type : object.joint_sensors) out->add_jointsensors(as_wire(type));
+  for (const ValueType type : object.object_sensors) out->add_objectsensors(as_wire(type));
+  for (const auto& [name, type] : object.events) (*out->mutable_controlevents())[name] = as_wire(type);
+  for (const auto& [name, types] : object.sensors) {
+    for (const ValueType type : types) (*out->mutable_sensors())[name].add_types(as_wire(type));
+  }
+}
+
+void put(const ObjectControl& object, wire::ControlMessage_Object* out) {
+  using List = google::protobuf::RepeatedField<double>;
+  List* list = nullptr;
+  if (object.list == CommandList::Values) list = out->mutable_values();
+  if (object.list == CommandList::Angles) list = out->mutable_angles();
+  if (object.list == CommandList::AngularVelocities) list = out->mutable_angularvelocities();
+  if (object.list == CommandList::Torques) list = out->mutable_torques();
+  if (list != nullptr) list->Add(object.values.begin(), object.values.end());
+  for (const auto& [name, is_on] : object.events) (*out->mutable_controlevents())[name] = is_on;
+}
+
+void put(const ObjectSensors& object, wire::SensorMessage_Object* out) {
+  out->mutable_anglesensors()->Add(object.angles.begin(), object.angles.end());
+  out->mutable_angularvelocitysensors()->Add(object.velocities.begin(), object.velocities.end());
+  out->mutable_torquesensors()->Add(object.torques.begin(), object.torques.end());
+  for (const Vector3& force : object.forces) put(force, out->add_forcesensors());
+  for (const SensorValue& value : object.object) put(value, out->add_objectsensors());
+  for (const auto& [name, values] : object.sensors) {
+    for (const SensorValue& value : values) put(value, (*out->mutable_sensors())[name].add_sensor());
+  }
+}
+
+void put(const HandshakeInit& message, wire::HandshakeInitMessage* out) {
+  out->set_messagetype(wire::MessageType::HandshakeInit);
+  out->set_version(static_cast<wire::Version_Kind>(message.version));
+}
+void put(const Handshake& message, wire::HandshakeMessage* out) {
+  out->set_messagetype(wire::MessageType::Handshake);
+  out->set_version(static_cast<wire::Version_Kind>(message.version));
+  out->set_controltype(as_wire(common_type(message)));
+  out->mutable_simsettings()->set_timestep(message.time_step);
+  for (const auto& [name, object] : message.objects) put(object, &(*out->mutable_objects())[name]);
+}
+void put(const Control& message, wire::ControlMessage* out) {
+  out->set_messagetype(wire::MessageType::Control);
+  for (const auto& [name, object] : message.objects) put(object, &(*out->mutable_objects())[name]);
+}
+void put(const Sensor& message, wire::SensorMessage* out) {
+  out->set_messagetype(wire::MessageType::Sensor);
+  out->mutable_simvars()->set_simulatedtime(message.time);
+  for (const auto& [name, object] : message.objects) put(object, &(*out->mutable_objects())[name]);
+}
+void put(const Reset&, wire::ResetMessage* out) { out->set_messagetype(wire::MessageType::Reset); }
+void put(const SensorRequest&, wire::SensorRequestMessage* out) {
+  out->set_messagetype(wire::MessageType::SensorRequest);
+}
+void put(const Error& message, wire::ErrorMessage* out) {
+  out->set_messagetype(wire::MessageType::Error);
+  out->set_error(wire::ErrorMessage::VersionNotSupported);  // there is no other
+  out->set_errormessage(message.text);
+}
+
+template <class T>
+struct WireOf;
+template <>
+struct WireOf<HandshakeInit> : std::type_identity<wire::HandshakeInitMessage> {};
+template <>
+struct WireOf<Handshake> : std::type_identity<wire::HandshakeMessage> {};
+template <>
+struct WireOf<Control> : std::type_identity<wire::ControlMessage> {};
+template <>
+struct WireOf<Sensor> : std::type_identity<wire::SensorMessage> {};
+template <>
+struct WireOf<Reset> : std::type_identity<wire::ResetMessage> {};
+template <>
+struct WireOf<SensorRequest> : std::type_identity<wire::SensorRequestMessage> {};
+template <>
+struct WireOf<Error> : std::type_identity<wire::ErrorMessage> {};
+
+template <class T>
+std::string encode_one(const T& message) {
+  Room room;
+  auto* out = room.make<typename WireOf<T>::type>();
+  put(message, out);
+  std::string bytes;
+  bytes.reserve(out->ByteSizeLong());
+  google::protobuf::io::StringOutputStream stream(&bytes);
+  google::protobuf::io::CodedOutputStream coded(&stream);
+  coded.SetSerializationDeterministic(true);
+  SNUG_CHECK(out->SerializeToCodedStream(&coded), "a message of ours can be written");
+  coded.Trim();
+  return bytes;
+}
+
+// ---- what is received
+
+template <class Wire>
+bool parse(std::string_view frame, Wire& out) {
+  return frame.size() <= INT_MAX && out.ParseFromArray(frame.data(), static_cast<int>(frame.size()));
+}
+
+template <class List>
+std::vector<ValueType> types_of(const List& list) {
+  std::vector<ValueType> types;
+  for (const int type : list) types.push_back(static_cast<ValueType>(type));
+  return types;
+}
+
+Expected<ObjectControl, std::string> take(const std::string& name, const wire::ControlMessage_Object& in) {
+  ObjectControl object;
+  const auto use = [&](const google::protobuf::RepeatedField<double>& list, CommandList kind) {
+    if (list.empty()) return true;
+    if (object.list != CommandList::Nothing) return false;
+    object.list = kind;
+    object.values.assign(list.begin(), list.end());
+    return true;
+  };
+  if (!use(in.values(), CommandList::Values) || !use(in.angles(), CommandList::Angles) ||
+      !use(in.angularvelocities(), CommandList::AngularVelocities) || !use(in.torques(), CommandList::Torques)) {
+    return Reason(fmt::format("object '{}' has more than one list of values", name));
+  }
+  for (const auto& [event, is_on] : in.controlevents()) object.events[event] = is_on;
+  return object;
+}
+
+Expected<Vector3, std::string> take(const wire::Vec3& in) {
+  if (in.arr_size() != 3) return Reason(fmt::format("a vector of {} numbers, expected 3", in.arr_size()));
+  return Vector3(in.arr(0), in.arr(1), in.arr(2));
+}
+
+Expected<SensorValue, std::string> take(const wire::Sensor& in) {
+  SensorValue value;
+  const auto scalar = [&](ValueType type, double x) -> Expected<SensorValue, std::string> {
+    value.type = type;
+    value.scalar = x;
+    return value;
+  };
+  const auto vector = [&](ValueType type, const wire::Vec3& x) -> Expected<SensorValue, std::string> {
+    const auto three = take(x);
+    if (!three) return Reason(three.error());
+    value.type = type;
+    value.vector = *three;
+    return value;
+  };
+  switch (in.sensor_case()) {
+    case wire::Sensor::kAngle:
+      return scalar(ValueType::Angle, in.angle());
+    case wire::Sensor::kAngularVelocity1D:
+      return scalar(ValueType::AngularVelocity1D, in.angularvelocity1d());
+    case wire::Sensor::kTorque1D:
+      return scalar(ValueType::Torque1D, in.torque1d());
+    case wire::Sensor::kForce1D:
+      return scalar(ValueType::Force1D, in.force1d());
+    case wire::Sensor::kPosition:
+      return vector(ValueType::Position, in.position());
+    case wire::Sensor::kRpy:
+      return vector(ValueType::Rpy, in.rpy());
+    case wire::Sensor::kAcceleration3D:
+      return vector(ValueType::Acceleration3D, in.acceleration3d());
+    case wire::Sensor::kForce3D:
+      return vector(ValueType::Force3D, in.force3d());
+    case wire::Sensor::kTorque3D:
+      return vector(ValueType::Torque3D, in.torque3d());
+    case wire::Sensor::kAngularAcceleration3D:
+      return vector(ValueType::AngularAcceleration3D, in.angularacceleration3d());
+    case wire::Sensor::kVelocity3D:
+      return vector(ValueType::Velocity3D, in.velocity3d());
+    case wire::Sensor::kAngularVelocity3D:
+      return vector(ValueType::AngularVelocity3D, in.angularvelocity3d());
+    case wire::Sensor::kActivated:
+      value.type = ValueType::Activated;
+      value.is_active = in.activated();
+      return value;
+    case wire::Sensor::SENSOR_NOT_SET:
+      break;
+  }
+  return Reason("a sensor without a value");
+}
+
+/// Appends the values of a list; the reason when one has none.
+template <class List>
+std::string take_all(const List& list, std::vector<SensorValue>& values) {
+  for (const wire::Sensor& in : list) {
+    const auto value = take(in);
+    if (!value) return value.error();
+    values.push_back(*value);
+  }
+  return {};
+}
+
+Expected<ObjectSensors, std::string> take(const wire::SensorMessage_Object& in) {
+  ObjectSensors object;
+  object.angles.assign(in.anglesensors().begin(), in.anglesensors().end());
+  object.velocities.assign(in.angularvelocitysensors().begin(), in.angularvelocitysensors().end());
+  object.torques.assign(in.torquesensors().begin(), in.torquesensors().end());
+  for (const wire::Vec3& force : in.forcesensors()) {
+    const auto three = take(force);
+    if (!three) return Reason(three.error());
+    object.forces.push_back(*three);
+  }
+  std::string trouble = take_all(in.objectsensors(), object.object);
+  for (const auto& [name, sensors] : in.sensors()) {
+    if (trouble.empty()) trouble = take_all(sensors.sensor(), object.sensors[name]);
+  }
+  if (!trouble.empty()) return Reason(std::move(trouble));
+  return object;
+}
+
+ObjectDescription take(const wire::HandshakeMessage_Object& in) {
+  ObjectDescription object;
+  object.controls.assign(in.controlsinorder().begin(), in.controlsinorder().end());
+  object.control_types = types_of(in.controltypesinorder());
+  object.joints.assign(in.jointsensorsinorder().begin(), in.jointsensorsinorder().end());
+  object.joint_sensors = types_of(in.jointsensors());
+  object.object_sensors = types_of(in.objectsensors());
+  for (const auto& [name, type] : in.controlevents()) object.events[name] = static_cast<ValueType>(type);
+  for (const auto& [name, sensors] : in.sensors()) object.sensors[name] = types_of(sensors.types());
+  return object;
+}
+
+using Decoded = Expected<Message, std::string>;
+const char* const kGarbled = "the frame cannot be read";
+
+Decoded decode_control(std::string_view frame) {
+  Room room;
+  auto& in = *room.make<wire::ControlMessage>();
+  if (!parse(frame, in)) return Reason(kGarbled);
+  Control control;
+  for (const auto& [name, object] : in.objects()) {
+    auto taken = take(name, object);
+    if (!taken) return Reason(taken.error());
+    control.objects.insert_or_assign(name, std::move(*taken));
+  }
+  return Message(std::move(control));
+}
+
+Decoded decode_sensor(std::string_view frame) {
+  Room room;
+  auto& in = *room.make<wire::SensorMessage>();
+  if (!parse(frame, in)) return Reason(kGarbled);
+  Sensor sensor;
+  sensor.time = in.simvars().simulatedtime();
+  for (const auto& [name, object] : in.objects()) {
+    auto taken = take(object);
+    if (!taken) return Reason(fmt::format("object '{}': {}", name, taken.error()));
+    sensor.objects.insert_or_assign(name, std::move(*taken));
+  }
+  return Message(std::move(sensor));
+}
+
+/// Where only the older, scene-wide type was sent, it is that of every joint.
+Decoded decode_handshake(std::string_view frame) {
+  wire::HandshakeMessage in;
+  if (!parse(frame, in)) return Reason(kGarbled);
+  Handshake handshake;
+  handshake.version = in.version();
+  handshake.time_step = in.simsettings().timestep();
+  for (const auto& [name, object] : in.objects()) {
+    ObjectDescription description = take(object);
+    if (description.control_types.empty()) {
+      description.control_types.assign(description.controls.size(), static_cast<ValueType>(in.controltype()));
+    }
+    handshake.objects[name] = std::move(description);
+  }
+  return Message(std::move(handshake));
+}
+
+}  // namespace
+
+const char* name_of(ValueType type) {
+  switch (type) {
+    case ValueType::Angle:
+      return "Angle";
+    case ValueType::AngularVelocity1D:
+      return "AngularVelocity1D";
+    case ValueType::Torque1D:
+      return "Torque1D";
+    case ValueType::Position:
+      return "Position";
+    case ValueType::Rpy:
+      return "RPY";
+    case ValueType::Activated:
+      return "Activated";
+    case ValueType::Acceleration3D:
+      return "Acceleration3D";
+    case ValueType::Force3D:
+      return "Force3D";
+    case ValueType::Torque3D:
+      return "Torque3D";
+    case ValueType::AngularAcceleration3D:
+      return "AngularAcceleration3D";
+    case ValueType::Velocity3D:
+      return "Velocity3D";
+    case ValueType::AngularVelocity3D:
+      return "AngularVelocity3D";
+    case ValueType::Force1D:
+      return "Force1D";
+    case ValueType::Multiple:
+      return "Multiple";
+  }
+  return "unknown";
+}
+
+const char* name_of(const Message& message) {
+  static constexpr const char* kNames[] = {"HandshakeInit", "Handshake", "Control",      "Sensor",
+                                           "Reset",         "Error",     "SensorRequest"};
+  return kNames[message.index()];
+}
+
+std::string encode(const Message& message) {
+  return std::visit([](const auto& alternative) { return encode_one(alternative); }, message);
+}
+
+Decoded decode(std::string_view frame) {
+  const google::protobuf::LogSilencer silencer;  // strangers' frames are told by the reason, not on stderr
+  wire::Message head;
+  if (!parse(frame, head)) return Reason(kGarbled);
+  switch (head.messagetype()) {
+    case wire::MessageType::HandshakeInit: {
+      wire::HandshakeInitMessage in;
+      if (!parse(frame, in)) return Reason(kGarbled);
+      return Message(HandshakeInit{in.version()});
+    }
+    case wire::MessageType::Handshake:
+      return decode_handshake(frame);
+    case wire::MessageType::Control:
+      return decode_control(frame);
+    case wire::MessageType::Sensor:
+      return decode_sensor(frame);
+    case wire::MessageType::Reset:
+      return Message(Reset{});
+    case wire::MessageType::SensorRequest:
+      return Message(SensorRequest{});
+    case wire::MessageType::Error: {
+      wire::ErrorMessage in;
+      if (!parse(frame, in)) return Reason(kGarbled);
+      return Message(Error{in.errormessage()});
+    }
+    default:
+      return Reason(fmt::format("message type {} is unknown", static_cast<int>(head.messagetype())));
+  }
+}
+
+}  // namespace snug::click

@@ -1,0 +1,95 @@
+// ServedCell: the simulated cell in the words of CLICK: its objects, what they sense, what a command to them means.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/cell/outside_run.hpp"
+#include "snug/click/message.hpp"
+#include "snug/click/rpy.hpp"
+
+namespace snug::click {
+
+/// Switches of a box: it comes to the aligner when `feed` is switched on, turned by the quarter turns of the other two.
+inline constexpr const char* kFeedEvent = "feed";
+inline constexpr const char* kQuarterTurnEvent = "quarter_turn";
+inline constexpr const char* kHalfTurnEvent = "half_turn";
+/// Sensors: of the robot the tool frame E, and whether the cup holds something; of a box whether it is in the cell.
+inline constexpr const char* kToolSensor = "tool";
+inline constexpr const char* kHoldingSensor = "holding";
+inline constexpr const char* kPresentSensor = "present";
+
+struct ServedCellSettings {
+  std::string robot_object = {};                                           ///< empty: the name of the scenario's robot
+  std::vector<control::DriveKind> controls = {control::DriveKind::Speed};  ///< of all joints, or one for each
+  std::string force_sensor = "UR10FTSensor";  ///< as the demonstrator's controller calls it
+  std::string vacuum_event = "vacuum";        ///< switch of the robot
+  std::string blow_off_event = "blow_off";
+  RpyOrder rpy;
+  bool velocities = false;    ///< boxes tell their velocities, too
+  bool joint_forces = false;  ///< joints tell the forces in them
+};
+
+/// Switches as they stand.
+struct Switches {
+  bool vacuum = false, blow_off = false;
+  struct Box {
+    bool feed = false, quarter_turn = false, half_turn = false;
+    bool operator==(const Box&) const = default;
+  };
+  std::vector<Box> boxes;  ///< one for each item of the sequence
+  bool operator==(const Switches&) const = default;
+};
+
+/// What a Control asks for.
+struct Order {
+  cell::OutsideCommand command;
+  Switches switches;           ///< after it
+  int item = -1;               ///< that is to come to the aligner, -1: none
+  int quarter = 0;             ///< turned by so many quarter turns
+  bool names_feeding = false;  ///< it names a switch of a box: the controller brings the boxes itself
+};
+
+class ServedCell {
+ public:
+  /// The simulation has a robot (checked) and outlives the served cell. Throws InputError for controls that do not fit
+  /// its joints, and for two objects, switches or sensors of one name.
+  ServedCell(const cell::Simulation& simulation, const ServedCellSettings& settings);
+
+  [[nodiscard]] const cell::Simulation& simulation() const { return simulation_; }
+  [[nodiscard]] const Handshake& handshake() const { return handshake_; }
+  [[nodiscard]] Switches make_switches() const;
+
+  /// What the command means, given how the switches stand and where the boxes are; or why it means nothing: an unknown
+  /// object or switch, another number of values than joints, a value that is not finite, a list of another type than
+  /// the handshake gave, no values, a box that cannot come. Changes nothing.
+  [[nodiscard]] Expected<Order, std::string> understand(const Control& control, const Switches& switches,
+                                                        const cell::CellState& state) const;
+  /// All joints brake and stand.
+  [[nodiscard]] cell::OutsideCommand stand(const cup::CupCommand& cup) const;
+  [[nodiscard]] Sensor sense(const cell::CellState& state, const cell::ArmReading& reading) const;
+
+ private:
+  struct Body {
+    std::string name;
+    physics::BodyId id;
+    int item = -1;  ///< of the sequence, or -1
+  };
+  void describe_robot(const ServedCellSettings& settings);
+  void describe_bodies(const ServedCellSettings& settings);
+  [[nodiscard]] std::string take_joints(const ObjectControl& object, cell::OutsideCommand& command) const;
+  [[nodiscard]] std::string take_events(const std::string& name, const ObjectControl& object, Order& order) const;
+  [[nodiscard]] std::string take_feeding(const Switches& before, const cell::CellState& state, Order& order) const;
+  [[nodiscard]] ObjectSensors sense_robot(const cell::CellState& state, const cell::ArmReading& reading) const;
+  [[nodiscard]] ObjectSensors sense_body(const Body& body, const cell::CellState& state) const;
+  [[nodiscard]] const Body* find_body(std::string_view name) const;
+
+  const cell::Simulation& simulation_;
+  ServedCellSettings settings_;
+  std::vector<control::DriveKind> kinds_;  ///< one for each joint
+  std::vector<Body> bodies_;               ///< boxes of the sequence and others that move by themselves
+  Handshake handshake_;
+};
+
+}  // namespace snug::click

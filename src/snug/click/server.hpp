@@ -1,0 +1,57 @@
+// Server: a simulator at an address: messages in, answers out, steps in time.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "snug/click/pacer.hpp"
+#include "snug/click/simulator.hpp"
+
+namespace snug::click {
+
+struct ServerSettings {
+  std::string endpoint = "tcp://127.0.0.1:5555";  ///< or ipc://PATH; port * is any that is free
+  bool allows_remote = false;                     ///< an address that other machines can reach
+  /// Simulated seconds a second. Async: 1 when absent. Sync: a Control waits for its time; absent, it does not.
+  std::optional<double> speed;
+  bool is_async = false;      ///< as the simulator
+  bool step_by_step = false;  ///< steps only as `read_steps` allows
+  int steps_fd = -1;          ///< is readable when read_steps may be called (step by step)
+  /// How many steps more may be done; -1 to go on without asking, kReset to reset the cell.
+  std::function<int()> read_steps = {};
+  std::function<void(const std::string& line)> log = {};  ///< for people
+};
+inline constexpr int kReset = -2;
+
+/// How the server spent its time.
+struct ServerTimes {
+  Histogram own;      ///< s, a message from its receipt to its answer without the cell's step
+  Histogram service;  ///< s, with it
+};
+
+class Server {
+ public:
+  /// Binds. Throws InputError for an address that cannot be had, that others can reach though they are not to, that
+  /// another server has, or whose file is something else.
+  Server(Simulator& simulator, ServerSettings settings);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// The address as it was bound, with the port.
+  [[nodiscard]] const std::string& endpoint() const;
+  /// Answers until stop(). Throws as Simulator::answer.
+  void run();
+  /// From any thread and from signal handlers.
+  void stop() noexcept;
+
+  [[nodiscard]] const ServerTimes& times() const;
+  [[nodiscard]] const Pacer& pacer() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace snug::click

@@ -1,0 +1,185 @@
+// Simulator: the answering side of CLICK: which message is answered by what, and what it does to the cell.
+#include "snug/click/simulator.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+namespace snug::click {
+namespace {
+
+constexpr const char* kBusy = "another controller drives this cell; it has room for one at a time";
+
+template <class T>
+bool holds(const Message& message) {
+  return std::holds_alternative<T>(message);
+}
+
+}  // namespace
+
+Simulator::Simulator(const cell::Simulation& simulation, SimulatorSettings settings)
+    : settings_(std::move(settings)),
+      cell_(simulation, settings_.cell),
+      initial_(simulation.make_state()),
+      initial_reading_(simulation.read_still(initial_)),
+      switches_(cell_.make_switches()) {}
+
+Simulator::~Simulator() = default;
+
+const cell::CellState& Simulator::state() const { return run_ ? run_->state() : initial_; }
+double Simulator::time() const { return cell_.simulation().time(state()); }
+std::uint64_t Simulator::hash() const { return cell_.simulation().hash(state()); }
+Message Simulator::sense() const { return cell_.sense(state(), run_ ? run_->reading() : initial_reading_); }
+
+std::optional<std::string> Simulator::answer(const Peer& peer, std::string_view frame) {
+  const std::optional<Message> reply = respond(peer, frame);
+  if (!reply) return std::nullopt;
+  ++counts_.replies;
+  if (holds<Error>(*reply)) ++counts_.errors;
+  return encode(*reply);
+}
+
+bool Simulator::is_step(const Peer& peer, std::string_view frame) const {
+  if (controller_ != peer || is_reset_ || is_ended_ || frame.size() > kLargestFrame) return false;
+  const auto message = decode(frame);
+  return message && holds<Control>(*message) &&
+         cell_.understand(std::get<Control>(*message), switches_, state()).has_value();
+}
+
+bool Simulator::is_handshake(std::string_view frame) {
+  if (frame.size() > kLargestFrame) return false;
+  const auto message = decode(frame);
+  return message && holds<HandshakeInit>(*message);
+}
+
+std::optional<Message> Simulator::respond(const Peer& peer, std::string_view frame) {
+  if (frame.size() > kLargestFrame) {
+    return Error{fmt::format("a frame of {} bytes; {} are the most", frame.size(), kLargestFrame)};
+  }
+  const Expected<Message, std::string> message = decode(frame);
+  if (!message) return Error{message.error()};
+  if (controller_ && *controller_ != peer) return Error{kBusy};
+  if (const auto* error = std::get_if<Error>(&*message)) {
+    end("the controller reported: " + error->text);
+    clear();
+    controller_.reset();
+    return std::nullopt;
+  }
+  if (const auto* init = std::get_if<HandshakeInit>(&*message)) return shake_hands(peer, *init);
+  if (is_reset_ && (holds<Control>(*message) || holds<SensorRequest>(*message) || holds<Reset>(*message))) {
+    is_reset_ = false;
+    return Reset{};
+  }
+  if (holds<SensorRequest>(*message)) return sense();
+  if (holds<Reset>(*message)) {
+    end("reset by the controller");
+    clear();
+    return Reset{};
+  }
+  if (const auto* command = std::get_if<Control>(&*message)) {
+    if (!controller_) return Error{"a Control before the handshake: send HandshakeInit first"};
+    return control(*command);
+  }
+  return Error{fmt::format("a {} is for controllers; this is a simulator", name_of(*message))};
+}
+
+Message Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
+  if (init.version != kVersion) {
+    return Error{fmt::format("version {} is not supported, expected {}", init.version, kVersion)};
+  }
+  controller_ = peer;
+  is_reset_ = false;
+  if (is_ended_) clear();
+  command_.reset();  // nothing moves before the first Control
+  return cell_.handshake();
+}
+
+Message Simulator::control(const Control& control) {
+  if (is_ended_) return Error{failure_};
+  Expected<Order, std::string> order = cell_.understand(control, switches_, state());
+  if (!order) return Error{order.error()};
+  if (!run_) {
+    begin_run();
+    if (!order->names_feeding) feeder_.emplace();
+  }
+  switches_ = std::move(order->switches);
+  if (order->item >= 0) (void)run_->feed(order->item, order->quarter);
+  if (settings_.is_async) {
+    command_ = std::move(order->command);
+    silent_steps_ = 0;
+    return sense();
+  }
+  advance(order->command);
+  if (!failure_.empty()) return Error{failure_};
+  const Message reply = sense();
+  if (settings_.batch && time() >= *settings_.batch) reset(fmt::format("{} s are over", *settings_.batch));
+  return reply;
+}
+
+void Simulator::begin_run() {
+  ++counts_.runs;
+  run_ = std::make_unique<cell::OutsideRun>(
+      cell_.simulation(), settings_.begin_run ? settings_.begin_run(counts_.runs) : cell::OutsideRunOptions{});
+}
+
+void Simulator::advance(const cell::OutsideCommand& command) {
+  if (feeder_) {
+    const int item = feeder_->next(cell_.simulation(), run_->state());
+    if (item >= 0) {
+      (void)run_->feed(item, 0);
+      feeder_->advance();
+    }
+  }
+  ++counts_.steps;
+  const auto start = std::chrono::steady_clock::now();
+  const cell::CellTick& tick = run_->advance(command);
+  step_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (tick.failure.empty()) return;
+  failure_ = tick.failure;
+  end(failure_);
+}
+
+bool Simulator::is_running() const { return settings_.is_async && run_ && !is_ended_ && command_; }
+
+void Simulator::step() {
+  if (!is_running()) return;
+  const bool is_silent = static_cast<double>(silent_steps_++) * cell_.handshake().time_step >= kPatience;
+  advance(is_silent ? cell_.stand(command_->cup) : *command_);
+  if (settings_.batch && !is_ended_ && time() >= *settings_.batch) {
+    reset(fmt::format("{} s are over", *settings_.batch));
+  }
+}
+
+bool Simulator::leave(const Peer& peer) {
+  if (controller_ != peer) return false;
+  end("the controller left");
+  clear();
+  controller_.reset();
+  is_reset_ = false;
+  return true;
+}
+
+void Simulator::reset(const std::string& why) {
+  end("reset: " + why);
+  clear();
+  is_reset_ = controller_.has_value();
+}
+
+void Simulator::end(const std::string& why) {
+  if (!run_ || is_ended_) return;
+  is_ended_ = true;
+  const cell::RunResult result = run_->finish(why);
+  if (settings_.end_run) settings_.end_run(counts_.runs, result);
+}
+
+void Simulator::clear() {
+  run_.reset();
+  is_ended_ = false;
+  failure_.clear();
+  switches_ = cell_.make_switches();
+  feeder_.reset();
+  command_.reset();
+}
+
+}  // namespace snug::click

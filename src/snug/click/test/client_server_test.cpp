@@ -1,0 +1,157 @@
+// Client and Server over real sockets: a program through the wire is the program in the cell; peers come and go.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "cell.hpp"
+#include "snug/click/program_client.hpp"
+#include "snug/click/server.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug::click {
+namespace {
+
+using test::control_of;
+using test::demonstrator_cell;
+
+const std::vector<double> kStill(6, 0.0);
+
+std::string an_address() {
+  static int count = 0;
+  return "ipc://" + (std::filesystem::temp_directory_path() /
+                     ("snug_click_" + std::to_string(::getpid()) + "_" + std::to_string(++count)))
+                        .string();
+}
+
+/// A server in a thread of its own.
+class Served {
+ public:
+  explicit Served(SimulatorSettings settings = {}, const std::string& endpoint = an_address())
+      : simulator_(demonstrator_cell(), with_log(std::move(settings))), server_(simulator_, settings_of(endpoint)) {
+    thread_ = std::thread([this] { server_.run(); });
+  }
+  ~Served() { stop(); }
+  void stop() {
+    server_.stop();
+    if (thread_.joinable()) thread_.join();
+  }
+  [[nodiscard]] const std::string& endpoint() const { return server_.endpoint(); }
+  std::vector<cell::RunResult> runs;
+
+ private:
+  SimulatorSettings with_log(SimulatorSettings settings) {
+    settings.end_run = [this](int, const cell::RunResult& result) { runs.push_back(result); };
+    return settings;
+  }
+  static ServerSettings settings_of(const std::string& endpoint) {
+    ServerSettings settings;
+    settings.endpoint = endpoint;
+    return settings;
+  }
+  Simulator simulator_;
+  Server server_;
+  std::thread thread_;
+};
+
+TEST(ClientServer, TalkOverTcpAndIpc) {
+  for (const std::string& address : {std::string("tcp://127.0.0.1:*"), an_address()}) {
+    Served served({}, address);
+    Client client(served.endpoint());
+    const auto handshake = client.shake_hands();
+    ASSERT_TRUE(handshake.has_value()) << handshake.error();
+    for (int i = 1; i <= 10; ++i) {
+      const auto sensor = client.control(control_of(kStill));
+      ASSERT_TRUE(sensor.has_value()) << sensor.error();
+      EXPECT_DOUBLE_EQ(sensor->time, 0.008 * i);
+    }
+    EXPECT_EQ(client.reset(), "");
+    const auto wrong = client.control(control_of({1.0}));
+    ASSERT_FALSE(wrong.has_value());
+    EXPECT_NE(wrong.error().find("the simulator says: 1 values"), std::string::npos);
+  }
+}
+
+TEST(ClientServer, DoAProgramBitByBitAsTheCellDoes) {
+  const cell::Simulation& simulation = demonstrator_cell();
+  motion::Program program{"test", {}};
+  for (const char* name : {"home", "PrePick027", "Box027", "PostPick027"}) {
+    motion::Waypoint row;
+    row.X_WE = simulation.scenario().controller.X_WE_start;
+    row.X_WE.p += Vector3(0.0, 0.02 * static_cast<double>(program.waypoints.size()), 0.02);
+    row.name = name;
+    row.io.vacuum = program.waypoints.size() == 3;
+    program.waypoints.push_back(row);
+  }
+  const motion::PreparedProgram plan = simulation.prepare(program);
+  cell::CellState state = simulation.make_state();
+  cell::CellWorkspace work = simulation.make_workspace();
+  while (!simulation.advance(plan, state, work).has_ended) continue;
+  const double settled = simulation.time(state) + 1.0;
+  while (simulation.time(state) < settled) (void)simulation.advance(plan, state, work);
+
+  for (const bool by_position : {false, true}) {
+    SimulatorSettings settings;
+    if (by_position) settings.cell.controls = {control::DriveKind::Position};
+    Served served(settings);
+    Client client(served.endpoint());
+    ProgramClientSettings controller;
+    controller.sequence = &simulation.sequence();
+    const ProgramClientResult result = run_program(client, simulation.scenario(), *simulation.arm(), plan, controller);
+    EXPECT_EQ(result.failure, "");
+    served.stop();
+    ASSERT_EQ(served.runs.size(), 1u);
+    EXPECT_EQ(served.runs[0].ended_by, "reset by the controller");
+    if (by_position) continue;  // the same way, not the same bits: positions leave the speeds within a tick open
+    EXPECT_EQ(served.runs[0].state_hash, simulation.hash(state));
+    EXPECT_EQ(served.runs[0].duration, simulation.time(state));
+  }
+}
+
+TEST(ClientServer, GiveTheCellToTheNextControllerWhenOneDies) {
+  Served served;
+  {
+    Client client(served.endpoint());
+    ASSERT_TRUE(client.shake_hands().has_value());
+    ASSERT_TRUE(client.control(control_of({0.2, 0, 0, 0, 0, 0})).has_value());
+    Client second(served.endpoint());
+    const auto refused = second.shake_hands();
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_NE(refused.error().find("another controller"), std::string::npos);
+  }
+  Client next(served.endpoint());
+  const auto handshake = next.shake_hands();
+  ASSERT_TRUE(handshake.has_value()) << handshake.error();
+  const auto sensor = next.sense();
+  ASSERT_TRUE(sensor.has_value());
+  EXPECT_EQ(sensor->time, 0.0);
+  served.stop();
+  ASSERT_EQ(served.runs.size(), 1u);
+  EXPECT_EQ(served.runs[0].ended_by, "the controller left");
+}
+
+TEST(ClientServer, GiveUpOnSilence) {
+  Client client(an_address(), 0.05);
+  const auto handshake = client.shake_hands();
+  ASSERT_FALSE(handshake.has_value());
+  EXPECT_NE(handshake.error().find("nobody answers within 0.05 s"), std::string::npos);
+}
+
+TEST(Server, RefusesAddressesThatAreNoneOrNotForEverybody) {
+  for (const char* endpoint : {"", "5555", "udp://127.0.0.1:1", "tcp://", "tcp://127.0.0.1", "tcp://127.0.0.1:99999",
+                               "tcp://*:5555", "tcp://0.0.0.0:5555", "ipc://", "ipc:///no/such/folder/socket"}) {
+    EXPECT_THROW(Served({}, endpoint), InputError) << endpoint;
+  }
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "snug_click_file";
+  std::ofstream(file) << "precious";
+  EXPECT_THROW(Served({}, "ipc://" + file.string()), InputError);
+  EXPECT_TRUE(std::filesystem::exists(file)) << "ZeroMQ would have removed it";
+  std::filesystem::remove(file);
+  Served served;
+  EXPECT_THROW(Served({}, served.endpoint()), InputError) << "another server is there";
+}
+
+}  // namespace
+}  // namespace snug::click

@@ -1,0 +1,381 @@
+// Simulator: every allowed pair of messages, and whoever sends anything else moves nothing.
+#include "snug/click/simulator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "cell.hpp"
+#include "snug/core/rng.hpp"
+
+namespace snug::click {
+namespace {
+
+using test::control_of;
+using test::Talk;
+
+const std::vector<double> kStill(6, 0.0);
+
+std::vector<double> angles_of(const Message& message) { return std::get<Sensor>(message).objects.at("ur10").angles; }
+
+TEST(Simulator, TellsInTheHandshakeWhatThereIs) {
+  Talk talk;
+  const Message answer = talk.say(HandshakeInit{});
+  const auto& handshake = std::get<Handshake>(answer);
+  EXPECT_EQ(handshake.version, kVersion);
+  EXPECT_EQ(handshake.time_step, 0.008);
+  const ObjectDescription& robot = handshake.objects.at("ur10");
+  EXPECT_EQ(robot.controls.size(), 6u);
+  EXPECT_EQ(robot.control_types, std::vector<ValueType>(6, ValueType::AngularVelocity1D));
+  EXPECT_TRUE(robot.events.contains("vacuum"));
+  EXPECT_EQ(robot.sensors.at("UR10FTSensor"), (std::vector<ValueType>{ValueType::Force3D, ValueType::Torque3D}));
+  EXPECT_EQ(handshake.objects.size(), 1u + 18u);
+  EXPECT_EQ(handshake.objects.at("box027").object_sensors,
+            (std::vector<ValueType>{ValueType::Position, ValueType::Rpy}));
+}
+
+TEST(Simulator, SendsWhatTheHandshakePromised) {
+  SimulatorSettings settings;
+  settings.cell.velocities = settings.cell.joint_forces = true;
+  Talk talk(settings);
+  const Handshake handshake = std::get<Handshake>(talk.say(HandshakeInit{}));
+  const Sensor sensor = std::get<Sensor>(talk.say(SensorRequest{}));
+  ASSERT_EQ(sensor.objects.size(), handshake.objects.size());
+  for (const auto& [name, object] : handshake.objects) {
+    const ObjectSensors& sensed = sensor.objects.at(name);
+    EXPECT_EQ(sensed.angles.size(), object.joints.size());
+    EXPECT_EQ(sensed.forces.size(), object.joints.size());
+    ASSERT_EQ(sensed.object.size(), object.object_sensors.size());
+    for (std::size_t i = 0; i < sensed.object.size(); ++i) EXPECT_EQ(sensed.object[i].type, object.object_sensors[i]);
+    ASSERT_EQ(sensed.sensors.size(), object.sensors.size());
+    for (const auto& [sensor_name, types] : object.sensors) {
+      const std::vector<SensorValue>& values = sensed.sensors.at(sensor_name);
+      ASSERT_EQ(values.size(), types.size()) << sensor_name;
+      for (std::size_t i = 0; i < types.size(); ++i) EXPECT_EQ(values[i].type, types[i]);
+    }
+  }
+  // The first joint carries the whole arm: its weight, along its axis.
+  const Vector3 force = sensor.objects.at("ur10").forces[0];
+  double mass = 0.0;
+  const robot::ArmModel& arm = test::demonstrator_cell().arm()->model();
+  for (std::size_t i = 1; i < arm.segments.size(); ++i) mass += arm.segments[i].mass;
+  EXPECT_NEAR(force.norm(), 9.81 * mass, 1e-6);
+}
+
+TEST(Simulator, StepsOnceForEachControlAndNeverForARequest) {
+  Talk talk;
+  (void)talk.say(HandshakeInit{});
+  const Message before = talk.say(SensorRequest{});
+  EXPECT_EQ(std::get<Sensor>(before).time, 0.0);
+  for (int i = 1; i <= 20; ++i) {
+    const Message after = talk.say(control_of(kStill));
+    EXPECT_DOUBLE_EQ(std::get<Sensor>(after).time, 0.008 * i);
+    EXPECT_EQ(talk.say(SensorRequest{}), after);
+    EXPECT_EQ(angles_of(after), angles_of(before)) << "no speed, no motion";
+  }
+}
+
+TEST(Simulator, FollowsEachJointInItsOwnWay) {
+  SimulatorSettings settings;
+  using control::DriveKind;
+  settings.cell.controls = {DriveKind::Position, DriveKind::Speed, DriveKind::Speed,
+                            DriveKind::Speed,    DriveKind::Speed, DriveKind::Torque};
+  Talk talk(settings);
+  const Handshake handshake = std::get<Handshake>(talk.say(HandshakeInit{}));
+  EXPECT_EQ(handshake.objects.at("ur10").control_types[5], ValueType::Torque1D);
+  const std::vector<double> start = angles_of(talk.say(SensorRequest{}));
+  Message last;
+  for (int i = 1; i <= 100; ++i) {
+    last = talk.say(control_of({start[0] + 0.001 * i, 0.0, -0.1, 0.0, 0.0, 0.0}));
+    ASSERT_TRUE(std::holds_alternative<Sensor>(last)) << std::get<Error>(last).text;
+  }
+  EXPECT_EQ(angles_of(last)[0], start[0] + 0.1);
+  EXPECT_EQ(angles_of(last)[1], start[1]);
+  EXPECT_NEAR(angles_of(last)[2], start[2] - 0.08 + 0.5 * 0.1 * 0.1 / 15.0, 1e-3);
+}
+
+TEST(Simulator, ResetsToTheStartAndWaits) {
+  Talk talk;
+  (void)talk.say(HandshakeInit{});
+  const Message before = talk.say(SensorRequest{});
+  for (int i = 0; i < 30; ++i) (void)talk.say(control_of({0.1, 0, 0, 0, 0, 0.2}, {{"vacuum", true}}));
+  EXPECT_TRUE(std::holds_alternative<Reset>(talk.say(Reset{})));
+  EXPECT_EQ(talk.say(SensorRequest{}), before);
+  EXPECT_EQ(talk.simulator.counts().runs, 1);
+}
+
+TEST(Simulator, TellsItsOwnResetOnceAndNeverToAHandshake) {
+  SimulatorSettings settings;
+  settings.batch = 0.04;
+  std::vector<std::string> ends;
+  settings.end_run = [&](int, const cell::RunResult& result) { ends.push_back(result.ended_by); };
+  Talk talk(settings);
+  (void)talk.say(HandshakeInit{});
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(std::holds_alternative<Sensor>(talk.say(control_of(kStill)))) << i;
+  EXPECT_EQ(ends.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Reset>(talk.say(control_of({9, 9, 9, 9, 9, 9}))));
+  EXPECT_EQ(std::get<Sensor>(talk.say(SensorRequest{})).time, 0.0);
+  for (int i = 0; i < 5; ++i) (void)talk.say(control_of(kStill));
+  EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{})));  // cancels the Reset
+  EXPECT_TRUE(std::holds_alternative<Sensor>(talk.say(SensorRequest{})));
+}
+
+TEST(Simulator, RefusesAnotherVersion) {
+  Talk talk;
+  EXPECT_NE(talk.error(HandshakeInit{0}).find("version 0 is not supported, expected 1"), std::string::npos);
+  EXPECT_NE(talk.error(HandshakeInit{2}).find("version 2"), std::string::npos);
+  EXPECT_NE(talk.error(control_of(kStill)).find("before the handshake"), std::string::npos);
+}
+
+TEST(Simulator, SaysWhatIsWrongWithACommandAndMovesNothing) {
+  Talk talk;
+  (void)talk.say(HandshakeInit{});
+  (void)talk.say(control_of({0.3, 0, 0, 0, 0, 0}, {{"vacuum", true}}));
+  const std::uint64_t hash = talk.simulator.hash();
+  const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+  Control unknown = control_of(kStill);
+  unknown.objects["box27"].events["feed"] = true;
+  Control listed = control_of({});
+  listed.objects["ur10"] = {CommandList::Angles, kStill, {}};
+  Control box = control_of(kStill);
+  box.objects["box027"].list = CommandList::Values;
+  box.objects["box027"].values = {1.0};
+  Control two = control_of(kStill);
+  two.objects["box013"].events["feed"] = two.objects["box028"].events["feed"] = true;
+  const struct {
+    Message message;
+    const char* text;
+  } cases[] = {
+      {control_of({}), "0 values for the 6 joints"},
+      {control_of({1, 2, 3, 4, 5}), "5 values for the 6 joints"},
+      {control_of({1, 2, 3, 4, 5, 6, 7}), "7 values"},
+      {control_of({0, nan, 0, 0, 0, 0}), "shoulder_lift_joint"},
+      {control_of({0, 0, 0, 0, 0, -infinite}), "not a finite number"},
+      {control_of(kStill, {{"vaccum", true}}), "is it 'vacuum'?"},
+      {unknown, "object 'box27' is unknown; is it 'box027'?"},
+      {listed, "'angles' for joint 'shoulder_pan_joint', which takes AngularVelocity1D"},
+      {box, "object 'box027' has no joints to control"},
+      {two, "two boxes are to come at once"},
+      {Control{}, "no values for the joints of 'ur10'"},
+      {Handshake{}, "is for controllers"},
+      {Sensor{}, "is for controllers"},
+  };
+  for (const auto& bad : cases)
+    EXPECT_NE(talk.error(bad.message).find(bad.text), std::string::npos) << talk.error(bad.message);
+  EXPECT_NE(std::get<Error>(talk.hear(std::string(kLargestFrame + 1, 'x'))).text.find("are the most"),
+            std::string::npos);
+  EXPECT_NE(std::get<Error>(talk.hear("\xff\xff")).text.find("cannot be read"), std::string::npos);
+  EXPECT_EQ(talk.simulator.hash(), hash);
+  EXPECT_TRUE(std::holds_alternative<Sensor>(talk.say(control_of(kStill)))) << "the session goes on";
+}
+
+TEST(Simulator, HasOneControllerAtATime) {
+  Talk talk;
+  (void)talk.say(HandshakeInit{}, "a");
+  (void)talk.say(control_of({0.3, 0, 0, 0, 0, 0}), "a");
+  const std::uint64_t hash = talk.simulator.hash();
+  for (const Message& message : {Message(HandshakeInit{}), Message(control_of({1, 1, 1, 1, 1, 1})), Message(Reset{}),
+                                 Message(SensorRequest{}), Message(Error{"stop"})}) {
+    EXPECT_NE(talk.error(message, "b").find("another controller"), std::string::npos) << name_of(message);
+  }
+  EXPECT_FALSE(talk.simulator.leave("b"));
+  EXPECT_EQ(talk.simulator.hash(), hash);
+  EXPECT_TRUE(talk.simulator.leave("a"));
+  EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{}, "b")));
+  EXPECT_EQ(std::get<Sensor>(talk.say(SensorRequest{}, "b")).time, 0.0);
+}
+
+TEST(Simulator, EndsTheRunWithAReason) {
+  std::vector<std::string> ends;
+  SimulatorSettings settings;
+  settings.end_run = [&](int, const cell::RunResult& result) { ends.push_back(result.ended_by); };
+  Talk talk(settings);
+  const auto run = [&] {
+    (void)talk.say(HandshakeInit{});
+    (void)talk.say(control_of(kStill));
+  };
+  run();
+  (void)talk.say(Reset{});
+  run();
+  EXPECT_FALSE(talk.simulator.answer("a", encode(Error{"I am lost"})).has_value());
+  run();
+  (void)talk.simulator.leave("a");
+  EXPECT_EQ(ends, (std::vector<std::string>{"reset by the controller", "the controller reported: I am lost",
+                                            "the controller left"}));
+}
+
+TEST(Simulator, StopsForProtectionUntilItIsReset) {
+  SimulatorSettings settings;
+  settings.cell.controls = {control::DriveKind::Torque};
+  Talk talk(settings);
+  (void)talk.say(HandshakeInit{});
+  EXPECT_NE(talk.error(control_of({1e4, 0, 0, 0, 0, 0})).find("protective stop"), std::string::npos);
+  EXPECT_NE(talk.error(control_of(kStill)).find("joint torque of shoulder_pan_joint"), std::string::npos);
+  EXPECT_TRUE(std::holds_alternative<Sensor>(talk.say(SensorRequest{})));
+  EXPECT_TRUE(std::holds_alternative<Reset>(talk.say(Reset{})));
+  EXPECT_NE(talk.error(control_of({1e4, 0, 0, 0, 0, 0})).find("protective stop"), std::string::npos);
+  EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{})));
+  EXPECT_EQ(std::get<Sensor>(talk.say(SensorRequest{})).time, 0.0);
+}
+
+TEST(Simulator, BringsTheBoxesItselfUnlessTheControllerDoes) {
+  const auto is_present = [](const Message& message, const char* box) {
+    return std::get<Sensor>(message).objects.at(box).sensors.at(kPresentSensor)[0].is_active;
+  };
+  Talk talk;
+  (void)talk.say(HandshakeInit{});
+  EXPECT_FALSE(is_present(talk.say(SensorRequest{}), "box027"));
+  const Message first = talk.say(control_of(kStill));
+  EXPECT_TRUE(is_present(first, "box027"));
+  EXPECT_FALSE(is_present(first, "box028"));
+
+  (void)talk.say(Reset{});
+  Control control = control_of(kStill);
+  control.objects["box028"].events[kFeedEvent] = false;
+  EXPECT_FALSE(is_present(talk.say(control), "box027"));
+  control.objects["box028"].events = {{kFeedEvent, true}, {kQuarterTurnEvent, true}};
+  const Message fed = talk.say(control);
+  EXPECT_TRUE(is_present(fed, "box028"));
+  EXPECT_FALSE(is_present(fed, "box027"));
+  const Message again = talk.say(control);  // still on: nothing new
+  EXPECT_TRUE(std::holds_alternative<Sensor>(again));
+  control.objects["box028"].events[kFeedEvent] = false;
+  (void)talk.say(control);
+  control.objects["box028"].events[kFeedEvent] = true;
+  EXPECT_NE(talk.error(control).find("'box028' is to come, but it is in the cell"), std::string::npos);
+}
+
+TEST(Simulator, FreelyRunningFollowsTheLatestCommandAndBrakesWhenItIsOld) {
+  SimulatorSettings settings;
+  settings.is_async = true;
+  Talk talk(settings);
+  (void)talk.say(HandshakeInit{});
+  talk.simulator.step();
+  EXPECT_EQ(talk.simulator.time(), 0.0) << "nothing moves before the first Control";
+  const Message start = talk.say(control_of({0, 0, 0, 0, 0, 0.24}));
+  EXPECT_EQ(std::get<Sensor>(start).time, 0.0);
+  for (int i = 0; i < 20; ++i) talk.simulator.step();
+  const Sensor moving = std::get<Sensor>(talk.say(SensorRequest{}));
+  EXPECT_DOUBLE_EQ(moving.time, 0.16);
+  EXPECT_EQ(moving.objects.at("ur10").velocities[5], 0.24);
+  for (int i = 0; i < 40; ++i) talk.simulator.step();  // 0.25 s are 32 steps
+  EXPECT_EQ(std::get<Sensor>(talk.say(SensorRequest{})).objects.at("ur10").velocities[5], 0.0);
+}
+
+TEST(Simulator, GivesTheSameAnswersToTheSameFrames) {
+  std::vector<std::string> first;
+  for (int run = 0; run < 2; ++run) {
+    Talk talk;
+    Rng rng = Rng(4).split("frames");
+    std::vector<std::string> answers = {*talk.simulator.answer("a", encode(HandshakeInit{}))};
+    for (int i = 0; i < 150; ++i) {
+      std::vector<double> speeds(6);
+      for (double& speed : speeds) speed = rng.uniform(-0.3, 0.3);
+      answers.push_back(*talk.simulator.answer("a", encode(control_of(speeds, {{"vacuum", i % 50 > 25}}))));
+    }
+    if (run == 0) first = answers;
+    EXPECT_EQ(answers, first);
+  }
+}
+
+/// What a peer may send by mistake or on purpose: frames that were changed a little, cut, lengthened or made up.
+std::string mutate(std::string frame, Rng& rng) {
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(rng.uniform(0.0, static_cast<double>(n))); };
+  const std::size_t changes = 1 + below(4);
+  for (std::size_t i = 0; i < changes; ++i) {
+    const std::size_t at = frame.empty() ? 0 : below(frame.size());
+    switch (below(6)) {
+      case 0:
+        if (!frame.empty()) frame[at] = static_cast<char>(frame[at] ^ static_cast<char>(1U << below(8)));
+        break;
+      case 1:
+        if (!frame.empty()) frame[at] = static_cast<char>(below(256));
+        break;
+      case 2:
+        frame.resize(at);
+        break;
+      case 3:
+        frame.insert(at, 1 + below(9), static_cast<char>(below(256)));
+        break;
+      case 4:
+        frame.insert(at, frame.substr(0, below(40)));
+        break;
+      default:
+        frame.erase(at, below(9));
+    }
+  }
+  return frame;
+}
+
+std::vector<std::string> good_frames() {
+  Control fed = control_of(kStill, {{"vacuum", true}, {"blow_off", false}});
+  fed.objects["box027"].events = {{kFeedEvent, true}, {kHalfTurnEvent, true}};
+  Control old = control_of(kStill);
+  old.objects["ur10"].list = CommandList::AngularVelocities;
+  return {encode(HandshakeInit{}),
+          encode(SensorRequest{}),
+          encode(Reset{}),
+          encode(control_of(kStill)),
+          encode(fed),
+          encode(old),
+          encode(Handshake{}),
+          encode(Sensor{})};
+}
+
+int count_from(const char* variable, int few) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? few : std::atoi(text);
+}
+
+// The full numbers: SNUG_MUTATED_FRAMES=1000000 SNUG_MUTATED_SESSIONS=10000 build/src/snug/click/click_test
+// --gtest_filter=*Mutated*
+TEST(Simulator, IsNotMovedByMutatedFramesOfStrangers) {
+  Talk talk;
+  (void)talk.say(HandshakeInit{}, "controller");
+  for (int i = 0; i < 10; ++i) (void)talk.say(control_of({0.1, 0, 0, 0, 0, 0}), "controller");
+  const std::uint64_t hash = talk.simulator.hash();
+  const std::vector<std::string> frames = good_frames();
+  Rng rng = Rng(16).split("mutated frames");
+  const int count = count_from("SNUG_MUTATED_FRAMES", 20000);
+  for (int i = 0; i < count; ++i) {
+    const std::string frame = mutate(frames[static_cast<std::size_t>(i) % frames.size()], rng);
+    const auto answer = talk.simulator.answer("stranger", frame);
+    ASSERT_TRUE(answer.has_value());
+    const auto decoded = decode(*answer);
+    ASSERT_TRUE(decoded.has_value());
+    ASSERT_TRUE(std::holds_alternative<Error>(*decoded)) << i;
+  }
+  EXPECT_EQ(talk.simulator.hash(), hash);
+}
+
+TEST(Simulator, OutlivesMutatedSessions) {
+  const std::vector<std::string> frames = good_frames();
+  const int count = count_from("SNUG_MUTATED_SESSIONS", 60);
+  Talk talk;
+  for (int session = 0; session < count; ++session) {
+    Rng rng = Rng(static_cast<std::uint64_t>(session)).split("mutated session");
+    (void)talk.simulator.answer("a", frames[0]);
+    for (int i = 0; i < 20; ++i) {
+      const auto which = static_cast<std::size_t>(rng.uniform(0.0, static_cast<double>(frames.size())));
+      const bool is_mutated = rng.uniform(0.0, 1.0) < 0.7;
+      const std::string frame = is_mutated ? mutate(frames[which], rng) : frames[which];
+      const std::uint64_t hash = talk.simulator.hash();
+      const std::int64_t steps = talk.simulator.counts().steps;
+      const auto answer = talk.simulator.answer("a", frame);
+      if (!answer) continue;  // it was an Error, or became one
+      const auto decoded = decode(*answer);
+      ASSERT_TRUE(decoded.has_value()) << session;
+      if (std::holds_alternative<Error>(*decoded) && talk.simulator.counts().steps == steps) {
+        ASSERT_EQ(talk.simulator.hash(), hash) << session << " " << i;
+      }
+    }
+    (void)talk.simulator.leave("a");
+    ASSERT_EQ(talk.simulator.time(), 0.0);
+  }
+  EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{})));
+}
+
+}  // namespace
+}  // namespace snug::click
