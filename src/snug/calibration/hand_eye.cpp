@@ -137,7 +137,8 @@ HandEye find_hand_eye(const Table& table) {
   internal::check_poses(table, 0);
   internal::check_poses(table, 6);
   std::vector<Pair> pairs;
-  for (const std::vector<double>& row : table.rows) pairs.push_back({internal::row_pose(row, 0), internal::row_pose(row, 6)});
+  for (const std::vector<double>& row : table.rows)
+    pairs.push_back({internal::row_pose(row, 0), internal::row_pose(row, 6)});
   HandEye found;
   double spread = 0.0;
   found.X_WC.R = start_rotation(pairs, spread);

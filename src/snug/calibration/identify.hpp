@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "snug/core/table.hpp"
-#include "snug/spatial/pose.hpp"
 #include "snug/robot/arm.hpp"
+#include "snug/spatial/pose.hpp"
 
 namespace snug::calibration {
 

@@ -1,4 +1,5 @@
-// measure_planted: numbers put into virtual experiments of a program, and what identification makes of their recordings.
+// measure_planted: numbers put into virtual experiments of a program, and what identification makes of their
+// recordings.
 #include "snug/experiment/internal/planted_bench.hpp"
 
 #include <fmt/format.h>
@@ -84,7 +85,8 @@ void measure_planted(const BenchOptions& options, std::vector<Figure>& figures) 
     task.parameters.push_back(number.parameter);
     edits.push_back({number.parameter.paths.front(), number.truth});
   }
-  const validation::SimulatedRun truth = validation::make_run(run_clip(model::with_numbers(base, edits), options), "truth");
+  const validation::SimulatedRun truth =
+      validation::make_run(run_clip(model::with_numbers(base, edits), options), "truth");
   std::vector<record::ArchiveRecording> recordings;
   for (int k = 1; k <= kRepetitions; ++k) {
     validation::MeasureOptions settings;
