@@ -92,7 +92,7 @@ class Study(Scratch):
         self.assertEqual(self.merged(study, "--dir", "killed"), self.merged(study, "--dir", "whole"))
 
     def test_page_has_effects_and_commands(self):
-        study = self.write(more="outputs: [duration, bodies.1.X_WB.p.2]\n")
+        study = self.write(more="outputs: [bodies.0.X_WB.p.2, duration_s]\n")
         self.snug("study", study)
         self.snug("study", "report", study, "-o", "page.html")
         page = (self.folder / "page.html").read_text()
