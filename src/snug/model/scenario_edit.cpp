@@ -13,7 +13,10 @@
 namespace snug::model {
 namespace {
 
-std::vector<std::string> steps_of(const std::string& path) {
+/// "a[0].b" is "a.0.b".
+std::vector<std::string> steps_of(std::string path) {
+  std::erase(path, ']');
+  std::ranges::replace(path, '[', '.');
   std::vector<std::string> steps;
   for (std::size_t begin = 0; begin <= path.size();) {
     const std::size_t end = std::min(path.find('.', begin), path.size());

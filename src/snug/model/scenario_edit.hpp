@@ -10,8 +10,8 @@
 namespace snug::model {
 
 /// A key by its path from the top of the file, such as `cup.lip_radius`, `parcels.BOX013.mass` or
-/// `contacts.pairs.box/container.friction`: entries of lists by index, from 0, by their `name` or `id`, or by what they
-/// are `between`. The value as YAML.
+/// `contacts.pairs.box/container.friction`: entries of lists by index, from 0 (also `pairs[0]`), by their `name` or
+/// `id`, or by what they are `between`. The value as YAML.
 using KeyValue = std::pair<std::string, std::string>;
 
 /// The scenario with these keys set, in this order; its text says so. Keys that the file leaves out are added. Throws

@@ -36,6 +36,7 @@ TEST(ScenarioEdit, SetsOneKeyAndLeavesTheRest) {
 TEST(ScenarioEdit, FindsEntriesOfListsByIdByIndexAndByWhatTheyAreBetween) {
   EXPECT_EQ(find_parcel(with("parcels.BOX013.mass", "0.6"), "BOX013")->inertia.mass, 0.6);
   EXPECT_EQ(with("parcels.0.mass", "0.6").parcels[0].inertia.mass, 0.6);
+  EXPECT_EQ(with("parcels[0].mass", "0.6").parcels[0].inertia.mass, 0.6);
   const Scenario slippery = with("contacts.pairs.box/container.friction", "0.05");
   const Scenario same = with("contacts.pairs.1.friction", "0.05");
   EXPECT_EQ(slippery.contact_pairs, same.contact_pairs);
