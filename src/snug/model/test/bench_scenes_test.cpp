@@ -19,7 +19,8 @@ TEST(ShippedScenarios, AllLoad) {
     SCOPED_TRACE(file.filename());
     try {
       const Scenario scenario = load_scenario(file);
-      EXPECT_EQ(scenario.name, file.stem().string());
+      const bool is_template = file.parent_path().filename() == "init";
+      EXPECT_EQ(scenario.name, (is_template ? "my-" : "") + file.stem().string());
       EXPECT_EQ(scenario.source_text, test::read_text(file));
     } catch (const InputError& error) {
       ADD_FAILURE() << error.what();

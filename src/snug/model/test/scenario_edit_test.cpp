@@ -52,15 +52,19 @@ TEST(ScenarioEdit, AddsAKeyThatTheFileLeavesOut) {
 TEST(ScenarioEdit, TakesLists) { EXPECT_EQ(with("gravity", "[0.0, 0.0, -1.62]").gravity, Vector3(0.0, 0.0, -1.62)); }
 
 TEST(ScenarioEdit, ChangesOneUserOfAnAliasOnly) {
-  Scenario scenario = demonstrator();
-  std::string& text = scenario.source_text;
-  text = test::replaced(text, "{name: A, pose: {position", "{name: A, pose: &p {position");
-  text = test::replaced(text, "{name: T, pose: {position: [0.505, -0.350, -0.282]}}", "{name: T, pose: *p}");
-  const Scenario shared = parse_scenario(text, "shared");
-  ASSERT_EQ(shared.frames[0].X_WF, shared.frames[1].X_WF);
-  const Scenario changed = with_values(shared, {{"frames.A.pose.yaw_deg", "131"}}, "--set");
-  EXPECT_EQ(changed.frames[1].X_WF, shared.frames[1].X_WF);
-  EXPECT_NE(changed.frames[0].X_WF, shared.frames[0].X_WF);
+  const Scenario shared = parse_scenario(
+      "name: two\nduration: 1.0\nmaterials: [{name: m}]\ncontacts: {default: {friction: 0.3, restitution: "
+      "0.0}}\nbodies:\n"
+      "  - {name: a, size: &s [0.1, 0.1, 0.1], mass: 1.0, material: m}\n"
+      "  - {name: b, size: *s, mass: 1.0, material: m, pose: {position: [1.0, 0.0, 0.0]}}\n",
+      "shared");
+  const auto half = [](const Scenario& scenario, std::size_t i) {
+    return std::get<geometry::Box>(scenario.bodies[i].shapes.at(0).shape).half;
+  };
+  ASSERT_EQ(half(shared, 0), half(shared, 1));
+  const Scenario changed = with_values(shared, {{"bodies.a.size", "[0.2, 0.1, 0.1]"}}, "--set");
+  EXPECT_EQ(half(changed, 1), half(shared, 1));
+  EXPECT_EQ(half(changed, 0).x(), 0.1);
 }
 
 TEST(ScenarioEdit, RefusesWhatTheReaderRefusesAndNamesTheKey) {
