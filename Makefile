@@ -48,8 +48,8 @@ acceptance: build ## run the demonstrator's own programs in FOLDER, print README
 	@python3 tools/acceptance.py "$(FOLDER)"
 
 python: setup-python ## build the Python module and install it: into VENV=DIR, else for /usr/bin/python3
-	@$(call configure-build,python,--log-level=WARNING)
-	@scripts/install-python.sh build-python $(VENV)
+	@cmake --preset release --log-level=WARNING && cmake --build --preset release -j $(JOBS) --target snug_python
+	@scripts/install-python.sh build $(VENV)
 
 install: build ## install the program, its scenarios and the libraries under PREFIX (/usr/local)
 	@cmake --install build --prefix "$(PREFIX)"
@@ -97,4 +97,4 @@ docs: setup-docs ## check every link of the documents, build the documentation s
 	@python3 tools/check_docs.py . && python3 tools/build_site.py build/site
 
 clean: ## remove what the verbs built
-	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz build-python out
+	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz out

@@ -14,11 +14,11 @@ endif()
 # Same input, same bytes: no fused multiply-add unless written, and no reordering of sums. File names in messages start at
 # the project's folder, so that a program tells nothing of the machine that built it.
 set(SNUG_CODEGEN -ffp-contract=off -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
-# For the Python module (preset `python`): code that may stand anywhere and exports nothing, with the speed of a program's.
-option(SNUG_POSITION_INDEPENDENT "Build libraries that can go into the Python module" OFF)
-set(SNUG_LIBRARY_CODEGEN "")
-if(SNUG_POSITION_INDEPENDENT)
-  set(SNUG_LIBRARY_CODEGEN -fPIC -fvisibility=hidden -fvisibility-inlines-hidden -fno-semantic-interposition)
+# The libraries go into the program and into the Python module: code that may stand anywhere and exports nothing has the speed of
+# a program's.
+set(SNUG_LIBRARY_CODEGEN -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND SNUG_LIBRARY_CODEGEN -fno-semantic-interposition)
 endif()
 
 # With precompiled headers g++ 12 forgets which code is the library's own and reports the same impossible sizes in std::string

@@ -14,8 +14,6 @@ if [ -n "$module" ]; then
   cmake --build --preset release -j "$jobs" --target "${module}_tests"
   ctest --preset release -j "$jobs" -L "^$module\$"
 else
-  cmake --build --preset release -j "$jobs" --target all snug_tests
-  cmake --preset python --log-level=WARNING
-  cmake --build --preset python -j "$jobs"
+  cmake --build --preset release -j "$jobs" --target all snug_tests snug_python
   ctest --preset release -j "$jobs" --output-junit test-results.xml
 fi
