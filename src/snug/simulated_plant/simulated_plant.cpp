@@ -119,6 +119,7 @@ void SimulatedPlant::read_sensors(const Course& course, const plant::End& end) {
   feedback_.peak_force = std::max(course.peak_force, feedback_.F_E.force.norm());
   feedback_.peak_torque = std::max(course.peak_torque, feedback_.F_E.torque.norm());
   feedback_.io = state_.controller.io;
+  feedback_.times = course.times;
 }
 
 void SimulatedPlant::check_guards(const plant::Motion& motion, Course& course) {
@@ -152,7 +153,11 @@ void SimulatedPlant::check_guards(const plant::Motion& motion, Course& course) {
 
 bool SimulatedPlant::advance(const plant::Motion& motion, const motion::PreparedProgram& plan, Course& course) {
   if (simulation_.is_at_end(plan, state_)) return false;
+  const double before = simulation_.time(state_);
   const cell::CellTick tick = simulation_.advance(plan, state_, work_);
+  const bool is_waiting = state_.controller.phase == motion::ControllerPhase::Waiting;
+  plant::WaypointTime& own = course.times[static_cast<std::size_t>(std::max(0, tick.row))];
+  (is_waiting ? own.waiting : own.moving) += simulation_.time(state_) - before;
   if (tick.row != course.row) course.row_since = simulation_.time(state_);
   course.row = tick.row;
   if (watcher_) watcher_(tick);
@@ -170,7 +175,7 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
 }
 
 /// The tool comes to stand, boxes come to rest.
-void SimulatedPlant::settle(const motion::PreparedProgram& plan) {
+void SimulatedPlant::settle(const motion::PreparedProgram& plan, Course& course) {
   const double start = simulation_.time(state_);
   for (double now = start; now < start + kLongestSettle; now = simulation_.time(state_)) {
     const Twist V_WE = state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE;
@@ -179,6 +184,7 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan) {
     if (watcher_) watcher_(tick);
     if (!tick.failure.empty()) break;
   }
+  course.times.back().waiting += simulation_.time(state_) - start;
 }
 
 plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
@@ -201,6 +207,7 @@ plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
   }
   simulation_.begin_motion(state_);
   Course course;
+  course.times.resize(motion.waypoints.size());
   course.row_since = simulation_.time(state_);
   if (state_.controller.io.vacuum) {
     course.vacuum_since = simulation_.time(state_);
@@ -210,7 +217,7 @@ plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
   }
   if (course.end.reason == plant::EndReason::Completed) {
     course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
-    settle(plan);
+    settle(plan, course);
     inject(plan, course);
   }
   simulation_.stand(state_);

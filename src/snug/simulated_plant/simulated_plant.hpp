@@ -64,9 +64,10 @@ class SimulatedPlant final : public plant::Plant {
     int row = -1;
     double vacuum_since = -1.0;  ///< s, or -1: it is off
     bool was_sealed = false;     ///< since then
+    std::vector<plant::WaypointTime> times;
   };
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan, Course& course);
-  void settle(const motion::PreparedProgram& plan);
+  void settle(const motion::PreparedProgram& plan, Course& course);
   void check_guards(const plant::Motion& motion, Course& course);
   void inject(const motion::PreparedProgram& plan, Course& course);
   void break_suction();

@@ -50,10 +50,25 @@ class Scorer {
       trial.items_as_planned += item.is_as_planned ? 1 : 0;
     }
     trial.recoveries = session::recovery_count(trial.session);
+    count_time(trial);
     trial.state_hash = plant_.simulation().hash(plant_.state());
   }
 
  private:
+  static void count_time(Trial& trial) {
+    const double duration = trial.session.duration;
+    trial.boxes_per_hour = duration > 0.0 ? 3600.0 * trial.executed_boxes / duration : 0.0;
+    double seconds = 0.0;
+    int count = 0;
+    for (const session::ItemReport& item : trial.session.items) {
+      const bool is_plain = item.end == session::ItemEnd::Placed && item.sends.size() == 1 && item.recoveries.empty();
+      if (!is_plain || item.reorientation != session::Reorientation::None) continue;
+      seconds += item.seconds.total();
+      ++count;
+    }
+    trial.unturned_cycle = count > 0 ? seconds / count : 0.0;
+  }
+
   [[nodiscard]] TruePoses poses() const {
     TruePoses poses;
     const cell::CellWorld& world = plant_.simulation().world();

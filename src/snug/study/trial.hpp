@@ -32,6 +32,8 @@ struct Trial {
   int items_as_planned = 0;
   int boxes_lost = 0;  ///< that were picked and are not in the container in the end
   int recoveries = 0;
+  double boxes_per_hour = 0.0;  ///< packed, by the plant's clock: robot and vacuum, neither planning nor looks
+  double unturned_cycle = 0.0;  ///< s, mean of the items that were placed at once without turning them; 0: none
   std::vector<TrueItem> items;
   std::vector<cell::BoxResult> boxes;
   std::uint64_t state_hash = 0;
