@@ -97,6 +97,7 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["predicted_success"] = item.predicted_success;
     json["predicted"] = item.samples > 0 ? as_json(item.predicted) : Json();
     json["happened"] = as_json(item.happened);
+    json["hold_factor"] = std::isfinite(truth.hold_factor) ? Json(rounded(truth.hold_factor, 6)) : Json();
     json["sends"] = sends_as_json(item, truth);
     json["recoveries"] = recoveries_as_json(item.recoveries);
   }
@@ -138,6 +139,13 @@ std::string how_fast(const study::Trial& trial) {
                          : std::string();
   return text + (how.controller == motion::ControllerKind::Fast ? fmt::format("tempo {:g}", how.tempo)
                                                                 : std::string("with the demonstrator's lag"));
+}
+
+std::string describe_hold(const study::Trial& trial) {
+  const auto worst = std::ranges::min_element(trial.items, {}, &study::TrueItem::hold_factor);
+  if (worst == trial.items.end() || !std::isfinite(worst->hold_factor)) return {};
+  return fmt::format("hold of the cup    {:.1f} times what it had to carry, at the worst instant ({})\n",
+                     worst->hold_factor, worst->id);
 }
 
 }  // namespace
@@ -203,6 +211,7 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
                       result.agent);
   text += fmt::format("plant              {:.1f} s, {} waypoints\n", result.duration, result.program.waypoints.size());
   text += fmt::format("speed              {:.0f} boxes an hour, {}\n", trial.boxes_per_hour, how_fast(trial));
+  text += describe_hold(trial);
   text += fmt::format("state hash         {:016x}\n", trial.state_hash);
   if (repeated.count == 0) return text;
   text += fmt::format("\nopen loop, {} runs in cells drawn from the scenario's uncertainty\n", repeated.count);

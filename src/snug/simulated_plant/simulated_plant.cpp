@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "snug/cell/drawn_scenario.hpp"
@@ -66,6 +67,7 @@ bool SimulatedPlant::bring(const std::string& item) {
   calls_.push_back({Call::Kind::Bring, item, {}});
   was_brought_[static_cast<std::size_t>(index)] = true;
   simulation_.bring(index, state_);
+  state_.gripper.least_hold_factor = std::numeric_limits<double>::infinity();
   current_ = index;
   pending_ = {};
   ++brought_count_;

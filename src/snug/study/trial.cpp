@@ -25,6 +25,7 @@ class Scorer {
     TrueItem item;
     item.id = report.id;
     item.was_sent = !report.sends.empty();
+    item.hold_factor = plant_.least_hold_factor();
     const TruePoses now = poses();
     if (item.was_sent) judge(report, now, item);
     for (std::size_t i = 0; i < report.sends.size(); ++i) {

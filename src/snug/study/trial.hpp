@@ -18,6 +18,7 @@ struct TrueItem {
   bool is_as_planned = false;   ///< within the session's limits of its last plan, in the container, nothing else lost
   double position_error = 0.0;  ///< m, level
   double angle_error = 0.0;     ///< rad
+  double hold_factor = 0.0;     ///< cup::find_hold_factor at the worst instant of its way; infinity: never held
   double displacement = 0.0;    ///< m, the farthest that another box was moved
   std::vector<bool> succeeded;  ///< of each motion that was sent: ended as planned and needed no remedy
 };
