@@ -64,7 +64,7 @@ int run_control(const ControlOptions& options) {
   model::Sequence none;
   const model::Sequence& sequence = options.sequence ? cell::require_sequence(scenario, *options.sequence) : none;
   cell::SimulationOptions how;
-  how.controller = motion::controller_kind_of(options.controller, "command line");
+  if (options.controller) how.controller = motion::controller_kind_of(*options.controller, "command line");
   const std::string corrections = options.corrections == "none" ? "" : options.corrections;
   const motion::PreparedProgram plan = cell::prepare(
       scenario, sequence, how, cell::corrected(scenario, motion::load_program(options.program), corrections));

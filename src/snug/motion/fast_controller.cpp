@@ -17,6 +17,8 @@ namespace {
 constexpr double kArrived = 0.002;
 /// Of the shorter of two motions: over at most so much of it they are blended.
 constexpr double kLargestBlend = 0.4;
+/// m: a way that rises or falls by less is level.
+constexpr double kLevel = 0.01;
 /// Rows that are left on the way, the cup letting go as it moves (docs/packing-execution.md, pivot).
 constexpr std::string_view kOnTheFly = "TwistDrag";
 
@@ -33,6 +35,10 @@ bool has_next(const PreparedProgram& plan, int row) {
   return row + 1 < static_cast<int>(plan.program.waypoints.size());
 }
 
+bool is_insertion(const Waypoint& waypoint) {
+  return waypoint.io.vacuum && waypoint.name.starts_with("Place") && !waypoint.name.starts_with("PlaceSlow");
+}
+
 Pace pace_of(const PreparedProgram& plan, int row) {
   const FastSettings& fast = plan.settings.fast;
   const Waypoint& waypoint = row_of(plan, row);
@@ -42,6 +48,7 @@ Pace pace_of(const PreparedProgram& plan, int row) {
     pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
             fast.contact_window};
   }
+  if (is_insertion(waypoint)) pace = fast.insert;
   pace.max_speed *= fast.tempo;
   pace.max_turn_speed *= fast.tempo;
   pace.max_acceleration *= fast.tempo * fast.tempo;
@@ -104,7 +111,11 @@ double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   const double degrees = plan.settings.convergence_deg_per_metre;
   const double to = convergence_error(state.paced.start(), row.X_WE, degrees);
   const double from = convergence_error(row.X_WE, next.X_WE, degrees);
-  return std::min(plan.settings.fast.blend, kLargestBlend * std::min(to, from));
+  const double heights = std::max(std::abs(row.X_WE.p.z() - state.paced.start().p.z()),
+                                  std::abs(next.X_WE.p.z() - row.X_WE.p.z()));
+  const bool is_level = heights < kLevel && !is_contact_row(next.name);
+  const double largest = is_level ? plan.settings.fast.level_blend : plan.settings.fast.blend;
+  return std::min(largest, kLargestBlend * std::min(to, from));
 }
 
 void begin_motion(const PreparedProgram& plan, const Pose& X_WE, ControllerState& state) {
@@ -206,13 +217,13 @@ void check_fast(const FastSettings& settings, const std::string& where) {
   };
   require("tempo", settings.tempo, settings.tempo >= 0.1 && settings.tempo <= 1.0, "a number from 0.1 to 1");
   const auto is_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
-  for (const Pace& pace : {settings.empty, settings.held}) {
+  for (const Pace& pace : {settings.empty, settings.held, settings.insert}) {
     for (const double value : {pace.max_speed, pace.max_acceleration, pace.max_turn_speed, pace.max_turn_acceleration,
                                pace.window}) {
       require("pace", value, is_positive(value), "a finite number above 0");
     }
   }
-  for (const double value : {settings.contact_window, settings.blend, settings.feel_within, settings.pick_force,
+  for (const double value : {settings.contact_window, settings.blend, settings.level_blend, settings.feel_within, settings.pick_force,
                              settings.press_force, settings.push_force}) {
     require("limits", value, is_positive(value), "a finite number above 0");
   }

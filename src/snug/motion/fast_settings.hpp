@@ -22,8 +22,11 @@ struct FastSettings {
   Pace empty = {2.0, 6.0, 2.5, 6.0, 0.10};
   /// The same with a box: averaged over a window in which most boxes swing a whole number of times (3 to 8 Hz).
   Pace held = {2.0, 4.0, 2.5, 5.0, 0.25};
-  double contact_window = 0.10;  ///< s, of rows that touch something; their other limits are the scenario's
+  /// A held box on its way in (Place). Other rows that touch something have the scenario's limits for their names.
+  Pace insert = {0.6, 4.0, 1.5, 3.0, 0.10};
+  double contact_window = 0.10;  ///< s, of those others
   double blend = 0.05;           ///< m, and 1 m per `convergence_deg_per_metre`: so near to a row the next one may begin
+  double level_blend = 0.15;     ///< m, the same where neither way goes up or down: nothing is met by a short cut
   double feel_within = 0.02;     ///< m, before a row's end: what is felt earlier is not what was meant
   double pick_force = 30.0;      ///< N, against the motion: a pick is pressed
   double press_force = 40.0;     ///< N: a held box stands on something

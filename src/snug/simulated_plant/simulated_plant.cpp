@@ -18,6 +18,8 @@ constexpr double kNeededVacuum = 0.3;   ///< share of the set point that counts 
 constexpr double kSealPatience = 0.45;  ///< s, with the vacuum on
 constexpr double kStill = 0.003;        ///< m/s, a tool that is slower stands
 constexpr double kSettle = 0.3;         ///< s, after a motion, at least
+/// s, the same where the tool stands when it arrives: boxes have rested since it left them.
+constexpr double kExactSettle = 0.1;
 constexpr double kLongestSettle = 2.0;  ///< s
 constexpr double kPatience = 60.0;      ///< s, for one waypoint
 
@@ -179,9 +181,11 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
 /// The tool comes to stand, boxes come to rest.
 void SimulatedPlant::settle(const motion::PreparedProgram& plan, Course& course) {
   const double start = simulation_.time(state_);
+  const bool is_fast = options_.simulation.controller == motion::ControllerKind::Fast;
+  const double at_least = is_fast ? kExactSettle : kSettle;
   for (double now = start; now < start + kLongestSettle; now = simulation_.time(state_)) {
     const Twist V_WE = state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE;
-    if (now > start + kSettle && V_WE.linear.norm() < kStill) break;
+    if (now > start + at_least && V_WE.linear.norm() < kStill) break;
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
     if (watcher_) watcher_(tick);
     if (!tick.failure.empty()) break;
