@@ -43,6 +43,7 @@ class Served {
   void stop() {
     server_.stop();
     if (thread_.joinable()) thread_.join();
+    simulator_.end("the server was stopped");
   }
   [[nodiscard]] std::string address() const { return "click+" + server_.endpoint(); }
   [[nodiscard]] const std::vector<cell::RunResult>& runs() const { return runs_; }
