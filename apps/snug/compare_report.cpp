@@ -110,15 +110,16 @@ constexpr const char* kRow =
     "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7}  {:>7}  {}\n";
 
 std::string summary_line(const std::string& label, const Summary& all) {
-  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:9.2f} % {:5} {:10}  {:7.0f}\n", label, all.count,
-                     all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
+  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:9.2f} % {:5} {:10}  {:7.0f}\n", label,
+                     all.count, all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
                      all.recoveries, all.boxes_per_hour);
 }
 
 std::string format_table_end(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
                              bool with_references) {
   std::string text =
-      "\nexecuted filling, %        runs     mean      sd           range   sent as planned  lost recoveries  boxes/h\n";
+      "\nexecuted filling, %        runs     mean      sd           range   sent as planned  lost recoveries  "
+      "boxes/h\n";
   const std::vector<std::string> sequences = distinct(rows, [](const CompareRow& row) { return row.sequence; });
   for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
     const Summary all = summarize(rows, agent);
@@ -217,7 +218,8 @@ std::string format_compare_head(CompareForm form) {
   if (form == CompareForm::Json) return "{\"rows\": [";
   if (form == CompareForm::Csv) {
     return "agent,sequence,planned_boxes,planned_percent,executed_boxes,executed_percent,decision_seconds_median,seed,"
-           "plant_seed,items_sent,items_as_planned,boxes_lost,recoveries,percent_before_skips,stop_reason,boxes_per_hour\n";
+           "plant_seed,items_sent,items_as_planned,boxes_lost,recoveries,percent_before_skips,stop_reason,boxes_per_"
+           "hour\n";
   }
   return fmt::format(fmt::runtime(kRow), "agent", "sequence", "seed", "plant", "plan", "%", "exec", "%", "sent",
                      "as planned", "lost", "recoveries", "boxes/h", "dec., s", "stopped");
@@ -235,7 +237,8 @@ std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_
   return fmt::format(fmt::runtime(kRow), row.agent, row.sequence, row.seed, row.plant_seed, row.planned_boxes,
                      fmt::format("{:.2f}", row.planned_percent), row.executed_boxes,
                      fmt::format("{:.2f}", row.executed_percent), row.items_sent, row.items_as_planned, row.boxes_lost,
-                     row.recoveries, fmt::format("{:.0f}", row.boxes_per_hour), fmt::format("{:.2f}", row.decision_seconds_median), row.stop_reason);
+                     row.recoveries, fmt::format("{:.0f}", row.boxes_per_hour),
+                     fmt::format("{:.2f}", row.decision_seconds_median), row.stop_reason);
 }
 
 std::string format_compare_end(CompareForm form, const model::Scenario& scenario, const std::vector<CompareRow>& rows,

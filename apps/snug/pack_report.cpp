@@ -74,9 +74,9 @@ Json recoveries_as_json(const std::vector<session::Recovery>& recoveries) {
 }
 
 Json as_json(const session::ItemSeconds& seconds) {
-  return {{"travel", rounded(seconds.travel, 6)}, {"carry", rounded(seconds.carry, 6)},
+  return {{"travel", rounded(seconds.travel, 6)},   {"carry", rounded(seconds.carry, 6)},
           {"regrasp", rounded(seconds.regrasp, 6)}, {"insert", rounded(seconds.insert, 6)},
-          {"push", rounded(seconds.push, 6)}, {"wait", rounded(seconds.wait, 6)},
+          {"push", rounded(seconds.push, 6)},       {"wait", rounded(seconds.wait, 6)},
           {"total", rounded(seconds.total(), 6)}};
 }
 
@@ -151,18 +151,18 @@ std::string describe_hold(const study::Trial& trial) {
 }  // namespace
 
 std::string format_pack_head(const std::string& sequence, const session::SessionOptions& session,
-                             const simulated_plant::SimulatedPlantOptions& plant) {
+                             const simulated_plant::SimulatedPlantOptions& plant, const std::string& address) {
   const std::string& robot = plant.simulation.robot;
   return fmt::format(
-      "sequence {}, agent {}, seed {}; plant seed {}, perception {}, robot {}, {} samples\n\n"
+      "sequence {}, agent {}, seed {}; plant {}, perception {}, robot {}, {} samples\n\n"
       "                 planned place, mm       turned      insertion          success  error, true pose  peak force, "
       "N  "
       "moved  decided, rehearsed         seconds of the plant\n"
       "box          x_T     y_T     z_T  up                                  predicted     mm    deg     pred.  happ.  "
       "   "
       "mm      s      s  times  cycle travel  carry regrasp insert  push  wait\n",
-      sequence, session.agent, session.packing.seed, plant.seed, perception::name_of(plant.perception),
-      robot.empty() ? "none" : robot, session.samples);
+      sequence, session.agent, session.packing.seed, address.empty() ? fmt::format("seed {}", plant.seed) : address,
+      perception::name_of(plant.perception), robot.empty() ? "none" : robot, session.samples);
 }
 
 std::string format_item(const session::ItemReport& item, const study::TrueItem& truth) {
@@ -181,9 +181,9 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
         item.samples > 0 ? fmt::format("{:.0f} %", 100.0 * item.predicted_success) : std::string("-"),
         1e3 * truth.position_error, truth.angle_error / kDegree,
         item.samples > 0 ? fmt::format("{:.0f}", item.predicted.force) : std::string("-"), item.happened.force,
-        1e3 * truth.displacement, item.decision_seconds, item.rehearsal_seconds, item.attempts,
-        item.seconds.total(), item.seconds.travel, item.seconds.carry, item.seconds.regrasp, item.seconds.insert,
-        item.seconds.push, item.seconds.wait,
+        1e3 * truth.displacement, item.decision_seconds, item.rehearsal_seconds, item.attempts, item.seconds.total(),
+        item.seconds.travel, item.seconds.carry, item.seconds.regrasp, item.seconds.insert, item.seconds.push,
+        item.seconds.wait,
         item.end == session::ItemEnd::Placed ? std::string() : fmt::format("  {}", session::name_of(item.end)));
   }
   for (const session::Recovery& one : item.recoveries) {
@@ -212,7 +212,7 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
   text += fmt::format("plant              {:.1f} s, {} waypoints\n", result.duration, result.program.waypoints.size());
   text += fmt::format("speed              {:.0f} boxes an hour, {}\n", trial.boxes_per_hour, how_fast(trial));
   text += describe_hold(trial);
-  text += fmt::format("state hash         {:016x}\n", trial.state_hash);
+  if (!trial.is_elsewhere) text += fmt::format("state hash         {:016x}\n", trial.state_hash);
   if (repeated.count == 0) return text;
   text += fmt::format("\nopen loop, {} runs in cells drawn from the scenario's uncertainty\n", repeated.count);
   text += "box      succeeded   deviation x, y, z, mm   farthest, mm\n";
@@ -230,35 +230,35 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
 
 std::string format_json(const study::Trial& trial, const study::MonteCarloResult& repeated) {
   const session::SessionResult& result = trial.session;
-  Json json{{"sequence", result.sequence},
-            {"agent", result.agent},
-            {"seed", trial.seed},
-            {"plant", result.plant},
-            {"plant_seed", trial.plant_seed},
-            {"perception", perception::name_of(trial.plant.perception)},
-            {"robot", trial.plant.simulation.robot.empty() ? "none" : trial.plant.simulation.robot},
-            {"planned_boxes", result.plan.size()},
-            {"planned_percent", result.planned_percent},
-            {"executed_boxes", trial.executed_boxes},
-            {"executed_percent", trial.executed_percent},
-            {"percent_before_skips", result.percent_before_skips ? Json(*result.percent_before_skips) : Json()},
-            {"items_sent", trial.items_sent},
-            {"items_as_planned", trial.items_as_planned},
-            {"boxes_lost", trial.boxes_lost},
-            {"recoveries", trial.recoveries},
-            {"decision_seconds_median", result.decision_seconds_median},
-            {"stop_reason", session::name_of(result.stop_reason)},
-            {"stopped", result.stopped},
-            {"failure", result.failure},
-            {"duration", result.duration},
-            {"controller", motion::name_of(trial.plant.simulation.controller)},
-            {"tempo", trial.plant.simulation.controller == motion::ControllerKind::Fast
-                          ? Json(trial.plant.simulation.tempo)
-                          : Json()},
-            {"boxes_per_hour", trial.boxes_per_hour},
-            {"unturned_cycle_seconds", trial.unturned_cycle > 0.0 ? Json(trial.unturned_cycle) : Json()},
-            {"seconds", as_json(sum_of_seconds(result))},
-            {"state_hash", fmt::format("{:016x}", trial.state_hash)}};
+  Json json{
+      {"sequence", result.sequence},
+      {"agent", result.agent},
+      {"seed", trial.seed},
+      {"plant", result.plant},
+      {"plant_seed", trial.is_elsewhere ? Json() : Json(trial.plant_seed)},
+      {"perception", perception::name_of(trial.plant.perception)},
+      {"robot", trial.plant.simulation.robot.empty() ? "none" : trial.plant.simulation.robot},
+      {"planned_boxes", result.plan.size()},
+      {"planned_percent", result.planned_percent},
+      {"executed_boxes", trial.executed_boxes},
+      {"executed_percent", trial.executed_percent},
+      {"percent_before_skips", result.percent_before_skips ? Json(*result.percent_before_skips) : Json()},
+      {"items_sent", trial.items_sent},
+      {"items_as_planned", trial.items_as_planned},
+      {"boxes_lost", trial.boxes_lost},
+      {"recoveries", trial.recoveries},
+      {"decision_seconds_median", result.decision_seconds_median},
+      {"stop_reason", session::name_of(result.stop_reason)},
+      {"stopped", result.stopped},
+      {"failure", result.failure},
+      {"duration", result.duration},
+      {"controller", motion::name_of(trial.plant.simulation.controller)},
+      {"tempo",
+       trial.plant.simulation.controller == motion::ControllerKind::Fast ? Json(trial.plant.simulation.tempo) : Json()},
+      {"boxes_per_hour", trial.boxes_per_hour},
+      {"unturned_cycle_seconds", trial.unturned_cycle > 0.0 ? Json(trial.unturned_cycle) : Json()},
+      {"seconds", as_json(sum_of_seconds(result))},
+      {"state_hash", trial.is_elsewhere ? Json() : Json(fmt::format("{:016x}", trial.state_hash))}};
   json["items"] = Json::array();
   for (const session::ItemReport& item : result.items) {  // those left out on paper have no truth
     const auto truth = std::ranges::find(trial.items, item.id, &study::TrueItem::id);

@@ -31,7 +31,7 @@ struct GripperState {
   bool cannot_seal = false;     ///< a fault: the lip leaks
   /// The least cup::find_hold_factor of a hold whose vacuum was nearly complete, since somebody set it to infinity.
   double least_hold_factor = std::numeric_limits<double>::infinity();
-  Wrench F_S;                   ///< on the held box, at the lip, at the start of the step
+  Wrench F_S;  ///< on the held box, at the lip, at the start of the step
   bool operator==(const GripperState&) const = default;
 };
 

@@ -154,8 +154,7 @@ motion::PreparedProgram Simulation::prepare(motion::Program program) const {
 /// What the controller is told at the start of the next tick.
 void Simulation::feel(const motion::PreparedProgram& plan, CellState& state, const CellWorkspace& work) const {
   if (plan.settings.kind != motion::ControllerKind::Fast) return;
-  state.controller.sensed = {state.gripper.cup.pressure_gauge,
-                             tool_of(state).X_WE.R * tool_load(state, work).force};
+  state.controller.sensed = {state.gripper.cup.pressure_gauge, tool_of(state).X_WE.R * tool_load(state, work).force};
 }
 
 ArmReading Simulation::read_still(const CellState& state) const {

@@ -127,8 +127,8 @@ PreparedProgram prepare(Program program, ControllerSettings settings) {
           settings.vacuum_wait, "a finite number, 0 or more");
   // The discrete task is stable below sqrt(k) dt = 1; the limit keeps it well damped.
   const double product = std::sqrt(settings.task_stiffness) * settings.tick;
-  require(settings.kind != ControllerKind::Faithful || product <= 0.5, program, "task stiffness", settings.task_stiffness,
-          "sqrt(stiffness) * tick at most 0.5, else the task oscillates");
+  require(settings.kind != ControllerKind::Faithful || product <= 0.5, program, "task stiffness",
+          settings.task_stiffness, "sqrt(stiffness) * tick at most 0.5, else the task oscillates");
   check_limits(settings.limits, program.name);
   if (settings.kind == ControllerKind::Fast) check_fast(settings.fast, program.name);
   if (program.waypoints.empty()) throw InputError(program.name, "", "no rows", "at least one waypoint");

@@ -45,7 +45,7 @@ struct ControllerSettings {
 struct PreparedProgram {
   Program program;
   ControllerSettings settings;
-  std::vector<MotionLimits> row_limits;  ///< one per waypoint
+  std::vector<MotionLimits> row_limits;     ///< one per waypoint
   const PathLimits* path_limits = nullptr;  ///< Fast: what the joints allow; not owned; none: not limited by them
 };
 

@@ -111,8 +111,8 @@ double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   const double degrees = plan.settings.convergence_deg_per_metre;
   const double to = convergence_error(state.paced.start(), row.X_WE, degrees);
   const double from = convergence_error(row.X_WE, next.X_WE, degrees);
-  const double heights = std::max(std::abs(row.X_WE.p.z() - state.paced.start().p.z()),
-                                  std::abs(next.X_WE.p.z() - row.X_WE.p.z()));
+  const double heights =
+      std::max(std::abs(row.X_WE.p.z() - state.paced.start().p.z()), std::abs(next.X_WE.p.z() - row.X_WE.p.z()));
   const bool is_level = heights < kLevel && !is_contact_row(next.name);
   const double largest = is_level ? plan.settings.fast.level_blend : plan.settings.fast.blend;
   return std::min(largest, kLargestBlend * std::min(to, from));
@@ -218,13 +218,13 @@ void check_fast(const FastSettings& settings, const std::string& where) {
   require("tempo", settings.tempo, settings.tempo >= 0.1 && settings.tempo <= 1.0, "a number from 0.1 to 1");
   const auto is_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
   for (const Pace& pace : {settings.empty, settings.held, settings.insert}) {
-    for (const double value : {pace.max_speed, pace.max_acceleration, pace.max_turn_speed, pace.max_turn_acceleration,
-                               pace.window}) {
+    for (const double value :
+         {pace.max_speed, pace.max_acceleration, pace.max_turn_speed, pace.max_turn_acceleration, pace.window}) {
       require("pace", value, is_positive(value), "a finite number above 0");
     }
   }
-  for (const double value : {settings.contact_window, settings.blend, settings.level_blend, settings.feel_within, settings.pick_force,
-                             settings.press_force, settings.push_force}) {
+  for (const double value : {settings.contact_window, settings.blend, settings.level_blend, settings.feel_within,
+                             settings.pick_force, settings.press_force, settings.push_force}) {
     require("limits", value, is_positive(value), "a finite number above 0");
   }
 }

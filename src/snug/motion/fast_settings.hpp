@@ -10,8 +10,8 @@ namespace snug::motion {
 
 /// What the robot's sensors say. A controller that is told nothing waits and goes by time and place alone.
 struct Sensed {
-  double pressure_gauge = 0.0;          ///< Pa, in the cup; vacuum is negative
-  Vector3 force_W = Vector3::Zero();    ///< N, on the tool, from what it carries and touches
+  double pressure_gauge = 0.0;        ///< Pa, in the cup; vacuum is negative
+  Vector3 force_W = Vector3::Zero();  ///< N, on the tool, from what it carries and touches
   bool operator==(const Sensed&) const = default;
 };
 
@@ -25,12 +25,12 @@ struct FastSettings {
   /// A held box on its way in (Place). Other rows that touch something have the scenario's limits for their names.
   Pace insert = {0.6, 4.0, 1.5, 3.0, 0.10};
   double contact_window = 0.10;  ///< s, of those others
-  double blend = 0.05;           ///< m, and 1 m per `convergence_deg_per_metre`: so near to a row the next one may begin
-  double level_blend = 0.15;     ///< m, the same where neither way goes up or down: nothing is met by a short cut
-  double feel_within = 0.02;     ///< m, before a row's end: what is felt earlier is not what was meant
-  double pick_force = 30.0;      ///< N, against the motion: a pick is pressed
-  double press_force = 40.0;     ///< N: a held box stands on something
-  double push_force = 25.0;      ///< N: a held box leans on its neighbour (PlaceSlow)
+  double blend = 0.05;        ///< m, and 1 m per `convergence_deg_per_metre`: so near to a row the next one may begin
+  double level_blend = 0.15;  ///< m, the same where neither way goes up or down: nothing is met by a short cut
+  double feel_within = 0.02;  ///< m, before a row's end: what is felt earlier is not what was meant
+  double pick_force = 30.0;   ///< N, against the motion: a pick is pressed
+  double press_force = 40.0;  ///< N: a held box stands on something
+  double push_force = 25.0;   ///< N: a held box leans on its neighbour (PlaceSlow)
   double sealed_pressure = -std::numeric_limits<double>::infinity();   ///< Pa, gauge: the box may be lifted
   double released_pressure = std::numeric_limits<double>::infinity();  ///< Pa, gauge: the tool may leave the box
   bool operator==(const FastSettings&) const = default;

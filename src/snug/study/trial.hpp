@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct TrueItem {
   bool is_as_planned = false;   ///< within the session's limits of its last plan, in the container, nothing else lost
   double position_error = 0.0;  ///< m, level
   double angle_error = 0.0;     ///< rad
-  double hold_factor = 0.0;     ///< cup::find_hold_factor at the worst instant of its way; infinity: never held
+  /// cup::find_hold_factor at the worst instant of its way; infinity: never held, or not known.
+  double hold_factor = std::numeric_limits<double>::infinity();
   double displacement = 0.0;    ///< m, the farthest that another box was moved
   std::vector<bool> succeeded;  ///< of each motion that was sent: ended as planned and needed no remedy
 };
@@ -27,7 +29,8 @@ struct Trial {
   session::SessionResult session;
   std::uint64_t seed = 0;  ///< of the session
   std::uint64_t plant_seed = 0;
-  int executed_boxes = 0;  ///< packed, by the plant's truth
+  bool is_elsewhere = false;  ///< the plant is another program's: its seed and state are not known here
+  int executed_boxes = 0;     ///< packed, by the plant's truth
   double executed_percent = 0.0;
   int items_sent = 0;
   int items_as_planned = 0;

@@ -16,7 +16,9 @@ namespace {
 
 constexpr IO kHold{.vacuum = true};
 
-Waypoint row(const char* name, const Vector3& p, const IO& io = {}) { return {Pose{Matrix3::Identity(), p}, name, io, 0}; }
+Waypoint row(const char* name, const Vector3& p, const IO& io = {}) {
+  return {Pose{Matrix3::Identity(), p}, name, io, 0};
+}
 
 ControllerSettings fast_settings(double tempo = 1.0) {
   ControllerSettings settings;
@@ -144,9 +146,9 @@ TEST(FastController, WhatIsFeltTooEarlyIsNotTheSupport) {
 }
 
 TEST(FastController, ABoxIsLetGoOnTheWayOfADrag) {
-  const std::vector<Waypoint> drag = {row("Twist(A)", {0.0, 0.0, 0.1}, kHold), row("TwistDrag(A)", {0.32, 0.0, 0.1}, kHold),
-                                      row("TwistDrag(A)", {0.32, 0.0, 0.1}, {.blow_off = true}),
-                                      row("PreTwist(A)_back", {0.32, 0.0, 0.3})};
+  const std::vector<Waypoint> drag = {
+      row("Twist(A)", {0.0, 0.0, 0.1}, kHold), row("TwistDrag(A)", {0.32, 0.0, 0.1}, kHold),
+      row("TwistDrag(A)", {0.32, 0.0, 0.1}, {.blow_off = true}), row("PreTwist(A)_back", {0.32, 0.0, 0.3})};
   const Course course = run(prepare({"drag", drag}, fast_settings()));
   const std::size_t release = static_cast<std::size_t>(std::llround(course.arrival(1) / 0.008));
   EXPECT_TRUE(course.ticks[release].io.blow_off);

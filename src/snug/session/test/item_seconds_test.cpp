@@ -17,10 +17,18 @@ motion::Waypoint row(const std::string& name, bool vacuum = false) {
 }
 
 TEST(ItemSeconds, EachKindOfRowHasItsPart) {
-  const std::vector<motion::Waypoint> rows = {
-      row("PrePick(A)"), row("Box(A)"), row("PostPick(A)", true), row("PreTwist(A)", true), row("Twist(A)", true),
-      row("RePick(A)"), row("PostRePick(A)_up", true), row("PrePlace(A)_2", true), row("Place(A)_down", true),
-      row("PlaceSlow(A)_push", true), row("Place(A)"), row("PostPlace(A)")};
+  const std::vector<motion::Waypoint> rows = {row("PrePick(A)"),
+                                              row("Box(A)"),
+                                              row("PostPick(A)", true),
+                                              row("PreTwist(A)", true),
+                                              row("Twist(A)", true),
+                                              row("RePick(A)"),
+                                              row("PostRePick(A)_up", true),
+                                              row("PrePlace(A)_2", true),
+                                              row("Place(A)_down", true),
+                                              row("PlaceSlow(A)_push", true),
+                                              row("Place(A)"),
+                                              row("PostPlace(A)")};
   std::vector<plant::WaypointTime> times;
   for (std::size_t i = 0; i < rows.size(); ++i) times.push_back({static_cast<double>(1 << i), 0.25});
   const ItemSeconds seconds = split_seconds(rows, times);
