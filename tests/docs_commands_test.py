@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
-LONG = 8.0  # s
+LONG = 4.0  # s
 WAIT = 3600.0 if os.environ.get("SNUG_LONG") else LONG
 
 # Of these the beginning is enough: minutes of computing, or servers that end with Ctrl-C.
@@ -57,6 +57,8 @@ def verbs():
 class Commands(unittest.TestCase):
     """A folder as a reader has it who has followed README: the shipped scenarios, a program, two recordings, measurements."""
 
+    server = None
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -73,8 +75,27 @@ class Commands(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
+    def serve(self, line, folder, environment):
+        """A server is there for the commands after it, until the next one or the end of the document."""
+        self.stop_server()
+        self.server = subprocess.Popen(line, shell=True, cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                       start_new_session=True)
+        for said in self.server.stderr:  # where it listens, or why it does not
+            if "://" in said:
+                return
+        self.fail(f"{line}: ended before it listened")
+
+    def stop_server(self):
+        if self.server is not None:
+            os.killpg(self.server.pid, 9)
+            self.server.communicate()
+            self.server = None
+
     def run_command(self, line, folder):
         environment = {**os.environ, "PATH": f"{Path(SNUG).resolve().parent}:{os.environ['PATH']}"}
+        if line.startswith("snug serve"):
+            self.serve(line, folder, environment)
+            return
         is_long = LONG_COMMANDS.search(line) is not None
         with subprocess.Popen(line, shell=True, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                               start_new_session=True) as process:
@@ -101,6 +122,7 @@ class Commands(unittest.TestCase):
                             (folder / word).unlink()
                             shutil.copy(self.path / word, folder / word)
                     self.run_command(line, folder)
+            self.stop_server()
         return len(lines)
 
     def test_of_readme_and_documents(self):
