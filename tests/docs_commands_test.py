@@ -19,10 +19,10 @@ LONG = 4.0  # s
 WAIT = 3600.0 if os.environ.get("SNUG_LONG") else LONG
 
 # Of these the beginning is enough: minutes of computing, or servers that end with Ctrl-C.
-LONG_COMMANDS = re.compile(r"snug (bench|view|compare|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
-                           r"pack .*--monte-carlo|pack (?!.*--samples 0))")
+LONG_COMMANDS = re.compile(r"snug (bench|view|compare|study examples|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
+                           r"pack .*--monte-carlo|pack (?!.*-o ))")
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
-LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|\\| man |\.\.\./")
+LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|--slurm|\\| man |\.\.\./")
 PREPARED = ("program.csv", "run.h5", "again.h5", "measured.h5")
 MAY_FAIL = re.compile(r"snug (check|bench|export .*--format (urscript|ros-trajectory))")  # what they say no to is a result (exit code 1)
 
@@ -63,9 +63,11 @@ class Commands(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.path = Path(cls.folder.name)
-        (cls.path / "scenarios").symlink_to(ROOT / "scenarios")
+        for shipped in ("scenarios", "examples"):  # copies: some commands write beside what they read
+            shutil.copytree(ROOT / shipped, cls.path / shipped)
         cell = "scenarios/box-demonstrator.yaml"
-        for words in (["pack", cell, "--sequence", "1", "--samples", "0", "--program", "program.csv", "-o", "run.h5"],
+        for words in (["program", cell, "scenarios/demo-placements.yaml", "--sequence", "1", "-o", "program.csv"],
+                      ["simulate", cell, "--program", "program.csv", "--sequence", "1", "--robot", "ur10", "-o", "run.h5"],
                       ["simulate", cell, "--program", "program.csv", "--sequence", "1", "-o", "again.h5"],
                       ["measure", "run.h5", "--sensors", "scenarios/sensors/demonstrator.yaml", "--repetitions", "2", "-o", "measured.h5"]):
             result = subprocess.run([SNUG, *words], cwd=cls.path, capture_output=True, text=True, check=False)
@@ -118,7 +120,7 @@ class Commands(unittest.TestCase):
             for line in lines:
                 with self.subTest(command=line):
                     for word in shlex.split(line):  # outputs replace a copy, here only; a command cut short leaves it
-                        if (folder / word).is_symlink() and word in PREPARED and f"-o {word}" in line:
+                        if (folder / word).is_symlink() and word in PREPARED and re.search(rf"(-o|pack .*--program) {word}", line):
                             (folder / word).unlink()
                             shutil.copy(self.path / word, folder / word)
                     self.run_command(line, folder)
