@@ -66,8 +66,7 @@ class Commands(unittest.TestCase):
         for shipped in ("scenarios", "examples"):  # copies: some commands write beside what they read
             shutil.copytree(ROOT / shipped, cls.path / shipped)
         cell = "scenarios/box-demonstrator.yaml"
-        for words in (["program", cell, "scenarios/demo-placements.yaml", "--sequence", "1", "-o", "program.csv"],
-                      ["simulate", cell, "--program", "program.csv", "--sequence", "1", "--robot", "ur10", "-o", "run.h5"],
+        for words in (["pack", cell, "--sequence", "1", "--plant-seed", "7", "--samples", "0", "--program", "program.csv", "-o", "run.h5"],
                       ["simulate", cell, "--program", "program.csv", "--sequence", "1", "-o", "again.h5"],
                       ["measure", "run.h5", "--sensors", "scenarios/sensors/demonstrator.yaml", "--repetitions", "2", "-o", "measured.h5"]):
             result = subprocess.run([SNUG, *words], cwd=cls.path, capture_output=True, text=True, check=False)
