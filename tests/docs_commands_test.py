@@ -20,7 +20,7 @@ WAIT = 3600.0 if os.environ.get("SNUG_LONG") else LONG
 
 # Of these the beginning is enough: minutes of computing, or servers that end with Ctrl-C.
 LONG_COMMANDS = re.compile(r"snug (bench|view|compare|study examples|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
-                           r"pack .*--monte-carlo|pack (?!.*-o ))")
+                           r"pack .*--monte-carlo|pack (?!.*-o (?!run.h5)))")
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
 LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|--slurm|\\| man |\.\.\./")
 PREPARED = ("program.csv", "run.h5", "again.h5", "measured.h5")
