@@ -17,8 +17,9 @@ namespace {
 constexpr double kArrived = 0.002;
 /// Of the shorter of two motions: over at most so much of it they are blended.
 constexpr double kLargestBlend = 0.4;
-/// m: a way that rises or falls by less is level.
-constexpr double kLevel = 0.01;
+/// A way that rises or falls by less than this, and this share of its level length, is level.
+constexpr double kLevel = 0.01;  ///< m
+constexpr double kGentleSlope = 0.2;
 /// Rows that are left on the way, the cup letting go as it moves (docs/packing-execution.md, pivot).
 constexpr std::string_view kOnTheFly = "TwistDrag";
 
@@ -103,6 +104,11 @@ bool feels_contact(const PreparedProgram& plan, const ControllerState& state) {
   return -(state.sensed.force_W - state.force_before_W).dot(state.paced.direction_W()) > limit;
 }
 
+bool goes_level(const Vector3& from, const Vector3& to) {
+  const Vector3 way = to - from;
+  return std::abs(way.z()) < kLevel + kGentleSlope * way.head<2>().norm();
+}
+
 /// m, from a row where the next one may begin; 0: the tool stops there.
 double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   if (!has_next(plan, state.row)) return 0.0;
@@ -111,9 +117,8 @@ double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   const double degrees = plan.settings.convergence_deg_per_metre;
   const double to = convergence_error(state.paced.start(), row.X_WE, degrees);
   const double from = convergence_error(row.X_WE, next.X_WE, degrees);
-  const double heights =
-      std::max(std::abs(row.X_WE.p.z() - state.paced.start().p.z()), std::abs(next.X_WE.p.z() - row.X_WE.p.z()));
-  const bool is_level = heights < kLevel && !is_contact_row(next.name);
+  const bool is_level = goes_level(state.paced.start().p, row.X_WE.p) && goes_level(row.X_WE.p, next.X_WE.p) &&
+                        !is_contact_row(next.name);
   const double largest = is_level ? plan.settings.fast.level_blend : plan.settings.fast.blend;
   return std::min(largest, kLargestBlend * std::min(to, from));
 }
