@@ -35,9 +35,11 @@ constexpr int kMaxHalvings = 6;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// M += sum over the three rows of a^T c.
-void add_product(Matrix6& M, const double (&a)[3][6], const double (&c)[3][6]) {
-  double* column = M.data();
-  for (int j = 0; j < 6; ++j, column += 6) {
+void add_product(const PanelBlock& M, const double (&left)[3][6], const double (&right)[3][6]) {
+  const auto& a = M.is_transposed ? right : left;
+  const auto& c = M.is_transposed ? left : right;
+  double* column = M.data;
+  for (int j = 0; j < 6; ++j, column += M.stride) {
     const Pair c0{c[0][j], c[0][j]}, c1{c[1][j], c[1][j]}, c2{c[2][j], c[2][j]};
     for (int k = 0; k < 6; k += 2) {
       store(column + k, load(column + k) + (load(a[0] + k) * c0 + load(a[1] + k) * c1 + load(a[2] + k) * c2));
@@ -128,6 +130,9 @@ class IslandProblem {
   void run_cycles(int count);
   void linearise(bool with_hard);
   bool collect_hard();
+  [[nodiscard]] std::size_t end_of_group(std::size_t first) const;
+  bool take_group(std::size_t first, std::size_t end);
+  void apply_hard();
   void couple_hard();
   void solve_hard();
 
@@ -301,30 +306,66 @@ void IslandProblem::run_cycles(int count) {
   }
 }
 
-/// Fills work.hard.rows and the bodies that they touch. False: more than can be solved densely.
+/// Groups the contacts that are left over by the bodies they share. What is at different places of a large island is
+/// solved apart. Groups that are too large for a dense problem stay linear. False: nothing to solve so.
 bool IslandProblem::collect_hard() {
-  work_.hard.rows.clear();
-  for (const int place : work_.hard_bodies) work_.hard_place[at(place)] = -1;
-  work_.hard_bodies.clear();
-  bool fits = true;
+  const auto root_of = [&](int place) {
+    while (work_.hard_parent[at(place)] != place) place = work_.hard_parent[at(place)];
+    return place;
+  };
+  const auto place_of = [&](const Row& row) { return work_.local[at(row.ia >= 0 ? row.ia : row.ib)]; };
+  for (std::size_t i = 0; i < work_.active.size(); ++i) work_.hard_parent[i] = static_cast<int>(i);
+  work_.hard_rows.clear();
   each_row([&](Row& row, NewtonRow& newton) {
     newton.is_hard |= natural_map(row, u_) > kHardResidual * tolerance_;
-    if (!newton.is_hard || !fits) return;
-    fits = work_.hard.rows.size() < HardContacts::kMaxContacts;
-    if (!fits) return;
+    if (!newton.is_hard) return;
+    work_.hard_rows.push_back({&row, &newton, -1});
+    if (row.ia < 0 || row.ib < 0) return;
+    const int a = root_of(work_.local[at(row.ia)]), b = root_of(work_.local[at(row.ib)]);
+    work_.hard_parent[at(std::max(a, b))] = std::min(a, b);
+  });
+  for (HardRow& hard : work_.hard_rows) hard.group = root_of(place_of(*hard.row));
+  std::sort(work_.hard_rows.begin(), work_.hard_rows.end(), [](const HardRow& a, const HardRow& b) {
+    return a.group != b.group ? a.group < b.group : a.row < b.row;
+  });
+  // Where they are most of the island, its own system is smaller than the dense one.
+  const std::size_t most = std::min<std::size_t>(HardContacts::kMaxContacts, 2 * work_.active.size());
+  bool has_any = false;
+  for (std::size_t i = 0, end = 0; i < work_.hard_rows.size(); i = end) {
+    end = end_of_group(i);
+    const bool fits = end - i <= most && take_group(i, end);
+    has_any |= fits;
+    for (std::size_t k = i; k < end && !fits; ++k) work_.hard_rows[k].newton->is_hard = false;
+  }
+  return has_any;
+}
+
+std::size_t IslandProblem::end_of_group(std::size_t first) const {
+  std::size_t end = first;
+  while (end < work_.hard_rows.size() && work_.hard_rows[end].group == work_.hard_rows[first].group) ++end;
+  return end;
+}
+
+/// Fills work.hard.rows and the bodies that they touch. False: more than can be solved densely.
+bool IslandProblem::take_group(std::size_t first, std::size_t end) {
+  for (const int place : work_.hard_bodies) work_.hard_place[at(place)] = -1;
+  work_.hard_bodies.clear();
+  work_.hard.rows.clear();
+  for (std::size_t i = first; i < end; ++i) {
+    Row& row = *work_.hard_rows[i].row;
     work_.hard.rows.push_back(&row);
     for (const int body : {row.ia, row.ib}) {
       if (body < 0 || work_.hard_place[at(work_.local[at(body)])] >= 0) continue;
       work_.hard_place[at(work_.local[at(body)])] = static_cast<int>(work_.hard_bodies.size());
       work_.hard_bodies.push_back(work_.local[at(body)]);
     }
-    fits = work_.hard_bodies.size() <= BlockSolver::kMaxResponses;
-  });
-  // Where they are most of the island, its own system is smaller than the dense one.
-  return fits && work_.hard.rows.size() <= 2 * work_.active.size();
+    if (work_.hard_bodies.size() > BlockSolver::kMaxResponses) return false;
+  }
+  return true;
 }
 
-/// The dense problem of the hard contacts: what the island answers to their impulses.
+/// The dense problem of a group: what the island answers to its impulses. work.step is what it answers to those that all
+/// groups have now.
 void IslandProblem::couple_hard() {
   HardContacts& hard = work_.hard;
   const auto size = static_cast<Eigen::Index>(3 * hard.rows.size());
@@ -356,10 +397,14 @@ void IslandProblem::couple_hard() {
       }
     }
   }
+  for (std::size_t j = 0; j < hard.rows.size(); ++j) {  // without the group's own
+    const Eigen::Map<const Vector3> lambda(hard.rows[j]->lambda);
+    hard.xi_0.noalias() -= hard.W.middleCols<3>(static_cast<Eigen::Index>(3 * j)) * lambda;
+  }
 }
 
-/// Rounds of: the few hard contacts exactly, all others by the linear laws of their status. Goes on while that helps,
-/// and only where they are few.
+/// Rounds of: the few hard contacts exactly, group by group, all others by the linear laws of their status. Goes on
+/// while that helps, and only where groups are small.
 void IslandProblem::solve_hard() {
   each_row([](const Row&, NewtonRow& newton) { newton.is_hard = false; });
   int failures = 0;
@@ -367,14 +412,23 @@ void IslandProblem::solve_hard() {
     ++iterations_;
     linearise(false);
     assemble();
+    for (const int body : work_.active) std::copy_n(work_.error.data() + 6 * body, 6, work_.u.data() + 6 * body);
+    apply_hard();
     solve_system();
-    couple_hard();
-    const bool is_settled = work_.hard.solve(0.1 * tolerance_);
-    for (std::size_t i = 0; i < work_.hard.rows.size(); ++i) {
-      Row& row = *work_.hard.rows[i];
-      for (int k = 0; k < 3; ++k) row.lambda[k] = work_.hard.lambda[static_cast<Eigen::Index>(3 * i) + k];
-      apply(row, row.lambda, work_.error.data());
+    bool is_settled = true;
+    for (std::size_t i = 0, end = 0; i < work_.hard_rows.size(); i = end) {
+      end = end_of_group(i);
+      if (!work_.hard_rows[i].newton->is_hard) continue;
+      (void)take_group(i, end);
+      couple_hard();
+      is_settled &= work_.hard.solve(0.1 * tolerance_);
+      for (std::size_t k = i; k < end; ++k) {
+        const double* lambda = work_.hard.lambda.data() + 3 * (k - i);
+        std::copy_n(lambda, 3, work_.hard_rows[k].row->lambda);
+      }
     }
+    for (const int body : work_.active) std::copy_n(work_.u.data() + 6 * body, 6, work_.error.data() + 6 * body);
+    apply_hard();
     solve_system();
     take_linear_impulses(false);
     apply_impulses();
@@ -384,6 +438,13 @@ void IslandProblem::solve_hard() {
     if (!(best_ <= 0.5 * before)) ++failures;  // also when it is not a number
   }
   restore_best();
+}
+
+/// Adds the impulses of the hard contacts to work.error.
+void IslandProblem::apply_hard() {
+  for (const HardRow& hard : work_.hard_rows) {
+    if (hard.newton->is_hard) apply(*hard.row, hard.row->lambda, work_.error.data());
+  }
 }
 
 /// Momentum error u - u_free - sum (J T)^T lambda(u) of every body at work.u; returns its norm.
@@ -478,6 +539,8 @@ NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity)
   local.assign(bodies, -1);
   hard_place.assign(bodies, -1);
   active.reserve(bodies);
+  hard_parent.resize(bodies);
+  hard_rows.reserve(row_capacity);
   hard_bodies.reserve(BlockSolver::kMaxResponses + 2);
   response.resize(BlockSolver::kMaxResponses * BlockSolver::kMaxResponses);
 }

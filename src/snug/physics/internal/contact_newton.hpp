@@ -31,6 +31,13 @@ struct NewtonRow {
   bool is_hard;
 };
 
+/// A contact that Newton's method leaves over, and the group of such contacts it is solved in.
+struct HardRow {
+  Row* row;
+  NewtonRow* newton;
+  int group;
+};
+
 struct NewtonScratch {
   NewtonScratch(std::size_t bodies, std::size_t rows);
 
@@ -41,6 +48,8 @@ struct NewtonScratch {
   BlockSolver solver;
   HardContacts hard;
   std::vector<int> hard_bodies, hard_place;  ///< places in `active`; and of each place, the index in hard_bodies or -1
+  std::vector<int> hard_parent;  ///< of each place: union-find of bodies that share hard contacts
+  std::vector<HardRow> hard_rows;
   std::vector<Matrix6> response;
   std::unique_ptr<NewtonRow[]> rows;
 };
