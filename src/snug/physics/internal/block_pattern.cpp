@@ -201,8 +201,8 @@ void BlockPattern::order_by_tree() {
   for (int r = 0; r < count_; ++r) rank_[at(body_[at(r)])] = r;
 }
 
-/// A body joins the front before it when it is the parent of that one's last and fills little more than it. Zeros in the
-/// panels cost work, narrow fronts cost more.
+/// A body joins the front before it when it is the parent of that one's last and fills little more than it. Zeros in
+/// the panels cost work, narrow fronts cost more.
 bool BlockPattern::make_fronts() {
   constexpr int kMaxWidth = 12;
   constexpr double kZeros = 0.15;  ///< of a panel

@@ -41,7 +41,9 @@ class BlockPattern {
     int i = 0, j = 0;
     bool operator==(const Connection&) const = default;
   };
-  [[nodiscard]] const Connection& connection(int number) const { return connections_[static_cast<std::size_t>(number)]; }
+  [[nodiscard]] const Connection& connection(int number) const {
+    return connections_[static_cast<std::size_t>(number)];
+  }
   [[nodiscard]] int front_count() const { return front_count_; }
   [[nodiscard]] const Front& front(int number) const { return fronts_[static_cast<std::size_t>(number)]; }
   [[nodiscard]] int front_of(int rank) const { return front_of_[static_cast<std::size_t>(rank)]; }

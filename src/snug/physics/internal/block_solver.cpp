@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <new>
 
 #include "snug/physics/internal/panel_kernels.hpp"
@@ -35,6 +36,28 @@ void subtract_transposed(int rows, int columns, const double* a, std::ptrdiff_t 
   }
 }
 
+/// Inverse of a block by Gauss and Jordan's elimination in place. Where contacts do not slide every pivot is at least
+/// 1, what the identity brings in: only below half of that are rows exchanged.
+Matrix6 invert(const BlockView& block) {
+  alignas(16) double m[6][6];
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) m[i][j] = block(i, j);
+  }
+  for (int k = 0; k < 6; ++k) {
+    if (!(std::abs(m[k][k]) > 0.5)) return Matrix6(block).inverse();
+    const double scale = 1.0 / m[k][k];
+    m[k][k] = 1.0;
+    for (int j = 0; j < 6; ++j) m[k][j] *= scale;
+    for (int i = 0; i < 6; ++i) {
+      if (i == k) continue;
+      const double factor = m[i][k];
+      m[i][k] = 0.0;
+      for (int j = 0; j < 6; ++j) m[i][j] -= factor * m[k][j];
+    }
+  }
+  return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(m[0]);
+}
+
 }  // namespace
 
 LazyStore::LazyStore(std::size_t count)
@@ -49,13 +72,7 @@ BlockSolver::BlockSolver(std::size_t bodies, std::size_t connections)
       place_(bodies),
       product_(36 * bodies),
       x_(6 * bodies),
-      gathered_(6 * bodies),
-      body_capacity_(bodies),
-      trace_length_(std::min(bodies, kMaxResponses)),
-      trace_ranks_(trace_length_.size() * bodies),
-      left_(36 * trace_ranks_.size()),
-      right_(36 * trace_ranks_.size()),
-      slot_(bodies, -1) {}
+      gathered_(6 * bodies) {}
 
 void BlockSolver::set_identity() {
   for (int f = 0; f < pattern_.front_count(); ++f) {
@@ -123,10 +140,12 @@ void BlockSolver::take_update(const Front& front, const BlockPattern::Update& up
   for (int j = update.begin; j < update.end; ++j) {
     const std::ptrdiff_t column = 6 * place_[at(rows[j])];
     const int below = 6 * (count - update.begin), beside = 6 * (count - update.end);
-    set_product({below, depth, source_lower + 6 * update.begin, ld, source_upper + 6 * j, 1, ud, product_.data(), below});
+    set_product(
+        {below, depth, source_lower + 6 * update.begin, ld, source_upper + 6 * j, 1, ud, product_.data(), below});
     subtract(update.begin, lower(front) + column * front_ld, front_ld, 0);
     if (beside == 0) continue;
-    set_product({beside, depth, source_upper + 6 * update.end, ud, source_lower + 6 * j, 1, ld, product_.data(), beside});
+    set_product(
+        {beside, depth, source_upper + 6 * update.end, ud, source_lower + 6 * j, 1, ld, product_.data(), beside});
     subtract(update.end, upper(front) + column * front_ud, front_ud, front.width);
   }
 }
@@ -140,7 +159,7 @@ void BlockSolver::eliminate(const Front& front) {
   for (int c = 0; c < front.width; ++c) {
     const int below = 6 * (front.height() - c - 1);
     double* pivot = panel + 6 * c * (ld + 1);
-    const Matrix6 inverse = Matrix6(BlockView(pivot, Stride(ld))).inverse();
+    const Matrix6 inverse = invert(BlockView(pivot, Stride(ld)));
     BlockMap(pivot, Stride(ld)) = inverse;
     if (below == 0) continue;
     double* column = pivot + 6;
@@ -200,71 +219,6 @@ void BlockSolver::solve(double* x) {
     }
   }
   for (int k = 0; k < count(); ++k) Part(x + 6 * pattern_.body(k)) = Part(x_.data() + 6 * k);
-}
-
-/// The way of a body: those after it in its front, then the front of the first row, and so on to a root.
-void BlockSolver::trace(int body, std::size_t asked) {
-  const std::size_t first = trace_place(asked, 0);
-  const auto left = [&](std::size_t s) { return Eigen::Map<Matrix6>(left_.get() + 36 * s); };
-  const auto right = [&](std::size_t s) { return Eigen::Map<Matrix6>(right_.get() + 36 * s); };
-  std::size_t length = 0;
-  for (int k = pattern_.rank(body);;) {
-    slot_[at(k)] = static_cast<int>(length);
-    trace_ranks_[first + length] = k;
-    left(first + length).setZero();
-    right(first + length).setZero();
-    ++length;
-    const Front& front = pattern_.front(pattern_.front_of(k));
-    if (k + 1 < front.first + front.width) {
-      ++k;
-    } else if (front.rows() > 0) {
-      k = pattern_.rows(front)[0];
-    } else {
-      break;
-    }
-  }
-  trace_length_[asked] = length;
-  left(first).setIdentity();
-  right(first).setIdentity();
-  for (std::size_t s = first; s < first + length; ++s) {
-    const int k = trace_ranks_[s];
-    const Front& front = pattern_.front(pattern_.front_of(k));
-    const std::ptrdiff_t ld = lower_stride(front), ud = upper_stride(front), column = 6 * (k - front.first);
-    const Matrix6 scaled = left(s) * BlockView(lower(front) + column * (ld + 1), Stride(ld));
-    left(s) = scaled;
-    for (std::ptrdiff_t other = column + 6; other < 6 * front.width; other += 6) {
-      const std::size_t to = first + at(slot_[at(front.first + static_cast<int>(other / 6))]);
-      left(to).noalias() -= scaled * BlockView(lower(front) + column + other * ld, Stride(ld));
-      right(to).noalias() -= BlockView(lower(front) + other + column * ld, Stride(ld)) * right(s);
-    }
-    const int* row = pattern_.rows(front);
-    for (int i = 0; i < front.rows(); ++i) {
-      const std::size_t to = first + at(slot_[at(row[i])]);
-      left(to).noalias() -= scaled * BlockView(upper(front) + 6 * i + column * ud, Stride(ud)).transpose();
-      right(to).noalias() -= BlockView(lower(front) + 6 * (front.width + i) + column * ld, Stride(ld)) * right(s);
-    }
-  }
-  for (std::size_t s = first; s < first + length; ++s) slot_[at(trace_ranks_[s])] = -1;
-}
-
-void BlockSolver::respond(const std::vector<int>& bodies, std::vector<Matrix6>& response) {
-  const std::size_t n = bodies.size();
-  for (std::size_t i = 0; i < n; ++i) trace(bodies[i], i);
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t first = trace_place(i, 0);
-    for (std::size_t s = 0; s < trace_length_[i]; ++s) slot_[at(trace_ranks_[first + s])] = static_cast<int>(s);
-    for (std::size_t j = 0; j < n; ++j) {
-      Matrix6& block = response[n * i + j];
-      block.setZero();
-      for (std::size_t s = trace_place(j, 0); s < trace_place(j, trace_length_[j]); ++s) {
-        const int slot = slot_[at(trace_ranks_[s])];
-        if (slot < 0) continue;
-        block.noalias() += Eigen::Map<const Matrix6>(left_.get() + 36 * (first + at(slot))) *
-                           Eigen::Map<const Matrix6>(right_.get() + 36 * s);
-      }
-    }
-    for (std::size_t s = 0; s < trace_length_[i]; ++s) slot_[at(trace_ranks_[first + s])] = -1;
-  }
 }
 
 }  // namespace snug::physics::internal

@@ -31,9 +31,9 @@ struct PanelBlock {
 };
 
 /// LU factorisation of matrices I + sum J^T S J, whose pattern is symmetric and whose blocks on the diagonal stay
-/// regular without pivoting. Fronts of bodies (BlockPattern) have dense panels; each takes over what earlier ones change
-/// in it, in their order, so that fill, work and the bytes of the result depend on the pattern alone. Never allocates
-/// after construction.
+/// regular without pivoting. Fronts of bodies (BlockPattern) have dense panels; each takes over what earlier ones
+/// change in it, in their order, so that fill, work and the bytes of the result depend on the pattern alone. Never
+/// allocates after construction.
 ///
 /// For a pattern: begin(n), connect(i, j) for pairs of bodies that share contacts, analyze(). For a matrix:
 /// set_identity(), add to diagonal() and coupling(), factorize(), solve().
@@ -61,11 +61,6 @@ class BlockSolver {
   /// A^-1 x in place, 6 entries a body.
   void solve(double* x);
 
-  /// Blocks (i, j) of A^-1 for the bodies given, of a factorised A, as 6n x 6n, row-major by body. Costs only the ways
-  /// of these bodies through the elimination. At most kMaxResponses bodies.
-  static constexpr std::size_t kMaxResponses = 24;
-  void respond(const std::vector<int>& bodies, std::vector<Matrix6>& response);
-
   [[nodiscard]] int count() const { return pattern_.count(); }
   [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
 
@@ -73,8 +68,8 @@ class BlockSolver {
   using Front = BlockPattern::Front;
   using Index = std::vector<int>;
 
-  /// Panel of a front: its own bodies and below them its rows, 6 numbers each. Below the diagonal, L with unit diagonal;
-  /// on it, the inverse of U's; above it, within the front, U.
+  /// Panel of a front: its own bodies and below them its rows, 6 numbers each. Below the diagonal, L with unit
+  /// diagonal; on it, the inverse of U's; above it, within the front, U.
   [[nodiscard]] double* lower(const Front& front) { return lower_.get() + 36 * front.panel; }
   [[nodiscard]] std::ptrdiff_t lower_stride(const Front& front) const { return 6 * front.height(); }
   /// U beside the front's own bodies, transposed: its rows, 6 numbers each, for each of its bodies.
@@ -91,15 +86,6 @@ class BlockSolver {
   std::vector<double> product_;  ///< six columns of a panel
   std::vector<double> x_;        ///< by rank
   std::vector<double> gathered_;
-
-  /// What a body touches on its way through the elimination, by body asked for: ranks, rows of U^-1, columns of L^-1.
-  void trace(int body, std::size_t asked);
-  [[nodiscard]] std::size_t trace_place(std::size_t asked, std::size_t step) const { return asked * body_capacity_ + step; }
-  std::size_t body_capacity_;
-  std::vector<std::size_t> trace_length_;
-  Index trace_ranks_;
-  LazyStore left_, right_;  ///< 36 numbers each
-  Index slot_;              ///< of each rank on the way at hand, or -1
 };
 
 }  // namespace snug::physics::internal

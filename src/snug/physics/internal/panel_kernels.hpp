@@ -5,8 +5,8 @@
 
 namespace snug::physics::internal {
 
-/// A product A B^T with six columns. Columns of A and C lie behind each other at `stride_a` and `stride_c`, entry (j, k)
-/// of B at b[j * row_b + k * column_b]. `rows` is even.
+/// A product A B^T with six columns. Columns of A and C lie behind each other at `stride_a` and `stride_c`, entry (j,
+/// k) of B at b[j * row_b + k * column_b]. `rows` is even.
 struct PanelProduct {
   int rows, depth;
   const double* a;
