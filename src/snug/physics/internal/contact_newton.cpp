@@ -25,12 +25,18 @@ constexpr double kFirstPenalty = 30.0;  ///< of the augmented Lagrangian, in uni
 constexpr double kLeastPenalty = 0.3;
 constexpr double kLargestPenalty = 1e8;
 constexpr double kGrowth = 3.0;  ///< of the penalty after a solved stage, and its cut after a failed one
-constexpr int kMaxIterations = 300;
 constexpr int kMaxStageIterations = 20;
-constexpr int kMaxHalvings = 3;
-constexpr double kStageError = 0.1;  ///< of the residual, to which a stage is solved
-constexpr double kGain = 0.3;        ///< of the residual by a stage, after which generalized steps are tried again
-constexpr int kTriedAgain = 2;
+constexpr int kTriedAgain = 2;  ///< generalized steps after a stage that gains much
+
+/// How thoroughly the augmented Lagrangian is solved.
+struct Care {
+  double stage_error;  ///< of the residual, to which a stage is solved
+  int max_halvings;
+  int max_iterations;
+  double gain;  ///< of the residual by a stage, after which generalized steps are tried again
+};
+constexpr Care kQuick{0.1, 3, 150, 0.3};
+constexpr Care kThorough{0.01, 6, 300, 0.0};  ///< where that fails
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -130,10 +136,10 @@ class IslandProblem {
   void run_cycles(int count);
   void linearise();
 
-  void augment();
-  bool solve_stage(double penalty, double tolerance);
+  void augment(const Care& care);
+  bool solve_stage(double penalty, double tolerance, const Care& care);
   double evaluate(double penalty);
-  double search_line(double penalty, double error);
+  double search_line(double penalty, double error, int max_halvings);
 
   double tolerance_, wanted_;
   Row* first_;
@@ -309,10 +315,10 @@ double IslandProblem::evaluate(double penalty) {
 }
 
 /// Moves along the Newton step until the momentum error shrinks. Returns the new error, negative when it does not.
-double IslandProblem::search_line(double penalty, double error) {
+double IslandProblem::search_line(double penalty, double error, int max_halvings) {
   for (const int body : work_.active) std::copy_n(work_.u.data() + 6 * body, 6, work_.u_start.data() + 6 * body);
   double length = 1.0;
-  for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
+  for (int halving = 0; halving < max_halvings; ++halving, length *= 0.5) {
     for (const int body : work_.active) {
       for (int k = 6 * body; k < 6 * body + 6; ++k) work_.u[at(k)] = work_.u_start[at(k)] - length * work_.step[at(k)];
     }
@@ -323,14 +329,14 @@ double IslandProblem::search_line(double penalty, double error) {
 }
 
 /// Newton's method for the augmented law with the present centres and penalty.
-bool IslandProblem::solve_stage(double penalty, double tolerance) {
+bool IslandProblem::solve_stage(double penalty, double tolerance, const Care& care) {
   double error = evaluate(penalty);
   for (int i = 0; i < kMaxStageIterations; ++i) {
     if (error <= tolerance) return true;
     ++iterations_;
     assemble();
     solve_system();
-    error = search_line(penalty, error);
+    error = search_line(penalty, error, care.max_halvings);
     if (error < 0.0) return false;
   }
   return error <= tolerance;
@@ -338,16 +344,16 @@ bool IslandProblem::solve_stage(double penalty, double tolerance) {
 
 /// The augmented Lagrangian: slower, and the one that always worked. Where a stage gains much, statuses are nearly
 /// right, and generalized steps end it.
-void IslandProblem::augment() {
+void IslandProblem::augment(const Care& care) {
   double mobility = 0.0;  // turns momentum errors into velocities
   each_row([&](const Row& row, NewtonRow&) {
     mobility = std::max({mobility, row.W[0] - row.gamma, row.W[3], row.W[5]});
   });
-  const int last = iterations_ + kMaxIterations;
+  const int last = iterations_ + care.max_iterations;
   for (double penalty = kFirstPenalty; iterations_ < last && penalty > kLeastPenalty && !is_solved();) {
     each_row([](const Row& row, NewtonRow& newton) { std::copy_n(row.lambda, 3, newton.center); });
     for (const int body : work_.active) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
-    if (!solve_stage(penalty, std::min(0.1 * tolerance_, kStageError * residual_) / std::sqrt(mobility))) {
+    if (!solve_stage(penalty, std::min(0.1 * tolerance_, care.stage_error * residual_) / std::sqrt(mobility), care)) {
       penalty /= kGrowth;
       continue;
     }
@@ -356,7 +362,7 @@ void IslandProblem::augment() {
     const double before = best_;
     measure();
     penalty = std::min(kLargestPenalty, penalty * kGrowth);
-    if (is_solved() || best_ >= kGain * before) continue;
+    if (is_solved() || best_ >= care.gain * before) continue;
     restore_best();
     run_cycles(kTriedAgain);
     restore_best();
@@ -372,7 +378,8 @@ int IslandProblem::solve() {
     run_cycles(3);
   }
   restore_best();
-  if (!is_solved()) augment();
+  if (!is_solved()) augment(kQuick);
+  if (!is_solved()) augment(kThorough);
   return iterations_;
 }
 
