@@ -30,12 +30,17 @@ function(snug_viewer_page)
 endfunction()
 
 function(snug_embed_viewer target source)
+  add_library(snug_viewer_embedded OBJECT ${source})
+  target_include_directories(snug_viewer_embedded PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  snug_compile_options(snug_viewer_embedded)
+  # A compiler cache does not see the page behind the assembler's .incbin: it would bring back an old one.
+  set_target_properties(snug_viewer_embedded PROPERTIES CXX_COMPILER_LAUNCHER "")
+  target_link_libraries(${target} PRIVATE snug_viewer_embedded)
   if(NOT SNUG_VIEWER)
     return()
   endif()
   snug_viewer_page()
-  set(page ${SNUG_VIEWER_PAGE})
-  add_dependencies(${target} snug_viewer_page)
-  set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${page}
-    COMPILE_DEFINITIONS "SNUG_VIEWER_PAGE=\"${page}\"")
+  add_dependencies(snug_viewer_embedded snug_viewer_page)
+  set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${SNUG_VIEWER_PAGE}
+    COMPILE_DEFINITIONS "SNUG_VIEWER_PAGE=\"${SNUG_VIEWER_PAGE}\"")
 endfunction()

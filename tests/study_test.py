@@ -35,7 +35,7 @@ class Scratch(unittest.TestCase):
     """A folder that goes away, and studies in it."""
 
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
+        scratch = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a scheduler that ends may still write
         self.addCleanup(scratch.cleanup)
         self.folder = Path(scratch.name)
 

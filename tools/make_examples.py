@@ -134,6 +134,20 @@ def readings(rng, mass, com, offset):
     return "\n".join(rows) + "\n"
 
 
+def board(rng):
+    """A board that the tool holds 0.1 m below it, 1 m under the scenario's camera; noise 0.3 mm, 0.5 mrad."""
+    camera = rotation_of([math.pi, 0, math.pi / 2]), [0.505, -0.350, 0.720]
+    held = rotation_of([0.02, -0.03, 0.5]), [0.01, -0.02, 0.1]
+    rows = ["x,y,z,rx,ry,rz,cx,cy,cz,crx,cry,crz"]
+    for _ in range(16):
+        tool = times(rotation_of([rng.gauss(0, 0.3) for _ in range(3)]), DOWN), [0.5 + rng.gauss(0, 0.08), -0.35 + rng.gauss(0, 0.08), -0.1 + rng.gauss(0, 0.05)]
+        rotation, xyz = compose(inverse(camera), compose(tool, held))
+        seen = times(rotation, rotation_of([rng.gauss(0, 5e-4) for _ in range(3)]))
+        numbers = [*tool[1], *vector_of(tool[0]), *(x + rng.gauss(0, 3e-4) for x in xyz), *vector_of(seen)]
+        rows.append(",".join(f"{x:.7f}" for x in numbers))
+    return "\n".join(rows) + "\n"
+
+
 def deltas(rng):
     """As a UR controller stores them: a tenth of a millimetre and a milliradian; the last length and twist are not used."""
     draw = lambda sigma, last: [rng.gauss(0, sigma) for _ in range(5)] + [last]
@@ -184,6 +198,7 @@ def main(arguments):
     (folder / "calibrated.urdf").unlink()
     (folder / "orders.json").write_text(orders(rng))
     (folder / "containers.txt").write_text(CONTAINERS)
+    (folder / "board.csv").write_text(board(random.Random(8)))
     return 0
 
 

@@ -113,6 +113,9 @@ int run_archive_convert(const ArchiveConvertOptions& options) {
   if (is_log) {
     OutputFile output = reserve({{"the log", options.input}}, options.output);
     ArchiveRecording recording = validation::load_log(options.input);
+    // Links of the robot (robot/...) have no markers: its joints tell where they are.
+    std::erase_if(recording.motion_capture.bodies,
+                  [](const record::BodyTrack& body) { return body.name.find('/') != std::string::npos; });
     if (!options.name.empty()) recording.name = options.name;
     if (!options.note.empty()) recording.remarks = {{"note", options.note}};
     if (!options.sequence.empty()) recording.remarks.emplace_back("sequence", options.sequence);

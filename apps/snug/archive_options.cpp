@@ -47,7 +47,10 @@ void add_merge(CLI::App& verb, Action& action) {
   part.footer(
       "Recordings keep their names and remarks. Two of one name, of two sequences, or with another mass or size of "
       "the\n"
-      "same body are refused.\nExample:\n  snug archive merge first.h5 second.h5 third.h5 -o sequence-1.h5");
+      "same body are refused.\nExamples:\n"
+      "  snug measure run.h5 --sensors scenarios/sensors/demonstrator.yaml -o first.h5\n"
+      "  snug measure again.h5 --sensors scenarios/sensors/demonstrator.yaml --date 20000102T000000Z -o second.h5\n"
+      "  snug archive merge first.h5 second.h5 -o sequence-1.h5");
   part.callback([options, &action] { action = [options] { return run_archive_merge(*options); }; });
 }
 

@@ -40,8 +40,8 @@ constexpr const char* kCameraPosesHelp =
 tool holds: a board, or a box that `snug perceive` measured (m; rotation vectors in rad). Four rows or more, the tool turned about two
 axes at least. What is held need not be known where it sits: that is found too.
 Examples:
-  snug calibrate camera board.csv
-  snug calibrate camera board.csv --name tote -o camera.yaml --json)";
+  snug calibrate camera scenarios/examples/board.csv
+  snug calibrate camera scenarios/examples/board.csv --name tote -o camera.yaml --json)";
 
 void add_common(CLI::App& part, CalibrateOptions& options, const char* output) {
   part.add_option("--urdf", options.urdf, "the nominal arm; the shipped UR10 unless given")->type_name("FILE.urdf");

@@ -18,7 +18,7 @@ The truth is what nobody measures: poses and labels of the bodies, and where the
 Examples:
   snug camera run.h5 --time 40 -o frame.png
   snug camera run.h5 --time 40 --camera tote --seed 3 --shot 2 -o frame.h5
-  snug camera old-run.h5 --scenario cell-with-camera.yaml -o frame.ply)";
+  snug camera run.h5 --scenario scenarios/box-demonstrator.yaml -o frame.ply   # with the cameras of another scenario)";
 
 }  // namespace
 

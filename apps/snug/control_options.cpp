@@ -10,9 +10,10 @@ namespace snug::app {
 namespace {
 
 constexpr const char* kControlExamples = R"(Examples:
+  snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1      # in another terminal
   snug control program.csv --click tcp://127.0.0.1:5555 --sequence 1
-  snug control poses1real.csv --click ipc:///tmp/cell --sequence 1 --corrections seq1
-  snug control program.csv --click tcp://127.0.0.1:5555 --object ur10_FTSensor_sr_gripper --vacuum-event gripper)";
+With the corrections of a site: --corrections seq1. With a simulator that names things as the demonstrator's does:
+--object ur10_FTSensor_sr_gripper --vacuum-event gripper.)";
 
 }  // namespace
 

@@ -40,8 +40,8 @@ constexpr const char* kSceneHelp =
 comes what each of them changes; combinations that the recordings cannot tell are named and left alone. Then the search, and
 standard errors. Each fifth recording is held back and predicted. Task files: docs/identification.md.
 Examples:
-  snug identify scene scenarios/tosses/task.yaml --recordings tosses.csv --evaluate --json
-  snug identify scene scenarios/tosses/task.yaml --recordings tosses.csv --local 100 --log points.csv -o found.yaml)";
+  snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --evaluate --json
+  snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --local 10 --log points.csv -o found.yaml)";
 
 void add_scenario(CLI::App& part, IdentifyOptions& options) {
   part.add_option("--scenario", options.scenario,

@@ -17,8 +17,9 @@ Example:
 
 constexpr const char* kSequenceHelp =
     R"(Report section 3.1.2: boxes of the scenario in random order, as few as reach the theoretical filling degree.
-Example:
+Examples:
   snug items sequence scenarios/box-demonstrator.yaml --fill 90 --sequences 5 --seed 7 -o sequences.yaml
+  snug items reduce scenarios/orders-example.csv --count 4 -o types.yaml
   snug items sequence scenarios/box-demonstrator.yaml --types types.yaml --fill 90 -o sequences.yaml
   snug pack scenarios/box-demonstrator.yaml --items sequences.yaml --sequence drawn-1
   snug items sequence scenarios/box-demonstrator.yaml --all --name random --sequences 50 -o random.yaml)";

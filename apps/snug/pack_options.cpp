@@ -15,7 +15,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --robot none --json
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --fault drop@3,noseal@5,displace@7,stop@9 -o run.h5
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --perception noisy
-  snug pack scenarios/box-demonstrator.yaml --sequence 1 --agent my_agents:LowestFirst
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --agent examples.python.03_agent:Lowest
   snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant click://127.0.0.1:5555
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200

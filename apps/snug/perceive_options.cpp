@@ -19,9 +19,11 @@ EXPECT is a list of placements as `snug pack --plan` writes it: which box is bel
 elsewhere is looked for.
 Exit code 1: the frame itself cannot be used (too few points, or something stands in the view).
 Examples:
-  snug perceive frame.h5 --scenario scenarios/box-demonstrator.yaml --expect plan.yaml --json
-  snug perceive real.png --scenario cell.yaml --expect plan.yaml --intrinsics 1800.1 1799.6 971.2 600.4 --depth-unit 0.0001
-  snug perceive real.ply --scenario cell.yaml --expect plan.yaml --points-in-camera --depth-unit 0.001 -o boxes.json)";
+  snug camera run.h5 -o frame.png
+  snug perceive frame.png --scenario scenarios/box-demonstrator.yaml --expect scenarios/demo-placements.yaml --json
+  snug camera run.h5 -o frame.ply
+  snug perceive frame.ply --scenario scenarios/box-demonstrator.yaml --expect scenarios/demo-placements.yaml -o boxes.json
+Frames of other cameras: a PNG with --intrinsics FX FY CX CY and --depth-unit METRES, a PLY with --points-in-camera if need be.)";
 
 }  // namespace
 

@@ -14,11 +14,11 @@ constexpr const char* kStudyHelp =
     R"(The file names a verb, its options and factors: options and scenario keys that change from row to row
 (docs/studies.md). Every row is a function of its index. What is done is not done again: the same words after a kill go on.
 Examples:
-  snug study friction.yaml                      run what is missing, on all cores
-  snug study friction.yaml --slurm              write and submit an array of jobs
-  snug study status friction.yaml
-  snug study merge friction.yaml -o friction.csv
-  snug study report friction.yaml -o friction.html)";
+  snug study scenarios/examples/friction.yaml           # run what is missing, on all cores
+  snug study scenarios/examples/friction.yaml --slurm   # write and submit an array of jobs
+  snug study status scenarios/examples/friction.yaml
+  snug study merge scenarios/examples/friction.yaml -o friction.csv
+  snug study report scenarios/examples/friction.yaml -o friction.html)";
 
 using StudyWork = int (*)(const StudyOptions&);
 

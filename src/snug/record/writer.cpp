@@ -58,8 +58,9 @@ struct OpenFile {
 
 OpenFile create_file(const std::filesystem::path& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
-  // The formats up to HDF5 1.8 have no "open for writing" mark: the file of a killed run opens with any reader. The oldest
-  // that does is taken: in newer ones more than eight attributes go to a heap that small readers, as the page's, do not know.
+  // The formats up to HDF5 1.8 have no "open for writing" mark: the file of a killed run opens with any reader. The
+  // oldest that does is taken: in newer ones more than eight attributes go to a heap that small readers, as the page's,
+  // do not know.
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "file access");
   OpenFile output;
   output.driver = use_commit_driver(access.get());

@@ -30,6 +30,19 @@ std::size_t most_values(const record::RecordingReader& reader) {
                                most / 1'000'000, values / most + 1, values / most + 1));
 }
 
+/// Bytes of what a page makes of the channels: decode.ts counts them alike and refuses more than kMostDecoded.
+std::size_t decoded_bytes(const std::vector<ChannelWriter>& channels) {
+  std::size_t bytes = 0;
+  for (const ChannelWriter& channel : channels) {
+    const ChannelSpec& spec = channel.spec();
+    const bool is_exact = spec.name == "time" || (spec.quantum == 1.0 && spec.name.starts_with("contacts."));
+    bytes += channel.rows() * spec.columns.size() * (is_exact ? 8 : 4);
+  }
+  return bytes;
+}
+
+constexpr std::size_t kMostDecoded = 180'000'000;
+
 void refuse_huge(const record::RecordingReader& reader, std::size_t frames, const std::string& name) {
   const std::vector<record::BodyInfo>& bodies = reader.header().bodies;
   const auto moving =
@@ -50,7 +63,8 @@ std::vector<std::size_t> select_frames(const record::RecordingReader& reader, co
   const auto first = std::lower_bound(times.begin(), times.end(), selection.from);
   const auto last = std::upper_bound(times.begin(), times.end(), selection.to);
   std::vector<std::size_t> frames;
-  for (auto i = first - times.begin(); i < last - times.begin(); i += static_cast<std::ptrdiff_t>(selection.every)) {
+  const auto every = static_cast<std::ptrdiff_t>(std::max<std::size_t>(1, selection.every));
+  for (auto i = first - times.begin(); i < last - times.begin(); i += every) {
     frames.push_back(static_cast<std::size_t>(i));
   }
   if (frames.empty()) {
@@ -74,6 +88,12 @@ std::string encode_recording(record::RecordingReader& reader, const std::string&
       refuse_values(name, fmt::format("{} contacts that differ", coder.contact_points()), values, most);
     }
   }
+  const std::vector<ChannelWriter> channels = coder.finish();
+  if (const std::size_t bytes = decoded_bytes(channels); bytes > kMostDecoded && selection.every == 0) {
+    Selection fewer = selection;
+    fewer.every = (bytes + kMostDecoded - 1) / kMostDecoded;
+    return encode_recording(reader, name, fewer, robot);
+  }
   HeaderInput input{name,
                     &reader.header(),
                     reader.events(),
@@ -82,7 +102,7 @@ std::string encode_recording(record::RecordingReader& reader, const std::string&
                     frames.size(),
                     reader.is_interrupted(),
                     robot};
-  return encode_form(make_header_json(input), coder.finish());
+  return encode_form(make_header_json(input), channels);
 }
 
 }  // namespace snug::replay

@@ -16,7 +16,7 @@ namespace snug::replay {
 struct Selection {
   double from = -std::numeric_limits<double>::infinity();  ///< s
   double to = std::numeric_limits<double>::infinity();     ///< s
-  std::size_t every = 1;                                   ///< >= 1; 2 takes every other frame
+  std::size_t every = 0;                                   ///< 2 takes every other frame; 0: all that a page can hold
   bool operator==(const Selection&) const = default;
 };
 

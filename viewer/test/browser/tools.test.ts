@@ -185,7 +185,7 @@ describe("files that are dropped", () => {
     await expect.poll(() => page.evaluate(() => window.snug.toggles("second", true))).toBe(true);
     expect(await page.title()).toBe("snug: dropped");
     await page.keyboard.press("i");
-    expect(await page.textContent(".about")).toContain("Laid over it: in a report");
+    await expect.poll(() => page.textContent(".about")).toContain("Laid over it: in a report");
     await page.keyboard.press("Escape");
     await drop(page, "notes.txt", new TextEncoder().encode("no recording"), 0.2);
     await expect.poll(() => page.locator(".toast").textContent()).toMatch(/not a recording of snug/);
