@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 """cli_test.py: the command line as a user or a script meets it. SNUG names the program."""
+import html
 import json
 import os
+import re
+import shlex
 import signal
 import subprocess
 import tempfile
@@ -18,7 +21,6 @@ CUP_DATA = ROOT.parent / "shared" / "data" / "cup"
 def snug(*words, stdin=""):
     return subprocess.run([SNUG, *map(str, words)], input=stdin, capture_output=True, text=True, check=False,
                           timeout=240)
-
 
 
 class CommandLine(unittest.TestCase):
@@ -992,6 +994,15 @@ class OtherCells(unittest.TestCase):
             self.assertIn(cell, line)
         reported = [line for line in lines if line.startswith("reported")]
         self.assertEqual(len({len(line) for line in reported}), 1, "columns stand below each other")
+
+    def test_comparison_leaves_a_page_with_every_box_and_the_words_that_repeat_each_run(self):
+        page = self.folder / "compare.html"
+        rows = json.loads(snug("compare", CELL, "--sequences", "1", "--agents", "margin", *self.QUICK, "--json", "-o", page).stdout)["rows"]
+        text = page.read_text(encoding="utf-8")
+        self.assertEqual(text.count("<polygon"), rows[0]["executed_boxes"])
+        words = html.unescape(re.search(r"<code>snug (.*?) -o run.h5<br>", text).group(1))
+        packed = json.loads(snug(*shlex.split(words), "--json").stdout)
+        self.assertEqual((packed["executed_boxes"], packed["executed_percent"]), (rows[0]["executed_boxes"], rows[0]["executed_percent"]))
 
     def test_container_too_small_for_anything_is_a_reason(self):
         packed = self.pack("--sequence", "two", "--container", "60x60x60")

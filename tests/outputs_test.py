@@ -138,6 +138,8 @@ class WholeFiles(Folder):
                 "new.csv": ("program", CELL, PLACEMENTS, "--sequence", "1", "-o"),
                 "types.yaml": ("items", "reduce", ORDERS, "-o"), "drawn.yaml": ("items", "sequence", CELL, "-o"),
                 "load.json": ("load", self.one_box(), "--container", 400, 300, 200, "--time", 0.01, "--json", "-o"),
+                "camera.yaml": ("calibrate", "camera", ROOT / "scenarios" / "examples" / "board.csv", "-o"),
+                "cup-fit.yaml": ("identify", "stiffness", ROOT / "scenarios" / "examples" / "poses.json", "-o"),
                 "arm.urdf": ("calibrate", "ft", self.readings(), "-o"),
                 "page.html": ("validate", "--simulated", whole, "--measured", archive, "-o"),
                 "errors.csv": ("validate", "--simulated", whole, "--measured", archive, "--csv"),

@@ -7,11 +7,13 @@
 #include <cstdio>
 #include <sstream>
 
+#include "compare_page.hpp"
 #include "compare_report.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "python_agent.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
 #include "snug/packing/representatives.hpp"
 
 namespace snug::app {
@@ -62,6 +64,25 @@ std::vector<std::string> choose_sequences(const CompareOptions& options, model::
   return chosen;
 }
 
+/// The words of `snug pack` that do one session again. Random sequences are the comparison's own: they have none.
+std::string command_of(const PackOptions& pack, const study::Trial& trial) {
+  const PackOptions usual;
+  std::string words = fmt::format("snug pack {} --sequence {} --agent {} --seed {} --plant-seed {}", pack.scenario,
+                                  pack.sequence, pack.agent, trial.seed, pack.plant_seed);
+  for (const std::string& file : pack.changes.items) words += " --items " + file;
+  if (pack.changes.container) words += " --container " + *pack.changes.container;
+  if (pack.changes.pallet) words += " --pallet " + *pack.changes.pallet;
+  for (const std::string& change : pack.changes.set) words += " --set '" + change + "'";
+  if (pack.perception != usual.perception) words += " --perception " + pack.perception;
+  if (pack.samples != usual.samples) words += fmt::format(" --samples {}", pack.samples);
+  if (pack.skips != usual.skips) words += fmt::format(" --skips {}", pack.skips);
+  if (pack.decision_time != usual.decision_time) words += fmt::format(" --decision-time {}", pack.decision_time);
+  if (pack.future != usual.future) words += " --future " + pack.future;
+  if (!pack.fault.empty()) words += " --fault " + pack.fault;
+  if (pack.robot) words += " --robot " + *pack.robot;
+  return words;
+}
+
 }  // namespace
 
 int run_compare(const CompareOptions& options) {
@@ -72,8 +93,11 @@ int run_compare(const CompareOptions& options) {
   const std::size_t plants = static_cast<std::size_t>(options.plants);
   const std::size_t runs = agents.size() * sequences.size() * plants;
   const CompareForm form = options.json ? CompareForm::Json : options.csv ? CompareForm::Csv : CompareForm::Table;
+  std::optional<OutputFile> page =
+      reserve(files_of(options.pack.scenario, options.pack.changes, scenario), options.page);
   catch_interrupts();
   std::vector<CompareRow> rows;
+  std::vector<CompareSession> sessions;
   std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %zu plants\n", runs, agents.size(),
                sequences.size(), plants);
   print_now(format_compare_head(form));
@@ -85,10 +109,13 @@ int run_compare(const CompareOptions& options) {
     const session::SessionOptions session = make_session_options(pack, loaded, pack.sequence);
     const std::string label =
         fmt::format("{} of {}: {}, sequence {}, plant {}", run + 1, runs, pack.agent, pack.sequence, pack.plant_seed);
-    rows.push_back(make_row(study::run_trial(scenario, pack.sequence, session, make_plant_options(pack, session),
-                                             make_progress_line(label))));
+    const study::Trial trial = study::run_trial(scenario, pack.sequence, session, make_plant_options(pack, session),
+                                                make_progress_line(label));
+    rows.push_back(make_row(trial));
+    if (page) sessions.push_back({rows.back(), outline_boxes(scenario, trial), command_of(pack, trial)});
     print_now(format_compare_row(form, rows.back(), run == 0));
   }
+  if (page) write_file(std::move(*page), format_compare_page(scenario, sessions));
   const bool is_own_container = !options.pack.changes.container && !options.pack.changes.pallet;
   print_now(format_compare_end(form, scenario, rows, is_own_container));
   const auto failed = std::ranges::count_if(rows, [](const CompareRow& row) { return !row.failure.empty(); });

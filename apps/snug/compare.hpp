@@ -20,6 +20,7 @@ struct CompareOptions {
   std::uint64_t random_seed = 1;
   bool json = false;
   bool csv = false;
+  std::optional<std::string> page;  ///< HTML file
 };
 
 void add_compare(CLI::App& app, Action& action);

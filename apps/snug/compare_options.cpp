@@ -10,7 +10,7 @@ namespace snug::app {
 namespace {
 
 constexpr const char* kCompareExamples = R"(Examples:
-  snug compare scenarios/box-demonstrator.yaml --agents contact-aware --plants 6
+  snug compare scenarios/box-demonstrator.yaml --agents contact-aware --plants 6 -o compare.html
   snug compare scenarios/box-demonstrator.yaml --sequences 1,3 --agents margin,contact-aware --json
   snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --plants 3 --csv > rows.csv
   snug compare scenarios/box-demonstrator.yaml --random 50 --agents contact-aware
@@ -47,6 +47,9 @@ void add_compare(CLI::App& app, Action& action) {
   add_packing_options(verb, options->pack);
   CLI::Option* json = verb.add_flag("--json", options->json, "print rows as JSON");
   verb.add_flag("--csv", options->csv, "print rows as CSV")->excludes(json);
+  verb.add_option("-o,--output", options->page,
+                  "page: charts by agent and sequence, each container from above, the words that repeat each run")
+      ->type_name("FILE.html");
   verb.footer(kCompareExamples);
   verb.callback([options, &action] { action = [options] { return run_compare(*options); }; });
 }

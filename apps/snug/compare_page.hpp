@@ -1,0 +1,32 @@
+// The page of a comparison: charts by agent and sequence, and every container from above, in one file without scripts.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "compare_report.hpp"
+
+namespace snug::app {
+
+/// A packed box from above.
+struct BoxOutline {
+  std::string id;
+  std::vector<std::array<double, 2>> corners_T;  ///< m, x and y in the container, in the order of a walk around it
+  double top = 0.0;                              ///< m over the container's floor
+};
+
+/// One session: its row, what it left in the container, the words that repeat it.
+struct CompareSession {
+  CompareRow row;
+  std::vector<BoxOutline> boxes;
+  std::string command;
+};
+
+/// The boxes that are packed by the plant's truth, the lowest first.
+[[nodiscard]] std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario, const study::Trial& trial);
+
+[[nodiscard]] std::string format_compare_page(const model::Scenario& scenario,
+                                              const std::vector<CompareSession>& sessions);
+
+}  // namespace snug::app
