@@ -69,6 +69,8 @@ int run_bench(const BenchOptions& options) {
     bench.program = "out/sequence-1.csv";  // what `make demo` leaves
     bench.corrections.clear();
   }
+  bench.hard_scenes = scenarios.parent_path() / "../shared/data/scenes";
+  bench.drop_scenes = options.drops;
   bench.only = options.only.value_or("");
   const std::vector<experiment::Figure> figures = experiment::run_bench(bench);
   if (figures.empty())

@@ -11,6 +11,7 @@ namespace snug::app {
 struct BenchOptions {
   bool json = false;
   std::optional<std::string> only;  ///< run the scenes whose figures start with this
+  int drops = 40;                   ///< random drops
 };
 
 void add_bench(CLI::App& app, Action& action);

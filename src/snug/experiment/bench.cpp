@@ -15,6 +15,7 @@
 #include "snug/experiment/internal/click_bench.hpp"
 #include "snug/experiment/internal/identification_bench.hpp"
 #include "snug/experiment/internal/packing_bench.hpp"
+#include "snug/experiment/internal/pile_bench.hpp"
 #include "snug/experiment/internal/robot_figures.hpp"
 #include "snug/experiment/internal/scene_bench.hpp"
 #include "snug/experiment/internal/validation_bench.hpp"
@@ -132,6 +133,10 @@ std::vector<Figure> run_bench(const BenchOptions& options) {
                                                     {"s5", internal::measure_swing},
                                                     {"s6", internal::measure_press},
                                                     {"growth", internal::measure_growth},
+                                                    {"piles", internal::measure_piles},
+                                                    {"threads", internal::measure_threads},
+                                                    {"drops", internal::measure_random_drops},
+                                                    {"scenes", internal::measure_hard_scenes},
                                                     {"program", measure_program},
                                                     {"robot", internal::measure_robot},
                                                     {"arm", measure_arm},

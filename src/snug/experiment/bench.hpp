@@ -25,8 +25,10 @@ struct BenchOptions {
   std::filesystem::path instances;  ///< folder of public loading instances, BR1.txt ...; said to be skipped when absent
   std::filesystem::path sensors;    ///< what virtual experiments are measured with (figures of validation)
   std::filesystem::path cup_data;   ///< folder of the cup's reference data; said to be skipped when absent
-  std::string corrections;          ///< for that program, or empty
-  std::string only;                 ///< figures whose scene starts so; empty: all
+  std::filesystem::path hard_scenes;  ///< folder of scenes that solvers fail on; said to be skipped when absent
+  int drop_scenes = 40;               ///< random drops; a thousand take ten minutes
+  std::string corrections;            ///< for that program, or empty
+  std::string only;                   ///< figures whose scene starts so; empty: all
 };
 
 /// Largest overlap of two boxes by the fifteen axes of the separating-axis test, m; 0 when apart. Independent of the

@@ -5,27 +5,35 @@
 #include <memory>
 #include <vector>
 
+#include "snug/physics/internal/block_pattern.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::physics::internal {
 
-/// Memory for blocks that is reserved at once and becomes real only where it is written to.
-class BlockStore {
+/// Memory for numbers that is reserved at once and becomes real only where it is written to.
+class LazyStore {
  public:
-  explicit BlockStore(std::size_t blocks);
-  [[nodiscard]] Matrix6& operator[](std::size_t i) { return blocks_.get()[i]; }
-  [[nodiscard]] const Matrix6& operator[](std::size_t i) const { return blocks_.get()[i]; }
+  explicit LazyStore(std::size_t count);
+  [[nodiscard]] double* get() { return data_.get(); }
 
  private:
   struct Free {
-    void operator()(Matrix6* blocks) const;
+    void operator()(double* data) const;
   };
-  std::unique_ptr<Matrix6, Free> blocks_;
+  std::unique_ptr<double, Free> data_;
+};
+
+/// A 6 x 6 block within a panel, stored by columns, or its transpose so.
+struct PanelBlock {
+  double* data = nullptr;
+  std::ptrdiff_t stride = 6;
+  bool is_transposed = false;
 };
 
 /// LU factorisation of matrices I + sum J^T S J, whose pattern is symmetric and whose blocks on the diagonal stay
-/// regular without pivoting. Bodies are eliminated in the order of minimum degree (ties: least recently touched), so
-/// that fill, work and the bytes of the result depend on the pattern alone. Never allocates after construction.
+/// regular without pivoting. Fronts of bodies (BlockPattern) have dense panels; each takes over what earlier ones
+/// change in it, in their order, so that fill, work and the bytes of the result depend on the pattern alone. Never
+/// allocates after construction.
 ///
 /// For a pattern: begin(n), connect(i, j) for pairs of bodies that share contacts, analyze(). For a matrix:
 /// set_identity(), add to diagonal() and coupling(), factorize(), solve().
@@ -34,17 +42,17 @@ class BlockSolver {
   /// For up to `bodies` bodies and `connections` calls of connect().
   BlockSolver(std::size_t bodies, std::size_t connections);
 
-  void begin(int count);
+  void begin(int count) { pattern_.begin(count); }
   /// Returns the number of this call, for coupling(). Pairs i != j may repeat.
-  int connect(int i, int j);
+  int connect(int i, int j) { return pattern_.connect(i, j); }
   /// Order and fill. False when the fill does not fit into the memory reserved (64 blocks a body).
-  [[nodiscard]] bool analyze();
+  [[nodiscard]] bool analyze() { return pattern_.analyze(); }
 
   void set_identity();
-  [[nodiscard]] Matrix6& diagonal(int i) { return diagonal_[rank_[static_cast<std::size_t>(i)]]; }
+  [[nodiscard]] PanelBlock diagonal(int i);
   struct Coupling {
-    Matrix6& ij;  ///< row i, column j of connect(i, j)
-    Matrix6& ji;
+    PanelBlock ij;  ///< row i, column j of connect(i, j)
+    PanelBlock ji;
   };
   [[nodiscard]] Coupling coupling(int connection);
 
@@ -53,54 +61,31 @@ class BlockSolver {
   /// A^-1 x in place, 6 entries a body.
   void solve(double* x);
 
-  /// Blocks (i, j) of A^-1 for the bodies given, of a factorised A, as 6n x 6n, row-major by body. Costs only the ways
-  /// of these bodies through the elimination. At most kMaxResponses bodies.
-  static constexpr std::size_t kMaxResponses = 24;
-  void respond(const std::vector<int>& bodies, std::vector<Matrix6>& response);
-
-  [[nodiscard]] int count() const { return count_; }
-  /// Pairs of blocks beside the diagonal in the factors.
-  [[nodiscard]] std::size_t fill() const { return fill_; }
+  [[nodiscard]] int count() const { return pattern_.count(); }
+  [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
 
  private:
-  struct Link {
-    int node, next;
-  };
-  struct Connection {
-    int i, j, entry;
-  };
+  using Front = BlockPattern::Front;
   using Index = std::vector<int>;
 
-  bool add_link(int from, int to);
-  bool eliminate(int node, int rank);
-  void put_in_bucket(int node, int degree);
-  void take_from_bucket(int node);
-  int take_least();
+  /// Panel of a front: its own bodies and below them its rows, 6 numbers each. Below the diagonal, L with unit
+  /// diagonal; on it, the inverse of U's; above it, within the front, U.
+  [[nodiscard]] double* lower(const Front& front) { return lower_.get() + 36 * front.panel; }
+  [[nodiscard]] std::ptrdiff_t lower_stride(const Front& front) const { return 6 * front.height(); }
+  /// U beside the front's own bodies, transposed: its rows, 6 numbers each, for each of its bodies.
+  [[nodiscard]] double* upper(const Front& front) { return upper_.get() + 36 * front.panel; }
+  [[nodiscard]] std::ptrdiff_t upper_stride(const Front& front) const { return 6 * front.rows(); }
 
-  std::size_t max_fill_;
-  int count_ = 0;
-  std::size_t fill_ = 0;
-  std::vector<Connection> connections_;
-  // Elimination graph: lists of neighbours, those already eliminated are dropped on the way.
-  std::vector<Link> links_;
-  Index first_link_, degree_, mark_, bucket_, next_in_bucket_, last_in_bucket_;
-  int stamp_ = 0, least_degree_ = 0;
-  // Factors by rank, the position in the order of elimination. Entry e of column k couples k with row_[e] > k.
-  std::vector<std::size_t> rank_;    ///< of each body
-  Index body_;                       ///< of each rank
-  std::vector<std::size_t> column_;  ///< first entry of each rank, and one past the last
-  Index row_;                        ///< rank of each entry
-  BlockStore diagonal_, lower_, upper_;
-  std::vector<double> x_;  ///< by rank
-  /// What a body touches on its way through the elimination, by body asked for: ranks, rows of U^-1, columns of L^-1.
-  void trace(int body, std::size_t asked);
-  [[nodiscard]] std::size_t trace_place(std::size_t asked, std::size_t step) const {
-    return asked * rank_.size() + step;
-  }
-  std::vector<std::size_t> trace_length_;
-  Index trace_ranks_;
-  BlockStore left_, right_;
-  Index slot_;  ///< of each rank on the way at hand, or -1
+  void place_rows(const Front& front);
+  void take_update(const Front& front, const BlockPattern::Update& update);
+  void eliminate(const Front& front);
+
+  BlockPattern pattern_;
+  LazyStore lower_, upper_;
+  Index place_;                  ///< of each rank in the panel at hand
+  std::vector<double> product_;  ///< six columns of a panel
+  std::vector<double> x_;        ///< by rank
+  std::vector<double> gathered_;
 };
 
 }  // namespace snug::physics::internal

@@ -10,8 +10,8 @@ namespace {
 
 // Chosen on some 550 problems on which sweeps fail (a settling pile of 300 boxes, random drops at mass ratios to 1000,
 // a wall): least time among those with which all of them are solved.
-constexpr int kCycles = 5;             ///< generalized steps before hard contacts are looked for
-constexpr int kSweepsPerCycle = 3;     ///< of Gauss-Seidel after each
+constexpr int kCycles = 5;             ///< generalized steps that are tried in any case
+constexpr int kSweepsPerCycle = 2;     ///< of Gauss-Seidel after each
 constexpr double kPenalty = 300.0;     ///< of generalized steps, in units of 1 / W of each contact
 constexpr double kFlipCut = 3.0;       ///< of the penalty of a contact whose status changes from step to step
 constexpr double kFlipRecovery = 1.5;  ///< of the penalty of one whose status stays
@@ -19,25 +19,33 @@ constexpr double kLeastFlipPenalty = 1.0;
 /// Of contacts whose status stays in islands that are solved and at rest: what a step leaves of a slow mode is 1 / p.
 constexpr double kSolvedPenalty = 3e4;
 constexpr double kSolvedGrowth = 30.0;
-constexpr double kEasyPenalty = 1e4;   ///< of the contacts that are condensed
-constexpr int kMaxFailedRounds = 2;    ///< of hard contacts
-constexpr int kMaxCycles = 12;         ///< while each three halve the residual
-constexpr double kHardResidual = 0.3;  ///< of the tolerance, above which a contact is hard
+constexpr int kMaxCycles = 12;  ///< while each three halve the residual
 
 constexpr double kFirstPenalty = 30.0;  ///< of the augmented Lagrangian, in units of 1 / W
 constexpr double kLeastPenalty = 0.3;
 constexpr double kLargestPenalty = 1e8;
 constexpr double kGrowth = 3.0;  ///< of the penalty after a solved stage, and its cut after a failed one
-constexpr int kMaxIterations = 300;
 constexpr int kMaxStageIterations = 20;
-constexpr int kMaxHalvings = 6;
+constexpr int kTriedAgain = 2;  ///< generalized steps after a stage that gains much
+
+/// How thoroughly the augmented Lagrangian is solved.
+struct Care {
+  double stage_error;  ///< of the residual, to which a stage is solved
+  int max_halvings;
+  int max_iterations;
+  double gain;  ///< of the residual by a stage, after which generalized steps are tried again
+};
+constexpr Care kQuick{0.1, 3, 150, 0.3};
+constexpr Care kThorough{0.01, 6, 300, 0.0};  ///< where that fails
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// M += sum over the three rows of a^T c.
-void add_product(Matrix6& M, const double (&a)[3][6], const double (&c)[3][6]) {
-  double* column = M.data();
-  for (int j = 0; j < 6; ++j, column += 6) {
+void add_product(const PanelBlock& M, const double (&left)[3][6], const double (&right)[3][6]) {
+  const auto& a = M.is_transposed ? right : left;
+  const auto& c = M.is_transposed ? left : right;
+  double* column = M.data;
+  for (int j = 0; j < 6; ++j, column += M.stride) {
     const Pair c0{c[0][j], c[0][j]}, c1{c[1][j], c[1][j]}, c2{c[2][j], c[2][j]};
     for (int k = 0; k < 6; k += 2) {
       store(column + k, load(column + k) + (load(a[0] + k) * c0 + load(a[1] + k) * c1 + load(a[2] + k) * c2));
@@ -123,18 +131,15 @@ class IslandProblem {
   void restore_best();
   void assemble();
   void solve_system();
-  void take_linear_impulses(bool with_hard);
+  void take_linear_impulses();
 
   void run_cycles(int count);
-  void linearise(bool with_hard);
-  bool collect_hard();
-  void couple_hard();
-  void solve_hard();
+  void linearise();
 
-  void augment();
-  bool solve_stage(double penalty, double tolerance);
+  void augment(const Care& care);
+  bool solve_stage(double penalty, double tolerance, const Care& care);
   double evaluate(double penalty);
-  double search_line(double penalty, double error);
+  double search_line(double penalty, double error, int max_halvings);
 
   double tolerance_, wanted_;
   Row* first_;
@@ -171,7 +176,6 @@ bool IslandProblem::start() {
     newton.connection = is_pair ? connection : -1;
     newton.penalty = kPenalty;
     newton.status = ContactStatus::Unknown;
-    newton.is_hard = false;
     std::copy_n(row.lambda, 3, newton.best);
     row.is_changed = true;
   });
@@ -236,41 +240,32 @@ void IslandProblem::solve_system() {
   }
 }
 
-/// Laws about the present state and the momentum error that they leave: of all contacts, or of all that are not hard.
-void IslandProblem::linearise(bool with_hard) {
+/// Laws about the present state and the momentum error that they leave.
+void IslandProblem::linearise() {
   for (const int body : work_.active) {
     for (int k = 6 * body; k < 6 * body + 6; ++k) work_.error[at(k)] = work_.u_free[at(k)] - u_[k];
   }
   each_row([&](const Row& row, NewtonRow& newton) {
-    if (newton.is_hard && !with_hard) {
-      newton.law = AugmentedLaw{};
-      return;
-    }
     double xi[3];
     contact_velocity(row, u_, xi);
-    if (with_hard) {
-      const ContactStatus before = newton.status;
-      newton.status = generalized_law(row, newton.penalty, xi, newton.law);
-      if (before != ContactStatus::Unknown) {
-        if (before != newton.status) {
-          newton.penalty = std::max(kLeastFlipPenalty, std::min(kPenalty, newton.penalty) / kFlipCut);
-          (void)generalized_law(row, newton.penalty, xi, newton.law);
-        } else {
-          newton.penalty = is_solved() ? std::min(kSolvedPenalty, newton.penalty * kSolvedGrowth)
-                                       : std::min(kPenalty, newton.penalty * kFlipRecovery);
-        }
+    const ContactStatus before = newton.status;
+    newton.status = generalized_law(row, newton.penalty, xi, newton.law);
+    if (before != ContactStatus::Unknown) {
+      if (before != newton.status) {
+        newton.penalty = std::max(kLeastFlipPenalty, std::min(kPenalty, newton.penalty) / kFlipCut);
+        (void)generalized_law(row, newton.penalty, xi, newton.law);
+      } else {
+        newton.penalty = is_solved() ? std::min(kSolvedPenalty, newton.penalty * kSolvedGrowth)
+                                     : std::min(kPenalty, newton.penalty * kFlipRecovery);
       }
-    } else {
-      (void)generalized_law(row, kEasyPenalty, xi, newton.law);
     }
     apply(row, newton.law.lambda, work_.error.data());
   });
 }
 
 /// Impulses of the linear laws for work_.step, cut to the cone.
-void IslandProblem::take_linear_impulses(bool with_hard) {
+void IslandProblem::take_linear_impulses() {
   each_row([&](Row& row, const NewtonRow& newton) {
-    if (newton.is_hard && !with_hard) return;
     const double(&slope)[9] = newton.law.slope;
     double* lambda = row.lambda;
     std::fill_n(lambda, 3, 0.0);
@@ -291,99 +286,14 @@ void IslandProblem::take_linear_impulses(bool with_hard) {
 void IslandProblem::run_cycles(int count) {
   for (int i = 0; i < count && best_ > wanted_; ++i) {
     ++iterations_;
-    linearise(true);
+    linearise();
     assemble();
     solve_system();
-    take_linear_impulses(true);
+    take_linear_impulses();
     apply_impulses();
     for (int k = 0; k < kSweepsPerCycle; ++k) (void)sweep_rows(first_, end_, u_, sweeps_++ % 2 == 0);
     measure();
   }
-}
-
-/// Fills work.hard.rows and the bodies that they touch. False: more than can be solved densely.
-bool IslandProblem::collect_hard() {
-  work_.hard.rows.clear();
-  for (const int place : work_.hard_bodies) work_.hard_place[at(place)] = -1;
-  work_.hard_bodies.clear();
-  bool fits = true;
-  each_row([&](Row& row, NewtonRow& newton) {
-    newton.is_hard |= natural_map(row, u_) > kHardResidual * tolerance_;
-    if (!newton.is_hard || !fits) return;
-    fits = work_.hard.rows.size() < HardContacts::kMaxContacts;
-    if (!fits) return;
-    work_.hard.rows.push_back(&row);
-    for (const int body : {row.ia, row.ib}) {
-      if (body < 0 || work_.hard_place[at(work_.local[at(body)])] >= 0) continue;
-      work_.hard_place[at(work_.local[at(body)])] = static_cast<int>(work_.hard_bodies.size());
-      work_.hard_bodies.push_back(work_.local[at(body)]);
-    }
-    fits = work_.hard_bodies.size() <= BlockSolver::kMaxResponses;
-  });
-  // Where they are most of the island, its own system is smaller than the dense one.
-  return fits && work_.hard.rows.size() <= 2 * work_.active.size();
-}
-
-/// The dense problem of the hard contacts: what the island answers to their impulses.
-void IslandProblem::couple_hard() {
-  HardContacts& hard = work_.hard;
-  const auto size = static_cast<Eigen::Index>(3 * hard.rows.size());
-  hard.W.setZero(size, size);
-  hard.xi_0.resize(size);
-  work_.solver.respond(work_.hard_bodies, work_.response);
-  using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 6, Eigen::RowMajor>>;
-  const std::size_t bodies = work_.hard_bodies.size();
-  for (std::size_t i = 0; i < hard.rows.size(); ++i) {
-    const Row& row = *hard.rows[i];
-    double xi[3], change[3];
-    contact_velocity(row, u_, xi);
-    change_of_velocity(row, work_.step.data(), change);
-    for (int k = 0; k < 3; ++k) hard.xi_0[static_cast<Eigen::Index>(3 * i) + k] = xi[k] + change[k];
-    for (std::size_t j = 0; j < hard.rows.size(); ++j) {
-      const Row& other = *hard.rows[j];
-      auto block = hard.W.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j));
-      for (const bool is_a : {true, false}) {
-        const int body = is_a ? row.ia : row.ib;
-        if (body < 0) continue;
-        for (const bool is_other_a : {true, false}) {
-          const int other_body = is_other_a ? other.ia : other.ib;
-          if (other_body < 0) continue;
-          const auto p = at(work_.hard_place[at(work_.local[at(body)])]);
-          const auto q = at(work_.hard_place[at(work_.local[at(other_body)])]);
-          const Eigen::Matrix<double, 3, 6> reply = Rows(is_a ? row.a[0] : row.b[0]) * work_.response[bodies * p + q];
-          block.noalias() += reply * Rows(is_other_a ? other.a[0] : other.b[0]).transpose();
-        }
-      }
-    }
-  }
-}
-
-/// Rounds of: the few hard contacts exactly, all others by the linear laws of their status. Goes on while that helps,
-/// and only where they are few.
-void IslandProblem::solve_hard() {
-  each_row([](const Row&, NewtonRow& newton) { newton.is_hard = false; });
-  int failures = 0;
-  while (!is_solved() && failures < kMaxFailedRounds && collect_hard()) {
-    ++iterations_;
-    linearise(false);
-    assemble();
-    solve_system();
-    couple_hard();
-    const bool is_settled = work_.hard.solve(0.1 * tolerance_);
-    for (std::size_t i = 0; i < work_.hard.rows.size(); ++i) {
-      Row& row = *work_.hard.rows[i];
-      for (int k = 0; k < 3; ++k) row.lambda[k] = work_.hard.lambda[static_cast<Eigen::Index>(3 * i) + k];
-      apply(row, row.lambda, work_.error.data());
-    }
-    solve_system();
-    take_linear_impulses(false);
-    apply_impulses();
-    const double before = best_;
-    measure();
-    if (!is_settled) break;
-    if (!(best_ <= 0.5 * before)) ++failures;  // also when it is not a number
-  }
-  restore_best();
 }
 
 /// Momentum error u - u_free - sum (J T)^T lambda(u) of every body at work.u; returns its norm.
@@ -405,10 +315,10 @@ double IslandProblem::evaluate(double penalty) {
 }
 
 /// Moves along the Newton step until the momentum error shrinks. Returns the new error, negative when it does not.
-double IslandProblem::search_line(double penalty, double error) {
+double IslandProblem::search_line(double penalty, double error, int max_halvings) {
   for (const int body : work_.active) std::copy_n(work_.u.data() + 6 * body, 6, work_.u_start.data() + 6 * body);
   double length = 1.0;
-  for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
+  for (int halving = 0; halving < max_halvings; ++halving, length *= 0.5) {
     for (const int body : work_.active) {
       for (int k = 6 * body; k < 6 * body + 6; ++k) work_.u[at(k)] = work_.u_start[at(k)] - length * work_.step[at(k)];
     }
@@ -419,31 +329,31 @@ double IslandProblem::search_line(double penalty, double error) {
 }
 
 /// Newton's method for the augmented law with the present centres and penalty.
-bool IslandProblem::solve_stage(double penalty, double tolerance) {
+bool IslandProblem::solve_stage(double penalty, double tolerance, const Care& care) {
   double error = evaluate(penalty);
   for (int i = 0; i < kMaxStageIterations; ++i) {
     if (error <= tolerance) return true;
     ++iterations_;
     assemble();
     solve_system();
-    error = search_line(penalty, error);
+    error = search_line(penalty, error, care.max_halvings);
     if (error < 0.0) return false;
   }
   return error <= tolerance;
 }
 
-/// The augmented Lagrangian: slow, and the one that always worked.
-void IslandProblem::augment() {
+/// The augmented Lagrangian: slower, and the one that always worked. Where a stage gains much, statuses are nearly
+/// right, and generalized steps end it.
+void IslandProblem::augment(const Care& care) {
   double mobility = 0.0;  // turns momentum errors into velocities
   each_row([&](const Row& row, NewtonRow&) {
     mobility = std::max({mobility, row.W[0] - row.gamma, row.W[3], row.W[5]});
   });
-  const int last = iterations_ + kMaxIterations;
-  int tries = 2;  // to settle what is left as hard contacts
+  const int last = iterations_ + care.max_iterations;
   for (double penalty = kFirstPenalty; iterations_ < last && penalty > kLeastPenalty && !is_solved();) {
     each_row([](const Row& row, NewtonRow& newton) { std::copy_n(row.lambda, 3, newton.center); });
     for (const int body : work_.active) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
-    if (!solve_stage(penalty, std::min(0.1 * tolerance_, 0.01 * residual_) / std::sqrt(mobility))) {
+    if (!solve_stage(penalty, std::min(0.1 * tolerance_, care.stage_error * residual_) / std::sqrt(mobility), care)) {
       penalty /= kGrowth;
       continue;
     }
@@ -452,7 +362,10 @@ void IslandProblem::augment() {
     const double before = best_;
     measure();
     penalty = std::min(kLargestPenalty, penalty * kGrowth);
-    if (best_ < 0.3 * before && tries-- > 0) solve_hard();
+    if (is_solved() || best_ >= care.gain * before) continue;
+    restore_best();
+    run_cycles(kTriedAgain);
+    restore_best();
   }
   restore_best();
 }
@@ -465,8 +378,8 @@ int IslandProblem::solve() {
     run_cycles(3);
   }
   restore_best();
-  solve_hard();
-  if (!is_solved()) augment();
+  if (!is_solved()) augment(kQuick);
+  if (!is_solved()) augment(kThorough);
   return iterations_;
 }
 
@@ -476,10 +389,7 @@ NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity)
     : solver(bodies, row_capacity), rows(new NewtonRow[row_capacity]) {
   for (std::vector<double>* v : {&u, &u_free, &u_start, &error, &step, &right}) v->assign(6 * bodies, 0.0);
   local.assign(bodies, -1);
-  hard_place.assign(bodies, -1);
   active.reserve(bodies);
-  hard_bodies.reserve(BlockSolver::kMaxResponses + 2);
-  response.resize(BlockSolver::kMaxResponses * BlockSolver::kMaxResponses);
 }
 
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {

@@ -8,7 +8,6 @@
 
 #include "snug/physics/internal/block_solver.hpp"
 #include "snug/physics/internal/contact_row.hpp"
-#include "snug/physics/internal/hard_contacts.hpp"
 
 namespace snug::physics::internal {
 
@@ -28,7 +27,6 @@ struct NewtonRow {
   double penalty;    ///< of the generalized step, in units of 1 / W
   int connection;    ///< of its two bodies in the linear system, or -1
   ContactStatus status;
-  bool is_hard;
 };
 
 struct NewtonScratch {
@@ -39,9 +37,6 @@ struct NewtonScratch {
   std::vector<double> u, u_free, u_start, error, step;  ///< 6 per active body
   std::vector<double> right;                            ///< 6 per body of the island
   BlockSolver solver;
-  HardContacts hard;
-  std::vector<int> hard_bodies, hard_place;  ///< places in `active`; and of each place, the index in hard_bodies or -1
-  std::vector<Matrix6> response;
   std::unique_ptr<NewtonRow[]> rows;
 };
 
