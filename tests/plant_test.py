@@ -66,7 +66,7 @@ class ServedPlant(unittest.TestCase):
         return [ServedPlant.comparable(one) for one in packed] if isinstance(packed, list) else packed
 
     def test_two_processes_do_what_one_does_to_the_last_bit(self):
-        for seed, perception, ipc in ((7, "exact", False), (0, "noisy", True)):
+        for seed, perception, ipc in ((7, "exact", False), (0, "noisy", True), (3, "camera", True)):
             with self.subTest(seed=seed):
                 endpoint = f"ipc://{self.folder}/cell" if ipc else "tcp://127.0.0.1:*"
                 process, address = self.serve("--sequence", "two", "--plant-seed", seed, "--once", "--json", endpoint=endpoint)
@@ -136,6 +136,18 @@ class ServedPlant(unittest.TestCase):
         assert_refused(self.pack("--plant", address), "--plant", "it has no object 'b2'")
         for words in (("--fault", "drop@1"), ("-o", self.folder / "run.h5"), ("--robot", "none")):
             assert_refused(self.pack("--plant", address, *words), words[0])
+
+    def test_a_camera_packs_what_it_sees_and_has_to_be_there(self):
+        packed = json.loads(self.pack("--perception", "camera").stdout)
+        self.assertEqual((packed["perception"], packed["executed_boxes"], packed["items_as_planned"]), ("camera", 2, 2))
+        self.assertNotEqual(packed["items"][0]["believed"], json.loads(self.pack().stdout)["items"][0]["believed"])
+        blind = self.folder / "blind.yaml"
+        blind.write_text(re.sub(r"(?ms)^cameras:.*?^(?=#|\w)", "", CELL.read_text())
+                         .replace("robots/", f"{CELL.parent}/robots/"))
+        result = subprocess.run([SNUG, "pack", blind, "--sequence", "1", "--perception", "camera", "--robot", "none"], text=True,
+                                capture_output=True)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("cameras", result.stderr)
 
     def test_a_cell_that_runs_by_itself_is_no_plant(self):
         process, address = self.serve("--sequence", "one", "--plant-seed", 7, "--async")

@@ -40,8 +40,10 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
       ->type_name("N")
       ->capture_default_str();
   verb.add_option("--perception", options.perception,
-                  "what is seen of boxes: exact poses and sizes, noisy ones (2 mm, 20 mrad), or none (dead-reckoning)")
-      ->check(one_of({"exact", "noisy", "dead-reckoning"}))
+                  "what is seen of boxes: exact poses and sizes, noisy ones (2 mm, 20 mrad), none (dead-reckoning), or "
+                  "what the "
+                  "scenario's camera over the container tells (docs/camera.md)")
+      ->check(one_of({"exact", "noisy", "dead-reckoning", "camera"}))
       ->type_name("HOW")
       ->capture_default_str();
   verb.add_option(

@@ -45,7 +45,7 @@ def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware
         samples: worlds in which each motion is rehearsed beside the nominal one before it is sent; 0 .. 64.
         threads: 0: all cores. The result does not depend on it.
         robot: name of the scenario's robot, "none": the tool moves by itself; None: the robot where its file is there.
-        perception: "exact", "noisy" or "dead-reckoning".
+        perception: "exact", "noisy", "dead-reckoning" or "camera" (the scenario's first).
         monte_carlo: repeats the finished program so many times, open loop, in cells drawn anew.
         record: HDF5 file for a recording of the plant's course, or "".
         progress: called as progress(item, items, packed, percent) after each item.

@@ -24,6 +24,7 @@ struct Observation {
   double time = 0.0;  ///< s, of the plant
   std::vector<PoseEstimate> seen;
   std::vector<std::string> not_seen;  ///< items that were asked for, in the order asked
+  std::vector<std::string> missing;   ///< of these: their place was seen and is empty, and they were found nowhere
   bool operator==(const Observation&) const = default;
 };
 

@@ -5,13 +5,14 @@
 #include <array>
 #include <utility>
 
+#include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 
 namespace snug::perception {
 namespace {
 
-constexpr std::array kKinds{Kind::Exact, Kind::Noisy, Kind::DeadReckoning};
+constexpr std::array kKinds{Kind::Exact, Kind::Noisy, Kind::DeadReckoning, Kind::Camera};
 
 /// Fills `not_seen` with what was expected and is not in `seen`.
 Observation finished(Observation observation, std::span<const Expectation> expected) {
@@ -88,6 +89,8 @@ const char* name_of(Kind kind) {
       return "noisy";
     case Kind::DeadReckoning:
       return "dead-reckoning";
+    case Kind::Camera:
+      return "camera";
   }
   return "";
 }
@@ -96,10 +99,12 @@ Kind kind_of(std::string_view word) {
   for (const Kind kind : kKinds) {
     if (word == name_of(kind)) return kind;
   }
-  throw InputError("command line", "--perception", "'" + std::string(word) + "'", "exact, noisy or dead-reckoning");
+  throw InputError("command line", "--perception", "'" + std::string(word) + "'",
+                   "exact, noisy, dead-reckoning or camera");
 }
 
 std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const NoiseLevels& noise) {
+  SNUG_CHECK(kind != Kind::Camera, "a camera has to know the cell that it looks into");
   if (kind == Kind::Noisy) return std::make_unique<Noisy>(seed, noise);
   if (kind == Kind::DeadReckoning) return std::make_unique<DeadReckoning>();
   return std::make_unique<Exact>();

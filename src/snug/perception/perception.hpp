@@ -14,6 +14,7 @@ enum class Kind {
   Exact,          ///< poses and sizes as they are
   Noisy,          ///< with noise, its covariance stated
   DeadReckoning,  ///< nothing is seen: boxes are believed to be where they were meant to be
+  Camera,         ///< a depth camera over the container: camera_perception makes it
 };
 [[nodiscard]] const char* name_of(Kind kind);
 /// Throws InputError for a word that is none of `name_of`.
@@ -48,7 +49,7 @@ struct NoiseLevels {
   double size = 0.0005;     ///< m, half width of each edge
 };
 
-/// `seed`: of the noise alone.
+/// `seed`: of the noise alone. Not Kind::Camera (checked): it has to know the cell.
 [[nodiscard]] std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const NoiseLevels& noise = {});
 
 }  // namespace snug::perception

@@ -72,7 +72,9 @@ std::vector<perception::Expectation> Belief::expectations() const {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     if (!boxes_[i]) continue;
     const std::string& id = sequence_.items[i].parcel;
-    expected.push_back({id, model::collision_size(nominal(), *model::find_parcel(nominal(), id)), boxes_[i]->X_WP});
+    const std::optional<Pose>& predicted = worlds_[0].predicted[i];
+    expected.push_back({id, model::collision_size(nominal(), *model::find_parcel(nominal(), id)),
+                        is_prediction_new_ && predicted ? *predicted : boxes_[i]->X_WP});
   }
   return expected;
 }
@@ -128,11 +130,17 @@ void Belief::see(const perception::Observation& observation) {
       if (world.predicted[i]) world.poses[i] = world.predicted[i];
     }
   }
+  for (const std::string& id : observation.missing) {
+    const int item = index_of(sequence_, id);
+    if (item >= 0) forget(item);
+  }
+  is_prediction_new_ = false;
 }
 
 void Belief::expect(const std::vector<std::vector<std::optional<Pose>>>& predicted) {
   SNUG_CHECK(predicted.size() == worlds_.size(), "a prediction of every world");
   for (std::size_t w = 0; w < worlds_.size(); ++w) worlds_[w].predicted = predicted[w];
+  is_prediction_new_ = true;
 }
 
 void Belief::weigh(int item) {

@@ -74,6 +74,7 @@ class Belief {
   std::string sequence_name_;
   model::Sequence sequence_;
   std::vector<World> worlds_;
+  bool is_prediction_new_ = false;  ///< something was expected since the last look
   std::vector<double> weights_;
   std::vector<std::unique_ptr<Rollout>> rollouts_;
   std::vector<std::optional<BelievedBox>> boxes_;

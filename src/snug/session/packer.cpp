@@ -97,7 +97,14 @@ bool Packer::is_seen_outside(const std::string& id) const {
 }
 
 void Packer::look() {
-  belief_.see(plant_.perceive(belief_.expectations()));
+  const std::vector<perception::Expectation> expected = belief_.expectations();
+  perception::Observation seen = plant_.perceive(expected);
+  if (!seen.missing.empty()) {  // one empty place may be a bad picture
+    const std::vector<std::string> before = std::move(seen.missing);
+    seen = plant_.perceive(expected);
+    std::erase_if(seen.missing, [&](const std::string& id) { return std::ranges::find(before, id) == before.end(); });
+  }
+  belief_.see(seen);
   for (std::size_t i = 0; i < items_.size(); ++i) {
     if (belief_.box(static_cast<int>(i))) {
       items_[i].size = model::find_parcel(belief_.nominal(), items_[i].id)->size;

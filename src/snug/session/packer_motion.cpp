@@ -82,6 +82,7 @@ bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& rep
          angle_between(box->X_WP.R, rehearsed.R) > kTurnedAsRehearsed)) {
       return false;
     }
+    belief_.expect(attempt.ends);  // of what is still to come
     begin = end;
   }
   return true;

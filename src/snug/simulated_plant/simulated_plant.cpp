@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "snug/camera_perception/camera_perception.hpp"
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
 
@@ -24,7 +25,7 @@ SimulatedPlant::SimulatedPlant(const model::Scenario& scenario, const std::strin
       simulation_(draw_plant(scenario, sequence, options.seed), sequence, options.simulation),
       state_(simulation_.make_state()),
       work_(simulation_.make_workspace()),
-      perception_(perception::make_perception(options.perception, options.seed)),
+      perception_(camera_perception::make_perception(options.perception, options.seed, scenario)),
       was_brought_(simulation_.sequence().items.size(), false) {
   read_sensors({}, {});
 }

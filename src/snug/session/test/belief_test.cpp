@@ -105,6 +105,33 @@ TEST(Belief, WhatIsNotSeenIsBelievedToBeWhereItWasPredicted) {
   EXPECT_GT(belief.box(0)->covariance(0, 0), 0.0);
 }
 
+TEST(Belief, ExpectsAPredictionUntilItHasLookedAndThenWhatItSaw) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  const Pose here = belief.box(0)->X_WP;
+  EXPECT_EQ(belief.expectations()[0].X_WP, here);
+  Pose there = here;
+  there.p.x() += 0.1;
+  belief.expect(std::vector<std::vector<std::optional<Pose>>>(5, {there, std::nullopt, std::nullopt}));
+  EXPECT_EQ(belief.expectations()[0].X_WP, there);
+  Pose seen = there;
+  seen.p.y() += 0.01;
+  belief.see(seen_at(seen));
+  EXPECT_EQ(belief.expectations()[0].X_WP, seen);
+}
+
+TEST(Belief, WhatIsMissingIsBelievedToBeNowhere) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  perception::Observation empty;
+  empty.not_seen = empty.missing = {"BOX027"};
+  belief.see(empty);
+  EXPECT_FALSE(belief.box(0).has_value());
+  EXPECT_TRUE(belief.expectations().empty());
+}
+
 TEST(Belief, IsTheSameWithAnyNumberOfThreads) {
   const model::Scenario scenario = demonstrator();
   Belief one(scenario, "1", quick(1)), two(scenario, "1", quick(2));

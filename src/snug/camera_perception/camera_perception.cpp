@@ -1,0 +1,95 @@
+// CameraPerception: boxes as a depth camera over the container tells them, behind the interface of perception.
+#include "snug/camera_perception/camera_perception.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "snug/box_estimation/estimate.hpp"
+#include "snug/camera/render.hpp"
+#include "snug/core/input_error.hpp"
+
+namespace snug::camera_perception {
+namespace {
+
+using perception::Observation;
+
+constexpr double kBeyondWall = 0.05;  ///< m, a middle so far beyond the walls is outside the container
+
+const model::Container& container_of(const model::Scenario& scenario) {
+  if (scenario.cameras.empty()) {
+    throw InputError(scenario.source_name, "cameras", "none", "a camera, for --perception camera");
+  }
+  const model::Container* container = model::find_container(scenario, scenario.target);
+  if (container == nullptr) {
+    throw InputError(scenario.source_name, "containers", "none", "a container to look into, for --perception camera");
+  }
+  return *container;
+}
+
+class Camera final : public perception::Perception {
+ public:
+  Camera(std::uint64_t seed, const model::Scenario& scenario)
+      : container_(container_of(scenario)),
+        params_(scenario.cameras.front()),
+        draw_(camera::draw_camera(params_, seed)),
+        known_(box_estimation::make_input(scenario, container_)),
+        station_(perception::make_perception(perception::Kind::Noisy, seed, kStationNoise)) {}
+
+  [[nodiscard]] std::string_view name() const override { return perception::name_of(perception::Kind::Camera); }
+
+  [[nodiscard]] Observation perceive(const perception::Scene& scene,
+                                     std::span<const perception::Expectation> expected) override {
+    Observation observation = station_->perceive(outside_of(scene), {});
+    box_estimation::EstimateInput input = known_;
+    for (const perception::Expectation& one : expected) {
+      if (one.X_WP && perception::find(observation, one.item) == nullptr) {
+        input.boxes.push_back({one.item, one.size, *one.X_WP});
+      }
+    }
+    const box_estimation::Estimate estimate =
+        box_estimation::estimate_boxes(camera::render(view_of(scene), params_, draw_, ++shot_).frame, input);
+    for (const box_estimation::BoxEstimate& box : estimate.boxes) {
+      if (box.sight == box_estimation::Sight::Missing) observation.missing.push_back(box.id);
+      if (box.sight != box_estimation::Sight::Seen) continue;
+      observation.seen.push_back({box.id, box.X_WP, box.covariance, std::nullopt, 0.0});
+    }
+    for (const perception::Expectation& one : expected) {
+      if (perception::find(observation, one.item) == nullptr) observation.not_seen.push_back(one.item);
+    }
+    return observation;
+  }
+
+ private:
+  [[nodiscard]] camera::Scene view_of(const perception::Scene& scene) const {
+    camera::Scene view = known_.surroundings;
+    for (const perception::SceneBox& box : scene.boxes) camera::add_box(view, box.item, box.X_WP, box.size);
+    return view;
+  }
+
+  [[nodiscard]] perception::Scene outside_of(const perception::Scene& scene) const {
+    perception::Scene outside = scene;
+    const Vector3 half = 0.5 * container_.inner_size + Vector3::Constant(kBeyondWall);
+    std::erase_if(outside.boxes, [&](const perception::SceneBox& box) {
+      const Vector3 p_TP = container_.X_WT.inverse() * box.X_WP.p;
+      return std::abs(p_TP.x()) < half.x() && std::abs(p_TP.y()) < half.y();
+    });
+    return outside;
+  }
+
+  model::Container container_;
+  model::CameraParams params_;
+  camera::CameraDraw draw_;
+  box_estimation::EstimateInput known_;  ///< no boxes in it
+  std::unique_ptr<perception::Perception> station_;
+  std::uint64_t shot_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<perception::Perception> make_perception(perception::Kind kind, std::uint64_t seed,
+                                                        const model::Scenario& scenario) {
+  if (kind == perception::Kind::Camera) return std::make_unique<Camera>(seed, scenario);
+  return perception::make_perception(kind, seed);
+}
+
+}  // namespace snug::camera_perception

@@ -1,0 +1,22 @@
+// CameraPerception: boxes as a depth camera over the container tells them, behind the interface of perception.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "snug/model/scenario.hpp"
+#include "snug/perception/perception.hpp"
+
+namespace snug::camera_perception {
+
+/// Of the stations that measure boxes outside the container (at the aligner, on the bench): half widths of uniform
+/// draws.
+inline constexpr perception::NoiseLevels kStationNoise{0.001, 0.005, 0.0005};
+
+/// As perception::make_perception, with Kind::Camera as well: one shot of the scenario's first camera each time, arm
+/// out of the view, and the estimate from its depth. `scenario`: what is known of the cell, not how it was drawn.
+/// `seed`: of the camera's errors and of noise. Throws InputError for Kind::Camera without a camera or a container.
+[[nodiscard]] std::unique_ptr<perception::Perception> make_perception(perception::Kind kind, std::uint64_t seed,
+                                                                      const model::Scenario& scenario);
+
+}  // namespace snug::camera_perception

@@ -1,0 +1,122 @@
+// CameraPerception: what a frame of known boxes tells: seen ones near the truth, covered ones not, empty places as
+// such.
+#include "snug/camera_perception/camera_perception.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::camera_perception {
+namespace {
+
+using perception::Kind;
+
+const Vector3 kSize(0.2, 0.15, 0.1);  ///< m
+
+const model::Scenario& scenario() {
+  static const model::Scenario one = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+  return one;
+}
+
+/// Flat, its middle here over the container's floor.
+Pose in_container(double x, double y, double z) {
+  const model::Container& container = *model::find_container(scenario(), scenario().target);
+  return container.X_WT * Pose{Matrix3::Identity(), Vector3(x, y, z)};
+}
+
+std::vector<perception::Expectation> expectations(const std::vector<perception::SceneBox>& boxes) {
+  std::vector<perception::Expectation> expected;
+  for (const perception::SceneBox& box : boxes) expected.push_back({box.item, box.size, box.X_WP});
+  return expected;
+}
+
+TEST(CameraPerception, MeasuresBoxesInTheContainerAndStatesItsError) {
+  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize},
+                                                   {"B", in_container(-0.04, -0.13, 0.05), kSize}};
+  const auto camera = make_perception(Kind::Camera, 7, scenario());
+  EXPECT_EQ(camera->name(), "camera");
+  std::vector<perception::Expectation> expected = expectations(boxes);
+  expected[0].X_WP->p += Vector3(0.006, -0.004, 0.003);
+  const perception::Observation seen = camera->perceive({1.5, Pose{}, boxes}, expected);
+  EXPECT_EQ(seen.time, 1.5);
+  EXPECT_TRUE(seen.not_seen.empty());
+  EXPECT_TRUE(seen.missing.empty());
+  for (const perception::SceneBox& box : boxes) {
+    const perception::PoseEstimate* estimate = perception::find(seen, box.item);
+    ASSERT_NE(estimate, nullptr) << box.item;
+    // docs/camera.md: 95 % within 2.5 mm and 0.7 degrees.
+    EXPECT_LT((estimate->X_WP.p - box.X_WP.p).norm(), 0.0035);
+    EXPECT_LT(angle_between(estimate->X_WP.R, box.X_WP.R), 0.015);
+    EXPECT_FALSE(estimate->size.has_value()) << "sizes are taken as known";
+    for (int i = 0; i < 3; ++i) {
+      const double sd = std::sqrt(estimate->covariance(i, i));
+      EXPECT_GT(sd, 5e-5);
+      EXPECT_LT(sd, 5e-3);
+      EXPECT_LT(std::abs(estimate->X_WP.p[i] - box.X_WP.p[i]), 4.0 * sd);
+    }
+  }
+}
+
+TEST(CameraPerception, WhatIsCoveredIsNotSeenAndNotMissing) {
+  const std::vector<perception::SceneBox> boxes = {{"under", in_container(0.0, 0.0, 0.05), Vector3(0.12, 0.1, 0.1)},
+                                                   {"over", in_container(0.0, 0.0, 0.15), kSize}};
+  const auto seen = make_perception(Kind::Camera, 7, scenario())->perceive({0.0, Pose{}, boxes}, expectations(boxes));
+  EXPECT_NE(perception::find(seen, "over"), nullptr);
+  EXPECT_EQ(seen.not_seen, (std::vector<std::string>{"under"}));
+  EXPECT_TRUE(seen.missing.empty());
+}
+
+TEST(CameraPerception, AnEmptyPlaceIsMissingAndAMovedBoxIsFound) {
+  const std::vector<perception::SceneBox> boxes = {{"there", in_container(0.05, 0.15, 0.05), kSize}};
+  std::vector<perception::Expectation> expected = expectations(boxes);
+  expected.push_back({"taken", Vector3(0.1, 0.12, 0.14), in_container(-0.10, -0.10, 0.07)});
+  const auto camera = make_perception(Kind::Camera, 7, scenario());
+  const perception::Observation seen = camera->perceive({0.0, Pose{}, boxes}, expected);
+  EXPECT_EQ(seen.missing, (std::vector<std::string>{"taken"}));
+  EXPECT_EQ(seen.not_seen, seen.missing);
+  expected = {expected[0]};
+  expected[0].X_WP = in_container(-0.05, -0.15, 0.05);
+  const perception::Observation moved = camera->perceive({0.0, Pose{}, boxes}, expected);
+  const perception::PoseEstimate* found = perception::find(moved, "there");
+  ASSERT_NE(found, nullptr);
+  EXPECT_LT((found->X_WP.p - boxes[0].X_WP.p).norm(), 0.005);
+}
+
+TEST(CameraPerception, StationsMeasureOutsideTheContainerWithSize) {
+  const std::vector<perception::SceneBox> boxes = {{"new", scenario().aligner->X_WA, kSize}};
+  const auto camera = make_perception(Kind::Camera, 7, scenario());
+  double worst = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const perception::Observation seen = camera->perceive({0.0, Pose{}, boxes}, {});
+    ASSERT_EQ(seen.seen.size(), 1U);
+    ASSERT_TRUE(seen.seen[0].size.has_value());
+    EXPECT_LE((*seen.seen[0].size - kSize).cwiseAbs().maxCoeff(), kStationNoise.size);
+    worst = std::max(worst, (seen.seen[0].X_WP.p - boxes[0].X_WP.p).cwiseAbs().maxCoeff());
+  }
+  EXPECT_LE(worst, kStationNoise.position);
+  EXPECT_GT(worst, 0.5 * kStationNoise.position);
+}
+
+TEST(CameraPerception, TheSameSeedSeesTheSame) {
+  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
+  const auto look = [&](std::uint64_t seed) {
+    const auto camera = make_perception(Kind::Camera, seed, scenario());
+    (void)camera->perceive({0.0, Pose{}, boxes}, expectations(boxes));
+    return camera->perceive({0.0, Pose{}, boxes}, expectations(boxes));
+  };
+  EXPECT_EQ(look(7), look(7));
+  EXPECT_NE(look(7).seen[0].X_WP, look(8).seen[0].X_WP);
+}
+
+TEST(CameraPerception, NeedsACamera) {
+  model::Scenario blind = scenario();
+  blind.cameras.clear();
+  EXPECT_THROW((void)make_perception(Kind::Camera, 1, blind), InputError);
+  EXPECT_EQ(make_perception(Kind::Exact, 1, blind)->name(), "exact");
+}
+
+}  // namespace
+}  // namespace snug::camera_perception
