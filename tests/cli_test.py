@@ -986,6 +986,42 @@ class OtherCells(unittest.TestCase):
         self.assertNotIn("%", line)
         self.assertEqual(line.split().count("-"), 2, "neither a success rate nor a force")
 
+    def test_tempo_is_faster_and_says_where_the_seconds_go(self):
+        lagged, fast = self.pack("--sequence", "two"), self.pack("--sequence", "two", "--tempo", 1)
+        slower = self.pack("--sequence", "two", "--tempo", 0.5)
+        self.assertEqual((lagged["controller"], lagged["tempo"]), ("faithful", None))
+        self.assertEqual((fast["controller"], fast["tempo"]), ("fast", 1.0))
+        for packed in (lagged, fast, slower):
+            self.assertEqual(packed["executed_boxes"], 2, packed["stopped"])
+            self.assertAlmostEqual(packed["boxes_per_hour"], 2 * 3600 / packed["duration"], places=6)
+            for item in packed["items"]:
+                parts = dict(item["seconds"])
+                self.assertAlmostEqual(parts.pop("total"), sum(parts.values()), places=4)
+                self.assertEqual(set(parts), {"travel", "carry", "regrasp", "insert", "push", "wait"})
+                self.assertGreater(item["hold_factor"], 1.0)
+            in_items = sum(item["seconds"]["total"] for item in packed["items"])
+            self.assertAlmostEqual(packed["seconds"]["total"], in_items, places=4)
+            self.assertLess(in_items, packed["duration"], "the way home is nobody's")
+        self.assertGreater(fast["boxes_per_hour"], slower["boxes_per_hour"])
+        self.assertGreater(slower["boxes_per_hour"], lagged["boxes_per_hour"])
+
+    def test_program_packed_fast_runs_again_fast(self):
+        program = self.folder / "fast.csv"
+        self.pack("--sequence", "two", "--plant-seed", 0, "--tempo", 1, "--program", program)
+        words = (CELL, "--items", self.orders, "--program", program, "--sequence", "two")
+        runs = {kind: json.loads(snug("simulate", *words, "--cup", "phases", "--controller", kind, "--json").stdout)
+                for kind in ("fast", "faithful")}
+        self.assertEqual([box["state"] for box in runs["fast"]["boxes"]], ["packed"] * 2)
+        self.assertLess(runs["fast"]["duration_s"], 0.6 * runs["faithful"]["duration_s"])
+        checked = json.loads(snug("check", *words, "--controller", "fast", "--json").stdout)
+        # Where boxes are pushed in, what is held is inside things by more than `check` allows, with any controller.
+        self.assertEqual([one for one in checked["findings"] if not one["waypoint"].startswith("Place")], [],
+                         "as fast as the joints allow and no faster")
+
+    def test_tempo_out_of_range_is_refused(self):
+        for tempo in (0.49, 1.01, "nan", "fast"):
+            self.assert_refused(snug("pack", CELL, "--sequence", "1", "--tempo", tempo), "--tempo")
+
     def test_comparison_prints_names_whole(self):
         lines = snug("compare", CELL, "--sequences", "1", "--agents", "margin", *self.QUICK).stdout.splitlines()
         table7 = {"I.AM.": "12 / 74.22", "State of the Art": "5 / 31.60", "Manual Operator": "12 / 74.22"}

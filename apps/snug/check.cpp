@@ -99,7 +99,7 @@ int run_check(const CheckOptions& options) {
   cell::CheckOptions check;
   if (options.sequence) check.sequence = *options.sequence;
   if (options.robot) check.robot = *options.robot;
-  if (options.controller == "ideal") check.controller = motion::ControllerKind::Ideal;
+  check.controller = motion::controller_kind_of(options.controller, "command line");
   print_robot_warnings(scenario);
   const motion::Program program = cell::corrected(scenario, motion::load_program(options.program),
                                                   options.corrections == "none" ? "" : options.corrections);

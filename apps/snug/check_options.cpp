@@ -30,8 +30,9 @@ void add_check(CLI::App& app, Action& action) {
   verb.add_option("--robot", options->robot, "the scenario's robot; absent: the one there is")->type_name("NAME");
   verb.add_option(
           "--controller", options->controller,
-          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly, as exported programs are done")
-      ->check(one_of({"faithful", "ideal"}))
+          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly, as exported programs are done; "
+          "fast: bounded jerk and blends, as pack --tempo 1, without anything to feel")
+      ->check(one_of({"faithful", "ideal", "fast"}))
       ->type_name("KIND")
       ->capture_default_str();
   verb.add_option("--corrections", options->corrections, "site corrections: a layer of the scenario, or none")

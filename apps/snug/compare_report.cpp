@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 struct Summary {
   int count = 0, sent = 0, as_planned = 0, lost = 0, recoveries = 0;
   double planned = 0.0, executed = 0.0, deviation = 0.0, lowest = 0.0, highest = 0.0, before_skips = 0.0;
-  double seconds = 0.0;  ///< mean of the medians
+  double seconds = 0.0;         ///< mean of the medians
+  double boxes_per_hour = 0.0;  ///< mean
 };
 
 Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent, const std::string& sequence = {}) {
@@ -39,6 +40,7 @@ Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent,
     all.before_skips += row.percent_before_skips;
     square += row.executed_percent * row.executed_percent;
     all.seconds += row.decision_seconds_median;
+    all.boxes_per_hour += row.boxes_per_hour;
   }
   if (all.count == 0) return all;
   const double count = all.count;
@@ -46,6 +48,7 @@ Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent,
   all.executed /= count;
   all.before_skips /= count;
   all.seconds /= count;
+  all.boxes_per_hour /= count;
   // Of the sample: divided by one less than there are.
   if (all.count > 1)
     all.deviation = std::sqrt(std::max(0.0, (square - count * all.executed * all.executed) / (count - 1.0)));
@@ -104,18 +107,19 @@ std::string reporter_line(const model::Scenario& scenario, const std::vector<std
 }
 
 constexpr const char* kRow =
-    "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7}  {}\n";
+    "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7}  {:>7}  {}\n";
 
 std::string summary_line(const std::string& label, const Summary& all) {
-  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:9.2f} % {:5} {:10}\n", label, all.count,
-                     all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
-                     all.recoveries);
+  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:9.2f} % {:5} {:10}  {:7.0f}\n", label,
+                     all.count, all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
+                     all.recoveries, all.boxes_per_hour);
 }
 
 std::string format_table_end(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
                              bool with_references) {
   std::string text =
-      "\nexecuted filling, %        runs     mean      sd           range   sent as planned  lost recoveries\n";
+      "\nexecuted filling, %        runs     mean      sd           range   sent as planned  lost recoveries  "
+      "boxes/h\n";
   const std::vector<std::string> sequences = distinct(rows, [](const CompareRow& row) { return row.sequence; });
   for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
     const Summary all = summarize(rows, agent);
@@ -157,6 +161,7 @@ Json as_json(const CompareRow& row) {
           {"items_as_planned", row.items_as_planned},
           {"boxes_lost", row.boxes_lost},
           {"recoveries", row.recoveries},
+          {"boxes_per_hour", row.boxes_per_hour},
           {"stop_reason", row.stop_reason},
           {"failure", row.failure}};
 }
@@ -178,6 +183,7 @@ std::string format_json_end(const std::vector<CompareRow>& rows) {
                      {"items_as_planned", all.as_planned},
                      {"boxes_lost", all.lost},
                      {"recoveries", all.recoveries},
+                     {"boxes_per_hour", all.boxes_per_hour},
                      {"decision_seconds_median", all.seconds}});
   }
   return "\n],\n\"means\": " + means.dump(2) + "}\n";
@@ -202,6 +208,7 @@ CompareRow make_row(const study::Trial& trial) {
   row.items_as_planned = trial.items_as_planned;
   row.boxes_lost = trial.boxes_lost;
   row.recoveries = trial.recoveries;
+  row.boxes_per_hour = trial.boxes_per_hour;
   row.stop_reason = session::name_of(session.stop_reason);
   row.failure = session.failure;
   return row;
@@ -211,25 +218,27 @@ std::string format_compare_head(CompareForm form) {
   if (form == CompareForm::Json) return "{\"rows\": [";
   if (form == CompareForm::Csv) {
     return "agent,sequence,planned_boxes,planned_percent,executed_boxes,executed_percent,decision_seconds_median,seed,"
-           "plant_seed,items_sent,items_as_planned,boxes_lost,recoveries,percent_before_skips,stop_reason\n";
+           "plant_seed,items_sent,items_as_planned,boxes_lost,recoveries,percent_before_skips,stop_reason,boxes_per_"
+           "hour\n";
   }
   return fmt::format(fmt::runtime(kRow), "agent", "sequence", "seed", "plant", "plan", "%", "exec", "%", "sent",
-                     "as planned", "lost", "recoveries", "dec., s", "stopped");
+                     "as planned", "lost", "recoveries", "boxes/h", "dec., s", "stopped");
 }
 
 std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_first) {
   if (form == CompareForm::Json) return (is_first ? "\n" : ",\n") + as_json(row).dump();
   if (form == CompareForm::Csv) {
-    return fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{},{},{:.4f},{}\n", csv_cell(row.agent),
+    return fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{},{},{:.4f},{},{:.1f}\n", csv_cell(row.agent),
                        csv_cell(row.sequence), row.planned_boxes, row.planned_percent, row.executed_boxes,
                        row.executed_percent, row.decision_seconds_median, row.seed, row.plant_seed, row.items_sent,
                        row.items_as_planned, row.boxes_lost, row.recoveries, row.percent_before_skips,
-                       csv_cell(row.stop_reason));
+                       csv_cell(row.stop_reason), row.boxes_per_hour);
   }
   return fmt::format(fmt::runtime(kRow), row.agent, row.sequence, row.seed, row.plant_seed, row.planned_boxes,
                      fmt::format("{:.2f}", row.planned_percent), row.executed_boxes,
                      fmt::format("{:.2f}", row.executed_percent), row.items_sent, row.items_as_planned, row.boxes_lost,
-                     row.recoveries, fmt::format("{:.2f}", row.decision_seconds_median), row.stop_reason);
+                     row.recoveries, fmt::format("{:.0f}", row.boxes_per_hour),
+                     fmt::format("{:.2f}", row.decision_seconds_median), row.stop_reason);
 }
 
 std::string format_compare_end(CompareForm form, const model::Scenario& scenario, const std::vector<CompareRow>& rows,

@@ -63,10 +63,11 @@ int run_control(const ControlOptions& options) {
   print_robot_warnings(scenario);
   model::Sequence none;
   const model::Sequence& sequence = options.sequence ? cell::require_sequence(scenario, *options.sequence) : none;
-  const auto kind = options.controller == "ideal" ? motion::ControllerKind::Ideal : motion::ControllerKind::Faithful;
+  cell::SimulationOptions how;
+  if (options.controller) how.controller = motion::controller_kind_of(*options.controller, "command line");
   const std::string corrections = options.corrections == "none" ? "" : options.corrections;
   const motion::PreparedProgram plan = cell::prepare(
-      scenario, sequence, kind, cell::corrected(scenario, motion::load_program(options.program), corrections));
+      scenario, sequence, how, cell::corrected(scenario, motion::load_program(options.program), corrections));
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
   click::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
                                         options.sequence ? &sequence : nullptr};

@@ -33,8 +33,8 @@ void record(const model::Scenario& scenario, const study::Trial& trial, OutputFi
   recorded.events = study::events_of(trial.session);
   const std::string& robot = trial.plant.simulation.robot;
   recorded.settings_json =
-      fmt::format(R"({{"cup":"phases","controller":"faithful","corrections":"none","robot":"{}","plant_seed":{}}})",
-                  robot.empty() ? "none" : robot, trial.plant_seed);
+      fmt::format(R"({{"cup":"phases","controller":"{}","corrections":"none","robot":"{}","plant_seed":{}}})",
+                  motion::name_of(trial.plant.simulation.controller), robot.empty() ? "none" : robot, trial.plant_seed);
   recorded.describe = [](const cell::RunResult& one) { return format_json(one); };
   (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
 }
@@ -97,6 +97,10 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
   session.samples = options.samples;
   session.skips = options.skips;
   session.simulation.robot = choose_robot(options, loaded.scenario);
+  if (options.tempo) {
+    session.simulation.controller = motion::ControllerKind::Fast;
+    session.simulation.tempo = *options.tempo;
+  }
   session.is_interrupted = is_interrupted;
   if (options.robot && *options.robot != "none") print_robot_warnings(loaded.scenario);
   return session;

@@ -25,6 +25,7 @@ struct PackOptions {
   std::optional<int> threads;                                       ///< absent: all cores
   int samples = session::SessionOptions{}.samples;
   int skips = session::SessionOptions{}.skips;
+  std::optional<double> tempo;  ///< absent: with the demonstrator's lag
   std::string future = "own";
   std::string perception = "exact";
   std::string fault;                 ///< "drop@3,noseal@5"

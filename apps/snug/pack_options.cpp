@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 7
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --robot none --json
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 2 --tempo 1
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --fault drop@3,noseal@5,displace@7,stop@9 -o run.h5
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --perception noisy
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --agent examples.python.03_agent:Lowest
@@ -50,6 +51,12 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
           "the scenario's robot, such as ur10, whose joints move the tool in the plant, or none: the tool moves "
           "by itself (default: the scenario's robot)")
       ->type_name("NAME");
+  verb.add_option("--tempo", options.tempo,
+                  "move fast: exactly on paths of bounded jerk, blended where nothing is switched, rows in contact and "
+                  "waits for the vacuum ended by what is felt; share of the speeds (absent: with the demonstrator's "
+                  "lag)")
+      ->check(within(0.5, 1.0))
+      ->type_name("SHARE");
   verb.add_option("--fault", options.fault,
                   "what goes wrong in the plant: noseal@N, drop@N, stop@N, displace@N, push@N of the N-th item, "
                   "separated by commas")

@@ -73,6 +73,13 @@ Json recoveries_as_json(const std::vector<session::Recovery>& recoveries) {
   return list;
 }
 
+Json as_json(const session::ItemSeconds& seconds) {
+  return {{"travel", rounded(seconds.travel, 6)},   {"carry", rounded(seconds.carry, 6)},
+          {"regrasp", rounded(seconds.regrasp, 6)}, {"insert", rounded(seconds.insert, 6)},
+          {"push", rounded(seconds.push, 6)},       {"wait", rounded(seconds.wait, 6)},
+          {"total", rounded(seconds.total(), 6)}};
+}
+
 Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
   Json json{{"box", item.id}, {"placed", item.is_packed()}, {"end", session::name_of(item.end)}};
   if (!item.reason.empty()) json["reason"] = item.reason;
@@ -90,14 +97,22 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["predicted_success"] = item.predicted_success;
     json["predicted"] = item.samples > 0 ? as_json(item.predicted) : Json();
     json["happened"] = as_json(item.happened);
+    json["hold_factor"] = std::isfinite(truth.hold_factor) ? Json(rounded(truth.hold_factor, 6)) : Json();
     json["sends"] = sends_as_json(item, truth);
     json["recoveries"] = recoveries_as_json(item.recoveries);
   }
+  json["seconds"] = as_json(item.seconds);
   json["attempts"] = item.attempts;
   json["protective_stops"] = item.stops;
   json["decision_seconds"] = item.decision_seconds;
   json["rehearsal_seconds"] = item.rehearsal_seconds;
   return json;
+}
+
+session::ItemSeconds sum_of_seconds(const session::SessionResult& result) {
+  session::ItemSeconds sum;
+  for (const session::ItemReport& item : result.items) sum += item.seconds;
+  return sum;
 }
 
 Json as_json(const study::MonteCarloResult& repeated) {
@@ -116,6 +131,23 @@ Json as_json(const study::MonteCarloResult& repeated) {
           {"items", items}};
 }
 
+/// "12.3 s a box that is not turned (9 of 14), tempo 1"
+std::string how_fast(const study::Trial& trial) {
+  const cell::SimulationOptions& how = trial.plant.simulation;
+  std::string text = trial.unturned_cycle > 0.0
+                         ? fmt::format("{:.1f} s a box that is not turned, ", trial.unturned_cycle)
+                         : std::string();
+  return text + (how.controller == motion::ControllerKind::Fast ? fmt::format("tempo {:g}", how.tempo)
+                                                                : std::string("with the demonstrator's lag"));
+}
+
+std::string describe_hold(const study::Trial& trial) {
+  const auto worst = std::ranges::min_element(trial.items, {}, &study::TrueItem::hold_factor);
+  if (worst == trial.items.end() || !std::isfinite(worst->hold_factor)) return {};
+  return fmt::format("hold of the cup    {:.1f} times what it had to carry, at the worst instant ({})\n",
+                     worst->hold_factor, worst->id);
+}
+
 }  // namespace
 
 std::string format_pack_head(const std::string& sequence, const session::SessionOptions& session,
@@ -125,10 +157,10 @@ std::string format_pack_head(const std::string& sequence, const session::Session
       "sequence {}, agent {}, seed {}; plant {}, perception {}, robot {}, {} samples\n\n"
       "                 planned place, mm       turned      insertion          success  error, true pose  peak force, "
       "N  "
-      "moved  decided, rehearsed\n"
+      "moved  decided, rehearsed         seconds of the plant\n"
       "box          x_T     y_T     z_T  up                                  predicted     mm    deg     pred.  happ.  "
       "   "
-      "mm      s      s  times\n",
+      "mm      s      s  times  cycle travel  carry regrasp insert  push  wait\n",
       sequence, session.agent, session.packing.seed, address.empty() ? fmt::format("seed {}", plant.seed) : address,
       perception::name_of(plant.perception), robot.empty() ? "none" : robot, session.samples);
 }
@@ -142,14 +174,16 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
     const Vector3 p = 1e3 * item.planned.X_TP.p;
     text = fmt::format(
         "{:<8} {:7.1f} {:7.1f} {:7.1f}  {}{}  {:<11} {:<17} {:>9}  {:6.1f} {:6.1f}    {:>6} {:6.0f} {:6.1f} "
-        "{:6.2f} {:6.2f} {:6}{}\n",
+        "{:6.2f} {:6.2f} {:6}  {:5.1f} {:6.1f} {:6.1f} {:7.1f} {:6.1f} {:5.1f} {:5.1f}{}\n",
         item.id, p.x(), p.y(), p.z(), item.planned.orientation.up_sign > 0 ? '+' : '-',
         static_cast<char>('X' + static_cast<int>(item.planned.orientation.up)), session::name_of(item.reorientation),
         session::name_of(item.skill),
         item.samples > 0 ? fmt::format("{:.0f} %", 100.0 * item.predicted_success) : std::string("-"),
         1e3 * truth.position_error, truth.angle_error / kDegree,
         item.samples > 0 ? fmt::format("{:.0f}", item.predicted.force) : std::string("-"), item.happened.force,
-        1e3 * truth.displacement, item.decision_seconds, item.rehearsal_seconds, item.attempts,
+        1e3 * truth.displacement, item.decision_seconds, item.rehearsal_seconds, item.attempts, item.seconds.total(),
+        item.seconds.travel, item.seconds.carry, item.seconds.regrasp, item.seconds.insert, item.seconds.push,
+        item.seconds.wait,
         item.end == session::ItemEnd::Placed ? std::string() : fmt::format("  {}", session::name_of(item.end)));
   }
   for (const session::Recovery& one : item.recoveries) {
@@ -176,6 +210,8 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
   text += fmt::format("decision           {:.2f} s an item (median), agent {}\n", result.decision_seconds_median,
                       result.agent);
   text += fmt::format("plant              {:.1f} s, {} waypoints\n", result.duration, result.program.waypoints.size());
+  text += fmt::format("speed              {:.0f} boxes an hour, {}\n", trial.boxes_per_hour, how_fast(trial));
+  text += describe_hold(trial);
   if (!trial.is_elsewhere) text += fmt::format("state hash         {:016x}\n", trial.state_hash);
   if (repeated.count == 0) return text;
   text += fmt::format("\nopen loop, {} runs in cells drawn from the scenario's uncertainty\n", repeated.count);
@@ -194,28 +230,35 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
 
 std::string format_json(const study::Trial& trial, const study::MonteCarloResult& repeated) {
   const session::SessionResult& result = trial.session;
-  Json json{{"sequence", result.sequence},
-            {"agent", result.agent},
-            {"seed", trial.seed},
-            {"plant", result.plant},
-            {"plant_seed", trial.is_elsewhere ? Json() : Json(trial.plant_seed)},
-            {"perception", perception::name_of(trial.plant.perception)},
-            {"robot", trial.plant.simulation.robot.empty() ? "none" : trial.plant.simulation.robot},
-            {"planned_boxes", result.plan.size()},
-            {"planned_percent", result.planned_percent},
-            {"executed_boxes", trial.executed_boxes},
-            {"executed_percent", trial.executed_percent},
-            {"percent_before_skips", result.percent_before_skips ? Json(*result.percent_before_skips) : Json()},
-            {"items_sent", trial.items_sent},
-            {"items_as_planned", trial.items_as_planned},
-            {"boxes_lost", trial.boxes_lost},
-            {"recoveries", trial.recoveries},
-            {"decision_seconds_median", result.decision_seconds_median},
-            {"stop_reason", session::name_of(result.stop_reason)},
-            {"stopped", result.stopped},
-            {"failure", result.failure},
-            {"duration", result.duration},
-            {"state_hash", trial.is_elsewhere ? Json() : Json(fmt::format("{:016x}", trial.state_hash))}};
+  Json json{
+      {"sequence", result.sequence},
+      {"agent", result.agent},
+      {"seed", trial.seed},
+      {"plant", result.plant},
+      {"plant_seed", trial.is_elsewhere ? Json() : Json(trial.plant_seed)},
+      {"perception", perception::name_of(trial.plant.perception)},
+      {"robot", trial.plant.simulation.robot.empty() ? "none" : trial.plant.simulation.robot},
+      {"planned_boxes", result.plan.size()},
+      {"planned_percent", result.planned_percent},
+      {"executed_boxes", trial.executed_boxes},
+      {"executed_percent", trial.executed_percent},
+      {"percent_before_skips", result.percent_before_skips ? Json(*result.percent_before_skips) : Json()},
+      {"items_sent", trial.items_sent},
+      {"items_as_planned", trial.items_as_planned},
+      {"boxes_lost", trial.boxes_lost},
+      {"recoveries", trial.recoveries},
+      {"decision_seconds_median", result.decision_seconds_median},
+      {"stop_reason", session::name_of(result.stop_reason)},
+      {"stopped", result.stopped},
+      {"failure", result.failure},
+      {"duration", result.duration},
+      {"controller", motion::name_of(trial.plant.simulation.controller)},
+      {"tempo",
+       trial.plant.simulation.controller == motion::ControllerKind::Fast ? Json(trial.plant.simulation.tempo) : Json()},
+      {"boxes_per_hour", trial.boxes_per_hour},
+      {"unturned_cycle_seconds", trial.unturned_cycle > 0.0 ? Json(trial.unturned_cycle) : Json()},
+      {"seconds", as_json(sum_of_seconds(result))},
+      {"state_hash", trial.is_elsewhere ? Json() : Json(fmt::format("{:016x}", trial.state_hash))}};
   json["items"] = Json::array();
   for (const session::ItemReport& item : result.items) {  // those left out on paper have no truth
     const auto truth = std::ranges::find(trial.items, item.id, &study::TrueItem::id);

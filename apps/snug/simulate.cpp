@@ -76,7 +76,9 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
     run.simulation.robot = *options.robot;
     print_robot_warnings(scenario);
   }
-  if (options.controller == "ideal") run.simulation.controller = motion::ControllerKind::Ideal;
+  if (options.controller) {
+    run.simulation.controller = motion::controller_kind_of(*options.controller, "command line");
+  }
   const std::string cup = options.cup                                   ? *options.cup
                           : run.program && is_own_program(*run.program) ? "phases"
                                                                         : "holding";

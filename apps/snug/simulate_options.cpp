@@ -26,9 +26,11 @@ void add_program_options(CLI::App& verb, SimulateOptions& options) {
       ->type_name("FILE.csv");
   verb.add_option("--sequence", options.sequence, "item sequence of the scenario that the program packs")
       ->type_name("NAME");
-  verb.add_option("--controller", options.controller,
-                  "faithful: the demonstrator's timing and lag; ideal: the reference, exactly (default: faithful)")
-      ->check(one_of({"faithful", "ideal"}))
+  verb.add_option(
+          "--controller", options.controller,
+          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly; fast: bounded jerk, blends, "
+          "rows and waits that end by what is felt, as pack --tempo 1 (default: faithful)")
+      ->check(one_of({"faithful", "ideal", "fast"}))
       ->type_name("KIND");
   verb.add_option(
           "--robot", options.robot,

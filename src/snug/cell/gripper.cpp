@@ -117,6 +117,10 @@ void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_W
                          state.cup.pressure_gauge <= kEstablished * params_.vacuum.pressure_gauge_hold;
   const bool may_leak = is_holding && state.is_established && mode_ == cup::CupMode::Phases;
   state.cup.leak = may_leak ? cup::find_leak(params_, state.cup.pressure_gauge, state.F_S) : 0.0;
+  if (is_holding && state.is_established) {
+    state.least_hold_factor =
+        std::min(state.least_hold_factor, cup::find_hold_factor(params_, state.cup.pressure_gauge, state.F_S));
+  }
   if (state.is_established) {
     event.loss = cup::find_hold_loss(params_, state.cup.pressure_gauge, state.F_S, state.cup.bend);
     if (event.loss != cup::HoldLoss::None) {

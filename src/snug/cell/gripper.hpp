@@ -1,6 +1,7 @@
 // Gripper: the cup in the cell: what it seals to, what it does to that box in the coming step, and when it lets go.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,7 +29,9 @@ struct GripperState {
   bool has_reported = false;    ///< that no seal was found, for the present vacuum command
   bool is_letting_go = false;   ///< since the vacuum went off on a held box, until it comes on again
   bool cannot_seal = false;     ///< a fault: the lip leaks
-  Wrench F_S;                   ///< on the held box, at the lip, at the start of the step
+  /// The least cup::find_hold_factor of a hold whose vacuum was nearly complete, since somebody set it to infinity.
+  double least_hold_factor = std::numeric_limits<double>::infinity();
+  Wrench F_S;  ///< on the held box, at the lip, at the start of the step
   bool operator==(const GripperState&) const = default;
 };
 

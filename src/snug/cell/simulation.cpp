@@ -26,6 +26,10 @@ int substeps_of(const model::Scenario& scenario) {
   return static_cast<int>(whole);
 }
 
+// Shares of the vacuum's set point: from the first on the box is lifted, below the second the tool leaves it.
+constexpr double kSealed = 0.7;
+constexpr double kReleased = 0.02;
+
 /// The arm that the options ask for, or none. The tool then starts where the arm's joints put it.
 std::unique_ptr<CellArm> make_arm(model::Scenario& scenario, const model::Sequence& sequence, const std::string& name) {
   if (name.empty()) return nullptr;
@@ -99,10 +103,13 @@ const model::Sequence& require_sequence(const model::Scenario& scenario, const s
 }
 
 motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Sequence& sequence,
-                                motion::ControllerKind controller, motion::Program program) {
+                                const SimulationOptions& options, motion::Program program) {
   const model::ControllerParams& params = scenario.controller;
   motion::ControllerSettings settings;
-  settings.kind = controller;
+  settings.kind = options.controller;
+  settings.fast.tempo = options.tempo;
+  settings.fast.sealed_pressure = kSealed * scenario.cup.vacuum.pressure_gauge_hold;
+  settings.fast.released_pressure = kReleased * scenario.cup.vacuum.pressure_gauge_hold;
   settings.tick = params.tick;
   settings.task_stiffness = sequence.task_stiffness.value_or(params.task_stiffness);
   settings.vacuum_wait = params.vacuum_wait;
@@ -126,6 +133,7 @@ Simulation::Simulation(model::Scenario scenario, const std::string& sequence, co
                                          : WorldOptions{&sequence_, true, nullptr, {}})),
       gripper_(scenario_.cup, options.cup, world_) {
   if (arm_) arm_->attach(world_);
+  if (options.controller == motion::ControllerKind::Fast) pace_ = make_joint_pace(scenario_, options.tempo);
 }
 
 CellState Simulation::make_state() const {
@@ -138,7 +146,15 @@ CellState Simulation::make_state() const {
 }
 
 motion::PreparedProgram Simulation::prepare(motion::Program program) const {
-  return cell::prepare(scenario_, sequence_, options_.controller, std::move(program));
+  motion::PreparedProgram plan = cell::prepare(scenario_, sequence_, options_, std::move(program));
+  plan.path_limits = pace_.get();
+  return plan;
+}
+
+/// What the controller is told at the start of the next tick.
+void Simulation::feel(const motion::PreparedProgram& plan, CellState& state, const CellWorkspace& work) const {
+  if (plan.settings.kind != motion::ControllerKind::Fast) return;
+  state.controller.sensed = {state.gripper.cup.pressure_gauge, tool_of(state).X_WE.R * tool_load(state, work).force};
 }
 
 ArmReading Simulation::read_still(const CellState& state) const {
@@ -198,10 +214,12 @@ CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& sta
   const motion::Waypoint& waypoint = plan.program.waypoints[static_cast<std::size_t>(std::max(0, out.row))];
   if (!arm_) {
     advance_tool(waypoint.name, start, out.tool, state, work, tick);
+    feel(plan, state, work);
     return tick;
   }
   const ArmTask task{out.row, &waypoint, machine.outcome == "Stuck", machine.joints};
   advance_arm(task, joints, {joints.qd, state.arm->machine.joints.qdd}, state, work, tick);
+  feel(plan, state, work);
   return tick;
 }
 

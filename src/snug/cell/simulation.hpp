@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "snug/cell/cell_arm.hpp"
+#include "snug/cell/joint_pace.hpp"
 #include "snug/cell/journey.hpp"
 #include "snug/cell/lost_body.hpp"
 #include "snug/cell/solver_summary.hpp"
@@ -18,6 +19,7 @@ struct SimulationOptions {
   /// The report's model predicts the real programs better than the phases do (docs/decisions/0006): the default.
   cup::CupMode cup = cup::CupMode::Holding;
   std::string robot = {};  ///< name of the scenario's robot that moves the tool; empty: the tool moves by itself
+  double tempo = 1.0;      ///< motion::FastSettings::tempo
 };
 
 /// Everything of a cell that changes. A copy is a snapshot: going on from it gives the same bytes.
@@ -70,9 +72,10 @@ struct CellAnchor {
 
 /// The sequence of this name. Throws InputError, with the names that there are.
 [[nodiscard]] const model::Sequence& require_sequence(const model::Scenario& scenario, const std::string& name);
-/// The program with the limits and gains of scenario and sequence. Throws as motion::prepare.
+/// The program with the limits and gains of scenario and sequence; of `options` controller and tempo count. Throws as
+/// motion::prepare.
 [[nodiscard]] motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Sequence& sequence,
-                                              motion::ControllerKind controller, motion::Program program);
+                                              const SimulationOptions& options, motion::Program program);
 
 /// What a controller outside of the cell commands for one tick.
 struct OutsideCommand {
@@ -103,7 +106,8 @@ class Simulation {
   [[nodiscard]] CellWorkspace make_workspace(int threads = 1) const {
     return CellWorkspace(world_.model, scenario_.solver.contact_limits, threads);
   }
-  /// cell::prepare of this cell's scenario and sequence.
+  /// cell::prepare of this cell's scenario and sequence. With ControllerKind::Fast the joints of the scenario's robot
+  /// limit the speed, whatever moves the tool; the plan is then good for as long as this simulation.
   [[nodiscard]] motion::PreparedProgram prepare(motion::Program program) const;
   /// What the arm's sensors read in this state, as if it had been still for a tick. With a robot only.
   [[nodiscard]] ArmReading read_still(const CellState& state) const;
@@ -141,6 +145,7 @@ class Simulation {
 
  private:
   void depart(const motion::PreparedProgram& plan, int row, CellState& state) const;
+  void feel(const motion::PreparedProgram& plan, CellState& state, const CellWorkspace& work) const;
   void place(physics::BodyId body, const Pose& X_WB, CellState& state) const;
   [[nodiscard]] motion::ToolState tool_of(const CellState& state) const;
   /// work.targets: where tool and links are at the end of the step. `waypoint`: aimed at, for events.
@@ -158,6 +163,7 @@ class Simulation {
   model::Sequence sequence_;
   int substeps_ = 1;
   std::unique_ptr<CellArm> arm_;
+  std::unique_ptr<const JointPace> pace_;
   CellWorld world_;
   Gripper gripper_;
 };

@@ -43,6 +43,7 @@ void Simulation::begin_motion(CellState& state) const {
   controller.command = tool;
   controller.io = state.controller.io;
   controller.tick_count = state.controller.tick_count;
+  controller.sensed = state.controller.sensed;
   state.controller = controller;
 }
 

@@ -16,13 +16,13 @@ class OperationState final : public State {
 
   [[nodiscard]] std::string_view run(StateContext& context) const override {
     motion::ControllerState& program = context.machine.program;
-    const bool is_ideal = context.plan.settings.kind == motion::ControllerKind::Ideal;
+    const bool is_exact = context.plan.settings.kind != motion::ControllerKind::Faithful;
     motion::ControllerOutput& out = context.tick.program;
     out = motion::tick(context.plan, context.machine.tool, program);
-    context.follow(is_ideal ? ToolTarget{out.tool.X_WE, true, out.tool.V_WE}
+    context.follow(is_exact ? ToolTarget{out.tool.X_WE, true, out.tool.V_WE}
                             : ToolTarget{out.X_WE_reference, false, {}});
     // The point model's own tool is where the joints put it: the next tick goes on from there.
-    if (!is_ideal) program.command = context.machine.tool;
+    if (!is_exact) program.command = context.machine.tool;
     out.tool = context.machine.tool;
     if (out.finished_now) return "OK";
     return is_stuck(context) ? "Stuck" : "";
@@ -34,7 +34,8 @@ class OperationState final : public State {
     const motion::ControllerState& program = context.machine.program;
     if (program.phase != motion::ControllerPhase::Moving) return false;
     const double elapsed = static_cast<double>(program.phase_ticks) * context.plan.settings.tick;
-    return elapsed > program.segment.duration() + patience_;
+    const bool is_fast = context.plan.settings.kind == motion::ControllerKind::Fast;
+    return elapsed > (is_fast ? program.paced.duration() : program.segment.duration()) + patience_;
   }
 
   double patience_ = 10.0;

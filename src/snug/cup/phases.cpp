@@ -169,6 +169,20 @@ HoldLoss find_hold_loss(const model::CupParams& params, double pressure_gauge, c
   return HoldLoss::None;
 }
 
+double find_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_S) {
+  // The limits of find_hold_loss are of the form `load <= share * (suction + pull)` with load and pull proportional to
+  // the wrench.
+  const double suction = lip_force(params, pressure_gauge, Wrench{}), pull = F_S.force.z();
+  const auto factor = [&](double load, double share) {
+    const double growth = load - share * pull;
+    return growth > 0.0 ? std::max(0.0, share * suction) / growth : std::numeric_limits<double>::infinity();
+  };
+  const double radius = params.lip_radius;
+  const double slip = std::hypot(F_S.force.head<2>().norm(), F_S.torque.z() / radius);
+  return std::min({factor(0.0, 1.0), factor(F_S.torque.head<2>().norm(), params.limits.peel_full * radius),
+                   factor(slip, params.lip_friction)});
+}
+
 physics::ElementResponse LipPush::evaluate(const physics::ElementQuery& query) const noexcept {
   physics::ElementResponse response;
   const Vector3 n = query.X_WB.R * n_P_;  // outward: toward the gripper

@@ -76,6 +76,10 @@ enum class HoldLoss { None, Tension, Shear, Peel, Bending };
 [[nodiscard]] HoldLoss find_hold_loss(const model::CupParams& params, double pressure_gauge, const Wrench& F_S,
                                       double bend);
 
+/// How many times this wrench, in the same proportions, the vacuum and the friction of the lip can carry: 1 is where
+/// find_hold_loss begins to say no (the bend is not looked at), infinity where it never does.
+[[nodiscard]] double find_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_S);
+
 /// The push of an open lip on a face: a unilateral spring along the face's normal, from E to the face.
 class LipPush final : public physics::ForceElement {
  public:

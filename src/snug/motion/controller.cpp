@@ -9,6 +9,7 @@
 
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/motion/fast_controller.hpp"
 
 namespace snug::motion {
 namespace {
@@ -47,6 +48,7 @@ void depart(const PreparedProgram& plan, int row, const Pose& X_WE, ControllerSt
 
 bool has_reached_row(const PreparedProgram& plan, const ToolState& measured, const ControllerState& state) {
   const std::size_t row = static_cast<std::size_t>(state.row);
+  if (plan.settings.kind == ControllerKind::Fast) return has_reached_fast(plan, measured, state);
   if (plan.settings.kind == ControllerKind::Ideal) {
     return static_cast<double>(state.phase_ticks) * plan.settings.tick >= state.segment.duration();
   }
@@ -95,6 +97,25 @@ ToolState follow_reference(const ToolState& measured, const Pose& X_WE_reference
 
 }  // namespace
 
+const char* name_of(ControllerKind kind) {
+  switch (kind) {
+    case ControllerKind::Faithful:
+      return "faithful";
+    case ControllerKind::Ideal:
+      return "ideal";
+    case ControllerKind::Fast:
+      return "fast";
+  }
+  return "";
+}
+
+ControllerKind controller_kind_of(std::string_view name, const std::string& where) {
+  for (const ControllerKind kind : {ControllerKind::Faithful, ControllerKind::Ideal, ControllerKind::Fast}) {
+    if (name == name_of(kind)) return kind;
+  }
+  throw InputError(where, "controller", fmt::format("'{}'", name), "faithful, ideal or fast");
+}
+
 PreparedProgram prepare(Program program, ControllerSettings settings) {
   constexpr const char* kPositive = "a finite number above 0";
   const auto is_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
@@ -106,9 +127,10 @@ PreparedProgram prepare(Program program, ControllerSettings settings) {
           settings.vacuum_wait, "a finite number, 0 or more");
   // The discrete task is stable below sqrt(k) dt = 1; the limit keeps it well damped.
   const double product = std::sqrt(settings.task_stiffness) * settings.tick;
-  require(settings.kind == ControllerKind::Ideal || product <= 0.5, program, "task stiffness", settings.task_stiffness,
-          "sqrt(stiffness) * tick at most 0.5, else the task oscillates");
+  require(settings.kind != ControllerKind::Faithful || product <= 0.5, program, "task stiffness",
+          settings.task_stiffness, "sqrt(stiffness) * tick at most 0.5, else the task oscillates");
   check_limits(settings.limits, program.name);
+  if (settings.kind == ControllerKind::Fast) check_fast(settings.fast, program.name);
   if (program.waypoints.empty()) throw InputError(program.name, "", "no rows", "at least one waypoint");
 
   PreparedProgram plan;
@@ -135,9 +157,17 @@ ControllerState make_controller_state(const Pose& X_WE_start) noexcept {
 
 ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured, ControllerState& state) noexcept {
   ControllerOutput output;
-  advance_program(plan, measured, state, output);
+  const bool is_fast = plan.settings.kind == ControllerKind::Fast;
+  if (is_fast) {
+    advance_fast(plan, measured, state, output);
+  } else {
+    advance_program(plan, measured, state, output);
+  }
   const double dt = plan.settings.tick;
-  if (plan.settings.kind == ControllerKind::Ideal) {
+  if (is_fast) {
+    state.command = sample_fast(plan, state);
+    state.X_WE_reference = state.command.X_WE;
+  } else if (plan.settings.kind == ControllerKind::Ideal) {
     if (state.phase == ControllerPhase::Moving) {
       const LspbSegment::Sample at_end = state.segment.sample(static_cast<double>(state.phase_ticks + 1) * dt);
       state.command = {at_end.X_WE, at_end.V_WE};
@@ -150,6 +180,7 @@ ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured, Co
     state.command = follow_reference(measured, state.X_WE_reference, plan.settings.task_stiffness, dt, state.command);
   }
   ++state.phase_ticks;
+  ++state.tail_ticks;
   ++state.tick_count;
   output.tool = state.command;
   output.X_WE_reference = state.X_WE_reference;

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "snug/motion/fast_settings.hpp"
 #include "snug/motion/limits.hpp"
 #include "snug/motion/lspb.hpp"
 #include "snug/motion/tool_path.hpp"
@@ -17,7 +20,14 @@ enum class ControllerKind {
   Faithful,
   /// The tool is on the reference; a row is reached exactly, at the first tick after the segment's duration.
   Ideal,
+  /// Our own programs: the tool is on a reference of bounded jerk (PacedSegment); rows that touch nothing are blended,
+  /// rows in contact and waits for the vacuum end by what is felt (FastSettings).
+  Fast,
 };
+/// "faithful", "ideal", "fast": the word of the command line and of recordings.
+[[nodiscard]] const char* name_of(ControllerKind kind);
+/// The kind of that word. Throws InputError with `where` and the words that there are.
+[[nodiscard]] ControllerKind controller_kind_of(std::string_view name, const std::string& where);
 
 struct ControllerSettings {
   ControllerKind kind = ControllerKind::Faithful;
@@ -26,6 +36,7 @@ struct ControllerSettings {
   double vacuum_wait = 0.5;                  ///< s, hold after the vacuum changed or the blow-off was switched on
   double convergence_deg_per_metre = 500.0;  ///< degrees of orientation error that weigh as much as one metre
   bool sampled_coast = true;                 ///< Faithful: LspbSegment::with_sampled_coast; lengthens a program by ~1 %
+  FastSettings fast;                         ///< Fast only
   std::vector<NamedLimits> limits;
   bool operator==(const ControllerSettings&) const = default;
 };
@@ -34,7 +45,8 @@ struct ControllerSettings {
 struct PreparedProgram {
   Program program;
   ControllerSettings settings;
-  std::vector<MotionLimits> row_limits;  ///< one per waypoint
+  std::vector<MotionLimits> row_limits;     ///< one per waypoint
+  const PathLimits* path_limits = nullptr;  ///< Fast: what the joints allow; not owned; none: not limited by them
 };
 
 /// Throws InputError for an unknown waypoint name, an empty program, and settings or limits out of range.
@@ -53,6 +65,13 @@ struct ControllerState {
   LspbSegment segment;           ///< toward `row`; not yet set while waiting
   Pose X_WE_reference;           ///< what the task follows
   ToolState command;             ///< at the end of the last tick
+  // Fast only:
+  PacedSegment paced;                        ///< toward `row`
+  PacedSegment tail;                         ///< the rest of the motion before, where they are blended
+  std::int64_t tail_ticks = 0;               ///< since the tail began
+  bool was_felt = false;                     ///< the row before ended by a force
+  Vector3 force_before_W = Vector3::Zero();  ///< N, felt when the motion to `row` began
+  Sensed sensed;                             ///< at the end of the last tick; whoever moves the tool puts it here
   bool operator==(const ControllerState&) const = default;
 };
 

@@ -8,22 +8,30 @@ namespace {
 
 constexpr double kSealPatience = 0.45;  ///< s, with the vacuum on
 constexpr double kStill = 0.003;        ///< m/s, a tool that is slower stands
-constexpr double kSettle = 0.3;         ///< s, after a motion, at least
 constexpr double kLongestSettle = 2.0;  ///< s
 constexpr double kPatience = 60.0;      ///< s, for one waypoint
 
 }  // namespace
 
 void MotionWatch::begin(const TickReading& start, bool is_held) {
-  row_since_ = start.time;
+  row_since_ = last_ = start.time;
   if (!start.is_vacuum_on) return;
   vacuum_since_ = start.time;
   was_sealed_ = is_held;
 }
 
-void MotionWatch::follow(int aimed_at, double time) {
+void MotionWatch::follow(int aimed_at, double time, bool is_waiting) {
   if (aimed_at != row) row_since_ = time;
   row = aimed_at;
+  const auto index = static_cast<std::size_t>(std::max(0, aimed_at));
+  if (times.size() <= index) times.resize(index + 1);
+  (is_waiting ? times[index].waiting : times[index].moving) += time - last_;
+  last_ = time;
+}
+
+void MotionWatch::rest(double time) {
+  if (!times.empty()) times.back().waiting += time - last_;
+  last_ = time;
 }
 
 void MotionWatch::check(const Guards& guards, double pressure_needed, const TickReading& now) {
@@ -48,8 +56,8 @@ void MotionWatch::check(const Guards& guards, double pressure_needed, const Tick
   if (now.time - row_since_ > kPatience) stop(EndReason::Timeout, now.time - row_since_, kPatience);
 }
 
-bool is_settling(double start, double now, double speed) {
-  return now < start + kLongestSettle && (now <= start + kSettle || speed >= kStill);
+bool is_settling(double start, double now, double speed, double at_least) {
+  return now < start + kLongestSettle && (now <= start + at_least || speed >= kStill);
 }
 
 const char* find_refusal(const Motion& motion) {

@@ -18,16 +18,20 @@ struct MotionWatch {
   End end;
   int row = -1;  ///< of the motion, aimed at
   double peak_force = 0.0, peak_torque = 0.0;
+  std::vector<WaypointTime> times;  ///< up to the waypoint aimed at
 
   /// `start`: before the first tick. `is_held`: something hangs from the cup.
   void begin(const TickReading& start, bool is_held);
-  /// After each tick; `aimed_at`: row of the motion.
-  void follow(int aimed_at, double time);
+  /// After each tick; `aimed_at`: row of the motion; `is_waiting`: for the vacuum, before the tool moves to it.
+  void follow(int aimed_at, double time, bool is_waiting = false);
+  /// When tool and boxes have come to rest after the last waypoint.
+  void rest(double time);
   /// Guards and patience. `pressure_needed`: Pa, of a seal. The first reason stays.
   void check(const Guards& guards, double pressure_needed, const TickReading& now);
 
  private:
   double row_since_ = 0.0;
+  double last_ = 0.0;           ///< s, of the last call
   double vacuum_since_ = -1.0;  ///< s, or -1: it is off
   bool was_sealed_ = false;     ///< since then
 };
@@ -35,9 +39,13 @@ struct MotionWatch {
 /// Share of the vacuum's set point that counts as a seal.
 inline constexpr double kNeededVacuum = 0.3;
 
+/// s, after a motion, at least: of a tool that comes in with a lag, and of one that stands when it arrives, so that
+/// boxes have rested since it left them.
+inline constexpr double kLaggedSettle = 0.3, kExactSettle = 0.1;
+
 /// Whether a motion that came to its end at `start` s goes on at `now` so that the tool, at `speed` m/s, comes to stand
 /// and boxes come to rest.
-[[nodiscard]] bool is_settling(double start, double now, double speed);
+[[nodiscard]] bool is_settling(double start, double now, double speed, double at_least = kLaggedSettle);
 
 /// Why the motion cannot begin: no waypoints, a pose that is not finite; empty when it can.
 [[nodiscard]] const char* find_refusal(const Motion& motion);

@@ -53,6 +53,13 @@ struct End {
 /// One line: "force guard: 61 N of 60 N toward Place(BOX027)".
 [[nodiscard]] std::string describe(const End& end, std::span<const motion::Waypoint> waypoints);
 
+/// How long a waypoint took. While two are blended the later one counts.
+struct WaypointTime {
+  double moving = 0.0;   ///< s
+  double waiting = 0.0;  ///< s, for the vacuum before the tool moved, and of the last one until tool and boxes stood
+  bool operator==(const WaypointTime&) const = default;
+};
+
 /// What the robot's own sensors read.
 struct Feedback {
   double time = 0.0;  ///< s
@@ -65,6 +72,7 @@ struct Feedback {
   double peak_force = 0.0;             ///< N, of that load during the last motion
   double peak_torque = 0.0;            ///< Nm
   motion::IO io;                       ///< commanded
+  std::vector<WaypointTime> times;     ///< of the last motion, waypoint by waypoint; their sum is what it took
   bool operator==(const Feedback&) const = default;
 };
 

@@ -67,6 +67,9 @@ RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& seq
     refuse(options_.address, fmt::format("a cell with sequence {} that is served to be packed: {}", sequence, trouble));
   }
   take_over_tracking();
+  if (options_.motions.controller == motion::ControllerKind::Fast) {
+    pace_ = cell::make_joint_pace(scenario_, options_.motions.tempo);
+  }
   arm_ = std::make_unique<cell::CellArm>(scenario_, tool_stiffness(scenario_, sequence_));
   state_ = arm_->make_state(scenario_.seed, link_.measured().q);
   program_ = motion::make_controller_state(state_.machine.tool.X_WE);
@@ -251,6 +254,7 @@ void RemotePlant::read_sensors(const plant::MotionWatch& course, const plant::En
   feedback_.peak_force = std::max(course.peak_force, now.F_E.force.norm());
   feedback_.peak_torque = std::max(course.peak_torque, now.F_E.torque.norm());
   feedback_.io = program_.io;
+  feedback_.times = course.times;
 }
 
 /// One tick: the controller, and the answer to its Control. `waypoint` of what is returned: aimed at.
@@ -274,6 +278,8 @@ plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
     is_stopped_ = true;
   }
   state_.machine.tool = control::tool_at(model_, link_.measured());
+  const plant::TickReading felt = reading();
+  program_.sensed = {felt.pressure_gauge, state_.machine.tool.X_WE.R * felt.F_E.force};
   const plant::EndReason reason = !failure_.empty() ? plant::EndReason::Fault
                                   : is_stopped_     ? plant::EndReason::ProtectiveStop
                                                     : plant::EndReason::Completed;
@@ -284,18 +290,21 @@ bool RemotePlant::advance(const plant::Motion& motion, const motion::PreparedPro
                           plant::MotionWatch& course) {
   if (motion::will_finish(plan, program_.command, program_)) return false;
   const plant::End end = step(plan);
-  course.follow(end.waypoint, link_.last().time);
+  course.follow(end.waypoint, link_.last().time, program_.phase == motion::ControllerPhase::Waiting);
   course.check(motion.guards, plant::kNeededVacuum * scenario_.cup.vacuum.pressure_gauge_hold, reading());
   if (end.reason != plant::EndReason::Completed) course.end = end;
   return course.end.reason == plant::EndReason::Completed;
 }
 
 /// The tool comes to stand, boxes come to rest.
-void RemotePlant::settle(const motion::PreparedProgram& plan) {
+void RemotePlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
   const double start = link_.last().time;
-  while (plant::is_settling(start, link_.last().time, state_.machine.tool.V_WE.linear.norm())) {
+  const bool is_fast = options_.motions.controller == motion::ControllerKind::Fast;
+  const double at_least = is_fast ? plant::kExactSettle : plant::kLaggedSettle;
+  while (plant::is_settling(start, link_.last().time, state_.machine.tool.V_WE.linear.norm(), at_least)) {
     if (step(plan).reason != plant::EndReason::Completed) break;
   }
+  course.rest(link_.last().time);
   acknowledge();  // a stop now: the tool was where it was to come
 }
 
@@ -304,6 +313,7 @@ void RemotePlant::begin_motion() {
   program.command = state_.machine.tool;
   program.io = program_.io;
   program.tick_count = program_.tick_count;
+  program.sensed = program_.sensed;
   program_ = program;
 }
 
@@ -331,7 +341,8 @@ plant::Feedback RemotePlant::submit(const plant::Motion& motion) {
   if (!refusal.empty()) return refuse_motion(refusal);
   motion::PreparedProgram plan;
   try {
-    plan = cell::prepare(scenario_, sequence_, motion::ControllerKind::Faithful, {"motion", motion.waypoints});
+    plan = cell::prepare(scenario_, sequence_, options_.motions, {"motion", motion.waypoints});
+    plan.path_limits = pace_.get();
   } catch (const InputError& error) {
     return refuse_motion(error.what());
   }
@@ -342,7 +353,7 @@ plant::Feedback RemotePlant::submit(const plant::Motion& motion) {
   }
   if (course.end.reason == plant::EndReason::Completed) {
     course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
-    settle(plan);
+    settle(plan, course);
   }
   stand();
   if (!failure_.empty()) course.end = {plant::EndReason::Fault, course.end.waypoint, 0.0, 0.0, failure_};

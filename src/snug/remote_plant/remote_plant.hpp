@@ -18,6 +18,8 @@ struct RemotePlantOptions {
   double patience = 10.0;  ///< s, for an answer
   perception::Kind perception = perception::Kind::Exact;
   std::uint64_t seed = 1;  ///< of the noise of perception alone
+  /// How the joints are led to the waypoints: controller and tempo count.
+  cell::SimulationOptions motions{motion::ControllerKind::Faithful, cup::CupMode::Phases, {}};
 };
 
 /// The CLICK address of a plant's: "tcp://HOST:PORT" of "click://HOST:PORT". Throws InputError for other words.
@@ -54,7 +56,7 @@ class RemotePlant final : public plant::Plant {
   [[nodiscard]] plant::End step(const motion::PreparedProgram& plan);
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
                              plant::MotionWatch& course);
-  void settle(const motion::PreparedProgram& plan);
+  void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course);
   void begin_motion();
   void stand();
   void fail(std::string why);
@@ -69,6 +71,7 @@ class RemotePlant final : public plant::Plant {
   click::Client client_;
   click::JointLink link_;
   std::unique_ptr<cell::CellArm> arm_;
+  std::unique_ptr<const cell::JointPace> pace_;
   cell::ArmState state_;
   motion::ControllerState program_;
   control::JointControllerWork work_;

@@ -59,6 +59,7 @@ void Packer::submit(const std::string& id, std::vector<motion::Waypoint> waypoin
   last_ = std::move(waypoints);
   sent_.waypoints.insert(sent_.waypoints.end(), last_.begin(), last_.end());
   robot_ = plant_.submit({id, last_, guards});
+  report.seconds += split_seconds(last_, robot_.times);
   report.happened.force = std::max(report.happened.force, robot_.peak_force);
   report.happened.torque = std::max(report.happened.torque, robot_.peak_torque);
 }

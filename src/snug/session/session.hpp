@@ -8,6 +8,7 @@
 
 #include "snug/packing/agent.hpp"
 #include "snug/plant/plant.hpp"
+#include "snug/session/item_seconds.hpp"
 #include "snug/session/recovery.hpp"
 #include "snug/session/rehearsal.hpp"
 
@@ -83,6 +84,7 @@ struct ItemReport {
   double decision_seconds = 0.0;  ///< wall clock, of the agent alone
   double rehearsal_seconds = 0.0;
   double begin = 0.0, done = 0.0;  ///< s, of the plant
+  ItemSeconds seconds;             ///< of all its motions, recoveries included: done - begin
   [[nodiscard]] bool is_packed() const { return end == ItemEnd::Placed || end == ItemEnd::Accepted; }
 };
 

@@ -121,7 +121,7 @@ void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWa
   (pending_.displace ? pending_.displace : pending_.push) = false;
   if (item < 0) return;
   move_aside(item, kind);
-  settle(plan);
+  settle(plan, course);
 }
 
 }  // namespace snug::simulated_plant

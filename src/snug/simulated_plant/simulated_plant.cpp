@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "snug/camera_perception/camera_perception.hpp"
@@ -55,6 +56,7 @@ bool SimulatedPlant::bring(const std::string& item) {
   calls_.push_back({Call::Kind::Bring, item, {}});
   was_brought_[static_cast<std::size_t>(index)] = true;
   simulation_.bring(index, state_);
+  state_.gripper.least_hold_factor = std::numeric_limits<double>::infinity();
   current_ = index;
   pending_ = {};
   ++brought_count_;
@@ -108,6 +110,7 @@ void SimulatedPlant::read_sensors(const plant::MotionWatch& course, const plant:
   feedback_.peak_force = std::max(course.peak_force, feedback_.F_E.force.norm());
   feedback_.peak_torque = std::max(course.peak_torque, feedback_.F_E.torque.norm());
   feedback_.io = state_.controller.io;
+  feedback_.times = course.times;
 }
 
 plant::TickReading SimulatedPlant::reading() const {
@@ -119,7 +122,7 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
                              plant::MotionWatch& course) {
   if (simulation_.is_at_end(plan, state_)) return false;
   const cell::CellTick tick = simulation_.advance(plan, state_, work_);
-  course.follow(tick.row, simulation_.time(state_));
+  course.follow(tick.row, simulation_.time(state_), state_.controller.phase == motion::ControllerPhase::Waiting);
   if (watcher_) watcher_(tick);
   inject(plan, course);
   course.check(motion.guards, plant::kNeededVacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold, reading());
@@ -136,16 +139,19 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
 }
 
 /// The tool comes to stand, boxes come to rest.
-void SimulatedPlant::settle(const motion::PreparedProgram& plan) {
+void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
   const double start = simulation_.time(state_);
   const auto speed = [this] {
     return (state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE).linear.norm();
   };
-  while (plant::is_settling(start, simulation_.time(state_), speed())) {
+  const bool is_fast = options_.simulation.controller == motion::ControllerKind::Fast;
+  const double at_least = is_fast ? plant::kExactSettle : plant::kLaggedSettle;
+  while (plant::is_settling(start, simulation_.time(state_), speed(), at_least)) {
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
     if (watcher_) watcher_(tick);
     if (!tick.failure.empty()) break;
   }
+  course.rest(simulation_.time(state_));
 }
 
 plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
@@ -171,7 +177,7 @@ plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
   }
   if (course.end.reason == plant::EndReason::Completed) {
     course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
-    settle(plan);
+    settle(plan, course);
     inject(plan, course);
   }
   simulation_.stand(state_);

@@ -48,6 +48,9 @@ class SimulatedPlant final : public plant::Plant {
   [[nodiscard]] const cell::CellState& state() const { return state_; }
   [[nodiscard]] const cell::CellWorkspace& work() const { return work_; }
   [[nodiscard]] std::vector<cell::BoxResult> boxes() const { return simulation_.boxes(state_); }
+  /// Of the item brought last: how many times what it did to the cup the vacuum could have carried, at the worst
+  /// instant.
+  [[nodiscard]] double least_hold_factor() const { return state_.gripper.least_hold_factor; }
   [[nodiscard]] const std::vector<Call>& calls() const { return calls_; }
   /// Called after each tick of the controller.
   void watch(std::function<void(const cell::CellTick&)> watcher) { watcher_ = std::move(watcher); }
@@ -58,7 +61,7 @@ class SimulatedPlant final : public plant::Plant {
   };
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
                              plant::MotionWatch& course);
-  void settle(const motion::PreparedProgram& plan);
+  void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course);
   [[nodiscard]] plant::TickReading reading() const;
   void inject(const motion::PreparedProgram& plan, plant::MotionWatch& course);
   void break_suction();

@@ -23,6 +23,7 @@ class Scorer {
     TrueItem item;
     item.id = report.id;
     item.was_sent = !report.sends.empty();
+    if (witness_.hold_factor) item.hold_factor = witness_.hold_factor();
     const TruePoses now = witness_.poses();
     if (item.was_sent) judge(report, now, item);
     for (std::size_t i = 0; i < report.sends.size(); ++i) {
@@ -48,10 +49,25 @@ class Scorer {
       trial.items_as_planned += item.is_as_planned ? 1 : 0;
     }
     trial.recoveries = session::recovery_count(trial.session);
+    count_time(trial);
     if (witness_.hash) trial.state_hash = witness_.hash();
   }
 
  private:
+  static void count_time(Trial& trial) {
+    const double duration = trial.session.duration;
+    trial.boxes_per_hour = duration > 0.0 ? 3600.0 * trial.executed_boxes / duration : 0.0;
+    double seconds = 0.0;
+    int count = 0;
+    for (const session::ItemReport& item : trial.session.items) {
+      const bool is_plain = item.end == session::ItemEnd::Placed && item.sends.size() == 1 && item.recoveries.empty();
+      if (!is_plain || item.reorientation != session::Reorientation::None) continue;
+      seconds += item.seconds.total();
+      ++count;
+    }
+    trial.unturned_cycle = count > 0 ? seconds / count : 0.0;
+  }
+
   [[nodiscard]] bool is_in(std::size_t i, const Pose& X_WP) const {
     return cell::fit_in(container_.inner_size, witness_.size_of(i), container_.X_WT.inverse() * X_WP).is_in;
   }
@@ -101,6 +117,7 @@ Witness truth_of(const simulated_plant::SimulatedPlant& plant) {
   };
   truth.boxes = [&plant] { return plant.boxes(); };
   truth.hash = [&plant] { return plant.simulation().hash(plant.state()); };
+  truth.hold_factor = [&plant] { return plant.least_hold_factor(); };
   return truth;
 }
 

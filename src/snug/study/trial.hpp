@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct TrueItem {
   bool is_as_planned = false;   ///< within the session's limits of its last plan, in the container, nothing else lost
   double position_error = 0.0;  ///< m, level
   double angle_error = 0.0;     ///< rad
+  /// cup::find_hold_factor at the worst instant of its way; infinity: never held, or not known.
+  double hold_factor = std::numeric_limits<double>::infinity();
   double displacement = 0.0;    ///< m, the farthest that another box was moved
   std::vector<bool> succeeded;  ///< of each motion that was sent: ended as planned and needed no remedy
 };
@@ -33,6 +36,8 @@ struct Trial {
   int items_as_planned = 0;
   int boxes_lost = 0;  ///< that were picked and are not in the container in the end
   int recoveries = 0;
+  double boxes_per_hour = 0.0;  ///< packed, by the plant's clock: robot and vacuum, neither planning nor looks
+  double unturned_cycle = 0.0;  ///< s, mean of the items that were placed at once without turning them; 0: none
   std::vector<TrueItem> items;
   std::vector<cell::BoxResult> boxes;
   std::uint64_t state_hash = 0;

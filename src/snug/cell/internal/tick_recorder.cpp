@@ -45,9 +45,8 @@ void TickRecorder::close(const CellState& state, const std::string& result_json,
 
 std::string settings_json(const SimulationOptions& options, const std::string& corrections) {
   const auto or_none = [](const std::string& name) { return name.empty() ? "none" : name; };
-  const bool is_faithful = options.controller == motion::ControllerKind::Faithful;
   const nlohmann::ordered_json settings = {{"cup", options.cup == cup::CupMode::Holding ? "holding" : "phases"},
-                                           {"controller", is_faithful ? "faithful" : "ideal"},
+                                           {"controller", motion::name_of(options.controller)},
                                            {"corrections", or_none(corrections)},
                                            {"robot", or_none(options.robot)}};
   return settings.dump();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "snug/core/rng.hpp"
@@ -70,6 +71,32 @@ TEST(HoldLoss, OfShearAndTwistTogetherLiesOnTheEllipse) {
         find_hold_loss(params, kPressure, wrench({0.0, 1.001 * c * force, 0.0}, {0.0, 0.0, 1.001 * s * torque}), 0.0),
         HoldLoss::Shear);
   }
+}
+
+TEST(HoldFactor, IsWhereTheHoldIsLost) {
+  const model::CupParams params;
+  Rng rng = Rng(11).split("hold factor");
+  for (int i = 0; i < 500; ++i) {
+    SCOPED_TRACE(i);
+    const auto vector = [&](double size) {
+      return Vector3(rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size));
+    };
+    const Wrench load = wrench(vector(50.0), vector(2.0));
+    const double factor = find_hold_factor(params, kPressure, load);
+    const auto times = [&](double k) { return wrench(k * load.force, k * load.torque); };
+    if (!std::isfinite(factor)) {
+      EXPECT_EQ(find_hold_loss(params, kPressure, times(1e6), 0.0), HoldLoss::None);
+      continue;
+    }
+    EXPECT_EQ(find_hold_loss(params, kPressure, times(0.9999 * factor), 0.0), HoldLoss::None);
+    EXPECT_NE(find_hold_loss(params, kPressure, times(1.0001 * factor), 0.0), HoldLoss::None);
+  }
+}
+
+TEST(HoldFactor, OfNoLoadIsInfiniteAndOfNoVacuumZero) {
+  const model::CupParams params;
+  EXPECT_EQ(find_hold_factor(params, kPressure, Wrench{}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(find_hold_factor(params, 0.0, wrench({0.0, 0.0, -1.0})), 0.0);
 }
 
 TEST(HoldLoss, IsPeelWhereTheBendingMomentLiftsTheRim) {

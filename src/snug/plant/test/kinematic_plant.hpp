@@ -23,9 +23,11 @@ class KinematicPlant final : public Plant {
   [[nodiscard]] Feedback submit(const Motion& motion) override {
     now_.peak_force = now_.peak_torque = 0.0;
     now_.end = {EndReason::Refused, -1, 0.0, 0.0, ""};
+    now_.times.clear();
     for (const motion::Waypoint& waypoint : motion.waypoints) {
       if (!waypoint.X_WE.p.allFinite() || !waypoint.X_WE.R.allFinite()) return now_;
     }
+    now_.times.resize(motion.waypoints.size());
     for (std::size_t i = 0; i < motion.waypoints.size(); ++i) {
       if (!follow(motion.waypoints[i], static_cast<int>(i), motion.guards)) break;
     }
@@ -49,6 +51,7 @@ class KinematicPlant final : public Plant {
 
   bool follow(const motion::Waypoint& waypoint, int index, const Guards& guards) {
     now_.time += 1.0;
+    now_.times[static_cast<std::size_t>(index)].moving = 1.0;
     now_.X_WE = waypoint.X_WE;
     now_.io = waypoint.io;
     now_.end = {EndReason::Completed, index, 0.0, 0.0, ""};

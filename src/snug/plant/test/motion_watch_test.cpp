@@ -72,5 +72,18 @@ TEST(Settling, EndsWhenTheToolStandsButNotBeforeAndNotNever) {
   EXPECT_FALSE(is_settling(10.0, 12.0, 0.1));
 }
 
+TEST(MotionWatch, SumsWhatEachWaypointTook) {
+  MotionWatch watch;
+  watch.begin({2.0, {}, 0.0, false}, false);
+  watch.follow(0, 2.5);
+  watch.follow(1, 2.75, true);
+  watch.follow(1, 3.0, true);
+  watch.follow(1, 4.0);
+  watch.rest(4.5);
+  ASSERT_EQ(watch.times.size(), 2u);
+  EXPECT_EQ(watch.times[0], (WaypointTime{0.5, 0.0}));
+  EXPECT_EQ(watch.times[1], (WaypointTime{1.0, 1.0}));
+}
+
 }  // namespace
 }  // namespace snug::plant

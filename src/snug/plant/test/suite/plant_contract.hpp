@@ -107,6 +107,9 @@ TEST_P(PlantContract, ComesToAWaypointAndStands) {
   EXPECT_LE((there.X_WE.p - GetParam().free_waypoint.X_WE.p).norm(), GetParam().tolerance);
   EXPECT_LT(there.V_WE.linear.norm(), 0.01);
   EXPECT_GT(there.time, start.time);
+  ASSERT_EQ(there.times.size(), 1u);
+  EXPECT_GT(there.times[0].moving, 0.0);
+  EXPECT_NEAR(there.times[0].moving + there.times[0].waiting, there.time - start.time, 1e-9) << "rounding of sums";
   EXPECT_EQ(plant_->read().X_WE, there.X_WE);
 }
 

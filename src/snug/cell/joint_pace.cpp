@@ -1,0 +1,62 @@
+// JointPace: how fast the joints of the scenario's robot let the tool go along a straight way.
+#include "snug/cell/joint_pace.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "snug/robot/load_arm.hpp"
+
+namespace snug::cell {
+namespace {
+
+constexpr std::size_t kLooks = 16;  ///< at the joints, along a way
+/// Left of the limits: the speed between two looks is their mean, its peak lies a little above.
+constexpr double kReserve = 0.95;
+
+/// rad (m), the short way round for joints that turn.
+double difference(const robot::Joint& joint, double from, double to) {
+  const double turn = to - from;
+  return joint.kind == robot::JointKind::Revolute ? std::remainder(turn, 2.0 * std::numbers::pi) : turn;
+}
+
+}  // namespace
+
+void JointPace::limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates) const noexcept {
+  const auto first = inverse_.nearest(X_WA, posture_);
+  if (!first) return;
+  robot::JointVector q = *first;
+  const Vector3 turn_W = X_WA.R * log_rotation(X_WA.R.transpose() * X_WB.R);
+  for (std::size_t look = 0; look < kLooks; ++look) {
+    const double share = static_cast<double>(look + 1) / kLooks;
+    const Pose X_WE{exp_rotation(share * turn_W) * X_WA.R, X_WA.p + share * (X_WB.p - X_WA.p)};
+    const std::optional<robot::JointVector> next = inverse_.refine(X_WE, q);
+    if (!next) return;
+    double rate = std::numeric_limits<double>::infinity();
+    for (Eigen::Index j = 0; j < q.size(); ++j) {
+      const robot::Joint& joint = inverse_.arm().joints[static_cast<std::size_t>(j)];
+      const double way = std::abs(difference(joint, q[j], (*next)[j])) * kLooks;
+      if (way > 0.0) rate = std::min(rate, kReserve * share_ * joint.max_speed / way);
+    }
+    for (std::size_t i = look * rates.size() / kLooks; i < (look + 1) * rates.size() / kLooks; ++i) {
+      rates[i] = std::min(rates[i], rate);
+    }
+    q = *next;
+  }
+}
+
+std::unique_ptr<const JointPace> make_joint_pace(const model::Scenario& scenario, double tempo) {
+  std::error_code error;
+  if (!scenario.robot || !std::filesystem::exists(robot::urdf_path(scenario), error)) return nullptr;
+  robot::ArmModel arm = robot::load_arm(scenario);
+  if (!robot::find_ur_geometry(arm)) return nullptr;
+  robot::JointVector posture = robot::joint_vector(scenario.robot->posture);
+  if (posture.size() == 0) posture.setZero(arm.joint_count());
+  return std::make_unique<const JointPace>(std::move(arm), std::move(posture),
+                                           tempo * scenario.robot->velocity_fraction);
+}
+
+}  // namespace snug::cell

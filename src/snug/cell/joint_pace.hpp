@@ -1,0 +1,34 @@
+// JointPace: how fast the joints of the scenario's robot let the tool go along a straight way.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "snug/model/scenario.hpp"
+#include "snug/motion/paced_segment.hpp"
+#include "snug/robot/inverse.hpp"
+
+namespace snug::cell {
+
+class JointPace final : public motion::PathLimits {
+ public:
+  /// `share`: of the joints' largest speeds.
+  JointPace(robot::ArmModel arm, robot::JointVector posture, double share)
+      : inverse_(arm), posture_(std::move(posture)), share_(share) {}
+  /// Along the branch of the inverse that begins nearest to the robot's posture. Parts that the arm does not reach are
+  /// left as they are: whether it reaches them is not asked here.
+  void limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates) const noexcept override;
+
+ private:
+  robot::InverseKinematics inverse_;
+  robot::JointVector posture_;
+  double share_;
+};
+
+/// With the share of the scenario (velocity_fraction) and the tempo. None without a robot, where its file is not there,
+/// and for an arm whose inverse has no closed form: a search along every way would take too long. The controller of the
+/// joints keeps their limits all the same, the tool is then late.
+[[nodiscard]] std::unique_ptr<const JointPace> make_joint_pace(const model::Scenario& scenario, double tempo);
+
+}  // namespace snug::cell

@@ -1,0 +1,237 @@
+// Fast controller: one tick of our own programs: exact tracking, blends, rows and waits that end by what is felt.
+#include "snug/motion/fast_controller.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::motion {
+namespace {
+
+// m and, by the convergence angle, rad: joints that are behind by more have not arrived. Below every precision of the
+// scenarios.
+constexpr double kArrived = 0.002;
+/// Of the shorter of two motions: over at most so much of it they are blended.
+constexpr double kLargestBlend = 0.4;
+/// A way that rises or falls by less than this, and this share of its level length, is level.
+constexpr double kLevel = 0.01;  ///< m
+constexpr double kGentleSlope = 0.2;
+/// Rows that are left on the way, the cup letting go as it moves (docs/packing-execution.md, pivot).
+constexpr std::string_view kOnTheFly = "TwistDrag";
+
+const Waypoint& row_of(const PreparedProgram& plan, int row) {
+  return plan.program.waypoints[static_cast<std::size_t>(row)];
+}
+
+/// This row asks for no motion from the one before: it only switches.
+bool only_switches(const PreparedProgram& plan, int row) {
+  return row > 0 && row_of(plan, row).X_WE == row_of(plan, row - 1).X_WE;
+}
+
+bool has_next(const PreparedProgram& plan, int row) {
+  return row + 1 < static_cast<int>(plan.program.waypoints.size());
+}
+
+bool is_insertion(const Waypoint& waypoint) {
+  return waypoint.io.vacuum && waypoint.name.starts_with("Place") && !waypoint.name.starts_with("PlaceSlow");
+}
+
+Pace pace_of(const PreparedProgram& plan, int row) {
+  const FastSettings& fast = plan.settings.fast;
+  const Waypoint& waypoint = row_of(plan, row);
+  Pace pace = waypoint.io.vacuum ? fast.held : fast.empty;
+  if (is_contact_row(waypoint.name)) {
+    const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
+    pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
+            fast.contact_window};
+  }
+  if (is_insertion(waypoint)) pace = fast.insert;
+  pace.max_speed *= fast.tempo;
+  pace.max_turn_speed *= fast.tempo;
+  pace.max_acceleration *= fast.tempo * fast.tempo;
+  pace.max_turn_acceleration *= fast.tempo * fast.tempo;
+  return pace;
+}
+
+double seconds_in_phase(const PreparedProgram& plan, const ControllerState& state) {
+  return static_cast<double>(state.phase_ticks) * plan.settings.tick;
+}
+
+double seconds_of_tail(const PreparedProgram& plan, const ControllerState& state) {
+  return static_cast<double>(state.tail_ticks) * plan.settings.tick;
+}
+
+bool has_tail(const PreparedProgram& plan, const ControllerState& state) {
+  return seconds_of_tail(plan, state) < state.tail.duration();
+}
+
+/// Where the tool is told to be `ahead` seconds after the start of this tick.
+ToolState reference_at(const PreparedProgram& plan, const ControllerState& state, double ahead) {
+  const double t = seconds_in_phase(plan, state) + ahead;
+  if (!has_tail(plan, state)) return state.paced.sample(t);
+  const ToolState tail = state.tail.sample(seconds_of_tail(plan, state) + ahead);
+  const PacedSegment::Increment on_top = state.paced.increment(t);
+  return {{on_top.R_W * tail.X_WE.R, tail.X_WE.p + on_top.shift_W},
+          {tail.V_WE.linear + on_top.V_W.linear, on_top.V_W.angular + on_top.R_W * tail.V_WE.angular}};
+}
+
+double error_to(const PreparedProgram& plan, const Pose& X_WE, int row) {
+  return convergence_error(X_WE, row_of(plan, row).X_WE, plan.settings.convergence_deg_per_metre);
+}
+
+/// N, that a held box, or the cup, may feel against the motion to this row; infinite where nothing is meant to be felt.
+double force_limit(const PreparedProgram& plan, int row) {
+  const FastSettings& fast = plan.settings.fast;
+  const Waypoint& waypoint = row_of(plan, row);
+  const std::string_view name = waypoint.name;
+  if (!waypoint.io.vacuum) {
+    return name.starts_with("Box") || name.starts_with("RePick") ? fast.pick_force
+                                                                 : std::numeric_limits<double>::infinity();
+  }
+  if (name.starts_with("PlaceSlow")) return fast.push_force;
+  return is_contact_row(name) ? fast.press_force : std::numeric_limits<double>::infinity();
+}
+
+bool feels_contact(const PreparedProgram& plan, const ControllerState& state) {
+  const double limit = force_limit(plan, state.row);
+  if (!std::isfinite(limit)) return false;
+  const double left = (state.paced.end().p - state.command.X_WE.p).norm();
+  if (left > plan.settings.fast.feel_within) return false;
+  return -(state.sensed.force_W - state.force_before_W).dot(state.paced.direction_W()) > limit;
+}
+
+bool goes_level(const Vector3& from, const Vector3& to) {
+  const Vector3 way = to - from;
+  return std::abs(way.z()) < kLevel + kGentleSlope * way.head<2>().norm();
+}
+
+/// m, from a row where the next one may begin; 0: the tool stops there.
+double blend_at(const PreparedProgram& plan, const ControllerState& state) {
+  if (!has_next(plan, state.row)) return 0.0;
+  const Waypoint &row = row_of(plan, state.row), &next = row_of(plan, state.row + 1);
+  if (row.io != next.io || is_contact_row(row.name)) return 0.0;
+  const double degrees = plan.settings.convergence_deg_per_metre;
+  const double to = convergence_error(state.paced.start(), row.X_WE, degrees);
+  const double from = convergence_error(row.X_WE, next.X_WE, degrees);
+  const bool is_level = goes_level(state.paced.start().p, row.X_WE.p) && goes_level(row.X_WE.p, next.X_WE.p) &&
+                        !is_contact_row(next.name);
+  const double largest = is_level ? plan.settings.fast.level_blend : plan.settings.fast.blend;
+  return std::min(largest, kLargestBlend * std::min(to, from));
+}
+
+void begin_motion(const PreparedProgram& plan, const Pose& X_WE, ControllerState& state) {
+  state.phase = ControllerPhase::Moving;
+  state.phase_ticks = 0;
+  state.force_before_W = state.sensed.force_W;
+  state.paced = PacedSegment(X_WE, row_of(plan, state.row).X_WE, pace_of(plan, state.row), plan.path_limits);
+}
+
+void depart(const PreparedProgram& plan, int row, ControllerState& state) {
+  const IO& io = row_of(plan, row).io;
+  const bool waits = io.vacuum != state.io.vacuum || (io.blow_off && !state.io.blow_off);
+  const bool is_moving = state.phase == ControllerPhase::Moving && row > 0 && !state.was_felt &&
+                         seconds_in_phase(plan, state) < state.paced.duration();
+  state.row = row;
+  state.io = io;
+  if (is_moving && only_switches(plan, row)) return;  // on the fly: the motion goes on
+  if (is_moving) {                                    // a blend: the rest of the motion is put under the next one
+    state.tail = state.paced;
+    state.tail_ticks = state.phase_ticks;
+    state.X_WE_departure = state.paced.end();
+    begin_motion(plan, state.X_WE_departure, state);
+    return;
+  }
+  state.was_felt = false;
+  state.tail = PacedSegment();
+  state.command.V_WE = {};
+  state.X_WE_departure = state.command.X_WE;
+  state.phase_ticks = 0;
+  if (waits && plan.settings.vacuum_wait > 0.0) {
+    state.phase = ControllerPhase::Waiting;
+  } else {
+    begin_motion(plan, state.X_WE_departure, state);
+  }
+}
+
+bool has_waited(const PreparedProgram& plan, const ControllerState& state) {
+  const FastSettings& fast = plan.settings.fast;
+  if (seconds_in_phase(plan, state) >= plan.settings.vacuum_wait - 1e-9) return true;
+  return state.io.vacuum ? state.sensed.pressure_gauge <= fast.sealed_pressure
+                         : state.sensed.pressure_gauge >= fast.released_pressure;
+}
+
+}  // namespace
+
+bool is_contact_row(std::string_view name) noexcept {
+  return name.starts_with("Box") || name.starts_with("RePick") || name.starts_with("Place") ||
+         name.starts_with("Twist");
+}
+
+bool has_reached_fast(const PreparedProgram& plan, const ToolState& measured, const ControllerState& state) noexcept {
+  const double t = seconds_in_phase(plan, state);
+  if (t >= state.paced.duration() && !has_tail(plan, state)) {
+    return convergence_error(measured.X_WE, state.command.X_WE, plan.settings.convergence_deg_per_metre) <= kArrived;
+  }
+  if (has_tail(plan, state)) return false;
+  const bool is_left_moving = row_of(plan, state.row).name.starts_with(kOnTheFly) && has_next(plan, state.row) &&
+                              only_switches(plan, state.row + 1);
+  if (is_left_moving) {
+    const double precision = plan.row_limits[static_cast<std::size_t>(state.row)].precision;
+    return error_to(plan, state.command.X_WE, state.row) <= precision;
+  }
+  const double blend = blend_at(plan, state);
+  if (blend > 0.0 && error_to(plan, state.command.X_WE, state.row) <= blend) return true;
+  return feels_contact(plan, state);
+}
+
+void advance_fast(const PreparedProgram& plan, const ToolState& measured, ControllerState& state,
+                  ControllerOutput& output) noexcept {
+  if (state.phase == ControllerPhase::Ready) {
+    state.command.X_WE = measured.X_WE;
+    depart(plan, 0, state);
+    output.departed = 0;
+  } else if (state.phase == ControllerPhase::Waiting) {
+    if (has_waited(plan, state)) begin_motion(plan, state.X_WE_departure, state);
+  } else if (state.phase == ControllerPhase::Moving && has_reached_fast(plan, measured, state)) {
+    output.reached = state.row;
+    state.was_felt = feels_contact(plan, state);
+    if (has_next(plan, state.row)) {
+      depart(plan, state.row + 1, state);
+      output.departed = state.row;
+    } else {
+      state.phase = ControllerPhase::Finished;
+      state.phase_ticks = 0;
+      state.command.V_WE = {};
+      output.finished_now = true;
+    }
+  }
+}
+
+ToolState sample_fast(const PreparedProgram& plan, const ControllerState& state) noexcept {
+  if (state.phase != ControllerPhase::Moving) return {state.command.X_WE, {}};
+  return reference_at(plan, state, plan.settings.tick);
+}
+
+void check_fast(const FastSettings& settings, const std::string& where) {
+  const auto require = [&](const char* key, double value, bool ok, const char* expected) {
+    if (!ok) throw InputError(where, fmt::format("fast: {}", key), fmt::format("{}", value), expected);
+  };
+  require("tempo", settings.tempo, settings.tempo >= 0.1 && settings.tempo <= 1.0, "a number from 0.1 to 1");
+  const auto is_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
+  for (const Pace& pace : {settings.empty, settings.held, settings.insert}) {
+    for (const double value :
+         {pace.max_speed, pace.max_acceleration, pace.max_turn_speed, pace.max_turn_acceleration, pace.window}) {
+      require("pace", value, is_positive(value), "a finite number above 0");
+    }
+  }
+  for (const double value : {settings.contact_window, settings.blend, settings.level_blend, settings.feel_within,
+                             settings.pick_force, settings.press_force, settings.push_force}) {
+    require("limits", value, is_positive(value), "a finite number above 0");
+  }
+}
+
+}  // namespace snug::motion

@@ -1,0 +1,42 @@
+// FastSettings: how our own programs move the tool, and what ends a motion or a wait: what is felt.
+#pragma once
+
+#include <limits>
+#include <string_view>
+
+#include "snug/motion/paced_segment.hpp"
+
+namespace snug::motion {
+
+/// What the robot's sensors say. A controller that is told nothing waits and goes by time and place alone.
+struct Sensed {
+  double pressure_gauge = 0.0;        ///< Pa, in the cup; vacuum is negative
+  Vector3 force_W = Vector3::Zero();  ///< N, on the tool, from what it carries and touches
+  bool operator==(const Sensed&) const = default;
+};
+
+/// Settings of ControllerKind::Fast. Speeds count at tempo 1.
+struct FastSettings {
+  double tempo = 1.0;  ///< 0.1 .. 1: share of all speeds; accelerations go with its square
+  /// Rows that touch nothing, the cup empty. The joints limit the speed too.
+  Pace empty = {2.0, 6.0, 2.5, 6.0, 0.10};
+  /// The same with a box: averaged over a window in which most boxes swing a whole number of times (3 to 8 Hz).
+  Pace held = {2.0, 4.0, 2.5, 5.0, 0.25};
+  /// A held box on its way in (Place). Other rows that touch something have the scenario's limits for their names.
+  Pace insert = {0.6, 4.0, 1.5, 3.0, 0.10};
+  double contact_window = 0.10;  ///< s, of those others
+  double blend = 0.05;        ///< m, and 1 m per `convergence_deg_per_metre`: so near to a row the next one may begin
+  double level_blend = 0.15;  ///< m, the same where neither way goes up or down: nothing is met by a short cut
+  double feel_within = 0.02;  ///< m, before a row's end: what is felt earlier is not what was meant
+  double pick_force = 30.0;   ///< N, against the motion: a pick is pressed
+  double press_force = 40.0;  ///< N: a held box stands on something
+  double push_force = 25.0;   ///< N: a held box leans on its neighbour (PlaceSlow)
+  double sealed_pressure = -std::numeric_limits<double>::infinity();   ///< Pa, gauge: the box may be lifted
+  double released_pressure = std::numeric_limits<double>::infinity();  ///< Pa, gauge: the tool may leave the box
+  bool operator==(const FastSettings&) const = default;
+};
+
+/// Whether a waypoint of this name is brought about in contact: picks, places, twists. The others touch nothing.
+[[nodiscard]] bool is_contact_row(std::string_view name) noexcept;
+
+}  // namespace snug::motion

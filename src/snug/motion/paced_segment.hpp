@@ -1,0 +1,67 @@
+// PacedSegment: straight line and fixed-axis turn that start and end at rest, as fast as tool, held box and joints
+// allow.
+#pragma once
+
+#include <span>
+
+#include "snug/motion/path_profile.hpp"
+#include "snug/motion/tool_path.hpp"
+
+namespace snug::motion {
+
+/// What else than the tool's own limits bounds the speed along a straight way: the joints.
+class PathLimits {
+ public:
+  PathLimits() = default;
+  PathLimits(const PathLimits&) = delete;
+  PathLimits& operator=(const PathLimits&) = delete;
+  virtual ~PathLimits() = default;
+  /// Lowers `rates`, the largest share of the way per second in each of as many equal parts.
+  virtual void limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates) const noexcept = 0;
+};
+
+/// Limits of one segment. SI units.
+struct Pace {
+  double max_speed = 1.0;              ///< m/s
+  double max_acceleration = 4.0;       ///< m/s^2
+  double max_turn_speed = 2.5;         ///< rad/s
+  double max_turn_acceleration = 5.0;  ///< rad/s^2
+  double window = 0.1;                 ///< s, over which the motion is averaged (PathProfile)
+  bool operator==(const Pace&) const = default;
+};
+
+class PacedSegment {
+ public:
+  /// No motion, duration 0, at the identity.
+  PacedSegment() = default;
+  /// Poses must be finite and limits positive (checked). Lengths below 1e-9 m and rad count as none. `others`: not
+  /// kept; none: nothing else limits.
+  PacedSegment(const Pose& X_WA, const Pose& X_WB, const Pace& pace, const PathLimits* others);
+
+  [[nodiscard]] double duration() const noexcept { return profile_.duration(); }
+  /// Exactly `end` and at rest from the duration on.
+  [[nodiscard]] ToolState sample(double t) const noexcept;
+  /// What the motion is beyond `start` at t, to be put on top of another motion that ends there: turn and shift in W,
+  /// and twist.
+  struct Increment {
+    Matrix3 R_W = Matrix3::Identity();
+    Vector3 shift_W = Vector3::Zero();
+    Twist V_W;
+  };
+  [[nodiscard]] Increment increment(double t) const noexcept;
+  [[nodiscard]] const Pose& start() const noexcept { return X_WA_; }
+  [[nodiscard]] const Pose& end() const noexcept { return X_WB_; }
+  [[nodiscard]] double length() const noexcept { return line_W_.norm(); }  ///< m
+  /// Unit, in W; zero without a translation.
+  [[nodiscard]] Vector3 direction_W() const noexcept;
+
+  bool operator==(const PacedSegment&) const = default;
+
+ private:
+  Pose X_WA_, X_WB_;
+  Vector3 line_W_ = Vector3::Zero();  ///< m
+  Vector3 turn_W_ = Vector3::Zero();  ///< rad, rotation vector
+  PathProfile profile_;
+};
+
+}  // namespace snug::motion

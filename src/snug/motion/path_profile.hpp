@@ -1,0 +1,46 @@
+// PathProfile: how far along a way the tool is at each time: as fast as limits that change along it allow, its jerk
+// bounded.
+#pragma once
+
+#include <array>
+#include <span>
+
+namespace snug::motion {
+
+inline constexpr int kPathParts = 32;  ///< equal parts of a way, each with a limit of its own
+
+/// Share of a way from 0 to 1, from rest to rest: the fastest within a speed limit for each part and one acceleration
+/// limit for all, then averaged over a moving window. The average keeps both limits, bounds the jerk by twice the
+/// acceleration limit over the window, and leaves nothing of a vibration whose period fits into the window a whole
+/// number of times.
+class PathProfile {
+ public:
+  /// No way: at its end from the beginning.
+  PathProfile() = default;
+  /// `rates`: largest speed in each part, 1/s, positive, may be infinite. `acceleration`: 1/s^2, finite and positive.
+  /// `window`: s, positive (all checked).
+  PathProfile(std::span<const double, kPathParts> rates, double acceleration, double window);
+
+  struct Sample {
+    double share = 1.0;
+    double rate = 0.0;  ///< 1/s
+  };
+  /// t is clamped to [0, duration]; exactly 1 and at rest from the end on.
+  [[nodiscard]] Sample sample(double t) const noexcept;
+  [[nodiscard]] double duration() const noexcept { return time_.back() + window_; }
+
+  bool operator==(const PathProfile&) const = default;
+
+ private:
+  struct Raw {
+    double share = 0.0;
+    double area = 0.0;  ///< integral of the share over time, s
+  };
+  [[nodiscard]] Raw raw(double t) const noexcept;
+
+  // At the ends of the parts, before averaging: s, 1/s, s.
+  std::array<double, kPathParts + 1> time_{}, rate_{}, area_{};
+  double window_ = 0.0;  ///< s
+};
+
+}  // namespace snug::motion

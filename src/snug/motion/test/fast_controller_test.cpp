@@ -1,0 +1,208 @@
+// Tests of the fast controller: blends, rows and waits that end by what is felt, and by time where nothing is felt.
+#include "snug/motion/fast_controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "snug/core/input_error.hpp"
+#include "snug/core/test/allocation_count.hpp"
+
+namespace snug::motion {
+namespace {
+
+constexpr IO kHold{.vacuum = true};
+
+Waypoint row(const char* name, const Vector3& p, const IO& io = {}) {
+  return {Pose{Matrix3::Identity(), p}, name, io, 0};
+}
+
+ControllerSettings fast_settings(double tempo = 1.0) {
+  ControllerSettings settings;
+  settings.kind = ControllerKind::Fast;
+  settings.limits = {{"", MotionLimits{}}, {"PlaceSlow", {0.002, 1.0, 0.15, 0.6, 1.0}}, {"TwistDrag", {0.2}}};
+  settings.fast.tempo = tempo;
+  settings.fast.sealed_pressure = -4.0e4;
+  settings.fast.released_pressure = -1.0e3;
+  return settings;
+}
+
+struct Course {
+  std::vector<ControllerOutput> ticks;
+  [[nodiscard]] double arrival(int reached) const {
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      if (ticks[i].reached == reached) return 0.008 * static_cast<double>(i);
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
+/// `feel`: what is sensed at the end of a tick.
+Course run(const PreparedProgram& plan, const std::function<Sensed(const ControllerState&)>& feel = {}) {
+  Course course;
+  ControllerState state = make_controller_state(Pose{});
+  ToolState measured = state.command;
+  while (course.ticks.size() < 20000) {
+    course.ticks.push_back(tick(plan, measured, state));
+    measured = course.ticks.back().tool;
+    if (feel) state.sensed = feel(state);
+    if (course.ticks.back().finished_now) break;
+  }
+  return course;
+}
+
+const std::vector<Waypoint> kCorner = {row("PrePick(A)", {0.5, 0.0, 0.0}), row("PostPlace(A)", {0.5, 0.4, 0.0})};
+
+TEST(FastController, BlendsWhatTouchesNothingAndStaysNearTheCorner) {
+  const Course course = run(prepare({"corner", kCorner}, fast_settings()));
+  double slowest = 1.0, nearest = 1.0;
+  Vector3 before = Vector3::Zero();
+  for (const ControllerOutput& out : course.ticks) {
+    const double speed = out.tool.V_WE.linear.norm();
+    const Vector3& p = out.tool.X_WE.p;
+    nearest = std::min(nearest, (p - kCorner[0].X_WE.p).norm());
+    const bool is_at_corner = (p - kCorner[0].X_WE.p).norm() < 0.03;
+    if (is_at_corner) slowest = std::min(slowest, speed);
+    EXPECT_LE((out.tool.V_WE.linear - before).norm(), 0.008 * 2.0 * 6.0 * 1.01) << "at most both accelerations";
+    before = out.tool.V_WE.linear;
+  }
+  EXPECT_GT(slowest, 0.05) << "m/s: it does not stop";
+  EXPECT_LT(nearest, 0.05);
+  EXPECT_EQ(course.ticks.back().tool.X_WE, kCorner[1].X_WE);
+  std::vector<Waypoint> stops = kCorner;
+  stops[1].io.conveyor_cw = true;  // something is switched: it stops there
+  EXPECT_LT(course.arrival(1), run(prepare({"stops", stops}, fast_settings())).arrival(1) - 0.1);
+}
+
+TEST(FastController, TempoStretchesMotionsButNotTheirWindow) {
+  const std::vector<Waypoint> one = {row("PrePick(A)", {1.0, 0.0, 0.0})};
+  const double window = FastSettings{}.empty.window;
+  const double whole = run(prepare({"one", one}, fast_settings(1.0))).arrival(0) - window;
+  const double half = run(prepare({"one", one}, fast_settings(0.5))).arrival(0) - window;
+  EXPECT_NEAR(half, 2.0 * whole, 0.02) << "two ticks";
+}
+
+TEST(FastController, WaitsUntilThePressureSaysSoOrTheTimeIsOver) {
+  const std::vector<Waypoint> pick = {row("Box(A)", {0.0, 0.0, -0.1}), row("PostPick(A)", {0.0, 0.0, 0.1}, kHold),
+                                      row("Place(A)", {0.0, 0.0, 0.1}, {.blow_off = true})};
+  const PreparedProgram plan = prepare({"pick", pick}, fast_settings());
+  const auto waited = [&](const Course& course, int row) {
+    int ticks = 0;
+    for (const ControllerOutput& out : course.ticks) {
+      ticks += out.row == row && out.phase == ControllerPhase::Waiting ? 1 : 0;
+    }
+    return 0.008 * ticks;
+  };
+  double pressure = 0.0;
+  const Course sealed = run(plan, [&](const ControllerState& state) {
+    const double wanted = state.io.vacuum ? -6.0e4 : 0.0;
+    pressure += 0.05 * (wanted - pressure);
+    return Sensed{pressure, Vector3::Zero()};
+  });
+  // -60 kPa (1 - 0.95^n) <= -40 kPa from n = 22 on; back to -1 kPa takes n = 80 ticks: longer than 0.5 s.
+  EXPECT_NEAR(waited(sealed, 1), 22 * 0.008, 1.1 * 0.008);
+  EXPECT_NEAR(waited(sealed, 2), 0.5, 1.1 * 0.008);
+  EXPECT_NEAR(waited(run(plan), 1), 0.5, 1.1 * 0.008) << "nothing is felt";
+}
+
+/// A support 4 mm above where the box is sent, felt as a spring.
+Sensed on_support(const ControllerState& state) {
+  const double depth = std::max(0.0, -0.196 - state.command.X_WE.p.z());
+  return {-6.0e4, Vector3(0.0, 0.0, -5.0 + 2.0e4 * depth)};
+}
+
+TEST(FastController, APlaceEndsWhereTheBoxStands) {
+  const std::vector<Waypoint> place = {row("PrePlace(A)", {0.0, 0.0, 0.05}, kHold),
+                                       row("Place(A)", {0.0, 0.0, -0.2}, kHold),
+                                       row("Place(A)", {0.0, 0.0, -0.2}, {.blow_off = true})};
+  const PreparedProgram plan = prepare({"place", place}, fast_settings());
+  double deepest = 0.0;
+  for (const ControllerOutput& out : run(plan, on_support).ticks) {
+    if (out.row <= 1) deepest = std::min(deepest, out.tool.X_WE.p.z());
+  }
+  const double force = plan.settings.fast.press_force;
+  EXPECT_LT(deepest, -0.196 - force / 2.0e4);
+  EXPECT_GT(deepest, -0.2) << "not as deep as it was sent";
+  double blind = 0.0;
+  for (const ControllerOutput& out : run(plan).ticks) {
+    if (out.row <= 1) blind = std::min(blind, out.tool.X_WE.p.z());
+  }
+  EXPECT_EQ(blind, -0.2) << "where nothing is felt, the place counts";
+}
+
+TEST(FastController, WhatIsFeltTooEarlyIsNotTheSupport) {
+  const std::vector<Waypoint> place = {row("PrePlace(A)", {0.0, 0.0, 0.05}, kHold),
+                                       row("Place(A)", {0.0, 0.0, -0.2}, kHold)};
+  double deepest = 0.0;
+  const Course course = run(prepare({"place", place}, fast_settings()), [](const ControllerState& state) {
+    const double z = state.command.X_WE.p.z();
+    return Sensed{-6.0e4, Vector3(0.0, 0.0, z < -0.1 && z > -0.15 ? 60.0 : 0.0)};  // an edge on the way
+  });
+  for (const ControllerOutput& out : course.ticks) deepest = std::min(deepest, out.tool.X_WE.p.z());
+  EXPECT_EQ(deepest, -0.2);
+}
+
+TEST(FastController, ABoxIsLetGoOnTheWayOfADrag) {
+  const std::vector<Waypoint> drag = {
+      row("Twist(A)", {0.0, 0.0, 0.1}, kHold), row("TwistDrag(A)", {0.32, 0.0, 0.1}, kHold),
+      row("TwistDrag(A)", {0.32, 0.0, 0.1}, {.blow_off = true}), row("PreTwist(A)_back", {0.32, 0.0, 0.3})};
+  const Course course = run(prepare({"drag", drag}, fast_settings()));
+  const std::size_t release = static_cast<std::size_t>(std::llround(course.arrival(1) / 0.008));
+  EXPECT_TRUE(course.ticks[release].io.blow_off);
+  EXPECT_NEAR(course.ticks[release].tool.X_WE.p.x(), 0.12, 0.01);
+  EXPECT_GT(course.ticks[release].tool.V_WE.linear.x(), 0.2) << "m/s";
+  EXPECT_EQ(course.ticks.back().tool.X_WE, drag.back().X_WE);
+}
+
+TEST(FastController, ARowIsNotReachedWhileTheToolIsBehind) {
+  const PreparedProgram plan = prepare({"late", {row("PrePick(A)", {0.3, 0.0, 0.0})}}, fast_settings());
+  ControllerState state = make_controller_state(Pose{});
+  const ToolState stuck{Pose{}, {}};
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(tick(plan, stuck, state).finished_now);
+  EXPECT_TRUE(tick(plan, state.command, state).finished_now);
+}
+
+TEST(FastController, NeitherAllocatesNorDependsOnWhereItIsTakenUp) {
+  const PreparedProgram plan = prepare({"corner", kCorner}, fast_settings());
+  ControllerState state = make_controller_state(Pose{});
+  ToolState measured = state.command;
+  const long before = snug::test::allocation_count();
+  for (int i = 0; i < 60; ++i) measured = tick(plan, measured, state).tool;
+  EXPECT_EQ(snug::test::allocation_count(), before);
+  ControllerState copy = state;
+  ToolState other = measured;
+  for (int i = 0; i < 200; ++i) {
+    measured = tick(plan, measured, state).tool;
+    other = tick(plan, other, copy).tool;
+    ASSERT_EQ(measured, other);
+  }
+  EXPECT_EQ(state, copy);
+}
+
+TEST(FastController, RefusesSettingsOutOfRange) {
+  const auto refused = [](const std::function<void(FastSettings&)>& change) {
+    ControllerSettings settings = fast_settings();
+    change(settings.fast);
+    EXPECT_THROW((void)prepare({"corner", kCorner}, settings), InputError);
+  };
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {0.0, 0.09, 1.01, -1.0, kNaN}) refused([&](FastSettings& fast) { fast.tempo = bad; });
+  for (const double bad : {0.0, -1.0, kNaN, std::numeric_limits<double>::infinity()}) {
+    refused([&](FastSettings& fast) { fast.held.max_acceleration = bad; });
+    refused([&](FastSettings& fast) { fast.blend = bad; });
+    refused([&](FastSettings& fast) { fast.press_force = bad; });
+  }
+}
+
+TEST(ControllerKind, WordsAndKindsAreOneToOne) {
+  for (const ControllerKind kind : {ControllerKind::Faithful, ControllerKind::Ideal, ControllerKind::Fast}) {
+    EXPECT_EQ(controller_kind_of(name_of(kind), "test"), kind);
+  }
+  EXPECT_THROW((void)controller_kind_of("quick", "test"), InputError);
+}
+
+}  // namespace
+}  // namespace snug::motion
