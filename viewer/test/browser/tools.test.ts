@@ -184,8 +184,12 @@ describe("files that are dropped", () => {
     await drop(page, "report.html", report, 0.8);
     await expect.poll(() => page.evaluate(() => window.snug.toggles("second", true))).toBe(true);
     expect(await page.title()).toBe("snug: dropped");
-    await page.keyboard.press("i");
-    await expect.poll(() => page.textContent(".about")).toContain("Laid over it: in a report");
+    const about = async (): Promise<string | null> => {  // as it is when it is opened
+      await page.keyboard.press("Escape");
+      await page.keyboard.press("i");
+      return page.textContent(".about");
+    };
+    await expect.poll(about, { timeout: 10_000 }).toContain("Laid over it: in a report");
     await page.keyboard.press("Escape");
     await drop(page, "notes.txt", new TextEncoder().encode("no recording"), 0.2);
     await expect.poll(() => page.locator(".toast").textContent()).toMatch(/not a recording of snug/);
