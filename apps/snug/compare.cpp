@@ -79,6 +79,7 @@ std::string command_of(const PackOptions& pack, const study::Trial& trial) {
   if (pack.decision_time != usual.decision_time) words += fmt::format(" --decision-time {}", pack.decision_time);
   if (pack.future != usual.future) words += " --future " + pack.future;
   if (!pack.fault.empty()) words += " --fault " + pack.fault;
+  if (pack.tempo) words += fmt::format(" --tempo {}", *pack.tempo);
   if (pack.robot) words += " --robot " + *pack.robot;
   return words;
 }

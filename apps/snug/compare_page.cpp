@@ -45,6 +45,7 @@ constexpr Measure kMeasures[] = {
     {"filling degree by the plant's truth, %", [](const CompareRow& row) { return row.executed_percent; }},
     {"items that end as planned, %",
      [](const CompareRow& row) { return row.items_sent > 0 ? 100.0 * row.items_as_planned / row.items_sent : 100.0; }},
+    {"boxes an hour of the plant's time", [](const CompareRow& row) { return row.boxes_per_hour; }},
     {"time to decide and rehearse an item, median, s",
      [](const CompareRow& row) { return row.decision_seconds_median; }},
 };
