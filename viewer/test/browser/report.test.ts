@@ -174,7 +174,7 @@ describe("the recording itself, dropped onto the page", () => {
       },
       readFileSync(join(folder, "r.h5")).toString("base64"),
     );
-    await expect.poll(() => opened.page.title(), { timeout: 30_000 }).toBe("snug: r.h5");
+    await expect.poll(() => opened.page.title(), { timeout: 100_000 }).toBe("snug: r.h5");
     expect(await opened.page.evaluate(() => window.snug.frames)).toBe(table.get("t")!.length);
     expect(await opened.page.textContent(".headline")).toMatch(/sequence 1packed ?\d+ of \d+/);
     for (const row of [0, 5000, table.get("t")!.length - 1]) {
@@ -187,7 +187,7 @@ describe("the recording itself, dropped onto the page", () => {
     }
     expect(opened.errors).toEqual([]);
     await opened.close();
-  });
+  }, 180_000);
 });
 
 describe("a recording that is not as it should be", () => {
