@@ -4,10 +4,14 @@
 # building. With SNUG_VIEWER off the program is built without the page and says so when it is needed.
 option(SNUG_VIEWER "Build the viewer's page into the program; needs node 18 and the packages of viewer/" ON)
 
-# snug_viewer_page(): the rule that builds the page, SNUG_VIEWER_PAGE in the caller.
+# snug_viewer_page(): target snug_viewer_page, which builds the page; SNUG_VIEWER_PAGE in the caller is its file.
 function(snug_viewer_page)
   set(viewer ${PROJECT_SOURCE_DIR}/viewer)
   set(page ${PROJECT_BINARY_DIR}/viewer/index.html)
+  set(SNUG_VIEWER_PAGE ${page} PARENT_SCOPE)
+  if(TARGET snug_viewer_page)
+    return()
+  endif()
   find_program(SNUG_NPM npm)
   mark_as_advanced(SNUG_NPM)
   if(NOT SNUG_NPM OR NOT EXISTS ${viewer}/node_modules)
@@ -22,7 +26,7 @@ function(snug_viewer_page)
     WORKING_DIRECTORY ${viewer}
     COMMENT "Building the viewer's page"
     VERBATIM)
-  set(SNUG_VIEWER_PAGE ${page} PARENT_SCOPE)
+  add_custom_target(snug_viewer_page DEPENDS ${page})
 endfunction()
 
 function(snug_embed_viewer target source)
@@ -31,7 +35,7 @@ function(snug_embed_viewer target source)
   endif()
   snug_viewer_page()
   set(page ${SNUG_VIEWER_PAGE})
-  target_sources(${target} PRIVATE ${page})
+  add_dependencies(${target} snug_viewer_page)
   set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${page}
     COMPILE_DEFINITIONS "SNUG_VIEWER_PAGE=\"${page}\"")
 endfunction()

@@ -32,7 +32,7 @@ class CommandLine(unittest.TestCase):
     def test_version_is_printed_on_stdout(self):
         result = snug("--version")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertRegex(result.stdout, r"^snug \d+\.\d+\.\d+( \([0-9a-f]+\))?\n$")
+        self.assertRegex(result.stdout, r"^snug \d+\.\d+\.\d+( \([0-9a-f]+(-dirty)?\))?\n$")
 
     def test_version_is_that_of_the_changelog(self):
         newest = next(line for line in (ROOT / "CHANGELOG.md").read_text().splitlines() if line.startswith("## "))

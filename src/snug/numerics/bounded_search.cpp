@@ -52,7 +52,8 @@ SearchResult minimize_bounded(const std::function<double(const Eigen::VectorXd&)
   search.set_upper_bounds(1.0);
   search.set_min_objective(call, const_cast<void*>(static_cast<const void*>(&evaluate)));
   search.set_maxeval(options.evaluations);
-  search.set_xtol_abs(options.tolerance);
+  // Controlled random search compares its best with the best before: one lucky small step would end it.
+  if (options.method == SearchMethod::Subplex) search.set_xtol_abs(options.tolerance);
   const Eigen::VectorXd first = (start - lower).cwiseQuotient(span).cwiseMax(0.0).cwiseMin(1.0);
   std::vector<double> s(first.data(), first.data() + n);
   if (options.step.size() == n) {

@@ -16,7 +16,7 @@ enum class SearchMethod {
 struct SearchOptions {
   SearchMethod method = SearchMethod::Subplex;
   int evaluations = 1000;   ///< at most
-  double tolerance = 1e-4;  ///< of the unknowns, relative to what the bounds span: the search ends below it
+  double tolerance = 1e-4;  ///< a local search ends below it; of the unknowns, relative to what the bounds span
   Eigen::VectorXd step;     ///< first step of a local search; empty: a tenth of what the bounds span
   std::uint64_t seed = 1;
 };

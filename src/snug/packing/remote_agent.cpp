@@ -137,6 +137,7 @@ class RemoteAgent final : public Agent {
                                    PlaceFinder& finder) const {
     try {
       if (!answer.contains("places") || answer["places"].empty()) return tl::unexpected(NoPlace::NoSpace);
+      if (!answer["places"].is_array()) throw AgentError(name_ + ": 'places' is no list: " + answer["places"].dump());
       Decision decision;
       NoPlace reason = NoPlace::NotReachable;
       for (const Json& entry : answer.at("places")) {

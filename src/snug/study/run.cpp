@@ -104,8 +104,10 @@ void take(int& from, std::string& into, std::size_t most) {
 /// The end of it, without the program's name before it.
 std::string last_words(const std::string& words) {
   std::string line = words.substr(0, words.find_last_not_of('\n') + 1);
-  const std::size_t mark = std::max(line.rfind("snug: error: "), line.rfind("snug: failed: "));
-  if (mark != std::string::npos) line = line.substr(mark + 6);
+  for (const char* start : {"snug: error: ", "snug: failed: "}) {
+    const std::size_t mark = line.rfind(start);
+    if (mark != std::string::npos) line = line.substr(mark + 6);
+  }
   return printable_end(line, kMostError);
 }
 

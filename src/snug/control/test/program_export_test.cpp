@@ -53,7 +53,7 @@ TEST(UrScript, MovesTheToolInTheControllersBaseFrame) {
   char expected[80];
   std::snprintf(expected, sizeof expected, "movel(p[%.6f, %.6f, %.6f,", p.x(), p.y(), p.z());
   EXPECT_NE(text.find(expected), std::string::npos) << text;
-  EXPECT_NE(text.find("a=4.000, v=0.600"), std::string::npos);                         // Box
+  EXPECT_NE(text.find("a=4.00000, v=0.60000"), std::string::npos);                     // Box
   EXPECT_NE(text.find("set_tcp(p[0.000000, 0.000000, 0.335000,"), std::string::npos);  // 35 mm sensor, 300 mm rod
   const std::size_t on = text.find("set_standard_digital_out(3, True)");
   ASSERT_NE(on, std::string::npos);

@@ -55,7 +55,7 @@ TEST(PlaceFinder, KeptFromItemToItemFindsWhatAFreshOneFinds) {
 
 TEST(PlaceFinder, LowersABoxOntoWhatIsThere) {
   ContainerState state;
-  state.inner_size = Vector3(0.4, 0.4, 0.4);
+  state.inner_size = Vector3(0.6, 0.4, 0.4);
   PlaceFinder finder(state, exact());
   const Item item = make_box("a", Vector3(0.2, 0.1, 0.1));
   const auto first = finder.lower(item, {}, 0.0, 0.0);

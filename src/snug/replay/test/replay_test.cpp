@@ -272,7 +272,8 @@ TEST(Replay, HeaderGivesWhatTheScenarioSaysOfOthersWhateverItsSequencesAreCalled
     all.replace(at, from.size(), to);
   };
   replace("  - name: \"1\"", "  - name: mine");
-  replace("{agent: I.AM., packed_count: 12, filling_percent: 75.66}", "{agent: you, filling_percent: 50.0}");
+  replace("{agent: \"I.AM. (the report's robot, programmed by hand)\", packed_count: 12, filling_percent: 75.66}",
+          "{agent: you, filling_percent: 50.0}");
   recording.header.sequence = "mine";
   const auto table = nlohmann::json::parse(form_of(recording).header_json)["result"]["report_table7"];
   EXPECT_EQ(table["agent"], "you");

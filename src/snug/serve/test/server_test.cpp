@@ -78,6 +78,7 @@ class ServerTest : public ::testing::Test {
   }
   static int status(const std::string& answer) { return answer.size() < 12 ? 0 : std::stoi(answer.substr(9, 3)); }
 
+  LiveRun live_{"run", 0.0};  // outlives the server
   std::string host_;
   std::unique_ptr<Server> server_;
   std::thread thread_;
@@ -198,9 +199,8 @@ int count_of(const std::string& text, const std::string& word) {
 
 /// What a page of another site can have a browser send: a body of its choice behind headers that are not.
 TEST_F(ServerTest, TakesNoBodyForAnotherRequest) {
-  LiveRun live("run", 0.0);
-  live.begin({});
-  start({kPage, {}, &live});
+  live_.begin({});
+  start({kPage, {}, &live_});
   const std::string command = "POST /live/pause HTTP/1.1\r\nHost: localhost\r\nX-Snug: 1\r\n\r\n";
   const std::string length = "Content-Length: " + std::to_string(command.size()) + "\r\n";
   char size[16];
@@ -230,7 +230,7 @@ TEST_F(ServerTest, TakesNoBodyForAnotherRequest) {
     const std::string answer = client.read();  // until the server closes
     EXPECT_EQ(count_of(answer, "HTTP/1.1 ") - count_of(answer, "HTTP/1.1 100 "), 1) << answer;
     EXPECT_NE(answer.find("Connection: close\r\n"), std::string::npos) << answer;
-    EXPECT_FALSE(live.is_paused());
+    EXPECT_FALSE(live_.is_paused());
   }
   // Sent in two pieces, so that the body comes when the answer is out already.
   const Client slow(server_->port());
@@ -239,7 +239,7 @@ TEST_F(ServerTest, TakesNoBodyForAnotherRequest) {
   EXPECT_EQ(status(answer), 413);
   slow.send(command);
   EXPECT_EQ(count_of(answer + slow.read(), "HTTP/1.1 "), 1);
-  EXPECT_FALSE(live.is_paused());
+  EXPECT_FALSE(live_.is_paused());
 }
 
 TEST_F(ServerTest, TellsWhyItRefusesALargeBody) {
@@ -264,15 +264,14 @@ record::Frame frame_at(int i) {
 }
 
 TEST_F(ServerTest, StreamsARunToEachWatcherFromItsBeginning) {
-  LiveRun live("run", 0.0);
-  start({kPage, {}, &live});
+  start({kPage, {}, &live_});
   EXPECT_NE(ask("GET", "/recordings.json").find(R"("live":true)"), std::string::npos);
   EXPECT_EQ(status(ask("GET", "/recording/0")), 404);
   const Client early(server_->port());
   early.send("GET /live HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  live.begin({});
-  for (int i = 1; i < 50; ++i) live.add(frame_at(i));
-  live.finish("", "");
+  live_.begin({});
+  for (int i = 1; i < 50; ++i) live_.add(frame_at(i));
+  live_.finish("", "");
   const std::string end = R"(data: {"failure":""})";
   const std::string told = early.read(end);
   EXPECT_NE(told.find("Content-Type: text/event-stream"), std::string::npos);
@@ -286,27 +285,25 @@ TEST_F(ServerTest, StreamsARunToEachWatcherFromItsBeginning) {
 }
 
 TEST_F(ServerTest, TakesCommandsFromItsOwnPageOnly) {
-  LiveRun live("run", 0.0);
-  live.begin({});
-  start({kPage, {}, &live});
+  live_.begin({});
+  start({kPage, {}, &live_});
   EXPECT_EQ(status(ask("POST", "/live/pause", "Host: localhost\r\nContent-Length: 0\r\n")), 403);
-  EXPECT_FALSE(live.is_paused());
+  EXPECT_FALSE(live_.is_paused());
   EXPECT_EQ(status(ask("GET", "/live/pause", "Host: localhost\r\nX-Snug: 1\r\n")), 404);
-  EXPECT_FALSE(live.is_paused());
+  EXPECT_FALSE(live_.is_paused());
   const std::string own = "Host: localhost\r\nX-Snug: 1\r\nContent-Length: 0\r\n";
   EXPECT_EQ(status(ask("POST", "/live/pause", own)), 204);
-  EXPECT_TRUE(live.is_paused());
+  EXPECT_TRUE(live_.is_paused());
   EXPECT_EQ(status(ask("POST", "/live/step", own)), 204);
   EXPECT_EQ(status(ask("POST", "/live/resume", "Host: localhost\r\nX-Snug: 1\r\n")), 204);  // without a length
-  EXPECT_FALSE(live.is_paused());
+  EXPECT_FALSE(live_.is_paused());
   EXPECT_EQ(status(ask("POST", "/live/quit", own)), 404);
 }
 
 TEST_F(ServerTest, RefusesMoreWatchersThanItHasThreadsFor) {
-  LiveRun live("run", 0.0);
-  live.begin({});
-  live.add(frame_at(1));
-  start({kPage, {}, &live});
+  live_.begin({});
+  live_.add(frame_at(1));
+  start({kPage, {}, &live_});
   std::vector<std::unique_ptr<Client>> watchers;
   for (int i = 0; i < 8; ++i) {
     watchers.push_back(std::make_unique<Client>(server_->port()));

@@ -38,7 +38,9 @@ TEST(Table, ALineCutShortOrChangedAnywhereIsNoLine) {
   for (std::size_t at = 0; at < line.size(); ++at) {
     std::string changed = line;
     changed[at] = changed[at] == '1' ? '2' : '1';
-    if (changed != line) EXPECT_FALSE(parse_line(changed)) << at;
+    if (changed != line) {
+      EXPECT_FALSE(parse_line(changed)) << at;
+    }
   }
   EXPECT_FALSE(parse_line(line + line));
 }
