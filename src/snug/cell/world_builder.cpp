@@ -25,7 +25,7 @@ physics::ContactLaw law_of(const model::Scenario& scenario, int a, int b) {
   law.travel = params->travel.value_or(0.0);
   law.stiffness_beyond = params->stiffness_beyond.value_or(0.0);
   law.full_area = params->full_area.value_or(0.0);
-  law.edge_share = params->edge_share.value_or(1.0);
+  law.edge_share = params->edge_share.value_or(law.edge_share);
   return law;
 }
 
@@ -189,8 +189,7 @@ CellWorld build_world(const model::Scenario& scenario, const WorldOptions& optio
     for (const model::Item& item : options.sequence->items) {
       const model::Parcel& parcel = *model::find_parcel(scenario, item.parcel);
       world.parcels.push_back(
-          add(world, box_body(parcel.id, model::collision_size(scenario, parcel), parcel.inertia, parcel.material),
-              parcel.type));
+          add(world, box_body(parcel.id, parcel.size, parcel.inertia, parcel.material), parcel.type));
     }
   }
   const DropPlan drops = plan_drops(scenario);

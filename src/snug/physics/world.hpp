@@ -46,14 +46,14 @@ struct BodyModel {
 
 /// What happens where two materials touch.
 struct ContactLaw {
-  double friction = 0.3;     ///< Coulomb coefficient, exact disc
-  double restitution = 0.0;  ///< Newton's coefficient, applied above the threshold speed
-  double stiffness = 0.0;    ///< N/m of one contact patch; 0: rigid
-  double damping = 0.0;      ///< N s/m of one contact patch, with stiffness only
+  double friction = 0.3;          ///< Coulomb coefficient, exact disc
+  double restitution = 0.0;       ///< Newton's coefficient, applied above the threshold speed
+  double stiffness = 0.0;         ///< N/m of one contact patch; 0: rigid
+  double damping = 0.0;           ///< N s/m of one contact patch, with stiffness only
   double travel = 0.0;            ///< m, depth up to which `stiffness` holds; 0: at any depth
-  double stiffness_beyond = 0.0;  ///< N/m of one contact patch, deeper than `travel`
-  double full_area = 0.0;  ///< m^2, faces of boxes that overlap by less give way more, in proportion; 0: none do
-  double edge_share = 1.0; ///< of stiffness and damping that edges and corners have at least
+  double stiffness_beyond = 0.0;  ///< N/m of one contact patch for each metre deeper than `travel`
+  double full_area = 0.0;         ///< m^2, boxes whose faces overlap by less have stiffness and damping in proportion
+  double edge_share = 0.02;       ///< share of them that edges and corners have at least, above 0
   bool operator==(const ContactLaw&) const = default;
 };
 

@@ -33,6 +33,8 @@ TEST(DrawScenario, StaysWithinTheWidthsAndKeepsTheTurnOfBoxes) {
     for (std::size_t i = 0; i < scenario.contact_pairs.size(); ++i) {
       const model::ContactParams &is = drawn.contact_pairs[i].params, &was = scenario.contact_pairs[i].params;
       EXPECT_NEAR(is.friction / was.friction, 1.0, half.friction);
+      if (was.travel) EXPECT_NEAR(*is.travel / *was.travel, 1.0, half.contact_travel);
+      if (was.travel) EXPECT_NEAR(*is.stiffness_beyond / *is.stiffness, *was.stiffness_beyond / *was.stiffness, 1e-9);
       ASSERT_EQ(is.stiffness.has_value(), was.stiffness.has_value());
       if (is.stiffness) {
         EXPECT_NEAR(*is.stiffness / *was.stiffness, 1.0, half.contact_stiffness);
