@@ -86,7 +86,7 @@ class Planner(unittest.TestCase):
     """A planner cannot name a plant's state: no chain of declared modules leads there, and no include."""
 
     ROOT = Path(__file__).resolve().parent.parent
-    HIDDEN = ("simulated_plant", "study")
+    HIDDEN = ("simulated_plant", "remote_plant", "study")
 
     def setUp(self):
         sys.path.insert(0, str(TOOL.parent))
@@ -101,6 +101,7 @@ class Planner(unittest.TestCase):
         for planner in ("session", "plant", "perception", "packing"):
             self.assertFalse(reachable[planner] & set(self.HIDDEN), planner)
         self.assertIn("simulated_plant", reachable["study"])
+        self.assertFalse(reachable["remote_plant"] & {"simulated_plant", "study", "session"}, "a plant elsewhere")
 
     def test_no_file_of_the_planner_includes_one_of_a_plant_s_truth(self):
         for planner in ("session", "plant", "perception", "packing"):

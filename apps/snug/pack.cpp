@@ -127,16 +127,20 @@ int run_pack(const PackOptions& options) {
   const model::Scenario& scenario = loaded.scenario;
   const session::SessionOptions session = make_session_options(options, loaded, options.sequence);
   const simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
+  const bool is_served = options.plant != "simulated";
   PackFiles files(options, scenario);
   catch_interrupts();
   const study::TrialProgress line = make_progress_line("sequence " + options.sequence);
   const bool is_known = model::find_sequence(scenario, options.sequence) != nullptr;  // else the trial says so
-  if (!options.json && is_known) print_now(format_pack_head(options.sequence, session, plant));
-  const study::Trial trial = study::run_trial(
-      scenario, options.sequence, session, plant, [&](const study::Trial& so_far, int item, int items) {
-        if (!options.json) print_now(format_item(so_far.session.items.back(), so_far.items.back()));
-        if (options.json && line) line(so_far, item, items);
-      });
+  if (!options.json && is_known) {
+    print_now(format_pack_head(options.sequence, session, plant, is_served ? options.plant : std::string()));
+  }
+  const auto progress = [&](const study::Trial& so_far, int item, int items) {
+    if (!options.json) print_now(format_item(so_far.session.items.back(), so_far.items.back()));
+    if (options.json && line) line(so_far, item, items);
+  };
+  const study::Trial trial = is_served ? run_served_trial(options, scenario, session, progress)
+                                       : study::run_trial(scenario, options.sequence, session, plant, progress);
   const session::SessionResult& result = trial.session;
   study::MonteCarloResult repeated;
   if (options.monte_carlo) {

@@ -18,6 +18,8 @@ struct PackOptions {
   ScenarioChanges changes;
   std::string agent = "contact-aware";
   std::optional<std::uint64_t> seed;
+  std::string plant = "simulated";  ///< or where one is served: click://HOST:PORT, click+ipc://PATH
+  double patience = 10.0;           ///< s, for its answers
   std::uint64_t plant_seed = 1;
   double decision_time = packing::PackingSettings{}.decision_time;  ///< s
   std::optional<int> threads;                                       ///< absent: all cores
@@ -40,6 +42,11 @@ void add_packing_options(CLI::App& verb, PackOptions& options);
 /// Throws InputError for words that say nothing.
 [[nodiscard]] simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
                                                                         const session::SessionOptions& session);
+/// Packs the plant that is served at `options.plant`, scored by its object sensors. Throws InputError where it cannot
+/// be had.
+[[nodiscard]] study::Trial run_served_trial(const PackOptions& options, const model::Scenario& scenario,
+                                            const session::SessionOptions& session,
+                                            const study::TrialProgress& progress);
 /// A line on a terminal that is written over again, or nothing.
 [[nodiscard]] study::TrialProgress make_progress_line(const std::string& label);
 

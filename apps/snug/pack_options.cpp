@@ -17,6 +17,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --perception noisy
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --agent my_agents:LowestFirst
   snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant click://127.0.0.1:5555
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --program out.csv --plan out.json --monte-carlo 10
@@ -30,9 +31,10 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
   verb.add_option("--seed", options.seed, "seed of the planner: roll-outs and sampled worlds (default: the scenario's)")
       ->check(whole(0))
       ->type_name("N");
-  verb.add_option("--plant-seed", options.plant_seed,
-                  "seed of the plant: the cell that is packed, drawn from the scenario's `uncertainty`; 0: the cell is "
-                  "exactly what the scenario says")
+  verb.add_option(
+          "--plant-seed", options.plant_seed,
+          "seed of the simulated plant: the cell that is packed, drawn from the scenario's `uncertainty`; 0: the "
+          "cell is exactly what the scenario says. A served plant has its own: snug serve --plant-seed")
       ->check(whole(0))
       ->type_name("N")
       ->capture_default_str();
@@ -84,6 +86,16 @@ void add_pack(CLI::App& app, Action& action) {
                   "who decides: a built-in agent, or a class written in Python (docs/python.md)")
       ->check(one_of(packing::agent_names(), "module:Class"))
       ->type_name("NAME|MODULE:CLASS")
+      ->capture_default_str();
+  verb.add_option(
+          "--plant", options->plant,
+          "what is packed: simulated, in this program, or a cell that `snug serve` serves in another one, here or "
+          "elsewhere: click://HOST:PORT, click+ipc://PATH (docs/click.md)")
+      ->type_name("simulated|ADDRESS")
+      ->capture_default_str();
+  verb.add_option("--plant-timeout", options->patience, "how long to wait for an answer of a served plant")
+      ->check(within(0.01, 1e5))
+      ->type_name("SECONDS")
       ->capture_default_str();
   add_packing_options(verb, *options);
   verb.add_option("--monte-carlo", options->monte_carlo,

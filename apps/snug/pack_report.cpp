@@ -119,18 +119,18 @@ Json as_json(const study::MonteCarloResult& repeated) {
 }  // namespace
 
 std::string format_pack_head(const std::string& sequence, const session::SessionOptions& session,
-                             const simulated_plant::SimulatedPlantOptions& plant) {
+                             const simulated_plant::SimulatedPlantOptions& plant, const std::string& address) {
   const std::string& robot = plant.simulation.robot;
   return fmt::format(
-      "sequence {}, agent {}, seed {}; plant seed {}, perception {}, robot {}, {} samples\n\n"
+      "sequence {}, agent {}, seed {}; plant {}, perception {}, robot {}, {} samples\n\n"
       "                 planned place, mm       turned      insertion          success  error, true pose  peak force, "
       "N  "
       "moved  decided, rehearsed\n"
       "box          x_T     y_T     z_T  up                                  predicted     mm    deg     pred.  happ.  "
       "   "
       "mm      s      s  times\n",
-      sequence, session.agent, session.packing.seed, plant.seed, perception::name_of(plant.perception),
-      robot.empty() ? "none" : robot, session.samples);
+      sequence, session.agent, session.packing.seed, address.empty() ? fmt::format("seed {}", plant.seed) : address,
+      perception::name_of(plant.perception), robot.empty() ? "none" : robot, session.samples);
 }
 
 std::string format_item(const session::ItemReport& item, const study::TrueItem& truth) {
@@ -176,7 +176,7 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
   text += fmt::format("decision           {:.2f} s an item (median), agent {}\n", result.decision_seconds_median,
                       result.agent);
   text += fmt::format("plant              {:.1f} s, {} waypoints\n", result.duration, result.program.waypoints.size());
-  text += fmt::format("state hash         {:016x}\n", trial.state_hash);
+  if (!trial.is_elsewhere) text += fmt::format("state hash         {:016x}\n", trial.state_hash);
   if (repeated.count == 0) return text;
   text += fmt::format("\nopen loop, {} runs in cells drawn from the scenario's uncertainty\n", repeated.count);
   text += "box      succeeded   deviation x, y, z, mm   farthest, mm\n";
@@ -198,7 +198,7 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
             {"agent", result.agent},
             {"seed", trial.seed},
             {"plant", result.plant},
-            {"plant_seed", trial.plant_seed},
+            {"plant_seed", trial.is_elsewhere ? Json() : Json(trial.plant_seed)},
             {"perception", perception::name_of(trial.plant.perception)},
             {"robot", trial.plant.simulation.robot.empty() ? "none" : trial.plant.simulation.robot},
             {"planned_boxes", result.plan.size()},
@@ -215,7 +215,7 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
             {"stopped", result.stopped},
             {"failure", result.failure},
             {"duration", result.duration},
-            {"state_hash", fmt::format("{:016x}", trial.state_hash)}};
+            {"state_hash", trial.is_elsewhere ? Json() : Json(fmt::format("{:016x}", trial.state_hash))}};
   json["items"] = Json::array();
   for (const session::ItemReport& item : result.items) {  // those left out on paper have no truth
     const auto truth = std::ranges::find(trial.items, item.id, &study::TrueItem::id);

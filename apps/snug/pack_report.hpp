@@ -8,9 +8,10 @@
 
 namespace snug::app {
 
-/// What is packed with what, and the head of the table.
+/// What is packed with what, and the head of the table. `address`: of a plant that is served; empty: a simulated one.
 [[nodiscard]] std::string format_pack_head(const std::string& sequence, const session::SessionOptions& session,
-                                           const simulated_plant::SimulatedPlantOptions& plant);
+                                           const simulated_plant::SimulatedPlantOptions& plant,
+                                           const std::string& address);
 /// The line of one item, and one for each recovery.
 [[nodiscard]] std::string format_item(const session::ItemReport& item, const study::TrueItem& truth);
 /// What stands under the table. Repeated runs with count 0 are left out.

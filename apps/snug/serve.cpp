@@ -15,6 +15,8 @@
 #include "run_report.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/writer.hpp"
+#include "snug/session/session.hpp"
+#include "snug/simulated_plant/simulated_plant.hpp"
 #include "stop_signal.hpp"
 #include "version.hpp"
 #include "view.hpp"
@@ -29,6 +31,10 @@ control::DriveKind kind_of(const std::string& word) {
                               : control::DriveKind::Torque;
 }
 
+std::string sequence_of(const ServeOptions& options, const model::Scenario& scenario) {
+  return options.sequence.value_or(scenario.sequences.front().name);
+}
+
 model::Scenario load(const ServeOptions& options) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (options.dt) scenario.time_step = *options.dt;
@@ -37,12 +43,16 @@ model::Scenario load(const ServeOptions& options) {
   if (!scenario.robot) throw InputError(scenario.source_name, "robot", "", "a robot, to be driven");
   if (scenario.sequences.empty()) throw InputError(scenario.source_name, "sequences", "", "a sequence of boxes");
   print_robot_warnings(scenario);
-  return scenario;
+  if (!options.plant_seed) return scenario;
+  const std::string sequence = sequence_of(options, scenario);
+  (void)cell::require_sequence(scenario, sequence);
+  return simulated_plant::draw_plant(scenario, sequence, *options.plant_seed);
 }
 
 cell::SimulationOptions simulation_options(const ServeOptions& options, const model::Scenario& scenario) {
   cell::SimulationOptions simulation;
   simulation.robot = options.robot.value_or(scenario.robot->name);
+  if (options.plant_seed) simulation.cup = session::SessionOptions{}.simulation.cup;
   if (options.cup) simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
   return simulation;
 }
@@ -109,8 +119,7 @@ class Serving {
   explicit Serving(const ServeOptions& options)
       : options_(options),
         scenario_(load(options)),
-        simulation_(scenario_, options.sequence.value_or(scenario_.sequences.front().name),
-                    simulation_options(options, scenario_)) {
+        simulation_(scenario_, sequence_of(options, scenario_), simulation_options(options, scenario_)) {
     if (options.record) {
       expect_distinct(files_of(options.scenario, options.changes, scenario_), {{"-o", *options.record}});
       record_ = reserve_recording(options.record);
@@ -119,6 +128,7 @@ class Serving {
     settings.cell = options.cell;
     settings.cell.controls.clear();
     for (const std::string& word : options.controls) settings.cell.controls.push_back(kind_of(word));
+    settings.cell.is_plant = options.plant_seed.has_value();
     settings.cell.rpy = *click::parse_rpy_order(options.rpy);
     settings.is_async = options.server.is_async;
     settings.batch = options.batch;

@@ -19,8 +19,9 @@ struct ServeOptions {
   std::optional<std::string> robot;     ///< absent: the scenario's
   std::optional<std::string> cup;       ///< holding | phases
   std::optional<std::uint64_t> seed;
-  std::optional<double> dt;             ///< s
-  std::optional<double> record_period;  ///< s
+  std::optional<std::uint64_t> plant_seed;  ///< the cell is a plant that is packed
+  std::optional<double> dt;                 ///< s
+  std::optional<double> record_period;      ///< s
   std::string rpy = "xyz";
   std::vector<std::string> controls = {"velocity"};
   click::ServedCellSettings cell;

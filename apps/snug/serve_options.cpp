@@ -12,6 +12,7 @@ namespace {
 constexpr const char* kServeExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555
   snug serve scenarios/box-demonstrator.yaml --click ipc:///tmp/cell --sequence 2 --record run.h5 --once
+  snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1 --plant-seed 7 --once
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --async --view
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --robot-object ur10_FTSensor_sr_gripper
 One Control is one step, unless --async. Ctrl-C ends it. docs/click.md describes the protocol as it is served.)";
@@ -20,10 +21,18 @@ void add_served_cell(CLI::App& verb, ServeOptions& options) {
   add_scenario_changes(verb, options.changes);
   verb.add_option("--sequence", options.sequence, "item sequence whose boxes come to the aligner; absent: the first")
       ->type_name("NAME");
+  verb.add_option("--plant-seed", options.plant_seed,
+                  "serve the plant that `snug pack --plant-seed N` packs: drawn from the scenario's `uncertainty` (0: "
+                  "exactly what the scenario says), cup with phases, more sensors, protective stops that can be "
+                  "acknowledged")
+      ->check(whole(0))
+      ->type_name("N");
   verb.add_option("--robot", options.robot, "robot of the scenario that is driven; absent: the one there is")
       ->type_name("NAME");
-  verb.add_option("--cup", options.cup,
-                  "holding: attached and released at once; phases: pressure builds up and decays, holds can fail")
+  verb.add_option(
+          "--cup", options.cup,
+          "holding: attached and released at once; phases: pressure builds up and decays, holds can fail (default: "
+          "holding, with --plant-seed phases)")
       ->check(one_of({"holding", "phases"}))
       ->type_name("MODEL");
   verb.add_option("--dt", options.dt, "time step of the physics, instead of the scenario's")

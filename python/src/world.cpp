@@ -64,9 +64,28 @@ py::list contacts_of(const cell::CellWorld& world, const physics::WorldState& st
 
 namespace {
 
+/// The bodies that a snapshot is of: equal bodies, equal meaning of a state.
+using Bodies = std::shared_ptr<const std::vector<physics::BodyModel>>;
+
+Bodies bodies_of(const cell::CellWorld& world) {
+  return std::make_shared<const std::vector<physics::BodyModel>>(world.model.bodies);
+}
+
+struct WorldSnapshot {
+  cell::SceneState state;
+  Bodies bodies;
+};
+
+struct CellSnapshot {
+  cell::CellState state;
+  Bodies bodies;
+  bool has_ended = false;
+};
+
 class World {
  public:
-  explicit World(ScenarioHandle scenario) : scenario_(std::move(scenario)), scene_(**scenario_) {}
+  explicit World(ScenarioHandle scenario)
+      : scenario_(std::move(scenario)), scene_(**scenario_), bodies_(bodies_of(scene_.world())) {}
 
   void step(int steps) {
     if (steps < 0) throw InputError("argument", "steps", std::to_string(steps), "0 or more");
@@ -79,15 +98,15 @@ class World {
       }
     }
   }
-  [[nodiscard]] cell::SceneState snapshot() {
+  [[nodiscard]] WorldSnapshot snapshot() {
     const Use use(busy_);
-    return scene_.snapshot();
+    return {scene_.snapshot(), bodies_};
   }
-  void restore(const cell::SceneState& state) {
+  void restore(const WorldSnapshot& snapshot) {
     const Use use(busy_);
-    if (state.world.bodies.size() != scene_.state().bodies.size())
-      throw InputError("argument", "snapshot", "one of another world", "a snapshot of this world");
-    scene_.restore(state);
+    if (*snapshot.bodies != *bodies_)
+      throw InputError("argument", "snapshot", "one of another world", "a snapshot of this world or of an equal one");
+    scene_.restore(snapshot.state);
   }
   [[nodiscard]] cell::Scene& scene() { return scene_; }
   [[nodiscard]] const cell::CellWorld& world() const { return scene_.world(); }
@@ -99,6 +118,7 @@ class World {
  private:
   ScenarioHandle scenario_;
   cell::Scene scene_;
+  Bodies bodies_;
   physics::StepReport report_;
   std::atomic<bool> busy_{false};
 };
@@ -114,11 +134,6 @@ cell::SimulationOptions options_of(const std::string& cup, const std::string& co
   return options;
 }
 
-struct CellSnapshot {
-  cell::CellState state;
-  bool has_ended = false;
-};
-
 class Cell {
  public:
   Cell(ScenarioHandle scenario, const std::string& sequence, ProgramHandle program, const std::string& cup,
@@ -128,6 +143,7 @@ class Cell {
         simulation_(**scenario_, sequence, options_of(cup, controller, robot)),
         plan_(simulation_.prepare(cell::corrected(**scenario_, **program_, corrections))),
         state_(simulation_.make_state()),
+        bodies_(bodies_of(simulation_.world())),
         work_(simulation_.make_workspace()) {}
 
   /// Whether the program goes on.
@@ -155,12 +171,12 @@ class Cell {
   }
   [[nodiscard]] CellSnapshot snapshot() {
     const Use use(busy_);
-    return {state_, has_ended_};
+    return {state_, bodies_, has_ended_};
   }
   void restore(const CellSnapshot& snapshot) {
     const Use use(busy_);
-    if (snapshot.state.world.bodies.size() != state_.world.bodies.size())
-      throw InputError("argument", "snapshot", "one of another cell", "a snapshot of this cell");
+    if (*snapshot.bodies != *bodies_)
+      throw InputError("argument", "snapshot", "one of another cell", "a snapshot of this cell or of an equal one");
     state_ = snapshot.state;
     has_ended_ = snapshot.has_ended;
   }
@@ -177,6 +193,7 @@ class Cell {
   cell::Simulation simulation_;
   motion::PreparedProgram plan_;
   cell::CellState state_;
+  Bodies bodies_;
   cell::CellWorkspace work_;
   bool has_ended_ = false;
   std::atomic<bool> busy_{false};
@@ -227,8 +244,8 @@ py::dict cup_of(const Cell& cell) {
 }
 
 void bind_bodies_alone(py::module_& m) {
-  py::class_<cell::SceneState>(m, "WorldSnapshot").def_property_readonly("hash", [](const cell::SceneState& s) {
-    return physics::hash_of(s.world);
+  py::class_<WorldSnapshot>(m, "WorldSnapshot").def_property_readonly("hash", [](const WorldSnapshot& s) {
+    return physics::hash_of(s.state.world);
   });
   py::class_<World> world(m, "World");
   world.def(py::init<ScenarioHandle>(), py::arg("scenario"))

@@ -29,7 +29,7 @@ materials: [{name: m}]
 contacts: {default: {friction: 0.3, restitution: 0.0}}
 bodies:
   - {name: floor, kind: static, material: m, shapes: [{box: [2, 2, 0.1]}], pose: {position: [0, 0, -0.05]}}
-  - {name: box, kind: free, material: m, mass: 1.0, shapes: [{box: [0.1, 0.1, 0.1]}], pose: {position: [0, 0, 1.05]}}
+  - {name: box, kind: dynamic, material: m, mass: 1.0, shapes: [{box: [0.1, 0.1, 0.1]}], pose: {position: [0, 0, 1.05]}}
 """))
 
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/internal/tick_recorder.hpp"
 #include "snug/core/check.hpp"
 
@@ -58,9 +59,30 @@ const CellTick& OutsideRun::advance(const OutsideCommand& command) {
 
 bool OutsideRun::feed(int item, int quarter) { return impl_->simulation.feed(item, quarter, impl_->state); }
 
+void OutsideRun::bring(int item, int quarter) {
+  Impl& run = *impl_;
+  run.simulation.bring(item, run.state);
+  const auto index = static_cast<std::size_t>(item);
+  const Pose X_WP = pose_at_aligner(run.simulation.scenario(), run.simulation.sequence().items[index], quarter);
+  physics::set_pose(run.simulation.world().model, run.state.world, run.simulation.world().parcels[index], X_WP);
+}
+
+void OutsideRun::stand() { impl_->simulation.stand(impl_->state); }
+
+bool OutsideRun::is_stopped_for_protection() const {
+  return !impl_->last.failure.empty() && impl_->work.arm.stop.has_value();
+}
+
+void OutsideRun::acknowledge() {
+  if (!is_stopped_for_protection()) return;
+  impl_->last.failure.clear();
+  stand();
+}
+
 double OutsideRun::time() const { return impl_->simulation.time(impl_->state); }
 const CellState& OutsideRun::state() const { return impl_->state; }
 const ArmReading& OutsideRun::reading() const { return impl_->work.arm; }
+Wrench OutsideRun::tool_load() const { return impl_->simulation.tool_load(impl_->state, impl_->work); }
 const std::string& OutsideRun::failure() const { return impl_->last.failure; }
 bool OutsideRun::is_stopped() const { return impl_->is_stopped; }
 

@@ -28,11 +28,21 @@ class OutsideRun {
   const CellTick& advance(const OutsideCommand& command);
   /// As Simulation::feed.
   bool feed(int item, int quarter);
+  /// As Simulation::bring, turned by this many quarter turns where the sequence leaves that open.
+  void bring(int item, int quarter);
+  /// As Simulation::stand.
+  void stand();
+  /// Whether the last tick was the last because the arm stopped for protection.
+  [[nodiscard]] bool is_stopped_for_protection() const;
+  /// Releases that stop: the run may go on, the arm standing.
+  void acknowledge();
 
   [[nodiscard]] double time() const;
   [[nodiscard]] const CellState& state() const;
   /// Of the last tick; nothing before the first.
   [[nodiscard]] const ArmReading& reading() const;
+  /// As Simulation::tool_load.
+  [[nodiscard]] Wrench tool_load() const;
   /// Why the last tick was the last; empty while the run may go on.
   [[nodiscard]] const std::string& failure() const;
   /// The observer wants the run to stop.

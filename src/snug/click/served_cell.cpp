@@ -89,11 +89,17 @@ void ServedCell::describe_robot(const ServedCellSettings& settings) {
   if (settings.joint_forces) robot.joint_sensors.push_back(ValueType::Force3D);
   robot.events[settings.vacuum_event] = ValueType::Activated;
   robot.events[settings.blow_off_event] = ValueType::Activated;
+  robot.events[kStandEvent] = ValueType::Activated;
+  robot.events[kAcknowledgeEvent] = ValueType::Activated;
   robot.sensors[settings.force_sensor] = {ValueType::Force3D, ValueType::Torque3D};
   robot.sensors[kToolSensor] = {ValueType::Position, ValueType::Rpy, ValueType::Velocity3D,
                                 ValueType::AngularVelocity3D};
   robot.sensors[kHoldingSensor] = {ValueType::Activated};
-  if (robot.events.size() != 2 || robot.sensors.size() != 3) {
+  robot.sensors[kStoppedSensor] = {ValueType::Activated};
+  robot.sensors[kPressureSensor] = {ValueType::Force1D};
+  robot.sensors[kLoadSensor] = {ValueType::Force3D, ValueType::Torque3D};
+  if (settings.is_plant) robot.sensors[kTrackingSensor] = {ValueType::Acceleration3D};
+  if (robot.events.size() != 4 || robot.sensors.size() != (settings.is_plant ? 7U : 6U)) {
     throw InputError("command line", "--vacuum-event, --blow-off-event, --force-sensor", "names that are taken",
                      "a name of its own for each");
   }
@@ -101,13 +107,16 @@ void ServedCell::describe_robot(const ServedCellSettings& settings) {
 
 void ServedCell::describe_bodies(const ServedCellSettings& settings) {
   const cell::CellWorld& world = simulation_.world();
+  const model::Scenario& scenario = simulation_.scenario();
   for (std::size_t i = 0; i < world.parcels.size(); ++i) {
-    bodies_.push_back(
-        {record::log_name(simulation_.sequence().items[i].parcel), world.parcels[i], static_cast<int>(i)});
+    const std::string& id = simulation_.sequence().items[i].parcel;
+    bodies_.push_back({record::log_name(id), world.parcels[i], static_cast<int>(i),
+                       model::collision_size(scenario, *model::find_parcel(scenario, id))});
   }
   for (const physics::BodyId id : world.bodies) {
     const physics::BodyModel& body = world.model.bodies[static_cast<std::size_t>(id.index)];
-    if (body.kind == physics::BodyKind::Dynamic) bodies_.push_back({record::log_name(body.name), id, -1});
+    if (body.kind == physics::BodyKind::Dynamic)
+      bodies_.push_back({record::log_name(body.name), id, -1, Vector3::Zero()});
   }
   for (const Body& body : bodies_) {
     if (handshake_.objects.contains(body.name)) {
@@ -122,6 +131,10 @@ void ServedCell::describe_bodies(const ServedCellSettings& settings) {
     }
     object.sensors[kPresentSensor] = {ValueType::Activated};
     if (body.item < 0) continue;
+    if (settings.is_plant) {
+      object.sensors[kAxesSensor] = std::vector<ValueType>(3, ValueType::Position);
+      object.sensors[kSizeSensor] = {ValueType::Position};
+    }
     for (const char* event : {kFeedEvent, kQuarterTurnEvent, kHalfTurnEvent}) {
       object.events[event] = ValueType::Activated;
     }
@@ -143,23 +156,24 @@ Expected<Order, std::string> ServedCell::understand(const Control& control, cons
                                                     const cell::CellState& state) const {
   Order order;
   order.switches = switches;
-  bool has_joints = false;
   for (const auto& [name, object] : control.objects) {
     if (!handshake_.objects.contains(name)) {
       return Reason(fmt::format("object {} is unknown{}", shown(name), nearest_of(name, handshake_.objects)));
     }
     std::string trouble = take_events(name, object, order);
     if (trouble.empty() && name == settings_.robot_object) {
-      trouble = take_joints(object, order.command);
-      has_joints = true;
+      order.moves_joints = object.list != CommandList::Nothing || !(order.stands || order.acknowledges);
+      if (order.moves_joints) trouble = take_joints(object, order.command);
     } else if (trouble.empty() && object.list != CommandList::Nothing) {
       trouble = fmt::format("object '{}' has no joints to control", name);
     }
     if (!trouble.empty()) return Reason(std::move(trouble));
   }
-  if (!has_joints) return Reason(fmt::format("no values for the joints of '{}'", settings_.robot_object));
   std::string trouble = take_feeding(switches, state, order);
   if (!trouble.empty()) return Reason(std::move(trouble));
+  if (!order.moves_joints && order.item < 0 && !order.stands && !order.acknowledges) {
+    return Reason(fmt::format("no values for the joints of '{}'", settings_.robot_object));
+  }
   order.command.cup = {order.switches.vacuum, order.switches.blow_off};
   return order;
 }
@@ -197,7 +211,10 @@ std::string ServedCell::take_events(const std::string& name, const ObjectControl
       return fmt::format("object '{}' has no event {}{}", name, shown(event), nearest_of(event, known));
     }
     if (body == nullptr) {
-      (event == settings_.vacuum_event ? order.switches.vacuum : order.switches.blow_off) = is_on;
+      (event == settings_.vacuum_event     ? order.switches.vacuum
+       : event == settings_.blow_off_event ? order.switches.blow_off
+       : event == kStandEvent              ? order.stands
+                                           : order.acknowledges) = is_on;
       continue;
     }
     Switches::Box& box = order.switches.boxes[static_cast<std::size_t>(body->item)];
@@ -227,22 +244,21 @@ cell::OutsideCommand ServedCell::stand(const cup::CupCommand& cup) const {
   return {{std::vector<DriveKind>(n, DriveKind::Speed), robot::JointVector::Zero(static_cast<Eigen::Index>(n))}, cup};
 }
 
-Sensor ServedCell::sense(const cell::CellState& state, const cell::ArmReading& reading) const {
+Sensor ServedCell::sense(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load) const {
   Sensor sensor;
   sensor.time = simulation_.time(state);
-  sensor.objects.emplace(settings_.robot_object, sense_robot(state, reading));
+  sensor.objects.emplace(settings_.robot_object, sense_robot(state, reading, load));
   for (const Body& body : bodies_) sensor.objects.emplace(body.name, sense_body(body, state));
   return sensor;
 }
 
-ObjectSensors ServedCell::sense_robot(const cell::CellState& state, const cell::ArmReading& reading) const {
+ObjectSensors ServedCell::sense_robot(const cell::CellState& state, const cell::ArmReading& reading,
+                                      const Wrench& load) const {
   ObjectSensors robot;
-  for (const record::JointSample& joint : reading.joints) {
-    robot.angles.push_back(joint.position);
-    robot.velocities.push_back(joint.velocity);
-    robot.torques.push_back(joint.torque);
-  }
   const control::MachineState& machine = state.arm->machine;
+  robot.angles.assign(machine.joints.q.begin(), machine.joints.q.end());
+  robot.velocities.assign(machine.joints.qd.begin(), machine.joints.qd.end());
+  for (const record::JointSample& joint : reading.joints) robot.torques.push_back(joint.torque);
   if (settings_.joint_forces) {
     const auto forces =
         robot::joint_forces(simulation_.arm()->model(), {machine.joints.q, machine.joints.qd, machine.joints.qdd},
@@ -256,6 +272,14 @@ ObjectSensors ServedCell::sense_robot(const cell::CellState& state, const cell::
                                 vector_value(ValueType::Velocity3D, machine.tool.V_WE.linear),
                                 vector_value(ValueType::AngularVelocity3D, machine.tool.V_WE.angular)};
   robot.sensors[kHoldingSensor] = {{ValueType::Activated, Vector3::Zero(), 0.0, state.gripper.cup.body >= 0}};
+  robot.sensors[kStoppedSensor] = {{ValueType::Activated, Vector3::Zero(), 0.0, reading.stop.has_value()}};
+  robot.sensors[kPressureSensor] = {{ValueType::Force1D, Vector3::Zero(), state.gripper.cup.pressure_gauge, false}};
+  robot.sensors[kLoadSensor] = {vector_value(ValueType::Force3D, load.force),
+                                vector_value(ValueType::Torque3D, load.torque)};
+  if (settings_.is_plant) {
+    const double stiffness = simulation_.arm()->controller().settings().tool_stiffness;
+    robot.sensors[kTrackingSensor] = {vector_value(ValueType::Acceleration3D, Vector3::Constant(stiffness))};
+  }
   return robot;
 }
 
@@ -272,6 +296,10 @@ ObjectSensors ServedCell::sense_body(const Body& body, const cell::CellState& st
     object.object.push_back(vector_value(ValueType::AngularVelocity3D, V_WB.angular));
   }
   object.sensors[kPresentSensor] = {{ValueType::Activated, Vector3::Zero(), 0.0, is_present}};
+  if (!settings_.is_plant || body.item < 0) return object;
+  std::vector<SensorValue>& axes = object.sensors[kAxesSensor];
+  for (int i = 0; i < 3; ++i) axes.push_back(vector_value(ValueType::Position, X_WB.R.col(i)));
+  object.sensors[kSizeSensor] = {vector_value(ValueType::Position, body.size)};
   return object;
 }
 

@@ -19,6 +19,20 @@ inline constexpr const char* kHalfTurnEvent = "half_turn";
 inline constexpr const char* kToolSensor = "tool";
 inline constexpr const char* kHoldingSensor = "holding";
 inline constexpr const char* kPresentSensor = "present";
+/// For who packs the cell. Switches of the robot: its joints stand from now on, brakes closed; a protective stop is
+/// released. They act when a Control names them on; one without values for the joints makes no step.
+inline constexpr const char* kStandEvent = "stand";
+inline constexpr const char* kAcknowledgeEvent = "acknowledge";
+/// Sensors of the robot: whether it stopped for protection in the last step; pressure in the cup, gauge, as a force on
+/// a square metre; the load on the tool, about Eo in E (Simulation::tool_load); what the robot's own controller
+/// accelerates the tool by for an error of 1 m.
+inline constexpr const char* kStoppedSensor = "stopped";
+inline constexpr const char* kPressureSensor = "pressure";
+inline constexpr const char* kLoadSensor = "load";
+inline constexpr const char* kTrackingSensor = "tracking";
+/// Sensors of a box: its axes Px, Py, Pz in W, to the last bit; its edges along them.
+inline constexpr const char* kAxesSensor = "axes";
+inline constexpr const char* kSizeSensor = "size";
 
 struct ServedCellSettings {
   std::string robot_object = {};                                           ///< empty: the name of the scenario's robot
@@ -29,6 +43,8 @@ struct ServedCellSettings {
   RpyOrder rpy;
   bool velocities = false;    ///< boxes tell their velocities, too
   bool joint_forces = false;  ///< joints tell the forces in them
+  /// The cell is a plant that is packed: boxes tell their axes and sizes, the robot how it tracks.
+  bool is_plant = false;
 };
 
 /// Switches as they stand.
@@ -49,6 +65,9 @@ struct Order {
   int item = -1;               ///< that is to come to the aligner, -1: none
   int quarter = 0;             ///< turned by so many quarter turns
   bool names_feeding = false;  ///< it names a switch of a box: the controller brings the boxes itself
+  bool moves_joints = false;   ///< it has values for them: one step
+  bool stands = false;         ///< the joints stand, before that step
+  bool acknowledges = false;   ///< a protective stop is released
 };
 
 class ServedCell {
@@ -63,25 +82,29 @@ class ServedCell {
 
   /// What the command means, given how the switches stand and where the boxes are; or why it means nothing: an unknown
   /// object or switch, another number of values than joints, a value that is not finite, a list of another type than
-  /// the handshake gave, no values, a box that cannot come. Changes nothing.
+  /// the handshake gave, a box that cannot come, no values though neither a box is to come nor the robot to stand.
+  /// Changes nothing.
   [[nodiscard]] Expected<Order, std::string> understand(const Control& control, const Switches& switches,
                                                         const cell::CellState& state) const;
   /// All joints brake and stand.
   [[nodiscard]] cell::OutsideCommand stand(const cup::CupCommand& cup) const;
-  [[nodiscard]] Sensor sense(const cell::CellState& state, const cell::ArmReading& reading) const;
+  /// `load`: on the tool, Simulation::tool_load.
+  [[nodiscard]] Sensor sense(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load) const;
 
  private:
   struct Body {
     std::string name;
     physics::BodyId id;
-    int item = -1;  ///< of the sequence, or -1
+    int item = -1;                   ///< of the sequence, or -1
+    Vector3 size = Vector3::Zero();  ///< m, of an item
   };
   void describe_robot(const ServedCellSettings& settings);
   void describe_bodies(const ServedCellSettings& settings);
   [[nodiscard]] std::string take_joints(const ObjectControl& object, cell::OutsideCommand& command) const;
   [[nodiscard]] std::string take_events(const std::string& name, const ObjectControl& object, Order& order) const;
   [[nodiscard]] std::string take_feeding(const Switches& before, const cell::CellState& state, Order& order) const;
-  [[nodiscard]] ObjectSensors sense_robot(const cell::CellState& state, const cell::ArmReading& reading) const;
+  [[nodiscard]] ObjectSensors sense_robot(const cell::CellState& state, const cell::ArmReading& reading,
+                                          const Wrench& load) const;
   [[nodiscard]] ObjectSensors sense_body(const Body& body, const cell::CellState& state) const;
   [[nodiscard]] const Body* find_body(std::string_view name) const;
 

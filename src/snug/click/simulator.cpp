@@ -30,7 +30,10 @@ Simulator::~Simulator() = default;
 const cell::CellState& Simulator::state() const { return run_ ? run_->state() : initial_; }
 double Simulator::time() const { return cell_.simulation().time(state()); }
 std::uint64_t Simulator::hash() const { return cell_.simulation().hash(state()); }
-Message Simulator::sense() const { return cell_.sense(state(), run_ ? run_->reading() : initial_reading_); }
+Message Simulator::sense() const {
+  return run_ ? cell_.sense(state(), run_->reading(), run_->tool_load())
+              : cell_.sense(state(), initial_reading_, Wrench{});
+}
 
 std::optional<std::string> Simulator::answer(const Peer& peer, std::string_view frame) {
   const std::optional<Message> reply = respond(peer, frame);
@@ -43,8 +46,9 @@ std::optional<std::string> Simulator::answer(const Peer& peer, std::string_view 
 bool Simulator::is_step(const Peer& peer, std::string_view frame) const {
   if (controller_ != peer || is_reset_ || is_ended_ || frame.size() > kLargestFrame) return false;
   const auto message = decode(frame);
-  return message && holds<Control>(*message) &&
-         cell_.understand(std::get<Control>(*message), switches_, state()).has_value();
+  if (!message || !holds<Control>(*message)) return false;
+  const auto order = cell_.understand(std::get<Control>(*message), switches_, state());
+  return order && order->moves_joints;
 }
 
 bool Simulator::is_handshake(std::string_view frame) {
@@ -90,6 +94,7 @@ Message Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
   }
   controller_ = peer;
   is_reset_ = false;
+  if (!failure_.empty()) end(failure_);  // a stop that nobody acknowledged
   if (is_ended_) clear();
   command_.reset();  // nothing moves before the first Control
   return cell_.handshake();
@@ -103,8 +108,10 @@ Message Simulator::control(const Control& control) {
     begin_run();
     if (!order->names_feeding) feeder_.emplace();
   }
-  switches_ = std::move(order->switches);
-  if (order->item >= 0) (void)run_->feed(order->item, order->quarter);
+  if (!failure_.empty() && !order->acknowledges) return Error{failure_};
+  switches_ = order->switches;
+  take_at_once(*order);
+  if (!order->moves_joints) return sense();
   if (settings_.is_async) {
     command_ = std::move(order->command);
     silent_steps_ = 0;
@@ -115,6 +122,23 @@ Message Simulator::control(const Control& control) {
   const Message reply = sense();
   if (settings_.batch && time() >= *settings_.batch) reset(fmt::format("{} s are over", *settings_.batch));
   return reply;
+}
+
+void Simulator::take_at_once(const Order& order) {
+  if (order.acknowledges) {
+    run_->acknowledge();
+    failure_.clear();
+  }
+  if (order.stands) {
+    run_->stand();
+    if (command_) command_ = cell_.stand(order.command.cup);
+  }
+  if (order.item < 0) return;
+  if (order.moves_joints) {
+    (void)run_->feed(order.item, order.quarter);
+  } else {  // as a plant brings it: what lies where it comes is taken away
+    run_->bring(order.item, order.quarter);
+  }
 }
 
 void Simulator::begin_run() {
@@ -137,10 +161,10 @@ void Simulator::advance(const cell::OutsideCommand& command) {
   step_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (tick.failure.empty()) return;
   failure_ = tick.failure;
-  end(failure_);
+  if (!settings_.cell.is_plant || !run_->is_stopped_for_protection()) end(failure_);
 }
 
-bool Simulator::is_running() const { return settings_.is_async && run_ && !is_ended_ && command_; }
+bool Simulator::is_running() const { return settings_.is_async && run_ && !is_ended_ && failure_.empty() && command_; }
 
 void Simulator::step() {
   if (!is_running()) return;

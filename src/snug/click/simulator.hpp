@@ -39,7 +39,8 @@ struct SimulatorCounts {
 ///
 /// One controller at a time: the peer whose handshake was accepted, until it leaves. Between runs the cell is at time
 /// 0; a run begins with the first Control and ends with a reset, an Error, the controller's leaving, or a failure of
-/// the cell; after a failure all Controls are answered by an Error until there is a reset or a new handshake.
+/// the cell; after a failure all Controls are answered by an Error until there is a reset or a new handshake. In a
+/// plant (ServedCellSettings::is_plant) a protective stop ends no run: it may be acknowledged.
 class Simulator {
  public:
   using Peer = std::string;
@@ -86,6 +87,8 @@ class Simulator {
   [[nodiscard]] Message control(const Control& control);
   void begin_run();
   void advance(const cell::OutsideCommand& command);
+  /// What of the order takes no time: a box comes, the robot stands, a stop is released.
+  void take_at_once(const Order& order);
   void clear();
   [[nodiscard]] Message sense() const;
   [[nodiscard]] const cell::CellState& state() const;
@@ -97,7 +100,7 @@ class Simulator {
   std::optional<Peer> controller_;
   std::unique_ptr<cell::OutsideRun> run_;  ///< none before the first Control
   bool is_ended_ = false;                  ///< run_ is kept to be looked at
-  std::string failure_;                    ///< why it ended by itself
+  std::string failure_;                    ///< why it ended by itself, or stopped
   bool is_reset_ = false;                  ///< by the simulator; the controller is still to be told
   Switches switches_;
   std::optional<Feeder> feeder_;

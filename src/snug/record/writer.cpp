@@ -56,18 +56,14 @@ struct OpenFile {
   Handle file;
 };
 
-constexpr unsigned kMostCompactAttributes = 64;
-
 OpenFile create_file(const std::filesystem::path& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
-  // The formats of HDF5 1.8 have no "open for writing" mark: the file of a killed run opens with any reader.
-  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18), "file access");
-  // More than eight attributes of an object go to a heap that small readers, the page's among them, do not know.
-  const Handle creation(H5Pcreate(H5P_FILE_CREATE), "file creation");
-  check(H5Pset_attr_phase_change(creation.get(), kMostCompactAttributes, 0), "file creation");
+  // The formats up to HDF5 1.8 have no "open for writing" mark: the file of a killed run opens with any reader. The oldest
+  // that does is taken: in newer ones more than eight attributes go to a heap that small readers, as the page's, do not know.
+  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "file access");
   OpenFile output;
   output.driver = use_commit_driver(access.get());
-  output.file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "create file");
+  output.file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), "create file");
   return output;
 }
 

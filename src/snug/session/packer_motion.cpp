@@ -288,6 +288,11 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
   if (!plant_.bring(report.id)) {
     report.end = ItemEnd::NotBrought;
     report.reason = "the plant does not bring it";
+    const plant::End end = plant_.read().end;
+    if (end.reason == plant::EndReason::Fault) {
+      report.reason = plant::describe(end, {});
+      stop_reason_ = StopReason::PlantFault;
+    }
     return report;
   }
   belief_.arrives(item);

@@ -71,7 +71,7 @@ void SimulatedPlant::move_aside(int item, FaultKind kind) {
                    1e3 * (best.p.z() - X_WP.p.z())));
 }
 
-void SimulatedPlant::inject(const motion::PreparedProgram& plan, Course& course) {
+void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
   if (current_ < 0) return;
   const cell::CellWorld& world = simulation_.world();
   const physics::BodyId body = world.parcels[static_cast<std::size_t>(current_)];

@@ -11,18 +11,6 @@
 #include "snug/core/input_error.hpp"
 
 namespace snug::simulated_plant {
-namespace {
-
-constexpr double kNeededVacuum = 0.3;   ///< share of the set point that counts as a seal
-constexpr double kSealPatience = 0.45;  ///< s, with the vacuum on
-constexpr double kStill = 0.003;        ///< m/s, a tool that is slower stands
-constexpr double kSettle = 0.3;         ///< s, after a motion, at least
-constexpr double kLongestSettle = 2.0;  ///< s
-constexpr double kPatience = 60.0;      ///< s, for one waypoint
-
-bool is_finite(const Pose& pose) { return pose.p.allFinite() && pose.R.allFinite(); }
-
-}  // namespace
 
 model::Scenario draw_plant(const model::Scenario& scenario, const std::string& sequence, std::uint64_t seed) {
   const model::Scenario nominal = cell::with_fixed_arrivals(scenario, sequence);
@@ -101,7 +89,7 @@ perception::Observation SimulatedPlant::perceive(std::span<const perception::Exp
   return perception_->perceive(scene, expected);
 }
 
-void SimulatedPlant::read_sensors(const Course& course, const plant::End& end) {
+void SimulatedPlant::read_sensors(const plant::MotionWatch& course, const plant::End& end) {
   feedback_ = {};
   feedback_.time = simulation_.time(state_);
   feedback_.end = end;
@@ -121,43 +109,20 @@ void SimulatedPlant::read_sensors(const Course& course, const plant::End& end) {
   feedback_.io = state_.controller.io;
 }
 
-void SimulatedPlant::check_guards(const plant::Motion& motion, Course& course) {
-  const double now = simulation_.time(state_);
-  const Wrench load = simulation_.tool_load(state_, work_);
-  course.peak_force = std::max(course.peak_force, load.force.norm());
-  course.peak_torque = std::max(course.peak_torque, load.torque.norm());
-  const auto end = [&](plant::EndReason reason, double value, double limit) {
-    if (course.end.reason == plant::EndReason::Completed) course.end = {reason, course.row, value, limit, ""};
-  };
-  if (motion.guards.force && load.force.norm() > *motion.guards.force) {
-    end(plant::EndReason::ForceGuard, load.force.norm(), *motion.guards.force);
-  }
-  const bool is_on = state_.controller.io.vacuum;
-  if (!is_on) {
-    course.vacuum_since = -1.0;
-    course.was_sealed = false;
-    state_.gripper.cannot_seal = false;
-  } else if (course.vacuum_since < 0.0) {
-    course.vacuum_since = now;
-  }
-  const double needed = kNeededVacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold;
-  const double pressure = state_.gripper.cup.pressure_gauge;
-  if (is_on && pressure <= needed) course.was_sealed = true;
-  if (motion.guards.vacuum && is_on && pressure > needed &&
-      (course.was_sealed || now - course.vacuum_since > kSealPatience)) {
-    end(course.was_sealed ? plant::EndReason::VacuumLost : plant::EndReason::NoSeal, pressure, needed);
-  }
-  if (now - course.row_since > kPatience) end(plant::EndReason::Timeout, now - course.row_since, kPatience);
+plant::TickReading SimulatedPlant::reading() const {
+  return {simulation_.time(state_), simulation_.tool_load(state_, work_), state_.gripper.cup.pressure_gauge,
+          state_.controller.io.vacuum};
 }
 
-bool SimulatedPlant::advance(const plant::Motion& motion, const motion::PreparedProgram& plan, Course& course) {
+bool SimulatedPlant::advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
+                             plant::MotionWatch& course) {
   if (simulation_.is_at_end(plan, state_)) return false;
   const cell::CellTick tick = simulation_.advance(plan, state_, work_);
-  if (tick.row != course.row) course.row_since = simulation_.time(state_);
-  course.row = tick.row;
+  course.follow(tick.row, simulation_.time(state_));
   if (watcher_) watcher_(tick);
   inject(plan, course);
-  check_guards(motion, course);
+  course.check(motion.guards, plant::kNeededVacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold, reading());
+  if (!state_.controller.io.vacuum) state_.gripper.cannot_seal = false;
   if (!tick.failure.empty() && work_.arm.stop) {
     const cell::ProtectiveStop& stop = *work_.arm.stop;
     course.end = {plant::EndReason::ProtectiveStop, tick.row, stop.value, stop.limit, stop.what + " of " + stop.where};
@@ -172,9 +137,10 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
 /// The tool comes to stand, boxes come to rest.
 void SimulatedPlant::settle(const motion::PreparedProgram& plan) {
   const double start = simulation_.time(state_);
-  for (double now = start; now < start + kLongestSettle; now = simulation_.time(state_)) {
-    const Twist V_WE = state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE;
-    if (now > start + kSettle && V_WE.linear.norm() < kStill) break;
+  const auto speed = [this] {
+    return (state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE).linear.norm();
+  };
+  while (plant::is_settling(start, simulation_.time(state_), speed())) {
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
     if (watcher_) watcher_(tick);
     if (!tick.failure.empty()) break;
@@ -183,16 +149,14 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan) {
 
 plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
   calls_.push_back({Call::Kind::Submit, {}, motion});
-  const auto refuse = [&](const char* why) {
+  const auto refuse = [&](const std::string& why) {
     read_sensors({}, {plant::EndReason::Refused, -1, 0.0, 0.0, why});
     return feedback_;
   };
-  if (motion.waypoints.empty()) return refuse("no waypoints");
   if (is_stopped_) return refuse("a protective stop is not acknowledged");
   if (has_failed_) return refuse("the plant has failed");
-  for (const motion::Waypoint& waypoint : motion.waypoints) {
-    if (!is_finite(waypoint.X_WE)) return refuse("a pose that is not finite");
-  }
+  const std::string refusal = plant::find_refusal(motion);
+  if (!refusal.empty()) return refuse(refusal);
   motion::PreparedProgram plan;
   try {
     plan = simulation_.prepare({"motion", motion.waypoints});
@@ -200,12 +164,8 @@ plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
     return refuse(error.what());
   }
   simulation_.begin_motion(state_);
-  Course course;
-  course.row_since = simulation_.time(state_);
-  if (state_.controller.io.vacuum) {
-    course.vacuum_since = simulation_.time(state_);
-    course.was_sealed = state_.gripper.cup.body >= 0;
-  }
+  plant::MotionWatch course;
+  course.begin(reading(), state_.gripper.cup.body >= 0);
   while (advance(motion, plan, course)) {
   }
   if (course.end.reason == plant::EndReason::Completed) {

@@ -8,7 +8,7 @@
 
 #include "snug/cell/simulation.hpp"
 #include "snug/perception/perception.hpp"
-#include "snug/plant/plant.hpp"
+#include "snug/plant/motion_watch.hpp"
 #include "snug/simulated_plant/faults.hpp"
 
 namespace snug::simulated_plant {
@@ -56,23 +56,15 @@ class SimulatedPlant final : public plant::Plant {
   struct ItemFaults {
     bool no_seal = false, drop = false, stop = false, displace = false, push = false;
   };
-  /// What happens during one motion.
-  struct Course {
-    plant::End end;
-    double peak_force = 0.0, peak_torque = 0.0;
-    double row_since = 0.0;
-    int row = -1;
-    double vacuum_since = -1.0;  ///< s, or -1: it is off
-    bool was_sealed = false;     ///< since then
-  };
-  [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan, Course& course);
+  [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
+                             plant::MotionWatch& course);
   void settle(const motion::PreparedProgram& plan);
-  void check_guards(const plant::Motion& motion, Course& course);
-  void inject(const motion::PreparedProgram& plan, Course& course);
+  [[nodiscard]] plant::TickReading reading() const;
+  void inject(const motion::PreparedProgram& plan, plant::MotionWatch& course);
   void break_suction();
   void move_aside(int item, FaultKind kind);
   void note(const char* kind, int item, std::string text);
-  void read_sensors(const Course& course, const plant::End& end);
+  void read_sensors(const plant::MotionWatch& course, const plant::End& end);
   [[nodiscard]] Pose X_WE() const;
   [[nodiscard]] int item_of(const std::string& id) const;
 

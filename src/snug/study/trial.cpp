@@ -1,31 +1,29 @@
 // Trial: a session and the plant it packs, put together, and scored by what is true of the plant.
-#include "snug/study/trial.hpp"
+#include "snug/study/witness.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace snug::study {
 namespace {
 
-using TruePoses = std::vector<std::optional<Pose>>;
-
 class Scorer {
  public:
-  Scorer(const model::Scenario& scenario, const session::PlaceLimits& limits,
-         const simulated_plant::SimulatedPlant& plant)
+  Scorer(const model::Scenario& scenario, const session::PlaceLimits& limits, const Witness& witness)
       : scenario_(scenario),
         container_(*model::find_container(scenario, scenario.target)),
         limits_(limits),
-        plant_(plant),
-        before_(poses()) {}
+        witness_(witness),
+        before_(witness.poses()) {}
 
   void add(const session::ItemReport& report, Trial& trial) {
     TrueItem item;
     item.id = report.id;
     item.was_sent = !report.sends.empty();
-    const TruePoses now = poses();
+    const TruePoses now = witness_.poses();
     if (item.was_sent) judge(report, now, item);
     for (std::size_t i = 0; i < report.sends.size(); ++i) {
       const bool is_last = i + 1 == report.sends.size();
@@ -36,7 +34,7 @@ class Scorer {
   }
 
   void count(Trial& trial) const {
-    trial.boxes = plant_.boxes();
+    trial.boxes = witness_.boxes();
     trial.executed_boxes = trial.boxes_lost = trial.items_sent = trial.items_as_planned = 0;
     std::vector<std::string> packed;
     for (const cell::BoxResult& box : trial.boxes) {
@@ -50,32 +48,16 @@ class Scorer {
       trial.items_as_planned += item.is_as_planned ? 1 : 0;
     }
     trial.recoveries = session::recovery_count(trial.session);
-    trial.state_hash = plant_.simulation().hash(plant_.state());
+    if (witness_.hash) trial.state_hash = witness_.hash();
   }
 
  private:
-  [[nodiscard]] TruePoses poses() const {
-    TruePoses poses;
-    const cell::CellWorld& world = plant_.simulation().world();
-    for (const physics::BodyId body : world.parcels) {
-      const bool is_there = plant_.state().world.bodies[static_cast<std::size_t>(body.index)].is_present;
-      poses.push_back(is_there ? std::optional<Pose>(physics::pose_of(world.model, plant_.state().world, body))
-                               : std::nullopt);
-    }
-    return poses;
-  }
-
   [[nodiscard]] bool is_in(std::size_t i, const Pose& X_WP) const {
-    const model::Scenario& drawn = plant_.simulation().scenario();
-    const std::string& id = plant_.simulation().sequence().items[i].parcel;
-    const Vector3 size = model::collision_size(drawn, *model::find_parcel(drawn, id));
-    return cell::fit_in(container_.inner_size, size, container_.X_WT.inverse() * X_WP).is_in;
+    return cell::fit_in(container_.inner_size, witness_.size_of(i), container_.X_WT.inverse() * X_WP).is_in;
   }
 
   void judge(const session::ItemReport& report, const TruePoses& now, TrueItem& item) const {
-    const auto& items = plant_.simulation().sequence().items;
-    const auto own =
-        static_cast<std::size_t>(std::ranges::find(items, report.id, &model::Item::parcel) - items.begin());
+    const auto own = static_cast<std::size_t>(std::ranges::find(witness_.items, report.id) - witness_.items.begin());
     bool others_stay = true;
     for (std::size_t i = 0; i < now.size(); ++i) {
       if (i == own || !before_[i] || !is_in(i, *before_[i])) continue;
@@ -94,20 +76,41 @@ class Scorer {
   const model::Scenario& scenario_;
   const model::Container& container_;
   session::PlaceLimits limits_;
-  const simulated_plant::SimulatedPlant& plant_;
+  const Witness& witness_;
   TruePoses before_;
 };
+
+/// What is true of a simulated plant.
+Witness truth_of(const simulated_plant::SimulatedPlant& plant) {
+  Witness truth;
+  for (const model::Item& item : plant.simulation().sequence().items) truth.items.push_back(item.parcel);
+  truth.poses = [&plant] {
+    TruePoses poses;
+    const cell::CellWorld& world = plant.simulation().world();
+    for (const physics::BodyId body : world.parcels) {
+      const bool is_there = plant.state().world.bodies[static_cast<std::size_t>(body.index)].is_present;
+      poses.push_back(is_there ? std::optional<Pose>(physics::pose_of(world.model, plant.state().world, body))
+                               : std::nullopt);
+    }
+    return poses;
+  };
+  truth.size_of = [&plant](std::size_t item) {
+    const model::Scenario& drawn = plant.simulation().scenario();
+    const std::string& id = plant.simulation().sequence().items[item].parcel;
+    return model::collision_size(drawn, *model::find_parcel(drawn, id));
+  };
+  truth.boxes = [&plant] { return plant.boxes(); };
+  truth.hash = [&plant] { return plant.simulation().hash(plant.state()); };
+  return truth;
+}
 
 }  // namespace
 
 Trial run_trial(const model::Scenario& scenario, const std::string& sequence, const session::SessionOptions& session,
-                const simulated_plant::SimulatedPlantOptions& options, const TrialProgress& progress) {
-  simulated_plant::SimulatedPlant plant(scenario, sequence, options);
+                plant::Plant& plant, const Witness& witness, const TrialProgress& progress) {
   Trial trial;
   trial.seed = session.packing.seed;
-  trial.plant_seed = options.seed;
-  trial.plant = options;
-  Scorer scorer(scenario, session.limits, plant);
+  Scorer scorer(scenario, session.limits, witness);
   const auto after_item = [&](const session::SessionResult& so_far, int item, int items) {
     trial.session = so_far;
     scorer.add(so_far.items.back(), trial);
@@ -116,6 +119,15 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
   };
   trial.session = session::pack(scenario, sequence, session, plant, after_item);
   scorer.count(trial);
+  return trial;
+}
+
+Trial run_trial(const model::Scenario& scenario, const std::string& sequence, const session::SessionOptions& session,
+                const simulated_plant::SimulatedPlantOptions& options, const TrialProgress& progress) {
+  simulated_plant::SimulatedPlant plant(scenario, sequence, options);
+  Trial trial = run_trial(scenario, sequence, session, plant, truth_of(plant), progress);
+  trial.plant_seed = options.seed;
+  trial.plant = options;
   trial.calls = plant.calls();
   return trial;
 }

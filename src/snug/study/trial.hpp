@@ -26,7 +26,8 @@ struct Trial {
   session::SessionResult session;
   std::uint64_t seed = 0;  ///< of the session
   std::uint64_t plant_seed = 0;
-  int executed_boxes = 0;  ///< packed, by the plant's truth
+  bool is_elsewhere = false;  ///< the plant is another program's: its seed and state are not known here
+  int executed_boxes = 0;     ///< packed, by the plant's truth
   double executed_percent = 0.0;
   int items_sent = 0;
   int items_as_planned = 0;

@@ -220,6 +220,93 @@ TEST(Simulator, StopsForProtectionUntilItIsReset) {
   EXPECT_EQ(std::get<Sensor>(talk.say(SensorRequest{})).time, 0.0);
 }
 
+TEST(Simulator, AStopOfAPlantMayBeAcknowledged) {
+  SimulatorSettings settings;
+  settings.cell.is_plant = true;
+  settings.cell.controls = {control::DriveKind::Torque};
+  int ended = 0;
+  settings.end_run = [&](int, const cell::RunResult&) { ++ended; };
+  Talk talk(settings);
+  (void)talk.say(HandshakeInit{});
+  EXPECT_NE(talk.error(control_of({1e4, 0, 0, 0, 0, 0})).find("protective stop"), std::string::npos);
+  EXPECT_NE(talk.error(control_of(kStill)).find("protective stop"), std::string::npos) << "not acknowledged";
+  EXPECT_EQ(ended, 0);
+  Control release;
+  release.objects["ur10"].events = {{kAcknowledgeEvent, true}};
+  const Message released = talk.say(release);
+  ASSERT_TRUE(std::holds_alternative<Sensor>(released));
+  const ObjectSensors& robot = std::get<Sensor>(released).objects.at("ur10");
+  EXPECT_EQ(robot.velocities, kStill) << "the brakes are closed";
+  EXPECT_DOUBLE_EQ(std::get<Sensor>(released).time, 0.008) << "no step";
+  EXPECT_TRUE(std::holds_alternative<Sensor>(talk.say(control_of(kStill))));
+  EXPECT_NE(talk.error(control_of({1e4, 0, 0, 0, 0, 0})).find("protective stop"), std::string::npos);
+  EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{})));
+  EXPECT_EQ(ended, 1) << "nobody acknowledged it";
+  EXPECT_DOUBLE_EQ(std::get<Sensor>(talk.say(SensorRequest{})).time, 0.0);
+}
+
+TEST(Simulator, StandsAtOnceWithoutAStep) {
+  Talk talk;
+  (void)talk.say(HandshakeInit{});
+  for (int i = 0; i < 5; ++i) (void)talk.say(control_of({0.3, 0, 0, 0, 0, 0}));
+  Control stand;
+  stand.objects["ur10"].events = {{kStandEvent, true}, {"vacuum", true}};
+  const auto standing = std::get<Sensor>(talk.say(stand));
+  EXPECT_DOUBLE_EQ(standing.time, 0.04);
+  EXPECT_EQ(standing.objects.at("ur10").velocities, kStill);
+  const double q = standing.objects.at("ur10").angles[0];
+  const auto after = std::get<Sensor>(talk.say(control_of(kStill)));
+  EXPECT_EQ(after.objects.at("ur10").angles[0], q) << "it does not roll on";
+  Control off = stand;
+  off.objects["ur10"].events = {{kStandEvent, false}};
+  EXPECT_NE(talk.error(off).find("0 "), std::string::npos) << "values are missing where it is not to stand";
+}
+
+TEST(Simulator, BringsABoxWithoutAStepAndTakesAwayWhatIsThere) {
+  Talk talk;
+  (void)talk.say(HandshakeInit{});
+  const auto bring = [&](const char* box) {
+    Control control;
+    control.objects[box].events = {{kFeedEvent, true}};
+    return std::get<Sensor>(talk.say(control));
+  };
+  const auto is_there = [](const Sensor& sensor, const char* box) {
+    return sensor.objects.at(box).sensors.at(kPresentSensor)[0].is_active;
+  };
+  const Sensor first = bring("box028");
+  EXPECT_TRUE(is_there(first, "box028"));
+  EXPECT_EQ(first.time, 0.0);
+  for (int i = 0; i < 50; ++i) (void)talk.say(control_of(kStill));
+  EXPECT_FALSE(is_there(std::get<Sensor>(talk.say(SensorRequest{})), "box027")) << "boxes no longer come by themselves";
+  const Sensor second = bring("box013");
+  EXPECT_TRUE(is_there(second, "box013"));
+  EXPECT_FALSE(is_there(second, "box028")) << "it stood there";
+  Control nothing;
+  nothing.objects["box028"].events = {{kFeedEvent, true}};
+  EXPECT_NE(talk.error(nothing).find("no values for the joints"), std::string::npos) << "it is on already";
+}
+
+TEST(Simulator, APlantTellsAxesSizesAndTracking) {
+  SimulatorSettings settings;
+  settings.cell.is_plant = true;
+  Talk talk(settings);
+  const auto shake = std::get<Handshake>(talk.say(HandshakeInit{}));
+  const auto sensed = std::get<Sensor>(talk.say(SensorRequest{}));
+  for (const auto& [name, object] : shake.objects) {
+    for (const auto& [sensor, types] : object.sensors) {
+      const std::vector<SensorValue>& values = sensed.objects.at(name).sensors.at(sensor);
+      ASSERT_EQ(values.size(), types.size()) << sensor;
+      for (std::size_t i = 0; i < types.size(); ++i) EXPECT_EQ(values[i].type, types[i]) << sensor;
+    }
+  }
+  const ObjectSensors& box = sensed.objects.at("box028");
+  const model::Scenario& scenario = test::demonstrator_cell().scenario();
+  EXPECT_EQ(box.sensors.at(kSizeSensor)[0].vector,
+            model::collision_size(scenario, *model::find_parcel(scenario, "BOX028")));
+  EXPECT_EQ(box.sensors.at(kAxesSensor)[1].vector, Vector3::UnitY()) << "parked";
+  EXPECT_EQ(sensed.objects.at("ur10").sensors.at(kTrackingSensor)[0].vector.x(), 10.0) << "1/s^2, of the report";
+}
+
 TEST(Simulator, BringsTheBoxesItselfUnlessTheControllerDoes) {
   const auto is_present = [](const Message& message, const char* box) {
     return std::get<Sensor>(message).objects.at(box).sensors.at(kPresentSensor)[0].is_active;
@@ -314,7 +401,12 @@ std::vector<std::string> good_frames() {
   fed.objects["box027"].events = {{kFeedEvent, true}, {kHalfTurnEvent, true}};
   Control old = control_of(kStill);
   old.objects["ur10"].list = CommandList::AngularVelocities;
-  return {encode(HandshakeInit{}),
+  Control still, brought;
+  still.objects["ur10"].events = {{kStandEvent, true}, {kAcknowledgeEvent, true}};
+  brought.objects["box028"].events = {{kFeedEvent, true}};
+  return {encode(still),
+          encode(brought),
+          encode(HandshakeInit{}),
           encode(SensorRequest{}),
           encode(Reset{}),
           encode(control_of(kStill)),

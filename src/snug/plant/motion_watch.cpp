@@ -1,0 +1,63 @@
+// MotionWatch: what ends a motion before its last waypoint, for every plant whose robot moves tick by tick.
+#include "snug/plant/motion_watch.hpp"
+
+#include <algorithm>
+
+namespace snug::plant {
+namespace {
+
+constexpr double kSealPatience = 0.45;  ///< s, with the vacuum on
+constexpr double kStill = 0.003;        ///< m/s, a tool that is slower stands
+constexpr double kSettle = 0.3;         ///< s, after a motion, at least
+constexpr double kLongestSettle = 2.0;  ///< s
+constexpr double kPatience = 60.0;      ///< s, for one waypoint
+
+}  // namespace
+
+void MotionWatch::begin(const TickReading& start, bool is_held) {
+  row_since_ = start.time;
+  if (!start.is_vacuum_on) return;
+  vacuum_since_ = start.time;
+  was_sealed_ = is_held;
+}
+
+void MotionWatch::follow(int aimed_at, double time) {
+  if (aimed_at != row) row_since_ = time;
+  row = aimed_at;
+}
+
+void MotionWatch::check(const Guards& guards, double pressure_needed, const TickReading& now) {
+  const double force = now.F_E.force.norm(), pressure = now.pressure_gauge;
+  peak_force = std::max(peak_force, force);
+  peak_torque = std::max(peak_torque, now.F_E.torque.norm());
+  const auto stop = [&](EndReason reason, double value, double limit) {
+    if (end.reason == EndReason::Completed) end = {reason, row, value, limit, ""};
+  };
+  if (guards.force && force > *guards.force) stop(EndReason::ForceGuard, force, *guards.force);
+  if (!now.is_vacuum_on) {
+    vacuum_since_ = -1.0;
+    was_sealed_ = false;
+  } else if (vacuum_since_ < 0.0) {
+    vacuum_since_ = now.time;
+  }
+  if (now.is_vacuum_on && pressure <= pressure_needed) was_sealed_ = true;
+  if (guards.vacuum && now.is_vacuum_on && pressure > pressure_needed &&
+      (was_sealed_ || now.time - vacuum_since_ > kSealPatience)) {
+    stop(was_sealed_ ? EndReason::VacuumLost : EndReason::NoSeal, pressure, pressure_needed);
+  }
+  if (now.time - row_since_ > kPatience) stop(EndReason::Timeout, now.time - row_since_, kPatience);
+}
+
+bool is_settling(double start, double now, double speed) {
+  return now < start + kLongestSettle && (now <= start + kSettle || speed >= kStill);
+}
+
+const char* find_refusal(const Motion& motion) {
+  if (motion.waypoints.empty()) return "no waypoints";
+  const bool is_finite = std::ranges::all_of(motion.waypoints, [](const motion::Waypoint& waypoint) {
+    return waypoint.X_WE.p.allFinite() && waypoint.X_WE.R.allFinite();
+  });
+  return is_finite ? "" : "a pose that is not finite";
+}
+
+}  // namespace snug::plant

@@ -1,0 +1,45 @@
+// MotionWatch: what ends a motion before its last waypoint, for every plant whose robot moves tick by tick.
+#pragma once
+
+#include "snug/plant/plant.hpp"
+
+namespace snug::plant {
+
+/// What the robot's sensors read at the end of a tick.
+struct TickReading {
+  double time = 0.0;            ///< s
+  Wrench F_E;                   ///< Feedback::F_E
+  double pressure_gauge = 0.0;  ///< Pa, in the cup
+  bool is_vacuum_on = false;    ///< commanded
+};
+
+/// One motion under way: how it ends, and its peaks.
+struct MotionWatch {
+  End end;
+  int row = -1;  ///< of the motion, aimed at
+  double peak_force = 0.0, peak_torque = 0.0;
+
+  /// `start`: before the first tick. `is_held`: something hangs from the cup.
+  void begin(const TickReading& start, bool is_held);
+  /// After each tick; `aimed_at`: row of the motion.
+  void follow(int aimed_at, double time);
+  /// Guards and patience. `pressure_needed`: Pa, of a seal. The first reason stays.
+  void check(const Guards& guards, double pressure_needed, const TickReading& now);
+
+ private:
+  double row_since_ = 0.0;
+  double vacuum_since_ = -1.0;  ///< s, or -1: it is off
+  bool was_sealed_ = false;     ///< since then
+};
+
+/// Share of the vacuum's set point that counts as a seal.
+inline constexpr double kNeededVacuum = 0.3;
+
+/// Whether a motion that came to its end at `start` s goes on at `now` so that the tool, at `speed` m/s, comes to stand
+/// and boxes come to rest.
+[[nodiscard]] bool is_settling(double start, double now, double speed);
+
+/// Why the motion cannot begin: no waypoints, a pose that is not finite; empty when it can.
+[[nodiscard]] const char* find_refusal(const Motion& motion);
+
+}  // namespace snug::plant

@@ -1,0 +1,76 @@
+// MotionWatch: when guards and patience end a motion, and when a tool that has arrived is done.
+#include "snug/plant/motion_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace snug::plant {
+namespace {
+
+constexpr double kNeeded = -2.0e4;  ///< Pa
+
+TickReading at(double time, double force, double pressure, bool is_vacuum_on) {
+  return {time, {Vector3(0.0, 0.0, force), Vector3(0.1, 0.0, 0.0)}, pressure, is_vacuum_on};
+}
+
+/// Checked from 0 s every 8 ms until it ends, at most two minutes; the time of its end.
+double time_of_end(MotionWatch& watch, const Guards& guards, const std::function<TickReading(double)>& read) {
+  watch.begin(read(0.0), false);
+  for (int tick = 1; tick < 15'000; ++tick) {
+    const double now = 0.008 * tick;
+    watch.follow(0, now);
+    watch.check(guards, kNeeded, read(now));
+    if (watch.end.reason != EndReason::Completed) return now;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+TEST(MotionWatch, EndsAtAForceAndKeepsItsPeak) {
+  MotionWatch watch;
+  const double end = time_of_end(watch, {50.0, true}, [](double t) { return at(t, 20.0 * t, 0.0, false); });
+  EXPECT_DOUBLE_EQ(end, 2.504) << "the first tick beyond 2.5 s";
+  EXPECT_EQ(watch.end, (End{EndReason::ForceGuard, 0, 20.0 * 2.504, 50.0, ""}));
+  EXPECT_DOUBLE_EQ(watch.peak_force, 20.0 * 2.504);
+  EXPECT_DOUBLE_EQ(watch.peak_torque, 0.1);
+}
+
+TEST(MotionWatch, ANewVacuumHasTimeAndALostOneHasNone) {
+  MotionWatch none;
+  EXPECT_NEAR(time_of_end(none, {}, [](double t) { return at(t, 0.0, -1.0e4, t > 0.99); }), 1.45, 0.009);
+  EXPECT_EQ(none.end.reason, EndReason::NoSeal);
+  MotionWatch lost;
+  EXPECT_NEAR(time_of_end(lost, {}, [](double t) { return at(t, 0.0, t < 3.0 ? -6.0e4 : 0.0, true); }), 3.0, 0.009);
+  EXPECT_EQ(lost.end.reason, EndReason::VacuumLost);
+  MotionWatch off;
+  EXPECT_GT(time_of_end(off, {std::nullopt, false}, [](double t) { return at(t, 0.0, 0.0, true); }), 59.0);
+  EXPECT_EQ(off.end.reason, EndReason::Timeout) << "nothing else is guarded";
+}
+
+TEST(MotionWatch, AHeldBoxAtTheStartIsLostAtOnce) {
+  MotionWatch watch;
+  watch.begin(at(5.0, 0.0, -6.0e4, true), true);
+  watch.check({}, kNeeded, at(5.008, 0.0, 0.0, true));
+  EXPECT_EQ(watch.end.reason, EndReason::VacuumLost);
+}
+
+TEST(MotionWatch, ANewRowHasPatienceOfItsOwn) {
+  MotionWatch watch;
+  watch.begin(at(0.0, 0.0, 0.0, false), false);
+  watch.follow(0, 0.008);
+  watch.follow(1, 50.0);
+  watch.check({}, kNeeded, at(100.0, 0.0, 0.0, false));
+  EXPECT_EQ(watch.end.reason, EndReason::Completed);
+  watch.check({}, kNeeded, at(110.1, 0.0, 0.0, false));
+  EXPECT_EQ(watch.end.reason, EndReason::Timeout);
+}
+
+TEST(Settling, EndsWhenTheToolStandsButNotBeforeAndNotNever) {
+  EXPECT_TRUE(is_settling(10.0, 10.2, 0.0));
+  EXPECT_FALSE(is_settling(10.0, 10.31, 0.0));
+  EXPECT_TRUE(is_settling(10.0, 11.9, 0.1));
+  EXPECT_FALSE(is_settling(10.0, 12.0, 0.1));
+}
+
+}  // namespace
+}  // namespace snug::plant

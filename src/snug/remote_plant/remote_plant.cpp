@@ -1,0 +1,354 @@
+// RemotePlant: a cell that another program serves over CLICK, behind the interface of a plant.
+#include "snug/remote_plant/remote_plant.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "snug/cell/drawn_scenario.hpp"
+#include "snug/click/served_cell.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/record/csv.hpp"
+#include "snug/robot/load_arm.hpp"
+
+namespace snug::remote_plant {
+namespace {
+
+constexpr std::string_view kTcp = "click://", kIpc = "click+ipc://";
+constexpr double kSameTime = 1e-6;  ///< s, of a tick
+
+[[noreturn]] void refuse(const std::string& address, const std::string& expected) {
+  throw InputError("command line", "--plant", "'" + address + "'", expected);
+}
+
+/// How many quarter turns an item arrives turned by.
+int quarter_of(const model::Item& item) {
+  const auto turns = static_cast<int>(std::lround(item.yaw.value_or(0.0) / (0.5 * std::numbers::pi)));
+  return (turns % 4 + 4) % 4;
+}
+
+double tool_stiffness(const model::Scenario& scenario, const model::Sequence& sequence) {
+  return sequence.task_stiffness.value_or(scenario.controller.task_stiffness);
+}
+
+}  // namespace
+
+std::string endpoint_of(const std::string& address) {
+  const auto is_of = [&](std::string_view kind) { return address.starts_with(kind) && address.size() > kind.size(); };
+  if (is_of(kTcp)) {
+    const std::string place = address.substr(kTcp.size());
+    const std::size_t colon = place.rfind(':');
+    const bool has_port = colon != std::string::npos && colon > 0 && colon + 1 < place.size() &&
+                          std::ranges::all_of(place.substr(colon + 1), [](char c) { return c >= '0' && c <= '9'; });
+    if (has_port) return "tcp://" + place;
+  }
+  if (is_of(kIpc)) return "ipc://" + address.substr(kIpc.size());
+  refuse(address, "click://HOST:PORT or click+ipc://PATH, where `snug serve` serves a cell, or simulated");
+}
+
+RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& sequence,
+                         const RemotePlantOptions& options)
+    : options_(options),
+      scenario_(cell::with_fixed_arrivals(scenario, sequence)),
+      sequence_(cell::require_sequence(scenario_, sequence)),
+      model_(robot::load_arm(scenario_)),
+      client_(endpoint_of(options.address), options.patience),
+      link_(client_, model_, {}),
+      perception_(perception::make_perception(options.perception, options.seed)),
+      was_brought_(sequence_.items.size(), false) {
+  for (const model::Item& item : sequence_.items) names_.push_back(record::log_name(item.parcel));
+  std::string trouble = link_.connect(scenario_.controller.tick);
+  if (trouble.empty()) trouble = find_what_packing_needs();
+  if (!trouble.empty()) {
+    refuse(options_.address, fmt::format("a cell with sequence {} that is served to be packed: {}", sequence, trouble));
+  }
+  take_over_tracking();
+  arm_ = std::make_unique<cell::CellArm>(scenario_, tool_stiffness(scenario_, sequence_));
+  state_ = arm_->make_state(scenario_.seed, link_.measured().q);
+  program_ = motion::make_controller_state(state_.machine.tool.X_WE);
+  read_sensors({}, {});
+}
+
+/// Empty, or what the served cell lacks.
+std::string RemotePlant::find_what_packing_needs() const {
+  const auto& objects = link_.handshake().objects;
+  const click::ObjectDescription& robot = objects.find(link_.robot())->second;
+  for (const char* event : {click::kStandEvent, click::kAcknowledgeEvent}) {
+    if (!robot.events.contains(event)) return fmt::format("object '{}' has no event '{}'", link_.robot(), event);
+  }
+  const click::ObjectSensors& sensed = link_.last_of_robot();
+  const std::pair<const char*, click::ValueType> needed[] = {{click::kPressureSensor, click::ValueType::Force1D},
+                                                             {click::kLoadSensor, click::ValueType::Force3D},
+                                                             {click::kHoldingSensor, click::ValueType::Activated}};
+  for (const auto& [name, type] : needed) {
+    if (find_sensor(sensed, name, type) == nullptr) {
+      return fmt::format("object '{}' has no sensor '{}'", link_.robot(), name);
+    }
+  }
+  for (const std::string& name : names_) {
+    const auto object = objects.find(name);
+    if (object == objects.end()) return fmt::format("it has no object '{}'", name);
+    if (!object->second.events.contains(click::kFeedEvent)) {
+      return fmt::format("object '{}' has no event '{}'", name, click::kFeedEvent);
+    }
+  }
+  return {};
+}
+
+/// The served robot's own lag counts, where it tells.
+void RemotePlant::take_over_tracking() {
+  const click::SensorValue* tracking =
+      find_sensor(link_.last_of_robot(), click::kTrackingSensor, click::ValueType::Acceleration3D);
+  if (tracking == nullptr) return;
+  const double stiffness = tracking->vector.x();
+  if (!(stiffness > 0.0) || !std::isfinite(stiffness)) {
+    refuse(options_.address,
+           fmt::format("a robot that tracks: its sensor '{}' says {}", click::kTrackingSensor, stiffness));
+  }
+  sequence_.task_stiffness = stiffness;
+}
+
+plant::Description RemotePlant::describe() const {
+  plant::Description description{options_.address, {}};
+  for (const robot::Joint& joint : model_.joints) description.joints.push_back(joint.name);
+  return description;
+}
+
+Vector3 RemotePlant::size_of(std::size_t item) const {
+  const auto found = link_.last().objects.find(names_[item]);
+  const auto* size = found == link_.last().objects.end()
+                         ? nullptr
+                         : find_sensor(found->second, click::kSizeSensor, click::ValueType::Position);
+  if (size != nullptr && size->vector.allFinite() && size->vector.minCoeff() > 0.0) return size->vector;
+  return model::collision_size(scenario_, *model::find_parcel(scenario_, sequence_.items[item].parcel));
+}
+
+std::optional<perception::SceneBox> RemotePlant::box_of(std::size_t item) const {
+  const auto found = link_.last().objects.find(names_[item]);
+  if (found == link_.last().objects.end() || !is_active(found->second, click::kPresentSensor)) return std::nullopt;
+  const click::ObjectSensors& sensed = found->second;
+  perception::SceneBox box;
+  box.item = sequence_.items[item].parcel;
+  box.size = size_of(item);
+  bool has_position = false;
+  for (const click::SensorValue& value : sensed.object) {
+    has_position = has_position || value.type == click::ValueType::Position;
+    if (value.type == click::ValueType::Position) box.X_WP.p = value.vector;
+    if (value.type == click::ValueType::Rpy) box.X_WP.R = click::rotation_of(value.vector, {});
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto* exact =
+        find_sensor(sensed, click::kAxesSensor, click::ValueType::Position, static_cast<std::size_t>(axis));
+    if (exact != nullptr) box.X_WP.R.col(axis) = exact->vector;
+  }
+  const bool is_sound = has_position && box.X_WP.p.allFinite() && box.X_WP.R.allFinite() &&
+                        (box.X_WP.R.transpose() * box.X_WP.R).isIdentity(1e-6) && box.X_WP.R.determinant() > 0.0;
+  return is_sound ? std::optional(box) : std::nullopt;
+}
+
+std::vector<std::optional<perception::SceneBox>> RemotePlant::boxes() const {
+  std::vector<std::optional<perception::SceneBox>> boxes;
+  for (std::size_t i = 0; i < names_.size(); ++i) boxes.push_back(box_of(i));
+  return boxes;
+}
+
+perception::Observation RemotePlant::perceive(std::span<const perception::Expectation> expected) {
+  perception::Scene scene;
+  if (failure_.empty()) {
+    const std::string trouble = link_.sense();
+    if (!trouble.empty()) fail(trouble);
+  }
+  scene.time = link_.last().time;
+  scene.X_WE = state_.machine.tool.X_WE;
+  if (failure_.empty()) {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (const auto box = box_of(i)) scene.boxes.push_back(*box);
+    }
+  }
+  return perception_->perceive(scene, expected);
+}
+
+void RemotePlant::fail(std::string why) {
+  failure_ = std::move(why);
+  feedback_.end = {plant::EndReason::Fault, -1, 0.0, 0.0, failure_};
+}
+
+/// The first Control says that boxes are brought from here.
+click::Control RemotePlant::make_control() {
+  click::Control control;
+  if (!has_commanded_) {
+    for (const std::string& name : names_) control.objects[name].events[click::kFeedEvent] = false;
+  }
+  has_commanded_ = true;
+  return control;
+}
+
+bool RemotePlant::send(const click::Control& control) {
+  std::string trouble = link_.send(control);
+  if (!trouble.empty()) fail(std::move(trouble));
+  return failure_.empty();
+}
+
+bool RemotePlant::bring(const std::string& item) {
+  const auto found = std::ranges::find(sequence_.items, item, &model::Item::parcel);
+  const auto index = static_cast<std::size_t>(found - sequence_.items.begin());
+  if (found == sequence_.items.end() || was_brought_[index] || !failure_.empty()) return false;
+  click::Control control = make_control();
+  click::Named<bool>& events = control.objects[names_[index]].events;
+  const int quarter = quarter_of(*found);
+  events[click::kFeedEvent] = true;
+  events[click::kQuarterTurnEvent] = quarter % 2 == 1;
+  events[click::kHalfTurnEvent] = quarter >= 2;
+  was_brought_[index] = true;
+  return send(control);
+}
+
+void RemotePlant::acknowledge() {
+  if (!is_stopped_ || !failure_.empty()) return;
+  is_stopped_ = false;
+  click::Control control = make_control();
+  control.objects[link_.robot()].events = {{click::kAcknowledgeEvent, true}, {click::kStandEvent, true}};
+  (void)send(control);
+}
+
+plant::TickReading RemotePlant::reading() const {
+  const click::ObjectSensors& robot = link_.last_of_robot();
+  plant::TickReading now;
+  now.time = link_.last().time;
+  if (const auto* force = find_sensor(robot, click::kLoadSensor, click::ValueType::Force3D))
+    now.F_E.force = force->vector;
+  if (const auto* torque = find_sensor(robot, click::kLoadSensor, click::ValueType::Torque3D, 1)) {
+    now.F_E.torque = torque->vector;
+  }
+  if (const auto* pressure = find_sensor(robot, click::kPressureSensor, click::ValueType::Force1D)) {
+    now.pressure_gauge = pressure->scalar;
+  }
+  now.is_vacuum_on = program_.io.vacuum;
+  return now;
+}
+
+void RemotePlant::read_sensors(const plant::MotionWatch& course, const plant::End& end) {
+  const plant::TickReading now = reading();
+  feedback_ = {};
+  feedback_.time = now.time;
+  feedback_.end = end;
+  feedback_.X_WE = state_.machine.tool.X_WE;
+  feedback_.V_WE = state_.machine.tool.V_WE;
+  const control::JointMotion& joints = state_.machine.joints;
+  feedback_.q.assign(joints.q.begin(), joints.q.end());
+  feedback_.qd.assign(joints.qd.begin(), joints.qd.end());
+  const std::vector<double>& torques = link_.last_of_robot().torques;
+  for (std::size_t j = 0; j < feedback_.q.size(); ++j) {
+    const std::size_t place = link_.sensor_of(j);
+    feedback_.torques.push_back(place < torques.size() ? torques[place] : 0.0);
+  }
+  feedback_.pressure_gauge = now.pressure_gauge;
+  feedback_.F_E = now.F_E;
+  feedback_.peak_force = std::max(course.peak_force, now.F_E.force.norm());
+  feedback_.peak_torque = std::max(course.peak_torque, now.F_E.torque.norm());
+  feedback_.io = program_.io;
+}
+
+/// One tick: the controller, and the answer to its Control. `waypoint` of what is returned: aimed at.
+plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
+  state_.machine.tool = control::tool_at(model_, link_.measured());
+  const control::MachineTick tick = arm_->tick(plan, program_, state_, work_);
+  click::Control control = make_control();
+  link_.command(state_.machine.joints, tick.program.io, control);
+  const double start = link_.last().time;
+  std::string trouble = link_.send(control);
+  const double length = link_.last().time - start;
+  if (!trouble.empty()) {
+    const std::string silence = link_.sense();
+    is_stopped_ = silence.empty() && is_active(link_.last_of_robot(), click::kStoppedSensor);
+    if (!is_stopped_) fail(trouble);
+  } else if (std::abs(length - plan.settings.tick) > kSameTime) {
+    fail(fmt::format("a Control is a step of {} s there, not of {} s: is it served with --async?", length,
+                     plan.settings.tick));
+  } else if (tick.outcome == "Stuck") {
+    trouble = "stuck";
+    is_stopped_ = true;
+  }
+  state_.machine.tool = control::tool_at(model_, link_.measured());
+  const plant::EndReason reason = !failure_.empty() ? plant::EndReason::Fault
+                                  : is_stopped_     ? plant::EndReason::ProtectiveStop
+                                                    : plant::EndReason::Completed;
+  return {reason, tick.program.row, 0.0, 0.0, trouble};
+}
+
+bool RemotePlant::advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
+                          plant::MotionWatch& course) {
+  if (motion::will_finish(plan, program_.command, program_)) return false;
+  const plant::End end = step(plan);
+  course.follow(end.waypoint, link_.last().time);
+  course.check(motion.guards, plant::kNeededVacuum * scenario_.cup.vacuum.pressure_gauge_hold, reading());
+  if (end.reason != plant::EndReason::Completed) course.end = end;
+  return course.end.reason == plant::EndReason::Completed;
+}
+
+/// The tool comes to stand, boxes come to rest.
+void RemotePlant::settle(const motion::PreparedProgram& plan) {
+  const double start = link_.last().time;
+  while (plant::is_settling(start, link_.last().time, state_.machine.tool.V_WE.linear.norm())) {
+    if (step(plan).reason != plant::EndReason::Completed) break;
+  }
+  acknowledge();  // a stop now: the tool was where it was to come
+}
+
+void RemotePlant::begin_motion() {
+  motion::ControllerState program = motion::make_controller_state(state_.machine.tool.X_WE);
+  program.command = state_.machine.tool;
+  program.io = program_.io;
+  program.tick_count = program_.tick_count;
+  program_ = program;
+}
+
+/// The brakes are closed. A robot that stopped for protection has closed them itself.
+void RemotePlant::stand() {
+  if (failure_.empty() && !is_stopped_) {
+    click::Control control = make_control();
+    control.objects[link_.robot()].events[click::kStandEvent] = true;
+    (void)send(control);
+  }
+  state_.machine.joints.q = link_.measured().q;
+  arm_->stand(state_);
+  begin_motion();
+  program_.command.V_WE = Twist{};
+}
+
+plant::Feedback RemotePlant::submit(const plant::Motion& motion) {
+  const auto refuse_motion = [&](const std::string& why) {
+    read_sensors({}, {plant::EndReason::Refused, -1, 0.0, 0.0, why});
+    return feedback_;
+  };
+  if (is_stopped_) return refuse_motion("a protective stop is not acknowledged");
+  if (!failure_.empty()) return refuse_motion("the plant has failed: " + failure_);
+  const std::string refusal = plant::find_refusal(motion);
+  if (!refusal.empty()) return refuse_motion(refusal);
+  motion::PreparedProgram plan;
+  try {
+    plan = cell::prepare(scenario_, sequence_, motion::ControllerKind::Faithful, {"motion", motion.waypoints});
+  } catch (const InputError& error) {
+    return refuse_motion(error.what());
+  }
+  begin_motion();
+  plant::MotionWatch course;
+  course.begin(reading(), is_active(link_.last_of_robot(), click::kHoldingSensor));
+  while (advance(motion, plan, course)) {
+  }
+  if (course.end.reason == plant::EndReason::Completed) {
+    course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
+    settle(plan);
+  }
+  stand();
+  if (!failure_.empty()) course.end = {plant::EndReason::Fault, course.end.waypoint, 0.0, 0.0, failure_};
+  read_sensors(course, course.end);
+  return feedback_;
+}
+
+std::string RemotePlant::finish() { return failure_.empty() ? client_.reset() : failure_; }
+
+}  // namespace snug::remote_plant

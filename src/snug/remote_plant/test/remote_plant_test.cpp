@@ -1,0 +1,206 @@
+// RemotePlant: the contract of plants through a socket, and what is said where there is no such plant.
+#include "snug/remote_plant/remote_plant.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "snug/cell/drawn_scenario.hpp"
+#include "snug/click/server.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/cup/pick_length.hpp"
+#include "snug/motion/unwinding.hpp"
+#include "snug/plant/test/suite/plant_contract.hpp"
+
+namespace snug::remote_plant {
+namespace {
+
+using plant::PlantContract;
+
+const model::Scenario& scenario() {
+  static const model::Scenario one = [] {
+    model::Scenario loaded = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+    loaded.sequences.front().items.resize(3);
+    return cell::with_fixed_arrivals(std::move(loaded), "1");
+  }();
+  return one;
+}
+
+model::Scenario drawn() { return cell::draw_scenario(scenario(), "1", Rng(7).split("plant")); }
+
+/// A cell that is served in a thread of its own.
+class Served {
+ public:
+  explicit Served(const model::Scenario& cell, bool is_plant = true)
+      : simulation_(cell, "1", {motion::ControllerKind::Faithful, cup::CupMode::Phases, "ur10"}),
+        simulator_(simulation_, settings_of(is_plant)),
+        server_(simulator_, server_settings()) {
+    thread_ = std::thread([this] { server_.run(); });
+  }
+  ~Served() { stop(); }
+  void stop() {
+    server_.stop();
+    if (thread_.joinable()) thread_.join();
+    simulator_.end("the server was stopped");
+  }
+  [[nodiscard]] std::string address() const { return "click+" + server_.endpoint(); }
+  [[nodiscard]] const std::vector<cell::RunResult>& runs() const { return runs_; }
+
+ private:
+  click::SimulatorSettings settings_of(bool is_plant) {
+    click::SimulatorSettings settings;
+    settings.cell.is_plant = is_plant;
+    settings.end_run = [this](int, const cell::RunResult& result) { runs_.push_back(result); };
+    return settings;
+  }
+  static click::ServerSettings server_settings() {
+    static int count = 0;
+    click::ServerSettings settings;
+    settings.endpoint = "ipc://" + (std::filesystem::temp_directory_path() /
+                                    ("snug_remote_" + std::to_string(::getpid()) + "_" + std::to_string(++count)))
+                                       .string();
+    return settings;
+  }
+  cell::Simulation simulation_;
+  std::vector<cell::RunResult> runs_;
+  click::Simulator simulator_;
+  click::Server server_;
+  std::thread thread_;
+};
+
+RemotePlantOptions at(const std::string& address, double patience = 20.0) {
+  RemotePlantOptions options;
+  options.address = address;
+  options.patience = patience;
+  return options;
+}
+
+/// The plant with its server.
+class WithServer final : public plant::Plant {
+ public:
+  explicit WithServer(bool is_plant)
+      : served_(is_plant ? drawn() : scenario(), is_plant), plant_(scenario(), "1", at(served_.address())) {}
+  [[nodiscard]] plant::Description describe() const override { return plant_.describe(); }
+  [[nodiscard]] plant::Feedback read() override { return plant_.read(); }
+  [[nodiscard]] bool bring(const std::string& item) override { return plant_.bring(item); }
+  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override { return plant_.submit(motion); }
+  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
+    return plant_.perceive(expected);
+  }
+  void acknowledge() override { plant_.acknowledge(); }
+
+ private:
+  Served served_;
+  RemotePlant plant_;
+};
+
+/// z: of E over the upper face of BOX027 where the plain scenario has it.
+motion::Waypoint over_the_box(double z, const char* name, bool vacuum) {
+  const Pose X_WP = cell::arrival_pose(scenario(), scenario().sequences.front().items.front());
+  motion::Waypoint waypoint;
+  waypoint.X_WE = {motion::upright_tool(std::numbers::pi), X_WP.p};
+  waypoint.X_WE.p.z() += 0.5 * 0.092 + z;
+  waypoint.name = name;
+  waypoint.io.vacuum = vacuum;
+  return waypoint;
+}
+
+std::vector<motion::Waypoint> pick() {
+  const double pressed = cup::pick_length(scenario().cup);
+  return {over_the_box(0.2, "PrePick(BOX027)", false), over_the_box(pressed, "Box(BOX027)", false),
+          over_the_box(0.3, "PostPick(BOX027)", true)};
+}
+
+plant::PlantCase plant_case(const std::string& name, bool is_plant) {
+  plant::PlantCase one;
+  one.name = name;
+  one.make = [is_plant] { return std::make_unique<WithServer>(is_plant); };
+  one.item = "BOX027";
+  one.free_waypoint = over_the_box(0.35, "home", false);
+  one.pick = pick();
+  one.pressing = over_the_box(0.03, "PlaceSlow", false);
+  return one;
+}
+
+INSTANTIATE_TEST_SUITE_P(Remote, PlantContract,
+                         testing::Values(plant_case("drawn", true), plant_case("any_cell", false)),
+                         [](const auto& one) { return one.param.name; });
+
+TEST(RemotePlant, SeesBoxesToTheLastBitAndAsLargeAsTheyAre) {
+  const model::Scenario cell = drawn();
+  Served served(cell);
+  RemotePlant plant(scenario(), "1", at(served.address()));
+  ASSERT_TRUE(plant.bring("BOX027"));
+  const perception::Observation seen = plant.perceive({});
+  ASSERT_EQ(seen.seen.size(), 1U);
+  EXPECT_EQ(seen.seen[0].size, model::collision_size(cell, *model::find_parcel(cell, "BOX027")));
+  // The cell keeps quaternions: as a pose that was set in one is read from it.
+  const Pose X_WP = cell::arrival_pose(cell, cell.sequences.front().items.front());
+  EXPECT_EQ(seen.seen[0].X_WP.R, Quaternion(X_WP.R).normalized().toRotationMatrix());
+  EXPECT_EQ(seen.time, 0.0) << "bringing takes no time";
+}
+
+TEST(RemotePlant, TakesTheRobotsLagFromTheServedCell) {
+  motion::Program there{"there", {over_the_box(0.35, "home", false)}};
+  std::vector<double> times;
+  for (const double factor : {1.0, 1.3}) {
+    model::Scenario cell = scenario();
+    cell.controller.task_stiffness *= factor;
+    Served served(cell);
+    RemotePlant plant(scenario(), "1", at(served.address()));
+    times.push_back(plant.submit({"", there.waypoints, {}}).time);
+  }
+  EXPECT_LT(times[1], times[0]) << "a stiffer task is there earlier";
+}
+
+TEST(RemotePlant, APeerThatDiesIsAFaultAndNothingFollows) {
+  Served served(drawn());
+  RemotePlant plant(scenario(), "1", at(served.address(), 0.3));
+  ASSERT_TRUE(plant.bring("BOX027"));
+  served.stop();
+  const plant::Feedback fed = plant.submit({"BOX027", pick(), {}});
+  EXPECT_EQ(fed.end.reason, plant::EndReason::Fault);
+  EXPECT_NE(fed.end.where.find("nobody answers within 0.3 s"), std::string::npos) << fed.end.where;
+  EXPECT_FALSE(plant.bring("BOX028"));
+  EXPECT_TRUE(plant.perceive({}).seen.empty());
+  EXPECT_EQ(plant.submit({"BOX027", pick(), {}}).end.reason, plant::EndReason::Refused);
+  ASSERT_EQ(served.runs().size(), 1U) << "the run has its result";
+}
+
+TEST(RemotePlant, WhatIsNoSuchPlantIsRefused) {
+  const auto message = [](const std::string& address, const model::Scenario& packed) -> std::string {
+    try {
+      RemotePlant plant(packed, "1", at(address, 0.2));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  for (const char* address :
+       {"", "click://", "click://host", "click://:5555", "tcp://127.0.0.1:5555", "click+ipc://"}) {
+    EXPECT_NE(message(address, scenario()).find("click://HOST:PORT"), std::string::npos) << address;
+  }
+  EXPECT_NE(message("click+ipc:///tmp/nobody_is_there", scenario()).find("nobody answers"), std::string::npos);
+  Served served(drawn());
+  model::Scenario more = scenario();
+  more.sequences.front().items =
+      model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml").sequences.front().items;
+  EXPECT_NE(message(served.address(), more).find("it has no object 'box0"), std::string::npos);
+  model::Scenario slow = scenario();
+  slow.controller.tick = 0.016;
+  EXPECT_NE(message(served.address(), slow).find("the simulator steps by 0.008 s"), std::string::npos);
+}
+
+TEST(RemotePlant, EndsTheRunWhenAsked) {
+  Served served(drawn());
+  RemotePlant plant(scenario(), "1", at(served.address()));
+  (void)plant.submit({"", {over_the_box(0.35, "home", false)}, {}});
+  EXPECT_EQ(plant.finish(), "");
+  ASSERT_EQ(served.runs().size(), 1U);
+  EXPECT_EQ(served.runs()[0].ended_by, "reset by the controller");
+}
+
+}  // namespace
+}  // namespace snug::remote_plant
