@@ -189,7 +189,8 @@ CellWorld build_world(const model::Scenario& scenario, const WorldOptions& optio
     for (const model::Item& item : options.sequence->items) {
       const model::Parcel& parcel = *model::find_parcel(scenario, item.parcel);
       world.parcels.push_back(
-          add(world, box_body(parcel.id, parcel.size, parcel.inertia, parcel.material), parcel.type));
+          add(world, box_body(parcel.id, model::collision_size(scenario, parcel), parcel.inertia, parcel.material),
+              parcel.type));
     }
   }
   const DropPlan drops = plan_drops(scenario);
