@@ -207,7 +207,7 @@ void ScenarioReader::read_body(const Value& value) {
     parcel = find_parcel(scenario_, body.parcel);
     if (parcel == nullptr)
       fail_unknown_name(map.require(form), "parcel", names_of(scenario_.parcels, [](const Parcel& p) { return p.id; }));
-    body.shapes = {{geometry::Box{0.5 * parcel->size}, {}}};
+    body.shapes = {{geometry::Box{0.5 * collision_size(scenario_, *parcel)}, {}}};
   }
   if (form == "size") body.shapes = {{geometry::Box{0.5 * map.require(form).sizes()}, {}}};
   if (form == "shapes") body.shapes = read_shapes(map.require(form));
