@@ -12,15 +12,12 @@ namespace {
 
 // Chosen on some 550 problems on which sweeps fail (a settling pile of 300 boxes, random drops at mass ratios to 1000,
 // a wall): least time among those with which all of them are solved.
-constexpr int kCycles = 9;             ///< generalized steps that are tried in any case
-constexpr int kSolvedCycles = 5;       ///< of an island that is solved and at rest
+constexpr int kCycles = 5;             ///< generalized steps that are tried in any case
 constexpr int kSweepsPerCycle = 2;     ///< of Gauss-Seidel after each
 constexpr double kPenalty = 300.0;     ///< of generalized steps, in units of 1 / W of each contact
 constexpr double kFlipCut = 3.0;       ///< of the penalty of a contact whose status changes from step to step
 constexpr double kFlipRecovery = 1.5;  ///< of the penalty of one whose status stays
 constexpr double kLeastFlipPenalty = 1.0;
-constexpr double kStayingPenalty = 1e3;  ///< that a contact whose status stays comes to, and how fast
-constexpr double kStayingGrowth = 3.0;
 /// Of contacts whose status stays in islands that are solved and at rest: what a step leaves of a slow mode is 1 / p.
 constexpr double kSolvedPenalty = 3e4;
 constexpr double kSolvedGrowth = 30.0;
@@ -144,7 +141,6 @@ class IslandProblem {
 
   void run_cycles(int count);
   void linearise();
-  [[nodiscard]] double grown_penalty(double penalty) const;
 
   void augment(const Care& care);
   bool solve_stage(double penalty, double tolerance, const Care& care);
@@ -274,12 +270,6 @@ void IslandProblem::solve_system() {
   }
 }
 
-/// Of a contact whose status stays.
-double IslandProblem::grown_penalty(double penalty) const {
-  if (is_solved()) return std::min(kSolvedPenalty, penalty * kSolvedGrowth);
-  return std::min(kStayingPenalty, penalty * (penalty < kPenalty ? kFlipRecovery : kStayingGrowth));
-}
-
 /// Laws about the present state and the momentum error that they leave.
 void IslandProblem::linearise() {
   for (const int body : work_.active) {
@@ -295,7 +285,8 @@ void IslandProblem::linearise() {
         newton.penalty = std::max(kLeastFlipPenalty, std::min(kPenalty, newton.penalty) / kFlipCut);
         (void)generalized_law(row, newton.penalty, xi, newton.law);
       } else {
-        newton.penalty = grown_penalty(newton.penalty);
+        newton.penalty = is_solved() ? std::min(kSolvedPenalty, newton.penalty * kSolvedGrowth)
+                                     : std::min(kPenalty, newton.penalty * kFlipRecovery);
       }
     }
     apply(row, newton.law.lambda, work_.error.data());
@@ -323,7 +314,7 @@ void IslandProblem::take_linear_impulses() {
 
 /// Generalized Newton steps with sweeps between them, which mend what the steps leave near single contacts.
 void IslandProblem::run_cycles(int count) {
-  for (int i = 0; i < count && best_ > wanted_ && !(is_solved() && i >= kSolvedCycles); ++i) {
+  for (int i = 0; i < count && best_ > wanted_; ++i) {
     ++iterations_;
     linearise();
     assemble();
