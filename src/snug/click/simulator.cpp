@@ -16,6 +16,8 @@ bool holds(const Message& message) {
   return std::holds_alternative<T>(message);
 }
 
+Error unsupported(int version) { return {fmt::format("version {} is not supported, expected {}", version, kVersion)}; }
+
 }  // namespace
 
 Simulator::Simulator(const cell::Simulation& simulation, SimulatorSettings settings)
@@ -30,17 +32,19 @@ Simulator::~Simulator() = default;
 const cell::CellState& Simulator::state() const { return run_ ? run_->state() : initial_; }
 double Simulator::time() const { return cell_.simulation().time(state()); }
 std::uint64_t Simulator::hash() const { return cell_.simulation().hash(state()); }
-Message Simulator::sense() const {
-  return run_ ? cell_.sense(state(), run_->reading(), run_->tool_load())
-              : cell_.sense(state(), initial_reading_, Wrench{});
+Message Simulator::sense() {
+  return run_ ? cell_.sense(state(), run_->reading(), run_->tool_load(), std::move(used_))
+              : cell_.sense(state(), initial_reading_, Wrench{}, std::move(used_));
 }
 
 std::optional<std::string> Simulator::answer(const Peer& peer, std::string_view frame) {
-  const std::optional<Message> reply = respond(peer, frame);
+  std::optional<Message> reply = respond(peer, frame);
   if (!reply) return std::nullopt;
   ++counts_.replies;
   if (holds<Error>(*reply)) ++counts_.errors;
-  return encode(*reply);
+  std::string bytes = encode(*reply);
+  if (auto* sensor = std::get_if<Sensor>(&*reply)) used_ = std::move(*sensor);
+  return bytes;
 }
 
 bool Simulator::is_step(const Peer& peer, std::string_view frame) const {
@@ -63,6 +67,7 @@ std::optional<Message> Simulator::respond(const Peer& peer, std::string_view fra
   }
   const Expected<Message, std::string> message = decode(frame);
   if (!message) return Error{message.error()};
+  if (is_watcher(peer)) return show(*message);
   if (controller_ && *controller_ != peer) return Error{kBusy};
   if (const auto* error = std::get_if<Error>(&*message)) {
     end("the controller reported: " + error->text);
@@ -88,10 +93,16 @@ std::optional<Message> Simulator::respond(const Peer& peer, std::string_view fra
   return Error{fmt::format("a {} is for controllers; this is a simulator", name_of(*message))};
 }
 
-Message Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
-  if (init.version != kVersion) {
-    return Error{fmt::format("version {} is not supported, expected {}", init.version, kVersion)};
+Message Simulator::show(const Message& message) {
+  if (const auto* init = std::get_if<HandshakeInit>(&message)) {
+    return init->version == kVersion ? Message(cell_.handshake()) : unsupported(init->version);
   }
+  if (holds<SensorRequest>(message)) return sense();
+  return Error{fmt::format("a {} is for controllers; this peer only looks", name_of(message))};
+}
+
+Message Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
+  if (init.version != kVersion) return unsupported(init.version);
   controller_ = peer;
   is_reset_ = false;
   if (!failure_.empty()) end(failure_);  // a stop that nobody acknowledged
@@ -119,7 +130,7 @@ Message Simulator::control(const Control& control) {
   }
   advance(order->command);
   if (!failure_.empty()) return Error{failure_};
-  const Message reply = sense();
+  Message reply = sense();
   if (settings_.batch && time() >= *settings_.batch) reset(fmt::format("{} s are over", *settings_.batch));
   return reply;
 }
