@@ -18,11 +18,11 @@ constexpr int kDirections = 8;
 }  // namespace
 
 void SimulatedPlant::note(const char* kind, int item, std::string text) {
-  state_.journey.note({simulation_.time(state_),
-                       "fault",
-                       simulation_.sequence().items[static_cast<std::size_t>(item)].parcel,
-                       std::string(kind) + ": " + std::move(text),
-                       {}});
+  state_.event_log.note({simulation_.time(state_),
+                         "fault",
+                         simulation_.sequence().items[static_cast<std::size_t>(item)].parcel,
+                         std::string(kind) + ": " + std::move(text),
+                         {}});
 }
 
 /// What hangs from the cup falls, and nothing seals until the vacuum is switched off.
