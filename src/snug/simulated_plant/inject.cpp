@@ -27,8 +27,10 @@ void SimulatedPlant::note(const char* kind, int item, std::string text) {
 
 /// What hangs from the cup falls, and nothing seals until the vacuum is switched off.
 void SimulatedPlant::break_suction() {
+  const double least_hold_factor = state_.gripper.least_hold_factor;  // of the item's whole way
   state_.gripper = cell::GripperState{};
   state_.gripper.cannot_seal = true;
+  state_.gripper.least_hold_factor = least_hold_factor;
 }
 
 /// 30 mm to the side where it has to be lifted least, over whatever is there.
