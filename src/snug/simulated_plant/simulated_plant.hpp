@@ -65,6 +65,7 @@ class SimulatedPlant final : public plant::Plant {
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
                              plant::MotionWatch& course);
   void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course);
+  void fail(const cell::CellTick& tick, plant::MotionWatch& course);
   [[nodiscard]] plant::TickReading reading() const;
   void inject(const motion::PreparedProgram& plan, plant::MotionWatch& course);
   void break_suction();
