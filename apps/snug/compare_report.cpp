@@ -64,7 +64,10 @@ std::vector<std::string> distinct(const std::vector<CompareRow>& rows, const Get
   return words;
 }
 
-double share_of(const Summary& all) { return all.sent > 0 ? 100.0 * all.as_planned / all.sent : 100.0; }
+/// Of those that were sent, in percent.
+std::string share_of(const Summary& all) {
+  return all.sent > 0 ? fmt::format("{:.2f} %", 100.0 * all.as_planned / all.sent) : std::string("-");
+}
 
 const model::Reported* find_reported(const model::Sequence& sequence, const std::string& agent) {
   const auto found = std::ranges::find(sequence.reported, agent, &model::Reported::agent);
@@ -110,7 +113,7 @@ constexpr const char* kRow =
     "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7}  {:>7}  {}\n";
 
 std::string summary_line(const std::string& label, const Summary& all) {
-  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:9.2f} % {:5} {:10}  {:7.0f}\n", label,
+  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:>11} {:5} {:10}  {:7.0f}\n", label,
                      all.count, all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
                      all.recoveries, all.boxes_per_hour);
 }

@@ -15,8 +15,8 @@ namespace {
 
 using Reason = Unexpected<std::string>;
 
-constexpr std::int64_t kMostBytes = std::int64_t{16} << 20;  ///< of an answer
-constexpr int kLinger = 200;                                 ///< ms, for what was said last
+constexpr std::int64_t kLongestAnswer = std::int64_t{16} << 20;  ///< of an answer
+constexpr int kLinger = 200;                                     ///< ms, for what was said last
 
 /// The answer as one of the kind that was asked for.
 template <class T>
@@ -38,7 +38,7 @@ struct Client::Impl {
     if (!routing_id.empty()) {
       (void)zmq_setsockopt(socket.get(), ZMQ_ROUTING_ID, routing_id.data(), routing_id.size());
     }
-    internal::set(socket.get(), ZMQ_MAXMSGSIZE, kMostBytes);
+    internal::set(socket.get(), ZMQ_MAXMSGSIZE, kLongestAnswer);
     internal::set(socket.get(), ZMQ_IPV6, endpoint.starts_with("tcp://[") ? 1 : 0);
     const int milliseconds = static_cast<int>(1e3 * patience);
     internal::set(socket.get(), ZMQ_RCVTIMEO, milliseconds);

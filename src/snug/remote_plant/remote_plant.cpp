@@ -161,7 +161,9 @@ perception::Observation RemotePlant::perceive(std::span<const perception::Expect
       if (const auto box = box_of(i)) scene.boxes.push_back(*box);
     }
   }
-  return perception_->perceive(scene, expected);
+  perception::Observation observation = perception_->perceive(scene, expected);
+  if (!failure_.empty()) observation.missing.clear();  // nothing was looked at
+  return observation;
 }
 
 void RemotePlant::fail(std::string why) {
@@ -259,7 +261,7 @@ plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
     const std::string silence = link_.sense();
     is_stopped_ = silence.empty() && is_active(link_.last_of_robot(), click::kStoppedSensor);
     if (!is_stopped_) fail(trouble);
-  } else if (std::abs(length - plan.settings.tick) > kSameTime) {
+  } else if (!(std::abs(length - plan.settings.tick) <= kSameTime)) {  // nor NaN
     fail(fmt::format("a Control is a step of {} s there, not of {} s: is it served with --async?", length,
                      plan.settings.tick));
   } else if (tick.outcome == "Stuck") {
