@@ -134,7 +134,7 @@ bool Packer::is_holding() const {
 void Packer::retreat(const std::string& id, ItemReport& report) {
   belief_.doubt_prediction();
   if (is_holding() || robot_.end.reason == plant::EndReason::VacuumLost) let_go_ = index_of(id);
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   motion::Waypoint up;
   up.X_WE = robot_.X_WE;
   up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + scenario_.cup.free_length + 0.02);
@@ -194,7 +194,7 @@ void Packer::resume(const std::string& id, ItemReport& report) {
 
 void Packer::press(int item, ItemReport& report) {
   const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   submit(box.id, plan_press(belief_.nominal(), layout_, box, belief_.box(item)->X_WP, travel),
          {options_.press_force, false}, report);
   // The force that ends a press is what was asked for.
@@ -206,7 +206,7 @@ void Packer::set_down(const Planned& planned, ItemReport& report) {
   let_go_ = planned.box.item;
   const PlannedBox& box = planned.box;
   const Matrix3 R_WP = layout_.X_WT.R * planned.attempt.planned.X_TP.R;
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   motion::Waypoint here;
   here.X_WE = robot_.X_WE;
   here.io.vacuum = true;
