@@ -1,6 +1,7 @@
 // Packer: motions sent, what they came to, and what is done when that is not what was planned.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "snug/motion/primitives.hpp"
@@ -11,6 +12,7 @@
 namespace snug::session {
 namespace {
 
+constexpr double kLiesTurned = 0.25 * std::numbers::pi;  ///< rad, from what was planned
 constexpr double kAsRehearsed = 0.004;       ///< m, from where the nominal rollout let the box go on the way
 constexpr double kTurnedAsRehearsed = 0.05;  ///< rad
 constexpr double kHeld = 0.3;                ///< share of the vacuum's set point that says that something is held
@@ -182,6 +184,7 @@ Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& repo
   at.is_held = is_holding();
   at.can_set_down = layout_.flip_place.has_value();
   at.fits = belief_.box(item) && fit_of(item, belief_.box(item)->X_WP).is_in && who_sticks_out(item) < 0;
+  at.lies_turned = report.angle_error > kLiesTurned;
   at.can_be_picked = can_be_picked(item);
   return at;
 }
