@@ -244,21 +244,20 @@ cell::OutsideCommand ServedCell::stand(const cup::CupCommand& cup) const {
   return {{std::vector<DriveKind>(n, DriveKind::Speed), robot::JointVector::Zero(static_cast<Eigen::Index>(n))}, cup};
 }
 
-Sensor ServedCell::sense(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load,
-                         Sensor used) const {
-  used.time = simulation_.time(state);
-  sense_robot(state, reading, load, used.objects[settings_.robot_object]);
-  for (const Body& body : bodies_) sense_body(body, state, used.objects[body.name]);
-  return used;
+Sensor ServedCell::sense(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load) const {
+  Sensor sensor;
+  sensor.time = simulation_.time(state);
+  sensor.objects.emplace(settings_.robot_object, sense_robot(state, reading, load));
+  for (const Body& body : bodies_) sensor.objects.emplace(body.name, sense_body(body, state));
+  return sensor;
 }
 
-/// Every value is set, whatever the object held before.
-void ServedCell::sense_robot(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load,
-                             ObjectSensors& robot) const {
+ObjectSensors ServedCell::sense_robot(const cell::CellState& state, const cell::ArmReading& reading,
+                                      const Wrench& load) const {
+  ObjectSensors robot;
   const control::MachineState& machine = state.arm->machine;
   robot.angles.assign(machine.joints.q.begin(), machine.joints.q.end());
   robot.velocities.assign(machine.joints.qd.begin(), machine.joints.qd.end());
-  robot.torques.clear();
   for (const record::JointSample& joint : reading.joints) robot.torques.push_back(joint.torque);
   if (settings_.joint_forces) {
     const auto forces =
@@ -281,9 +280,11 @@ void ServedCell::sense_robot(const cell::CellState& state, const cell::ArmReadin
     const double stiffness = simulation_.arm()->controller().settings().tool_stiffness;
     robot.sensors[kTrackingSensor] = {vector_value(ValueType::Acceleration3D, Vector3::Constant(stiffness))};
   }
+  return robot;
 }
 
-void ServedCell::sense_body(const Body& body, const cell::CellState& state, ObjectSensors& object) const {
+ObjectSensors ServedCell::sense_body(const Body& body, const cell::CellState& state) const {
+  ObjectSensors object;
   const bool is_present = state.world.bodies[static_cast<std::size_t>(body.id.index)].is_present;
   const physics::WorldModel& model = simulation_.world().model;
   const Pose X_WB = is_present ? physics::pose_of(model, state.world, body.id) : Pose{Matrix3::Identity(), kParked};
@@ -295,11 +296,11 @@ void ServedCell::sense_body(const Body& body, const cell::CellState& state, Obje
     object.object.push_back(vector_value(ValueType::AngularVelocity3D, V_WB.angular));
   }
   object.sensors[kPresentSensor] = {{ValueType::Activated, Vector3::Zero(), 0.0, is_present}};
-  if (!settings_.is_plant || body.item < 0) return;
+  if (!settings_.is_plant || body.item < 0) return object;
   std::vector<SensorValue>& axes = object.sensors[kAxesSensor];
-  axes.clear();
   for (int i = 0; i < 3; ++i) axes.push_back(vector_value(ValueType::Position, X_WB.R.col(i)));
   object.sensors[kSizeSensor] = {vector_value(ValueType::Position, body.size)};
+  return object;
 }
 
 }  // namespace snug::click

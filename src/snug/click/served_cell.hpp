@@ -88,10 +88,8 @@ class ServedCell {
                                                         const cell::CellState& state) const;
   /// All joints brake and stand.
   [[nodiscard]] cell::OutsideCommand stand(const cup::CupCommand& cup) const;
-  /// `load`: on the tool, Simulation::tool_load. `used`: what this returned before, or nothing: its memory is used
-  /// again.
-  [[nodiscard]] Sensor sense(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load,
-                             Sensor used = {}) const;
+  /// `load`: on the tool, Simulation::tool_load.
+  [[nodiscard]] Sensor sense(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load) const;
 
  private:
   struct Body {
@@ -105,9 +103,9 @@ class ServedCell {
   [[nodiscard]] std::string take_joints(const ObjectControl& object, cell::OutsideCommand& command) const;
   [[nodiscard]] std::string take_events(const std::string& name, const ObjectControl& object, Order& order) const;
   [[nodiscard]] std::string take_feeding(const Switches& before, const cell::CellState& state, Order& order) const;
-  void sense_robot(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load,
-                   ObjectSensors& robot) const;
-  void sense_body(const Body& body, const cell::CellState& state, ObjectSensors& object) const;
+  [[nodiscard]] ObjectSensors sense_robot(const cell::CellState& state, const cell::ArmReading& reading,
+                                          const Wrench& load) const;
+  [[nodiscard]] ObjectSensors sense_body(const Body& body, const cell::CellState& state) const;
   [[nodiscard]] const Body* find_body(std::string_view name) const;
 
   const cell::Simulation& simulation_;

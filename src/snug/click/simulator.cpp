@@ -32,19 +32,17 @@ Simulator::~Simulator() = default;
 const cell::CellState& Simulator::state() const { return run_ ? run_->state() : initial_; }
 double Simulator::time() const { return cell_.simulation().time(state()); }
 std::uint64_t Simulator::hash() const { return cell_.simulation().hash(state()); }
-Message Simulator::sense() {
-  return run_ ? cell_.sense(state(), run_->reading(), run_->tool_load(), std::move(used_))
-              : cell_.sense(state(), initial_reading_, Wrench{}, std::move(used_));
+Message Simulator::sense() const {
+  return run_ ? cell_.sense(state(), run_->reading(), run_->tool_load())
+              : cell_.sense(state(), initial_reading_, Wrench{});
 }
 
 std::optional<std::string> Simulator::answer(const Peer& peer, std::string_view frame) {
-  std::optional<Message> reply = respond(peer, frame);
+  const std::optional<Message> reply = respond(peer, frame);
   if (!reply) return std::nullopt;
   ++counts_.replies;
   if (holds<Error>(*reply)) ++counts_.errors;
-  std::string bytes = encode(*reply);
-  if (auto* sensor = std::get_if<Sensor>(&*reply)) used_ = std::move(*sensor);
-  return bytes;
+  return encode(*reply);
 }
 
 bool Simulator::is_step(const Peer& peer, std::string_view frame) const {
@@ -93,7 +91,7 @@ std::optional<Message> Simulator::respond(const Peer& peer, std::string_view fra
   return Error{fmt::format("a {} is for controllers; this is a simulator", name_of(*message))};
 }
 
-Message Simulator::show(const Message& message) {
+Message Simulator::show(const Message& message) const {
   if (const auto* init = std::get_if<HandshakeInit>(&message)) {
     return init->version == kVersion ? Message(cell_.handshake()) : unsupported(init->version);
   }

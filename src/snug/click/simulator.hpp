@@ -89,7 +89,7 @@ class Simulator {
  private:
   [[nodiscard]] std::optional<Message> respond(const Peer& peer, std::string_view frame);
   /// To a peer that looks: it never becomes the controller and changes nothing.
-  [[nodiscard]] Message show(const Message& message);
+  [[nodiscard]] Message show(const Message& message) const;
   [[nodiscard]] Message shake_hands(const Peer& peer, const HandshakeInit& init);
   [[nodiscard]] Message control(const Control& control);
   void begin_run();
@@ -97,7 +97,7 @@ class Simulator {
   /// What of the order takes no time: a box comes, the robot stands, a stop is released.
   void take_at_once(const Order& order);
   void clear();
-  [[nodiscard]] Message sense();
+  [[nodiscard]] Message sense() const;
   [[nodiscard]] const cell::CellState& state() const;
 
   SimulatorSettings settings_;
@@ -114,7 +114,6 @@ class Simulator {
   std::optional<cell::OutsideCommand> command_;  ///< async
   std::int64_t silent_steps_ = 0;                ///< since it came
   SimulatorCounts counts_;
-  Sensor used_;  ///< answered before: memory
   double step_seconds_ = 0.0;
 };
 

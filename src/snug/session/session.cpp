@@ -216,10 +216,4 @@ SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
   return Session(scenario, sequence, options, plant, progress).pack();
 }
 
-SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
-                      const std::vector<packing::Placement>& plan, const SessionOptions& options, plant::Plant& plant,
-                      const Progress& progress) {
-  return Session(scenario, sequence, options, plant, progress).execute(plan);
-}
-
 }  // namespace snug::session
