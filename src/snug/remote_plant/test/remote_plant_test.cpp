@@ -198,7 +198,7 @@ TEST(WatchedCell, SeesWhatTheControllerDoesAndChangesNothing) {
   EXPECT_EQ(cell.time(), 0.0);
   EXPECT_EQ(cell.state().world.step_index, 0);
   ASSERT_TRUE(plant.bring(scenario().sequences.front().items.front().parcel));
-  const plant::Feedback feedback = plant.submit({"pick", pick(), {}});
+  const plant::Feedback feedback = plant.submit({"pick", box().pick(), {}});
   EXPECT_EQ(feedback.end.reason, plant::EndReason::Completed) << feedback.end.where;
   ASSERT_EQ(cell.look(), "");
   EXPECT_EQ(cell.time(), feedback.time) << "looking made no step";
