@@ -77,6 +77,7 @@ std::string words_of(const PackOptions& pack, const study::Trial& trial) {
   if (pack.changes.container) words += " --container " + quoted(*pack.changes.container);
   if (pack.changes.pallet) words += " --pallet " + quoted(*pack.changes.pallet);
   for (const std::string& change : pack.changes.set) words += " --set " + quoted(change);
+  for (const std::string& change : pack.plant_set) words += " --plant-set " + quoted(change);
   if (pack.perception != usual.perception) words += " --perception " + pack.perception;
   if (pack.samples != usual.samples) words += fmt::format(" --samples {}", pack.samples);
   if (pack.skips != usual.skips) words += fmt::format(" --skips {}", pack.skips);
@@ -121,8 +122,10 @@ int run_compare(const CompareOptions& options) {
   for (std::size_t run = 0; run < runs && !is_interrupted(); ++run) {
     PackOptions pack = options.pack;
     pack.agent = agents[run / (sequences.size() * plants)];
-    pack.sequence = sequences[run / plants % sequences.size()];
-    pack.plant_seed += run % plants;
+    const std::size_t sequence = run / plants % sequences.size(),
+                      given = sequences.size() - static_cast<std::size_t>(options.random);
+    pack.plant_seed += run % plants + (sequence > given ? (sequence - given) * plants : 0);
+    pack.sequence = sequences[sequence];
     const session::SessionOptions session = make_session_options(pack, loaded, pack.sequence);
     const std::string label =
         fmt::format("{} of {}: {}, sequence {}, plant {}", run + 1, runs, pack.agent, pack.sequence, pack.plant_seed);

@@ -22,7 +22,8 @@ model::Scenario draw_plant(const model::Scenario& scenario, const std::string& s
 SimulatedPlant::SimulatedPlant(const model::Scenario& scenario, const std::string& sequence,
                                const SimulatedPlantOptions& options)
     : options_(options),
-      simulation_(draw_plant(scenario, sequence, options.seed), sequence, options.simulation),
+      simulation_(draw_plant(model::with_values(scenario, options.set, "--plant-set"), sequence, options.seed),
+                  sequence, options.simulation),
       state_(simulation_.make_state()),
       work_(simulation_.make_workspace()),
       perception_(camera_perception::make_perception(options.perception, options.seed, scenario)),

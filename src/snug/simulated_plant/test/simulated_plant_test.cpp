@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "snug/cell/drawn_scenario.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
 
@@ -47,6 +48,17 @@ TEST(SimulatedPlant, IsTheScenarioItselfWithSeedZeroAndAnotherCellWithEachSeed) 
   EXPECT_EQ(draw_plant(scenario(), "1", 0), cell::with_fixed_arrivals(scenario(), "1"));
   EXPECT_EQ(draw_plant(scenario(), "1", 7), draw_plant(scenario(), "1", 7));
   EXPECT_NE(draw_plant(scenario(), "1", 7), draw_plant(scenario(), "1", 8));
+}
+
+TEST(SimulatedPlant, MayBeAnotherCellThanThePlannerBelieves) {
+  SimulatedPlantOptions options;
+  options.seed = 0;
+  options.set = {{"parcel_clearance", "0.0005"}};
+  const SimulatedPlant plant(scenario(), "1", options);
+  EXPECT_EQ(plant.simulation().scenario().parcel_clearance, 0.0005);
+  EXPECT_NE(scenario().parcel_clearance, 0.0005);
+  options.set = {{"parcel_clearanc", "0.0005"}};
+  EXPECT_THROW(SimulatedPlant(scenario(), "1", options), InputError);
 }
 
 SimulatedPlantOptions with_fault(FaultKind kind) {
