@@ -77,6 +77,17 @@ packing::ContainerState Packer::container_state() const {
   return state;
 }
 
+double Packer::obstacle_top(int item) const {
+  const Pose X_TW = layout_.X_WT.inverse();
+  double top = 0.0;
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    const std::optional<BelievedBox>& box = belief_.box(static_cast<int>(i));
+    if (!box || static_cast<int>(i) == item) continue;
+    top = std::max(top, packing::bounding_extent({items_[i], X_TW * box->X_WP}).high.z());
+  }
+  return top;
+}
+
 cell::ContainerFit Packer::fit_of(int item, const Pose& X_WP) const {
   const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const Vector3 inner = model::find_container(scenario_, scenario_.target)->inner_size;
@@ -140,7 +151,7 @@ bool Packer::can_be_picked(int item) const {
   if (!reaches_) return true;
   const PlannedBox planned = make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP.R,
-                              travel_bottom(layout_, highest_top(container_state())), PickKind::FromAfar);
+                              travel_bottom(layout_, obstacle_top(item)), PickKind::FromAfar);
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_(row.X_WE); });
 }
 
@@ -160,7 +171,7 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
                                             const std::vector<packing::Candidate>& candidates, ItemReport& report) {
   packing::ContainerState state = container_state();
   std::erase_if(state.boxes, [&](const packing::PlacedBox& box) { return box.item.id == report.id; });
-  const double top = highest_top(state);
+  const double top = obstacle_top(item);
   Rehearsal rehearsal(belief_, layout_, reaches_, options_.limits, options_.least_rate, options_.threads,
                       {item, belief_.box(item)->X_WP, location, robot_});
   std::optional<Attempt> best;

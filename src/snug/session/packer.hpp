@@ -59,6 +59,9 @@ class Packer {
   void look();
   [[nodiscard]] Location locate(int item) const;
   [[nodiscard]] bool can_be_picked(int item) const;
+  /// m, over the inner floor of the container: the highest point of all boxes but `item` (-1: of all), those that were
+  /// left outside too: what is carried passes over it.
+  [[nodiscard]] double obstacle_top(int item) const;
   [[nodiscard]] cell::ContainerFit fit_of(int item, const Pose& X_WP) const;
   [[nodiscard]] std::optional<Planned> plan(int item, const Decide& decide, ItemReport& report);
   [[nodiscard]] std::optional<Attempt> best_attempt(int item, Location location,

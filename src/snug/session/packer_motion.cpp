@@ -1,6 +1,7 @@
 // Packer: motions sent, what they came to, and what is done when that is not what was planned.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "snug/motion/primitives.hpp"
@@ -12,6 +13,7 @@
 namespace snug::session {
 namespace {
 
+constexpr double kLiesTurned = 0.25 * std::numbers::pi;  ///< rad, from what was planned
 constexpr double kAsRehearsed = 0.004;       ///< m, from where the nominal rollout let the box go on the way
 constexpr double kTurnedAsRehearsed = 0.05;  ///< rad
 constexpr int kMostRounds = 12;              ///< of remedies for one motion
@@ -134,7 +136,7 @@ bool Packer::is_holding() const {
 void Packer::retreat(const std::string& id, ItemReport& report) {
   belief_.doubt_prediction();
   if (is_holding() || robot_.end.reason == plant::EndReason::VacuumLost) let_go_ = index_of(id);
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   motion::Waypoint up;
   up.X_WE = robot_.X_WE;
   up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + scenario_.cup.free_length + 0.02);
@@ -182,6 +184,7 @@ Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& repo
   at.is_held = is_holding();
   at.can_set_down = layout_.flip_place.has_value();
   at.fits = belief_.box(item) && fit_of(item, belief_.box(item)->X_WP).is_in && who_sticks_out(item) < 0;
+  at.lies_turned = report.angle_error > kLiesTurned;
   at.can_be_picked = can_be_picked(item);
   return at;
 }
@@ -194,7 +197,7 @@ void Packer::resume(const std::string& id, ItemReport& report) {
 
 void Packer::press(int item, ItemReport& report) {
   const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   submit(box.id, plan_press(belief_.nominal(), layout_, box, belief_.box(item)->X_WP, travel),
          {options_.press_force, false}, report);
   // The force that ends a press is what was asked for.
@@ -206,7 +209,7 @@ void Packer::set_down(const Planned& planned, ItemReport& report) {
   let_go_ = planned.box.item;
   const PlannedBox& box = planned.box;
   const Matrix3 R_WP = layout_.X_WT.R * planned.attempt.planned.X_TP.R;
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   motion::Waypoint here;
   here.X_WE = robot_.X_WE;
   here.io.vacuum = true;
