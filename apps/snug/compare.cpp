@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iterator>
 #include <sstream>
 
 #include "compare_page.hpp"
@@ -105,7 +104,6 @@ std::vector<std::string> commands_of(const CompareOptions& options, const PackOp
 int run_compare(const CompareOptions& options) {
   SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
   model::Scenario& scenario = loaded.scenario;
-  const auto own_sequences = std::ssize(scenario.sequences);
   const std::vector<std::string> sequences = choose_sequences(options, scenario);
   const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents", true);
   const std::size_t plants = static_cast<std::size_t>(options.plants);
@@ -132,9 +130,10 @@ int run_compare(const CompareOptions& options) {
     const study::Trial trial = study::run_trial(scenario, pack.sequence, session, make_plant_options(pack, session),
                                                 make_progress_line(label));
     rows.push_back(make_row(trial));
-    const bool is_random = model::find_sequence(scenario, pack.sequence) - scenario.sequences.data() >= own_sequences;
-    if (page)
-      sessions.push_back({rows.back(), outline_boxes(scenario, trial), commands_of(options, pack, trial, is_random)});
+    if (page) {
+      sessions.push_back(
+          {rows.back(), outline_boxes(scenario, trial), commands_of(options, pack, trial, sequence >= given)});
+    }
     print_now(format_compare_row(form, rows.back(), run == 0));
   }
   if (page) write_file(std::move(*page), format_compare_page(scenario, sessions));

@@ -6,6 +6,7 @@
 
 #include "snug/motion/primitives.hpp"
 #include "snug/motion/row_name.hpp"
+#include "snug/plant/motion_watch.hpp"
 #include "snug/session/packer.hpp"
 #include "snug/session/surroundings.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 constexpr double kLiesTurned = 0.25 * std::numbers::pi;  ///< rad, from what was planned
 constexpr double kAsRehearsed = 0.004;       ///< m, from where the nominal rollout let the box go on the way
 constexpr double kTurnedAsRehearsed = 0.05;  ///< rad
-constexpr double kHeld = 0.3;                ///< share of the vacuum's set point that says that something is held
 constexpr int kMostRounds = 12;              ///< of remedies for one motion
 
 Trouble trouble_of(plant::EndReason reason) {
@@ -130,7 +130,7 @@ Trouble Packer::assess(int item, const packing::Placement& planned, const std::v
 }
 
 bool Packer::is_holding() const {
-  return robot_.io.vacuum && robot_.pressure_gauge < kHeld * scenario_.cup.vacuum.pressure_gauge_hold;
+  return robot_.io.vacuum && robot_.pressure_gauge < plant::kNeededVacuum * scenario_.cup.vacuum.pressure_gauge_hold;
 }
 
 void Packer::retreat(const std::string& id, ItemReport& report) {

@@ -87,8 +87,13 @@ class Session {
   }
 
  private:
-  [[nodiscard]] bool is_over() {
+  void heed_packer() {
     if (!is_stopped_ && packer_.stop_reason()) stop(*packer_.stop_reason(), name_of(*packer_.stop_reason()));
+  }
+
+  /// To be asked before every item.
+  [[nodiscard]] bool is_over() {
+    heed_packer();
     if (!is_stopped_ && options_.is_interrupted && options_.is_interrupted()) {
       stop(StopReason::Interrupted, "interrupted");
     }
@@ -176,7 +181,7 @@ class Session {
   }
 
   SessionResult finish() {
-    (void)is_over();
+    heed_packer();
     if (!is_stopped_ && !paper_end_.empty()) stop(StopReason::NoPlace, paper_end_);
     if (!is_stopped_) {
       const auto left = std::ranges::count_if(result_.items, [](const ItemReport& item) { return !item.is_packed(); });

@@ -165,5 +165,16 @@ TEST(Packer, PressesOnNothingThatLiesOutsideTheContainer) {
   EXPECT_TRUE(plant.pressed.empty());
 }
 
+TEST(Packer, WhoInterruptsWhenAllIsDoneInterruptsNothing) {
+  ScriptedPlant plant;
+  bool is_done = false;
+  plant.happens = [&](int) { is_done = true; };
+  SessionOptions options = quick();
+  options.is_interrupted = [&] { return is_done; };
+  EXPECT_EQ(pack(plant, 1, options).stop_reason, StopReason::AllPacked);
+  is_done = false;
+  EXPECT_EQ(pack(plant, 2, options).stop_reason, StopReason::Interrupted);
+}
+
 }  // namespace
 }  // namespace snug::session

@@ -3,14 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace snug::study {
 namespace {
 
 /// An item with motions of these predictions, of which the last one succeeds.
 void add_item(Trial& trial, const std::vector<double>& predicted, int samples) {
   session::ItemReport report;
+  report.id = "item " + std::to_string(trial.session.items.size());
   report.samples = samples;
   TrueItem item;
+  item.id = report.id;
   for (std::size_t i = 0; i < predicted.size(); ++i) {
     session::Send send;
     send.predicted_success = predicted[i];
@@ -19,6 +23,17 @@ void add_item(Trial& trial, const std::vector<double>& predicted, int samples) {
   }
   trial.session.items.push_back(report);
   trial.items.push_back(item);
+}
+
+TEST(Calibration, ItemsThatWereLeftOutOnPaperHaveNoPlaceInIt) {
+  Trial trial;
+  add_item(trial, {}, 8);
+  trial.items.clear();
+  add_item(trial, {0.95, 0.95}, 8);
+  Calibration found;
+  found.add(trial);
+  EXPECT_EQ(found.bins[9].motions, 2);
+  EXPECT_EQ(found.bins[9].succeeded, 1);
 }
 
 TEST(Calibration, CountsEachMotionInTheBinOfItsPrediction) {
