@@ -7,6 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/click/rpy.hpp"
+#include "snug/click/served_cell.hpp"
+
 namespace snug::click {
 namespace {
 
@@ -27,6 +30,23 @@ const SensorValue* find_sensor(const ObjectSensors& object, std::string_view nam
 bool is_active(const ObjectSensors& object, std::string_view name) {
   const SensorValue* value = find_sensor(object, name, ValueType::Activated);
   return value != nullptr && value->is_active;
+}
+
+std::optional<Pose> sensed_pose(const ObjectSensors& object) {
+  Pose X_WP;
+  bool has_position = false;
+  for (const SensorValue& value : object.object) {
+    has_position = has_position || value.type == ValueType::Position;
+    if (value.type == ValueType::Position) X_WP.p = value.vector;
+    if (value.type == ValueType::Rpy) X_WP.R = rotation_of(value.vector, {});
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const SensorValue* exact = find_sensor(object, kAxesSensor, ValueType::Position, static_cast<std::size_t>(axis));
+    if (exact != nullptr) X_WP.R.col(axis) = exact->vector;
+  }
+  const bool is_sound = has_position && X_WP.p.allFinite() && X_WP.R.allFinite() &&
+                        (X_WP.R.transpose() * X_WP.R).isIdentity(1e-6) && X_WP.R.determinant() > 0.0;
+  return is_sound ? std::optional(X_WP) : std::nullopt;
 }
 
 std::string JointLink::connect(double tick) {
@@ -65,7 +85,7 @@ std::string JointLink::find_joints() {
     const int control = index_of(robot.controls, joint.name), sensor = index_of(robot.joints, joint.name);
     if (control < 0 || sensor < 0) return fmt::format("object '{}' has no joint '{}'", robot_name_, joint.name);
     const ValueType type = robot.control_types[static_cast<std::size_t>(control)];
-    if (type != ValueType::Angle && type != ValueType::AngularVelocity1D) {
+    if (!settings_.only_looks && type != ValueType::Angle && type != ValueType::AngularVelocity1D) {
       return fmt::format("joint '{}' takes {}; this controller has Angle and AngularVelocity1D", joint.name,
                          name_of(type));
     }

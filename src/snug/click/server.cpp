@@ -207,7 +207,8 @@ bool Server::Impl::read_message() {
 bool Server::Impl::must_wait(const Request& request, Clock::time_point& until) {
   until = Clock::time_point::max();
   const Clock::time_point now = Clock::now();
-  if (simulator.has_controller() && !simulator.is_controller(request.peer) && now < request.received + kTakeOver &&
+  const bool would_control = !simulator.is_controller(request.peer) && !Simulator::is_watcher(request.peer);
+  if (simulator.has_controller() && would_control && now < request.received + kTakeOver &&
       simulator.is_handshake(request.frame)) {
     until = request.received + kTakeOver;
     return true;

@@ -12,6 +12,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
+#include "snug/remote_plant/watched_cell.hpp"
 
 namespace snug::remote_plant {
 namespace {
@@ -187,6 +188,47 @@ TEST(RemotePlant, EndsTheRunWhenAsked) {
   EXPECT_EQ(plant.finish(), "");
   ASSERT_EQ(served.runs().size(), 1U);
   EXPECT_EQ(served.runs()[0].ended_by, "reset by the controller");
+}
+
+TEST(WatchedCell, SeesWhatTheControllerDoesAndChangesNothing) {
+  Served served(drawn());
+  const std::string endpoint = served.address().substr(std::string("click+").size());
+  RemotePlant plant(scenario(), "1", at(served.address()));
+  WatchedCell cell(scenario(), "1", endpoint, 20.0);
+  EXPECT_EQ(cell.time(), 0.0);
+  EXPECT_EQ(cell.state().world.step_index, 0);
+  ASSERT_TRUE(plant.bring(scenario().sequences.front().items.front().parcel));
+  const plant::Feedback feedback = plant.submit({"pick", box().pick(), {}});
+  EXPECT_EQ(feedback.end.reason, plant::EndReason::Completed) << feedback.end.where;
+  ASSERT_EQ(cell.look(), "");
+  EXPECT_EQ(cell.time(), feedback.time) << "looking made no step";
+  const cell::CellState state = cell.state();
+  EXPECT_NEAR(cell.simulation().time(state), feedback.time, 1e-9);
+  EXPECT_EQ(state.arm->machine.tool.X_WE, feedback.X_WE);
+  const auto box = plant.boxes().front();
+  ASSERT_TRUE(box.has_value());
+  const cell::CellWorld& world = cell.simulation().world();
+  EXPECT_TRUE(physics::pose_of(world.model, state.world, world.parcels.front()).p.isApprox(box->X_WP.p, 1e-9));
+  EXPECT_FALSE(state.world.bodies[static_cast<std::size_t>(world.parcels[1].index)].is_present);
+  EXPECT_EQ(plant.finish(), "");
+  ASSERT_EQ(cell.look(), "");
+  EXPECT_EQ(cell.time(), 0.0) << "a reset";
+  served.stop();
+  ASSERT_EQ(served.runs().size(), 1u);
+  EXPECT_EQ(served.runs().front().ended_by, "reset by the controller") << "not by the one that looked";
+}
+
+TEST(WatchedCell, SaysWhereThereIsNone) {
+  EXPECT_THROW(WatchedCell(scenario(), "1", "ipc:///no/such/socket", 0.05), InputError);
+  model::Scenario more = scenario();
+  model::Sequence& sequence = more.sequences.front();
+  for (const model::Parcel& parcel : more.parcels) {
+    const bool is_in = std::ranges::find(sequence.items, parcel.id, &model::Item::parcel) != sequence.items.end();
+    if (!is_in) sequence.items.emplace_back().parcel = parcel.id;
+  }
+  Served served(scenario());
+  const std::string endpoint = served.address().substr(std::string("click+").size());
+  EXPECT_THROW(WatchedCell(more, "1", endpoint, 5.0), InputError) << "boxes that are not served";
 }
 
 }  // namespace
