@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/core/text.hpp"
 #include "snug/replay/page.hpp"
 
 namespace snug::app {
 namespace {
 
 using Point = std::array<double, 2>;
-using replay::escape_markup;
 
 double cross(const Point& o, const Point& a, const Point& b) {
   return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);

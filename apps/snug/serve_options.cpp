@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kServeExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555
-  snug serve scenarios/box-demonstrator.yaml --click ipc:///tmp/cell --sequence 2 --record run.h5 --once
+  snug serve scenarios/box-demonstrator.yaml --click ipc://cell --sequence 2 --record run.h5 --once
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1 --plant-seed 7 --once
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --async --view
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --robot-object ur10_FTSensor_sr_gripper

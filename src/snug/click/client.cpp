@@ -13,8 +13,8 @@ namespace {
 
 using Reason = Unexpected<std::string>;
 
-constexpr std::int64_t kMostBytes = std::int64_t{16} << 20;  ///< of an answer
-constexpr int kLinger = 200;                                 ///< ms, for what was said last
+constexpr std::int64_t kLongestAnswer = std::int64_t{16} << 20;  ///< of an answer
+constexpr int kLinger = 200;                                     ///< ms, for what was said last
 
 /// The answer as one of the kind that was asked for.
 template <class T>
@@ -32,7 +32,7 @@ struct Client::Impl {
   Impl(const std::string& address, double seconds) : endpoint(address), patience(seconds) {
     internal::check_endpoint(endpoint);
     socket = internal::make_socket(context.get(), ZMQ_REQ, kLinger);
-    internal::set(socket.get(), ZMQ_MAXMSGSIZE, kMostBytes);
+    internal::set(socket.get(), ZMQ_MAXMSGSIZE, kLongestAnswer);
     internal::set(socket.get(), ZMQ_IPV6, endpoint.starts_with("tcp://[") ? 1 : 0);
     const int milliseconds = static_cast<int>(1e3 * patience);
     internal::set(socket.get(), ZMQ_RCVTIMEO, milliseconds);

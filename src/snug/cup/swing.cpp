@@ -1,14 +1,14 @@
 // Swing: how slowly a held box swings under the cup, for motions that shall not leave it swinging.
 #include "snug/cup/swing.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "snug/cup/law.hpp"
-#include "snug/spatial/eigenvalues.hpp"
+#include "snug/numerics/dense.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::cup {
 namespace {
@@ -28,10 +28,8 @@ double longest_swing(const model::CupParams& params, const SpatialInertia& box_S
   Matrix6 K = as_matrix(params.stiffness);
   K(3, 3) += box_S.mass * gravity * r.z();
   K(4, 4) += box_S.mass * gravity * r.z();
-  const Eigen::LLT<Matrix6> root(M);
-  if (root.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
-  const Matrix6 half = root.matrixL().solve(K);
-  const Vector6 squares = symmetric_eigenvalues(root.matrixL().solve(half.transpose()));
+  if (!is_positive_definite(M)) return std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd squares = numerics::generalized_eigenpairs(K, M).values;
   return squares[0] > kHeld ? 2.0 * std::numbers::pi / std::sqrt(squares[0]) : std::numeric_limits<double>::infinity();
 }
 

@@ -190,10 +190,6 @@ namespace {
 constexpr std::uint64_t kJudgeSeed = 1;
 constexpr int kScenes = 30;
 
-Figure at_most(std::string name, double value, std::string unit, double limit) {
-  return {std::move(name), value, std::move(unit), fmt::format("<= {}", limit), value <= limit};
-}
-
 double mean_chi_square(const CameraScore& score) {
   double sum = 0.0;
   for (const double value : score.chi_square) sum += value / 6.0;

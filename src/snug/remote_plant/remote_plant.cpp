@@ -172,7 +172,9 @@ perception::Observation RemotePlant::perceive(std::span<const perception::Expect
       if (const auto box = box_of(i)) scene.boxes.push_back(*box);
     }
   }
-  return perception_->perceive(scene, expected);
+  perception::Observation observation = perception_->perceive(scene, expected);
+  if (!failure_.empty()) observation.missing.clear();  // nothing was looked at
+  return observation;
 }
 
 void RemotePlant::fail(std::string why) {

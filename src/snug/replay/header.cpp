@@ -9,6 +9,7 @@
 #include "snug/model/reported_agent.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
+#include "snug/replay/internal/recorded_scenario.hpp"
 #include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/replay.hpp"
 
@@ -26,9 +27,9 @@ Json as_json(const record::PoseSample& X) {
 /// The text as JSON, or null: also when it is larger than any result, or so deep that taking it apart would need more
 /// stack than there is.
 Json parsed(const std::string& text) {
-  constexpr std::size_t kLargest = std::size_t{4} << 20U;
+  constexpr std::size_t kLongestText = std::size_t{4} << 20U;
   constexpr int kDeepest = 32;
-  if (text.size() > kLargest) return {};
+  if (text.size() > kLongestText) return {};
   bool is_too_deep = false;
   const auto look = [&](int depth, Json::parse_event_t, Json&) {
     is_too_deep = is_too_deep || depth > kDeepest;
@@ -280,19 +281,11 @@ Json result_as_json(const HeaderInput& input, const Json& result, const std::opt
           {"report_table7", reported_as_json(scenario, input.header->sequence)}};
 }
 
-std::optional<model::Scenario> scenario_of(const record::RecordingHeader& header) {
-  try {
-    return model::parse_scenario(header.scenario_text, "scenario of the recording");
-  } catch (const InputError&) {
-    return std::nullopt;  // made by another version: what only the scenario tells is left out
-  }
-}
-
 }  // namespace
 
 std::string make_header_json(const HeaderInput& input) {
   const record::RecordingHeader& header = *input.header;
-  const std::optional<model::Scenario> scenario = scenario_of(header);
+  const std::optional<model::Scenario> scenario = internal::scenario_of(header);
   const Json settings = parsed(header.settings);
   Json json = {{"format", "snug replay"},
                {"version", kReplayVersion},

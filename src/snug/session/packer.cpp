@@ -8,6 +8,7 @@
 
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/stopwatch.hpp"
 #include "snug/motion/primitives.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/session/surroundings.hpp"
@@ -23,10 +24,6 @@ constexpr double kFootprint = 0.030;  ///< m, a middle so far beyond the walls s
 /// plants 101 and up.
 constexpr double kPriorRate = 0.97;
 constexpr double kPriorCount = 4.0;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 const model::Scenario& checked(const model::Scenario& scenario, const std::string& sequence) {
   (void)make_layout(scenario);  // says what is missing

@@ -9,15 +9,12 @@
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/stopwatch.hpp"
 #include "snug/session/packer.hpp"
 #include "snug/session/reach.hpp"
 
 namespace snug::session {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;

@@ -11,7 +11,6 @@
 #include "snug/click/server.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
-#include "snug/motion/unwinding.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
 
 namespace snug::remote_plant {
@@ -96,32 +95,17 @@ class WithServer final : public plant::Plant {
   RemotePlant plant_;
 };
 
-/// z: of E over the upper face of BOX027 where the plain scenario has it.
-motion::Waypoint over_the_box(double z, const char* name, bool vacuum) {
-  const Pose X_WP = cell::arrival_pose(scenario(), scenario().sequences.front().items.front());
-  motion::Waypoint waypoint;
-  waypoint.X_WE = {motion::upright_tool(std::numbers::pi), X_WP.p};
-  waypoint.X_WE.p.z() += 0.5 * 0.092 + z;
-  waypoint.name = name;
-  waypoint.io.vacuum = vacuum;
-  return waypoint;
-}
-
-std::vector<motion::Waypoint> pick() {
-  const double pressed = cup::pick_length(scenario().cup);
-  return {over_the_box(0.2, "PrePick(BOX027)", false), over_the_box(pressed, "Box(BOX027)", false),
-          over_the_box(0.3, "PostPick(BOX027)", true)};
+const plant::BoxAtAligner& box() {
+  static const plant::BoxAtAligner one = [] {
+    const model::Scenario fixed = scenario();
+    return plant::BoxAtAligner{cell::arrival_pose(fixed, fixed.sequences.front().items.front()),
+                               cup::pick_length(fixed.cup)};
+  }();
+  return one;
 }
 
 plant::PlantCase plant_case(const std::string& name, bool is_plant) {
-  plant::PlantCase one;
-  one.name = name;
-  one.make = [is_plant] { return std::make_unique<WithServer>(is_plant); };
-  one.item = "BOX027";
-  one.free_waypoint = over_the_box(0.35, "home", false);
-  one.pick = pick();
-  one.pressing = over_the_box(0.03, "PlaceSlow", false);
-  return one;
+  return box().plant_case(name, [is_plant] { return std::make_unique<WithServer>(is_plant); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Remote, PlantContract,
@@ -143,7 +127,7 @@ TEST(RemotePlant, SeesBoxesToTheLastBitAndAsLargeAsTheyAre) {
 }
 
 TEST(RemotePlant, TakesTheRobotsLagFromTheServedCell) {
-  motion::Program there{"there", {over_the_box(0.35, "home", false)}};
+  motion::Program there{"there", {box().over(0.35, "home", false)}};
   std::vector<double> times;
   for (const double factor : {1.0, 1.3}) {
     model::Scenario cell = scenario();
@@ -160,12 +144,15 @@ TEST(RemotePlant, APeerThatDiesIsAFaultAndNothingFollows) {
   RemotePlant plant(scenario(), "1", at(served.address(), 0.3));
   ASSERT_TRUE(plant.bring("BOX027"));
   served.stop();
-  const plant::Feedback fed = plant.submit({"BOX027", pick(), {}});
+  const plant::Feedback fed = plant.submit({"BOX027", box().pick(), {}});
   EXPECT_EQ(fed.end.reason, plant::EndReason::Fault);
   EXPECT_NE(fed.end.where.find("nobody answers within 0.3 s"), std::string::npos) << fed.end.where;
   EXPECT_FALSE(plant.bring("BOX028"));
-  EXPECT_TRUE(plant.perceive({}).seen.empty());
-  EXPECT_EQ(plant.submit({"BOX027", pick(), {}}).end.reason, plant::EndReason::Refused);
+  const perception::Observation seen = plant.perceive(std::vector<perception::Expectation>{{"BOX027", {}, {}}});
+  EXPECT_TRUE(seen.seen.empty());
+  EXPECT_EQ(seen.not_seen.size(), 1U);
+  EXPECT_TRUE(seen.missing.empty()) << "nobody looked";
+  EXPECT_EQ(plant.submit({"BOX027", box().pick(), {}}).end.reason, plant::EndReason::Refused);
   ASSERT_EQ(served.runs().size(), 1U) << "the run has its result";
 }
 
@@ -196,7 +183,7 @@ TEST(RemotePlant, WhatIsNoSuchPlantIsRefused) {
 TEST(RemotePlant, EndsTheRunWhenAsked) {
   Served served(drawn());
   RemotePlant plant(scenario(), "1", at(served.address()));
-  (void)plant.submit({"", {over_the_box(0.35, "home", false)}, {}});
+  (void)plant.submit({"", {box().over(0.35, "home", false)}, {}});
   EXPECT_EQ(plant.finish(), "");
   ASSERT_EQ(served.runs().size(), 1U);
   EXPECT_EQ(served.runs()[0].ended_by, "reset by the controller");
