@@ -7,16 +7,9 @@
 #include <numbers>
 
 #include "snug/cup/law.hpp"
-#include "snug/numerics/dense.hpp"
 #include "snug/spatial/matrix6.hpp"
 
 namespace snug::cup {
-namespace {
-
-constexpr double kHeld = 1e-3;  ///< 1/s^2: what would take minutes is not held
-
-}  // namespace
-
 double longest_swing(const model::CupParams& params, const SpatialInertia& box_S, double gravity) {
   // About the centre of the cup, in S: the spring's ends meet there while nothing is deformed.
   const Vector3 r = box_S.com + Vector3(0.0, 0.0, params.centre_from_lip);
@@ -28,9 +21,9 @@ double longest_swing(const model::CupParams& params, const SpatialInertia& box_S
   Matrix6 K = as_matrix(params.stiffness);
   K(3, 3) += box_S.mass * gravity * r.z();
   K(4, 4) += box_S.mass * gravity * r.z();
-  if (!is_positive_definite(M)) return std::numeric_limits<double>::infinity();
-  const Eigen::VectorXd squares = numerics::generalized_eigenpairs(K, M).values;
-  return squares[0] > kHeld ? 2.0 * std::numbers::pi / std::sqrt(squares[0]) : std::numeric_limits<double>::infinity();
+  if (!is_positive_definite(M) || !is_positive_definite(K)) return std::numeric_limits<double>::infinity();
+  // K x = w^2 M x: the slowest w is the largest eigenvalue of K^-1 M.
+  return 2.0 * std::numbers::pi * std::sqrt(spectral_radius(inverse(K) * M));
 }
 
 double longest_swing(const model::CupParams& params, const SpatialInertia& box, const Vector3& size,
