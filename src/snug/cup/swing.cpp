@@ -10,6 +10,7 @@
 #include "snug/spatial/matrix6.hpp"
 
 namespace snug::cup {
+
 double longest_swing(const model::CupParams& params, const SpatialInertia& box_S, double gravity) {
   // About the centre of the cup, in S: the spring's ends meet there while nothing is deformed.
   const Vector3 r = box_S.com + Vector3(0.0, 0.0, params.centre_from_lip);
