@@ -1069,6 +1069,28 @@ class OtherCells(unittest.TestCase):
         packed = json.loads(snug(*shlex.split(words), "--json").stdout)
         self.assertEqual((packed["executed_boxes"], packed["executed_percent"]), (rows[0]["executed_boxes"], rows[0]["executed_percent"]))
 
+    def test_the_words_that_repeat_a_random_sequence_draw_it_first(self):
+        page = self.folder / "it's random.html"
+        words = ("compare", CELL, "--container", "220x220x120", "--random", 2, "--random-seed", 3, "--agents", "margin", *self.QUICK)
+        rows = json.loads(snug(*words, "--json", "-o", page).stdout)["rows"]
+        codes = re.findall(r"<code>(.*?) -o run.h5<br>", page.read_text(encoding="utf-8"))
+        self.assertEqual(len(codes), 2)
+        for row, code in zip(rows, codes):
+            draw, pack = (shlex.split(html.unescape(line)) for line in code.split("<br>"))
+            drawn = self.folder / f"{row['sequence']}.yaml"
+            snug(*[drawn if word == "random.yaml" else word for word in draw[1:]])
+            packed = json.loads(snug(*[drawn if word == "random.yaml" else word for word in pack[1:]], "--json").stdout)
+            self.assertEqual((packed["sequence"], packed["executed_percent"]), (row["sequence"], row["executed_percent"]))
+
+    def test_nothing_sent_is_nothing_as_planned(self):
+        page = self.folder / "none.html"
+        words = ("compare", CELL, "--container", "60x60x60", "--sequences", "1", "--agents", "margin", *self.QUICK)
+        table = snug(*words, "-o", page).stdout
+        self.assertNotIn("100.00 %", table)
+        chart = re.search(r"items that end as planned, %</figcaption>(.*?)</figure>", page.read_text(encoding="utf-8")).group(1)
+        self.assertNotIn("<circle", chart)
+        self.assertNotIn("nan", chart)
+
     def test_container_too_small_for_anything_is_a_reason(self):
         packed = self.pack("--sequence", "two", "--container", "60x60x60")
         self.assertEqual(packed["executed_boxes"], 0)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <sstream>
 
 #include "compare_page.hpp"
@@ -15,6 +16,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/packing/representatives.hpp"
+#include "snug/study/design.hpp"
 
 namespace snug::app {
 namespace {
@@ -64,15 +66,18 @@ std::vector<std::string> choose_sequences(const CompareOptions& options, model::
   return chosen;
 }
 
-/// The words of `snug pack` that do one session again. Random sequences are the comparison's own: they have none.
-std::string command_of(const PackOptions& pack, const study::Trial& trial) {
+/// The words of `snug pack` that do one session again.
+std::string words_of(const PackOptions& pack, const study::Trial& trial) {
+  using study::quoted;
   const PackOptions usual;
-  std::string words = fmt::format("snug pack {} --sequence {} --agent {} --seed {} --plant-seed {}", pack.scenario,
-                                  pack.sequence, pack.agent, trial.seed, pack.plant_seed);
-  for (const std::string& file : pack.changes.items) words += " --items " + file;
-  if (pack.changes.container) words += " --container " + *pack.changes.container;
-  if (pack.changes.pallet) words += " --pallet " + *pack.changes.pallet;
-  for (const std::string& change : pack.changes.set) words += " --set '" + change + "'";
+  std::string words =
+      fmt::format("snug pack {} --sequence {} --agent {} --seed {} --plant-seed {}", quoted(pack.scenario),
+                  quoted(pack.sequence), quoted(pack.agent), trial.seed, pack.plant_seed);
+  for (const std::string& file : pack.changes.items) words += " --items " + quoted(file);
+  if (pack.changes.container) words += " --container " + quoted(*pack.changes.container);
+  if (pack.changes.pallet) words += " --pallet " + quoted(*pack.changes.pallet);
+  for (const std::string& change : pack.changes.set) words += " --set " + quoted(change);
+  for (const std::string& change : pack.plant_set) words += " --plant-set " + quoted(change);
   if (pack.perception != usual.perception) words += " --perception " + pack.perception;
   if (pack.samples != usual.samples) words += fmt::format(" --samples {}", pack.samples);
   if (pack.skips != usual.skips) words += fmt::format(" --skips {}", pack.skips);
@@ -80,8 +85,19 @@ std::string command_of(const PackOptions& pack, const study::Trial& trial) {
   if (pack.future != usual.future) words += " --future " + pack.future;
   if (!pack.fault.empty()) words += " --fault " + pack.fault;
   if (pack.tempo) words += fmt::format(" --tempo {}", *pack.tempo);
-  if (pack.robot) words += " --robot " + *pack.robot;
+  if (pack.robot) words += " --robot " + quoted(*pack.robot);
   return words;
+}
+
+/// The commands that do one session again. A random sequence is drawn first, from the boxes of the scenario's file: no
+/// words draw from others.
+std::vector<std::string> commands_of(const CompareOptions& options, const PackOptions& pack, const study::Trial& trial,
+                                     bool is_random) {
+  if (!is_random) return {words_of(pack, trial)};
+  if (!pack.changes.items.empty() || !pack.changes.set.empty()) return {};
+  return {fmt::format("snug items sequence {} --all --name random --sequences {} --seed {} -o random.yaml",
+                      study::quoted(pack.scenario), options.random, options.random_seed),
+          words_of(pack, trial) + " --items random.yaml"};
 }
 
 }  // namespace
@@ -89,6 +105,7 @@ std::string command_of(const PackOptions& pack, const study::Trial& trial) {
 int run_compare(const CompareOptions& options) {
   SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
   model::Scenario& scenario = loaded.scenario;
+  const auto own_sequences = std::ssize(scenario.sequences);
   const std::vector<std::string> sequences = choose_sequences(options, scenario);
   const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents", true);
   const std::size_t plants = static_cast<std::size_t>(options.plants);
@@ -105,15 +122,19 @@ int run_compare(const CompareOptions& options) {
   for (std::size_t run = 0; run < runs && !is_interrupted(); ++run) {
     PackOptions pack = options.pack;
     pack.agent = agents[run / (sequences.size() * plants)];
-    pack.sequence = sequences[run / plants % sequences.size()];
-    pack.plant_seed += run % plants;
+    const std::size_t sequence = run / plants % sequences.size(),
+                      given = sequences.size() - static_cast<std::size_t>(options.random);
+    pack.plant_seed += run % plants + (sequence > given ? (sequence - given) * plants : 0);
+    pack.sequence = sequences[sequence];
     const session::SessionOptions session = make_session_options(pack, loaded, pack.sequence);
     const std::string label =
         fmt::format("{} of {}: {}, sequence {}, plant {}", run + 1, runs, pack.agent, pack.sequence, pack.plant_seed);
     const study::Trial trial = study::run_trial(scenario, pack.sequence, session, make_plant_options(pack, session),
                                                 make_progress_line(label));
     rows.push_back(make_row(trial));
-    if (page) sessions.push_back({rows.back(), outline_boxes(scenario, trial), command_of(pack, trial)});
+    const bool is_random = model::find_sequence(scenario, pack.sequence) - scenario.sequences.data() >= own_sequences;
+    if (page)
+      sessions.push_back({rows.back(), outline_boxes(scenario, trial), commands_of(options, pack, trial, is_random)});
     print_now(format_compare_row(form, rows.back(), run == 0));
   }
   if (page) write_file(std::move(*page), format_compare_page(scenario, sessions));

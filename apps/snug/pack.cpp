@@ -113,6 +113,7 @@ simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& opt
   plant.seed = options.plant_seed;
   plant.perception = perception::kind_of(options.perception);
   plant.faults = simulated_plant::parse_faults(options.fault);
+  for (const std::string& words : options.plant_set) plant.set.push_back(model::parse_key_value(words, "--plant-set"));
   plant.simulation = session.simulation;
   return plant;
 }

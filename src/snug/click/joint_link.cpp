@@ -33,7 +33,7 @@ std::string JointLink::connect(double tick) {
   auto handshake = client_.shake_hands();
   if (!handshake) return handshake.error();
   handshake_ = std::move(*handshake);
-  if (std::abs(handshake_.time_step - tick) > 1e-9) {
+  if (!(std::abs(handshake_.time_step - tick) <= 1e-9)) {  // nor NaN
     return fmt::format("the simulator steps by {} s, the controller by {} s", handshake_.time_step, tick);
   }
   std::string trouble = find_robot();
@@ -103,7 +103,9 @@ std::string JointLink::take(Expected<Sensor, std::string> sensor) {
     measured.q[static_cast<Eigen::Index>(j)] = robot.angles[joints_[j].sensor];
     measured.qd[static_cast<Eigen::Index>(j)] = robot.velocities[joints_[j].sensor];
   }
-  if (!measured.q.allFinite() || !measured.qd.allFinite()) return "the simulator senses what are no numbers";
+  if (!measured.q.allFinite() || !measured.qd.allFinite() || !std::isfinite(sensor->time)) {
+    return "the simulator senses what are no numbers";
+  }
   measured_ = std::move(measured);
   last_ = std::move(*sensor);
   return {};

@@ -272,7 +272,7 @@ plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
     const std::string silence = link_.sense();
     is_stopped_ = silence.empty() && is_active(link_.last_of_robot(), click::kStoppedSensor);
     if (!is_stopped_) fail(trouble);
-  } else if (std::abs(length - plan.settings.tick) > kSameTime) {
+  } else if (!(std::abs(length - plan.settings.tick) <= kSameTime)) {  // nor NaN
     fail(fmt::format("a Control is a step of {} s there, not of {} s: is it served with --async?", length,
                      plan.settings.tick));
   } else if (tick.outcome == "Stuck") {

@@ -229,11 +229,11 @@ Json events_as_json(const std::vector<record::Event>& events) {
 Json boxes_from_result(const Json& result) {
   Json list = Json::array();
   for (const Json& box : result.value("boxes", Json::array())) {
-    Json journey = Json::array();
+    Json events = Json::array();
     for (const Json& event : box.value("events", Json::array())) {
-      journey.push_back({{"kind", event.value("kind", "")},
-                         {"time", event.value("time_s", Json())},
-                         {"text", event.value("text", "")}});
+      events.push_back({{"kind", event.value("kind", "")},
+                        {"time", event.value("time_s", Json())},
+                        {"text", event.value("text", "")}});
     }
     Json pose;
     if (const Json X_TP = box.value("X_TP", Json()); X_TP.is_object()) {
@@ -244,7 +244,7 @@ Json boxes_from_result(const Json& result) {
                     {"state", box.value("state", Json())},
                     {"up", box.value("up", Json())},
                     {"pose", std::move(pose)},
-                    {"journey", std::move(journey)}});
+                    {"events", std::move(events)}});
   }
   return list;
 }
@@ -258,9 +258,9 @@ Json boxes_from_events(const std::vector<record::Event>& events) {
     const auto [at, is_new] = place.try_emplace(event.body, list.size());
     if (is_new) {
       list.push_back(
-          {{"id", event.body}, {"state", nullptr}, {"up", nullptr}, {"pose", nullptr}, {"journey", Json::array()}});
+          {{"id", event.body}, {"state", nullptr}, {"up", nullptr}, {"pose", nullptr}, {"events", Json::array()}});
     }
-    list[at->second]["journey"].push_back({{"kind", event.kind}, {"time", event.time}, {"text", event.text}});
+    list[at->second]["events"].push_back({{"kind", event.kind}, {"time", event.time}, {"text", event.text}});
   }
   return list;
 }

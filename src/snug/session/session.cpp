@@ -108,7 +108,6 @@ class Session {
       const auto start = std::chrono::steady_clock::now();
       const auto decision = agent.decide(paper, item);
       paper_seconds_.push_back(seconds_since(start));
-      if (!decision && decision.error() == packing::NoPlace::NotPlanned) continue;
       if (!decision && packing::is_hopeless(decision.error())) {
         ItemReport report;
         report.id = item.id;
@@ -134,18 +133,34 @@ class Session {
   void finish_item(ItemReport report, int item, int items) {
     if (report.is_packed()) result_.plan.push_back(report.planned);
     result_.items.push_back(std::move(report));
+    for (const Repacked& again : packer_.take_repacked()) plan_anew(again);
     review();
     count();
     if (progress_) progress_(result_, item, items);
   }
 
-  /// What was packed before, and is seen outside now, is not packed any more.
+  void leave_out_of_plan(const std::string& id) {
+    std::erase_if(result_.plan, [&](const packing::Placement& one) { return one.item == id; });
+  }
+
+  void plan_anew(const Repacked& again) {
+    const auto item = std::ranges::find(result_.items, again.planned.item, &ItemReport::id);
+    if (item == result_.items.end() || !item->is_packed()) return;
+    item->planned = again.planned;
+    item->X_TP = again.X_TP;
+    leave_out_of_plan(item->id);
+    result_.plan.push_back(again.planned);
+  }
+
+  /// What was packed before, and is seen outside or nowhere now, is not packed any more.
   void review() {
     for (ItemReport& item : result_.items) {
-      if (!item.is_packed() || !packer_.is_seen_outside(item.id)) continue;
-      item.end = ItemEnd::Left;
-      item.reason = "it is seen outside the container";
-      std::erase_if(result_.plan, [&](const packing::Placement& one) { return one.item == item.id; });
+      if (!item.is_packed()) continue;
+      const bool is_gone = packer_.is_gone(item.id);
+      if (!is_gone && !packer_.is_seen_outside(item.id)) continue;
+      item.end = is_gone ? ItemEnd::Gone : ItemEnd::Left;
+      item.reason = is_gone ? "it is not seen any more" : "it is seen outside the container";
+      leave_out_of_plan(item.id);
     }
   }
 
@@ -199,12 +214,6 @@ class Session {
 SessionResult pack(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options,
                    plant::Plant& plant, const Progress& progress) {
   return Session(scenario, sequence, options, plant, progress).pack();
-}
-
-SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
-                      const std::vector<packing::Placement>& plan, const SessionOptions& options, plant::Plant& plant,
-                      const Progress& progress) {
-  return Session(scenario, sequence, options, plant, progress).execute(plan);
 }
 
 }  // namespace snug::session

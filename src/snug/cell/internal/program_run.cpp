@@ -70,7 +70,7 @@ class ProgramRun {
   bool advance(std::string& failure) {
     const CellTick tick = simulation_.advance(plan_, state_, work_);
     failure = tick.failure;
-    for (record::Event& event : work_.solver.take_events(simulation_.world())) state_.journey.note(std::move(event));
+    for (record::Event& event : work_.solver.take_events(simulation_.world())) state_.event_log.note(std::move(event));
     is_stopped_ = !recorder_->add(tick, state_, work_);
     return tick.has_ended;
   }

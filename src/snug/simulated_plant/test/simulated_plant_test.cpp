@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "snug/cell/drawn_scenario.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
 
@@ -49,6 +50,17 @@ TEST(SimulatedPlant, IsTheScenarioItselfWithSeedZeroAndAnotherCellWithEachSeed) 
   EXPECT_NE(draw_plant(scenario(), "1", 7), draw_plant(scenario(), "1", 8));
 }
 
+TEST(SimulatedPlant, MayBeAnotherCellThanThePlannerBelieves) {
+  SimulatedPlantOptions options;
+  options.seed = 0;
+  options.set = {{"parcel_clearance", "0.0005"}};
+  const SimulatedPlant plant(scenario(), "1", options);
+  EXPECT_EQ(plant.simulation().scenario().parcel_clearance, 0.0005);
+  EXPECT_NE(scenario().parcel_clearance, 0.0005);
+  options.set = {{"parcel_clearanc", "0.0005"}};
+  EXPECT_THROW(SimulatedPlant(scenario(), "1", options), InputError);
+}
+
 SimulatedPlantOptions with_fault(FaultKind kind) {
   SimulatedPlantOptions options;
   options.seed = 7;
@@ -79,7 +91,8 @@ TEST(SimulatedPlant, ABoxThatDropsIsFeltByItsVacuum) {
   const plant::Feedback fed = plant.submit(carrying());
   EXPECT_EQ(fed.end.reason, plant::EndReason::VacuumLost);
   EXPECT_EQ(fed.end.waypoint, 3);
-  const auto& events = plant.state().journey.events();
+  EXPECT_LT(plant.least_hold_factor(), 1e3) << "it hung from the cup before";
+  const auto& events = plant.state().event_log.events();
   EXPECT_TRUE(std::ranges::any_of(events, [](const record::Event& event) { return event.kind == "fault"; }));
 }
 
