@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tempo_curve.py: cycle time, boxes an hour and hold of the cup against the tempo, as the table in docs/packing-execution.md."""
+"""tempo_curve.py: cycle time, boxes an hour and hold of the cup against the tempo, a table in Markdown."""
 import argparse
 import json
 import statistics

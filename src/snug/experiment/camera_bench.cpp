@@ -13,6 +13,7 @@
 #include "snug/camera/render.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/experiment/internal/cpu_time.hpp"
+#include "snug/experiment/internal/scene_bench.hpp"
 
 namespace snug::experiment::internal {
 namespace {

@@ -9,6 +9,7 @@
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
 #include "snug/cell/run.hpp"
+#include "snug/experiment/internal/scene_bench.hpp"
 
 namespace snug::experiment::internal {
 namespace {
