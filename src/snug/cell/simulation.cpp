@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/held_swing.hpp"
 #include "snug/cell/scene_input.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/hash.hpp"
@@ -108,6 +109,9 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
   motion::ControllerSettings settings;
   settings.kind = options.controller;
   settings.fast.tempo = options.tempo;
+  if (options.controller == motion::ControllerKind::Fast) {
+    settings.fast.held.window = held_swing_window(scenario, sequence).value_or(settings.fast.held.window);
+  }
   settings.fast.sealed_pressure = kSealed * scenario.cup.vacuum.pressure_gauge_hold;
   settings.fast.released_pressure = kReleased * scenario.cup.vacuum.pressure_gauge_hold;
   settings.tick = params.tick;

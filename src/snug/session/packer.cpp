@@ -61,6 +61,7 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
     items_[i].arrival = packing::nearest_orientation(R_AW * X_WP.R);
   }
   sent_.name = "pack";
+  layout_.spares_wrist = options.simulation.controller == motion::ControllerKind::Fast;
 }
 
 packing::ContainerState Packer::container_state() const {
@@ -150,7 +151,7 @@ bool Packer::can_be_picked(int item) const {
   if (!box || !is_upright(box->X_WP.R)) return false;
   if (!reaches_) return true;
   const PlannedBox planned = make_planned_box(belief_.nominal(), belief_.sequence(), item);
-  const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP.R,
+  const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP,
                               travel_bottom(layout_, obstacle_top(item)), PickKind::FromAfar);
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_(row.X_WE); });
 }

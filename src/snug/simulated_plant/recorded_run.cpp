@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "snug/motion/program_tempo.hpp"
+
 namespace snug::simulated_plant {
 namespace {
 
@@ -71,7 +73,9 @@ cell::RunResult record(const model::Scenario& scenario, const std::string& seque
   setup.file = recorded.file;
   setup.period = scenario.controller.tick;
   setup.program_name = "pack";
-  setup.program_text = motion::format_program(program_of(calls));
+  const bool is_fast = options.simulation.controller == motion::ControllerKind::Fast;
+  setup.program_text = (is_fast ? motion::format_tempo(options.simulation.tempo) : std::string()) +
+                       motion::format_program(program_of(calls));
   setup.sequence = sequence;
   setup.settings_json = recorded.settings_json;
   setup.version = recorded.version;
