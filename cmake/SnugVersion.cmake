@@ -1,6 +1,7 @@
 # snug_version_header(target): a header version_text.hpp with the version and, in a git checkout, the commit; looked up at each build, written
 # only when it has changed. As a script (cmake -P) it writes that header.
 if(CMAKE_SCRIPT_MODE_FILE)
+  cmake_policy(VERSION 3.25)
   set(text "${VERSION}")
   find_program(GIT git)
   if(GIT)

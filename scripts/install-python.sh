@@ -6,6 +6,7 @@ build="$1"
 venv="${2:-${VIRTUAL_ENV:-}}"
 python="${PYTHON:-/usr/bin/python3}"
 if [ -n "$venv" ]; then
+  venv="$(realpath -m -- "$venv")"
   [ -x "$venv/bin/python" ] || "$python" -m venv --system-site-packages "$venv"
   python="$venv/bin/python"
   folder="$("$python" -c 'import sysconfig; print(sysconfig.get_paths()["platlib"])')"

@@ -1018,6 +1018,40 @@ class OtherCells(unittest.TestCase):
         self.assertEqual([one for one in checked["findings"] if not one["waypoint"].startswith("Place")], [],
                          "as fast as the joints allow and no faster")
 
+    def test_program_packed_fast_says_so_and_is_exported_with_its_own_timing(self):
+        program = self.folder / "own.csv"
+        self.pack("--sequence", "two", "--plant-seed", 0, "--tempo", 0.8, "--program", program)
+        self.assertEqual(program.read_text().splitlines()[0], "# tempo: 0.8")
+        words = (CELL, "--items", self.orders, "--program", program, "--sequence", "two", "--robot", "ur10", "--json")
+        seconds = {more: json.loads(snug("simulate", *words, *more).stdout)["duration_s"]
+                   for more in ((), ("--controller", "fast", "--tempo", "0.8"), ("--tempo", "1"), ("--controller", "faithful"))}
+        own, said, faster, lagged = seconds.values()
+        self.assertEqual(own, said)
+        self.assertLess(faster, own)
+        self.assertLess(own, 0.7 * lagged)
+        checked = json.loads(snug("check", *words[:-3], "--json").stdout)
+        self.assertLess(checked["duration_s"], 0.7 * lagged)
+        export = ("export", program, "--scenario", CELL, "--items", self.orders, "--sequence", "two", "--format")
+        out = self.folder / "own.yaml"
+        self.assertEqual(snug(*export, "ros-trajectory", "-o", out).returncode, 0)
+        ends = re.findall(r"time_from_start: \{sec: (\d+), nanosec: (\d+)\}", out.read_text().split("---")[0])
+        last = int(ends[-1][0]) + 1e-9 * int(ends[-1][1])
+        self.assertAlmostEqual(last, own, delta=0.2, msg="until the joints rest")
+        self.assertIn(", tempo 0.8", out.read_text())
+        script = self.folder / "own.script"
+        # From stop to stop the robot's own moves lose a box here: said, and nothing is written.
+        result = snug(*export, "urscript", "-o", script)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("dropped, not packed", result.stderr)
+        self.assertFalse(script.exists())
+        self.assertEqual(snug(*export, "urscript", "-o", script, "--unchecked").returncode, 0)
+        self.assertNotIn("lags", script.read_text())
+        stated = float(re.search(r"Simulated: ([0-9.]+) s", script.read_text())[1])
+        self.assertAlmostEqual(stated, own, delta=1.0, msg="and the time until the last waypoint counts as reached")
+        self.assert_refused(snug(*export, "urscript", "-o", script, "--controller", "faithful", "--tempo", 0.8), "--tempo")
+        program.write_text(program.read_text().replace("tempo: 0.8", "tempo: 8"))
+        self.assert_refused(snug("simulate", *words), "own.csv:1", "tempo", "0.1 to 1")
+
     def test_tempo_out_of_range_is_refused(self):
         for tempo in (0.49, 1.01, "nan", "fast"):
             self.assert_refused(snug("pack", CELL, "--sequence", "1", "--tempo", tempo), "--tempo")
@@ -1039,6 +1073,28 @@ class OtherCells(unittest.TestCase):
         words = html.unescape(re.search(r"<code>snug (.*?) -o run.h5<br>", text).group(1))
         packed = json.loads(snug(*shlex.split(words), "--json").stdout)
         self.assertEqual((packed["executed_boxes"], packed["executed_percent"]), (rows[0]["executed_boxes"], rows[0]["executed_percent"]))
+
+    def test_the_words_that_repeat_a_random_sequence_draw_it_first(self):
+        page = self.folder / "it's random.html"
+        words = ("compare", CELL, "--container", "220x220x120", "--random", 2, "--random-seed", 3, "--agents", "margin", *self.QUICK)
+        rows = json.loads(snug(*words, "--json", "-o", page).stdout)["rows"]
+        codes = re.findall(r"<code>(.*?) -o run.h5<br>", page.read_text(encoding="utf-8"))
+        self.assertEqual(len(codes), 2)
+        for row, code in zip(rows, codes):
+            draw, pack = (shlex.split(html.unescape(line)) for line in code.split("<br>"))
+            drawn = self.folder / f"{row['sequence']}.yaml"
+            snug(*[drawn if word == "random.yaml" else word for word in draw[1:]])
+            packed = json.loads(snug(*[drawn if word == "random.yaml" else word for word in pack[1:]], "--json").stdout)
+            self.assertEqual((packed["sequence"], packed["executed_percent"]), (row["sequence"], row["executed_percent"]))
+
+    def test_nothing_sent_is_nothing_as_planned(self):
+        page = self.folder / "none.html"
+        words = ("compare", CELL, "--container", "60x60x60", "--sequences", "1", "--agents", "margin", *self.QUICK)
+        table = snug(*words, "-o", page).stdout
+        self.assertNotIn("100.00 %", table)
+        chart = re.search(r"items that end as planned, %</figcaption>(.*?)</figure>", page.read_text(encoding="utf-8")).group(1)
+        self.assertNotIn("<circle", chart)
+        self.assertNotIn("nan", chart)
 
     def test_container_too_small_for_anything_is_a_reason(self):
         packed = self.pack("--sequence", "two", "--container", "60x60x60")

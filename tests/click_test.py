@@ -71,11 +71,13 @@ class Served:
 class Peer:
     """A client, by the description of the protocol."""
 
-    def __init__(self, endpoint, kind=None):
+    def __init__(self, endpoint, kind=None, name=None):
         self.pb = messages()
         self.context = zmq.Context()
         self.socket = self.context.socket(kind or zmq.REQ)
         self.socket.linger = 0
+        if name:
+            self.socket.setsockopt(zmq.IDENTITY, name)
         self.socket.rcvtimeo = 60000
         self.socket.connect(endpoint)
 
@@ -90,7 +92,7 @@ class Peer:
 
     def raw(self, frame):
         self.socket.send(frame)
-        answer = self.socket.recv()
+        self.bytes = answer = self.socket.recv()
         kinds = {self.pb.MessageType.Handshake: self.pb.HandshakeMessage, self.pb.MessageType.Sensor: self.pb.SensorMessage,
                  self.pb.MessageType.Reset: self.pb.ResetMessage, self.pb.MessageType.Error: self.pb.ErrorMessage}
         message = kinds[self.pb.Message.FromString(answer).messageType]()
@@ -172,6 +174,28 @@ class Click(unittest.TestCase):
             self.assert_error(peer.raw(bytes(64 << 20)), "are the most")
             self.assertEqual(peer.sense(), before)
             self.assertEqual(peer.control(STILL).messageType, peer.pb.MessageType.Sensor)
+
+    def test_sensors_have_the_bytes_that_protobuf_makes(self):
+        with Served("--plant-seed", 1, "--joint-forces", "--box-velocities", "--sequence", 1) as served:
+            with Peer(served.endpoint) as peer:
+                peer.handshake()
+                for ask in (peer.sense, lambda: peer.control([0.1] + STILL[1:], vacuum=True)):
+                    message = ask()
+                    self.assertEqual(message.messageType, peer.pb.MessageType.Sensor)
+                    self.assertEqual(peer.bytes, message.SerializeToString(deterministic=True))
+                self.assertTrue(message.objects["ur10"].sensors["load"].sensor[0].HasField("force3d"))
+
+    def test_who_only_looks_is_answered_beside_the_controller(self):
+        with Served("--json") as served, Peer(served.endpoint) as peer, Peer(served.endpoint, name=b"watch-me") as other:
+            peer.handshake()
+            after = peer.control([0.2] + STILL[1:])
+            self.assertEqual(other.handshake().messageType, other.pb.MessageType.Handshake)
+            self.assertEqual(other.sense(), after)
+            self.assert_error(other.control(STILL), "only looks")
+            self.assert_error(other.reset(), "only looks")
+            other.close()
+            self.assertEqual(peer.sense(), after)
+            self.assertAlmostEqual(peer.control(STILL).simVars.simulatedTime, 0.016)
 
     def test_a_second_client_is_refused_and_comes_in_when_the_first_has_died(self):
         with Served("--json") as served:

@@ -22,6 +22,7 @@ WAIT = 3600.0 if os.environ.get("SNUG_LONG") else LONG
 LONG_COMMANDS = re.compile(r"snug (bench|view|compare|study examples|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
                            r"pack .*--monte-carlo|pack (?!.*(small\.csv|kitchen\.h5|my-cell)))")
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
+# `--slurm` submits jobs to a scheduler, which a test of studies has of its own; the rest is not of this program.
 LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|--slurm|\\| man |\.\.\./")
 PREPARED = ("program.csv", "run.h5", "again.h5", "measured.h5")
 MAY_FAIL = re.compile(r"snug (check|bench|export .*--format (urscript|ros-trajectory))")  # what they say no to is a result (exit code 1)

@@ -27,7 +27,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 
-constexpr std::chrono::seconds kPatience(120);  // for one answer, on a machine that is busy
+constexpr std::chrono::seconds kAnswerPatience(120);  // for one answer, on a machine that is busy
 constexpr std::chrono::seconds kGoodbye(5);
 constexpr int kReads = 3, kWrites = 4;  // the browser's ends of the pipe, by its convention
 constexpr std::size_t kLargestMessage = std::size_t{256} << 20U;
@@ -187,7 +187,7 @@ std::string Browser::receive(Clock::time_point deadline) {
     pollfd waiting = {socket_, POLLIN, 0};
     const int ready = left > 0 ? ::poll(&waiting, 1, static_cast<int>(left)) : 0;
     if (ready < 0 && errno == EINTR) throw BrowserError("interrupted");
-    if (ready <= 0) throw BrowserError(fmt::format("the browser has not answered for {} s", kPatience.count()));
+    if (ready <= 0) throw BrowserError(fmt::format("the browser has not answered for {} s", kAnswerPatience.count()));
     std::array<char, 65536> part;
     const ssize_t count = ::recv(socket_, part.data(), part.size(), 0);
     if (count < 0 && errno == EINTR) continue;
@@ -202,7 +202,7 @@ std::string Browser::call(const std::string& method, const std::string& paramete
   Json message = {{"id", id}, {"method", method}, {"params", Json::parse(parameters)}};
   if (!session_.empty()) message["sessionId"] = session_;
   send(message.dump());
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + kAnswerPatience;
   for (;;) {
     const Json answer = Json::parse(receive(deadline), nullptr, false);
     if (answer.is_discarded() || answer.value("id", 0) != id) continue;  // events, of which none is needed

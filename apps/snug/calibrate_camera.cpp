@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "as_list.hpp"
 #include "calibrate.hpp"
 #include "outputs.hpp"
 #include "snug/calibration/hand_eye.hpp"
@@ -14,8 +15,6 @@ namespace snug::app {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json as_list(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json as_json(const Pose& X, const Matrix6& covariance) {
   const Quaternion quat(X.R);

@@ -10,6 +10,7 @@
 #include "robot_warnings.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
+#include "snug/core/read_file.hpp"
 
 namespace snug::app {
 namespace {
@@ -99,9 +100,13 @@ int run_check(const CheckOptions& options) {
   cell::CheckOptions check;
   if (options.sequence) check.sequence = *options.sequence;
   if (options.robot) check.robot = *options.robot;
-  check.controller = motion::controller_kind_of(options.controller, "command line");
+  const std::string text = read_file(options.program, "a program file (CSV)");
+  cell::SimulationOptions how;
+  choose_motion(options.motion, text, options.program, how);
+  check.controller = how.controller;
+  check.tempo = how.tempo;
   print_robot_warnings(scenario);
-  const motion::Program program = cell::corrected(scenario, motion::load_program(options.program),
+  const motion::Program program = cell::corrected(scenario, motion::parse_program(text, options.program),
                                                   options.corrections == "none" ? "" : options.corrections);
   const cell::CheckResult result = cell::check_program(scenario, program, check);
   print(options.json ? format_json(result) : format_table(result));

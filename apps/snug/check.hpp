@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "program_motion.hpp"
 #include "scenario_options.hpp"
 #include "verb.hpp"
 
@@ -15,7 +16,7 @@ struct CheckOptions {
   std::string program;
   std::optional<std::string> sequence;
   std::optional<std::string> robot;
-  std::string controller = "faithful";  ///< or ideal
+  MotionWords motion;
   std::string corrections = "none";
   bool json = false;
 };

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "options.hpp"
+#include "ranges.hpp"
 
 namespace snug::app {
 namespace {
@@ -29,12 +30,16 @@ void add_check(CLI::App& app, Action& action) {
   verb.add_option("--sequence", options->sequence, "item sequence, to look at the held boxes too")->type_name("NAME");
   verb.add_option("--robot", options->robot, "the scenario's robot; absent: the one there is")->type_name("NAME");
   verb.add_option(
-          "--controller", options->controller,
+          "--controller", options->motion.controller,
           "faithful: the demonstrator's timing and lag; ideal: the reference, exactly, as exported programs are done; "
-          "fast: bounded jerk and blends, as pack --tempo 1, without anything to feel")
+          "fast: bounded jerk and blends, as pack --tempo, without anything to feel (default: as the program was "
+          "packed)")
       ->check(one_of({"faithful", "ideal", "fast"}))
-      ->type_name("KIND")
-      ->capture_default_str();
+      ->type_name("KIND");
+  verb.add_option("--tempo", options->motion.tempo,
+                  "share of the speeds, with fast (default: that the program was packed with, or 1)")
+      ->check(within(0.5, 1.0))
+      ->type_name("SHARE");
   verb.add_option("--corrections", options->corrections, "site corrections: a layer of the scenario, or none")
       ->type_name("LAYER")
       ->capture_default_str();

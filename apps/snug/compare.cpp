@@ -15,6 +15,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/packing/representatives.hpp"
+#include "snug/study/design.hpp"
 
 namespace snug::app {
 namespace {
@@ -64,15 +65,18 @@ std::vector<std::string> choose_sequences(const CompareOptions& options, model::
   return chosen;
 }
 
-/// The words of `snug pack` that do one session again. Random sequences are the comparison's own: they have none.
-std::string command_of(const PackOptions& pack, const study::Trial& trial) {
+/// The words of `snug pack` that do one session again.
+std::string words_of(const PackOptions& pack, const study::Trial& trial) {
+  using study::quoted;
   const PackOptions usual;
-  std::string words = fmt::format("snug pack {} --sequence {} --agent {} --seed {} --plant-seed {}", pack.scenario,
-                                  pack.sequence, pack.agent, trial.seed, pack.plant_seed);
-  for (const std::string& file : pack.changes.items) words += " --items " + file;
-  if (pack.changes.container) words += " --container " + *pack.changes.container;
-  if (pack.changes.pallet) words += " --pallet " + *pack.changes.pallet;
-  for (const std::string& change : pack.changes.set) words += " --set '" + change + "'";
+  std::string words =
+      fmt::format("snug pack {} --sequence {} --agent {} --seed {} --plant-seed {}", quoted(pack.scenario),
+                  quoted(pack.sequence), quoted(pack.agent), trial.seed, pack.plant_seed);
+  for (const std::string& file : pack.changes.items) words += " --items " + quoted(file);
+  if (pack.changes.container) words += " --container " + quoted(*pack.changes.container);
+  if (pack.changes.pallet) words += " --pallet " + quoted(*pack.changes.pallet);
+  for (const std::string& change : pack.changes.set) words += " --set " + quoted(change);
+  for (const std::string& change : pack.plant_set) words += " --plant-set " + quoted(change);
   if (pack.perception != usual.perception) words += " --perception " + pack.perception;
   if (pack.samples != usual.samples) words += fmt::format(" --samples {}", pack.samples);
   if (pack.skips != usual.skips) words += fmt::format(" --skips {}", pack.skips);
@@ -80,8 +84,19 @@ std::string command_of(const PackOptions& pack, const study::Trial& trial) {
   if (pack.future != usual.future) words += " --future " + pack.future;
   if (!pack.fault.empty()) words += " --fault " + pack.fault;
   if (pack.tempo) words += fmt::format(" --tempo {}", *pack.tempo);
-  if (pack.robot) words += " --robot " + *pack.robot;
+  if (pack.robot) words += " --robot " + quoted(*pack.robot);
   return words;
+}
+
+/// The commands that do one session again. A random sequence is drawn first, from the boxes of the scenario's file: no
+/// words draw from others.
+std::vector<std::string> commands_of(const CompareOptions& options, const PackOptions& pack, const study::Trial& trial,
+                                     bool is_random) {
+  if (!is_random) return {words_of(pack, trial)};
+  if (!pack.changes.items.empty() || !pack.changes.set.empty()) return {};
+  return {fmt::format("snug items sequence {} --all --name random --sequences {} --seed {} -o random.yaml",
+                      study::quoted(pack.scenario), options.random, options.random_seed),
+          words_of(pack, trial) + " --items random.yaml"};
 }
 
 }  // namespace
@@ -105,15 +120,20 @@ int run_compare(const CompareOptions& options) {
   for (std::size_t run = 0; run < runs && !is_interrupted(); ++run) {
     PackOptions pack = options.pack;
     pack.agent = agents[run / (sequences.size() * plants)];
-    pack.sequence = sequences[run / plants % sequences.size()];
-    pack.plant_seed += run % plants;
+    const std::size_t sequence = run / plants % sequences.size(),
+                      given = sequences.size() - static_cast<std::size_t>(options.random);
+    pack.plant_seed += run % plants + (sequence > given ? (sequence - given) * plants : 0);
+    pack.sequence = sequences[sequence];
     const session::SessionOptions session = make_session_options(pack, loaded, pack.sequence);
     const std::string label =
         fmt::format("{} of {}: {}, sequence {}, plant {}", run + 1, runs, pack.agent, pack.sequence, pack.plant_seed);
     const study::Trial trial = study::run_trial(scenario, pack.sequence, session, make_plant_options(pack, session),
                                                 make_progress_line(label));
     rows.push_back(make_row(trial));
-    if (page) sessions.push_back({rows.back(), outline_boxes(scenario, trial), command_of(pack, trial)});
+    if (page) {
+      sessions.push_back(
+          {rows.back(), outline_boxes(scenario, trial), commands_of(options, pack, trial, sequence >= given)});
+    }
     print_now(format_compare_row(form, rows.back(), run == 0));
   }
   if (page) write_file(std::move(*page), format_compare_page(scenario, sessions));

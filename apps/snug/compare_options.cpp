@@ -25,11 +25,11 @@ void add_compare(CLI::App& app, Action& action) {
   verb.add_option("--sequences", options->sequences,
                   "all, or names separated by commas (default: all; with --random none but the random ones)")
       ->type_name("NAMES");
-  CLI::Option* random =
-      verb.add_option("--random", options->random,
-                      "so many more sequences, random-1, ...: every box of the scenario in random order")
-          ->check(whole(1, 10000))
-          ->type_name("N");
+  CLI::Option* random = verb.add_option("--random", options->random,
+                                        "so many more sequences, random-1, ...: every box of the scenario in random "
+                                        "order; each is packed in plants of its own")
+                            ->check(whole(1, 10000))
+                            ->type_name("N");
   verb.add_option("--random-seed", options->random_seed, "seed of their order")
       ->check(whole(0))
       ->needs(random)

@@ -5,14 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "snug/core/text.hpp"
 #include "snug/replay/page.hpp"
 
 namespace snug::app {
 namespace {
 
 using Point = std::array<double, 2>;
-using replay::escape_markup;
 
 double cross(const Point& o, const Point& a, const Point& b) {
   return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
@@ -35,7 +36,9 @@ std::vector<Point> hull_of(std::vector<Point> points) {
   return hull;
 }
 
-/// One number of each session, on an axis that all charts share.
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// One number of each session, on an axis that all charts share; NaN where it has none.
 struct Measure {
   const char* title;
   double (*value)(const CompareRow& row);
@@ -44,7 +47,7 @@ struct Measure {
 constexpr Measure kMeasures[] = {
     {"filling degree by the plant's truth, %", [](const CompareRow& row) { return row.executed_percent; }},
     {"items that end as planned, %",
-     [](const CompareRow& row) { return row.items_sent > 0 ? 100.0 * row.items_as_planned / row.items_sent : 100.0; }},
+     [](const CompareRow& row) { return row.items_sent > 0 ? 100.0 * row.items_as_planned / row.items_sent : kNone; }},
     {"boxes an hour of the plant's time", [](const CompareRow& row) { return row.boxes_per_hour; }},
     {"time to decide and rehearse an item, median, s",
      [](const CompareRow& row) { return row.decision_seconds_median; }},
@@ -63,6 +66,7 @@ std::string chart(const Measure& measure, const std::vector<Group>& groups) {
   for (const Group& group : groups) {
     for (const CompareRow* row : group.rows) {
       const double value = measure.value(*row);
+      if (std::isnan(value)) continue;
       low = is_first ? value : std::min(low, value);
       high = is_first ? value : std::max(high, value);
       is_first = false;
@@ -79,23 +83,28 @@ std::string chart(const Measure& measure, const std::vector<Group>& groups) {
   double y = 14.0;
   for (const Group& group : groups) {
     double sum = 0.0;
+    int count = 0;
     svg += fmt::format(
         "<text x=\"{}\" y=\"{:.0f}\" text-anchor=\"end\">{}</text><line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" "
         "y2=\"{:.0f}\" class=\"rule\"/>",
         kLabel - 8.0, y + 4.0, escape_markup(group.label), kLabel, kLabel + kPlot, y, y);
     for (const CompareRow* row : group.rows) {
       const double value = measure.value(*row);
+      if (std::isnan(value)) continue;
       sum += value;
+      ++count;
       svg += fmt::format(
           "<circle cx=\"{:.1f}\" cy=\"{:.0f}\" r=\"4\"><title>{}, sequence {}, plant {}: {:.4g}</title>"
           "</circle>",
           x(value), y, escape_markup(row->agent), escape_markup(row->sequence), row->plant_seed, value);
     }
-    const double mean = sum / static_cast<double>(group.rows.size());
-    svg += fmt::format(
-        "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" y2=\"{2:.0f}\" class=\"mean\"/>"
-        "<text x=\"{3}\" y=\"{4:.0f}\">mean {5:.3g}</text>",
-        x(mean), y - 9.0, y + 9.0, kLabel + kPlot + 8.0, y + 4.0, mean);
+    if (count > 0) {
+      const double mean = sum / count;
+      svg += fmt::format(
+          "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" y2=\"{2:.0f}\" class=\"mean\"/>"
+          "<text x=\"{3}\" y=\"{4:.0f}\">mean {5:.3g}</text>",
+          x(mean), y - 9.0, y + 9.0, kLabel + kPlot + 8.0, y + 4.0, mean);
+    }
     y += kLine;
   }
   return svg + fmt::format(
@@ -145,8 +154,12 @@ std::string card(const Vector3& inner_size, const CompareSession& session) {
       plan_view(inner_size, session.boxes), row.executed_percent, row.executed_boxes, escape_markup(row.agent),
       row.plant_seed, row.items_as_planned, row.items_sent, row.boxes_lost, row.recoveries,
       escape_markup(row.failure.empty() ? row.stop_reason : row.failure));
-  return text + "<details><summary>see this run</summary><code>" + escape_markup(session.command) +
-         " -o run.h5<br>snug report run.h5 -o run.html</code></details></div>";
+  if (session.commands.empty()) return text + "</div>";
+  text += "<details><summary>see this run</summary><code>";
+  for (const std::string& command : session.commands) {
+    text += escape_markup(command) + (&command == &session.commands.back() ? " -o run.h5<br>" : "<br>");
+  }
+  return text + "snug report run.h5 -o run.html</code></details></div>";
 }
 
 constexpr const char* kStyle =

@@ -16,11 +16,12 @@ struct BoxOutline {
   double top = 0.0;                              ///< m over the container's floor
 };
 
-/// One session: its row, what it left in the container, the words that repeat it.
+/// One session: its row, what it left in the container, the commands that repeat it, the last one `snug pack`; none
+/// where no commands do.
 struct CompareSession {
   CompareRow row;
   std::vector<BoxOutline> boxes;
-  std::string command;
+  std::vector<std::string> commands;
 };
 
 /// The boxes that are packed by the plant's truth, the lowest first.

@@ -21,6 +21,7 @@ struct Summary {
   double planned = 0.0, executed = 0.0, deviation = 0.0, lowest = 0.0, highest = 0.0, before_skips = 0.0;
   double seconds = 0.0;         ///< mean of the medians
   double boxes_per_hour = 0.0;  ///< mean
+  study::Calibration calibration;
 };
 
 Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent, const std::string& sequence = {}) {
@@ -41,6 +42,7 @@ Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent,
     square += row.executed_percent * row.executed_percent;
     all.seconds += row.decision_seconds_median;
     all.boxes_per_hour += row.boxes_per_hour;
+    all.calibration.add(row.calibration);
   }
   if (all.count == 0) return all;
   const double count = all.count;
@@ -64,7 +66,10 @@ std::vector<std::string> distinct(const std::vector<CompareRow>& rows, const Get
   return words;
 }
 
-double share_of(const Summary& all) { return all.sent > 0 ? 100.0 * all.as_planned / all.sent : 100.0; }
+/// Of those that were sent, in percent.
+std::string share_of(const Summary& all) {
+  return all.sent > 0 ? fmt::format("{:.2f} %", 100.0 * all.as_planned / all.sent) : std::string("-");
+}
 
 const model::Reported* find_reported(const model::Sequence& sequence, const std::string& agent) {
   const auto found = std::ranges::find(sequence.reported, agent, &model::Reported::agent);
@@ -110,9 +115,35 @@ constexpr const char* kRow =
     "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7}  {:>7}  {}\n";
 
 std::string summary_line(const std::string& label, const Summary& all) {
-  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:9.2f} % {:5} {:10}  {:7.0f}\n", label,
+  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:>11} {:5} {:10}  {:7.0f}\n", label,
                      all.count, all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
                      all.recoveries, all.boxes_per_hour);
+}
+
+/// Predicted success beside what happened.
+std::string calibration_lines(const std::string& agent, const study::Calibration& calibration) {
+  std::string text;
+  for (std::size_t i = 0; i < calibration.bins.size(); ++i) {
+    const study::CalibrationBin& bin = calibration.bins[i];
+    if (bin.motions == 0) continue;
+    text += fmt::format("{:<25} {:3} - {:3} %  {:7} {:10.1f} % {:9.1f} %\n", agent, 10 * i, 10 * (i + 1), bin.motions,
+                        100.0 * bin.predicted / bin.motions, 100.0 * bin.succeeded / bin.motions);
+  }
+  return text;
+}
+
+Json as_json(const study::Calibration& calibration) {
+  Json bins = Json::array();
+  for (std::size_t i = 0; i < calibration.bins.size(); ++i) {
+    const study::CalibrationBin& bin = calibration.bins[i];
+    if (bin.motions == 0) continue;
+    bins.push_back({{"from_percent", 10 * i},
+                    {"to_percent", 10 * (i + 1)},
+                    {"motions", bin.motions},
+                    {"predicted_percent", 100.0 * bin.predicted / bin.motions},
+                    {"observed_percent", 100.0 * bin.succeeded / bin.motions}});
+  }
+  return bins;
 }
 
 std::string format_table_end(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
@@ -134,6 +165,11 @@ std::string format_table_end(const model::Scenario& scenario, const std::vector<
       text += fmt::format("{:<25}       {:7.2f} before the first item was skipped\n", "", all.before_skips);
     }
   }
+  std::string lines;
+  for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
+    lines += calibration_lines(agent, summarize(rows, agent).calibration);
+  }
+  if (!lines.empty()) text += "\nsuccess of motions         predicted  motions   predicted   observed\n" + lines;
   if (!with_references) return text;
   const std::vector<std::string> reporters = reporters_of(scenario, sequences);
   if (reporters.empty()) return text;
@@ -184,7 +220,8 @@ std::string format_json_end(const std::vector<CompareRow>& rows) {
                      {"boxes_lost", all.lost},
                      {"recoveries", all.recoveries},
                      {"boxes_per_hour", all.boxes_per_hour},
-                     {"decision_seconds_median", all.seconds}});
+                     {"decision_seconds_median", all.seconds},
+                     {"calibration", as_json(all.calibration)}});
   }
   return "\n],\n\"means\": " + means.dump(2) + "}\n";
 }
@@ -211,6 +248,7 @@ CompareRow make_row(const study::Trial& trial) {
   row.boxes_per_hour = trial.boxes_per_hour;
   row.stop_reason = session::name_of(session.stop_reason);
   row.failure = session.failure;
+  row.calibration.add(trial);
   return row;
 }
 

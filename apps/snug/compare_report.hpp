@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/study/calibration.hpp"
 #include "snug/study/trial.hpp"
 
 namespace snug::app {
@@ -19,6 +20,7 @@ struct CompareRow {
   double decision_seconds_median = 0.0;
   double boxes_per_hour = 0.0;
   int items_sent = 0, items_as_planned = 0, boxes_lost = 0, recoveries = 0;
+  study::Calibration calibration;
   std::string stop_reason;
   std::string failure;  ///< empty, or why the robot did not come home
 };

@@ -12,6 +12,7 @@
 #include "snug/cell/corrected.hpp"
 #include "snug/click/program_client.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 
 namespace snug::app {
 namespace {
@@ -64,10 +65,11 @@ int run_control(const ControlOptions& options) {
   model::Sequence none;
   const model::Sequence& sequence = options.sequence ? cell::require_sequence(scenario, *options.sequence) : none;
   cell::SimulationOptions how;
-  if (options.controller) how.controller = motion::controller_kind_of(*options.controller, "command line");
+  const std::string text = read_file(options.program, "a program file (CSV)");
+  choose_motion(options.motion, text, options.program, how);
   const std::string corrections = options.corrections == "none" ? "" : options.corrections;
   const motion::PreparedProgram plan = cell::prepare(
-      scenario, sequence, how, cell::corrected(scenario, motion::load_program(options.program), corrections));
+      scenario, sequence, how, cell::corrected(scenario, motion::parse_program(text, options.program), corrections));
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
   click::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
                                         options.sequence ? &sequence : nullptr};

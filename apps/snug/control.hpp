@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "program_motion.hpp"
 #include "verb.hpp"
 
 namespace snug::app {
@@ -14,7 +15,7 @@ struct ControlOptions {
   std::string scenario = "scenarios/box-demonstrator.yaml";  ///< arm, limits, gains, boxes
   std::optional<std::string> sequence;                       ///< whose boxes are brought, whose gain is used
   std::optional<std::string> robot;
-  std::optional<std::string> controller;  ///< faithful | ideal
+  MotionWords motion;
   std::string corrections = "none";
   std::string object = {};
   std::string vacuum_event = "vacuum", blow_off_event = "blow_off";

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "program_motion.hpp"
 #include "scenario_options.hpp"
 #include "snug/control/program_export.hpp"
 #include "snug/replay/mcap_writer.hpp"
@@ -24,6 +25,7 @@ struct ExportOptions {
   ScenarioChanges changes;
   std::string sequence;              ///< whose gain; empty: the first
   std::string corrections = "none";  ///< layer of the scenario
+  MotionWords motion;                ///< absent: as the program was packed
   double period = 0.04;              ///< s, between the points of a trajectory
   bool is_unchecked = false;         ///< not simulated before it is written
   control::UrScriptOptions script;

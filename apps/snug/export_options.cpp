@@ -16,7 +16,8 @@ Examples:
   snug export run.h5 --format mcap --from 40 --to 60 --every 4 -o part.mcap
   snug export run.h5 --format csv -o run.csv
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
-  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml)";
+  snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml
+A program that was packed with --tempo is exported with its own timing, as it is simulated in the scenario's cell.)";
 
 }  // namespace
 
@@ -48,6 +49,14 @@ void add_export(CLI::App& app, Action& action) {
   verb.add_option("--corrections", options->corrections, "of a program: a layer of the scenario, or none")
       ->type_name("LAYER")
       ->capture_default_str();
+  verb.add_option("--controller", options->motion.controller,
+                  "of a program: what it was made for, faithful or fast (default: as the program was packed)")
+      ->check(one_of({"faithful", "fast"}))
+      ->type_name("KIND");
+  verb.add_option("--tempo", options->motion.tempo,
+                  "of a program: share of the speeds, with fast (default: that it was packed with, or 1)")
+      ->check(within(0.5, 1.0))
+      ->type_name("SHARE");
   verb.add_flag(
       "--unchecked", options->is_unchecked,
       "of a program: write it without simulating it first; otherwise it is refused where the robot stops or a box "

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <optional>
 
 #include "program_fit.hpp"
 #include "robot_warnings.hpp"
@@ -13,7 +14,9 @@
 #include "snug/cell/simulation.hpp"
 #include "snug/control/program_export.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/motion/fast_controller.hpp"
 #include "snug/motion/fitted_limits.hpp"
 #include "version.hpp"
 
@@ -31,36 +34,69 @@ cup::CupMode cup_for(const ExportOptions& options) {
   return is_own_program(motion::load_program(options.input)) ? cup::CupMode::Phases : cup::CupMode::Holding;
 }
 
+cell::SimulationOptions simulation_for(const model::Scenario& scenario, const ExportOptions& options) {
+  cell::SimulationOptions simulation;
+  simulation.cup = cup_for(options);
+  simulation.robot = scenario.robot->name;
+  choose_motion(options.motion, read_file(options.input, "a program file (CSV)"), options.input, simulation);
+  return simulation;
+}
+
 /// A program and the robot that is to do it.
 struct LoadedProgram {
   cell::Simulation simulation;
-  motion::PreparedProgram plan;  ///< with the tool that lags behind, as it is simulated
+  motion::PreparedProgram plan;  ///< as it is simulated: with the tool that lags behind, or fast
+  /// Done in the cell, with contact: of a fast program what is written, since contact ends its rows and its waits.
+  std::optional<cell::MotionTrial> trial;
 
   LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
-      : simulation(scenario, sequence, {motion::ControllerKind::Faithful, cup_for(options), scenario.robot->name}),
+      : simulation(scenario, sequence, simulation_for(scenario, options)),
         plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input),
-                                                options.corrections == "none" ? "" : options.corrections))) {}
+                                                options.corrections == "none" ? "" : options.corrections))) {
+    if (!options.is_unchecked) trial = cell::try_motion(simulation, plan);
+  }
+
+  [[nodiscard]] bool is_fast() const { return plan.settings.kind == motion::ControllerKind::Fast; }
 
   /// `done`: the motion that is written, as simulated or fitted to that.
   [[nodiscard]] control::RobotProgram for_robot(const motion::PreparedProgram& done,
                                                 const ExportOptions& options) const {
     const std::string layer = options.corrections == "none" ? "" : ", corrections " + options.corrections;
-    return {done,
-            simulation.arm()->model(),
-            simulation.arm()->start(),
-            find_loads(),
-            {fmt::format("snug {}", version_text()),
-             fmt::format("program {}, {} rows{}", options.input, plan.program.waypoints.size(), layer),
-             fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name, simulation.sequence().name,
-                         simulation.arm()->model().name)},
-            motion::compute_duration(plan, simulation.scenario().controller.X_WE_start)};
+    const std::string tempo = is_fast() ? fmt::format(", tempo {}", plan.settings.fast.tempo) : "";
+    const Pose& X_WE_start = simulation.scenario().controller.X_WE_start;
+    return {
+        .plan = done,
+        .arm = simulation.arm()->model(),
+        .q_start = simulation.arm()->start(),
+        .loads = find_loads(),
+        .notes = {fmt::format("snug {}", version_text()),
+                  fmt::format("program {}, {} rows{}{}", options.input, plan.program.waypoints.size(), layer, tempo),
+                  fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name,
+                              simulation.sequence().name, simulation.arm()->model().name)},
+        .simulated_duration = is_fast() && trial ? trial->duration : motion::compute_duration(plan, X_WE_start),
+        .simulated_with = simulated_with()};
+  }
+
+  [[nodiscard]] std::string simulated_with() const {
+    return is_fast() ? "with blends, and rows and waits that end by what is felt"
+                     : "with a controller that lags behind";
   }
 
   /// The program for a robot that follows exactly: the same rows with speeds and accelerations of the simulated motion.
   [[nodiscard]] motion::PreparedProgram fitted() const {
     motion::PreparedProgram exact = plan;
+    const Pose& X_WE_start = simulation.scenario().controller.X_WE_start;
+    if (is_fast()) {
+      for (std::size_t i = 0; i < exact.row_limits.size(); ++i) {
+        if (trial) exact.program.waypoints[i].X_WE = trial->ended[i];
+        const Pose& X_WE = i > 0 ? exact.program.waypoints[i - 1].X_WE : X_WE_start;
+        const motion::Pace pace = motion::pace_of(exact, X_WE, static_cast<int>(i));
+        exact.row_limits[i] = {exact.row_limits[i].precision, pace.max_acceleration, pace.max_speed,
+                               pace.max_turn_speed, pace.max_turn_acceleration};
+      }
+    }
+    exact.row_limits = motion::fit_limits(exact, X_WE_start);
     exact.settings.kind = motion::ControllerKind::Ideal;
-    exact.row_limits = motion::fit_limits(plan, simulation.scenario().controller.X_WE_start);
     return exact;
   }
 
@@ -105,19 +141,18 @@ LoadedProgram load(const ExportOptions& options) {
   return {scenario, sequence, options};
 }
 
-/// Whether what is exported may be done: simulates it with contact beside the program as it is simulated otherwise, and
-/// says on stderr what is worse. True with --unchecked.
-bool is_exportable(const LoadedProgram& program, const motion::PreparedProgram& done, const ExportOptions& options) {
-  if (options.is_unchecked) return true;
-  const cell::Simulation& lagging = program.simulation;
-  const cell::MotionTrial wanted = cell::try_motion(lagging, program.plan);
-  cell::MotionTrial trial = wanted;
-  if (done.settings.kind == motion::ControllerKind::Ideal) {
-    cell::SimulationOptions exact = lagging.options();
+/// Whether what is exported may be done: `done` is simulated with contact beside the program as it is simulated
+/// otherwise, and what is worse is said on stderr. True with --unchecked.
+bool is_exportable(const LoadedProgram& program, const motion::PreparedProgram& done) {
+  if (!program.trial) return true;
+  std::string worse = program.is_fast() ? cell::find_loss(*program.trial) : program.trial->failure;
+  if (worse.empty() && done.settings.kind == motion::ControllerKind::Ideal) {
+    const cell::Simulation& own = program.simulation;
+    cell::SimulationOptions exact = own.options();
     exact.controller = motion::ControllerKind::Ideal;
-    trial = cell::try_motion(cell::Simulation(lagging.scenario(), lagging.sequence().name, exact), done);
+    const cell::Simulation follower(own.scenario(), own.sequence().name, exact);
+    worse = cell::compare_trials(*program.trial, cell::try_motion(follower, done));
   }
-  const std::string worse = cell::compare_trials(wanted, trial);
   if (worse.empty()) return true;
   std::fprintf(stderr, "snug: %s\n", fmt::format(fmt::runtime(kNotExported), worse).c_str());
   return false;
@@ -128,15 +163,18 @@ template <class Format>
 int write_run(const ExportOptions& options, OutputFile output, Format format) {
   const LoadedProgram program = load(options);
   const cell::CellArm& arm = *program.simulation.arm();
+  if (program.is_fast() && !is_exportable(program, program.plan)) return kRunFailed;
   const control::JointRun run =
-      control::run_joints(program.plan, arm.controller(), control::make_demonstrator_machine(), arm.start());
+      program.is_fast() && program.trial
+          ? program.trial->joints
+          : control::run_joints(program.plan, arm.controller(), control::make_demonstrator_machine(), arm.start());
   if (!run.is_complete) {
     const auto row = static_cast<std::size_t>(std::max(0, run.stuck_row));
     std::fprintf(stderr, "snug: the robot does not reach row %zu (%s): snug check says why\n", row + 1,
                  program.plan.program.waypoints[row].name.c_str());
     return kRunFailed;
   }
-  if (!is_exportable(program, program.plan, options)) return kRunFailed;
+  if (!is_exportable(program, program.plan)) return kRunFailed;
   write_file(std::move(output), format(run, arm.model(), program));
   std::fprintf(stderr, "%s: %zu rows, %.1f s\n", options.output.c_str(), program.plan.program.waypoints.size(),
                static_cast<double>(run.samples.size()) * program.plan.settings.tick);
@@ -153,12 +191,10 @@ int write_urscript(const ExportOptions& options, OutputFile output) {
   const LoadedProgram program = load(options);
   const motion::PreparedProgram fitted = program.fitted();
   const control::UrScript script = control::format_urscript(program.for_robot(fitted, options), options.script);
-  if (!is_exportable(program, fitted, options)) return kRunFailed;
+  if (!is_exportable(program, fitted)) return kRunFailed;
   write_file(std::move(output), script.text);
-  std::fprintf(stderr,
-               "%s: %d moves, %.1f s nominal from stop to stop; %.1f s simulated, with a controller that lags behind "
-               "them\n",
-               options.output.c_str(), script.moves, script.nominal_duration, script.simulated_duration);
+  std::fprintf(stderr, "%s: %d moves, %.1f s nominal from stop to stop; %.1f s simulated, %s\n", options.output.c_str(),
+               script.moves, script.nominal_duration, script.simulated_duration, program.simulated_with().c_str());
   return kSuccess;
 }
 

@@ -18,6 +18,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/motion/program_tempo.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "version.hpp"
@@ -112,6 +113,7 @@ simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& opt
   plant.seed = options.plant_seed;
   plant.perception = perception::kind_of(options.perception);
   plant.faults = simulated_plant::parse_faults(options.fault);
+  for (const std::string& words : options.plant_set) plant.set.push_back(model::parse_key_value(words, "--plant-set"));
   plant.simulation = session.simulation;
   return plant;
 }
@@ -156,7 +158,10 @@ int run_pack(const PackOptions& options) {
     repeated = study::repeat(scenario, options.sequence, result.program, result.plan, monte_carlo);
   }
   const bool has_program = !result.program.waypoints.empty();
-  if (files.program && has_program) write_file(std::move(*files.program), motion::format_program(result.program));
+  if (files.program && has_program) {
+    const std::string tempo = options.tempo ? motion::format_tempo(*options.tempo) : std::string();
+    write_file(std::move(*files.program), tempo + motion::format_program(result.program));
+  }
   if (files.plan) write_file(std::move(*files.plan), format_plan(result));
   if (files.record && has_program) record(scenario, trial, *files.record);
   print(options.json ? format_json(trial, repeated) : format_summary(trial, repeated));

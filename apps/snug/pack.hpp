@@ -28,8 +28,9 @@ struct PackOptions {
   std::optional<double> tempo;  ///< absent: with the demonstrator's lag
   std::string future = "own";
   std::string perception = "exact";
-  std::string fault;                 ///< "drop@3,noseal@5"
-  std::optional<std::string> robot;  ///< absent: the scenario's, where its file is there; "none"
+  std::vector<std::string> plant_set;  ///< "KEY=VALUE", of the plant's scenario alone
+  std::string fault;                   ///< "drop@3,noseal@5"
+  std::optional<std::string> robot;    ///< absent: the scenario's, where its file is there; "none"
   std::optional<int> monte_carlo;
   std::optional<std::string> program, plan, record;
   bool json = false;

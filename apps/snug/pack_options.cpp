@@ -16,6 +16,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 2 --tempo 1
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --fault drop@3,noseal@5,displace@7,stop@9 -o run.h5
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --perception noisy
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-set contacts.pairs.box/container.friction=0.15
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --agent examples.python.03_agent:Lowest
   snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant click://127.0.0.1:5555
@@ -39,6 +40,11 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
       ->check(whole(0))
       ->type_name("N")
       ->capture_default_str();
+  verb.add_option("--plant-set", options.plant_set,
+                  "a key of the plant's scenario with another value than the planner has, such as "
+                  "contacts.pairs.box/container.friction=0.15; may be given several times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   verb.add_option("--perception", options.perception,
                   "what is seen of boxes: exact poses and sizes, noisy ones (2 mm, 20 mrad), none (dead-reckoning), or "
                   "what the "

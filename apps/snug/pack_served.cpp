@@ -58,6 +58,9 @@ void expect_options_of_a_served_plant(const PackOptions& options, const session:
   const auto refuse = [](const char* option, const std::string& got, const char* expected) {
     throw InputError("command line", option, "'" + got + "'", expected);
   };
+  if (!options.plant_set.empty()) {
+    refuse("--plant-set", options.plant_set.front(), "nothing: a served cell is what `snug serve --set` says");
+  }
   if (!options.fault.empty()) refuse("--fault", options.fault, "no faults: they are made in a simulated plant alone");
   if (options.record) refuse("-o", *options.record, "no recording here: `snug serve -o` records what it serves");
   if (session.simulation.robot.empty()) refuse("--robot", "none", "the scenario's robot: a served plant has one");

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "as_list.hpp"
 #include "choose_camera.hpp"
 #include "outputs.hpp"
 #include "snug/box_estimation/estimate.hpp"
@@ -47,8 +48,6 @@ box_estimation::EstimateInput make_input(const PerceiveOptions& options, const m
   }
   return input;
 }
-
-ordered_json as_list(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json as_json(const box_estimation::BoxEstimate& box) {
   const Quaternion quat(box.X_WP.R);

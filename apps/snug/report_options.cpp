@@ -26,7 +26,8 @@ void add_selection_options(CLI::App& verb, replay::Selection& selection) {
 }
 
 void add_report(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("report", "make one HTML file of a recording: replay, journeys, plots");
+  CLI::App& verb =
+      *app.add_subcommand("report", "make one HTML file of a recording: replay, events of each box, plots");
   const auto options = std::make_shared<ReportOptions>();
   verb.add_option("recordings", options->recordings, "a recording, and another one to lay over it")
       ->required()

@@ -97,8 +97,8 @@ Json repicks_as_json(const std::vector<cell::Repick>& repicks) {
   return list;
 }
 
-/// "seal 4.2 s, release 9.8 s": the kinds of a box's events, in order; of a long journey its beginning and its end.
-std::string journey_of(const cell::BoxResult& box) {
+/// "seal 4.2 s, release 9.8 s": the kinds of a box's events, in order; of many the beginning and the end.
+std::string events_of(const cell::BoxResult& box) {
   constexpr std::size_t kFirst = 5, kLast = 2;
   const std::size_t count = box.events.size();
   const std::size_t left_out = count > kFirst + kLast + 1 ? count - kFirst - kLast : 0;
@@ -120,7 +120,7 @@ std::string boxes_table(const cell::RunResult& result) {
     const Vector3 p = box.X_TP.p * kMm;
     text += fmt::format("{:<8} {:<8} {:>7.1f} {:>7.1f} {:>7.1f}  {:<2} {:>8.1f} {:>8.1f}  {}\n", box.id,
                         cell::name_of(box.state), p.x(), p.y(), p.z(), box.up, box.outside * kMm, box.above_rim * kMm,
-                        journey_of(box));
+                        events_of(box));
   }
   const auto packed = std::count_if(result.boxes.begin(), result.boxes.end(),
                                     [](const cell::BoxResult& box) { return box.state == cell::BoxState::Packed; });

@@ -64,11 +64,14 @@ std::string name_of_run(const std::string& path, int run) {
   return (file.parent_path() / (file.stem().string() + fmt::format("-{}", run) + file.extension().string())).string();
 }
 
-/// Shows the first run; lets it go on when there is nobody, or no room, to show it any more.
+/// Shows one run after the other; lets them go on when there is nobody, or no room, to show them any more.
 class ShownRun : public cell::RunObserver {
  public:
   explicit ShownRun(serve::LiveRun& live) : live_(live) {}
-  void begin(const record::RecordingHeader& header) override { live_.begin(header); }
+  void begin(const record::RecordingHeader& header) override {
+    is_shown_ = true;
+    live_.begin(header);
+  }
   bool add(const record::Frame& frame) override {
     is_shown_ = is_shown_ && live_.add(frame);
     return true;
@@ -143,7 +146,7 @@ class Serving {
     if (!options.shows) return;
     live_.emplace(std::filesystem::path(options.scenario).stem().string(), 0.0);
     shown_.emplace(*live_);
-    page_.emplace(options.page, serve::Content{std::string(viewer_page()), {}, &*live_});
+    page_.emplace(options.page, serve::Content{std::string(viewer_page()), {}, &*live_, true});
   }
 
   int run() {
@@ -185,7 +188,7 @@ class Serving {
       if (run > 1) record_ = record::reserve_recording(name_of_run(*options_.record, run));
       run_options.record_file = &*record_;
     }
-    if (shown_ && run == 1) run_options.observer = &*shown_;
+    if (shown_) run_options.observer = &*shown_;
     return run_options;
   }
 
@@ -197,7 +200,7 @@ class Serving {
       print(fmt::format("run {}, ended: {}\n{}", run, result.ended_by, format_table(result)));
     }
     std::fflush(stdout);
-    if (live_ && run == 1) live_->finish(json, result.failure);
+    if (live_) live_->finish(json, result.failure);
     has_failed_ = !result.failure.empty();
     if (options_.once) server_->stop();
   }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kServeExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555
-  snug serve scenarios/box-demonstrator.yaml --click ipc:///tmp/cell --sequence 2 --record run.h5 --once
+  snug serve scenarios/box-demonstrator.yaml --click ipc://cell --sequence 2 --record run.h5 --once
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1 --plant-seed 7 --once
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --async --view
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --robot-object ur10_FTSensor_sr_gripper
@@ -103,7 +103,7 @@ void add_serve(CLI::App& app, Action& action) {
   add_served_cell(verb, *options);
   add_served_names(verb, *options);
   add_served_time(verb, *options);
-  verb.add_flag("--view", options->shows, "show the first run in the browser while it goes on");
+  verb.add_flag("--view", options->shows, "show the run that goes on in the browser, one after the other");
   verb.add_option("--port", options->page.port, "port of the page on this machine; 0 any that is free")
       ->check(whole(0, 65535))
       ->type_name("N")

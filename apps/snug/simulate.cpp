@@ -76,9 +76,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
     run.simulation.robot = *options.robot;
     print_robot_warnings(scenario);
   }
-  if (options.controller) {
-    run.simulation.controller = motion::controller_kind_of(*options.controller, "command line");
-  }
+  choose_motion(options.motion, run.program_text, options.program.value_or(""), run.simulation);
   const std::string cup = options.cup                                   ? *options.cup
                           : run.program && is_own_program(*run.program) ? "phases"
                                                                         : "holding";

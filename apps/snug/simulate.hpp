@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "program_motion.hpp"
 #include "scenario_options.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/model/scenario.hpp"
@@ -21,17 +22,17 @@ struct SimulateOptions {
   std::optional<double> until;  ///< s
   std::optional<double> dt;     ///< s
   std::optional<std::uint64_t> seed;
-  std::optional<std::string> controller;  ///< faithful | ideal
-  std::optional<std::string> robot;       ///< name of the scenario's robot
-  std::optional<std::string> cup;         ///< holding | phases
-  std::string corrections = "none";       ///< none, or the name of a correction layer of the scenario
-  std::optional<std::string> record;      ///< HDF5 file to write
-  std::optional<std::string> csv;         ///< table to write
-  std::optional<double> record_period;    ///< s between frames
-  std::optional<std::string> resume;      ///< recording to go on from
-  std::optional<double> resume_at;        ///< s, instant of it
-  std::optional<int> monte_carlo;         ///< run this many times in cells drawn from the scenario's uncertainty
-  std::optional<int> threads;             ///< absent: all cores
+  MotionWords motion;
+  std::optional<std::string> robot;     ///< name of the scenario's robot
+  std::optional<std::string> cup;       ///< holding | phases
+  std::string corrections = "none";     ///< none, or the name of a correction layer of the scenario
+  std::optional<std::string> record;    ///< HDF5 file to write
+  std::optional<std::string> csv;       ///< table to write
+  std::optional<double> record_period;  ///< s between frames
+  std::optional<std::string> resume;    ///< recording to go on from
+  std::optional<double> resume_at;      ///< s, instant of it
+  std::optional<int> monte_carlo;       ///< run this many times in cells drawn from the scenario's uncertainty
+  std::optional<int> threads;           ///< absent: all cores
   bool json = false;
 };
 

@@ -14,6 +14,7 @@
 #include "robot_files.hpp"
 #include "run_report.hpp"
 #include "stop_signal.hpp"
+#include "view_served.hpp"
 #include "viewer_page.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
@@ -132,7 +133,8 @@ void announce(const serve::Server& server, bool opens_browser) {
 }
 
 int run_view(const ViewOptions& options) {
-  return options.run.scenario.empty() ? view_recordings(options) : view_live(options);
+  if (options.run.scenario.empty()) return view_recordings(options);
+  return options.click ? view_served(options) : view_live(options);
 }
 
 }  // namespace snug::app

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "options.hpp"
+#include "ranges.hpp"
 #include "report.hpp"
 #include "snug/core/input_error.hpp"
 #include "view.hpp"
@@ -15,6 +16,8 @@ constexpr const char* kViewExamples = R"(Examples:
   snug view run.h5 again.h5                          # the second is laid over the first
   snug view --live scenarios/drop.yaml --speed 0.2 --paused
   snug view --live scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
+  snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555
+  snug view --live scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555      # in another terminal: looks on
 Ctrl-C ends it. The page is served to this machine only, unless --host names another of its addresses.)";
 
 void check(const ViewOptions& options) {
@@ -26,6 +29,10 @@ void check(const ViewOptions& options) {
   if (!is_live && (options.run.program || options.run.sequence || options.run.record || options.run.changes.any())) {
     throw InputError("command line", "--program, --sequence, --items, --container, --pallet, -o", "with a recording",
                      "--live SCENARIO.yaml");
+  }
+  if (options.click && (!is_live || options.run.program || options.run.record || options.is_paused)) {
+    throw InputError("command line", "--click", is_live ? "with --program, -o or --paused" : "without --live",
+                     "--live SCENARIO.yaml, and a recording by the server (snug serve -o)");
   }
   if (!(options.speed >= 0.0 && options.speed <= 1e6)) {
     throw InputError("command line", "--speed", std::to_string(options.speed), "0 to 1000000");
@@ -45,6 +52,15 @@ void add_view(CLI::App& app, Action& action) {
       ->type_name("FILE.h5");
   verb.add_option("--live", options->run.scenario, "run this scenario and show it while it runs")
       ->type_name("SCENARIO.yaml");
+  verb.add_option(
+          "--click", options->click,
+          "with --live: show the cell that `snug serve SCENARIO.yaml --click ADDRESS` serves, while others drive "
+          "it; with --sequence if there")
+      ->type_name("ADDRESS");
+  verb.add_option("--click-timeout", options->patience, "how long an answer from there may take")
+      ->check(positive())
+      ->type_name("SECONDS")
+      ->capture_default_str();
   add_program_options(verb, options->run);
   add_physics_options(verb, options->run);
   verb.add_option("-o,--record", options->run.record, "write a recording of the live run")->type_name("FILE.h5");

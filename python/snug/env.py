@@ -57,6 +57,11 @@ def _container(scenario: _core.Scenario) -> np.ndarray:
     return scenario.container["inner_size"]
 
 
+def _whole(number: Any) -> int:
+    """An index, however absurd: those that are none stay none."""
+    return max(-1, min(int(number), 10**6))
+
+
 class Packing(spaces.Env):
     """One container, packed again and again.
 
@@ -117,12 +122,11 @@ class Packing(spaces.Env):
         packed_percent, time (s, simulated), candidates (how many there are for the next item)."""
         if self._by_candidate:
             index = action.item() if isinstance(action, np.ndarray) else action
-            result = self._core.step_candidate(int(index))
+            result = self._core.step_candidate(_whole(index))
         else:
             orientation, x, y = np.asarray(action, dtype=float)
-            if not np.isfinite(orientation):
-                orientation = -1
-            result = self._core.step_place(int(round(float(orientation))), float(x), float(y))
+            orientation = round(float(orientation)) if np.isfinite(orientation) else -1
+            result = self._core.step_place(_whole(orientation), float(x), float(y))
         observation, reward, terminated, truncated, reason, displacement, is_placed = result
         return observation, reward, terminated, truncated, self._info(reason, displacement, is_placed)
 
@@ -188,6 +192,9 @@ class VectorPacking:
     def reset(self, *, seed: Any = 0) -> Tuple[Observation, Dict[str, Any]]:
         """New episodes; seed: a number, from which those of the environments count up, or one for each."""
         seeds: Sequence[int] = list(seed) if np.ndim(seed) > 0 else [int(seed) + i for i in range(self.num_envs)]
+        for one in seeds:
+            if not 0 <= int(one) < 2**64:
+                raise refused("seed", str(one), "whole numbers from 0, below 2^64")
         return self._core.reset([int(one) for one in seeds]), {}
 
     def step(self, actions: Any) -> Tuple[Observation, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]:

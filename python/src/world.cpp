@@ -313,7 +313,7 @@ void bind_world(py::module_& m) {
                                return Array(static_cast<py::ssize_t>(q.size()), q.data());
                              })
       .def("boxes", &boxes_of)
-      .def("events", [](const Cell& c) { return events_of(c.cell_state().journey.events()); })
+      .def("events", [](const Cell& c) { return events_of(c.cell_state().event_log.events()); })
       .def_property_readonly("hash", [](const Cell& c) { return c.simulation().hash(c.cell_state()); });
   add_bodies(cell);
 }

@@ -82,6 +82,14 @@ def test_an_action_that_cannot_be_done_ends_the_episode(demonstrator):
         assert terminated and not truncated and reward == 0 and info["reason"]
 
 
+@pytest.mark.parametrize("action, absurd", [("candidate", 2**70), ("candidate", -(2**70)), ("place", [1e30, 0, 0]), ("place", [-1e30, 0, 0])])
+def test_absurd_indices_are_actions_that_cannot_be_done(demonstrator, action, absurd):
+    environment = snug.env.Packing(demonstrator, action=action)
+    environment.reset(seed=1)
+    _, reward, terminated, _, info = environment.step(absurd)
+    assert terminated and reward == 0.0 and "there is no such" in info["reason"]
+
+
 def test_places_are_actions_too(demonstrator):
     environment = env.Packing(demonstrator, action="place")
     observation, _ = environment.reset(seed=1)
@@ -173,6 +181,9 @@ def test_vector_arguments_are_checked(demonstrator):
         env.VectorPacking(demonstrator, 2, parameters={"colour": 1})
     with pytest.raises(snug.InputError):
         env.VectorPacking(demonstrator, 2).step([0, 0, 0])
+    for seed in (-1, 2**64, [0, -3]):
+        with pytest.raises(snug.InputError, match="whole numbers from 0"):
+            snug.env.VectorPacking(demonstrator, 2).reset(seed=seed)
 
 
 def test_spaces_sample_and_know_what_they_hold():

@@ -9,20 +9,44 @@ import { button, make } from "./ui/dom";
 /** Lists and plots are made again at most this often, and so seldom that they take a tenth of the time at most. */
 const REFRESH_MS = 1000;
 const REFRESH_SHARE = 0.1;
+/** How often a page that shows a run that is over asks whether another one has begun. */
+const NEXT_RUN_MS = 1000;
 
-export async function askServer(): Promise<{ isLive: boolean; replays: Replay[] }> {
+interface Listing {
+  recordings: { name: string }[];
+  live: boolean;
+  /** After the run that is over others may follow. */
+  more?: boolean;
+}
+
+export async function askServer(): Promise<{ isLive: boolean; hasMore: boolean; replays: Replay[] }> {
   const fetched = async (path: string): Promise<Response> => {
     const response = await fetch(path);
     if (!response.ok) throw new ReplayError("The server has no recording", `it answers ${response.status} for ${path}.`);
     return response;
   };
-  const listing = (await (await fetched("recordings.json")).json()) as { recordings: { name: string }[]; live: boolean };
+  const listing = (await (await fetched("recordings.json")).json()) as Listing;
   const replays: Replay[] = [];
   for (let k = 0; k < listing.recordings.length; ++k) {
     const bytes = new Uint8Array(await (await fetched(`recording/${k}`)).arrayBuffer());
     replays.push(new Replay(await decodeReplay(bytes)));
   }
-  return { isLive: listing.live, replays };
+  return { isLive: listing.live, hasMore: listing.more === true, replays };
+}
+
+/** Loads the page again when another run has begun, for as long as the server is there. */
+export function awaitNextRun(): void {
+  const timer = window.setInterval(async () => {
+    try {
+      const listing = (await (await fetch("recordings.json")).json()) as Listing;
+      if (!listing.live) return;
+      window.clearInterval(timer);
+      location.hash = "";
+      location.reload();
+    } catch {
+      window.clearInterval(timer);
+    }
+  }, NEXT_RUN_MS);
 }
 
 /** Pause and step of the run itself, beside the cameras. */

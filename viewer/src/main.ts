@@ -1,7 +1,7 @@
 // Main: finds the recordings in the page, decodes them and shows them, or says why not.
 
 import { acceptDrops } from "./drop";
-import { askServer, followLive } from "./live";
+import { askServer, awaitNextRun, followLive } from "./live";
 import { decodeBase64, decodeReplay } from "./replay/decode";
 import { ReplayError } from "./replay/errors";
 import { Replay } from "./replay/replay";
@@ -159,6 +159,7 @@ async function main(): Promise<void> {
   if (replays.length === 0 && location.protocol.startsWith("http")) {
     const served = await askServer();
     if (served.isLive) return followLive((replay) => show(replay, null), showError);
+    if (served.hasMore) awaitNextRun();
     replays = served.replays;
   }
   const [first, second] = replays;

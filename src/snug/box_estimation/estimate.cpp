@@ -19,7 +19,7 @@ using internal::Prediction;
 using internal::TrackedBox;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr int kLeastPoints = 150;           // on a box, to say that it was seen
+constexpr int kLeastPointsOfBox = 150;      // on a box, to say that it was seen
 constexpr double kLeastPartOn = 0.6;        // of the points where a box should be, to fit it from where it was believed
 constexpr double kLeastPartOnAfter = 0.85;  // the same after the fit
 constexpr double kLeastOfPixels = 0.08;     // of the pixels where it should be seen
@@ -109,7 +109,7 @@ class Estimator {
   }
 
   static bool agrees(const Agreement& a, double least_part_on) {
-    return a.on >= kLeastPoints && a.part_on() >= least_part_on && a.on >= kLeastOfPixels * a.pixels;
+    return a.on >= kLeastPointsOfBox && a.part_on() >= least_part_on && a.on >= kLeastOfPixels * a.pixels;
   }
 
   /// Boxes that the frame shows about where they are believed to be.
@@ -186,7 +186,7 @@ class Estimator {
       std::vector<internal::Wanted> wanted;
       for (const std::size_t i : others_) {
         const Agreement a = look_at_belief(i);
-        if (a.on + a.farther < std::max(kLeastPoints, a.nearer)) continue;
+        if (a.on + a.farther < std::max(kLeastPointsOfBox, a.nearer)) continue;
         wanted.push_back({static_cast<int>(i), 0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP});
       }
       std::vector<camera::SceneShape> solids = surroundings_C_.shapes;
@@ -253,7 +253,7 @@ class Estimator {
     estimate.points = a.on;
     estimate.visible_part = alone > 0 ? std::min(1.0, static_cast<double>(a.on) / alone) : 0.0;
     const double spread = std::sqrt(fit_.covariance[i].topLeftCorner<3, 3>().diagonal().maxCoeff());
-    if (a.on < kLeastPoints || estimate.visible_part < kLeastVisible ||
+    if (a.on < kLeastPointsOfBox || estimate.visible_part < kLeastVisible ||
         spread > std::max(kMostSpread, 1.1 * box.position_spread))
       return;  // stays hidden, at its belief
     estimate.sight = Sight::Seen;
@@ -299,7 +299,7 @@ class Estimator {
     for (const std::size_t i : others_) {
       const Agreement a = look_at_belief(i);
       const int points = a.on + a.nearer + a.farther;
-      if (points >= kLeastPoints && a.farther > 0.7 * points) result.boxes[i].sight = Sight::Missing;
+      if (points >= kLeastPointsOfBox && a.farther > 0.7 * points) result.boxes[i].sight = Sight::Missing;
     }
   }
 

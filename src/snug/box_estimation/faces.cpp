@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kCells = 5;   // a side: the waves' covariance is summed over this many parts of a face
 constexpr int kBorder = 2;  // px: points nearer to the end of what is seen of a face are left out
-constexpr int kLeastPoints = 40;
+constexpr int kLeastPointsOfFace = 40;
 /// Part of the interreflection's bias that stays: faces end at corners here and there.
 constexpr double kBiasLeft = 0.15;
 /// The same for faces seen from the side: their lower ends are corners with what the box stands on.
@@ -97,7 +97,7 @@ Matrix3 covariance_of(const Sums& sums, const FaceFrame& f, const Matrix3& inver
 /// what lies beside a box may be lower or higher.
 std::vector<double> common_offsets(const camera::Frame& frame, const Prediction& prediction, double wide_gate) {
   constexpr double kBin = 1e-3;
-  constexpr int kWindow = 5;  // bins
+  constexpr int kBinsOfWindow = 5;  // bins
   const camera::Cast& cast = prediction.cast;
   const auto bins = static_cast<std::size_t>(2.0 * wide_gate / kBin) + 1;
   std::vector<std::vector<int>> counts(cast.surfaces.size());
@@ -117,12 +117,12 @@ std::vector<double> common_offsets(const camera::Frame& frame, const Prediction&
   std::vector<double> offsets(counts.size(), 0.0);
   for (std::size_t s = 0; s < counts.size(); ++s) {
     int most = 0;
-    for (std::size_t i = 0; i + kWindow <= counts[s].size(); ++i) {
+    for (std::size_t i = 0; i + kBinsOfWindow <= counts[s].size(); ++i) {
       int sum = 0;
-      for (std::size_t k = i; k < i + kWindow; ++k) sum += counts[s][k];
+      for (std::size_t k = i; k < i + kBinsOfWindow; ++k) sum += counts[s][k];
       if (sum <= most) continue;
       most = sum;
-      offsets[s] = (static_cast<double>(i) + 0.5 * kWindow) * kBin - wide_gate;
+      offsets[s] = (static_cast<double>(i) + 0.5 * kBinsOfWindow) * kBin - wide_gate;
     }
   }
   return offsets;
@@ -163,7 +163,7 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
   }
   std::vector<FaceFeature> features;
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (sums[i].face < 0 || sums[i].count < kLeastPoints) continue;
+    if (sums[i].face < 0 || sums[i].count < kLeastPointsOfFace) continue;
     const camera::Surface& surface = cast.surfaces[i];
     const FaceFrame& f = frames[i];
     // Tilts of what is only a strip are not told by it: 0.2 mm over its width is what a small prior says.

@@ -8,9 +8,9 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr int kCell = 4;           // px, side of the cells that clusters are made of
-constexpr int kLeastPoints = 250;  // of an obstacle: at 1 mm a pixel 16 mm x 16 mm
-constexpr int kLargestMap = 2000;  // cells a side
+constexpr int kCell = 4;                     // px, side of the cells that clusters are made of
+constexpr int kLeastPointsOfObstacle = 250;  // of an obstacle: at 1 mm a pixel 16 mm x 16 mm
+constexpr int kLargestMap = 2000;            // cells a side
 
 Vector3 point_at(const camera::Frame& frame, int row, int col) {
   return frame.camera.X_WC *
@@ -55,7 +55,7 @@ std::vector<Obstacle> find_obstacles(const camera::Frame& frame, const EstimateI
             open.emplace_back(a + da, b + db);
           }
       }
-      if (obstacle.points >= kLeastPoints) obstacles.push_back(obstacle);
+      if (obstacle.points >= kLeastPointsOfObstacle) obstacles.push_back(obstacle);
     }
   std::stable_sort(obstacles.begin(), obstacles.end(),
                    [](const Obstacle& a, const Obstacle& b) { return a.points > b.points; });

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-
 #include "snug/calibration/internal/complaints.hpp"
 #include "snug/calibration/internal/pose_row.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/numerics/dense.hpp"
 
 namespace snug::calibration {
 namespace {
@@ -50,9 +48,9 @@ Matrix3 start_rotation(const std::vector<Pair>& pairs, double& spread) {
       sum += m.transpose() * m;
       ++count;
     }
-  const Eigen::SelfAdjointEigenSolver<Matrix4> solver(sum / count);
-  spread = std::sqrt(std::max(0.0, solver.eigenvalues()(1)));
-  const Eigen::Vector4d q = solver.eigenvectors().col(0);
+  const numerics::Eigenpairs eigen = numerics::symmetric_eigenpairs(sum / count);
+  spread = std::sqrt(std::max(0.0, eigen.values(1)));
+  const Eigen::Vector4d q = eigen.vectors.col(0);
   return Quaternion(q(0), q(1), q(2), q(3)).normalized().toRotationMatrix();
 }
 
@@ -66,7 +64,7 @@ void start_places(const std::vector<Pair>& pairs, Pose& X_WC, Pose& X_EB) {
     A.block<3, 3>(row, 3) = pairs[i].X_WE.R;
     b.segment<3>(row) = X_WC.R * pairs[i].X_CB.p - pairs[i].X_WE.p;
   }
-  const Eigen::VectorXd x = A.colPivHouseholderQr().solve(b);
+  const Eigen::VectorXd x = numerics::solve_by_qr(A, b);
   X_WC.p = x.head<3>();
   X_EB.p = x.tail<3>();
 }
@@ -107,7 +105,7 @@ Matrix12 improve(const std::vector<Pair>& pairs, double position_noise, double a
     H += J.transpose() * weights.asDiagonal() * J;
     g += J.transpose() * weights.asDiagonal() * residual(pair, X_WC, X_EB);
   }
-  const Vector12 step = -H.ldlt().solve(g);
+  const Vector12 step = -numerics::solve_symmetric(H, g);
   X_WC = moved(X_WC, step.head<6>());
   X_EB = moved(X_EB, step.tail<6>());
   return H;
@@ -163,7 +161,7 @@ HandEye find_hand_eye(const Table& table) {
       outliers.push_back(i);
   }
   internal::check_outliers(table, outliers);
-  const Matrix12 covariance = information.ldlt().solve(Matrix12::Identity());
+  const Matrix12 covariance = numerics::invert_symmetric(information);
   found.covariance = covariance.topLeftCorner<6, 6>();
   found.board_covariance = covariance.bottomRightCorner<6, 6>();
   return found;

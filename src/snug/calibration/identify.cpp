@@ -10,6 +10,7 @@
 #include "snug/calibration/internal/linear_fit.hpp"
 #include "snug/calibration/internal/pose_row.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/numerics/dense.hpp"
 #include "snug/numerics/least_squares.hpp"
 #include "snug/numerics/outliers.hpp"
 #include "snug/robot/kinematics.hpp"
@@ -236,7 +237,7 @@ IdentifiedArm identify_arm(const robot::ArmModel& nominal, const PosePairs& pair
   const Eigen::VectorXd weighted = w.asDiagonal() * after;
   const double variance = weighted.squaredNorm() / static_cast<double>(after.size() - count);
   const Eigen::MatrixXd normal = J.transpose() * J;
-  result.covariance = variance * normal.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+  result.covariance = variance * numerics::invert_symmetric(normal);
   result.position_noise *= std::sqrt(variance);
   result.angle_noise *= std::sqrt(variance);
   const Sizes now = group_sizes(after);

@@ -11,7 +11,7 @@
 namespace snug::camera {
 namespace {
 
-constexpr int kRowsPerJob = 16;
+constexpr int kRowsCastAtOnce = 16;
 /// m: a face whose plane passes nearer to the camera than this is seen edge-on.
 constexpr double kEdgeOn = 1e-9;
 constexpr double kNearest = 1e-3;  // m: projections of points nearer than this bound nothing
@@ -79,8 +79,8 @@ class Caster {
   }
 
   Cast run(int threads) {
-    parallel_for((view_.rows + kRowsPerJob - 1) / kRowsPerJob, threads, [&](int job, int) {
-      const int first = job * kRowsPerJob, end = std::min(view_.rows, first + kRowsPerJob);
+    parallel_for((view_.rows + kRowsCastAtOnce - 1) / kRowsCastAtOnce, threads, [&](int job, int) {
+      const int first = job * kRowsCastAtOnce, end = std::min(view_.rows, first + kRowsCastAtOnce);
       for (const Solid& solid : solids_)
         for (int row = std::max(first, solid.first_row); row < std::min(end, solid.end_row); ++row) {
           if (solid.is_curved)

@@ -17,7 +17,7 @@ namespace {
 using internal::low_uniform;
 using internal::pixel_bits;
 
-constexpr int kRowsPerJob = 32;
+constexpr int kRowsRenderedAtOnce = 32;
 constexpr double kReaches = 3.0;      // of interreflection: what is left at that many is 5 %
 constexpr int kFarthestCorner = 200;  // px
 constexpr double kLitDepth = 3e-3;    // m: what the projector sees within this of a point is the point
@@ -113,9 +113,9 @@ class Shot {
     };
     add_waves(planarity.local, planarity.local_length, wave_key_);
     add_waves(planarity.global, planarity.global_length, draw_.wave_seed);
-    parallel_for((view_.rows + kRowsPerJob - 1) / kRowsPerJob, threads_, [&](int job, int) {
+    parallel_for((view_.rows + kRowsRenderedAtOnce - 1) / kRowsRenderedAtOnce, threads_, [&](int job, int) {
       std::vector<float> offsets(static_cast<std::size_t>(view_.cols));
-      for (int r = job * kRowsPerJob; r < std::min(view_.rows, (job + 1) * kRowsPerJob); ++r) {
+      for (int r = job * kRowsRenderedAtOnce; r < std::min(view_.rows, (job + 1) * kRowsRenderedAtOnce); ++r) {
         std::fill(offsets.begin(), offsets.end(), 0.0F);
         for (std::size_t i = 0; i < waves.size(); ++i) waves[i].add_row(r, scales[i], offsets.data());
         fill_row(r, offsets.data(), out);

@@ -2,6 +2,7 @@
 #include "snug/cell/held_boxes.hpp"
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::cell {
 namespace {
@@ -11,7 +12,7 @@ Matrix3 upright(const Matrix3& R_WP) {
   const int axis = vertical_axis(R_WP);
   const Vector3 up = R_WP.col(axis);
   const Vector3 goal = Vector3(0.0, 0.0, up.z() < 0.0 ? -1.0 : 1.0);
-  return orthonormalized(Quaternion::FromTwoVectors(up, goal).toRotationMatrix() * R_WP);
+  return orthonormalized(rotation_between(up, goal).toRotationMatrix() * R_WP);
 }
 
 /// A box that is picked at X_EP, once the vacuum has drawn it to where the cup ends then, flat against the lip: a cup
@@ -23,7 +24,7 @@ Pose hanging(const Pose& X_EP, const Vector3& size, double hold_length) {
   const Vector3 normal = sign * X_EP.R.col(axis);  // into the box
   const Vector3 face = X_EP.p - 0.5 * size[axis] * normal;
   const Vector3 lip(0.0, 0.0, face.dot(normal) / normal.z());
-  const Matrix3 turn = Quaternion::FromTwoVectors(normal, Vector3::UnitZ()).toRotationMatrix();
+  const Matrix3 turn = rotation_between(normal, Vector3::UnitZ()).toRotationMatrix();
   return {orthonormalized(turn * X_EP.R), Vector3(0.0, 0.0, hold_length) + turn * (X_EP.p - lip)};
 }
 

@@ -51,7 +51,7 @@ const CellTick& OutsideRun::advance(const OutsideCommand& command) {
   SNUG_CHECK(run.last.failure.empty(), "a run that failed does not go on");
   run.last = run.simulation.advance(command, run.state, run.work);
   for (record::Event& event : run.work.solver.take_events(run.simulation.world())) {
-    run.state.journey.note(std::move(event));
+    run.state.event_log.note(std::move(event));
   }
   run.is_stopped = !run.recorder.add(run.last, run.state, run.work) || run.is_stopped;
   return run.last;

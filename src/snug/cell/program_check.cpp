@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "snug/cell/simulation.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/geometry/manifold.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::cell {
 namespace {
@@ -23,7 +23,7 @@ constexpr double kRadian = 0.3;             ///< m, that a turn by 1 rad counts 
 // Below this the controller's task gives way (joint_controller.cpp): the tool is no longer where it should be.
 constexpr double kSingular = 0.05;
 // Beyond a limit by less than this is the rounding of a controller that keeps it.
-constexpr double kRounding = 1e-6;
+constexpr double kLimitRounding = 1e-6;
 
 struct Obstacle {
   std::string name;
@@ -78,9 +78,9 @@ class Check {
  public:
   Check(const model::Scenario& scenario, const motion::Program& program, const CheckOptions& options)
       : options_(options),
-        simulation_(
-            scenario, options.sequence.empty() ? any_sequence(scenario) : options.sequence,
-            {options.controller, cup::CupMode::Holding, options.robot.empty() ? scenario.robot->name : options.robot}),
+        simulation_(scenario, options.sequence.empty() ? any_sequence(scenario) : options.sequence,
+                    {options.controller, cup::CupMode::Holding,
+                     options.robot.empty() ? scenario.robot->name : options.robot, options.tempo}),
         plan_(simulation_.prepare(program)),
         obstacles_(find_obstacles(scenario)),
         movers_(find_movers(scenario, arm(), options.allowance)),
@@ -142,7 +142,7 @@ class Check {
       list.push_back(make(kind, what, margin, unit, is_error, allowance));
     };
     keep(result_.margins, false);
-    if (left < -kRounding) keep(result_.findings, true);
+    if (left < -kLimitRounding) keep(result_.findings, true);
   }
   [[nodiscard]] CheckFinding make(CheckKind kind, const std::string& what, double margin, const char* unit,
                                   bool is_error, double allowance) const {
@@ -184,7 +184,7 @@ class Check {
     const model::RobotParams& params = simulation_.arm()->controller().settings().params;
     Matrix6 M = J_WE * J_WE.transpose();
     if (singularity < kSingular) M.diagonal().array() += 1e-4;
-    const robot::JointVector qd = J_WE.transpose() * M.partialPivLu().solve(V_WE);
+    const robot::JointVector qd = J_WE.transpose() * snug::solve(M, V_WE);
     for (int j = 0; j < arm().joint_count(); ++j) {
       const robot::Joint& joint = arm().joints[static_cast<std::size_t>(j)];
       const bool turns = joint.kind == robot::JointKind::Revolute;

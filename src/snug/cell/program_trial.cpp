@@ -3,28 +3,74 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace snug::cell {
 namespace {
 
 constexpr double kLongestTrial = 7200.0;  ///< s
 constexpr double kSettleTime = 1.0;       ///< s, as `run` gives boxes that still move
 
+/// The row and the next are one pose: the second only switches, while the tool may still be moving.
+bool is_left_moving(const motion::PreparedProgram& plan, int row) {
+  const auto& rows = plan.program.waypoints;
+  const auto next = static_cast<std::size_t>(row) + 1;
+  return next < rows.size() && rows[next].X_WE == rows[next - 1].X_WE && rows[next].name.starts_with("TwistDrag");
+}
+
+/// Of the states of the machine that every arm of a cell has.
+const control::StateMachine& machine_names() {
+  static const control::StateMachine machine = control::make_demonstrator_machine();
+  return machine;
+}
+
+/// One tick, kept in the trial until the program has ended and the joints rest.
+CellTick advance(const Simulation& simulation, const motion::PreparedProgram& plan, CellState& state,
+                 CellWorkspace& work, MotionTrial& trial) {
+  control::JointSample sample;
+  sample.time = simulation.time(state);
+  if (state.arm) {
+    sample.before = state.arm->machine.joints;
+    sample.tool = state.arm->machine.tool;
+  }
+  CellTick tick = simulation.advance(plan, state, work);
+  trial.failure = tick.failure;
+  auto& samples = trial.joints.samples;
+  const bool has_rested = trial.joints.is_complete && samples.back().after.qd.norm() <= control::kAlmostAtRest;
+  if (!state.arm || has_rested) return tick;
+  sample.after = state.arm->machine.joints;
+  sample.io = state.controller.io;
+  sample.row = tick.row;
+  sample.state = machine_names().name_of(state.arm->machine.state);
+  samples.push_back(std::move(sample));
+  return tick;
+}
+
 }  // namespace
 
 MotionTrial try_motion(const Simulation& simulation, const motion::PreparedProgram& plan) {
   MotionTrial trial;
+  for (const motion::Waypoint& row : plan.program.waypoints) trial.ended.push_back(row.X_WE);
   CellState state = simulation.make_state();
   CellWorkspace work = simulation.make_workspace();
   bool has_ended = false;
   while (!has_ended && trial.failure.empty()) {
-    const CellTick tick = simulation.advance(plan, state, work);
-    has_ended = tick.has_ended;
-    trial.failure = tick.failure;
+    const int row = state.controller.row;
+    has_ended = advance(simulation, plan, state, work, trial).has_ended;
+    const bool has_left = row >= 0 && state.controller.row != row;
+    // A row that is left on the way ends where it is; the start of the next motion is not moved then.
+    if (has_left && plan.settings.kind == motion::ControllerKind::Fast && !is_left_moving(plan, row)) {
+      trial.ended[static_cast<std::size_t>(row)] = state.controller.X_WE_departure;
+    }
     if (simulation.time(state) > kLongestTrial) trial.failure = "the program did not end within two hours";
   }
+  trial.joints.is_complete = has_ended && trial.failure.empty();
   trial.duration = simulation.time(state);
   while (trial.failure.empty() && simulation.time(state) < trial.duration + kSettleTime) {
-    trial.failure = simulation.advance(plan, state, work).failure;
+    (void)advance(simulation, plan, state, work, trial);
+  }
+  if (simulation.arm() != nullptr) {
+    control::bring_to_rest(simulation.arm()->controller(), plan.settings.tick, trial.joints);
   }
   trial.boxes = simulation.boxes(state);
   return trial;
@@ -39,6 +85,16 @@ std::string compare_trials(const MotionTrial& wanted, const MotionTrial& trial) 
                          name_of(trial.boxes[i].state));
   }
   return worse;
+}
+
+std::string find_loss(const MotionTrial& trial) {
+  if (!trial.failure.empty()) return trial.failure;
+  std::string lost;
+  for (const BoxResult& box : trial.boxes) {
+    if (box.state == BoxState::Packed || box.state == BoxState::Waiting) continue;
+    lost += fmt::format("{}{} is {}, not packed", lost.empty() ? "" : "; ", box.id, name_of(box.state));
+  }
+  return lost;
 }
 
 }  // namespace snug::cell

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "snug/cell/simulation.hpp"
+#include "snug/control/joint_run.hpp"
 
 namespace snug::cell {
 
@@ -12,6 +13,10 @@ struct MotionTrial {
   double duration = 0.0;  ///< s
   std::string failure;  ///< why it had to stop: a protective stop, a body that left the cell, ...; empty if it did not
   std::vector<BoxResult> boxes;  ///< of the sequence, after boxes have settled
+  /// With a robot: what its joints did, until they rested.
+  control::JointRun joints;
+  /// X_WE at which each row ended: its own, or where a force ended it (ControllerKind::Fast).
+  std::vector<Pose> ended;
 };
 
 /// Runs the program of `plan`, whose limits need not be the scenario's, to its end and until boxes have settled.
@@ -21,5 +26,9 @@ struct MotionTrial {
 /// here
 /// ("BOX016 is dropped, not packed"); empty when nothing is.
 [[nodiscard]] std::string compare_trials(const MotionTrial& wanted, const MotionTrial& trial);
+
+/// Why a trial is no success by itself: its failure, or the boxes that were taken from where they came and are not
+/// packed; empty when there are none.
+[[nodiscard]] std::string find_loss(const MotionTrial& trial);
 
 }  // namespace snug::cell

@@ -22,6 +22,18 @@ class RunObserver {
   virtual void add(const record::Event& event) = 0;
 };
 
+/// Keeps a run's recording in memory.
+class RunCapture final : public RunObserver {
+ public:
+  void begin(const record::RecordingHeader& header) override { recording.header = header; }
+  bool add(const record::Frame& frame) override {
+    recording.frames.push_back(frame);
+    return true;
+  }
+  void add(const record::Event& event) override { recording.events.push_back(event); }
+  record::Recording recording;
+};
+
 struct RecorderSetup {
   std::filesystem::path path;       ///< HDF5, or empty: nothing is written
   OutputFile* file = nullptr;       ///< instead of `path`: reserved before; taken; not owned

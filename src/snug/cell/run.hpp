@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "snug/cell/journey.hpp"
+#include "snug/cell/item_event_log.hpp"
 #include "snug/cell/recorder.hpp"
 #include "snug/cell/simulation.hpp"
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/held_swing.hpp"
 #include "snug/cell/scene_input.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/hash.hpp"
@@ -108,6 +109,9 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
   motion::ControllerSettings settings;
   settings.kind = options.controller;
   settings.fast.tempo = options.tempo;
+  if (options.controller == motion::ControllerKind::Fast) {
+    settings.fast.held.window = held_swing_window(scenario, sequence).value_or(settings.fast.held.window);
+  }
   settings.fast.sealed_pressure = kSealed * scenario.cup.vacuum.pressure_gauge_hold;
   settings.fast.released_pressure = kReleased * scenario.cup.vacuum.pressure_gauge_hold;
   settings.tick = params.tick;
@@ -140,7 +144,7 @@ CellState Simulation::make_state() const {
   CellState state;
   state.world = make_initial_state(scenario_, world_);
   state.controller = motion::make_controller_state(scenario_.controller.X_WE_start);
-  state.journey = Journey(scenario_, sequence_);
+  state.event_log = ItemEventLog(scenario_, sequence_);
   if (arm_) state.arm = arm_->make_state(scenario_.seed);
   return state;
 }
@@ -183,12 +187,12 @@ bool Simulation::feed(int item, int quarter, CellState& state) const {
     const physics::BodyId waiting = world_.parcels[static_cast<std::size_t>(state.waiting_item)];
     if (state.gripper.cup.body != waiting.index) {
       physics::set_present(state.world, waiting, false);
-      state.journey.box_removed(state.waiting_item, now);
+      state.event_log.box_removed(state.waiting_item, now);
     }
   }
   place(body, pose_at_aligner(scenario_, sequence_.items[static_cast<std::size_t>(item)], quarter), state);
   state.waiting_item = item;
-  state.journey.box_appeared(item, now);
+  state.event_log.box_appeared(item, now);
   return true;
 }
 
@@ -295,23 +299,23 @@ void Simulation::read_arm(const ArmTask& task, ArmLoads& loads, CellState& state
   end_touches(state);
   const ProtectiveStop& stop = *work.arm.stop;
   tick.failure = describe(stop);
-  state.journey.note({time(state),
-                      "protective_stop",
-                      stop.where,
-                      tick.failure,
-                      {{"value", stop.value}, {"limit", stop.limit}, {"row", static_cast<double>(stop.row)}}});
+  state.event_log.note({time(state),
+                        "protective_stop",
+                        stop.where,
+                        tick.failure,
+                        {{"value", stop.value}, {"limit", stop.limit}, {"row", static_cast<double>(stop.row)}}});
 }
 
 void Simulation::note_touch(const ArmTouch& touch, bool has_ended, CellState& state) const {
   if (has_ended) {
-    state.journey.note({time(state),
-                        "arm_contact_end",
-                        name_of(world_, touch.other),
-                        fmt::format("{} touched it with up to {:.0f} N", name_of(world_, touch.link), touch.force),
-                        {{"force_N", touch.force}, {"began_s", touch.since}, {"ended_s", touch.last}}});
+    state.event_log.note({time(state),
+                          "arm_contact_end",
+                          name_of(world_, touch.other),
+                          fmt::format("{} touched it with up to {:.0f} N", name_of(world_, touch.link), touch.force),
+                          {{"force_N", touch.force}, {"began_s", touch.since}, {"ended_s", touch.last}}});
     return;
   }
-  state.journey.note(
+  state.event_log.note(
       {time(state), "arm_contact", name_of(world_, touch.other), describe_touch(touch), {{"force_N", touch.force}}});
 }
 
@@ -332,7 +336,7 @@ void Simulation::advance_step(const std::string& waypoint, const motion::ToolSta
   gripper_.prepare(state.world, tool.X_WE, tool.V_WE, tick.command, world_.model.settings.dt, state.gripper,
                    work.gripper, work.events);
   for (const GripperEvent& event : work.events) {
-    state.journey.add(event, time(state), world_, state.world, tool.X_WE, waypoint);
+    state.event_log.add(event, time(state), world_, state.world, tool.X_WE, waypoint);
     if (state.waiting_item >= 0 && event.kind == GripperEvent::Kind::Seal &&
         event.body == world_.parcels[static_cast<std::size_t>(state.waiting_item)].index) {
       state.waiting_item = -1;
@@ -351,7 +355,7 @@ void Simulation::advance_step(const std::string& waypoint, const motion::ToolSta
   work.solver.add(tick.step, time(state));
   if (tick.step.status == physics::StepStatus::LostBody && tick.step.culprit.index != state.gripper.cup.body) {
     work.lost.push_back(take_lost(world_, state.world, tick.step.culprit));
-    state.journey.body_lost(event_of(work.lost.back()));
+    state.event_log.body_lost(event_of(work.lost.back()));
     return;
   }
   tick.failure = describe_failure(world_, state.world, work.physics, tick.step);
@@ -362,7 +366,7 @@ bool Simulation::is_at_end(const motion::PreparedProgram& plan, const CellState&
 }
 
 std::vector<BoxResult> Simulation::boxes(const CellState& state) const {
-  return state.journey.results(world_, state.world, state.gripper.cup.body);
+  return state.event_log.results(world_, state.world, state.gripper.cup.body);
 }
 
 std::uint64_t Simulation::hash(const CellState& state) const {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "snug/cell/cell_arm.hpp"
+#include "snug/cell/item_event_log.hpp"
 #include "snug/cell/joint_pace.hpp"
-#include "snug/cell/journey.hpp"
 #include "snug/cell/lost_body.hpp"
 #include "snug/cell/solver_summary.hpp"
 #include "snug/motion/controller.hpp"
@@ -27,7 +27,7 @@ struct CellState {
   physics::WorldState world;
   motion::ControllerState controller;
   GripperState gripper;
-  Journey journey;
+  ItemEventLog event_log;
   int waiting_item = -1;        ///< of the sequence, that stands at the aligner; -1 when none does
   std::optional<ArmState> arm;  ///< with a robot
 };

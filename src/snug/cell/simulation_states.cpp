@@ -67,11 +67,11 @@ void Simulation::bring(int item, CellState& state) const {
     const bool was_waiting = state.waiting_item == static_cast<int>(i);
     if (!was_waiting && (p - X_WP.p).norm() > radius(i) + radius(index)) continue;
     physics::set_present(state.world, other, false);
-    state.journey.box_removed(static_cast<int>(i), time(state));
+    state.event_log.box_removed(static_cast<int>(i), time(state));
   }
   place(world_.parcels[index], X_WP, state);
   state.waiting_item = item;
-  state.journey.box_appeared(item, time(state));
+  state.event_log.box_appeared(item, time(state));
 }
 
 Wrench Simulation::tool_load(const CellState& state, const CellWorkspace& work) const {

@@ -2,19 +2,21 @@
 #include "snug/click/client.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <chrono>
+#include <atomic>
 #include <utility>
 
 #include "snug/click/internal/socket.hpp"
+#include "snug/click/simulator.hpp"
 
 namespace snug::click {
 namespace {
 
 using Reason = Unexpected<std::string>;
 
-constexpr std::int64_t kMostBytes = std::int64_t{16} << 20;  ///< of an answer
-constexpr int kLinger = 200;                                 ///< ms, for what was said last
+constexpr std::int64_t kLongestAnswer = std::int64_t{16} << 20;  ///< of an answer
+constexpr int kLinger = 200;                                     ///< ms, for what was said last
 
 /// The answer as one of the kind that was asked for.
 template <class T>
@@ -29,10 +31,14 @@ Expected<T, std::string> expect(Expected<Message, std::string> answer, const cha
 }  // namespace
 
 struct Client::Impl {
-  Impl(const std::string& address, double seconds) : endpoint(address), patience(seconds) {
+  Impl(const std::string& address, double seconds, const std::string& routing_id)
+      : endpoint(address), patience(seconds) {
     internal::check_endpoint(endpoint);
     socket = internal::make_socket(context.get(), ZMQ_REQ, kLinger);
-    internal::set(socket.get(), ZMQ_MAXMSGSIZE, kMostBytes);
+    if (!routing_id.empty()) {
+      (void)zmq_setsockopt(socket.get(), ZMQ_ROUTING_ID, routing_id.data(), routing_id.size());
+    }
+    internal::set(socket.get(), ZMQ_MAXMSGSIZE, kLongestAnswer);
     internal::set(socket.get(), ZMQ_IPV6, endpoint.starts_with("tcp://[") ? 1 : 0);
     const int milliseconds = static_cast<int>(1e3 * patience);
     internal::set(socket.get(), ZMQ_RCVTIMEO, milliseconds);
@@ -49,7 +55,13 @@ struct Client::Impl {
   internal::Socket socket;
 };
 
-Client::Client(const std::string& endpoint, double patience) : impl_(std::make_unique<Impl>(endpoint, patience)) {}
+Client::Client(const std::string& endpoint, double patience, const std::string& routing_id)
+    : impl_(std::make_unique<Impl>(endpoint, patience, routing_id)) {}
+
+Client Client::watcher(const std::string& endpoint, double patience) {
+  static std::atomic<int> count = 0;
+  return {endpoint, patience, fmt::format("{}-{}-{}", kWatcher, ::getpid(), count++)};
+}
 Client::~Client() = default;
 Client::Client(Client&&) noexcept = default;
 Client& Client::operator=(Client&&) noexcept = default;

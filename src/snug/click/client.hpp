@@ -11,7 +11,9 @@ namespace snug::click {
 class Client {
  public:
   /// Throws InputError for an address that is none. Nothing is sent before the first request.
-  explicit Client(const std::string& endpoint, double patience = 10.0);
+  explicit Client(const std::string& endpoint, double patience = 10.0) : Client(endpoint, patience, "") {}
+  /// One that only looks: handshakes and sensors, also while a controller is connected to a simulator of snug.
+  [[nodiscard]] static Client watcher(const std::string& endpoint, double patience = 10.0);
   ~Client();
   Client(Client&&) noexcept;
   Client& operator=(Client&&) noexcept;
@@ -31,6 +33,7 @@ class Client {
   void report_error(const std::string& text);
 
  private:
+  Client(const std::string& endpoint, double patience, const std::string& routing_id);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/click/rpy.hpp"
+#include "snug/click/served_cell.hpp"
+
 namespace snug::click {
 namespace {
 
@@ -29,11 +32,28 @@ bool is_active(const ObjectSensors& object, std::string_view name) {
   return value != nullptr && value->is_active;
 }
 
+std::optional<Pose> sensed_pose(const ObjectSensors& object) {
+  Pose X_WP;
+  bool has_position = false;
+  for (const SensorValue& value : object.object) {
+    has_position = has_position || value.type == ValueType::Position;
+    if (value.type == ValueType::Position) X_WP.p = value.vector;
+    if (value.type == ValueType::Rpy) X_WP.R = rotation_of(value.vector, {});
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const SensorValue* exact = find_sensor(object, kAxesSensor, ValueType::Position, static_cast<std::size_t>(axis));
+    if (exact != nullptr) X_WP.R.col(axis) = exact->vector;
+  }
+  const bool is_sound = has_position && X_WP.p.allFinite() && X_WP.R.allFinite() &&
+                        (X_WP.R.transpose() * X_WP.R).isIdentity(1e-6) && X_WP.R.determinant() > 0.0;
+  return is_sound ? std::optional(X_WP) : std::nullopt;
+}
+
 std::string JointLink::connect(double tick) {
   auto handshake = client_.shake_hands();
   if (!handshake) return handshake.error();
   handshake_ = std::move(*handshake);
-  if (std::abs(handshake_.time_step - tick) > 1e-9) {
+  if (!(std::abs(handshake_.time_step - tick) <= 1e-9)) {  // nor NaN
     return fmt::format("the simulator steps by {} s, the controller by {} s", handshake_.time_step, tick);
   }
   std::string trouble = find_robot();
@@ -65,7 +85,7 @@ std::string JointLink::find_joints() {
     const int control = index_of(robot.controls, joint.name), sensor = index_of(robot.joints, joint.name);
     if (control < 0 || sensor < 0) return fmt::format("object '{}' has no joint '{}'", robot_name_, joint.name);
     const ValueType type = robot.control_types[static_cast<std::size_t>(control)];
-    if (type != ValueType::Angle && type != ValueType::AngularVelocity1D) {
+    if (!settings_.only_looks && type != ValueType::Angle && type != ValueType::AngularVelocity1D) {
       return fmt::format("joint '{}' takes {}; this controller has Angle and AngularVelocity1D", joint.name,
                          name_of(type));
     }
@@ -103,7 +123,9 @@ std::string JointLink::take(Expected<Sensor, std::string> sensor) {
     measured.q[static_cast<Eigen::Index>(j)] = robot.angles[joints_[j].sensor];
     measured.qd[static_cast<Eigen::Index>(j)] = robot.velocities[joints_[j].sensor];
   }
-  if (!measured.q.allFinite() || !measured.qd.allFinite()) return "the simulator senses what are no numbers";
+  if (!measured.q.allFinite() || !measured.qd.allFinite() || !std::isfinite(sensor->time)) {
+    return "the simulator senses what are no numbers";
+  }
   measured_ = std::move(measured);
   last_ = std::move(*sensor);
   return {};

@@ -1,6 +1,7 @@
 // JointLink: the joints of a known arm found in a simulator, its sensors taken over, commands put in its order.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct JointLinkSettings {
   std::string vacuum_event = "vacuum";
   std::string blow_off_event = "blow_off";  ///< used if there is one
   bool needs_vacuum = true;
+  bool only_looks = false;  ///< no commands: joints may take what they like
 };
 
 class JointLink {
@@ -69,5 +71,8 @@ class JointLink {
 [[nodiscard]] const SensorValue* find_sensor(const ObjectSensors& object, std::string_view name, ValueType type,
                                              std::size_t index = 0);
 [[nodiscard]] bool is_active(const ObjectSensors& object, std::string_view name);
+/// Where an object says that it is, in W: its axes, where it tells them, else its RPY (about x, y, z). Nothing where it
+/// has no position or what it says is no pose.
+[[nodiscard]] std::optional<Pose> sensed_pose(const ObjectSensors& object);
 
 }  // namespace snug::click

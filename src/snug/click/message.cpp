@@ -14,6 +14,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "snug/click/internal/sensor_writer.hpp"
 #include "snug/core/check.hpp"
 
 namespace snug::click {
@@ -45,45 +46,6 @@ class Room {
 wire::ValueType_Kind as_wire(ValueType type) { return static_cast<wire::ValueType_Kind>(static_cast<int>(type)); }
 
 // ---- what is sent
-
-wire::Vec3* put(const Vector3& v, wire::Vec3* out) {
-  out->mutable_arr()->Add(v.data(), v.data() + 3);
-  return out;
-}
-
-void put(const SensorValue& value, wire::Sensor* out) {
-  switch (value.type) {
-    case ValueType::Angle:
-      return out->set_angle(value.scalar);
-    case ValueType::AngularVelocity1D:
-      return out->set_angularvelocity1d(value.scalar);
-    case ValueType::Torque1D:
-      return out->set_torque1d(value.scalar);
-    case ValueType::Force1D:
-      return out->set_force1d(value.scalar);
-    case ValueType::Activated:
-      return out->set_activated(value.is_active);
-    case ValueType::Position:
-      return (void)put(value.vector, out->mutable_position());
-    case ValueType::Rpy:
-      return (void)put(value.vector, out->mutable_rpy());
-    case ValueType::Acceleration3D:
-      return (void)put(value.vector, out->mutable_acceleration3d());
-    case ValueType::Force3D:
-      return (void)put(value.vector, out->mutable_force3d());
-    case ValueType::Torque3D:
-      return (void)put(value.vector, out->mutable_torque3d());
-    case ValueType::AngularAcceleration3D:
-      return (void)put(value.vector, out->mutable_angularacceleration3d());
-    case ValueType::Velocity3D:
-      return (void)put(value.vector, out->mutable_velocity3d());
-    case ValueType::AngularVelocity3D:
-      return (void)put(value.vector, out->mutable_angularvelocity3d());
-    case ValueType::Multiple:
-      break;
-  }
-  SNUG_CHECK(false, "a sensor has one type");
-}
 
 /// The older scene-wide type: that of all joints, or Multiple.
 ValueType common_type(const Handshake& handshake) {
@@ -120,17 +82,6 @@ void put(const ObjectControl& object, wire::ControlMessage_Object* out) {
   for (const auto& [name, is_on] : object.events) (*out->mutable_controlevents())[name] = is_on;
 }
 
-void put(const ObjectSensors& object, wire::SensorMessage_Object* out) {
-  out->mutable_anglesensors()->Add(object.angles.begin(), object.angles.end());
-  out->mutable_angularvelocitysensors()->Add(object.velocities.begin(), object.velocities.end());
-  out->mutable_torquesensors()->Add(object.torques.begin(), object.torques.end());
-  for (const Vector3& force : object.forces) put(force, out->add_forcesensors());
-  for (const SensorValue& value : object.object) put(value, out->add_objectsensors());
-  for (const auto& [name, values] : object.sensors) {
-    for (const SensorValue& value : values) put(value, (*out->mutable_sensors())[name].add_sensor());
-  }
-}
-
 void put(const HandshakeInit& message, wire::HandshakeInitMessage* out) {
   out->set_messagetype(wire::MessageType::HandshakeInit);
   out->set_version(static_cast<wire::Version_Kind>(message.version));
@@ -144,11 +95,6 @@ void put(const Handshake& message, wire::HandshakeMessage* out) {
 }
 void put(const Control& message, wire::ControlMessage* out) {
   out->set_messagetype(wire::MessageType::Control);
-  for (const auto& [name, object] : message.objects) put(object, &(*out->mutable_objects())[name]);
-}
-void put(const Sensor& message, wire::SensorMessage* out) {
-  out->set_messagetype(wire::MessageType::Sensor);
-  out->mutable_simvars()->set_simulatedtime(message.time);
   for (const auto& [name, object] : message.objects) put(object, &(*out->mutable_objects())[name]);
 }
 void put(const Reset&, wire::ResetMessage* out) { out->set_messagetype(wire::MessageType::Reset); }
@@ -169,8 +115,6 @@ template <>
 struct WireOf<Handshake> : std::type_identity<wire::HandshakeMessage> {};
 template <>
 struct WireOf<Control> : std::type_identity<wire::ControlMessage> {};
-template <>
-struct WireOf<Sensor> : std::type_identity<wire::SensorMessage> {};
 template <>
 struct WireOf<Reset> : std::type_identity<wire::ResetMessage> {};
 template <>
@@ -409,7 +353,13 @@ const char* name_of(const Message& message) {
 }
 
 std::string encode(const Message& message) {
-  return std::visit([](const auto& alternative) { return encode_one(alternative); }, message);
+  if (const auto* sensor = std::get_if<Sensor>(&message)) return internal::write_sensor(*sensor);
+  return std::visit(
+      [](const auto& alternative) -> std::string {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(alternative)>, Sensor>) return encode_one(alternative);
+        return {};
+      },
+      message);
 }
 
 Decoded decode(std::string_view frame) {

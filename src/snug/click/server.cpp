@@ -21,6 +21,7 @@
 #include "snug/click/internal/socket.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/stopwatch.hpp"
 
 namespace snug::click {
 namespace {
@@ -68,8 +69,6 @@ bool is_readable(void* socket) {
   return zmq_getsockopt(socket, ZMQ_EVENTS, &events, &size) == 0 && (events & ZMQ_POLLIN) != 0;
 }
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 /// A message that waits for its turn.
 struct Request {
   Simulator::Peer peer;
@@ -83,6 +82,8 @@ struct Request {
 struct Server::Impl {
   Impl(Simulator& to_serve, ServerSettings server_settings);
   ~Impl() {
+    // ZeroMQ leaves the file of ipc:// behind. It is still ours: nobody else can listen at it before the socket closes.
+    if (const std::string file = internal::path_of(endpoint); !file.empty()) ::unlink(file.c_str());
     if (stop_fd >= 0) ::close(stop_fd);
   }
   Impl(const Impl&) = delete;
@@ -206,7 +207,8 @@ bool Server::Impl::read_message() {
 bool Server::Impl::must_wait(const Request& request, Clock::time_point& until) {
   until = Clock::time_point::max();
   const Clock::time_point now = Clock::now();
-  if (simulator.has_controller() && !simulator.is_controller(request.peer) && now < request.received + kTakeOver &&
+  const bool would_control = !simulator.is_controller(request.peer) && !Simulator::is_watcher(request.peer);
+  if (simulator.has_controller() && would_control && now < request.received + kTakeOver &&
       simulator.is_handshake(request.frame)) {
     until = request.received + kTakeOver;
     return true;

@@ -16,6 +16,8 @@ bool holds(const Message& message) {
   return std::holds_alternative<T>(message);
 }
 
+Error unsupported(int version) { return {fmt::format("version {} is not supported, expected {}", version, kVersion)}; }
+
 }  // namespace
 
 Simulator::Simulator(const cell::Simulation& simulation, SimulatorSettings settings)
@@ -63,6 +65,7 @@ std::optional<Message> Simulator::respond(const Peer& peer, std::string_view fra
   }
   const Expected<Message, std::string> message = decode(frame);
   if (!message) return Error{message.error()};
+  if (is_watcher(peer)) return show(*message);
   if (controller_ && *controller_ != peer) return Error{kBusy};
   if (const auto* error = std::get_if<Error>(&*message)) {
     end("the controller reported: " + error->text);
@@ -88,10 +91,16 @@ std::optional<Message> Simulator::respond(const Peer& peer, std::string_view fra
   return Error{fmt::format("a {} is for controllers; this is a simulator", name_of(*message))};
 }
 
-Message Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
-  if (init.version != kVersion) {
-    return Error{fmt::format("version {} is not supported, expected {}", init.version, kVersion)};
+Message Simulator::show(const Message& message) const {
+  if (const auto* init = std::get_if<HandshakeInit>(&message)) {
+    return init->version == kVersion ? Message(cell_.handshake()) : unsupported(init->version);
   }
+  if (holds<SensorRequest>(message)) return sense();
+  return Error{fmt::format("a {} is for controllers; this peer only looks", name_of(message))};
+}
+
+Message Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
+  if (init.version != kVersion) return unsupported(init.version);
   controller_ = peer;
   is_reset_ = false;
   if (!failure_.empty()) end(failure_);  // a stop that nobody acknowledged
@@ -119,7 +128,7 @@ Message Simulator::control(const Control& control) {
   }
   advance(order->command);
   if (!failure_.empty()) return Error{failure_};
-  const Message reply = sense();
+  Message reply = sense();
   if (settings_.batch && time() >= *settings_.batch) reset(fmt::format("{} s are over", *settings_.batch));
   return reply;
 }

@@ -26,6 +26,9 @@ struct SimulatorSettings {
   std::function<void(int run, const cell::RunResult& result)> end_run = {};
 };
 
+/// Routing ids that begin so are those of peers that only look: they get their answers beside a controller.
+inline constexpr std::string_view kWatcher = "watch";
+
 /// What the simulator answered so far.
 struct SimulatorCounts {
   std::int64_t steps = 0;
@@ -56,6 +59,8 @@ class Simulator {
   /// Would this frame make the cell step? Then it may be kept until it is time.
   [[nodiscard]] bool is_step(const Peer& peer, std::string_view frame) const;
   [[nodiscard]] static bool is_handshake(std::string_view frame);
+  /// A peer that says by its name that it only looks.
+  [[nodiscard]] static bool is_watcher(const Peer& peer) { return peer.starts_with(kWatcher); }
   /// The peer is gone. True: it was the controller.
   bool leave(const Peer& peer);
   /// The user resets: the controller's next message is answered so.
@@ -83,6 +88,8 @@ class Simulator {
 
  private:
   [[nodiscard]] std::optional<Message> respond(const Peer& peer, std::string_view frame);
+  /// To a peer that looks: it never becomes the controller and changes nothing.
+  [[nodiscard]] Message show(const Message& message) const;
   [[nodiscard]] Message shake_hands(const Peer& peer, const HandshakeInit& init);
   [[nodiscard]] Message control(const Control& control);
   void begin_run();

@@ -1,14 +1,28 @@
 // run_joints: a program through the joints, without anything to touch: what is handed to a real robot.
 #include "snug/control/joint_run.hpp"
 
+#include <cmath>
+#include <utility>
+
 namespace snug::control {
 namespace {
 
-// rad/s (m/s), from which the joints are braked to a stand within a tick: an acceleration of 0.1 at 8 ms.
-constexpr double kSlow = 1e-3;
 constexpr double kLongestSettling = 10.0;  ///< s
 
 }  // namespace
+
+void bring_to_rest(const JointController& controller, double tick, JointRun& run) {
+  while (!run.samples.empty() && run.samples.back().after.qd.norm() > 0.0) {
+    JointSample sample = run.samples.back();
+    sample.time = tick * (std::round(sample.time / tick) + 1.0);
+    sample.before = run.samples.back().after;
+    sample.tool = tool_at(controller.arm(), sample.before);
+    sample.after = sample.before;
+    controller.brake(sample.after);
+    if (sample.after.qd.norm() < 1e-9) sample.after.qd.setZero();
+    run.samples.push_back(std::move(sample));
+  }
+}
 
 JointRun run_joints(const motion::PreparedProgram& plan, const JointController& controller, const StateMachine& machine,
                     const robot::JointVector& q_start) {
@@ -36,18 +50,9 @@ JointRun run_joints(const motion::PreparedProgram& plan, const JointController& 
   }
   if (!run.is_complete) return run;
   const double settled = static_cast<double>(i) * dt + kLongestSettling;
-  while (state.joints.qd.norm() > kSlow && tick(settled)) {
+  while (state.joints.qd.norm() > kAlmostAtRest && tick(settled)) {
   }
-  while (state.joints.qd.norm() > 0.0) {  // to the last bit
-    JointSample sample = run.samples.back();
-    sample.time = static_cast<double>(i++) * dt;
-    sample.before = state.joints;
-    sample.tool = state.tool;
-    controller.brake(state.joints);
-    if (state.joints.qd.norm() < 1e-9) state.joints.qd.setZero();
-    sample.after = state.joints;
-    run.samples.push_back(std::move(sample));
-  }
+  bring_to_rest(controller, dt, run);
   return run;
 }
 

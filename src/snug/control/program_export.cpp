@@ -237,8 +237,8 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
   text +=
       fmt::format("  # {:.1f} s nominal from the start pose: {} moves from stop to stop (blends make them shorter),\n",
                   script.nominal_duration, script.moves);
-  text += fmt::format("  # {} s at each change of vacuum. Simulated: {:.1f} s, with a controller that lags behind.\n",
-                      plan.settings.vacuum_wait, script.simulated_duration);
+  text += fmt::format("  # {} s at each change of vacuum. Simulated: {:.1f} s, {}.\n", plan.settings.vacuum_wait,
+                      script.simulated_duration, program.simulated_with);
   text += fmt::format(
       "  def snug_wait_for_vacuum(is_wanted, place):\n"
       "    local waited = 0.0\n"

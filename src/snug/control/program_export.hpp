@@ -26,6 +26,7 @@ struct RobotProgram {
   std::vector<std::string> notes = {};
   /// s, of the program as it was simulated, whose limits `plan` may have been fitted to; 0: that of `plan`.
   double simulated_duration = 0.0;
+  std::string simulated_with = "with a controller that lags behind";  ///< what the simulation took this long with
 };
 
 struct UrScriptOptions {

@@ -130,4 +130,27 @@ bool is_printable(std::string_view text) {
   return true;
 }
 
+std::string escape_markup(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20U ? ' ' : c;
+    }
+  }
+  return out;
+}
+
 }  // namespace snug

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "snug/spatial/eigenvalues.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::cup {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 
 #include "snug/cell/run.hpp"
+#include "snug/core/units.hpp"
 #include "snug/experiment/internal/arm_bench.hpp"
 #include "snug/experiment/internal/camera_bench.hpp"
 #include "snug/experiment/internal/click_bench.hpp"
@@ -24,8 +24,6 @@ namespace snug::experiment {
 namespace {
 
 using internal::at_most;
-
-constexpr double kMm = 1e3;
 
 void measure_program(const BenchOptions& options, std::vector<Figure>& figures) {
   if (!std::filesystem::exists(options.program)) return;
@@ -85,7 +83,6 @@ void measure_packing(const BenchOptions& options, std::vector<Figure>& figures) 
 void measure_validation(const BenchOptions& options, std::vector<Figure>& figures) {
   if (!std::filesystem::exists(options.program)) return;
   const internal::ValidationFigures found = internal::measure_validation(options);
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   figures.push_back(at_most("validation.true.rest_over_noise", found.rest_over_noise, "1", 1.3));
   figures.push_back({"validation.true.rest_mm", kMm * found.true_clean.rest_position, "mm", "", true});
   figures.push_back({"validation.true.rms_mm", kMm * found.true_clean.rms_position, "mm", "", true});

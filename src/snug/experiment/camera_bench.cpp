@@ -13,6 +13,7 @@
 #include "snug/camera/render.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/experiment/internal/cpu_time.hpp"
+#include "snug/experiment/internal/scene_bench.hpp"
 
 namespace snug::experiment::internal {
 namespace {
@@ -189,10 +190,6 @@ namespace {
 // Settings of the estimator were chosen on seeds 1000 to 1999; these judge.
 constexpr std::uint64_t kJudgeSeed = 1;
 constexpr int kScenes = 30;
-
-Figure at_most(std::string name, double value, std::string unit, double limit) {
-  return {std::move(name), value, std::move(unit), fmt::format("<= {}", limit), value <= limit};
-}
 
 double mean_chi_square(const CameraScore& score) {
   double sum = 0.0;

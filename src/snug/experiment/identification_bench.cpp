@@ -27,7 +27,7 @@ using identification::StiffnessOptions;
 constexpr model::CupElasticity kTruth{2300.0, 5500.0, 5.5, 2.8, -20.0};
 constexpr std::array<double, 5> kTrueNumbers = {2300.0, 5500.0, 5.5, 2.8, -20.0};
 
-Figure at_most(const std::string& name, double value, const char* unit, double limit) {
+Figure below(const std::string& name, double value, const char* unit, double limit) {
   return {"identification." + name, value, unit, fmt::format("<= {}", limit), value <= limit};
 }
 
@@ -58,9 +58,9 @@ void measure_reference_poses(const std::filesystem::path& file, std::vector<Figu
     options.method = method.method;
     const StiffnessFit fit = identification::identify_stiffness(poses, options);
     const std::string name = method.name;
-    figures.push_back(at_most(name + ".worst_percent", worst_stiffness_percent(fit), "%", method.percent));
-    figures.push_back(at_most(name + ".coupling_percent", percent_off(fit.parameters[4].value, kTrueNumbers[4]), "%",
-                              method.coupling_percent));
+    figures.push_back(below(name + ".worst_percent", worst_stiffness_percent(fit), "%", method.percent));
+    figures.push_back(below(name + ".coupling_percent", percent_off(fit.parameters[4].value, kTrueNumbers[4]), "%",
+                            method.coupling_percent));
     figures.push_back(between(name + ".chi2_per_dof", fit.chi2_per_dof, "1", 0.9, 1.1));
     double best = 1e9;
     for (int i = 0; i < 3; ++i) {
@@ -68,7 +68,7 @@ void measure_reference_poses(const std::filesystem::path& file, std::vector<Figu
       (void)identification::identify_stiffness(twice, options);
       best = std::min(best, 1e3 * (cpu_seconds() - start));
     }
-    figures.push_back(at_most(name + ".1200_poses_ms", best, "ms", method.milliseconds));
+    figures.push_back(below(name + ".1200_poses_ms", best, "ms", method.milliseconds));
   }
 }
 
@@ -81,7 +81,7 @@ void measure_exact_poses(std::vector<Figure>& figures) {
   double worst = 0.0;
   for (std::size_t i = 0; i < 5; ++i)
     worst = std::max(worst, std::abs(fit.parameters[i].value / kTrueNumbers[i] - 1.0));
-  figures.push_back(at_most("wrench.noise_free_relative", worst, "1", 1e-6));
+  figures.push_back(below("wrench.noise_free_relative", worst, "1", 1e-6));
 }
 
 /// Percent of 200 sets whose 95 % interval holds the truth: all five parameters, and the one with the fewest.
@@ -124,10 +124,10 @@ void measure_reference_decays(const std::filesystem::path& file, std::vector<Fig
     for (std::size_t i = 0; i < 4; ++i)
       worst[i] = std::max(worst[i], percent_off(fit.parameters[i].value, kTimes[k] * truth[i]));
   }
-  figures.push_back(at_most("damping.d_lat_percent", worst[0], "%", 12.0));
+  figures.push_back(below("damping.d_lat_percent", worst[0], "%", 12.0));
   figures.push_back({"identification.damping.d_ax_percent", worst[1], "%", "", true});  // weak from swings
-  figures.push_back(at_most("damping.d_bend_percent", worst[2], "%", 3.0));
-  figures.push_back(at_most("damping.d_tors_percent", worst[3], "%", 12.0));
+  figures.push_back(below("damping.d_bend_percent", worst[2], "%", 3.0));
+  figures.push_back(below("damping.d_tors_percent", worst[3], "%", 12.0));
 }
 
 void measure_plucks(std::vector<Figure>& figures) {
@@ -155,12 +155,12 @@ void measure_plucks(std::vector<Figure>& figures) {
     return 100.0 * d_ax.standard_error / d_ax.value;
   };
   figures.push_back({"identification.damping.d_ax_error_of_3_swings_percent", d_ax_error(swings), "%", "", true});
-  figures.push_back(at_most("damping.d_ax_error_of_3_plucks_percent", d_ax_error(plucks), "%", 5.0));
+  figures.push_back(below("damping.d_ax_error_of_3_plucks_percent", d_ax_error(plucks), "%", 5.0));
   std::vector<identification::Release> ten;
   for (int i = 0; i < 10; ++i) ten.push_back(make(static_cast<PluckDirection>(i % 4), i % 4 < 2 ? 0.004 : 0.1));
   const double start = cpu_seconds();
   (void)identification::identify_damping(ten);
-  figures.push_back(at_most("damping.10_records_s", cpu_seconds() - start, "s", 5.0));
+  figures.push_back(below("damping.10_records_s", cpu_seconds() - start, "s", 5.0));
 }
 
 /// Lifts of 1.5 s with the noise and the tare of the demonstrator's sensor.
@@ -197,8 +197,8 @@ void measure_payload(std::vector<Figure>& figures) {
       }
     }
   }
-  figures.push_back(at_most("payload.worst_mass_percent", mass_percent, "%", 2.0));
-  figures.push_back(at_most("payload.worst_com_mm", com_mm, "mm", 5.0));
+  figures.push_back(below("payload.worst_mass_percent", mass_percent, "%", 2.0));
+  figures.push_back(below("payload.worst_com_mm", com_mm, "mm", 5.0));
   const double percent = 100.0 * covered / count;
   figures.push_back({"identification.payload.coverage_percent", percent, "%", ">= 90", percent >= 90.0});
   figures.push_back({"identification.payload.us_per_sample", 1e6 * seconds / (60.0 * 751.0), "us", "", true});

@@ -10,6 +10,7 @@
 #include "snug/cell/run.hpp"
 #include "snug/cell/scene.hpp"
 #include "snug/core/parallel.hpp"
+#include "snug/core/units.hpp"
 #include "snug/experiment/internal/cpu_time.hpp"
 #include "snug/experiment/internal/drawn_scenes.hpp"
 #include "snug/experiment/internal/scene_bench.hpp"
@@ -20,7 +21,6 @@ namespace {
 using cell::Scene;
 using physics::StepStatus;
 
-constexpr double kMm = 1e3;
 constexpr Pile kPiles[] = {
     {100, 5, 1}, {300, 7, 2}, {1000, 11, 3}, {3000, 40, 4}};  // the last: small heaps side by side
 constexpr int kPileSteps = 700;                               ///< 1.4 s: they fall, land and settle

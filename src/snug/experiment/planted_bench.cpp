@@ -18,21 +18,10 @@ namespace snug::experiment::internal {
 namespace {
 
 constexpr double kClip = 20.0;  // s, from the beginning of the program
-constexpr int kRepetitions = 2;
-
-class Capture final : public cell::RunObserver {
- public:
-  void begin(const record::RecordingHeader& header) override { recording.header = header; }
-  bool add(const record::Frame& frame) override {
-    recording.frames.push_back(frame);
-    return true;
-  }
-  void add(const record::Event& event) override { recording.events.push_back(event); }
-  record::Recording recording;
-};
+constexpr int kPlantedRuns = 2;
 
 record::Recording run_clip(const model::Scenario& scenario, const BenchOptions& options) {
-  Capture capture;
+  cell::RunCapture capture;
   cell::RunOptions run;
   run.program = motion::load_program(options.program);
   run.sequence = "1";
@@ -88,10 +77,10 @@ void measure_planted(const BenchOptions& options, std::vector<Figure>& figures) 
   const validation::SimulatedRun truth =
       validation::make_run(run_clip(model::with_numbers(base, edits), options), "truth");
   std::vector<record::ArchiveRecording> recordings;
-  for (int k = 1; k <= kRepetitions; ++k) {
+  for (int k = 1; k <= kPlantedRuns; ++k) {
     validation::MeasureOptions settings;
     settings.repetition = k;
-    settings.repetitions = kRepetitions;
+    settings.repetitions = kPlantedRuns;
     recordings.push_back(validation::measure(truth, sensors, settings).recording);
   }
   const auto begin = std::chrono::steady_clock::now();

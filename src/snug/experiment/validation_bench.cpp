@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kRepetitions = 3;
+constexpr int kValidatedRuns = 3;
 
 class ScratchFolder {
  public:
@@ -70,10 +70,10 @@ std::vector<validation::MeasureTruth> save(const fs::path& path,
                                            const model::Sensors& sensors) {
   record::ArchiveWriter writer(path);
   std::vector<validation::MeasureTruth> truths;
-  for (int k = 1; k <= kRepetitions; ++k) {
+  for (int k = 1; k <= kValidatedRuns; ++k) {
     validation::MeasureOptions settings;
     settings.repetition = k;
-    settings.repetitions = kRepetitions;
+    settings.repetitions = kValidatedRuns;
     const validation::SimulatedRun& run = *runs[static_cast<std::size_t>(k - 1) % runs.size()];
     validation::VirtualMeasurement measured = validation::measure(run, sensors, settings);
     writer.add(measured.recording);
@@ -137,7 +137,7 @@ ValidationFigures measure_validation(const BenchOptions& options) {
   fs::remove(folder / "true.h5");
   std::vector<validation::SimulatedRun> others;
   std::vector<const validation::SimulatedRun*> pointers;
-  for (int k = 1; k <= kRepetitions; ++k)
+  for (int k = 1; k <= kValidatedRuns; ++k)
     others.push_back(
         simulate(off_by_one(scenario, Rng(1).split("off by one " + std::to_string(k))), options, folder / "other.h5"));
   for (const validation::SimulatedRun& other : others) pointers.push_back(&other);

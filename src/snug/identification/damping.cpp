@@ -1,8 +1,6 @@
 // identify_damping: output error: the damping whose simulated swings come nearest to the recorded ones.
 #include "snug/identification/damping.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -12,8 +10,10 @@
 #include "snug/identification/free_swing.hpp"
 #include "snug/identification/internal/release_model.hpp"
 #include "snug/identification/internal/stiffness_form.hpp"
+#include "snug/numerics/dense.hpp"
 #include "snug/numerics/least_squares.hpp"
 #include "snug/numerics/outliers.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::identification {
 namespace {
@@ -21,8 +21,8 @@ namespace {
 using internal::ReleaseModel;
 using internal::Unknowns;
 
-constexpr double kPriorWidth = 1000.0;  // times the prior's own size
-constexpr double kRejects = 3.29;       // deviations of chi-square by which releases contradict: about 1 in 1000
+constexpr double kDampingPriorWidth = 1000.0;  // times the prior's own size
+constexpr double kRejects = 3.29;              // deviations of chi-square by which releases contradict: about 1 in 1000
 
 /// A set of releases, the samples of each that count, and how they start.
 struct Problem {
@@ -89,8 +89,8 @@ Solution solve(const Problem& problem, const std::vector<std::size_t>& which, co
       {scale.size(),
        {},
        [&scale, prior](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-         r = (x - prior.cwiseQuotient(scale)) / kPriorWidth;
-         if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / kPriorWidth;
+         r = (x - prior.cwiseQuotient(scale)) / kDampingPriorWidth;
+         if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / kDampingPriorWidth;
        }});
   const numerics::LeastSquaresResult found =
       numerics::solve_least_squares(terms, start.cwiseQuotient(scale), {.tolerance = 1e-8, .max_iterations = 50});
@@ -209,7 +209,7 @@ Problem make_problem(const std::vector<Release>& releases, const DampingOptions&
 void check_input(const std::vector<Release>& releases, const DampingOptions& options) {
   if (releases.empty()) throw InputError("command line", "", "no releases", "one or more");
   for (const Release& release : releases) {
-    if (Eigen::LLT<Matrix6>(release.K.value_or(options.K)).info() != Eigen::Success)
+    if (!is_positive_definite(release.K.value_or(options.K)))
       throw InputError(release.name, "K", "a stiffness that is not positive definite", "the cup's, identified before");
   }
 }
@@ -245,7 +245,7 @@ DampingFit identify_damping(const std::vector<Release>& releases, const DampingO
   fit.chi2_per_dof = solution.chi2 / solution.degrees_of_freedom;
   fit.degrees_of_freedom = solution.degrees_of_freedom;
   const double inflation = std::max(1.0, fit.chi2_per_dof);
-  fit.covariance = inflation * solution.information.inverse();
+  fit.covariance = inflation * numerics::invert(solution.information);
   fit.parameters = make_parameters(problem.unknowns, solution.theta, fit.covariance);
   const auto damping_count = static_cast<Eigen::Index>(problem.unknowns.damping.size());
   fit.damping = as_elasticity(solution.theta, 0, damping_count);
@@ -265,7 +265,8 @@ DampingFit identify_damping(const std::vector<Release>& releases, const DampingO
     alone_freedom += one.degrees_of_freedom;
     fit.releases.push_back(describe(problem, k, one, one.own.front()));
     const double enlarged = std::max(1.0, fit.releases.back().chi2_per_dof);
-    fit.releases.back().parameters = make_parameters(problem.unknowns, one.theta, enlarged * one.information.inverse());
+    fit.releases.back().parameters =
+        make_parameters(problem.unknowns, one.theta, enlarged * numerics::invert(one.information));
   }
   const double more = static_cast<double>(problem.unknowns.scale.size()) * static_cast<double>(releases.size() - 1);
   const double noise = std::max(1.0, alone / alone_freedom);

@@ -1,13 +1,13 @@
 // FreeSwing: rigid-body dynamics at S1, and their variational equations.
 #include "snug/identification/free_swing.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "snug/cup/law.hpp"
 #include "snug/identification/internal/pose_misfit.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::identification {
 namespace {
@@ -32,7 +32,7 @@ class Dynamics {
     const double m = swing.load_S.mass;
     M_ << m * Matrix3::Identity(), -m * skew(c), m * skew(c),
         R.transpose() * swing.load_S.inertia * R - m * skew(c) * skew(c);
-    M_inverse_ = M_.inverse();
+    M_inverse_ = inverse(M_);
     gravity_.is_gravity = true;
     gravity_.weight_S2 = m * ((swing.R_WE * swing.frames.X_ES2.R).transpose() * swing.gravity_W);
     gravity_.p_S1Scm = c;
@@ -40,8 +40,7 @@ class Dynamics {
 
   /// 1/s, of the fastest mode or decay.
   [[nodiscard]] double fastest_rate() const {
-    const auto radius = [](const Matrix6& A) { return A.eigenvalues().cwiseAbs().maxCoeff(); };
-    return std::max(std::sqrt(radius(M_inverse_ * swing_.K)), radius(M_inverse_ * swing_.D));
+    return std::max(std::sqrt(spectral_radius(M_inverse_ * swing_.K)), spectral_radius(M_inverse_ * swing_.D));
   }
 
   [[nodiscard]] State rate(const State& at) const {

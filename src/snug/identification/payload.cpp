@@ -10,6 +10,8 @@
 #include "snug/core/check.hpp"
 #include "snug/cup/law.hpp"
 #include "snug/cup/law_derivatives.hpp"
+#include "snug/numerics/dense.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::identification {
 namespace {
@@ -42,7 +44,7 @@ Pose lip_under_wrench(const Matrix6& K, const CupFrames& frames, const Vector6& 
   const Eigen::LLT<Matrix6> factor(K);
   for (int i = 0; i < kLawIterations; ++i) {
     const Vector6 f = wrench_at(frames.X_ES2 * H, wrench_E);
-    const Vector6 g = cup::deformation_jacobian(H).transpose().partialPivLu().solve(-4.0 * f);
+    const Vector6 g = snug::solve(cup::deformation_jacobian(H).transpose(), -4.0 * f);
     const Vector6 e = factor.solve(g);
     // e back to a pose: the odd part of R has length 2 sin(angle), and the law ends at 45 degrees.
     const Vector3 odd = 0.5 * e.tail<3>();
@@ -140,7 +142,7 @@ PayloadEstimate PayloadEstimator::estimate() const {
   using Information = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   Information information = information_;
   // What is expected of inertia over mass, once the mass is known well enough to say what that means in kg m^2.
-  const double rough = std::max(Eigen::LDLT<Information>(information_).solve(weighted_)[0], 1e-3);
+  const double rough = std::max(numerics::solve_symmetric(information_, weighted_)(0, 0), 1e-3);
   for (int i = 0; i < 6; ++i) {
     Eigen::Matrix<double, kUnknowns, 1> row = Eigen::Matrix<double, kUnknowns, 1>::Zero();
     row[4 + i] = 1.0;
@@ -148,10 +150,8 @@ PayloadEstimate PayloadEstimator::estimate() const {
     const double deviation = (i < 3 ? 1.0 : 0.5) * settings_.gyration_square_prior * rough;
     information += row * row.transpose() / (deviation * deviation);
   }
-  const Eigen::LDLT<Information> factor(information);
-  const Eigen::Matrix<double, kUnknowns, 1> x = factor.solve(weighted_);
-  const Eigen::Matrix<double, kUnknowns, kUnknowns> all =
-      factor.solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
+  const Eigen::Matrix<double, kUnknowns, 1> x = numerics::solve_symmetric(information, weighted_);
+  const Eigen::Matrix<double, kUnknowns, kUnknowns> all = numerics::invert_symmetric(information);
   const double mass = std::max(x[0], 1e-6);
   const Vector3 com = x.segment<3>(1) / mass;
   Matrix3 about_lip;

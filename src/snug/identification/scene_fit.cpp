@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +10,7 @@
 
 #include "snug/identification/internal/scene_search.hpp"
 #include "snug/numerics/bounded_search.hpp"
+#include "snug/numerics/dense.hpp"
 
 namespace snug::identification {
 namespace {
@@ -51,17 +50,17 @@ Sensed sense(const SceneSearch& search) {
     span[j] = parameter.high - parameter.low;
   }
   const Eigen::MatrixXd scaled = span.asDiagonal() * at.information * span.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const numerics::Eigenpairs eigen = numerics::symmetric_eigenpairs(scaled);
   const double least = 1.0 / (kUnknownError * kUnknownError);
   Sensed sensed;
   std::vector<bool> is_unknown(free.size(), false);
   for (Eigen::Index k = 0; k < n; ++k) {
-    const double value = eigen.eigenvalues()[k];
+    const double value = eigen.values[k];
     if (value >= least) continue;
     UnknownDirection direction;
     direction.error = value > 0.0 ? 1.0 / std::sqrt(value) : std::numeric_limits<double>::infinity();
     for (Eigen::Index j = 0; j < n; ++j) {
-      const double share = eigen.eigenvectors()(j, k);
+      const double share = eigen.vectors(j, k);
       if (std::abs(share) < kShareNamed) continue;
       direction.shares.emplace_back(parameters[free[static_cast<std::size_t>(j)]].name, share);
       is_unknown[static_cast<std::size_t>(j)] = true;
@@ -70,9 +69,8 @@ Sensed sense(const SceneSearch& search) {
   }
   const Eigen::MatrixXd inverse =
       span.asDiagonal() *
-      (eigen.eigenvectors() *
-       eigen.eigenvalues().unaryExpr([](double v) { return v > 1e-12 ? 1.0 / v : 1e24; }).asDiagonal() *
-       eigen.eigenvectors().transpose()) *
+      (eigen.vectors * eigen.values.unaryExpr([](double v) { return v > 1e-12 ? 1.0 / v : 1e24; }).asDiagonal() *
+       eigen.vectors.transpose()) *
       span.asDiagonal();
   for (Eigen::Index j = 0; j < n; ++j) {
     const std::size_t index = free[static_cast<std::size_t>(j)];

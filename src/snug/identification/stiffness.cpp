@@ -1,9 +1,6 @@
 // identify_stiffness: three estimators on the same balances, and what can be said about their result.
 #include "snug/identification/stiffness.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +8,9 @@
 #include "snug/cup/law.hpp"
 #include "snug/identification/internal/compliance.hpp"
 #include "snug/identification/internal/pose_misfit.hpp"
+#include "snug/numerics/dense.hpp"
 #include "snug/numerics/least_squares.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::identification {
 namespace {
@@ -21,9 +20,9 @@ using internal::Form;
 using internal::LinearEstimate;
 using internal::NoiseAtS1;
 
-constexpr double kPriorWidth = 1000.0;    // times the prior's own size, as in the compliance fit
-constexpr std::size_t kFewest = 4;        // poses; 24 numbers against 5 or 21
-constexpr std::size_t kForSymmetry = 10;  // poses; fewer leave the test of 16 conditions without power
+constexpr double kStiffnessPriorWidth = 1000.0;  // times the prior's own size, as in the compliance fit
+constexpr std::size_t kFewest = 4;               // poses; 24 numbers against 5 or 21
+constexpr std::size_t kForSymmetry = 10;         // poses; fewer leave the test of 16 conditions without power
 constexpr int kFolds = 5;
 
 /// Everything that a fit needs, made once for all choices of poses.
@@ -63,7 +62,7 @@ struct Estimate {
 };
 
 void check_definite(const Setup& setup, const Matrix6& K) {
-  if (Eigen::LLT<Matrix6>(K).info() == Eigen::Success && K.allFinite()) return;
+  if (is_positive_definite(K) && K.allFinite()) return;
   throw InputError(setup.poses.source, "", "wrenches that pull against the deformation: no positive stiffness fits",
                    "the wrench of the cup on the package, in S about the lip (a hanging box: fz of the cup negative, z "
                    "of S into the box)");
@@ -80,7 +79,7 @@ Start fit_by_compliance(const Setup& setup, const std::vector<double>& weight) {
   const LinearEstimate found = internal::fit_compliance(setup.linear, weight, setup.noise, setup.form, setup.prior);
   const Matrix6 C = setup.form.matrix(found.theta);
   check_definite(setup, C);
-  const Matrix6 K = C.inverse();
+  const Matrix6 K = inverse(C);
   const Eigen::MatrixXd J = setup.form.inverse_jacobian(K);
   Start start{{K, J * found.covariance * J.transpose()}, {}};
   start.unknown = setup.form.scale_in(setup.prior).cwiseInverse().asDiagonal() * J * found.unknown;
@@ -92,8 +91,7 @@ Start fit_by_compliance(const Setup& setup, const std::vector<double>& weight) {
 void widen(const Setup& setup, const Start& start, Estimate& estimate) {
   if (start.unknown.cols() == 0) return;
   const Eigen::VectorXd scale = setup.form.scale_in(setup.prior);
-  const Eigen::MatrixXd U =
-      start.unknown * start.unknown.completeOrthogonalDecomposition().pseudoInverse();  // projects on them
+  const Eigen::MatrixXd U = start.unknown * numerics::pseudo_inverse(start.unknown);  // projects on them
   const Eigen::MatrixXd P = scale.asDiagonal() * U * scale.cwiseInverse().asDiagonal();
   estimate.covariance += P * start.estimate.covariance * P.transpose();
 }
@@ -106,12 +104,12 @@ Estimate fit_by_wrench(const Setup& setup, const std::vector<double>& weight, co
   const Form& form = setup.form;
   const Eigen::VectorXd scale = form.scale_in(setup.prior);
   const Eigen::VectorXd kept = form.numbers_of(start.estimate.K).cwiseQuotient(scale);
-  const Matrix6 W = setup.noise.wrench.inverse();
+  const Matrix6 W = inverse(setup.noise.wrench);
   // Everything in units of the prior.
   Eigen::MatrixXd N = kKept * (start.unknown * start.unknown.transpose());
   Eigen::VectorXd b = N * kept;
-  N.diagonal().array() += 1.0 / (kPriorWidth * kPriorWidth);
-  b += form.numbers_of(setup.prior).cwiseQuotient(scale) / (kPriorWidth * kPriorWidth);
+  N.diagonal().array() += 1.0 / (kStiffnessPriorWidth * kStiffnessPriorWidth);
+  b += form.numbers_of(setup.prior).cwiseQuotient(scale) / (kStiffnessPriorWidth * kStiffnessPriorWidth);
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(form.size(), form.size());
   for (std::size_t i = 0; i < setup.balances.size(); ++i) {
     if (weight[i] == 0.0) continue;
@@ -128,11 +126,9 @@ Estimate fit_by_wrench(const Setup& setup, const std::vector<double>& weight, co
     const Eigen::Matrix<double, 6, Eigen::Dynamic> WA = W * A;
     scatter.noalias() += WA.transpose() * (covariance * WA);
   }
-  const Eigen::LDLT<Eigen::MatrixXd> factor(N);
-  Estimate estimate{form.matrix(scale.cwiseProduct(factor.solve(b))), {}};
+  Estimate estimate{form.matrix(scale.cwiseProduct(numerics::solve_symmetric(N, b))), {}};
   check_definite(setup, estimate.K);
-  const Eigen::MatrixXd inverse =
-      scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(form.size(), form.size()));
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * numerics::invert_symmetric(N);
   estimate.covariance = inverse * scatter * inverse.transpose();
   widen(setup, start, estimate);
   return estimate;
@@ -161,8 +157,8 @@ Estimate fit_by_likelihood(const Setup& setup, const std::vector<double>& weight
   terms.push_back({form.size(),
                    {},
                    [&prior](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-                     r = (x - prior) / kPriorWidth;
-                     if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / kPriorWidth;
+                     r = (x - prior) / kStiffnessPriorWidth;
+                     if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / kStiffnessPriorWidth;
                    }});
   if (from.unknown.cols() > 0)
     terms.push_back(
@@ -179,7 +175,7 @@ Estimate fit_by_likelihood(const Setup& setup, const std::vector<double>& weight
                      "poses of one cup with their wrenches, or the method compliance");
   Estimate estimate{form.matrix(scale.cwiseProduct(found.x)), {}};
   check_definite(setup, estimate.K);
-  estimate.covariance = scale.asDiagonal() * found.information.inverse() * scale.asDiagonal();
+  estimate.covariance = scale.asDiagonal() * numerics::invert(found.information) * scale.asDiagonal();
   widen(setup, from, estimate);
   return estimate;
 }
@@ -236,7 +232,7 @@ SymmetryTest test_symmetry(const Setup& setup, const std::vector<double>& weight
   const LinearEstimate found = internal::fit_compliance(setup.linear, weight, setup.noise, full, setup.prior);
   // On the compliance, where the fit is linear; both have the same symmetry.
   const internal::SymmetryConditions& conditions = internal::symmetry_conditions();
-  const Eigen::VectorXd scale = full.scale_in(setup.prior.inverse());
+  const Eigen::VectorXd scale = full.scale_in(inverse(setup.prior));
   const Eigen::MatrixXd rows = conditions.rows;
   // Each condition in units of its own size.
   const Eigen::VectorXd size = (rows.cwiseAbs() * scale).cwiseInverse();
@@ -244,11 +240,11 @@ SymmetryTest test_symmetry(const Setup& setup, const std::vector<double>& weight
   const Eigen::MatrixXd covariance =
       inflation * (size.asDiagonal() * rows * found.covariance * rows.transpose() * size.asDiagonal());
   SymmetryTest test;
-  test.statistic = missed.dot(covariance.ldlt().solve(missed));
+  test.statistic = missed.dot(numerics::solve_symmetric(covariance, missed).col(0));
   test.p_value = chi_square_tail(test.statistic, static_cast<int>(rows.rows()));
   test.is_supported = test.p_value >= 0.01;
   // Told in stiffnesses, for people.
-  const Matrix6 K = full.matrix(found.theta).inverse();
+  const Matrix6 K = inverse(full.matrix(found.theta));
   const Eigen::MatrixXd J = rows * full.inverse_jacobian(K);
   const Eigen::VectorXd value = rows * full.numbers_of(K);
   const Eigen::VectorXd error = (inflation * (J * found.covariance * J.transpose())).diagonal().cwiseSqrt();

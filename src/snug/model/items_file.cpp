@@ -12,6 +12,7 @@
 
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
+#include "snug/core/units.hpp"
 #include "snug/model/internal/mass_properties.hpp"
 #include "snug/model/internal/orders_json.hpp"
 #include "snug/model/internal/parse.hpp"
@@ -30,7 +31,6 @@ using internal::kShortestMm;
 
 const std::vector<std::string> kColumns{"order",   "article", "length_mm",    "width_mm", "height_mm",
                                         "mass_kg", "count",   "upright_only", "no_stack", "max_load_kg"};
-constexpr double kMillimetre = 1e-3;
 /// Boxes that orders add to a scenario with a text: there they are up to 30 values each, within kMostYamlValues and 100
 /// MB.
 constexpr std::size_t kMostWritten = 3000;

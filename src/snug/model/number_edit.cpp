@@ -3,53 +3,14 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <charconv>
 #include <vector>
 
+#include "snug/model/internal/key_path.hpp"
 #include "snug/model/internal/scenario_text.hpp"
 #include "snug/model/internal/value.hpp"
 
 namespace snug::model {
 namespace {
-
-/// "pairs[0]" is two steps: "pairs" and "0".
-std::vector<std::string> split_path(const std::string& path, const std::string& where) {
-  std::vector<std::string> steps;
-  std::string step;
-  bool is_index = false;
-  const auto finish = [&](bool may_be_empty) {
-    if (step.empty() && !may_be_empty)
-      throw InputError(where, "path", "'" + path + "'", "keys with dots between, such as contacts.pairs[0].friction");
-    if (!step.empty()) steps.push_back(step);
-    step.clear();
-  };
-  bool was_index = false;
-  for (const char c : path) {
-    if (c == '[' && !is_index) {
-      finish(was_index);
-      is_index = true;
-    } else if (c == ']' && is_index) {
-      finish(false);
-      is_index = false;
-      was_index = true;
-    } else if (c == '.' && !is_index) {
-      finish(was_index);
-      was_index = false;
-    } else {
-      step += c;
-      if (!is_index) was_index = false;
-    }
-  }
-  finish(was_index);
-  return steps;
-}
-
-std::optional<std::size_t> as_index(const std::string& step) {
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), index);
-  if (error != std::errc() || end != step.data() + step.size()) return std::nullopt;
-  return index;
-}
 
 /// Where the last step of a path stands.
 struct Place {
@@ -64,23 +25,6 @@ struct Place {
                    "a number of the scenario" + internal::nearest_hint(step, known));
 }
 
-std::size_t find_entry(const YAML::Node& list, const std::string& step, const std::string& path,
-                       const std::string& where) {
-  std::vector<std::string> names;
-  std::size_t i = 0;
-  for (const YAML::Node& entry : list) {
-    for (const char* key : {"name", "id"}) {
-      if (!entry.IsMap() || !entry[key] || !entry[key].IsScalar()) continue;
-      names.push_back(entry[key].Scalar());
-      if (names.back() == step) return i;
-    }
-    ++i;
-  }
-  const std::optional<std::size_t> index = as_index(step);
-  if (!index || *index >= list.size()) fail_step(where, path, step, names);
-  return *index;
-}
-
 std::vector<std::string> keys_of(const YAML::Node& map) {
   std::vector<std::string> keys;
   for (const auto& entry : map)
@@ -89,14 +33,17 @@ std::vector<std::string> keys_of(const YAML::Node& map) {
 }
 
 Place find_place(const YAML::Node& root, const std::string& path, const std::string& where) {
-  const std::vector<std::string> steps = split_path(path, where);
+  const std::optional<std::vector<std::string>> split = internal::split_key_path(path);
+  if (!split) throw InputError(where, "path", "'" + path + "'", internal::kKeyPathForm);
+  const std::vector<std::string>& steps = *split;
   YAML::Node at = root;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const bool is_last = i + 1 == steps.size();
     if (at.IsSequence()) {
-      const std::size_t index = find_entry(at, steps[i], path, where);
-      if (is_last) return {at, "", index};
-      at.reset(at[index]);
+      const std::optional<std::size_t> index = internal::find_entry(at, steps[i]);
+      if (!index) fail_step(where, path, steps[i], internal::entry_names(at));
+      if (is_last) return {at, "", *index};
+      at.reset(at[*index]);
     } else if (at.IsMap()) {
       if (is_last) return {at, steps[i], 0};
       const YAML::Node next = at[steps[i]];

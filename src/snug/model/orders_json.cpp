@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/units.hpp"
 #include "snug/model/internal/value.hpp"
 
 namespace snug::model::internal {
@@ -20,7 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kMillimetre = 1e-3;
 constexpr const char* kForm = "a JSON object of orders (BED-BPP)";
 
 /// Reads characters and tells how many were taken: the library itself says where it is only when the text is no JSON.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/units.hpp"
 #include "snug/model/internal/overlap.hpp"
 #include "snug/model/internal/scenario_text.hpp"
 #include "snug/model/internal/value.hpp"
@@ -14,7 +15,6 @@
 namespace snug::model {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr double kLeastEdge = 0.010, kLargestEdge = 10.0;  ///< m, beyond them a size is taken for a slip
 constexpr double kTouching = 1e-6;                         ///< m, less is no overlap
 constexpr double kOver = 2.0;                              ///< m above a container that have to be free

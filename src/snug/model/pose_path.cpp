@@ -17,9 +17,9 @@ namespace {
 using internal::to_text;
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;  // about 500 000 points
+constexpr double kFewDigits = 1e-3;                        // of the norm of a quaternion written with few digits
 constexpr double kLatestTime = 1e6;                        // s
 constexpr double kFastest = 1000.0;                        // m/s and rad/s: more is a slip
-constexpr double kUnitTolerance = 1e-3;                    // of a quaternion written with few digits
 
 enum Column { Time, X, Y, Z, Qw, Qx, Qy, Qz, Roll, Pitch, Yaw, kColumnCount };
 const std::vector<std::string> kNames = {"time", "x",  "y",        "z",         "qw",     "qx",
@@ -47,7 +47,7 @@ class Fields {
 };
 
 /// Which column stands in each place.
-std::vector<Column> read_header(std::string_view line, const std::string& where) {
+std::vector<Column> read_columns(std::string_view line, const std::string& where) {
   std::vector<Column> columns;
   Fields fields(line);
   while (const auto field = fields.next()) {
@@ -77,7 +77,7 @@ double read_number(std::string_view field, Column column, const std::string& whe
   const std::string& name = kNames[static_cast<std::size_t>(column)];
   const double bound = column == Time ? kLatestTime
                        : column <= Z  ? internal::kFarthestPosition
-                       : column <= Qz ? 1.0 + kUnitTolerance
+                       : column <= Qz ? 1.0 + kFewDigits
                                       : 3600.0;
   const double low = column == Time ? 0.0 : -bound;
   std::string_view digits = field;
@@ -119,7 +119,7 @@ PathPoint read_point(std::string_view line, const std::vector<Column>& columns, 
     return point;
   }
   const Quaternion quat(values[Qw], values[Qx], values[Qy], values[Qz]);
-  if (!(std::abs(quat.norm() - 1.0) <= kUnitTolerance))
+  if (!(std::abs(quat.norm() - 1.0) <= kFewDigits))
     throw InputError(where, "qw,qx,qy,qz", "norm " + to_text(quat.norm()), "a quaternion of norm 1");
   point.X_WB.R = quat.normalized().toRotationMatrix();
   return point;
@@ -160,7 +160,7 @@ PosePath parse_pose_path(std::string_view text, std::string_view name, const Pos
     text.remove_prefix(std::min(end + 1, text.size()));
     if (row.find_first_not_of(" \t\r") == std::string_view::npos) continue;
     if (columns.empty()) {
-      columns = read_header(row, where);
+      columns = read_columns(row, where);
       continue;
     }
     PathPoint point = read_point(row, columns, where);

@@ -11,7 +11,7 @@ namespace {
 
 /// Speeds beyond these are slips.
 constexpr double kLargestSpeed = 1000.0;  // m/s and rad/s
-constexpr double kLatestTime = 1e6;       // s
+constexpr double kLatestStart = 1e6;      // s
 
 std::string name_of(const Material& material) { return material.name; }
 
@@ -32,9 +32,9 @@ Twist read_twist(const std::optional<Value>& value) {
   return V;
 }
 
-double read_time(const Value& value) { return value.number_within(0.0, kLatestTime, "a time in seconds"); }
+double read_time(const Value& value) { return value.number_within(0.0, kLatestStart, "a time in seconds"); }
 
-double read_duration(const Value& value) { return value.number_within(1e-6, kLatestTime, "a duration in seconds"); }
+double read_duration(const Value& value) { return value.number_within(1e-6, kLatestStart, "a duration in seconds"); }
 
 HolderMove read_swing(const Value& value, double start, double duration) {
   const MapReader map = value.map("swing", {"point", "axis", "angle_deg"});

@@ -3,54 +3,23 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
-#include <charconv>
+#include <optional>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/model/internal/key_path.hpp"
 #include "snug/model/internal/scenario_text.hpp"
 #include "snug/model/yaml_limits.hpp"
 
 namespace snug::model {
 namespace {
 
-/// "a[0].b" is "a.0.b".
-std::vector<std::string> steps_of(std::string path) {
-  std::erase(path, ']');
-  std::ranges::replace(path, '[', '.');
-  std::vector<std::string> steps;
-  for (std::size_t begin = 0; begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    steps.push_back(path.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return steps;
-}
-
-bool is_called(const YAML::Node& entry, const std::string& step) {
-  if (!entry.IsMap()) return false;
-  for (const char* key : {"name", "id"}) {
-    const YAML::Node named = entry[key];
-    if (named && named.IsScalar() && named.Scalar() == step) return true;
-  }
-  const YAML::Node pair = entry["between"];
-  return pair && pair.IsSequence() && pair.size() == 2 && pair[0].IsScalar() && pair[1].IsScalar() &&
-         pair[0].Scalar() + "/" + pair[1].Scalar() == step;
-}
-
-/// The entry of a list that a step names: by what it is called, else by index; the list's size where there is none.
-std::size_t find_entry(const YAML::Node& list, const std::string& step) {
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (is_called(list[i], step)) return i;
-  }
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), index);
-  return error == std::errc{} && end == step.data() + step.size() && index < list.size() ? index : list.size();
-}
-
 class Editor {
  public:
-  Editor(const KeyValue& change, const std::string& where)
-      : where_(where), path_(change.first), steps_(steps_of(change.first)) {
+  Editor(const KeyValue& change, const std::string& where) : where_(where), path_(change.first) {
+    std::optional<std::vector<std::string>> steps = internal::split_key_path(path_);
+    if (!steps) refuse("'" + path_ + "'", internal::kKeyPathForm);
+    steps_ = std::move(*steps);
     check_yaml(change.second, where + " " + change.first);
     value_ = YAML::Load(change.second);
   }
@@ -60,7 +29,6 @@ class Editor {
     if (depth == steps_.size()) return value_;
     const std::string& step = steps_[depth];
     const YAML::Node here = node && !node.IsNull() ? node : YAML::Node(YAML::NodeType::Map);
-    if (step.empty()) refuse("an empty step", "steps separated by single dots");
     if (here.IsSequence()) return changed_list(here, step, depth);
     if (!here.IsMap()) refuse("'" + here.Scalar() + "' before '" + step + "'", "a mapping or a list there");
     YAML::Node copy(YAML::NodeType::Map);
@@ -77,12 +45,12 @@ class Editor {
 
  private:
   [[nodiscard]] YAML::Node changed_list(const YAML::Node& here, const std::string& step, std::size_t depth) const {
-    const std::size_t index = find_entry(here, step);
-    if (index == here.size()) {
+    const std::optional<std::size_t> index = internal::find_entry(here, step);
+    if (!index) {
       refuse("'" + step + "'", "an entry's name or id, or an index below " + std::to_string(here.size()));
     }
     YAML::Node copy(YAML::NodeType::Sequence);
-    for (std::size_t i = 0; i < here.size(); ++i) copy.push_back(i == index ? changed(here[i], depth + 1) : here[i]);
+    for (std::size_t i = 0; i < here.size(); ++i) copy.push_back(i == *index ? changed(here[i], depth + 1) : here[i]);
     copy.SetStyle(here.Style());
     return copy;
   }

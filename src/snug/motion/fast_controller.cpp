@@ -20,6 +20,7 @@ constexpr double kLargestBlend = 0.4;
 /// A way that rises or falls by less than this, and this share of its level length, is level.
 constexpr double kLevel = 0.01;  ///< m
 constexpr double kGentleSlope = 0.2;
+constexpr double kPlumb = 1e-4;  ///< m and rad
 /// Rows that are left on the way, the cup letting go as it moves (docs/packing-execution.md, pivot).
 constexpr std::string_view kOnTheFly = "TwistDrag";
 
@@ -40,21 +41,9 @@ bool is_insertion(const Waypoint& waypoint) {
   return waypoint.io.vacuum && waypoint.name.starts_with("Place") && !waypoint.name.starts_with("PlaceSlow");
 }
 
-Pace pace_of(const PreparedProgram& plan, int row) {
-  const FastSettings& fast = plan.settings.fast;
-  const Waypoint& waypoint = row_of(plan, row);
-  Pace pace = waypoint.io.vacuum ? fast.held : fast.empty;
-  if (is_contact_row(waypoint.name)) {
-    const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
-    pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
-            fast.contact_window};
-  }
-  if (is_insertion(waypoint)) pace = fast.insert;
-  pace.max_speed *= fast.tempo;
-  pace.max_turn_speed *= fast.tempo;
-  pace.max_acceleration *= fast.tempo * fast.tempo;
-  pace.max_turn_acceleration *= fast.tempo * fast.tempo;
-  return pace;
+/// Straight up or down: nothing of that swings.
+bool is_plumb(const Pose& X_WA, const Pose& X_WB) {
+  return (X_WB.p - X_WA.p).head<2>().norm() < kPlumb && angle_between(X_WA.R, X_WB.R) < kPlumb;
 }
 
 double seconds_in_phase(const PreparedProgram& plan, const ControllerState& state) {
@@ -127,7 +116,7 @@ void begin_motion(const PreparedProgram& plan, const Pose& X_WE, ControllerState
   state.phase = ControllerPhase::Moving;
   state.phase_ticks = 0;
   state.force_before_W = state.sensed.force_W;
-  state.paced = PacedSegment(X_WE, row_of(plan, state.row).X_WE, pace_of(plan, state.row), plan.path_limits);
+  state.paced = PacedSegment(X_WE, row_of(plan, state.row).X_WE, pace_of(plan, X_WE, state.row), plan.path_limits);
 }
 
 void depart(const PreparedProgram& plan, int row, ControllerState& state) {
@@ -169,6 +158,24 @@ bool has_waited(const PreparedProgram& plan, const ControllerState& state) {
 bool is_contact_row(std::string_view name) noexcept {
   return name.starts_with("Box") || name.starts_with("RePick") || name.starts_with("Place") ||
          name.starts_with("Twist");
+}
+
+Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
+  const FastSettings& fast = plan.settings.fast;
+  const Waypoint& waypoint = row_of(plan, row);
+  Pace pace = waypoint.io.vacuum ? fast.held : fast.empty;
+  if (is_contact_row(waypoint.name)) {
+    const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
+    pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
+            fast.contact_window};
+  }
+  if (is_insertion(waypoint)) pace = fast.insert;
+  if (waypoint.io.vacuum && is_plumb(X_WE, waypoint.X_WE)) pace.window = std::min(pace.window, fast.insert.window);
+  pace.max_speed *= fast.tempo;
+  pace.max_turn_speed *= fast.tempo;
+  pace.max_acceleration *= fast.tempo * fast.tempo;
+  pace.max_turn_acceleration *= fast.tempo * fast.tempo;
+  return pace;
 }
 
 bool has_reached_fast(const PreparedProgram& plan, const ToolState& measured, const ControllerState& state) noexcept {

@@ -10,7 +10,7 @@
 namespace snug::motion {
 namespace {
 
-constexpr double kNoLength = 1e-9;  ///< m or rad: rounding of poses, not a motion
+constexpr double kNoMotion = 1e-9;  ///< m or rad: rounding of poses, not a motion
 
 }  // namespace
 
@@ -21,11 +21,11 @@ PacedSegment::PacedSegment(const Pose& X_WA, const Pose& X_WB, const Pace& pace,
   line_W_ = X_WB.p - X_WA.p;
   turn_W_ = X_WA.R * log_rotation(X_WA.R.transpose() * X_WB.R);
   const double length = line_W_.norm(), angle = turn_W_.norm();
-  if (length < kNoLength) line_W_.setZero();
-  if (angle < kNoLength) turn_W_.setZero();
-  if (length < kNoLength && angle < kNoLength) return;
+  if (length < kNoMotion) line_W_.setZero();
+  if (angle < kNoMotion) turn_W_.setZero();
+  if (length < kNoMotion && angle < kNoMotion) return;
   constexpr double kFree = std::numeric_limits<double>::infinity();
-  const auto per = [&](double limit, double whole) { return whole < kNoLength ? kFree : limit / whole; };
+  const auto per = [&](double limit, double whole) { return whole < kNoMotion ? kFree : limit / whole; };
   std::array<double, kPathParts> rates{};
   rates.fill(std::min(per(pace.max_speed, length), per(pace.max_turn_speed, angle)));
   if (others != nullptr) others->limit(X_WA, X_WB, rates);

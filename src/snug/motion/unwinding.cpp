@@ -25,7 +25,13 @@ Matrix3 upright_tool(double yaw) {
   return exp_rotation(Vector3(0.0, 0.0, yaw)) * exp_rotation(Vector3(0.0, std::numbers::pi, 0.0));
 }
 
-std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypoint>& rows, double neutral_yaw) {
+double pan_between(const Vector3& p_WB, const Vector3& p_W_from, const Vector3& p_W_to) {
+  const Vector3 from = p_W_from - p_WB, to = p_W_to - p_WB;
+  return std::atan2(from.x() * to.y() - from.y() * to.x(), from.head<2>().dot(to.head<2>()));
+}
+
+std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypoint>& rows, double neutral_yaw,
+                                 bool on_the_way) {
   std::vector<Waypoint> turned;
   const Waypoint* last = &before;
   for (const Waypoint& row : rows) {
@@ -36,6 +42,10 @@ std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypo
       for (int i = 1; i < parts; ++i) {
         Waypoint between = *last;
         between.X_WE.R = exp_rotation(Vector3(0.0, 0.0, turn * i / parts)) * last->X_WE.R;
+        if (on_the_way) {
+          between.X_WE.p += (row.X_WE.p - last->X_WE.p) * i / parts;
+          between.io = row.io;
+        }
         between.name += "_turn";
         turned.push_back(between);
       }

@@ -139,7 +139,8 @@ Program parse_program(std::string_view text, std::string_view name) {
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
     const std::string_view row = trim(text.substr(0, end));
-    if (!row.empty()) program.waypoints.push_back(parse_row(row, name, line));
+    const bool is_comment = row.starts_with('#');
+    if (!row.empty() && !is_comment) program.waypoints.push_back(parse_row(row, name, line));
     if (program.waypoints.size() > kMostWaypoints) {
       throw InputError(fmt::format("{}:{}", name, line), "", fmt::format("more than {} waypoints", kMostWaypoints),
                        "fewer");

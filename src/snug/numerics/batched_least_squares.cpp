@@ -3,11 +3,11 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <memory>
 
 #include "snug/core/check.hpp"
+#include "snug/numerics/dense.hpp"
 
 namespace snug::numerics {
 namespace {
@@ -59,9 +59,9 @@ class Prepare final : public ceres::EvaluationCallback {
   const Eigen::VectorXd& unknowns_;  ///< where Ceres keeps them
 };
 
-class TermCost final : public ceres::CostFunction {
+class BatchedTermCost final : public ceres::CostFunction {
  public:
-  TermCost(const Batch& batch, std::size_t term) : batch_(batch), term_(term) {
+  BatchedTermCost(const Batch& batch, std::size_t term) : batch_(batch), term_(term) {
     const BatchedProblem::Term& of = batch.problem.terms[term];
     set_num_residuals(static_cast<int>(of.residuals));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(batch.problem.start.size()));
@@ -145,7 +145,7 @@ Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n)
     Eigen::MatrixXd shared = J.leftCols(n);
     if (J.cols() > n) {
       const Eigen::MatrixXd own = J.rightCols(J.cols() - n);
-      shared -= own * own.colPivHouseholderQr().solve(shared);
+      shared -= own * solve_by_qr(own, shared);
     }
     information += shared.transpose() * shared;
   }
@@ -176,7 +176,7 @@ BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& o
       first += own.size();
     }
     auto loss = options.loss_scale > 0.0 ? std::make_unique<ceres::CauchyLoss>(options.loss_scale) : nullptr;
-    problem.AddResidualBlock(new TermCost(batch, i), loss.release(), blocks);
+    problem.AddResidualBlock(new BatchedTermCost(batch, i), loss.release(), blocks);
   }
   for (int j = 0; j < static_cast<int>(given.start.size()); ++j) {
     problem.SetParameterLowerBound(unknowns.data(), j, given.lower[j]);

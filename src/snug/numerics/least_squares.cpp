@@ -1,9 +1,9 @@
 // solve_least_squares: Ceres behind one function.
 #include "snug/numerics/least_squares.hpp"
+#include "snug/numerics/dense.hpp"
 
 #include <ceres/ceres.h>
 
-#include <Eigen/QR>
 #include <memory>
 
 namespace snug::numerics {
@@ -56,7 +56,7 @@ void weigh(const std::vector<LeastSquaresTerm>& terms, LeastSquaresResult& resul
     if (own > 0) {
       // What the own unknowns can explain is taken out of the shared columns.
       const Eigen::MatrixXd of_own = J.rightCols(own);
-      shared -= of_own * of_own.colPivHouseholderQr().solve(shared);
+      shared -= of_own * solve_by_qr(of_own, shared);
     }
     result.information += shared.transpose() * shared;
   }

@@ -13,13 +13,13 @@
 namespace snug::packing {
 namespace {
 
-using internal::Block;
 using internal::BlockList;
+using internal::LoadBlock;
 using internal::Size3;
 
 constexpr std::size_t kMaxBlocks = 10000;
 constexpr double kMinFill = 0.98;
-constexpr int kLongest = 100000;  // the volume of a container stays below 2^63
+constexpr int kLongestEdge = 100000;  // the volume of a container stays below 2^63
 constexpr int kMostTypes = 1000;
 constexpr int kMostBoxes = 5000;  // of one type
 /// Blocks looked at in one second, with all that a search does around them: measured on the reference machine.
@@ -55,7 +55,7 @@ struct Placed {
 };
 
 /// A partial load.
-struct Node {
+struct LoadNode {
   std::vector<Space> spaces;  ///< maximal, may overlap
   std::vector<int> left;      ///< boxes of each type
   std::vector<int> usable;    ///< blocks for which there are boxes left
@@ -68,14 +68,14 @@ class Search {
   Search(const LoadProblem& problem, const LoadSettings& settings)
       : problem_(problem), settings_(settings), list_(internal::make_blocks(problem, kMaxBlocks, kMinFill)) {
     for (std::size_t d = 0; d < 3; ++d) fill_reachable(d);
-    for (const Block& block : list_.blocks) {
+    for (const LoadBlock& block : list_.blocks) {
       count_factor_.push_back(static_cast<double>(block.volume) * std::pow(block.boxes, -kCountPower));
     }
   }
 
   LoadResult run() {
     const double budget = settings_.time * kBlocksPerSecond;
-    Node root;
+    LoadNode root;
     root.spaces.push_back({{0, 0, 0}, problem_.container});
     for (const CargoType& type : problem_.types) root.left.push_back(type.count);
     for (std::size_t i = 0; i < list_.blocks.size(); ++i) root.usable.push_back(static_cast<int>(i));
@@ -91,8 +91,8 @@ class Search {
 
  private:
   struct Child {
-    Node node;
-    Node complete;
+    LoadNode node;
+    LoadNode complete;
     std::int64_t work = 0;
   };
 
@@ -137,7 +137,7 @@ class Search {
     return corner;
   }
 
-  [[nodiscard]] std::size_t choose_space(const Node& node) const {
+  [[nodiscard]] std::size_t choose_space(const LoadNode& node) const {
     std::size_t chosen = 0;
     int best = std::numeric_limits<int>::max();
     std::int64_t best_volume = 0;
@@ -156,7 +156,7 @@ class Search {
   }
 
   /// The best `count` blocks for a space, best first. Blocks that need boxes which are gone are dropped from the list.
-  std::int64_t rank_blocks(Node& node, const Space& space, std::size_t count,
+  std::int64_t rank_blocks(LoadNode& node, const Space& space, std::size_t count,
                            std::vector<std::pair<double, int>>& ranked) const {
     ranked.clear();
     const Size3 room{space.high[0] - space.low[0], space.high[1] - space.low[1], space.high[2] - space.low[2]};
@@ -168,7 +168,7 @@ class Search {
       const auto i = static_cast<std::size_t>(index);
       if (!is_available(i, node.left)) continue;
       node.usable[kept++] = index;
-      const Block& block = list_.blocks[i];
+      const LoadBlock& block = list_.blocks[i];
       if (block.size[0] > room[0] || block.size[1] > room[1] || block.size[2] > room[2]) continue;
       if (ranked.size() == count && count_factor_[i] <= ranked.back().first) continue;  // usable share is at most 1
       double used = 1.0;
@@ -194,9 +194,9 @@ class Search {
     return true;
   }
 
-  void place(Node& node, std::size_t space_index, int block_index) const {
+  void place(LoadNode& node, std::size_t space_index, int block_index) const {
     const Space space = node.spaces[space_index];
-    const Block& block = list_.blocks[static_cast<std::size_t>(block_index)];
+    const LoadBlock& block = list_.blocks[static_cast<std::size_t>(block_index)];
     const Corner corner = nearest_corner(space);
     Space taken;
     for (std::size_t d = 0; d < 3; ++d) {
@@ -241,7 +241,7 @@ class Search {
     spaces = std::move(kept);
   }
 
-  std::int64_t complete(Node& node) const {
+  std::int64_t complete(LoadNode& node) const {
     std::int64_t work = 0;
     std::vector<std::pair<double, int>> ranked;
     while (!node.spaces.empty() && !node.usable.empty()) {
@@ -257,7 +257,7 @@ class Search {
   }
 
   /// The `width` most promising continuations of one partial load.
-  void expand(Node node, int width, std::vector<Child>& children) {
+  void expand(LoadNode node, int width, std::vector<Child>& children) {
     std::vector<std::pair<double, int>> ranked;
     while (!node.spaces.empty() && !node.usable.empty()) {
       const std::size_t space = choose_space(node);
@@ -284,13 +284,13 @@ class Search {
   }
 
   /// One beam search. False: the work was used up before its end.
-  bool search(const Node& root, int width, double budget) {
+  bool search(const LoadNode& root, int width, double budget) {
     is_cut_ = false;
-    std::vector<Node> beam{root};
+    std::vector<LoadNode> beam{root};
     while (!beam.empty()) {
       if (static_cast<double>(work_) >= budget) return false;
       std::vector<Child> children;
-      for (const Node& node : beam) expand(node, width, children);
+      for (const LoadNode& node : beam) expand(node, width, children);
       complete_all(children);
       std::stable_sort(children.begin(), children.end(),
                        [](const Child& a, const Child& b) { return a.complete.volume > b.complete.volume; });
@@ -323,7 +323,7 @@ class Search {
   BlockList list_;
   std::array<std::vector<int>, 3> reachable_;
   std::vector<double> count_factor_;
-  Node best_;
+  LoadNode best_;
   std::int64_t work_ = 0;
   int beam_width_ = 0;
   bool is_cut_ = false;  ///< the last search left continuations out: a wider one may find more
@@ -335,7 +335,7 @@ void require(bool holds, const LoadProblem& problem, const std::string& key, con
 }
 
 void check(const LoadProblem& problem, const LoadSettings& settings) {
-  const auto is_length = [](int length) { return length > 0 && length <= kLongest; };
+  const auto is_length = [](int length) { return length > 0 && length <= kLongestEdge; };
   for (const int length : problem.container) {
     require(is_length(length), problem, "container", std::to_string(length), "lengths of 1 .. 100000");
   }

@@ -42,8 +42,6 @@ std::string_view describe(NoPlace reason) {
       return "only places on boxes that must not carry it";
     case NoPlace::NotReachable:
       return "no place within reach";
-    case NoPlace::NotPlanned:
-      return "left out of the plan";
   }
   return "no reason";
 }

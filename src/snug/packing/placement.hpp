@@ -48,7 +48,6 @@ enum class NoPlace {
   NoStablePlace,  ///< it would fit, but not stand
   OverLoad,       ///< it would stand, but on a box that must not carry it
   NotReachable,   ///< every place was refused by the reach function
-  NotPlanned,     ///< the plan, made in advance, leaves it out
 };
 
 /// The state as it would be if the candidate's plan came true exactly: what a plan on paper goes on with.

@@ -22,6 +22,13 @@ Observation finished(Observation observation, std::span<const Expectation> expec
   return observation;
 }
 
+/// The same of a sensor that nothing is hidden from: what it does not see is not there.
+Observation finished_by_all_seeing(Observation observation, std::span<const Expectation> expected) {
+  observation = finished(std::move(observation), expected);
+  observation.missing = observation.not_seen;
+  return observation;
+}
+
 class Exact final : public Perception {
  public:
   [[nodiscard]] std::string_view name() const override { return name_of(Kind::Exact); }
@@ -31,7 +38,7 @@ class Exact final : public Perception {
     for (const SceneBox& box : scene.boxes) {
       observation.seen.push_back({box.item, box.X_WP, Matrix6::Zero(), box.size, 0.0});
     }
-    return finished(std::move(observation), expected);
+    return finished_by_all_seeing(std::move(observation), expected);
   }
 };
 
@@ -50,7 +57,7 @@ class Noisy final : public Perception {
       const Pose X_WP{exp_rotation(turn) * box.X_WP.R, box.X_WP.p + shift};
       observation.seen.push_back({box.item, X_WP, covariance_, size, noise_.size / std::sqrt(3.0)});
     }
-    return finished(std::move(observation), expected);
+    return finished_by_all_seeing(std::move(observation), expected);
   }
 
  private:

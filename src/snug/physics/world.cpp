@@ -285,8 +285,7 @@ std::uint64_t hash_of(const WorldState& state) {
     hash.add((static_cast<std::uint64_t>(pair.count) << 33) | (static_cast<std::uint64_t>(pair.is_known) << 32) |
              pair.cache.features);
     add(pair.p_AB);
-    hash.add(pair.margin);
-    hash.add(pair.face_area);
+    hash.add(pair.margin);  // the face_area follows from p_AB, quat_AB and this
     add(pair.n_A), add(pair.t_A);
     for (int i = 0; i < 4; ++i) hash.add(pair.quat_AB.coeffs()[i]);
     for (int i = 0; i < pair.count; ++i) {

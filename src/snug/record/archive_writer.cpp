@@ -16,7 +16,7 @@ namespace {
 
 using namespace internal;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 /// Properties of datasets: no times of writing, so that the same contents make the same bytes.
 Handle untimed_dataset() {
@@ -49,7 +49,7 @@ void write_transforms(hid_t group, const std::string& name, const std::vector<Po
   const hsize_t count = poses.size();
   const Dims chunk = {4, 4, std::max<hsize_t>(1, std::min<hsize_t>(count, kPoseChunk))};
   check(H5Pset_chunk(properties.get(), 3, chunk.data()), "chunks");
-  check(H5Pset_fill_value(properties.get(), H5T_NATIVE_FLOAT, &kNaN), "fill value");
+  check(H5Pset_fill_value(properties.get(), H5T_NATIVE_FLOAT, &kNothing), "fill value");
   const Handle dataset = create_dataset(group, name.c_str(), H5T_IEEE_F32LE, {4, 4, count}, properties);
   write_unit(dataset, "m");
   const Handle space(H5Dget_space(dataset.get()), "dataspace");
@@ -58,7 +58,7 @@ void write_transforms(hid_t group, const std::string& name, const std::vector<Po
     const std::size_t size = std::min(kPoseChunk, poses.size() - first);
     const auto begin = poses.begin() + static_cast<std::ptrdiff_t>(first);
     if (std::none_of(begin, begin + static_cast<std::ptrdiff_t>(size), is_tracked)) continue;
-    values.assign(16 * size, kNaN);
+    values.assign(16 * size, kNothing);
     for (std::size_t i = 0; i < size; ++i) {
       const PoseSample& pose = poses[first + i];
       if (!is_tracked(pose)) continue;

@@ -10,6 +10,7 @@
 
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/units.hpp"
 #include "snug/record/internal/commit_driver.hpp"
 #include "snug/record/internal/contact_log.hpp"
 #include "snug/record/internal/header_file.hpp"
@@ -80,7 +81,6 @@ Row7 row_of(const PoseSample& X) {
 }
 Row6 row_of(const Vector3& a, const Vector3& b) { return {{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()}}; }
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr Row7 kAbsentPose = {{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
 constexpr Row6 kAbsentTwist = {{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
 

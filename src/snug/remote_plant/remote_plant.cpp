@@ -133,24 +133,13 @@ Vector3 RemotePlant::size_of(std::size_t item) const {
 std::optional<perception::SceneBox> RemotePlant::box_of(std::size_t item) const {
   const auto found = link_.last().objects.find(names_[item]);
   if (found == link_.last().objects.end() || !is_active(found->second, click::kPresentSensor)) return std::nullopt;
-  const click::ObjectSensors& sensed = found->second;
+  const std::optional<Pose> X_WP = click::sensed_pose(found->second);
+  if (!X_WP) return std::nullopt;
   perception::SceneBox box;
   box.item = sequence_.items[item].parcel;
   box.size = size_of(item);
-  bool has_position = false;
-  for (const click::SensorValue& value : sensed.object) {
-    has_position = has_position || value.type == click::ValueType::Position;
-    if (value.type == click::ValueType::Position) box.X_WP.p = value.vector;
-    if (value.type == click::ValueType::Rpy) box.X_WP.R = click::rotation_of(value.vector, {});
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto* exact =
-        find_sensor(sensed, click::kAxesSensor, click::ValueType::Position, static_cast<std::size_t>(axis));
-    if (exact != nullptr) box.X_WP.R.col(axis) = exact->vector;
-  }
-  const bool is_sound = has_position && box.X_WP.p.allFinite() && box.X_WP.R.allFinite() &&
-                        (box.X_WP.R.transpose() * box.X_WP.R).isIdentity(1e-6) && box.X_WP.R.determinant() > 0.0;
-  return is_sound ? std::optional(box) : std::nullopt;
+  box.X_WP = *X_WP;
+  return box;
 }
 
 std::vector<std::optional<perception::SceneBox>> RemotePlant::boxes() const {
@@ -172,7 +161,9 @@ perception::Observation RemotePlant::perceive(std::span<const perception::Expect
       if (const auto box = box_of(i)) scene.boxes.push_back(*box);
     }
   }
-  return perception_->perceive(scene, expected);
+  perception::Observation observation = perception_->perceive(scene, expected);
+  if (!failure_.empty()) observation.missing.clear();  // nothing was looked at
+  return observation;
 }
 
 void RemotePlant::fail(std::string why) {
@@ -270,7 +261,7 @@ plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
     const std::string silence = link_.sense();
     is_stopped_ = silence.empty() && is_active(link_.last_of_robot(), click::kStoppedSensor);
     if (!is_stopped_) fail(trouble);
-  } else if (std::abs(length - plan.settings.tick) > kSameTime) {
+  } else if (!(std::abs(length - plan.settings.tick) <= kSameTime)) {  // nor NaN
     fail(fmt::format("a Control is a step of {} s there, not of {} s: is it served with --async?", length,
                      plan.settings.tick));
   } else if (tick.outcome == "Stuck") {

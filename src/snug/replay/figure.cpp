@@ -11,7 +11,7 @@
 #include <limits>
 #include <string_view>
 
-#include "snug/replay/page.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::replay {
 namespace {
@@ -24,7 +24,7 @@ constexpr double kFont = 8.0;
 constexpr double kLeft = 46.0, kRight = 12.0, kBottom = 34.0;
 constexpr double kLegend = 17.0;        // height of the line of labels above a pair of axes
 constexpr double kLegendLine = 10.0;    // of each further one
-constexpr double kGap = 9.0;            // between pairs of axes
+constexpr double kGapOfPanels = 9.0;    // between pairs of axes
 constexpr double kColumnsPerPoint = 2;  // of a curve, beyond which points are thinned
 
 struct Range {
@@ -302,7 +302,7 @@ std::string draw_svg(const Figure& figure) {
   axes.width = column - kLeft - kRight;
   axes.height = panel_height;
   const auto count = static_cast<double>(rows);
-  double height = count * panel_height + std::max(0.0, count - 1.0) * kGap + kBottom;
+  double height = count * panel_height + std::max(0.0, count - 1.0) * kGapOfPanels + kBottom;
   for (std::size_t row = 0; row < rows; ++row) height += legend_height(figure, row, axes.width);
   std::string svg = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -317,7 +317,7 @@ std::string draw_svg(const Figure& figure) {
     axes.y = y_range(figure.panels[i]);
     axes.top += legend_height(figure, i % rows, axes.width);
     svg += draw_panel(figure, i, axes);
-    axes.top += panel_height + kGap;
+    axes.top += panel_height + kGapOfPanels;
   }
   return svg + "</svg>\n";
 }

@@ -8,11 +8,11 @@
 #include <limits>
 
 #include "snug/core/check.hpp"
+#include "snug/core/units.hpp"
 
 namespace snug::replay {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPoseQuantum = 1.0e-5;    // m, -: 0.01 mm and 0.02 mrad, below what anybody sees
 constexpr double kTwistQuantum = 1.0e-4;   // m/s, rad/s
 constexpr double kWrenchQuantum = 1.0e-3;  // N, Nm

@@ -9,6 +9,7 @@
 #include "snug/model/reported_agent.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
+#include "snug/replay/internal/recorded_scenario.hpp"
 #include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/replay.hpp"
 
@@ -26,9 +27,9 @@ Json as_json(const record::PoseSample& X) {
 /// The text as JSON, or null: also when it is larger than any result, or so deep that taking it apart would need more
 /// stack than there is.
 Json parsed(const std::string& text) {
-  constexpr std::size_t kLargest = std::size_t{4} << 20U;
+  constexpr std::size_t kLongestText = std::size_t{4} << 20U;
   constexpr int kDeepest = 32;
-  if (text.size() > kLargest) return {};
+  if (text.size() > kLongestText) return {};
   bool is_too_deep = false;
   const auto look = [&](int depth, Json::parse_event_t, Json&) {
     is_too_deep = is_too_deep || depth > kDeepest;
@@ -228,11 +229,11 @@ Json events_as_json(const std::vector<record::Event>& events) {
 Json boxes_from_result(const Json& result) {
   Json list = Json::array();
   for (const Json& box : result.value("boxes", Json::array())) {
-    Json journey = Json::array();
+    Json events = Json::array();
     for (const Json& event : box.value("events", Json::array())) {
-      journey.push_back({{"kind", event.value("kind", "")},
-                         {"time", event.value("time_s", Json())},
-                         {"text", event.value("text", "")}});
+      events.push_back({{"kind", event.value("kind", "")},
+                        {"time", event.value("time_s", Json())},
+                        {"text", event.value("text", "")}});
     }
     Json pose;
     if (const Json X_TP = box.value("X_TP", Json()); X_TP.is_object()) {
@@ -243,7 +244,7 @@ Json boxes_from_result(const Json& result) {
                     {"state", box.value("state", Json())},
                     {"up", box.value("up", Json())},
                     {"pose", std::move(pose)},
-                    {"journey", std::move(journey)}});
+                    {"events", std::move(events)}});
   }
   return list;
 }
@@ -257,9 +258,9 @@ Json boxes_from_events(const std::vector<record::Event>& events) {
     const auto [at, is_new] = place.try_emplace(event.body, list.size());
     if (is_new) {
       list.push_back(
-          {{"id", event.body}, {"state", nullptr}, {"up", nullptr}, {"pose", nullptr}, {"journey", Json::array()}});
+          {{"id", event.body}, {"state", nullptr}, {"up", nullptr}, {"pose", nullptr}, {"events", Json::array()}});
     }
-    list[at->second]["journey"].push_back({{"kind", event.kind}, {"time", event.time}, {"text", event.text}});
+    list[at->second]["events"].push_back({{"kind", event.kind}, {"time", event.time}, {"text", event.text}});
   }
   return list;
 }
@@ -280,19 +281,11 @@ Json result_as_json(const HeaderInput& input, const Json& result, const std::opt
           {"report_table7", reported_as_json(scenario, input.header->sequence)}};
 }
 
-std::optional<model::Scenario> scenario_of(const record::RecordingHeader& header) {
-  try {
-    return model::parse_scenario(header.scenario_text, "scenario of the recording");
-  } catch (const InputError&) {
-    return std::nullopt;  // made by another version: what only the scenario tells is left out
-  }
-}
-
 }  // namespace
 
 std::string make_header_json(const HeaderInput& input) {
   const record::RecordingHeader& header = *input.header;
-  const std::optional<model::Scenario> scenario = scenario_of(header);
+  const std::optional<model::Scenario> scenario = internal::scenario_of(header);
   const Json settings = parsed(header.settings);
   Json json = {{"format", "snug replay"},
                {"version", kReplayVersion},

@@ -10,6 +10,7 @@
 #include "snug/motion/waypoint.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/replay/internal/mcap_scene.hpp"
+#include "snug/replay/internal/recorded_scenario.hpp"
 #include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/mcap_schemas.hpp"
 
@@ -36,14 +37,6 @@ class Topic {
   std::uint16_t id_;
   std::optional<std::uint64_t> last_;
 };
-
-std::optional<model::Scenario> scenario_of(const record::RecordingHeader& header) {
-  try {
-    return model::parse_scenario(header.scenario_text, "scenario of the recording");
-  } catch (const InputError&) {
-    return std::nullopt;  // made by another version: what only the scenario tells is left out
-  }
-}
 
 std::vector<std::string> row_names(const record::RecordingHeader& header) {
   std::vector<std::string> names;
@@ -96,7 +89,7 @@ class Exporter {
 Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header, const RobotDescription& robot)
     : header_(header),
       robot_(robot),
-      scenario_(scenario_of(header)),
+      scenario_(internal::scenario_of(header)),
       row_names_(row_names(header)),
       tf_static_(writer, "/tf_static", McapSchema::FrameTransforms),
       tf_(writer, "/tf", McapSchema::FrameTransforms),

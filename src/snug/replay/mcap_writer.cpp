@@ -14,7 +14,7 @@
 namespace snug::replay {
 namespace {
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
 constexpr int kZstdLevel = 3;  // 9 takes four times as long for a tenth less
 
 enum class Op : std::uint8_t {
@@ -213,7 +213,7 @@ McapWriter::McapWriter(OutputFile file, const McapSettings& settings)
     : impl_(std::make_unique<Impl>(std::move(file), settings)) {
   Bytes header;
   header.text("").text("snug");
-  impl_->put(kMagic);
+  impl_->put(kMcapMagic);
   impl_->put(record_of(Op::Header, header.str()));
 }
 
@@ -289,7 +289,7 @@ void McapWriter::close() {
   end.u32(impl_->crc);
   impl_->put(record_of(Op::DataEnd, end.str()));
   impl_->write_summary();
-  impl_->put(kMagic);
+  impl_->put(kMcapMagic);
   impl_->file.publish();
 }
 

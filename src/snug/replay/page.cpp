@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::replay {
 
@@ -21,29 +22,6 @@ std::string base64(std::string_view bytes) {
     }
   }
   return text;
-}
-
-std::string escape_markup(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20U ? ' ' : c;
-    }
-  }
-  return out;
 }
 
 std::string assemble_page(std::string_view page, std::span<const PageRecording> recordings) {

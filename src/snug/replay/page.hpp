@@ -20,7 +20,5 @@ inline constexpr std::string_view kRecordingsMark = "<!--snug:recordings-->";
 [[nodiscard]] std::string assemble_page(std::string_view page, std::span<const PageRecording> recordings);
 
 [[nodiscard]] std::string base64(std::string_view bytes);
-/// Text for an attribute value in double quotes, or for the inside of an element.
-[[nodiscard]] std::string escape_markup(std::string_view text);
 
 }  // namespace snug::replay

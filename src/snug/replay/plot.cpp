@@ -6,19 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <numbers>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/units.hpp"
 
 namespace snug::replay {
 namespace {
 
 using record::Frame;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMm = 1.0e3;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr const char* kPosePrefix = "pose:";
 
 /// One line of a panel: how to read it off a frame.

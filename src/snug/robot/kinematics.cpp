@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "snug/spatial/eigenvalues.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::robot {
 namespace {

@@ -55,7 +55,7 @@ std::optional<Rgba> colour_of(const Element& visual, const std::map<std::string,
   return found == materials.end() ? std::nullopt : std::optional(found->second);
 }
 
-double positive(const Element& element, const char* key) {
+double visual_size(const Element& element, const char* key) {
   const double value = element.number(key);
   if (!(value > 0.0 && value <= 100.0)) element.fail(key, "metres, > 0");
   return value;
@@ -91,12 +91,12 @@ void add_visual(const Element& element, const std::map<std::string, Rgba>& mater
     visual.shape = geometry::Box{0.5 * Vector3(size[0], size[1], size[2])};
   } else if (kind.tag() == "cylinder") {
     geometry::Cylinder cylinder;
-    cylinder.radius = positive(kind, "radius");
-    cylinder.half_length = 0.5 * positive(kind, "length");
+    cylinder.radius = visual_size(kind, "radius");
+    cylinder.half_length = 0.5 * visual_size(kind, "length");
     visual.shape = cylinder;
   } else if (kind.tag() == "sphere" || kind.tag() == "capsule") {
-    const double half_length = kind.tag() == "capsule" ? 0.5 * positive(kind, "length") : 0.0;
-    visual.shape = geometry::Capsule{half_length, positive(kind, "radius")};
+    const double half_length = kind.tag() == "capsule" ? 0.5 * visual_size(kind, "length") : 0.0;
+    visual.shape = geometry::Capsule{half_length, visual_size(kind, "radius")};
   } else {
     return;
   }

@@ -33,9 +33,24 @@ void LiveRun::log_state() { log("state", Json({{"paused", is_paused_}, {"time", 
 
 void LiveRun::begin(const record::RecordingHeader& header) {
   const std::lock_guard lock(mutex_);
+  if (is_over_) forget();
   header_ = header;
   whole_.emplace(header);
   batch_.emplace(header);
+}
+
+/// The run that is over: another one begins.
+void LiveRun::forget() {
+  ++run_;
+  last_end_ = log_.back();
+  log_.clear();
+  log_bytes_ = 0;
+  events_.clear();
+  batch_events_.clear();
+  time_ = 0.0;
+  steps_ = 0;
+  is_over_ = false;
+  changed_.notify_all();
 }
 
 void LiveRun::add(const record::Event& event) {
@@ -150,6 +165,17 @@ std::shared_ptr<const std::string> LiveRun::wait_for(std::size_t index, std::chr
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, patience, [&] { return index < log_.size(); });
   return index < log_.size() ? log_[index] : nullptr;
+}
+
+std::shared_ptr<const std::string> LiveRun::next(Place& place, std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  if (place.run == 0) place.run = run_;
+  changed_.wait_for(lock, patience, [&] { return place.run != run_ || place.index < log_.size(); });
+  if (place.run != run_) {
+    place = {run_, 0};
+    return last_end_;
+  }
+  return place.index < log_.size() ? log_[place.index++] : nullptr;
 }
 
 bool LiveRun::is_paused() const {

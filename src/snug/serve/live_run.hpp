@@ -20,7 +20,8 @@ inline constexpr std::size_t kMaxLogBytes = std::size_t{256} << 20U;
 
 /// The simulation calls begin, add and finish from one thread; all else may be called from any other.
 ///
-/// Watchers read a log of server-sent events from its beginning, so it does not matter when they come.
+/// Watchers read a log of server-sent events from its beginning, so it does not matter when they come. A begin() after
+/// a finish() is another run: it takes the place of the one before.
 class LiveRun : public cell::RunObserver {
  public:
   /// `speed`: simulated seconds per second, 0 for as fast as it goes. The result of the run does not depend on it.
@@ -43,6 +44,14 @@ class LiveRun : public cell::RunObserver {
   /// Text of entry `index` of the log, waiting for it until `patience` has passed; nullptr when it is not there by
   /// then.
   [[nodiscard]] std::shared_ptr<const std::string> wait_for(std::size_t index, std::chrono::milliseconds patience);
+  /// How far a watcher has read, and of which run.
+  struct Place {
+    int run = 0;  ///< from 1; 0: none yet
+    std::size_t index = 0;
+  };
+  /// The entry at `place`, which moves on; nullptr when it is not there within the patience. The end of the run that
+  /// was watched comes next when another one has begun meanwhile.
+  [[nodiscard]] std::shared_ptr<const std::string> next(Place& place, std::chrono::milliseconds patience);
   [[nodiscard]] bool is_paused() const;
   [[nodiscard]] bool is_over() const;
   /// The whole run in the replay form, once it is over; empty before.
@@ -54,6 +63,7 @@ class LiveRun : public cell::RunObserver {
   void log(const char* event, const std::string& data);
   void log_state();
   void flush();
+  void forget();
   /// Sleeps until it is time for the next frame, and while paused. False: the run is to stop.
   bool wait_for_turn(std::unique_lock<std::mutex>& lock);
 
@@ -67,6 +77,8 @@ class LiveRun : public cell::RunObserver {
   std::vector<record::Event> events_, batch_events_;
   std::vector<std::shared_ptr<const std::string>> log_;
   std::size_t log_bytes_ = 0;
+  std::shared_ptr<const std::string> last_end_;  ///< entry that ended the run before
+  int run_ = 1;
   std::shared_ptr<const std::string> whole_form_;
   Clock::time_point origin_{};      ///< when time 0 would have been shown
   Clock::time_point last_flush_{};  ///< of the batch

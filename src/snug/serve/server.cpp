@@ -96,7 +96,9 @@ Json Server::Impl::recordings_json() const {
   Json list = Json::array();
   for (const replay::PageRecording& recording : content.recordings) list.push_back({{"name", recording.name}});
   if (content.live != nullptr && !is_live && content.live->whole_form()) list.push_back({{"name", "live"}});
-  return {{"recordings", std::move(list)}, {"live", is_live}};
+  Json answer = {{"recordings", std::move(list)}, {"live", is_live}};
+  if (content.has_more_runs) answer["more"] = true;
+  return answer;
 }
 
 /// Refuses what is sent by mistake or by others. Nothing that is served takes a body. A page of another site can have
@@ -174,14 +176,13 @@ void Server::Impl::serve_events(const httplib::Request&, httplib::Response& resp
     response.set_content("There are too many watchers.\n", "text/plain");
     return;
   }
-  const auto next = std::make_shared<std::size_t>(0);
+  const auto place = std::make_shared<LiveRun::Place>();
   response.set_chunked_content_provider(
       "text/event-stream",
-      [this, next](std::size_t, httplib::DataSink& sink) {
+      [this, place](std::size_t, httplib::DataSink& sink) {
         if (is_stopping) return false;
-        const std::shared_ptr<const std::string> text = content.live->wait_for(*next, kHeartbeat);
+        const std::shared_ptr<const std::string> text = content.live->next(*place, kHeartbeat);
         const std::string nothing = ":\n\n";  // a comment; fails when the watcher has left
-        if (text) ++*next;
         const std::string& out = text ? *text : nothing;
         return !is_stopping && sink.write(out.data(), out.size());
       },

@@ -20,6 +20,7 @@ struct Content {
   std::string page;                               ///< that viewer/ builds, without recordings
   std::vector<replay::PageRecording> recordings;  ///< none with `live`
   LiveRun* live = nullptr;                        ///< not owned; must outlive the server
+  bool has_more_runs = false;                     ///< `live` shows one after the other
 };
 
 /// Serves a fixed set of addresses (docs/formats.md, "Over HTTP") from memory. There is no way from a request to a

@@ -125,6 +125,7 @@ void Belief::see(const perception::Observation& observation) {
     const auto i = static_cast<std::size_t>(item);
     boxes_[i]->was_seen = false;
     boxes_[i]->covariance = unseen_covariance();
+    if (!is_prediction_new_ || !is_prediction_sound_) continue;
     if (worlds_[0].predicted[i]) boxes_[i]->X_WP = *worlds_[0].predicted[i];
     for (World& world : worlds_) {
       if (world.predicted[i]) world.poses[i] = world.predicted[i];
@@ -140,7 +141,13 @@ void Belief::see(const perception::Observation& observation) {
 void Belief::expect(const std::vector<std::vector<std::optional<Pose>>>& predicted) {
   SNUG_CHECK(predicted.size() == worlds_.size(), "a prediction of every world");
   for (std::size_t w = 0; w < worlds_.size(); ++w) worlds_[w].predicted = predicted[w];
-  is_prediction_new_ = true;
+  is_prediction_new_ = is_prediction_sound_ = true;
+}
+
+void Belief::expect_on_the_way(int item, const Pose& X_WP) {
+  std::vector<std::optional<Pose>> predicted(boxes_.size());
+  predicted[static_cast<std::size_t>(item)] = X_WP;
+  expect(std::vector<std::vector<std::optional<Pose>>>(worlds_.size(), predicted));
 }
 
 void Belief::weigh(int item) {

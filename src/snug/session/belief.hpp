@@ -54,6 +54,10 @@ class Belief {
   /// Where rollouts left the boxes, world by world: it is believed of those that are not seen at the next look, and
   /// what is seen then says how well each world predicted.
   void expect(const std::vector<std::vector<std::optional<Pose>>>& predicted);
+  /// The same of one box alone, in every world: where it is let go on the way. Nothing is expected of the others.
+  void expect_on_the_way(int item, const Pose& X_WP);
+  /// The motion that was expected ended early: what is not seen at the next look is believed to be where it was.
+  void doubt_prediction() { is_prediction_sound_ = false; }
   /// Weighs the sampled worlds by how near they predicted `item` to where it is believed to be now.
   void weigh(int item);
 
@@ -74,7 +78,8 @@ class Belief {
   std::string sequence_name_;
   model::Sequence sequence_;
   std::vector<World> worlds_;
-  bool is_prediction_new_ = false;  ///< something was expected since the last look
+  bool is_prediction_new_ = false;    ///< something was expected since the last look
+  bool is_prediction_sound_ = false;  ///< the motion that it is of was not broken off
   std::vector<double> weights_;
   std::vector<std::unique_ptr<Rollout>> rollouts_;
   std::vector<std::optional<BelievedBox>> boxes_;

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "snug/core/parallel.hpp"
+#include "snug/motion/side_pick.hpp"
+#include "snug/motion/unwinding.hpp"
 
 namespace snug::session {
 namespace {
@@ -73,7 +75,10 @@ class GraspPlanner {
 
  private:
   [[nodiscard]] bool is_fine() const { return grasp_.problem == GraspProblem::None; }
-  [[nodiscard]] Matrix3 goal() const { return request_.layout.X_WT.R * packing::rotation(grasp_.held_as); }
+  /// As it shall stand, in the middle of the container.
+  [[nodiscard]] Pose goal() const {
+    return request_.layout.X_WT * Pose{packing::rotation(grasp_.held_as), Vector3::Zero()};
+  }
   [[nodiscard]] bool is_first() const { return request_.location == Location::Aligner; }
 
   void execute(const std::vector<motion::Waypoint>& rows) {
@@ -96,18 +101,33 @@ class GraspPlanner {
     return true;
   }
 
-  bool pick_from_above(const Matrix3& R_WP_next, PickKind kind) {
-    execute(plan_pick(request_.scenario, request_.layout, request_.box, X_WP_, R_WP_next, travel_, kind));
+  bool pick_from_above(const Pose& X_WP_next, PickKind kind) {
+    execute(plan_pick(request_.scenario, request_.layout, request_.box, X_WP_, X_WP_next, travel_, kind));
     return holds();
   }
 
+  /// The box held like R_WP is brought to its place next: of the two orientations that take the same space there the
+  /// one that leaves the wrist less to do.
+  void spare_wrist(const Matrix3& R_WP) {
+    const CellLayout& layout = request_.layout;
+    if (!layout.spares_wrist || !layout.p_WB) return;
+    const double pan = motion::pan_between(*layout.p_WB, X_WP_.p, layout.X_WT.p);
+    const auto turn_of_wrist = [&] { return std::abs(pan - turn_between(layout, {R_WP, X_WP_.p}, goal())); };
+    const packing::Orientation asked = grasp_.held_as;
+    const double as_asked = turn_of_wrist();
+    grasp_.held_as.yaw_quarter = (asked.yaw_quarter + 2) % 4;
+    if (turn_of_wrist() >= as_asked) grasp_.held_as = asked;
+  }
+
   bool pick() {
+    spare_wrist(X_WP_.R);
     (void)pick_from_above(goal(), is_first() ? PickKind::First : PickKind::FromAfar);
     return true;
   }
 
   /// By the side that looks along `face`, which is then turned up.
   void pick_side(const Vector3& face, bool again) {
+    spare_wrist(motion::face_up(X_WP_.R, face));
     const auto rows =
         plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
     if (rows.empty()) {
@@ -160,7 +180,7 @@ class GraspPlanner {
     if (!request_.layout.flip_place) return false;
     const FlipPlace& place = *request_.layout.flip_place;
     const Matrix3 R_WP = orientation_before_flip(X_WP_.R, up_axis(grasp_.orientation), -place.direction);
-    if (!pick_from_above(R_WP, is_first() ? PickKind::First : PickKind::FromAfar)) return true;
+    if (!pick_from_above({R_WP, place.p_WF}, is_first() ? PickKind::First : PickKind::FromAfar)) return true;
     execute(plan_set_down(request_.scenario, request_.box, place, R_WP, grasp_.X_PS, travel_));
     look();
     if (is_fine()) pick_side(-place.direction, true);
@@ -179,10 +199,12 @@ class GraspPlanner {
         next_up = Vector3::Unit(axis);
       }
       const bool is_done = stands();
-      const Matrix3 R_next =
-          is_done ? goal() : orientation_before_flip(X_WP_.R, next_up, request_.layout.flip_place->direction);
+      if (is_done) spare_wrist(X_WP_.R);
+      const FlipPlace& place = *request_.layout.flip_place;
+      const Pose X_next =
+          is_done ? goal() : Pose{orientation_before_flip(X_WP_.R, next_up, place.direction), place.p_WF};
       const PickKind first = is_first() ? PickKind::First : PickKind::FromAfar;
-      if (!pick_from_above(R_next, round > 0 ? PickKind::FromAbove : first) || is_done) break;
+      if (!pick_from_above(X_next, round > 0 ? PickKind::FromAbove : first) || is_done) break;
       if (round >= 2) {
         grasp_.problem = GraspProblem::DoesNotStand;
         break;

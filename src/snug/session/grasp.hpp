@@ -37,7 +37,8 @@ enum class GraspProblem {
 /// Rehearsed in all rollouts, but not yet sent.
 struct Grasp {
   packing::Orientation orientation;  ///< asked for
-  /// As it hangs: the same space and the same place of the centre of mass, but perhaps the other end up.
+  /// As it hangs: the same space, but perhaps the other end up (the place of the centre of mass then the same), or
+  /// turned by half a turn (CellLayout::spares_wrist).
   packing::Orientation held_as;
   Reorientation reorientation = Reorientation::None;
   GraspProblem problem = GraspProblem::None;

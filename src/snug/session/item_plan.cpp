@@ -27,8 +27,9 @@ constexpr double kLipClearance = 0.002;  ///< m
 constexpr double kSealRoom = 0.001;      ///< m, around the disc on which the vacuum acts
 constexpr double kFlipRoom = 0.16;       ///< m, from the middle of a lying box to the edges of its surface
 constexpr double kFlipDrag = 0.08;       ///< m, more where it comes down, before it is dragged back
-constexpr double kLevel = 1e-3;          ///< rad
-constexpr double kPressDepth = 0.03;     ///< m, beyond where an undeformed cup touches the highest corner
+constexpr double kLargestTurn = 1.5 * std::numbers::pi;  ///< rad, of a held box the longer way round
+constexpr double kLevel = 1e-3;                          ///< rad
+constexpr double kPressDepth = 0.03;  ///< m, beyond where an undeformed cup touches the highest corner
 
 /// Bounds in W of the boxes that fixed bodies are made of, where one face lies level.
 std::vector<geometry::Aabb> flat_tops(const model::Scenario& scenario) {
@@ -206,15 +207,23 @@ Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Mat
   return motion::choose_cup_offset(R_WP, box.size, box.inertia.com, 0.5 * cup.effective_diameter + kSealRoom);
 }
 
+double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP_next) {
+  const double turn = yaw_between(X_WP.R, X_WP_next.R);
+  if (!layout.spares_wrist || !layout.p_WB) return turn;
+  const double pan = motion::pan_between(*layout.p_WB, X_WP.p, X_WP_next.p);
+  const double other = turn - std::copysign(2.0 * std::numbers::pi, turn);
+  return std::abs(other) <= kLargestTurn && std::abs(pan - other) < std::abs(pan - turn) ? other : turn;
+}
+
 std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
-                                        const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
-                                        double travel, PickKind kind) {
+                                        const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next, double travel,
+                                        PickKind kind) {
   motion::PickIntent intent;
   intent.box = box.id;
   intent.X_WP = X_WP;
   intent.size = box.size;
   intent.cup_offset_P = cup_offset(scenario.cup, box, X_WP.R);
-  intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(X_WP.R, R_WP_next);
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, X_WP, X_WP_next);
   intent.length = cup::pick_length(scenario.cup);
   intent.again = kind != PickKind::First;
   const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);
@@ -228,7 +237,7 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
 std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& last,
                                        const std::vector<motion::Waypoint>& rows) {
   if (rows.empty()) return rows;
-  const std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw);
+  const std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw, layout.spares_wrist);
   return layout.p_WB ? motion::with_detours(last, turned, *layout.p_WB, kNearBase, kBaseRoom) : turned;
 }
 
@@ -240,7 +249,7 @@ Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const 
 
 std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
                                              const PlannedBox& box, const Pose& X_WP, const Vector3& face,
-                                             const Matrix3& R_WP_next, double travel, bool again) {
+                                             const Pose& X_WP_next, double travel, bool again) {
   const model::CupParams& cup = scenario.cup;
   motion::SidePickIntent intent;
   intent.box = box.id;
@@ -256,7 +265,7 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   const double offset = (X_WP.R * intent.cup_offset_P).z();
   if (offset < low) intent.cup_offset_P += (low - offset) * X_WP.R.transpose() * Vector3::UnitZ();
   if (low + cup.lip_radius - half_height > cup.seal.max_overhang - kLipClearance) return {};
-  intent.tool_yaw = layout.neutral_yaw - 0.5 * yaw_between(R_WP_up, R_WP_next);
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, {R_WP_up, X_WP.p}, X_WP_next);
   // At the aligner the plates hold the box against the cup. Elsewhere the lip just touches, and pulls the box to
   // itself.
   intent.length = again ? cup.free_length : cup::pick_length(cup);

@@ -26,6 +26,8 @@ struct CellLayout {
   std::optional<FlipPlace> flip_place;  ///< absent: nothing flat is large enough
   std::optional<Vector3> p_WB;          ///< m, where the robot stands
   double neutral_yaw = 0.0;             ///< rad, of the tool at its start: half a turn to either side of it is used
+  /// A held box turns the way round that leaves the wrist less to do, and while it travels: fast motions.
+  bool spares_wrist = false;
 };
 /// Throws InputError for a scenario without aligner, tool or target container.
 [[nodiscard]] CellLayout make_layout(const model::Scenario& scenario);
@@ -77,11 +79,14 @@ enum class PickKind {
   FromAfar,   ///< of a box that was let go before, the tool somewhere else
   FromAbove,  ///< of a box that was just let go, the tool still over it
 };
-/// Rows that pick the box where it stands, so that it can be brought to stand like `R_WP_next` next. The turn between
-/// both is shared: at the pick the tool is turned from `layout.neutral_yaw` to one side by half of it, then to the
-/// other.
+/// rad, about the vertical, that a box is turned by on its way from X_WP to X_WP_next: the shorter way round, or, with
+/// `layout.spares_wrist`, the one that differs less from the turn of the robot's first axis.
+[[nodiscard]] double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP_next);
+/// Rows that pick the box where it stands, so that it can be brought to X_WP_next next (of the place the direction
+/// from the robot counts). The turn between both is shared: at the pick the tool is turned from `layout.neutral_yaw` to
+/// one side by half of it, then to the other.
 [[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
-                                                      const PlannedBox& box, const Pose& X_WP, const Matrix3& R_WP_next,
+                                                      const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next,
                                                       double travel_bottom, PickKind kind);
 /// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.
 [[nodiscard]] std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& before,
@@ -93,7 +98,7 @@ enum class PickKind {
 /// was set down before. Empty where the cup would touch what the box stands on or reach too far over its upper edge.
 [[nodiscard]] std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                            const PlannedBox& box, const Pose& X_WP, const Vector3& face,
-                                                           const Matrix3& R_WP_next, double travel_bottom, bool again);
+                                                           const Pose& X_WP_next, double travel_bottom, bool again);
 /// Row that turns that side up, in the air.
 [[nodiscard]] motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
                                             const Pose& X_PS, const Vector3& face, double travel_bottom, bool again);

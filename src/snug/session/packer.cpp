@@ -8,6 +8,7 @@
 
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/stopwatch.hpp"
 #include "snug/motion/primitives.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/session/surroundings.hpp"
@@ -23,10 +24,6 @@ constexpr double kFootprint = 0.030;  ///< m, a middle so far beyond the walls s
 /// plants 101 and up.
 constexpr double kPriorRate = 0.97;
 constexpr double kPriorCount = 4.0;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 const model::Scenario& checked(const model::Scenario& scenario, const std::string& sequence) {
   (void)make_layout(scenario);  // says what is missing
@@ -64,6 +61,7 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
     items_[i].arrival = packing::nearest_orientation(R_AW * X_WP.R);
   }
   sent_.name = "pack";
+  layout_.spares_wrist = options.simulation.controller == motion::ControllerKind::Fast;
 }
 
 packing::ContainerState Packer::container_state() const {
@@ -80,14 +78,29 @@ packing::ContainerState Packer::container_state() const {
   return state;
 }
 
+double Packer::obstacle_top(int item) const {
+  const Pose X_TW = layout_.X_WT.inverse();
+  double top = 0.0;
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    const std::optional<BelievedBox>& box = belief_.box(static_cast<int>(i));
+    if (!box || static_cast<int>(i) == item) continue;
+    top = std::max(top, packing::bounding_extent({items_[i], X_TW * box->X_WP}).high.z());
+  }
+  return top;
+}
+
 cell::ContainerFit Packer::fit_of(int item, const Pose& X_WP) const {
   const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const Vector3 inner = model::find_container(scenario_, scenario_.target)->inner_size;
   return cell::fit_in(inner, box.size, layout_.X_WT.inverse() * X_WP);
 }
 
+int Packer::index_of(const std::string& id) const {
+  return static_cast<int>(std::ranges::find(items_, id, &packing::Item::id) - items_.begin());
+}
+
 bool Packer::is_seen_outside(const std::string& id) const {
-  const int item = static_cast<int>(std::ranges::find(items_, id, &packing::Item::id) - items_.begin());
+  const int item = index_of(id);
   const std::optional<BelievedBox>& box = belief_.box(item);
   if (!box || !box->was_seen) return false;
   const double slack = 2.0 * std::sqrt(std::max(0.0, box->covariance(0, 0)));
@@ -105,6 +118,9 @@ void Packer::look() {
     std::erase_if(seen.missing, [&](const std::string& id) { return std::ranges::find(before, id) == before.end(); });
   }
   belief_.see(seen);
+  // It could be anywhere: neither where it was nor where it was to go.
+  if (let_go_ >= 0 && belief_.box(let_go_) && !belief_.box(let_go_)->was_seen) belief_.forget(let_go_);
+  let_go_ = -1;
   for (std::size_t i = 0; i < items_.size(); ++i) {
     if (belief_.box(static_cast<int>(i))) {
       items_[i].size = model::find_parcel(belief_.nominal(), items_[i].id)->size;
@@ -135,8 +151,8 @@ bool Packer::can_be_picked(int item) const {
   if (!box || !is_upright(box->X_WP.R)) return false;
   if (!reaches_) return true;
   const PlannedBox planned = make_planned_box(belief_.nominal(), belief_.sequence(), item);
-  const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP.R,
-                              travel_bottom(layout_, highest_top(container_state())), PickKind::FromAfar);
+  const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP,
+                              travel_bottom(layout_, obstacle_top(item)), PickKind::FromAfar);
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_(row.X_WE); });
 }
 
@@ -156,18 +172,19 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
                                             const std::vector<packing::Candidate>& candidates, ItemReport& report) {
   packing::ContainerState state = container_state();
   std::erase_if(state.boxes, [&](const packing::PlacedBox& box) { return box.item.id == report.id; });
-  const double top = highest_top(state);
+  const double top = obstacle_top(item);
   Rehearsal rehearsal(belief_, layout_, reaches_, options_.limits, options_.least_rate, options_.threads,
                       {item, belief_.box(item)->X_WP, location, robot_});
   std::optional<Attempt> best;
   double best_utility = 0.0;
   const double clearance = belief_.nominal().parcel_clearance;
+  const int before = report.attempts;  // when it was planned before
   for (const packing::Candidate& candidate : candidates) {
     if (best && best_utility >= utility_of(candidate, 1.0)) break;
     const packing::Candidate placed =
         measured(state, candidate, items_[static_cast<std::size_t>(item)].size, clearance);
     for (const Insertion& insertion : choose_insertions(placed, rehearsal.box().size)) {
-      if (is_enough(best, report.attempts)) break;
+      if (is_enough(best, report.attempts - before)) break;
       Attempt attempt = rehearsal.attempt(placed, insertion, top);
       report.attempts += attempt.was_rehearsed ? 1 : 0;
       report.stops += attempt.was_rehearsed && attempt.was_stopped ? 1 : 0;
@@ -179,7 +196,7 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
       best_utility = utility;
       best = std::move(attempt);
     }
-    if (is_enough(best, report.attempts)) break;
+    if (is_enough(best, report.attempts - before)) break;
   }
   if (best && best->success_rate < options_.least_rate) best.reset();
   return best;

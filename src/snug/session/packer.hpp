@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "snug/session/session.hpp"
@@ -13,6 +14,12 @@ namespace snug::session {
 /// What decides where an item goes: the agent, or a plan that was made before.
 using Decide = std::function<Expected<packing::Decision, packing::NoPlace>(const packing::ContainerState& state,
                                                                            const packing::Item& item)>;
+
+/// A box that was packed before and was taken out and packed once more.
+struct Repacked {
+  packing::Placement planned;
+  Pose X_TP;  ///< where it was seen (or is believed to be) then
+};
 
 class Packer {
  public:
@@ -28,10 +35,15 @@ class Packer {
 
   /// It is seen over the rim, beyond a wall, or not in the container at all.
   [[nodiscard]] bool is_seen_outside(const std::string& id) const;
+  /// Nothing is believed of where it is: its place was seen and is empty, or it was let go unseen.
+  [[nodiscard]] bool is_gone(const std::string& id) const { return !belief_.box(index_of(id)); }
   /// Everything for one item, from its arrival to what became of it.
   [[nodiscard]] ItemReport bring_in(int item, const Decide& decide);
   /// The tool back at its start. Empty, or why it did not get there.
   [[nodiscard]] std::string go_home();
+
+  /// Since the last call.
+  [[nodiscard]] std::vector<Repacked> take_repacked() { return std::exchange(repacked_, {}); }
 
   /// Set when nothing more can be done.
   [[nodiscard]] std::optional<StopReason> stop_reason() const { return stop_reason_; }
@@ -43,9 +55,13 @@ class Packer {
     Attempt attempt;
     PlannedBox box;
   };
+  [[nodiscard]] int index_of(const std::string& id) const;
   void look();
   [[nodiscard]] Location locate(int item) const;
   [[nodiscard]] bool can_be_picked(int item) const;
+  /// m, over the inner floor of the container: the highest point of all boxes but `item` (-1: of all), those that were
+  /// left outside too: what is carried passes over it.
+  [[nodiscard]] double obstacle_top(int item) const;
   [[nodiscard]] cell::ContainerFit fit_of(int item, const Pose& X_WP) const;
   [[nodiscard]] std::optional<Planned> plan(int item, const Decide& decide, ItemReport& report);
   [[nodiscard]] std::optional<Attempt> best_attempt(int item, Location location,
@@ -60,6 +76,8 @@ class Packer {
   [[nodiscard]] Trouble assess(int item, const packing::Placement& planned,
                                const std::vector<std::optional<Pose>>& before, ItemReport& report) const;
   [[nodiscard]] int who_sticks_out(int item) const;
+  /// The vacuum says that something hangs from the cup.
+  [[nodiscard]] bool is_holding() const;
   /// The tool straight up, vacuum off.
   void retreat(const std::string& id, ItemReport& report);
   /// Until nothing is wrong, or nothing more can be done. True: the item is to be planned once more.
@@ -77,6 +95,8 @@ class Packer {
   void repack(int item, const Decide& decide, ItemReport& report);
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;
   void give_up(int item, Trouble trouble, ItemReport& report);
+  /// No motion is planned for it any more: one that was moved before stays where it lies.
+  void leave(int item, ItemReport& report) const;
 
   model::Scenario scenario_;
   SessionOptions options_;
@@ -87,6 +107,8 @@ class Packer {
   std::vector<packing::Item> items_;
   std::vector<int> order_;  ///< items that were sent, in that order
   std::set<int> left_out_;  ///< of them, those that stick out and that nothing more is done about
+  std::vector<Repacked> repacked_;
+  int let_go_ = -1;  ///< item that fell, or was let go, before its motion ended: to be found at the next look
   plant::Feedback robot_;
   motion::Program sent_;
   std::vector<motion::Waypoint> last_;  ///< motion

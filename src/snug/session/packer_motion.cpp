@@ -1,19 +1,21 @@
 // Packer: motions sent, what they came to, and what is done when that is not what was planned.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "snug/motion/primitives.hpp"
 #include "snug/motion/row_name.hpp"
+#include "snug/plant/motion_watch.hpp"
 #include "snug/session/packer.hpp"
 #include "snug/session/surroundings.hpp"
 
 namespace snug::session {
 namespace {
 
+constexpr double kLiesTurned = 0.25 * std::numbers::pi;  ///< rad, from what was planned
 constexpr double kAsRehearsed = 0.004;       ///< m, from where the nominal rollout let the box go on the way
 constexpr double kTurnedAsRehearsed = 0.05;  ///< rad
-constexpr double kHeld = 0.3;                ///< share of the vacuum's set point that says that something is held
 constexpr int kMostRounds = 12;              ///< of remedies for one motion
 
 Trouble trouble_of(plant::EndReason reason) {
@@ -66,11 +68,16 @@ void Packer::submit(const std::string& id, std::vector<motion::Waypoint> waypoin
 
 bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& report) {
   const auto& all = attempt.program.waypoints;
-  const int item = static_cast<int>(std::ranges::find(items_, id, &packing::Item::id) - items_.begin());
+  const int item = index_of(id);
   std::size_t begin = 0;
   for (std::size_t stage = 0; stage <= attempt.looks.size(); ++stage) {
     const bool is_last = stage == attempt.looks.size();
     const std::size_t end = is_last ? all.size() : attempt.looks[stage];
+    if (is_last) {
+      belief_.expect(attempt.ends);
+    } else {
+      belief_.expect_on_the_way(item, attempt.looked[stage]);
+    }
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
     submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)}, {options_.limits.force, true}, report);
     if (robot_.end.reason != plant::EndReason::Completed || is_last) return true;
@@ -82,7 +89,6 @@ bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& rep
          angle_between(box->X_WP.R, rehearsed.R) > kTurnedAsRehearsed)) {
       return false;
     }
-    belief_.expect(attempt.ends);  // of what is still to come
     begin = end;
   }
   return true;
@@ -107,7 +113,6 @@ Trouble Packer::assess(int item, const packing::Placement& planned, const std::v
   report.X_TP = X_TP;
   report.position_error = (X_TP.p - planned.X_TP.p).head<2>().norm();
   report.angle_error = angle_between(X_TP.R, planned.X_TP.R);
-  if (!box->was_seen) return Trouble::None;  // nothing is known against it
   double moved = 0.0;
   for (const int other : order_) {
     const std::optional<Pose>& was = before[static_cast<std::size_t>(other)];
@@ -115,6 +120,7 @@ Trouble Packer::assess(int item, const packing::Placement& planned, const std::v
     moved = std::max(moved, (belief_.box(other)->X_WP.p - was->p).norm() - slack_of(*belief_.box(other)));
   }
   report.happened.displacement = std::max(0.0, moved);
+  if (locate(item) != Location::Container) return Trouble::OffPlace;  // nothing there is to be pressed on
   if (tilt_of(X_TP) > options_.limits.tilt) return Trouble::Leaning;
   if (who_sticks_out(item) >= 0) return Trouble::SticksOut;
   if (report.position_error > options_.limits.position || report.angle_error > options_.limits.tilt) {
@@ -123,8 +129,14 @@ Trouble Packer::assess(int item, const packing::Placement& planned, const std::v
   return moved > options_.limits.displacement ? Trouble::NeighbourMoved : Trouble::None;
 }
 
+bool Packer::is_holding() const {
+  return robot_.io.vacuum && robot_.pressure_gauge < plant::kNeededVacuum * scenario_.cup.vacuum.pressure_gauge_hold;
+}
+
 void Packer::retreat(const std::string& id, ItemReport& report) {
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  belief_.doubt_prediction();
+  if (is_holding() || robot_.end.reason == plant::EndReason::VacuumLost) let_go_ = index_of(id);
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   motion::Waypoint up;
   up.X_WE = robot_.X_WE;
   up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + scenario_.cup.free_length + 0.02);
@@ -145,6 +157,15 @@ void Packer::give_up(int item, Trouble trouble, ItemReport& report) {
   report.reason = name_of(trouble);
 }
 
+void Packer::leave(int item, ItemReport& report) const {
+  if (report.sends.empty()) return;
+  if (locate(item) == Location::Aligner) {
+    report.end = ItemEnd::NotHeld;
+  } else {
+    report.end = fit_of(item, belief_.box(item)->X_WP).is_in ? ItemEnd::Accepted : ItemEnd::Left;
+  }
+}
+
 Trouble Packer::find_trouble(int item, const packing::Placement& planned,
                              const std::vector<std::optional<Pose>>& before, ItemReport& report) {
   const Trouble ended = trouble_of(robot_.end.reason);
@@ -160,9 +181,10 @@ Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& repo
   at.trouble = trouble;
   at.most_tries = options_.most_tries;
   at.tries = static_cast<int>(report.sends.size());
-  at.is_held = robot_.io.vacuum && robot_.pressure_gauge < kHeld * scenario_.cup.vacuum.pressure_gauge_hold;
+  at.is_held = is_holding();
   at.can_set_down = layout_.flip_place.has_value();
   at.fits = belief_.box(item) && fit_of(item, belief_.box(item)->X_WP).is_in && who_sticks_out(item) < 0;
+  at.lies_turned = report.angle_error > kLiesTurned;
   at.can_be_picked = can_be_picked(item);
   return at;
 }
@@ -175,7 +197,7 @@ void Packer::resume(const std::string& id, ItemReport& report) {
 
 void Packer::press(int item, ItemReport& report) {
   const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   submit(box.id, plan_press(belief_.nominal(), layout_, box, belief_.box(item)->X_WP, travel),
          {options_.press_force, false}, report);
   // The force that ends a press is what was asked for.
@@ -183,9 +205,11 @@ void Packer::press(int item, ItemReport& report) {
 }
 
 void Packer::set_down(const Planned& planned, ItemReport& report) {
+  belief_.doubt_prediction();
+  let_go_ = planned.box.item;
   const PlannedBox& box = planned.box;
   const Matrix3 R_WP = layout_.X_WT.R * planned.attempt.planned.X_TP.R;
-  const double travel = travel_bottom(layout_, highest_top(container_state()));
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
   motion::Waypoint here;
   here.X_WE = robot_.X_WE;
   here.io.vacuum = true;
@@ -210,11 +234,15 @@ void Packer::repack(int item, const Decide& decide, ItemReport& report) {
     left_out_.insert(item);
     return;
   }
-  belief_.expect(planned->attempt.ends);
   (void)send(planned->attempt, own.id, report);
   if (robot_.end.reason != plant::EndReason::Completed) retreat(own.id, report);
   look();
-  if (who_sticks_out(item) == item) left_out_.insert(item);
+  if (is_gone(own.id)) return;
+  if (is_seen_outside(own.id)) {
+    left_out_.insert(item);
+  } else {
+    repacked_.push_back({planned->attempt.planned, layout_.X_WT.inverse() * belief_.box(item)->X_WP});
+  }
 }
 
 bool Packer::recover(int item, const Planned& planned, const std::vector<std::optional<Pose>>& before,
@@ -299,26 +327,30 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
   }
   belief_.arrives(item);
   look();
+  bool is_whole = true;
   for (bool again = true; again && !stop_reason_;) {
     again = false;
-    if (belief_.box(item) == std::nullopt) break;
+    if (is_gone(report.id)) {
+      give_up(item, Trouble::Gone, report);
+      break;
+    }
     const std::optional<Planned> planned = plan(item, decide, report);
     if (!planned) {
-      if (!report.sends.empty()) {  // it lies where it was dropped or let go
-        report.end = fit_of(item, belief_.box(item)->X_WP).is_in ? ItemEnd::Accepted : ItemEnd::Left;
-      }
+      leave(item, report);
       break;
     }
     const std::vector<std::optional<Pose>> before = believed_poses();
     if (std::ranges::find(order_, item) == order_.end()) order_.push_back(item);
+    if (!is_whole) report.sends.pop_back();  // this one takes its place
     report.sends.push_back({robot_.time, report.predicted_success, planned->attempt.planned, {}, Trouble::None});
-    belief_.expect(planned->attempt.ends);
-    const bool is_whole = send(planned->attempt, report.id, report);
+    is_whole = send(planned->attempt, report.id, report);
     report.sends.back().end = robot_.end;
     if (!is_whole) {  // planned anew from where the box stands: the loop closed, nothing went wrong
-      report.sends.pop_back();
       again = report.attempts < 3 * options_.most_attempts;
-      continue;
+      if (again) continue;
+      report.reason = "it does not come to stand as it was rehearsed";
+      leave(item, report);
+      break;
     }
     again = recover(item, *planned, before, decide, report);
     if (robot_.end.reason == plant::EndReason::Completed) belief_.weigh(item);

@@ -5,9 +5,9 @@ namespace snug::session {
 namespace {
 
 Remedy where_it_lies(const Situation& at) {
-  if (at.fits) return Remedy::Accept;
-  if (at.can_be_picked && at.tries < at.most_tries) return Remedy::PickAgain;
-  return Remedy::Skip;
+  const bool may_pick = at.can_be_picked && at.tries < at.most_tries;
+  if (at.fits) return at.lies_turned && may_pick ? Remedy::PickAgain : Remedy::Accept;
+  return may_pick ? Remedy::PickAgain : Remedy::Skip;
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ struct Situation {
   bool is_held = false;        ///< the vacuum says that something hangs from the cup
   bool can_set_down = false;   ///< there is a bench to put it on
   bool fits = false;           ///< it lies in the container, inside walls and rim
+  bool lies_turned = false;    ///< by more than 45 degrees from its plan: it takes room meant for others
   bool can_be_picked = false;  ///< seen, standing on a face, within reach of the tool
   bool was_pressed = false;    ///< since it was let go
 };

@@ -13,8 +13,8 @@
 namespace snug::session {
 namespace {
 
-constexpr double kRest = 0.4;     ///< s, after the last waypoint, before the result is looked at
-constexpr int kFirstSamples = 3;  ///< rehearsed before the others: where most of these fail the others are not asked
+constexpr double kRestAtEnd = 0.4;  ///< s, after the last waypoint, before the result is looked at
+constexpr int kFirstSamples = 3;    ///< rehearsed before the others: where most of these fail the others are not asked
 
 /// Along the floor.
 double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
@@ -171,7 +171,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion&
     rollout.restore(grasp.states[i]);
     Episode episode = grasp.episodes[i];
     merge(episode, rollout.run(attempt.program, {limits_.force, false}));
-    if (episode.is_complete()) merge(episode, rollout.settle(attempt.program, kRest));
+    if (episode.is_complete()) merge(episode, rollout.settle(attempt.program, kRestAtEnd));
     Outcome outcome = judge(rollout, before_[i], attempt.planned.X_TP);
     outcome.end = episode.end;
     outcome.forces.force = episode.peak_force;

@@ -9,15 +9,12 @@
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/stopwatch.hpp"
 #include "snug/session/packer.hpp"
 #include "snug/session/reach.hpp"
 
 namespace snug::session {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -90,8 +87,13 @@ class Session {
   }
 
  private:
-  [[nodiscard]] bool is_over() {
+  void heed_packer() {
     if (!is_stopped_ && packer_.stop_reason()) stop(*packer_.stop_reason(), name_of(*packer_.stop_reason()));
+  }
+
+  /// To be asked before every item.
+  [[nodiscard]] bool is_over() {
+    heed_packer();
     if (!is_stopped_ && options_.is_interrupted && options_.is_interrupted()) {
       stop(StopReason::Interrupted, "interrupted");
     }
@@ -111,7 +113,6 @@ class Session {
       const auto start = std::chrono::steady_clock::now();
       const auto decision = agent.decide(paper, item);
       paper_seconds_.push_back(seconds_since(start));
-      if (!decision && decision.error() == packing::NoPlace::NotPlanned) continue;
       if (!decision && packing::is_hopeless(decision.error())) {
         ItemReport report;
         report.id = item.id;
@@ -137,18 +138,34 @@ class Session {
   void finish_item(ItemReport report, int item, int items) {
     if (report.is_packed()) result_.plan.push_back(report.planned);
     result_.items.push_back(std::move(report));
+    for (const Repacked& again : packer_.take_repacked()) plan_anew(again);
     review();
     count();
     if (progress_) progress_(result_, item, items);
   }
 
-  /// What was packed before, and is seen outside now, is not packed any more.
+  void leave_out_of_plan(const std::string& id) {
+    std::erase_if(result_.plan, [&](const packing::Placement& one) { return one.item == id; });
+  }
+
+  void plan_anew(const Repacked& again) {
+    const auto item = std::ranges::find(result_.items, again.planned.item, &ItemReport::id);
+    if (item == result_.items.end() || !item->is_packed()) return;
+    item->planned = again.planned;
+    item->X_TP = again.X_TP;
+    leave_out_of_plan(item->id);
+    result_.plan.push_back(again.planned);
+  }
+
+  /// What was packed before, and is seen outside or nowhere now, is not packed any more.
   void review() {
     for (ItemReport& item : result_.items) {
-      if (!item.is_packed() || !packer_.is_seen_outside(item.id)) continue;
-      item.end = ItemEnd::Left;
-      item.reason = "it is seen outside the container";
-      std::erase_if(result_.plan, [&](const packing::Placement& one) { return one.item == item.id; });
+      if (!item.is_packed()) continue;
+      const bool is_gone = packer_.is_gone(item.id);
+      if (!is_gone && !packer_.is_seen_outside(item.id)) continue;
+      item.end = is_gone ? ItemEnd::Gone : ItemEnd::Left;
+      item.reason = is_gone ? "it is not seen any more" : "it is seen outside the container";
+      leave_out_of_plan(item.id);
     }
   }
 
@@ -164,7 +181,7 @@ class Session {
   }
 
   SessionResult finish() {
-    (void)is_over();
+    heed_packer();
     if (!is_stopped_ && !paper_end_.empty()) stop(StopReason::NoPlace, paper_end_);
     if (!is_stopped_) {
       const auto left = std::ranges::count_if(result_.items, [](const ItemReport& item) { return !item.is_packed(); });
@@ -202,12 +219,6 @@ class Session {
 SessionResult pack(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options,
                    plant::Plant& plant, const Progress& progress) {
   return Session(scenario, sequence, options, plant, progress).pack();
-}
-
-SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
-                      const std::vector<packing::Placement>& plan, const SessionOptions& options, plant::Plant& plant,
-                      const Progress& progress) {
-  return Session(scenario, sequence, options, plant, progress).execute(plan);
 }
 
 }  // namespace snug::session

@@ -124,10 +124,4 @@ using Progress = std::function<void(const SessionResult& so_far, int item, int i
 [[nodiscard]] SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
                                  const SessionOptions& options, plant::Plant& plant, const Progress& progress = {});
 
-/// The same with the decisions made: each placement is brought about in the best way; boxes that do not come to their
-/// place are left out.
-[[nodiscard]] SessionResult execute(const model::Scenario& scenario, const std::string& sequence,
-                                    const std::vector<packing::Placement>& plan, const SessionOptions& options,
-                                    plant::Plant& plant, const Progress& progress = {});
-
 }  // namespace snug::session

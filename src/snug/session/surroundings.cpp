@@ -71,10 +71,4 @@ packing::Candidate measured(const packing::ContainerState& state, packing::Candi
   return candidate;
 }
 
-double highest_top(const packing::ContainerState& state) {
-  double top = 0.0;
-  for (const packing::PlacedBox& box : state.boxes) top = std::max(top, packing::bounding_extent(box).high.z());
-  return top;
-}
-
 }  // namespace snug::session

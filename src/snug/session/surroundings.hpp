@@ -11,7 +11,4 @@ namespace snug::session {
 [[nodiscard]] packing::Candidate measured(const packing::ContainerState& state, packing::Candidate candidate,
                                           const Vector3& size, double shrink);
 
-/// z in T of the highest corner of all boxes, 0 when there is none.
-[[nodiscard]] double highest_top(const packing::ContainerState& state);
-
 }  // namespace snug::session

@@ -18,17 +18,19 @@ constexpr int kDirections = 8;
 }  // namespace
 
 void SimulatedPlant::note(const char* kind, int item, std::string text) {
-  state_.journey.note({simulation_.time(state_),
-                       "fault",
-                       simulation_.sequence().items[static_cast<std::size_t>(item)].parcel,
-                       std::string(kind) + ": " + std::move(text),
-                       {}});
+  state_.event_log.note({simulation_.time(state_),
+                         "fault",
+                         simulation_.sequence().items[static_cast<std::size_t>(item)].parcel,
+                         std::string(kind) + ": " + std::move(text),
+                         {}});
 }
 
 /// What hangs from the cup falls, and nothing seals until the vacuum is switched off.
 void SimulatedPlant::break_suction() {
+  const double least_hold_factor = state_.gripper.least_hold_factor;  // of the item's whole way
   state_.gripper = cell::GripperState{};
   state_.gripper.cannot_seal = true;
+  state_.gripper.least_hold_factor = least_hold_factor;
 }
 
 /// 30 mm to the side where it has to be lifted least, over whatever is there.

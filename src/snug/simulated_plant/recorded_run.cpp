@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "snug/motion/program_tempo.hpp"
+
 namespace snug::simulated_plant {
 namespace {
 
@@ -25,7 +27,7 @@ class Course {
 
  private:
   void add_events() {
-    const auto& own = plant_.state().journey.events();
+    const auto& own = plant_.state().event_log.events();
     const double now = plant_.simulation().time(plant_.state());
     for (; own_ < own.size(); ++own_) events_.push_back(own[own_]);
     for (; next_ < said_.size() && said_[next_].time <= now; ++next_) events_.push_back(said_[next_]);
@@ -71,7 +73,9 @@ cell::RunResult record(const model::Scenario& scenario, const std::string& seque
   setup.file = recorded.file;
   setup.period = scenario.controller.tick;
   setup.program_name = "pack";
-  setup.program_text = motion::format_program(program_of(calls));
+  const bool is_fast = options.simulation.controller == motion::ControllerKind::Fast;
+  setup.program_text = (is_fast ? motion::format_tempo(options.simulation.tempo) : std::string()) +
+                       motion::format_program(program_of(calls));
   setup.sequence = sequence;
   setup.settings_json = recorded.settings_json;
   setup.version = recorded.version;
@@ -98,7 +102,7 @@ cell::RunResult record(const model::Scenario& scenario, const std::string& seque
     result.filling_degree_percent = model::compute_filling_degree_percent(scenario, *container, packed);
   }
   result.events = course.events();
-  result.repicks = plant.state().journey.repicks();
+  result.repicks = plant.state().event_log.repicks();
   result.solver = plant.work().solver.summary(plant.simulation().world());
   result.lost = plant.work().lost;
   result.state_hash = plant.simulation().hash(plant.state());

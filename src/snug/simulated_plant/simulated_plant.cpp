@@ -22,7 +22,8 @@ model::Scenario draw_plant(const model::Scenario& scenario, const std::string& s
 SimulatedPlant::SimulatedPlant(const model::Scenario& scenario, const std::string& sequence,
                                const SimulatedPlantOptions& options)
     : options_(options),
-      simulation_(draw_plant(scenario, sequence, options.seed), sequence, options.simulation),
+      simulation_(draw_plant(model::with_values(scenario, options.set, "--plant-set"), sequence, options.seed),
+                  sequence, options.simulation),
       state_(simulation_.make_state()),
       work_(simulation_.make_workspace()),
       perception_(camera_perception::make_perception(options.perception, options.seed, scenario)),
@@ -131,11 +132,16 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
     const cell::ProtectiveStop& stop = *work_.arm.stop;
     course.end = {plant::EndReason::ProtectiveStop, tick.row, stop.value, stop.limit, stop.what + " of " + stop.where};
   } else if (!tick.failure.empty()) {
-    course.end = {plant::EndReason::Fault, tick.row, 0.0, 0.0, tick.failure};
-    has_failed_ = true;
+    fail(tick, course);
   }
   is_stopped_ |= course.end.reason == plant::EndReason::ProtectiveStop;
   return course.end.reason == plant::EndReason::Completed;
+}
+
+/// The simulation cannot go on.
+void SimulatedPlant::fail(const cell::CellTick& tick, plant::MotionWatch& course) {
+  course.end = {plant::EndReason::Fault, tick.row, 0.0, 0.0, tick.failure};
+  has_failed_ = true;
 }
 
 /// The tool comes to stand, boxes come to rest.
@@ -149,7 +155,9 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWa
   while (plant::is_settling(start, simulation_.time(state_), speed(), at_least)) {
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
     if (watcher_) watcher_(tick);
-    if (!tick.failure.empty()) break;
+    if (tick.failure.empty()) continue;
+    if (!work_.arm.stop) fail(tick, course);  // a stop now: the tool was where it was to come
+    break;
   }
   course.rest(simulation_.time(state_));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "snug/cell/simulation.hpp"
+#include "snug/model/scenario_edit.hpp"
 #include "snug/perception/perception.hpp"
 #include "snug/plant/motion_watch.hpp"
 #include "snug/simulated_plant/faults.hpp"
@@ -17,6 +18,8 @@ struct SimulatedPlantOptions {
   std::uint64_t seed = 1;  ///< of what is drawn; 0: the cell is exactly what the scenario says
   perception::Kind perception = perception::Kind::Exact;
   std::vector<Fault> faults;
+  /// What is otherwise in this cell than in the scenario that the planner has, before the seed draws from it.
+  std::vector<model::KeyValue> set;
   cell::SimulationOptions simulation{motion::ControllerKind::Faithful, cup::CupMode::Phases, {}};
 };
 
@@ -62,6 +65,7 @@ class SimulatedPlant final : public plant::Plant {
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
                              plant::MotionWatch& course);
   void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course);
+  void fail(const cell::CellTick& tick, plant::MotionWatch& course);
   [[nodiscard]] plant::TickReading reading() const;
   void inject(const motion::PreparedProgram& plan, plant::MotionWatch& course);
   void break_suction();

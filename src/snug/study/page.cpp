@@ -4,27 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/core/text.hpp"
 #include "snug/study/effects.hpp"
 
 namespace snug::study {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else if (c == '&')
-      safe += "&amp;";
-    else if (c == '"')
-      safe += "&quot;";
-    else
-      safe += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return safe;
-}
 
 std::string cell(const std::string& text) { return "<td>" + text + "</td>"; }
 std::string number(double value) { return fmt::format("{:.4g}", value); }
@@ -37,11 +21,11 @@ std::string drawing_of(const MainEffect& effect, double low, double high) {
   const auto x = [&](double value) { return kLabel + kPlot * std::clamp((value - low) / span, 0.0, 1.0); };
   const double height = kLine * static_cast<double>(effect.levels.size()) + 20.0;
   std::string svg = fmt::format("<svg width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"means by level of {}\">",
-                                kWidth, height, escaped(effect.factor));
+                                kWidth, height, escape_markup(effect.factor));
   double y = 14.0;
   for (const Level& level : effect.levels) {
     svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", kLabel - 8.0, y + 4.0,
-                       escaped(level.label.substr(0, 24)));
+                       escape_markup(level.label.substr(0, 24)));
     svg += fmt::format("<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>",
                        x(level.mean - 2.0 * level.error), x(level.mean + 2.0 * level.error), y, y);
     svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"><title>{} +- {} ({} rows)</title></circle>",
@@ -67,7 +51,7 @@ std::string main_effects(const OutputEffects& effects) {
       "<h3>Main effects</h3><p>Mean of each level with two standard errors; the part of the variance that the "
       "factor explains by itself.</p><div class=\"effects\">";
   for (const MainEffect& effect : effects.main) {
-    text += fmt::format("<figure><figcaption>{} <b>{}</b></figcaption>{}</figure>", escaped(effect.factor),
+    text += fmt::format("<figure><figcaption>{} <b>{}</b></figcaption>{}</figure>", escape_markup(effect.factor),
                         percent(effect.share), drawing_of(effect, low, high));
   }
   return text + "</div>";
@@ -79,7 +63,8 @@ std::string interactions(const OutputEffects& effects) {
       "<h3>Interactions</h3><p>What a pair explains beyond both by themselves; few rows in a cell make it "
       "uncertain.</p><table><tr><th>factor</th><th>factor</th><th>part of the variance</th></tr>";
   for (const Interaction& pair : effects.interactions) {
-    text += "<tr>" + cell(escaped(pair.first)) + cell(escaped(pair.second)) + cell(percent(pair.share)) + "</tr>";
+    text += "<tr>" + cell(escape_markup(pair.first)) + cell(escape_markup(pair.second)) + cell(percent(pair.share)) +
+            "</tr>";
   }
   return text + "</table>";
 }
@@ -104,7 +89,7 @@ std::string worst(const Study& study, const OutputEffects& effects) {
   std::string text = "<h3>Worst rows</h3><table><tr><th>row</th><th>value</th><th>command that repeats it</th></tr>";
   for (std::size_t i = 0; i < effects.worst.size(); ++i) {
     text += "<tr>" + cell(std::to_string(effects.worst[i])) + cell(number(effects.worst_values[i])) +
-            cell("<code>" + escaped(replay_of(study, row_of(study, effects.worst[i]))) + "</code>") + "</tr>";
+            cell("<code>" + escape_markup(replay_of(study, row_of(study, effects.worst[i]))) + "</code>") + "</tr>";
   }
   return text + "</table>";
 }
@@ -127,16 +112,16 @@ std::string make_page(const Study& study, const Status& status, const std::vecto
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><style>{1}</style></head><body>"
       "<h1>{0}</h1><p>{2} of {3} rows, {4} failed; design {5}, {6} points with {7} repetitions, seed {8}; <code>snug "
       "{9}</code>.</p>",
-      escaped(study.name), kStyle, status.done, status.rows, status.failed, designs[static_cast<int>(study.design)],
-      study.point_count, study.repeat, study.seed, escaped(study.verb));
+      escape_markup(study.name), kStyle, status.done, status.rows, status.failed,
+      designs[static_cast<int>(study.design)], study.point_count, study.repeat, study.seed, escape_markup(study.verb));
   if (effects.empty()) text += "<p>No number varies from row to row.</p>";
   for (const OutputEffects& output : effects) {
-    text += "<section><h2>" + escaped(output.output) + "</h2>" + quantiles(output) + main_effects(output) +
+    text += "<section><h2>" + escape_markup(output.output) + "</h2>" + quantiles(output) + main_effects(output) +
             interactions(output) + worst(study, output) + "</section>";
   }
   return text + "<section><h2>The study</h2><pre>" + [&] {
     std::string lines;
-    for (const char c : study.text) lines += c == '\n' ? std::string("\n") : escaped(std::string(1, c));
+    for (const char c : study.text) lines += c == '\n' ? std::string("\n") : escape_markup(std::string(1, c));
     return lines;
   }() + "</pre></section></body></html>\n";
 }

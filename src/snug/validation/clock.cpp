@@ -9,12 +9,12 @@
 #include <limits>
 
 #include "snug/core/check.hpp"
+#include "snug/core/units.hpp"
 #include "snug/validation/internal/averages.hpp"
 
 namespace snug::validation {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCoarse = 0.1;         // s, grid of the first search
 constexpr double kFine = 0.01;          // s, grid of the second
 constexpr double kBlock = 5.0;          // s
@@ -95,9 +95,9 @@ Coarse search_grid(const Signals& reference, const Signals& measured, const Cloc
 }
 
 /// A channel, read between samples.
-class Curve {
+class SampledCurve {
  public:
-  Curve(const std::vector<double>& times, const std::vector<double>& values) : times_(times), values_(values) {
+  SampledCurve(const std::vector<double>& times, const std::vector<double>& values) : times_(times), values_(values) {
     period_ = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   }
   /// Value at `time`, linear between samples; NaN outside, at losses and in gaps of more than 3 periods.
@@ -219,7 +219,7 @@ class Comparison {
 
   const Signals& reference_;
   ClockOptions options_;
-  std::vector<Curve> curves_;
+  std::vector<SampledCurve> curves_;
   std::vector<double> offsets_, reference_offsets_;
   std::vector<std::vector<double>> slopes_;  ///< of the reference
   double middle_ = 0.0, scale_ = 1.0;

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "snug/core/units.hpp"
 #include "snug/validation/page.hpp"
 
 namespace snug::validation {
@@ -14,8 +14,6 @@ using replay::Curve;
 using replay::Figure;
 using replay::Panel;
 
-constexpr double kMm = 1e3;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr int kBlue = 0, kOrange = 1, kGreen = 2, kPurple = 3;
 constexpr int kRepetitionColors[] = {kOrange, kGreen, kPurple};
 

@@ -8,12 +8,12 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/units.hpp"
 #include "snug/core/write_file.hpp"
 
 namespace snug::validation {
@@ -22,7 +22,6 @@ namespace {
 using record::ArchiveRecording;
 using record::PoseSample;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUnitTolerance = 1e-3;  // of a quaternion written with four digits
 constexpr std::string_view kPosePart = "_FloatingBase_";
 constexpr std::array<const char*, 7> kPoseColumns = {"orientation_w", "orientation_x", "orientation_y", "orientation_z",
@@ -49,8 +48,8 @@ std::string body_name(std::string_view prefix) {
 
 /// Where the numbers of one thing stand in a row; -1 where a column is missing.
 template <std::size_t kCount>
-struct Columns {
-  Columns() { at.fill(-1); }
+struct LogColumns {
+  LogColumns() { at.fill(-1); }
   int& operator[](std::size_t k) { return at[k]; }
   int operator[](std::size_t k) const { return at[k]; }
   std::array<int, kCount> at;
@@ -82,7 +81,7 @@ class LogReader {
   void read_names(const std::string& line) {
     line_ = 1;
     for (const std::string_view name : split(line, separator_)) names_.emplace_back(name);
-    std::map<std::string, Columns<7>> bodies;
+    std::map<std::string, LogColumns<7>> bodies;
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::string& name = names_[i];
       if (std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(i), name) !=
@@ -107,7 +106,7 @@ class LogReader {
   }
 
   template <std::size_t kCount>
-  static void enter(Columns<kCount>& columns, const std::array<const char*, kCount>& words, const std::string& word,
+  static void enter(LogColumns<kCount>& columns, const std::array<const char*, kCount>& words, const std::string& word,
                     std::size_t at) {
     for (std::size_t k = 0; k < kCount; ++k) {
       if (word == words[k]) columns[k] = static_cast<int>(at);
@@ -115,13 +114,13 @@ class LogReader {
   }
 
   template <std::size_t kCount>
-  static bool has_some(const Columns<kCount>& columns) {
+  static bool has_some(const LogColumns<kCount>& columns) {
     return std::any_of(columns.at.begin(), columns.at.end(), [](int column) { return column >= 0; });
   }
 
   template <std::size_t kCount>
   void require_all(const std::string& prefix, const std::array<const char*, kCount>& words,
-                   const Columns<kCount>& columns) const {
+                   const LogColumns<kCount>& columns) const {
     for (std::size_t k = 0; k < kCount; ++k)
       if (columns[k] < 0) fail(prefix + words[k], "no such column", "all " + std::to_string(kCount) + " of them");
   }
@@ -137,7 +136,7 @@ class LogReader {
     return value;
   }
 
-  PoseSample read_pose(const std::vector<std::string_view>& cells, const Columns<7>& columns) const {
+  PoseSample read_pose(const std::vector<std::string_view>& cells, const LogColumns<7>& columns) const {
     std::array<double, 7> v;
     for (std::size_t k = 0; k < 7; ++k) v[k] = number(cells, columns[k]);
     const auto missing = std::count_if(v.begin(), v.end(), [](double x) { return !std::isfinite(x); });
@@ -187,7 +186,7 @@ class LogReader {
 
   struct Body {
     std::string prefix;
-    Columns<7> columns;
+    LogColumns<7> columns;
     std::vector<PoseSample> poses;
   };
 
@@ -197,8 +196,8 @@ class LogReader {
   std::vector<std::string> names_;
   int time_ = -1;
   std::vector<Body> bodies_;
-  Columns<7> tool_;
-  Columns<6> wrench_;
+  LogColumns<7> tool_;
+  LogColumns<6> wrench_;
   std::vector<double> times_;
   std::vector<PoseSample> tool_poses_;
   std::vector<Wrench> wrenches_;

@@ -22,7 +22,7 @@ using record::PoseSample;
 
 constexpr double kGravity = 9.81;    // m/s^2; what the accelerometer feels at rest
 constexpr int kMinutesBetween = 20;  // of two repetitions: more than 15 (report, 4.4.2)
-constexpr double kLongestGap = 1e9;  // frames of a simulation are never too far apart
+constexpr double kAnyGap = 1e9;      // frames of a simulation are never too far apart
 
 Vector3 noise_vector(Rng& rng, double deviation) {
   const double x = rng.normal(), y = rng.normal(), z = rng.normal();
@@ -168,7 +168,7 @@ record::MotionCaptureLog measure_poses(const SimulatedRun& run, const model::Mot
     record::BodyTrack track{body.name, {}};
     track.poses.reserve(instants.own.size());
     for (const double time : instants.simulated) {
-      const PoseSample X_WB = cursor.at(time, kLongestGap);
+      const PoseSample X_WB = cursor.at(time, kAnyGap);
       const bool is_hidden = record::is_tracked(X_WB) && is_one_of_those_lost && shadow.hides(X_WB, *body.half);
       if (!record::is_tracked(X_WB) || is_hidden || dropouts.is_out(time)) {
         const bool holds = params.when_lost == model::WhenLost::Held && !track.poses.empty();
@@ -250,7 +250,7 @@ record::RobotLog measure_robot(const SimulatedRun& run, const model::EncoderPara
     }
     log.columns.back().push_back(run.vacuum[at.before]);
     log.tool.emplace_back(
-        disturbed(cursor.at(time, kLongestGap).pose(), noise, params.tool_position_noise, params.tool_rotation_noise));
+        disturbed(cursor.at(time, kAnyGap).pose(), noise, params.tool_position_noise, params.tool_rotation_noise));
   }
   return log;
 }

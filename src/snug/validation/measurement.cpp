@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/units.hpp"
 #include "snug/validation/internal/averages.hpp"
 #include "snug/validation/measure.hpp"
 
@@ -17,7 +17,6 @@ using record::BodyTrack;
 using record::is_tracked;
 using record::PoseSample;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSpeedHalf = 0.05;      // s: speeds are slopes of lines through this much on both sides
 constexpr double kForceHalf = 0.02;      // s: forces are means of it
 constexpr double kSignalPeriod = 0.008;  // s: what clocks are fitted on; more would only take longer

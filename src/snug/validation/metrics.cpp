@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "snug/core/check.hpp"
+#include "snug/core/units.hpp"
 #include "snug/validation/internal/averages.hpp"
 #include "snug/validation/internal/smoothing.hpp"
 
@@ -20,7 +20,6 @@ namespace {
 using record::is_tracked;
 using record::PoseSample;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // The demonstrator's rules (docs/theory/validation.md).
 constexpr double kPositionOutlier = 0.15;                           // m
 constexpr double kRotationOutlier = 15.0 * std::numbers::pi / 180;  // rad

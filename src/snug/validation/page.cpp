@@ -4,18 +4,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "snug/core/text.hpp"
+#include "snug/core/units.hpp"
 #include "snug/replay/page.hpp"
 #include "snug/validation/reported.hpp"
 
 namespace snug::validation {
 namespace {
-
-using replay::escape_markup;
-
-constexpr double kMm = 1e3;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; }
@@ -29,14 +25,14 @@ small, .na { color: #888; } img { width: 100%; background: #fff; } figure { marg
 .scroll { overflow-x: auto; }
 )";
 
-std::string number(double value, int decimals) {
+std::string number_text(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "<span class=\"na\">n.a.</span>";
 }
 
 /// "4.31 +- 0.12": mean over the repetitions and the standard deviation of one.
 std::string spread_cell(const std::vector<Errors>& errors, double Errors::*value, double scale, int decimals) {
   const Spread spread = spread_of(errors, value);
-  std::string text = number(scale * spread.mean, decimals);
+  std::string text = number_text(scale * spread.mean, decimals);
   if (std::isfinite(spread.deviation))
     text += fmt::format(" <small>\u00b1 {:.{}f}</small>", scale * spread.deviation, decimals);
   return "<td>" + text + "</td>";
@@ -118,15 +114,15 @@ std::string error_section(const Validation& validation, const TablePlan& plan) {
       html += spread_cell(*errors, plan.second, plan.scale_second, 2);
     }
     if (plan.shows_tracking) {
-      html += "<td>" + number(100.0 * spread_of(body.errors.clean, &Errors::tracked).mean, 1) + "</td><td>" +
-              number(100.0 * spread_of(body.errors.report, &Errors::dropped).mean, 1) + "</td>";
+      html += "<td>" + number_text(100.0 * spread_of(body.errors.clean, &Errors::tracked).mean, 1) + "</td><td>" +
+              number_text(100.0 * spread_of(body.errors.report, &Errors::dropped).mean, 1) + "</td>";
     }
     html += "</tr>\n";
   }
   html += "</tbody><tfoot><tr><td>mean</td><td></td>";
   for (const Means* means : {&validation.clean, &validation.report})
-    html += "<td>" + number(plan.scale_first * (means->*plan.mean_first), 2) + "</td><td>" +
-            number(plan.scale_second * (means->*plan.mean_second), 2) + "</td>";
+    html += "<td>" + number_text(plan.scale_first * (means->*plan.mean_first), 2) + "</td><td>" +
+            number_text(plan.scale_second * (means->*plan.mean_second), 2) + "</td>";
   html += fmt::format(
       "</tr></tfoot></table></div>\n<p><small>The report's simulation beside its real cell: {:.2f} {}, "
       "{:.2f} {} (mean of all five sequences).</small></p>\n",

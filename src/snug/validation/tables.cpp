@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "snug/core/units.hpp"
 #include "snug/validation/page.hpp"
 #include "snug/validation/reported.hpp"
 
@@ -12,9 +12,6 @@ namespace snug::validation {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kMm = 1e3;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// A number of Errors with its name and unit for people.
 struct Quantity {

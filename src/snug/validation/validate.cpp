@@ -5,11 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/units.hpp"
 #include "snug/validation/log_table.hpp"
 #include "snug/validation/reported.hpp"
 
@@ -19,7 +19,6 @@ namespace {
 using record::is_tracked;
 using record::PoseSample;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBefore = 1.0, kAfter = 2.0;  // s around holding a box
 constexpr double kSeenAtEnd = 0.5;             // s: a body seen that near to the window's end was seen at its end
 

@@ -139,7 +139,7 @@ function resultOf(stored: StoredResult | null): RunResult | null {
   const boxes = (stored.boxes ?? []).map((box): ResultBox => ({
     id: box.id ?? "", state: box.state ?? null, up: box.up ?? "",
     pose: box.X_TP?.p && box.X_TP.quat_wxyz ? ([...box.X_TP.p, ...box.X_TP.quat_wxyz] as PoseRow) : null,
-    journey: (box.events ?? []).map((e) => ({ kind: e.kind ?? "", time: e.time_s ?? 0, text: e.text ?? "" })),
+    events: (box.events ?? []).map((e) => ({ kind: e.kind ?? "", time: e.time_s ?? 0, text: e.text ?? "" })),
   }));
   return {
     boxes, filling_degree_percent: stored.filling_degree_percent ?? null, packed: boxes.filter((box) => box.state === "packed").length,

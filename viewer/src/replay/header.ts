@@ -50,7 +50,7 @@ export interface ResultBox {
   state: string | null;
   up: string;
   pose: PoseRow | null;
-  journey: { kind: string; time: number; text: string }[];
+  events: { kind: string; time: number; text: string }[];
 }
 
 export interface RunResult {

@@ -8,7 +8,7 @@ import { CAMERA_NAMES, View, type ViewOption } from "../scene/view";
 import { About } from "./about";
 import { button, make } from "./dom";
 import { helpOverlay } from "./help";
-import { Journey } from "./journey";
+import { ItemEvents } from "./events";
 import { Legend } from "./legend";
 import { Player } from "./player";
 import { Plots } from "./plots";
@@ -26,7 +26,7 @@ export class App {
   readonly player: Player;
   readonly view: View;
   readonly plots: Plots;
-  readonly journey: Journey;
+  readonly itemEvents: ItemEvents;
   private readonly timeline_: Timeline;
   private readonly help_: HTMLElement;
   private readonly about_: About;
@@ -52,14 +52,14 @@ export class App {
     this.view = new View(replay, second, theme_, isPicture);
     this.view.colours.learn(replay.bodies.map((body) => body.type).filter((type) => type !== ""));
     this.plots = new Plots(replay, second, this.player, theme_);
-    this.journey = new Journey(replay, this.player, this.view);
+    this.itemEvents = new ItemEvents(replay, this.player, this.view);
     this.timeline_ = new Timeline(this.player, replay);
     this.help_ = helpOverlay(() => this.view.palette);
     this.about_ = new About(second ? [replay, second] : [replay], this.view, this.player);
     this.legend_ = new Legend(this.view);
     this.end_ = endPanel(replay, second, this.view, () => this.about_.show("container"));
-    const side = make("div", "side", this.journey.element, ...(this.end_ ? [this.end_] : []));
-    this.journey.onSelect = (box) => this.plots.setBox(box);
+    const side = make("div", "side", this.itemEvents.element, ...(this.end_ ? [this.end_] : []));
+    this.itemEvents.onSelect = (box) => this.plots.setBox(box);
     this.plots.onWide = (isWide) => this.element.classList.toggle("wide", isWide);
     this.measureButton_ = button("measure", "Distance between two points: click them (m)", () => this.setMeasuring(!this.isMeasuring_));
     this.stage_.append(this.view.element);
@@ -86,7 +86,7 @@ export class App {
   /** After a live run has grown: what is drawn from all of it. */
   refresh(): void {
     this.element.querySelector(".headline")!.replaceWith(headline(this.replay));
-    this.journey.refresh();
+    this.itemEvents.refresh();
     this.timeline_.refresh();
     this.plots.refresh();
     this.drawEnd();
@@ -240,7 +240,7 @@ export class App {
       return;
     }
     const name = picked ? this.replay.bodies[picked.body]!.name : "";
-    this.journey.select(name === this.journey.selected ? "" : name);
+    this.itemEvents.select(name === this.itemEvents.selected ? "" : name);
   }
 
   private key(e: KeyboardEvent): void {

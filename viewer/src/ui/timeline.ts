@@ -5,7 +5,7 @@ import { button, make, seconds } from "./dom";
 import { SPEEDS, type Player } from "./player";
 
 const STEPS_OF_SLIDER = 10000;
-/** Events worth a mark; the rest are in the journey of each box. */
+/** Events worth a mark; the rest are listed with each box. */
 const MARKED = new Set(["seal", "release", "flip", "repick", "lost", "no seal", "dropped", "reseal", "bend", "slip",
   "arm_contact", "protective_stop", "out of cell", "deep contact"]);
 const BAD = new Set(["lost", "no seal", "dropped", "bend", "slip", "arm_contact", "protective_stop", "out of cell",

@@ -82,9 +82,9 @@ describe("the page", () => {
     await close();
   });
 
-  it("selects a box in the journey and jumps to its events", async () => {
-    const { page, close } = await open(browser, pageWith("journey", [smallHeader(100)]));
-    await page.click(".journey .stops button");
+  it("selects a box in the list and jumps to its events", async () => {
+    const { page, close } = await open(browser, pageWith("item-events", [smallHeader(100)]));
+    await page.click(".item-events .events button");
     expect(await page.evaluate(() => window.snug.time)).toBeCloseTo(0.3, 6);
     expect(await page.textContent(".box.selected b")).toBe("box");
     await close();

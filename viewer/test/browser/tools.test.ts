@@ -31,7 +31,7 @@ beforeAll(async () => {
 afterAll(() => browser?.close());
 
 const RESULT = {
-  boxes: [{ id: "box", state: "packed", up: "Z", pose: null, journey: [] }, { id: "late", state: "packed", up: "-X", pose: null, journey: [] }],
+  boxes: [{ id: "box", state: "packed", up: "Z", pose: null, events: [] }, { id: "late", state: "packed", up: "-X", pose: null, events: [] }],
   filling_degree_percent: 61.25, packed: 2, failure: "", warnings: ["a warning that is so long that it would not fit beside the other facts of the headline of a page, however wide"],
   report_table7: { filling_percent: 75.66, boxes: 12, same_boxes_percent: 74.22, agent: "I.AM.", agents: [{ agent: "I.AM.", about: "a robot, programmed by hand", filling_percent: 75.66 }] },
 };
@@ -106,7 +106,7 @@ describe("a scene without tool", () => {
 describe("plots", () => {
   it("show a window that follows the time, zoom where one drags, go back, and grow wide", async () => {
     const { page, errors, close } = await open(browser, pageWith("window", [smallHeader(9000)]));
-    await page.click(".journey .head");
+    await page.click(".item-events .head");
     await page.waitForSelector(".plot");
     expect(await page.evaluate(() => window.snug.plotted())).toEqual([0, 20]);
     await page.evaluate(() => window.snug.setTime(50));

@@ -6,7 +6,7 @@ import { Replay } from "../../src/replay/replay";
 import { linkFrames } from "../../src/scene/robot";
 import { flatten } from "../../src/ui/about";
 import { digits } from "../../src/ui/dom";
-import { restOf } from "../../src/ui/journey";
+import { restOf } from "../../src/ui/events";
 import { continuousTurns, figuresOf, thin } from "../../src/ui/series";
 import { encodeReplay } from "../support/encode";
 import { pose, smallHeader } from "../support/sample";

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "snug/numerics/dense.hpp"
 #include "snug/numerics/outliers.hpp"
 
 namespace snug::calibration::internal {
@@ -20,7 +20,7 @@ double group_size(const Eigen::VectorXd& residual, Eigen::Index group, Eigen::In
 
 /// Least absolute group residuals, by weights 1 / |r|.
 Eigen::VectorXd fit_robustly(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::Index group, double floor) {
-  Eigen::VectorXd x = A.colPivHouseholderQr().solve(b);
+  Eigen::VectorXd x = numerics::solve_by_qr(A, b);
   for (int step = 0; step < kRobustSteps; ++step) {
     const Eigen::VectorXd residual = A * x - b;
     Eigen::VectorXd weight(b.size());
@@ -28,7 +28,7 @@ Eigen::VectorXd fit_robustly(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
       weight.segment(k * group, group).setConstant(1.0 / std::sqrt(std::max(floor, group_size(residual, group, k))));
     const Eigen::MatrixXd weighted_A = weight.asDiagonal() * A;
     const Eigen::VectorXd weighted_b = weight.asDiagonal() * b;
-    x = weighted_A.colPivHouseholderQr().solve(weighted_b);
+    x = numerics::solve_by_qr(weighted_A, weighted_b);
   }
   return x;
 }

@@ -9,7 +9,7 @@
 namespace snug::camera::internal {
 namespace {
 
-constexpr int kRowsPerJob = 32;
+constexpr int kRowsSearchedAtOnce = 32;
 constexpr double kJump = 2.5e-3;     // m: two pixels farther apart than their surfaces explain are an edge of depth
 constexpr double kRoundJump = 5e-3;  // m: the same where a surface is curved
 constexpr double kMeet = 1e-7;       // 1/m
@@ -64,8 +64,8 @@ void spread(std::uint8_t* line, int count, std::ptrdiff_t step, int most, const 
 Grid2<std::uint8_t> find_borders(const Cast& cast, int threads) {
   const int rows = cast.surface.rows(), cols = cast.surface.cols();
   Grid2<std::uint8_t> borders(rows, cols);
-  parallel_for((rows + kRowsPerJob - 1) / kRowsPerJob, threads, [&](int job, int) {
-    for (int r = job * kRowsPerJob; r < std::min(rows, (job + 1) * kRowsPerJob); ++r) {
+  parallel_for((rows + kRowsSearchedAtOnce - 1) / kRowsSearchedAtOnce, threads, [&](int job, int) {
+    for (int r = job * kRowsSearchedAtOnce; r < std::min(rows, (job + 1) * kRowsSearchedAtOnce); ++r) {
       const std::int32_t* const here = cast.surface.row(r);
       const std::int32_t* const below = r + 1 < rows ? cast.surface.row(r + 1) : nullptr;
       for (int c = 0; c < cols; ++c) {
@@ -91,8 +91,8 @@ Grid2<std::uint8_t> edge_distance(const Grid2<std::uint8_t>& borders, int most, 
   };
   // From each edge outward; edges are few. Blocks of rows do not write into each other's rows: each looks a little
   // beyond.
-  parallel_for((rows + kRowsPerJob - 1) / kRowsPerJob, threads, [&](int job, int) {
-    const int first = job * kRowsPerJob, end = std::min(rows, first + kRowsPerJob);
+  parallel_for((rows + kRowsSearchedAtOnce - 1) / kRowsSearchedAtOnce, threads, [&](int job, int) {
+    const int first = job * kRowsSearchedAtOnce, end = std::min(rows, first + kRowsSearchedAtOnce);
     for (int r = std::max(0, first - most); r < std::min(rows, end + most); ++r) {
       const std::uint8_t* const line = borders.row(r);
       for (int c = 0; c < cols; ++c) {
@@ -115,16 +115,16 @@ Grid2<std::uint8_t> edge_distance(const Grid2<std::uint8_t>& borders, int most, 
 Grid2<std::uint8_t> corner_distance(const Grid2<std::uint8_t>& borders, int most, int threads) {
   const int rows = borders.rows(), cols = borders.cols();
   Grid2<std::uint8_t> distance(rows, cols, static_cast<std::uint8_t>(most + 1));
-  parallel_for((rows + kRowsPerJob - 1) / kRowsPerJob, threads, [&](int job, int) {
-    for (int r = job * kRowsPerJob; r < std::min(rows, (job + 1) * kRowsPerJob); ++r) {
+  parallel_for((rows + kRowsSearchedAtOnce - 1) / kRowsSearchedAtOnce, threads, [&](int job, int) {
+    for (int r = job * kRowsSearchedAtOnce; r < std::min(rows, (job + 1) * kRowsSearchedAtOnce); ++r) {
       const std::uint8_t* const line = borders.row(r);
       spread(
           distance.row(r), cols, 1, most, [line](int c) { return (line[c] & kCornerRight) != 0; },
           [line](int c) { return (line[c] & kJumpRight) != 0; });
     }
   });
-  parallel_for((cols + kRowsPerJob - 1) / kRowsPerJob, threads, [&](int job, int) {
-    for (int c = job * kRowsPerJob; c < std::min(cols, (job + 1) * kRowsPerJob); ++c)
+  parallel_for((cols + kRowsSearchedAtOnce - 1) / kRowsSearchedAtOnce, threads, [&](int job, int) {
+    for (int c = job * kRowsSearchedAtOnce; c < std::min(cols, (job + 1) * kRowsSearchedAtOnce); ++c)
       spread(
           distance.row(0) + c, rows, cols, most, [&](int r) { return (borders(r, c) & kCornerBelow) != 0; },
           [&](int r) { return (borders(r, c) & kJumpBelow) != 0; });

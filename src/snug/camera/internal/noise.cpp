@@ -9,7 +9,7 @@
 namespace snug::camera::internal {
 namespace {
 
-constexpr int kRowsPerJob = 32;
+constexpr int kRowsDisturbedAtOnce = 32;
 
 /// Weights of a Gaussian, scaled so that white noise keeps its variance; the middle one first, then outward.
 std::vector<float> gaussian(double sigma) {
@@ -34,10 +34,10 @@ Grid2<float> blurred_noise(int rows, int cols, std::uint64_t key, double correla
   // Wider than the picture, so that its edge has full variance too.
   const int tall = rows + 2 * reach, wide = cols + 2 * reach;
   Grid2<float> across(tall, cols);
-  const auto jobs = [](int count) { return (count + kRowsPerJob - 1) / kRowsPerJob; };
+  const auto jobs = [](int count) { return (count + kRowsDisturbedAtOnce - 1) / kRowsDisturbedAtOnce; };
   parallel_for(jobs(tall), threads, [&](int job, int) {
     std::vector<float> white(static_cast<std::size_t>(wide));
-    for (int r = job * kRowsPerJob; r < std::min(tall, (job + 1) * kRowsPerJob); ++r) {
+    for (int r = job * kRowsDisturbedAtOnce; r < std::min(tall, (job + 1) * kRowsDisturbedAtOnce); ++r) {
       const auto first = static_cast<std::uint64_t>(r) * static_cast<std::uint64_t>(wide);
       for (int c = 0; c < wide; ++c)
         white[static_cast<std::size_t>(c)] = near_normal(pixel_bits(key, first + static_cast<std::uint64_t>(c)));
@@ -53,7 +53,7 @@ Grid2<float> blurred_noise(int rows, int cols, std::uint64_t key, double correla
   if (reach == 0) return across;
   Grid2<float> noise(rows, cols);
   parallel_for(jobs(rows), threads, [&](int job, int) {
-    for (int r = job * kRowsPerJob; r < std::min(rows, (job + 1) * kRowsPerJob); ++r) {
+    for (int r = job * kRowsDisturbedAtOnce; r < std::min(rows, (job + 1) * kRowsDisturbedAtOnce); ++r) {
       float* const out = noise.row(r);
       const float* const middle = across.row(r + reach);
       for (int c = 0; c < cols; ++c) out[c] = weights[0] * middle[c];

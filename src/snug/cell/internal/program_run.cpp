@@ -12,8 +12,8 @@
 namespace snug::cell::internal {
 namespace {
 
-constexpr double kLongestProgram = 7200.0;  ///< s
-constexpr double kSettleTime = 1.0;         ///< s, after the last waypoint, for boxes that still move
+constexpr double kLongestRun = 7200.0;    ///< s
+constexpr double kSettleTimeOfRun = 1.0;  ///< s, after the last waypoint, for boxes that still move
 
 class ProgramRun {
  public:
@@ -36,10 +36,10 @@ class ProgramRun {
     while (result.failure.empty() && !is_stopped_) {
       if (advance(result.failure)) break;
       if (options_.until && simulation_.time(state_) >= *options_.until) break;
-      if (simulation_.time(state_) > kLongestProgram) result.failure = "the program did not end within two hours";
+      if (simulation_.time(state_) > kLongestRun) result.failure = "the program did not end within two hours";
     }
     result.duration = simulation_.time(state_);
-    const double settled = result.duration + kSettleTime;
+    const double settled = result.duration + kSettleTimeOfRun;
     while (result.failure.empty() && !is_stopped_ && !options_.until && simulation_.time(state_) < settled) {
       (void)advance(result.failure);
     }
@@ -70,7 +70,7 @@ class ProgramRun {
   bool advance(std::string& failure) {
     const CellTick tick = simulation_.advance(plan_, state_, work_);
     failure = tick.failure;
-    for (record::Event& event : work_.solver.take_events(simulation_.world())) state_.journey.note(std::move(event));
+    for (record::Event& event : work_.solver.take_events(simulation_.world())) state_.event_log.note(std::move(event));
     is_stopped_ = !recorder_->add(tick, state_, work_);
     return tick.has_ended;
   }

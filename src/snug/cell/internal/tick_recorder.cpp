@@ -25,7 +25,7 @@ TickRecorder::TickRecorder(const Simulation& simulation, RecorderSetup setup) : 
 
 bool TickRecorder::add(const CellTick& tick, const CellState& state, const CellWorkspace& work) {
   if (!recorder_) return true;
-  recorder_->add_events(state.journey.events());
+  recorder_->add_events(state.event_log.events());
   const FrameInput input{tick.tool.X_WE,
                          tick.tool.V_WE,
                          tick.X_WE_reference,
@@ -39,7 +39,7 @@ bool TickRecorder::add(const CellTick& tick, const CellState& state, const CellW
 
 void TickRecorder::close(const CellState& state, const std::string& result_json, bool is_interrupted) {
   if (!recorder_) return;
-  recorder_->add_events(state.journey.events());
+  recorder_->add_events(state.event_log.events());
   recorder_->close(result_json, is_interrupted);
 }
 
@@ -56,8 +56,8 @@ void fill_result(const Simulation& simulation, const CellState& state, const Cel
   fill_contacts(simulation.world(), state.world, work.solver, result);
   result.lost = work.lost;
   result.boxes = simulation.boxes(state);
-  result.events = state.journey.events();
-  result.repicks = state.journey.repicks();
+  result.events = state.event_log.events();
+  result.repicks = state.event_log.repicks();
   std::vector<std::string> packed;
   for (const BoxResult& box : result.boxes) {
     if (box.state == BoxState::Packed) packed.push_back(box.id);

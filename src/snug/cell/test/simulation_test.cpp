@@ -59,7 +59,7 @@ TEST(Simulation, GoesOnFromASnapshotWithTheSameBytes) {
   CellWorkspace other = simulation.make_workspace();
   run_to_end(simulation, plan, snapshot, other);
   EXPECT_EQ(simulation.hash(state), simulation.hash(snapshot));
-  EXPECT_EQ(state.journey.events().size(), snapshot.journey.events().size());
+  EXPECT_EQ(state.event_log.events().size(), snapshot.event_log.events().size());
 }
 
 TEST(Simulation, GoesOnWithTheSameBytesWhenItsWorkspaceIsReplacedAgainAndAgain) {

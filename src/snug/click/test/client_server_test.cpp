@@ -74,6 +74,18 @@ TEST(ClientServer, TalkOverTcpAndIpc) {
   }
 }
 
+TEST(ClientServer, TheFileOfAnAddressGoesWithItsServer) {
+  const std::string address = an_address();
+  const std::filesystem::path file = address.substr(std::string("ipc://").size());
+  {
+    const Served served({}, address);
+    EXPECT_TRUE(std::filesystem::exists(file));
+    EXPECT_THROW(Served({}, address), InputError);
+    EXPECT_TRUE(std::filesystem::exists(file)) << "it is the first one's";
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
 TEST(ClientServer, DoAProgramBitByBitAsTheCellDoes) {
   const cell::Simulation& simulation = demonstrator_cell();
   motion::Program program{"test", {}};

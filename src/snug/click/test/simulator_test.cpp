@@ -187,6 +187,25 @@ TEST(Simulator, HasOneControllerAtATime) {
   EXPECT_EQ(std::get<Sensor>(talk.say(SensorRequest{}, "b")).time, 0.0);
 }
 
+TEST(Simulator, AnswersWhoOnlyLooksBesideTheController) {
+  Talk talk;
+  const std::string watcher = std::string(kWatcher) + "-1";
+  EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{}, watcher)));
+  EXPECT_FALSE(talk.simulator.has_controller()) << "looking takes no place";
+  (void)talk.say(HandshakeInit{}, "a");
+  const Message sensor = talk.say(control_of({0.3, 0, 0, 0, 0, 0}), "a");
+  const std::uint64_t hash = talk.simulator.hash();
+  EXPECT_EQ(talk.say(SensorRequest{}, watcher), sensor);
+  EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{}, watcher)));
+  EXPECT_NE(talk.error(HandshakeInit{2}, watcher).find("not supported"), std::string::npos);
+  for (const Message& message : {Message(control_of({1, 1, 1, 1, 1, 1})), Message(Reset{}), Message(Error{"stop"})}) {
+    EXPECT_NE(talk.error(message, watcher).find("only looks"), std::string::npos) << name_of(message);
+  }
+  EXPECT_FALSE(talk.simulator.leave(watcher));
+  EXPECT_EQ(talk.simulator.hash(), hash);
+  EXPECT_TRUE(talk.simulator.is_controller("a"));
+}
+
 TEST(Simulator, EndsTheRunWithAReason) {
   std::vector<std::string> ends;
   SimulatorSettings settings;

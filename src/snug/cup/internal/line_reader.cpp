@@ -8,7 +8,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
-#include "snug/spatial/eigenvalues.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::cup::internal {
 namespace {

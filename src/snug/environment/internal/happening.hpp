@@ -41,7 +41,7 @@ class Happening {
 [[nodiscard]] std::unique_ptr<Happening> make_statics(const Episode& episode);
 [[nodiscard]] std::unique_ptr<Happening> make_execution(const Episode& episode);
 
-/// Tolerances are those of a run's result (cell/journey.hpp). `size`: m, as measured.
+/// Tolerances are those of a run's result (cell/item_event_log.hpp). `size`: m, as measured.
 [[nodiscard]] bool is_inside(const Vector3& size, const Pose& X_TP, const model::Container& container);
 /// Compares where a box came to rest with where it was put.
 [[nodiscard]] Outcome judge(const Settings& settings, const Pose& X_TP, const Pose& X_TP_meant, bool is_packed);

@@ -1,7 +1,7 @@
 // Statics: a box set down at rest where it was lowered has to stay there, and so do the others.
 #include <algorithm>
 
-#include "snug/cell/journey.hpp"
+#include "snug/cell/item_event_log.hpp"
 #include "snug/environment/internal/happening.hpp"
 
 namespace snug::environment::internal {

@@ -9,13 +9,10 @@
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
 #include "snug/cell/run.hpp"
+#include "snug/experiment/internal/scene_bench.hpp"
 
 namespace snug::experiment::internal {
 namespace {
-
-Figure at_most(std::string name, double value, std::string unit, double limit) {
-  return {std::move(name), value, std::move(unit), fmt::format("<= {}", limit), value <= limit};
-}
 
 /// Every tick of the program by the wall clock: kinematics, distances and QP, without the cell around them.
 void measure_ticks(const model::Scenario& scenario, const motion::Program& program, std::vector<Figure>& figures) {

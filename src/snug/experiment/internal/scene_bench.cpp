@@ -10,6 +10,7 @@
 
 #include "snug/cell/scene.hpp"
 #include "snug/core/check.hpp"
+#include "snug/core/units.hpp"
 #include "snug/experiment/internal/cpu_time.hpp"
 
 namespace snug::experiment::internal {
@@ -17,8 +18,6 @@ namespace {
 
 using cell::Scene;
 using physics::BodyId;
-
-constexpr double kMm = 1e3;
 
 Figure is_true(std::string name, bool value) { return {std::move(name), value ? 1.0 : 0.0, "1", "= 1", value}; }
 

@@ -2,14 +2,14 @@
 #include "snug/identification/internal/compliance.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "snug/cup/law.hpp"
 #include "snug/cup/law_derivatives.hpp"
+#include "snug/numerics/dense.hpp"
 #include "snug/numerics/outliers.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::identification::internal {
 namespace {
@@ -25,7 +25,7 @@ constexpr double kForgiving = 3.0;  // standard deviations from which a pose wei
 using Wide = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Inverse of the noise of e near rest, where J = 2 I.
-Matrix6 weight_of_e(const NoiseAtS1& noise) { return (4.0 * noise.pose).inverse(); }
+Matrix6 weight_of_e(const NoiseAtS1& noise) { return inverse(4.0 * noise.pose); }
 
 Wide columns(const Form& form, const Vector6& g) {
   Wide A(6, form.size());
@@ -41,13 +41,13 @@ std::vector<CompliancePose> make_compliance_poses(const std::vector<Balance>& ba
   for (const Balance& balance : balances) {
     const Pose& H = balance.H;
     const Matrix6 J = cup::deformation_jacobian(H);
-    const Matrix6 inverse = J.transpose().inverse();  // J^T g = -4 f
+    const Matrix6 J_inverse = inverse(J.transpose());  // J^T g = -4 f
     CompliancePose pose;
     pose.e = cup::deformation(H);
-    pose.g = -4.0 * (inverse * balance.wanted(H));
+    pose.g = -4.0 * (J_inverse * balance.wanted(H));
     pose.e_by_pose = J;
-    pose.g_by_pose = inverse * (-4.0 * balance.wanted_tangent(H) - cup::pullback_derivative(H, pose.g));
-    pose.g_by_wrench = balance.is_gravity ? Matrix6(Matrix6::Zero()) : Matrix6(-4.0 * inverse);
+    pose.g_by_pose = J_inverse * (-4.0 * balance.wanted_tangent(H) - cup::pullback_derivative(H, pose.g));
+    pose.g_by_wrench = balance.is_gravity ? Matrix6(Matrix6::Zero()) : Matrix6(-4.0 * J_inverse);
     poses.push_back(pose);
   }
   return poses;
@@ -86,25 +86,25 @@ LinearEstimate fit_compliance(const std::vector<CompliancePose>& poses, const st
     }
   }
   // In units of the prior's width (m/N and rad/(Nm) differ by a thousand), where the prior's information is one.
-  const Matrix6 C_prior = prior.inverse();
+  const Matrix6 C_prior = inverse(prior);
   const Eigen::VectorXd width = kPriorWidth * form.scale_in(C_prior);
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
   const Eigen::MatrixXd whole = width.asDiagonal() * N * width.asDiagonal();
   const Eigen::MatrixXd chance = width.asDiagonal() * of_noise * width.asDiagonal();
   // Where the sums hold no more than noise puts there, taking out its mean leaves chance: those directions are unknown.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ratio(whole + one, chance + one);
-  const Eigen::MatrixXd V = ratio.eigenvectors();   // V^T (chance + 1) V = 1
+  const numerics::Eigenpairs ratio = numerics::generalized_eigenpairs(whole + one, chance + one);
+  const Eigen::MatrixXd& V = ratio.vectors;         // V^T (chance + 1) V = 1
   const Eigen::MatrixXd back = (chance + one) * V;  // V^-T
   const double least = std::max(kLeastSignal, kChanceSignal / std::sqrt(count));
-  Eigen::VectorXd signal = (ratio.eigenvalues().array() - 1.0).matrix();
+  Eigen::VectorXd signal = (ratio.values.array() - 1.0).matrix();
   Eigen::VectorXd is_known = (signal.array() > least).cast<double>();
   signal = signal.cwiseProduct(is_known);
   const Eigen::MatrixXd information = back * signal.asDiagonal() * back.transpose() + one;
   const Eigen::VectorXd known_b = back * is_known.cwiseProduct(V.transpose() * (width.asDiagonal() * b));
 
   LinearEstimate estimate;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(information);
-  estimate.theta = width.asDiagonal() * factor.solve(known_b + form.numbers_of(C_prior).cwiseQuotient(width));
+  estimate.theta = width.asDiagonal() *
+                   numerics::solve_symmetric(information, known_b + form.numbers_of(C_prior).cwiseQuotient(width));
   const Matrix6 C = form.matrix(estimate.theta);
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
   double size = 0.0;  // of the residuals against W
@@ -123,8 +123,8 @@ LinearEstimate fit_compliance(const std::vector<CompliancePose>& poses, const st
   scatter = width.asDiagonal() * (scatter + size * of_noise) * width.asDiagonal();
   const Eigen::MatrixXd known = back * is_known.asDiagonal() * V.transpose();
   scatter = known * scatter * known.transpose() + one;
-  const Eigen::MatrixXd inverse = width.asDiagonal() * factor.solve(one);
-  estimate.covariance = inverse * scatter * inverse.transpose();
+  const Eigen::MatrixXd gain = width.asDiagonal() * numerics::invert_symmetric(information);
+  estimate.covariance = gain * scatter * gain.transpose();
   const auto unknown = static_cast<Eigen::Index>(std::lround(static_cast<double>(n) - is_known.sum()));
   estimate.unknown = width.asDiagonal() * V.leftCols(unknown);  // eigenvalues grow
   return estimate;
@@ -140,17 +140,18 @@ std::vector<std::size_t> find_odd_poses(const std::vector<CompliancePose>& poses
     A.push_back(W.matrixU() * columns(form, pose.g));
     b.push_back(W.matrixU() * pose.e);
   }
-  const Eigen::VectorXd width = kPriorWidth * form.scale_in(prior.inverse());
+  const Eigen::VectorXd width = kPriorWidth * form.scale_in(inverse(prior));
   std::vector<double> weight(poses.size(), 1.0), sizes(poses.size());
   for (int step = 0; step < kRobustSteps; ++step) {
     Eigen::MatrixXd N = width.cwiseAbs2().cwiseInverse().asDiagonal();
-    Eigen::VectorXd sum = N * form.numbers_of(prior.inverse());
+    Eigen::VectorXd sum = N * form.numbers_of(inverse(prior));
     for (std::size_t i = 0; i < poses.size(); ++i) {
       N.noalias() += weight[i] * (A[i].transpose() * A[i]);
       sum.noalias() += weight[i] * (A[i].transpose() * b[i]);
     }
-    const Eigen::LDLT<Eigen::MatrixXd> factor(width.asDiagonal() * N * width.asDiagonal());
-    const Eigen::VectorXd theta = width.asDiagonal() * factor.solve(width.asDiagonal() * sum);
+    const Eigen::VectorXd theta =
+        width.asDiagonal() *
+        numerics::solve_symmetric(width.asDiagonal() * N * width.asDiagonal(), width.asDiagonal() * sum);
     for (std::size_t i = 0; i < poses.size(); ++i) sizes[i] = (A[i] * theta - b[i]).norm();
     const double limit = kForgiving * std::max(1e-9, numerics::median_deviation(sizes, 6));
     for (std::size_t i = 0; i < poses.size(); ++i) weight[i] = 1.0 / (1.0 + std::pow(sizes[i] / limit, 2));

@@ -2,11 +2,11 @@
 #include "snug/identification/internal/pose_misfit.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "snug/core/input_error.hpp"
 #include "snug/cup/law.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::identification::internal {
 namespace {
@@ -47,7 +47,7 @@ NoiseAtS1 carry_noise(const MeasurementNoise& noise, const CupFrames& frames) {
       Vector3::Constant(variance(noise.torque, least.torque));
   const Matrix6 X = cup::wrench_transform(frames.X_SS1);
   carried.to_S1 = X.transpose();
-  carried.from_S = X.inverse();
+  carried.from_S = inverse(X);
   carried.pose = carried.to_S1 * carried.pose_S.asDiagonal() * carried.to_S1.transpose();
   carried.wrench = carried.from_S * wrench.asDiagonal() * carried.from_S.transpose();
   return carried;
@@ -69,7 +69,7 @@ Matrix6 Balance::wanted_tangent(const Pose& at) const {
 }
 
 std::vector<Balance> make_balances(const StaticPoses& poses, WrenchSource source) {
-  const Matrix6 from_S = cup::wrench_transform(poses.frames.X_SS1).inverse();
+  const Matrix6 from_S = inverse(cup::wrench_transform(poses.frames.X_SS1));
   std::vector<Balance> balances;
   for (const StaticPose& pose : poses.poses) {
     Balance balance;
@@ -126,7 +126,7 @@ Vector6 compute_prediction_error(const Balance& balance, const Matrix6& K, const
   for (int i = 0; i < 3; ++i) {  // Newton from the measured pose: noise to the eighth power is left
     const Pose H = deformation_at(X_ES, frames);
     const Matrix6 A = (cup::spring_tangent(H, K) - balance.wanted_tangent(H)) * to_S1;
-    X_ES = moved(X_ES, A.partialPivLu().solve(balance.wanted(H) - cup::spring_wrench(H, K)));
+    X_ES = moved(X_ES, snug::solve(A, balance.wanted(H) - cup::spring_wrench(H, K)));
   }
   const Pose error = X_ES.inverse() * balance.X_ES;
   return (Vector6() << error.p, log_rotation(error.R)).finished();

@@ -9,24 +9,10 @@
 #include "snug/validation/simulated_run.hpp"
 
 namespace snug::identification::internal {
-namespace {
-
-class Capture final : public cell::RunObserver {
- public:
-  void begin(const record::RecordingHeader& header) override { recording.header = header; }
-  bool add(const record::Frame& frame) override {
-    recording.frames.push_back(frame);
-    return true;
-  }
-  void add(const record::Event& event) override { recording.events.push_back(event); }
-  record::Recording recording;
-};
-
-}  // namespace
 
 CapturedRun capture_program(const model::Scenario& scenario, const model::TaskProgram& program,
                             std::optional<double> until) {
-  Capture capture;
+  cell::RunCapture capture;
   cell::RunOptions options;
   options.program = motion::load_program(program.file);
   options.sequence = program.sequence;

@@ -1,9 +1,6 @@
 // SceneSearch: on the mean cost without derivatives, on residuals with differences.
 #include "snug/identification/internal/scene_search.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +9,7 @@
 #include "snug/core/rng.hpp"
 #include "snug/identification/internal/scene_motion.hpp"
 #include "snug/numerics/bounded_search.hpp"
+#include "snug/numerics/dense.hpp"
 
 namespace snug::identification::internal {
 namespace {
@@ -69,7 +67,7 @@ std::vector<MotionError> evaluate_all(const SceneExperiment& experiment, const E
       if (!is_whole) continue;
       Eigen::MatrixXd normal = J.transpose() * J;
       normal.diagonal() *= 1.0 + damping[m];
-      tried[m].own -= normal.ldlt().solve(J.transpose() * now[m].residuals);
+      tried[m].own -= numerics::solve_symmetric(normal, J.transpose() * now[m].residuals).col(0);
     }
     const std::vector<MotionError> then = experiment.evaluate(points, tried);
     for (std::size_t m = 0; m < count; ++m) {
@@ -371,8 +369,7 @@ Eigen::MatrixXd SceneSearch::covariance() {
   } else {
     const Derivatives at = differentiate();
     const double chi2 = chi2_per_dof(evaluate_all(experiment_, best_));
-    of_free = at.information.ldlt().solve(Eigen::MatrixXd::Identity(lower_.size(), lower_.size())) *
-              std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
+    of_free = numerics::invert_symmetric(at.information) * std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
   }
   const auto all = static_cast<Eigen::Index>(experiment_.task().parameters.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);
@@ -458,11 +455,10 @@ Eigen::MatrixXd SceneSearch::distance_covariance() {
   slopes.rowwise() -= slopes.colwise().mean().eval();
   const Eigen::MatrixXd S = slopes.transpose() * slopes / std::max(1.0, static_cast<double>(count - 1));
   // A direction with less than a tenth of the curvature of the axes is not seen above the roughness: it gets that much.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
+  const numerics::Eigenpairs eigen = numerics::symmetric_eigenpairs(H);
   const double least = std::max(0.1 * H.diagonal().cwiseMax(0.0).mean(), 1e-12);
-  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([least](double v) { return 1.0 / std::max(v, least); });
-  const Eigen::MatrixXd H_inverse =
-      h.asDiagonal() * (eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose());
+  const Eigen::VectorXd inverse = eigen.values.unaryExpr([least](double v) { return 1.0 / std::max(v, least); });
+  const Eigen::MatrixXd H_inverse = h.asDiagonal() * (eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose());
   return H_inverse * S * H_inverse.transpose() / static_cast<double>(count);
 }
 

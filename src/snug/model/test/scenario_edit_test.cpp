@@ -80,7 +80,9 @@ TEST(ScenarioEdit, RefusesWhatTheReaderRefusesAndNamesTheKey) {
   EXPECT_NE(refusal_of("parcels.NOBODY.mass", "1").find("NOBODY"), std::string::npos);
   EXPECT_NE(refusal_of("parcels.999.mass", "1").find("999"), std::string::npos);
   EXPECT_NE(refusal_of("seed.x", "1").find("seed"), std::string::npos);
-  EXPECT_NE(refusal_of("solver..x", "1"), "");
+  for (const char* path :
+       {"", ".", "solver..x", "solver.", ".solver", "parcels[0", "parcels[]", "parcels]0", "parcels[0]mass"})
+    EXPECT_NE(refusal_of(path, "1").find("keys with dots between"), std::string::npos) << path;
   EXPECT_NE(refusal_of("gravity", "[0, 0"), "");
   EXPECT_NE(refusal_of("gravity", "&a [*a]"), "");
 }

@@ -61,6 +61,30 @@ TEST(WithTurns, TurnsOnTheSpotOverTheNeutralSideWhenTheTurnIsHalfATurn) {
   EXPECT_NEAR(std::abs(*yaw_of(other[0].X_WE.R)), kPi, 1e-12);
 }
 
+TEST(WithTurns, TurnsOnTheWayWhereThatIsWanted) {
+  const Waypoint before = row_at(-0.6 * kPi);
+  Waypoint goal = row_at(0.6 * kPi);
+  goal.X_WE.p += Vector3(1.0, -0.4, 0.2);
+  goal.io.vacuum = true;
+  const auto rows = with_turns(before, {goal}, 0.0, true);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_TRUE(rows[0].io.vacuum) << "it is already on the way to the row";
+  EXPECT_TRUE(rows[0].X_WE.p.isApprox(before.X_WE.p + Vector3(0.5, -0.2, 0.1)));
+  EXPECT_NEAR(turn_between(before, rows[0]), 0.6 * kPi, 1e-12);
+  EXPECT_EQ(rows[1].X_WE, goal.X_WE);
+}
+
+TEST(PanBetween, IsTheTurnOfAVerticalAxis) {
+  const Vector3 p_WB(1.0, 2.0, 0.3);
+  for (const double from : {-3.0, -0.5, 2.9}) {
+    for (const double turn : {-3.0, -1.0, 0.0, 0.7, 3.1}) {
+      const Vector3 p_from = p_WB + 0.4 * Vector3(std::cos(from), std::sin(from), 2.0);
+      const Vector3 p_to = p_WB + 0.9 * Vector3(std::cos(from + turn), std::sin(from + turn), -1.0);
+      EXPECT_NEAR(pan_between(p_WB, p_from, p_to), turn, 1e-12);
+    }
+  }
+}
+
 TEST(WithTurns, KeepsTheToolUnwoundOverAnyProgram) {
   Rng rng(5);
   for (const double neutral : {0.0, 1.0, -2.5}) {

@@ -40,7 +40,7 @@ class Builder {
  private:
   [[nodiscard]] bool is_full() const { return list_.blocks.size() >= max_blocks_; }
 
-  void add(const Block& block, const std::vector<std::uint16_t>& counts) {
+  void add(const LoadBlock& block, const std::vector<std::uint16_t>& counts) {
     if (!seen_.insert({block.size, counts}).second) return;
     list_.blocks.push_back(block);
     list_.counts.insert(list_.counts.end(), counts.begin(), counts.end());
@@ -51,7 +51,7 @@ class Builder {
     std::vector<std::size_t> order(list_.blocks.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      const Block &x = list_.blocks[a], &y = list_.blocks[b];
+      const LoadBlock &x = list_.blocks[a], &y = list_.blocks[b];
       return (x.boxes == 1) != (y.boxes == 1) ? x.boxes == 1 : x.volume > y.volume;
     });
     order.resize(std::min(order.size(), count));
@@ -72,7 +72,7 @@ class Builder {
         for (int ny = 1; ny * box[1] <= problem_.container[1] && nx * ny <= cargo.count; ++ny) {
           for (int nz = 1; nz * box[2] <= problem_.container[2] && nx * ny * nz <= cargo.count; ++nz) {
             if (list_.blocks.size() >= limit) return;
-            Block block;
+            LoadBlock block;
             block.size = {nx * box[0], ny * box[1], nz * box[2]};
             block.volume = volume_of(block.size);
             block.boxes = nx * ny * nz;
@@ -90,8 +90,8 @@ class Builder {
 
   void add_pairs(std::size_t i, std::size_t j) {
     for (std::size_t axis = 0; axis < 3 && !is_full(); ++axis) {
-      const Block &a = list_.blocks[i], &b = list_.blocks[j];
-      Block block;
+      const LoadBlock &a = list_.blocks[i], &b = list_.blocks[j];
+      LoadBlock block;
       for (std::size_t d = 0; d < 3; ++d) {
         block.size[d] = d == axis ? a.size[d] + b.size[d] : std::max(a.size[d], b.size[d]);
       }
@@ -122,7 +122,7 @@ class Builder {
     BlockList list;
     list.types = list_.types;
     for (const std::size_t old : order) {
-      Block block = list_.blocks[old];
+      LoadBlock block = list_.blocks[old];
       if (block.first >= 0) {
         block.first = new_index[static_cast<std::size_t>(block.first)];
         block.second = new_index[static_cast<std::size_t>(block.second)];
@@ -160,7 +160,7 @@ BlockList make_blocks(const LoadProblem& problem, std::size_t max_blocks, double
 }
 
 void list_boxes(const BlockList& list, int block_index, const Size3& low, std::vector<LoadedBox>& out) {
-  const Block& block = list.blocks[static_cast<std::size_t>(block_index)];
+  const LoadBlock& block = list.blocks[static_cast<std::size_t>(block_index)];
   if (block.first >= 0) {
     list_boxes(list, block.first, low, out);
     Size3 beside = low;

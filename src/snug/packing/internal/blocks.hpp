@@ -12,7 +12,7 @@ namespace snug::packing::internal {
 using Size3 = std::array<int, 3>;
 
 /// One box standing in one way, repeated along the axes, or two blocks side by side.
-struct Block {
+struct LoadBlock {
   Size3 size{};
   std::int64_t volume = 0;  ///< of its boxes
   int boxes = 0;
@@ -26,7 +26,7 @@ struct Block {
 
 /// All blocks of a problem, largest volume first, and how many boxes of each type they take.
 struct BlockList {
-  std::vector<Block> blocks;
+  std::vector<LoadBlock> blocks;
   std::vector<std::uint16_t> counts;  ///< blocks x types
   int types = 0;
 

@@ -27,12 +27,14 @@ TEST(Perception, ExactTellsWhatIsThereAndWhatIsMissing) {
   EXPECT_EQ(find(seen, "B")->size, scene.boxes[1].size);
   EXPECT_TRUE(find(seen, "B")->covariance.isZero(0.0));
   EXPECT_EQ(seen.not_seen, std::vector<std::string>{"C"});
+  EXPECT_EQ(seen.missing, seen.not_seen) << "nothing is hidden from it";
 }
 
 TEST(Perception, DeadReckoningSeesNothing) {
   const Observation seen = make_perception(Kind::DeadReckoning, 1)->perceive(two_boxes(), kExpected);
   EXPECT_TRUE(seen.seen.empty());
   EXPECT_EQ(seen.not_seen, (std::vector<std::string>{"A", "C"}));
+  EXPECT_TRUE(seen.missing.empty()) << "who does not look does not know what is gone";
 }
 
 TEST(Perception, NoiseStaysWithinItsWidthsAndHasTheCovarianceThatIsStated) {

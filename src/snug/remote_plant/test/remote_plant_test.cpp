@@ -11,8 +11,8 @@
 #include "snug/click/server.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
-#include "snug/motion/unwinding.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
+#include "snug/remote_plant/watched_cell.hpp"
 
 namespace snug::remote_plant {
 namespace {
@@ -96,32 +96,17 @@ class WithServer final : public plant::Plant {
   RemotePlant plant_;
 };
 
-/// z: of E over the upper face of BOX027 where the plain scenario has it.
-motion::Waypoint over_the_box(double z, const char* name, bool vacuum) {
-  const Pose X_WP = cell::arrival_pose(scenario(), scenario().sequences.front().items.front());
-  motion::Waypoint waypoint;
-  waypoint.X_WE = {motion::upright_tool(std::numbers::pi), X_WP.p};
-  waypoint.X_WE.p.z() += 0.5 * 0.092 + z;
-  waypoint.name = name;
-  waypoint.io.vacuum = vacuum;
-  return waypoint;
-}
-
-std::vector<motion::Waypoint> pick() {
-  const double pressed = cup::pick_length(scenario().cup);
-  return {over_the_box(0.2, "PrePick(BOX027)", false), over_the_box(pressed, "Box(BOX027)", false),
-          over_the_box(0.3, "PostPick(BOX027)", true)};
+const plant::BoxAtAligner& box() {
+  static const plant::BoxAtAligner one = [] {
+    const model::Scenario fixed = scenario();
+    return plant::BoxAtAligner{cell::arrival_pose(fixed, fixed.sequences.front().items.front()),
+                               cup::pick_length(fixed.cup)};
+  }();
+  return one;
 }
 
 plant::PlantCase plant_case(const std::string& name, bool is_plant) {
-  plant::PlantCase one;
-  one.name = name;
-  one.make = [is_plant] { return std::make_unique<WithServer>(is_plant); };
-  one.item = "BOX027";
-  one.free_waypoint = over_the_box(0.35, "home", false);
-  one.pick = pick();
-  one.pressing = over_the_box(0.03, "PlaceSlow", false);
-  return one;
+  return box().plant_case(name, [is_plant] { return std::make_unique<WithServer>(is_plant); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Remote, PlantContract,
@@ -143,7 +128,7 @@ TEST(RemotePlant, SeesBoxesToTheLastBitAndAsLargeAsTheyAre) {
 }
 
 TEST(RemotePlant, TakesTheRobotsLagFromTheServedCell) {
-  motion::Program there{"there", {over_the_box(0.35, "home", false)}};
+  motion::Program there{"there", {box().over(0.35, "home", false)}};
   std::vector<double> times;
   for (const double factor : {1.0, 1.3}) {
     model::Scenario cell = scenario();
@@ -160,12 +145,15 @@ TEST(RemotePlant, APeerThatDiesIsAFaultAndNothingFollows) {
   RemotePlant plant(scenario(), "1", at(served.address(), 0.3));
   ASSERT_TRUE(plant.bring("BOX027"));
   served.stop();
-  const plant::Feedback fed = plant.submit({"BOX027", pick(), {}});
+  const plant::Feedback fed = plant.submit({"BOX027", box().pick(), {}});
   EXPECT_EQ(fed.end.reason, plant::EndReason::Fault);
   EXPECT_NE(fed.end.where.find("nobody answers within 0.3 s"), std::string::npos) << fed.end.where;
   EXPECT_FALSE(plant.bring("BOX028"));
-  EXPECT_TRUE(plant.perceive({}).seen.empty());
-  EXPECT_EQ(plant.submit({"BOX027", pick(), {}}).end.reason, plant::EndReason::Refused);
+  const perception::Observation seen = plant.perceive(std::vector<perception::Expectation>{{"BOX027", {}, {}}});
+  EXPECT_TRUE(seen.seen.empty());
+  EXPECT_EQ(seen.not_seen.size(), 1U);
+  EXPECT_TRUE(seen.missing.empty()) << "nobody looked";
+  EXPECT_EQ(plant.submit({"BOX027", box().pick(), {}}).end.reason, plant::EndReason::Refused);
   ASSERT_EQ(served.runs().size(), 1U) << "the run has its result";
 }
 
@@ -196,10 +184,51 @@ TEST(RemotePlant, WhatIsNoSuchPlantIsRefused) {
 TEST(RemotePlant, EndsTheRunWhenAsked) {
   Served served(drawn());
   RemotePlant plant(scenario(), "1", at(served.address()));
-  (void)plant.submit({"", {over_the_box(0.35, "home", false)}, {}});
+  (void)plant.submit({"", {box().over(0.35, "home", false)}, {}});
   EXPECT_EQ(plant.finish(), "");
   ASSERT_EQ(served.runs().size(), 1U);
   EXPECT_EQ(served.runs()[0].ended_by, "reset by the controller");
+}
+
+TEST(WatchedCell, SeesWhatTheControllerDoesAndChangesNothing) {
+  Served served(drawn());
+  const std::string endpoint = served.address().substr(std::string("click+").size());
+  RemotePlant plant(scenario(), "1", at(served.address()));
+  WatchedCell cell(scenario(), "1", endpoint, 20.0);
+  EXPECT_EQ(cell.time(), 0.0);
+  EXPECT_EQ(cell.state().world.step_index, 0);
+  ASSERT_TRUE(plant.bring(scenario().sequences.front().items.front().parcel));
+  const plant::Feedback feedback = plant.submit({"pick", box().pick(), {}});
+  EXPECT_EQ(feedback.end.reason, plant::EndReason::Completed) << feedback.end.where;
+  ASSERT_EQ(cell.look(), "");
+  EXPECT_EQ(cell.time(), feedback.time) << "looking made no step";
+  const cell::CellState state = cell.state();
+  EXPECT_NEAR(cell.simulation().time(state), feedback.time, 1e-9);
+  EXPECT_EQ(state.arm->machine.tool.X_WE, feedback.X_WE);
+  const auto box = plant.boxes().front();
+  ASSERT_TRUE(box.has_value());
+  const cell::CellWorld& world = cell.simulation().world();
+  EXPECT_TRUE(physics::pose_of(world.model, state.world, world.parcels.front()).p.isApprox(box->X_WP.p, 1e-9));
+  EXPECT_FALSE(state.world.bodies[static_cast<std::size_t>(world.parcels[1].index)].is_present);
+  EXPECT_EQ(plant.finish(), "");
+  ASSERT_EQ(cell.look(), "");
+  EXPECT_EQ(cell.time(), 0.0) << "a reset";
+  served.stop();
+  ASSERT_EQ(served.runs().size(), 1u);
+  EXPECT_EQ(served.runs().front().ended_by, "reset by the controller") << "not by the one that looked";
+}
+
+TEST(WatchedCell, SaysWhereThereIsNone) {
+  EXPECT_THROW(WatchedCell(scenario(), "1", "ipc:///no/such/socket", 0.05), InputError);
+  model::Scenario more = scenario();
+  model::Sequence& sequence = more.sequences.front();
+  for (const model::Parcel& parcel : more.parcels) {
+    const bool is_in = std::ranges::find(sequence.items, parcel.id, &model::Item::parcel) != sequence.items.end();
+    if (!is_in) sequence.items.emplace_back().parcel = parcel.id;
+  }
+  Served served(scenario());
+  const std::string endpoint = served.address().substr(std::string("click+").size());
+  EXPECT_THROW(WatchedCell(more, "1", endpoint, 5.0), InputError) << "boxes that are not served";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::replay::internal {
 namespace {
@@ -188,7 +189,7 @@ std::string cup_message(std::uint64_t ns, const CupLook& look, const record::Cup
   constexpr double kLip = 0.004;  // m, drawn thickness of the lip
   const bool holds = cup.attached_body >= 0;
   const PoseSample X_ES = holds ? cup.X_ES : PoseSample({0.0, 0.0, look.free_length}, Quaternion::Identity());
-  const Quaternion towards_lip = Quaternion::FromTwoVectors(Vector3::UnitZ(), X_ES.p);
+  const Quaternion towards_lip = rotation_between(Vector3::UnitZ(), X_ES.p);
   const double length = X_ES.p.norm(), width = 2.0 * look.lip_radius;
   Json entity = make_entity(ns, kToolFrame, "cup");
   const Json color = as_json(holds ? kCupHolds : kCupFree);

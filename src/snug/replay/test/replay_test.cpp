@@ -211,9 +211,9 @@ TEST(Replay, HeaderTellsWhatRanEvenWhenScenarioAndProgramMakeNoSense) {
   EXPECT_EQ(header["bodies"][0]["shapes"][1]["kind"], "cylinder");
   EXPECT_EQ(header["bodies"][0]["shapes"][1]["radius"], 0.03);
   EXPECT_EQ(header["bodies"][0]["shapes"][1]["half_length"], 0.2);
-  // No result: the journey is that of the events.
+  // No result: the boxes' events are those of the recording.
   ASSERT_EQ(header["result"]["boxes"].size(), 2u);
-  EXPECT_EQ(header["result"]["boxes"][0]["journey"][1]["kind"], "release");
+  EXPECT_EQ(header["result"]["boxes"][0]["events"][1]["kind"], "release");
   EXPECT_TRUE(header["result"]["boxes"][0]["state"].is_null());
 }
 
@@ -244,7 +244,7 @@ TEST(Replay, HeaderTakesTheResultThatTheRunStored) {
   EXPECT_EQ(header["result"]["warnings"], nlohmann::json({"rough"}));
   EXPECT_EQ(header["result"]["packed"], 1);
   EXPECT_EQ(header["result"]["boxes"][0]["pose"], nlohmann::json({1, 2, 3, 1, 0, 0, 0}));
-  EXPECT_EQ(header["result"]["boxes"][0]["journey"][0]["time"], 4.5);
+  EXPECT_EQ(header["result"]["boxes"][0]["events"][0]["time"], 4.5);
   EXPECT_EQ(header["result"]["report_table7"]["filling_percent"], 75.66);
   // Report eq. 1 with the boxes of Table 9 and the container of 570 x 370 x 250 mm, worked out by hand.
   EXPECT_NEAR(header["result"]["report_table7"]["same_boxes_percent"].get<double>(), 74.22, 0.005);

@@ -64,6 +64,33 @@ std::string from_base64(const std::string& text) {
   return bytes;
 }
 
+TEST(LiveRun, ShowsOneRunAfterTheOther) {
+  LiveRun live("run", 0.0);
+  LiveRun::Place place;
+  const auto next = [&] {
+    const auto text = live.next(place, milliseconds(0));
+    return text ? text->substr(7, text->find('\n') - 7) : "nothing";
+  };
+  live.begin(header_of_two_bodies());
+  EXPECT_TRUE(live.add(frame_at(1)));
+  EXPECT_EQ(next(), "header");
+  live.finish("", "");
+  const auto first = live.whole_form();
+  live.begin(header_of_two_bodies());
+  EXPECT_FALSE(live.is_over());
+  EXPECT_EQ(next(), "end") << "of the run that was watched, which is gone";
+  EXPECT_EQ(next(), "nothing");
+  for (int i = 1; i <= 5; ++i) EXPECT_TRUE(live.add(frame_at(i)));
+  EXPECT_EQ(next(), "header");
+  live.finish("", "");
+  EXPECT_EQ(next(), "frames");
+  EXPECT_EQ(next(), "end");
+  EXPECT_EQ(next(), "nothing");
+  const replay::Form whole = replay::decode_form(*live.whole_form(), "whole");
+  EXPECT_EQ(nlohmann::json::parse(whole.header_json)["frames"], 5) << "the second run alone";
+  EXPECT_NE(*first, *live.whole_form());
+}
+
 TEST(LiveRun, TellsEveryFrameAndEventOnceAndInOrder) {
   LiveRun live("run", 0.0);
   live.begin(header_of_two_bodies());

@@ -105,6 +105,38 @@ TEST(Belief, WhatIsNotSeenIsBelievedToBeWhereItWasPredicted) {
   EXPECT_GT(belief.box(0)->covariance(0, 0), 0.0);
 }
 
+TEST(Belief, APredictionCountsAtTheFirstLookAlone) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  const Pose here = belief.box(0)->X_WP;
+  Pose there = here;
+  there.p.x() += 0.1;
+  belief.expect(std::vector<std::vector<std::optional<Pose>>>(5, {there, std::nullopt, std::nullopt}));
+  belief.see(seen_at(here));
+  perception::Observation nothing;
+  nothing.not_seen = {"BOX027"};
+  belief.see(nothing);
+  EXPECT_EQ(belief.box(0)->X_WP, here) << "it was seen after that motion, and nothing has moved since";
+}
+
+TEST(Belief, AMotionThatWasBrokenOffPredictsNothing) {
+  const model::Scenario scenario = demonstrator();
+  Belief belief(scenario, "1", quick());
+  belief.arrives(0);
+  const Pose here = belief.box(0)->X_WP;
+  Pose there = here;
+  there.p.x() += 0.1;
+  belief.expect_on_the_way(0, there);
+  belief.doubt_prediction();
+  EXPECT_EQ(belief.expectations()[0].X_WP, there) << "it is looked for there all the same";
+  perception::Observation nothing;
+  nothing.not_seen = {"BOX027"};
+  belief.see(nothing);
+  EXPECT_EQ(belief.box(0)->X_WP, here);
+  EXPECT_FALSE(belief.box(0)->was_seen);
+}
+
 TEST(Belief, ExpectsAPredictionUntilItHasLookedAndThenWhatItSaw) {
   const model::Scenario scenario = demonstrator();
   Belief belief(scenario, "1", quick());

@@ -113,6 +113,29 @@ TEST(Layout, HasNoRimWhereThereAreNoWalls) {
   EXPECT_EQ(make_layout(model::with_pallet(scenario, "600x400x900")).rim, 0.0);
 }
 
+TEST(TurnBetween, GoesTheWayRoundOfTheRobotsFirstAxisWhereThatSparesTheWrist) {
+  CellLayout layout;
+  layout.p_WB = Vector3(0.2, -0.1, 0.0);
+  const auto box_at = [&](double direction, double yaw) {
+    const Vector3 p_WP = *layout.p_WB + Vector3(std::cos(direction), std::sin(direction), 0.3);
+    return Pose{exp_rotation(Vector3(0.0, 0.0, yaw)), p_WP};
+  };
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  for (const double pan : {-1.7, 0.0, 1.7}) {
+    for (double turn = -3.1; turn < 3.1; turn += 0.2) {
+      layout.spares_wrist = false;
+      const Pose from = box_at(0.3, -0.4), to = box_at(0.3 + pan, -0.4 + turn);
+      EXPECT_NEAR(turn_between(layout, from, to), turn, 1e-9) << "the shorter way";
+      layout.spares_wrist = true;
+      const double chosen = turn_between(layout, from, to);
+      EXPECT_NEAR(std::remainder(chosen - turn, kTurn), 0.0, 1e-9);
+      EXPECT_LE(std::abs(pan - chosen), std::abs(pan - turn) + 1e-9);
+      EXPECT_LE(std::abs(chosen), 0.75 * kTurn + 1e-9);
+    }
+  }
+  EXPECT_NEAR(turn_between(layout, box_at(0.0, 0.0), box_at(1.7, -2.27)), kTurn - 2.27, 1e-9);
+}
+
 /// A cell with one bench of 0.5 x 0.7 m over the aligner, the container twice `way` from there.
 CellLayout layout_with_bench(const Vector3& way) {
   model::Scenario scenario = demonstrator();

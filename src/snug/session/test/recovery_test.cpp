@@ -31,6 +31,19 @@ TEST(ChooseRemedy, WhatDidNotSealOrFellIsPickedAgainWhereItLiesUntilTheTriesAreU
   }
 }
 
+TEST(ChooseRemedy, ABoxThatFellOverInTheContainerIsPickedAgainWhereItCanBe) {
+  Situation situation = at(Trouble::VacuumLost);
+  situation.fits = true;
+  EXPECT_EQ(choose_remedy(situation), Remedy::Accept) << "as it was meant to lie";
+  situation.lies_turned = true;
+  EXPECT_EQ(choose_remedy(situation), Remedy::PickAgain);
+  situation.tries = situation.most_tries;
+  EXPECT_EQ(choose_remedy(situation), Remedy::Accept) << "enough was tried";
+  situation.tries = 1;
+  situation.can_be_picked = false;
+  EXPECT_EQ(choose_remedy(situation), Remedy::Accept);
+}
+
 TEST(ChooseRemedy, AStopIsResumedOnceThenTheBoxIsLetGoAndAtLastTheSessionEnds) {
   Situation situation = at(Trouble::ProtectiveStop);
   situation.is_held = true;

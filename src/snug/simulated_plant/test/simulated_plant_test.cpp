@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "snug/cell/drawn_scenario.hpp"
+#include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
-#include "snug/motion/unwinding.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
 
 namespace snug::simulated_plant {
@@ -22,38 +22,22 @@ const model::Scenario& scenario() {
   return one;
 }
 
-/// z: of E over the upper face of BOX027 where the plain scenario has it.
-motion::Waypoint over_the_box(double z, const char* name, bool vacuum) {
-  const model::Scenario fixed = cell::with_fixed_arrivals(scenario(), "1");
-  const Pose X_WP = cell::arrival_pose(fixed, fixed.sequences.front().items.front());
-  motion::Waypoint waypoint;
-  waypoint.X_WE = {motion::upright_tool(std::numbers::pi), X_WP.p};
-  waypoint.X_WE.p.z() += 0.5 * 0.092 + z;
-  waypoint.name = name;
-  waypoint.io.vacuum = vacuum;
-  return waypoint;
-}
-
-std::vector<motion::Waypoint> pick() {
-  const double pressed = cup::pick_length(scenario().cup);
-  return {over_the_box(0.2, "PrePick(BOX027)", false), over_the_box(pressed, "Box(BOX027)", false),
-          over_the_box(0.3, "PostPick(BOX027)", true)};
+const plant::BoxAtAligner& box() {
+  static const plant::BoxAtAligner one = [] {
+    const model::Scenario fixed = cell::with_fixed_arrivals(scenario(), "1");
+    return plant::BoxAtAligner{cell::arrival_pose(fixed, fixed.sequences.front().items.front()),
+                               cup::pick_length(fixed.cup)};
+  }();
+  return one;
 }
 
 plant::PlantCase plant_case(const std::string& name, const std::string& robot) {
-  plant::PlantCase one;
-  one.name = name;
-  one.make = [robot] {
+  return box().plant_case(name, [robot] {
     SimulatedPlantOptions options;
     options.seed = 7;
     options.simulation.robot = robot;
     return std::make_unique<SimulatedPlant>(scenario(), "1", options);
-  };
-  one.item = "BOX027";
-  one.free_waypoint = over_the_box(0.35, "home", false);
-  one.pick = pick();
-  one.pressing = over_the_box(0.03, "PlaceSlow", false);
-  return one;
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Simulated, PlantContract,
@@ -66,6 +50,17 @@ TEST(SimulatedPlant, IsTheScenarioItselfWithSeedZeroAndAnotherCellWithEachSeed) 
   EXPECT_NE(draw_plant(scenario(), "1", 7), draw_plant(scenario(), "1", 8));
 }
 
+TEST(SimulatedPlant, MayBeAnotherCellThanThePlannerBelieves) {
+  SimulatedPlantOptions options;
+  options.seed = 0;
+  options.set = {{"parcel_clearance", "0.0005"}};
+  const SimulatedPlant plant(scenario(), "1", options);
+  EXPECT_EQ(plant.simulation().scenario().parcel_clearance, 0.0005);
+  EXPECT_NE(scenario().parcel_clearance, 0.0005);
+  options.set = {{"parcel_clearanc", "0.0005"}};
+  EXPECT_THROW(SimulatedPlant(scenario(), "1", options), InputError);
+}
+
 SimulatedPlantOptions with_fault(FaultKind kind) {
   SimulatedPlantOptions options;
   options.seed = 7;
@@ -75,7 +70,7 @@ SimulatedPlantOptions with_fault(FaultKind kind) {
 
 /// From the pick over the bench, 0.5 m from the aligner.
 plant::Motion carrying() {
-  plant::Motion motion{"BOX027", pick(), {}};
+  plant::Motion motion{"BOX027", box().pick(), {}};
   motion::Waypoint away = motion.waypoints.back();
   away.X_WE.p += Vector3(0.5, 0.0, 0.1);
   away.name = "PrePlace(BOX027)";
@@ -96,7 +91,8 @@ TEST(SimulatedPlant, ABoxThatDropsIsFeltByItsVacuum) {
   const plant::Feedback fed = plant.submit(carrying());
   EXPECT_EQ(fed.end.reason, plant::EndReason::VacuumLost);
   EXPECT_EQ(fed.end.waypoint, 3);
-  const auto& events = plant.state().journey.events();
+  EXPECT_LT(plant.least_hold_factor(), 1e3) << "it hung from the cup before";
+  const auto& events = plant.state().event_log.events();
   EXPECT_TRUE(std::ranges::any_of(events, [](const record::Event& event) { return event.kind == "fault"; }));
 }
 

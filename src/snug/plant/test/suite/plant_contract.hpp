@@ -7,9 +7,12 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "snug/motion/unwinding.hpp"
 #include "snug/plant/plant.hpp"
 
 namespace snug::plant {
@@ -25,6 +28,36 @@ struct PlantCase {
   motion::Waypoint pressing;           ///< after `pick` was undone: presses on what does not give way by 20 N or more
 };
 inline void PrintTo(const PlantCase& one, std::ostream* out) { *out << one.name; }
+
+/// The demonstrator's BOX027 at the aligner: motions over it and the case of a plant that has it.
+struct BoxAtAligner {
+  Pose X_WP;
+  double pick_length = 0.0;  ///< m, of E over its upper face where the cup seals
+
+  /// z: m, of E over its upper face.
+  [[nodiscard]] motion::Waypoint over(double z, const char* name, bool vacuum) const {
+    motion::Waypoint waypoint;
+    waypoint.X_WE = {motion::upright_tool(std::numbers::pi), X_WP.p};
+    waypoint.X_WE.p.z() += 0.5 * 0.092 + z;
+    waypoint.name = name;
+    waypoint.io.vacuum = vacuum;
+    return waypoint;
+  }
+  [[nodiscard]] std::vector<motion::Waypoint> pick() const {
+    return {over(0.2, "PrePick(BOX027)", false), over(pick_length, "Box(BOX027)", false),
+            over(0.3, "PostPick(BOX027)", true)};
+  }
+  [[nodiscard]] PlantCase plant_case(const std::string& name, std::function<std::unique_ptr<Plant>()> make) const {
+    PlantCase one;
+    one.name = name;
+    one.make = std::move(make);
+    one.item = "BOX027";
+    one.free_waypoint = over(0.35, "home", false);
+    one.pick = pick();
+    one.pressing = over(0.03, "PlaceSlow", false);
+    return one;
+  }
+};
 
 class PlantContract : public testing::TestWithParam<PlantCase> {
  protected:

@@ -1,4 +1,4 @@
-// Journey: what became of every box: picked, flipped, re-picked, placed, lost; the answer of a run.
+// ItemEventLog: what became of every box: picked, flipped, re-picked, placed, lost; the answer of a run.
 #pragma once
 
 #include <string>
@@ -50,10 +50,10 @@ struct Repick {
 };
 
 /// Follows the boxes of a sequence through the events of the gripper.
-class Journey {
+class ItemEventLog {
  public:
-  Journey() = default;
-  Journey(const model::Scenario& scenario, const model::Sequence& sequence);
+  ItemEventLog() = default;
+  ItemEventLog(const model::Scenario& scenario, const model::Sequence& sequence);
 
   void box_appeared(int item, double time);
   void box_removed(int item, double time);

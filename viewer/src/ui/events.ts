@@ -1,33 +1,33 @@
-// Journey: every box of the run with what happened to it; a click goes there.
+// ItemEvents: every box of the run with what happened to it; a click goes there.
 
 import type { Replay } from "../replay/replay";
 import type { View } from "../scene/view";
 import { button, make } from "./dom";
 import type { Player } from "./player";
 
-interface Stop {
+interface ItemEvent {
   kind: string;
   time: number;
   text: string;
 }
 
-/** A seal that is lost and found at every tick is one stop: `lost, 8 times`. */
-function withoutChatter(stops: Stop[]): Stop[] {
-  const kept: (Stop & { count: number; last: number })[] = [];
-  for (const stop of stops) {
-    const same = kept.find((k) => k.kind === stop.kind && stop.time - k.last < 0.5);
+/** A seal that is lost and found at every tick is one event: `lost, 8 times`. */
+function withoutChatter(events: ItemEvent[]): ItemEvent[] {
+  const kept: (ItemEvent & { count: number; last: number })[] = [];
+  for (const event of events) {
+    const same = kept.find((k) => k.kind === event.kind && event.time - k.last < 0.5);
     if (!same) {
-      kept.push({ ...stop, count: 1, last: stop.time });
+      kept.push({ ...event, count: 1, last: event.time });
       continue;
     }
     ++same.count;
-    same.last = stop.time;
+    same.last = event.time;
   }
   return kept.map((k) => ({ ...k, kind: k.count > 1 ? `${k.kind} ${k.count}×` : k.kind }));
 }
 
 /** When a body came within 1 mm of where it ends and stayed there; null if it never moved or moves to the end. */
-export function restOf(replay: Replay, body: number): Stop | null {
+export function restOf(replay: Replay, body: number): ItemEvent | null {
   const end = new Float64Array(7);
   const pose = new Float64Array(7);
   if (body < 0 || !replay.bodyPose(body, replay.frames - 1, end)) return null;
@@ -40,18 +40,18 @@ export function restOf(replay: Replay, body: number): Stop | null {
   return { kind: "rest", time: replay.timeOf(frame + 1), text: "from here on within 1 mm of where it is at the end" };
 }
 
-/** More stops than this are shown for the selected and the held box only, until all are asked for. */
-const MOST_STOPS = 24;
+/** More events than this are shown for the selected and the held box only, until all are asked for. */
+const MOST_EVENTS = 24;
 const BAD = new Set(["lost", "dropped", "bend", "slip", "outside", "out of cell", "deep contact"]);
 
-export class Journey {
-  readonly element = make("aside", "journey");
+export class ItemEvents {
+  readonly element = make("aside", "item-events");
   private readonly all_: HTMLButtonElement;
   private isAll_: boolean | null = null;
   private held_ = "";
   private readonly rows_ = new Map<string, HTMLElement>();
   private readonly list_ = make("div");
-  private stops_: { button: HTMLButtonElement; time: number }[] = [];
+  private events_: { button: HTMLButtonElement; time: number }[] = [];
   selected = "";
   onSelect: (box: string) => void = () => {};
 
@@ -72,57 +72,57 @@ export class Journey {
   /** Lists the boxes as they are known now: a live run grows. */
   refresh(): void {
     this.rows_.clear();
-    this.stops_ = [];
-    this.list_.replaceChildren(...this.boxes().map(({ id, state, up, stops }) => this.row(id, state, up, stops)));
-    this.showAll(this.isAll_ ?? this.stops_.length <= MOST_STOPS);
+    this.events_ = [];
+    this.list_.replaceChildren(...this.boxes().map(({ id, state, up, events }) => this.row(id, state, up, events)));
+    this.showAll(this.isAll_ ?? this.events_.length <= MOST_EVENTS);
     this.update();
   }
 
   private showAll(isAll: boolean): void {
     this.list_.classList.toggle("all", isAll);
-    this.all_.textContent = isAll ? "fewer" : "all stops";
+    this.all_.textContent = isAll ? "fewer" : "all events";
   }
 
-  private boxes(): { id: string; state: string; up: string; stops: Stop[] }[] {
+  private boxes(): { id: string; state: string; up: string; events: ItemEvent[] }[] {
     const { result, events } = this.replay.header;
     if (result?.boxes.length) {
-      return result.boxes.map((box) => ({ id: box.id, state: box.state ?? "", up: box.up, stops: box.journey }));
+      return result.boxes.map((box) => ({ id: box.id, state: box.state ?? "", up: box.up, events: box.events }));
     }
     return this.replay.bodies
       .filter((body) => body.kind === "dynamic")
-      .map((body) => ({ id: body.name, state: "", up: "", stops: events.filter((e) => e.body === body.name) }));
+      .map((body) => ({ id: body.name, state: "", up: "", events: events.filter((e) => e.body === body.name) }));
   }
 
-  private row(id: string, state: string, up: string, stops: Stop[]): HTMLElement {
+  private row(id: string, state: string, up: string, events: ItemEvent[]): HTMLElement {
     const body = this.replay.bodyIndex(id);
     const swatch = make("i", "swatch");
     swatch.style.background = this.view.colours.of(this.replay.bodies[body]?.type ?? "");
     const head = button("", "Select this box (again: none)", () => this.select(this.selected === id ? "" : id), "head");
     head.append(swatch, make("b", "", id), make("span", "type", this.replay.bodies[body]?.type ?? ""));
     if (state) head.append(make("span", `state ${state}`, up ? `${state}, ${up} up` : state));
-    const list = make("div", "stops");
+    const list = make("div", "events");
     const rest = restOf(this.replay, body);
     const life = make("div", "life");
-    for (const stop of [...withoutChatter(stops), ...(rest ? [rest] : [])]) {
-      life.append(this.mark(stop));
-      const go = button(stop.kind, stop.text || stop.kind, () => {
+    for (const event of [...withoutChatter(events), ...(rest ? [rest] : [])]) {
+      life.append(this.mark(event));
+      const go = button(event.kind, event.text || event.kind, () => {
         this.player.pause();
-        this.player.setTime(stop.time);
+        this.player.setTime(event.time);
         this.select(id);
       });
-      go.append(make("time", "", stop.time.toFixed(1)));
+      go.append(make("time", "", event.time.toFixed(1)));
       list.append(go);
-      this.stops_.push({ button: go, time: stop.time });
+      this.events_.push({ button: go, time: event.time });
     }
     const row = make("section", "box", head, life, list);
     this.rows_.set(id, row);
     return row;
   }
 
-  /** A stop on the line of the box: where along it, that is when in the run. */
-  private mark(stop: Stop): HTMLElement {
-    const mark = make("i", BAD.has(stop.kind.split(" ")[0]!) ? "bad" : stop.kind);
-    mark.style.left = `${(100 * (stop.time - this.replay.start)) / Math.max(this.replay.end - this.replay.start, 1e-9)}%`;
+  /** An event on the line of the box: where along it, that is when in the run. */
+  private mark(event: ItemEvent): HTMLElement {
+    const mark = make("i", BAD.has(event.kind.split(" ")[0]!) ? "bad" : event.kind);
+    mark.style.left = `${(100 * (event.time - this.replay.start)) / Math.max(this.replay.end - this.replay.start, 1e-9)}%`;
     return mark;
   }
 
@@ -142,6 +142,6 @@ export class Journey {
     }
     if (held !== undefined && held !== this.held_) this.rows_.get(held)?.scrollIntoView({ block: "nearest" });
     this.held_ = held ?? "";
-    for (const { button: go, time } of this.stops_) go.classList.toggle("past", time <= this.player.time + 1e-6);
+    for (const { button: go, time } of this.events_) go.classList.toggle("past", time <= this.player.time + 1e-6);
   }
 }

@@ -1,5 +1,5 @@
-// Journey: what became of every box: picked, flipped, re-picked, placed, lost; the answer of a run.
-#include "snug/cell/journey.hpp"
+// ItemEventLog: what became of every box: picked, flipped, re-picked, placed, lost; the answer of a run.
+#include "snug/cell/item_event_log.hpp"
 
 #include <fmt/format.h>
 
@@ -52,7 +52,8 @@ ContainerFit fit_in(const Vector3& inner_size, const Vector3& box_size, const Po
   return fit;
 }
 
-Journey::Journey(const model::Scenario& scenario, const model::Sequence& sequence) : items_(sequence.items.size()) {
+ItemEventLog::ItemEventLog(const model::Scenario& scenario, const model::Sequence& sequence)
+    : items_(sequence.items.size()) {
   for (const model::Item& item : sequence.items) {
     ids_.push_back(item.parcel);
     sizes_.push_back(model::collision_size(scenario, *model::find_parcel(scenario, item.parcel)));
@@ -63,28 +64,29 @@ Journey::Journey(const model::Scenario& scenario, const model::Sequence& sequenc
   }
 }
 
-void Journey::log(double time, std::string kind, int item, std::string text, std::vector<record::EventNumber> numbers) {
+void ItemEventLog::log(double time, std::string kind, int item, std::string text,
+                       std::vector<record::EventNumber> numbers) {
   events_.push_back({time, std::move(kind), item >= 0 ? ids_[static_cast<std::size_t>(item)] : std::string(),
                      std::move(text), std::move(numbers)});
 }
 
-void Journey::box_appeared(int item, double time) {
+void ItemEventLog::box_appeared(int item, double time) {
   items_[static_cast<std::size_t>(item)].has_appeared = true;
   log(time, "appear", item, "stands at the aligner");
 }
 
-void Journey::box_removed(int item, double time) {
+void ItemEventLog::box_removed(int item, double time) {
   items_[static_cast<std::size_t>(item)].was_removed = true;
   log(time, "removed", item, "taken away from the aligner to make room for the next box");
 }
 
-void Journey::body_lost(record::Event event) {
+void ItemEventLog::body_lost(record::Event event) {
   for (std::size_t i = 0; i < ids_.size(); ++i) items_[i].was_lost |= ids_[i] == event.body;
   note(std::move(event));
 }
 
-void Journey::add_seal(int item, const GripperEvent& event, double time, const Matrix3& R_WP, const Matrix3& R_WE,
-                       const std::string& waypoint) {
+void ItemEventLog::add_seal(int item, const GripperEvent& event, double time, const Matrix3& R_WP, const Matrix3& R_WE,
+                            const std::string& waypoint) {
   Item& box = items_[static_cast<std::size_t>(item)];
   const int up = vertical_axis(R_WP);
   const double offset = event.offset_P.norm();
@@ -114,7 +116,7 @@ void Journey::add_seal(int item, const GripperEvent& event, double time, const M
   box.R_EP = R_WE.transpose() * R_WP;
 }
 
-void Journey::add_release(int item, const GripperEvent& event, double time, const Pose& X_WE, const Pose& X_WP) {
+void ItemEventLog::add_release(int item, const GripperEvent& event, double time, const Pose& X_WE, const Pose& X_WP) {
   Item& box = items_[static_cast<std::size_t>(item)];
   box.up_intended = vertical_axis(X_WE.R * box.R_EP);
   const Vector3 p_TP = X_WT_.inverse() * X_WP.p;
@@ -127,8 +129,8 @@ void Journey::add_release(int item, const GripperEvent& event, double time, cons
   }
 }
 
-void Journey::add(const GripperEvent& event, double time, const CellWorld& world, const physics::WorldState& state,
-                  const Pose& X_WE, const std::string& waypoint) {
+void ItemEventLog::add(const GripperEvent& event, double time, const CellWorld& world, const physics::WorldState& state,
+                       const Pose& X_WE, const std::string& waypoint) {
   const int item = event.body >= 0 ? item_of(world, event.body) : -1;
   switch (event.kind) {
     case GripperEvent::Kind::NoSeal:
@@ -152,7 +154,8 @@ void Journey::add(const GripperEvent& event, double time, const CellWorld& world
   }
 }
 
-std::vector<BoxResult> Journey::results(const CellWorld& world, const physics::WorldState& state, int held_body) const {
+std::vector<BoxResult> ItemEventLog::results(const CellWorld& world, const physics::WorldState& state,
+                                             int held_body) const {
   std::vector<BoxResult> results;
   for (std::size_t i = 0; i < items_.size(); ++i) {
     const Item& item = items_[i];

@@ -1,0 +1,23 @@
+// program_motion: how a program is moved: as --controller and --tempo say, else as it was packed.
+#include "program_motion.hpp"
+
+#include "snug/core/input_error.hpp"
+#include "snug/motion/program_tempo.hpp"
+
+namespace snug::app {
+
+void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,
+                   cell::SimulationOptions& options) {
+  const std::optional<double> packed = motion::find_tempo(text, name);
+  if (words.tempo && words.controller && *words.controller != "fast") {
+    throw InputError("command line", "--tempo", "with --controller " + *words.controller, "--controller fast, or none");
+  }
+  if (words.controller) {
+    options.controller = motion::controller_kind_of(*words.controller, "command line");
+  } else if (words.tempo || packed) {
+    options.controller = motion::ControllerKind::Fast;
+  }
+  options.tempo = words.tempo.value_or(packed.value_or(options.tempo));
+}
+
+}  // namespace snug::app

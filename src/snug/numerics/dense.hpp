@@ -1,0 +1,29 @@
+// Decompositions of matrices of any size: compiled once for all who need them.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace snug::numerics {
+
+/// X of A X = B by LDL^T, where A, n x n, is symmetric and positive or negative semidefinite. B: n x m.
+[[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// Inverse of A, n x n, symmetric and positive definite, by LDL^T.
+[[nodiscard]] Eigen::MatrixXd invert_symmetric(const Eigen::MatrixXd& A);
+/// By LU with partial pivoting.
+[[nodiscard]] Eigen::MatrixXd invert(const Eigen::MatrixXd& A);
+/// X that makes |A X - B| least, by QR with column pivoting. A: n x k of full rank, n >= k; B: n x m.
+[[nodiscard]] Eigen::MatrixXd solve_by_qr(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// Moore and Penrose's, by a complete orthogonal decomposition.
+[[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
+
+/// Values ascend; vectors are columns.
+struct Eigenpairs {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+/// Of A, symmetric: its lower half is read. Vectors have length one.
+[[nodiscard]] Eigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& A);
+/// A v = value B v of symmetric A and positive definite B; V^T B V = 1.
+[[nodiscard]] Eigenpairs generalized_eigenpairs(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+}  // namespace snug::numerics

@@ -1,0 +1,66 @@
+// Decompositions against what they promise: A X = B, orthogonal vectors, least residuals; singular and tall matrices.
+#include "snug/numerics/dense.hpp"
+
+#include <gtest/gtest.h>
+
+#include "snug/core/rng.hpp"
+
+namespace snug::numerics {
+namespace {
+
+using Eigen::MatrixXd;
+
+MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, Rng& rng) {
+  return MatrixXd::NullaryExpr(rows, columns, [&] { return rng.normal(); });
+}
+
+MatrixXd definite(Eigen::Index n, Rng& rng) {
+  const MatrixXd A = random_matrix(n, n, rng);
+  return A * A.transpose() + MatrixXd::Identity(n, n);
+}
+
+TEST(Dense, SolvesAndInvertsSymmetricMatrices) {
+  Rng rng(1);
+  for (const Eigen::Index n : {1, 2, 6, 21, 60}) {
+    const MatrixXd A = definite(n, rng), B = random_matrix(n, 3, rng);
+    EXPECT_LT((A * solve_symmetric(A, B) - B).norm(), 1e-9 * B.norm()) << n;
+    EXPECT_LT((A * invert_symmetric(A) - MatrixXd::Identity(n, n)).norm(), 1e-9) << n;
+    EXPECT_LT((invert(A) - invert_symmetric(A)).norm(), 1e-9 * invert(A).norm()) << n;
+    EXPECT_LT((-A * solve_symmetric(-A, B) - B).norm(), 1e-9 * B.norm()) << "negative definite, " << n;
+  }
+}
+
+TEST(Dense, LeastSquaresLeaveAResidualThatIsNormalToTheColumns) {
+  Rng rng(2);
+  const MatrixXd A = random_matrix(40, 6, rng), B = random_matrix(40, 2, rng);
+  const MatrixXd residual = A * solve_by_qr(A, B) - B;
+  EXPECT_LT((A.transpose() * residual).norm(), 1e-10);
+  EXPECT_GT(residual.norm(), 1.0);
+}
+
+TEST(Dense, ThePseudoInverseOfADeficientMatrixHasPenrosesFourProperties) {
+  Rng rng(3);
+  const MatrixXd A = random_matrix(8, 3, rng) * random_matrix(3, 5, rng);  // rank 3
+  const MatrixXd P = pseudo_inverse(A);
+  EXPECT_LT((A * P * A - A).norm(), 1e-10);
+  EXPECT_LT((P * A * P - P).norm(), 1e-10);
+  EXPECT_LT((A * P - (A * P).transpose()).norm(), 1e-10);
+  EXPECT_LT((P * A - (P * A).transpose()).norm(), 1e-10);
+}
+
+TEST(Dense, EigenpairsAscendAndAreWhatTheySay) {
+  Rng rng(4);
+  const MatrixXd A = definite(12, rng), B = definite(12, rng);
+  const Eigenpairs plain = symmetric_eigenpairs(A), general = generalized_eigenpairs(A, B);
+  EXPECT_LT((A * plain.vectors - plain.vectors * plain.values.asDiagonal()).norm(), 1e-9);
+  EXPECT_LT((plain.vectors.transpose() * plain.vectors - MatrixXd::Identity(12, 12)).norm(), 1e-12);
+  EXPECT_LT((A * general.vectors - B * general.vectors * general.values.asDiagonal()).norm(), 1e-8);
+  EXPECT_LT((general.vectors.transpose() * B * general.vectors - MatrixXd::Identity(12, 12)).norm(), 1e-10);
+  for (Eigen::Index i = 1; i < 12; ++i) {
+    EXPECT_LE(plain.values[i - 1], plain.values[i]);
+    EXPECT_LE(general.values[i - 1], general.values[i]);
+  }
+}
+
+}  // namespace
+}  // namespace snug::numerics

@@ -1,0 +1,34 @@
+// WatchedCell: a cell that another program serves over CLICK, as somebody sees it who only looks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snug/cell/simulation.hpp"
+#include "snug/click/joint_link.hpp"
+
+namespace snug::remote_plant {
+
+/// Sizes, shapes and the rest of what does not move are the scenario's: the one that is served.
+class WatchedCell {
+ public:
+  /// Connects to a CLICK address (tcp://HOST:PORT, ipc://PATH), beside its controller. Throws InputError when nobody
+  /// answers there, and for a cell without the robot or without a box of the sequence.
+  WatchedCell(model::Scenario scenario, const std::string& sequence, const std::string& endpoint, double patience);
+
+  [[nodiscard]] const cell::Simulation& simulation() const { return simulation_; }
+  /// What is sensed now; empty, or why that cannot be known any more.
+  [[nodiscard]] std::string look() { return link_.sense(); }
+  /// s, simulated, of the last look.
+  [[nodiscard]] double time() const { return link_.last().time; }
+  /// The cell as it was then: where tool, links and boxes were, at rest.
+  [[nodiscard]] cell::CellState state() const;
+
+ private:
+  cell::Simulation simulation_;
+  click::Client client_;
+  click::JointLink link_;
+  std::vector<std::string> names_;  ///< of the items' objects
+};
+
+}  // namespace snug::remote_plant

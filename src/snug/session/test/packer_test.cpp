@@ -1,0 +1,180 @@
+// Packer: what a session says became of an item when its motion was broken off, or what it looks for is not there.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <set>
+
+#include "snug/session/session.hpp"
+
+namespace snug::session {
+namespace {
+
+using plant::EndReason;
+
+const model::Scenario& demonstrator() {
+  static const model::Scenario one = [] {
+    model::Scenario loaded = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
+    loaded.sequences.front().items.resize(2);  // BOX027, BOX028
+    return loaded;
+  }();
+  return one;
+}
+
+/// A plant without physics: motions that hold a box end as the script says, looks show what the test puts there.
+class ScriptedPlant final : public plant::Plant {
+ public:
+  std::deque<EndReason> ends;               ///< of motions with the vacuum on; when they are used up: Completed
+  std::map<std::string, Pose> visible;      ///< X_WP
+  std::set<std::string> missing;            ///< seen to be nowhere
+  std::function<void(int motion)> happens;  ///< after each of those motions, from 1; may be empty
+  std::vector<std::string> pressed;         ///< items that were pressed on from above
+
+  [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
+  [[nodiscard]] plant::Feedback read() override { return now_; }
+  [[nodiscard]] bool bring(const std::string&) override { return true; }
+  void acknowledge() override {}
+
+  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override {
+    const auto held = std::ranges::find_if(motion.waypoints, [](const auto& row) { return row.io.vacuum; });
+    const bool holds = held != motion.waypoints.end();
+    EndReason end = EndReason::Completed;
+    if (holds && !ends.empty()) {
+      end = ends.front();
+      ends.pop_front();
+    }
+    for (const motion::Waypoint& row : motion.waypoints) {
+      if (row.name.ends_with("_press") && row.name.starts_with("PlaceSlow")) pressed.push_back(motion.item);
+    }
+    const motion::Waypoint& last = end == EndReason::Completed ? motion.waypoints.back() : *held;
+    now_.time += 1.0;
+    now_.end = {end, 0, 0.0, 0.0, ""};
+    now_.X_WE = last.X_WE;
+    now_.io = last.io;
+    now_.pressure_gauge = last.io.vacuum && end != EndReason::NoSeal && end != EndReason::VacuumLost ? -6.0e4 : 0.0;
+    if (holds && happens) happens(++motions_);
+    return now_;
+  }
+
+  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
+    perception::Observation seen;
+    for (const perception::Expectation& one : expected) {
+      if (const auto found = visible.find(one.item); found != visible.end()) {
+        seen.seen.push_back({one.item, found->second, Matrix6::Zero(), {}, 0.0});
+        continue;
+      }
+      seen.not_seen.push_back(one.item);
+      if (missing.contains(one.item)) seen.missing.push_back(one.item);
+    }
+    return seen;
+  }
+
+ private:
+  plant::Feedback now_ = [] {
+    plant::Feedback start;
+    start.X_WE = demonstrator().controller.X_WE_start;
+    return start;
+  }();
+  int motions_ = 0;
+};
+
+SessionOptions quick() {
+  SessionOptions options;
+  options.agent = "margin";
+  options.samples = 0;
+  return options;
+}
+
+SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick()) {
+  model::Scenario scenario = demonstrator();
+  scenario.sequences.front().items.resize(static_cast<std::size_t>(items));
+  return session::pack(scenario, "1", options, plant);
+}
+
+TEST(Packer, TakesABoxThatIsNotSeenForPackedWhenItsMotionEnded) {
+  ScriptedPlant plant;
+  const SessionResult result = pack(plant, 1);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed);
+  EXPECT_EQ(result.plan.size(), 1U);
+}
+
+TEST(Packer, DoesNotTakeABoxForPackedThatNeverSealedAndIsNotSeen) {
+  ScriptedPlant plant;
+  plant.ends.assign(20, EndReason::NoSeal);
+  const SessionResult result = pack(plant, 1);
+  EXPECT_EQ(result.items[0].end, ItemEnd::NotHeld);
+  EXPECT_TRUE(result.plan.empty());
+  EXPECT_EQ(result.planned_percent, 0.0);
+  EXPECT_EQ(result.stop_reason, StopReason::NoMoreItems);
+}
+
+TEST(Packer, DoesNotKnowWhereABoxIsThatFellOrWasLetGoEarlyAndIsNotSeen) {
+  for (const EndReason reason : {EndReason::VacuumLost, EndReason::ForceGuard, EndReason::Timeout}) {
+    SCOPED_TRACE(plant::name_of(reason));
+    ScriptedPlant plant;
+    plant.ends = {reason};
+    const SessionResult result = pack(plant, 1);
+    EXPECT_EQ(result.items[0].end, ItemEnd::Gone);
+    EXPECT_TRUE(result.plan.empty());
+  }
+}
+
+TEST(Packer, RehearsesAnewWhatWasPickedInVain) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::NoSeal};
+  SessionOptions options = quick();
+  options.max_attempts = options.most_attempts = 1;  // used up by the first motion
+  const SessionResult result = pack(plant, 1, options);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
+  EXPECT_EQ(result.items[0].sends.size(), 2U);
+  EXPECT_EQ(result.items[0].attempts, 2);
+}
+
+TEST(Packer, ABoxThatDoesNotStandAtTheAlignerIsGone) {
+  ScriptedPlant plant;
+  plant.missing = {"BOX027"};
+  const SessionResult result = pack(plant, 1);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Gone);
+  EXPECT_EQ(result.items[0].reason, "gone");
+  EXPECT_FALSE(result.percent_before_skips.has_value()) << "it is no item without a place";
+}
+
+TEST(Packer, ABoxThatIsMissingLaterIsNotPackedAnyMore) {
+  ScriptedPlant plant;
+  plant.happens = [&](int motion) {
+    if (motion == 2) plant.missing = {"BOX027"};
+  };
+  const SessionResult result = pack(plant, 2);
+  ASSERT_EQ(result.items.size(), 2U);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Gone);
+  EXPECT_EQ(result.items[1].end, ItemEnd::Placed);
+  ASSERT_EQ(result.plan.size(), 1U);
+  EXPECT_EQ(result.plan[0].item, "BOX028");
+  EXPECT_EQ(result.stop_reason, StopReason::NoMoreItems);
+}
+
+TEST(Packer, PressesOnNothingThatLiesOutsideTheContainer) {
+  ScriptedPlant plant;
+  const Pose X_WT = model::find_container(demonstrator(), demonstrator().target)->X_WT;
+  plant.happens = [&](int) { plant.visible["BOX027"] = {X_WT.R, X_WT.p + Vector3(0.0, 1.0, 0.0)}; };
+  const SessionResult result = pack(plant, 1);
+  EXPECT_FALSE(result.items[0].is_packed());
+  ASSERT_FALSE(result.items[0].recoveries.empty());
+  EXPECT_EQ(result.items[0].recoveries[0].trouble, Trouble::OffPlace);
+  EXPECT_TRUE(plant.pressed.empty());
+}
+
+TEST(Packer, WhoInterruptsWhenAllIsDoneInterruptsNothing) {
+  ScriptedPlant plant;
+  bool is_done = false;
+  plant.happens = [&](int) { is_done = true; };
+  SessionOptions options = quick();
+  options.is_interrupted = [&] { return is_done; };
+  EXPECT_EQ(pack(plant, 1, options).stop_reason, StopReason::AllPacked);
+  is_done = false;
+  EXPECT_EQ(pack(plant, 2, options).stop_reason, StopReason::Interrupted);
+}
+
+}  // namespace
+}  // namespace snug::session

@@ -1,0 +1,22 @@
+// Linear algebra of 6 x 6 matrices and of rotations whose templates are large: compiled once for all who need it.
+#pragma once
+
+#include "snug/spatial/pose.hpp"
+
+namespace snug {
+
+/// Ascending; of M, symmetric, the lower half is read.
+[[nodiscard]] Vector6 symmetric_eigenvalues(const Matrix6& M) noexcept;
+/// Largest absolute value of the eigenvalues of M, which need not be symmetric.
+[[nodiscard]] double spectral_radius(const Matrix6& M) noexcept;
+/// Of M, symmetric: its lower half is read.
+[[nodiscard]] bool is_positive_definite(const Matrix6& M) noexcept;
+/// By LU with partial pivoting; of a singular matrix numbers that are not finite.
+[[nodiscard]] Matrix6 inverse(const Matrix6& M) noexcept;
+/// x of M x = b, as `inverse`.
+[[nodiscard]] Vector6 solve(const Matrix6& M, const Vector6& b) noexcept;
+
+/// The smallest rotation that turns the direction of `from` to that of `to`; any of them where they are opposite.
+[[nodiscard]] Quaternion rotation_between(const Vector3& from, const Vector3& to) noexcept;
+
+}  // namespace snug
