@@ -13,8 +13,9 @@ namespace {
 constexpr const char* kCheckExamples =
     R"(Moves the arm with its controller and limits, as a run does, but with nothing to touch, and looks at the whole way:
 reach, joint limits and speeds, singularities, the arm's own links, and links, gripper, cup and held box against
-everything that stands in the cell. Margins of collisions are distances, negative inside; what cup and held box may be
-inside is said beside them. Rows with one finding stand in one line. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
+everything that stands in the cell. Nothing is felt: rows of a fast program go to their end; ideal is how exported programs are done.
+Margins of collisions are distances, negative inside; what cup and held box may be inside is said beside them. Rows with
+one finding stand in one line. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
 Examples:
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --controller ideal --json)";
@@ -29,17 +30,7 @@ void add_check(CLI::App& app, Action& action) {
   verb.add_option("--program", options->program, "waypoint file (13 columns)")->required()->type_name("FILE.csv");
   verb.add_option("--sequence", options->sequence, "item sequence, to look at the held boxes too")->type_name("NAME");
   verb.add_option("--robot", options->robot, "the scenario's robot; absent: the one there is")->type_name("NAME");
-  verb.add_option(
-          "--controller", options->motion.controller,
-          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly, as exported programs are done; "
-          "fast: bounded jerk and blends, as pack --tempo, without anything to feel (default: as the program was "
-          "packed)")
-      ->check(one_of({"faithful", "ideal", "fast"}))
-      ->type_name("KIND");
-  verb.add_option("--tempo", options->motion.tempo,
-                  "share of the speeds, with fast (default: that the program was packed with, or 1)")
-      ->check(within(0.5, 1.0))
-      ->type_name("SHARE");
+  add_motion_words(verb, options->motion);
   verb.add_option("--corrections", options->corrections, "site corrections: a layer of the scenario, or none")
       ->type_name("LAYER")
       ->capture_default_str();

@@ -32,16 +32,7 @@ void add_control(CLI::App& app, Action& action) {
           "item sequence that the program packs: its boxes are brought, where the simulator has events for that")
       ->type_name("NAME");
   verb.add_option("--robot", options->robot, "robot of the scenario; absent: the one there is")->type_name("NAME");
-  verb.add_option(
-          "--controller", options->motion.controller,
-          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly; fast: bounded jerk, blends, "
-          "rows and waits that end by what is felt, as pack --tempo (default: as the program was packed)")
-      ->check(one_of({"faithful", "ideal", "fast"}))
-      ->type_name("KIND");
-  verb.add_option("--tempo", options->motion.tempo,
-                  "share of the speeds, with fast (default: that the program was packed with, or 1)")
-      ->check(within(0.5, 1.0))
-      ->type_name("SHARE");
+  add_motion_words(verb, options->motion);
   verb.add_option("--corrections", options->corrections,
                   "site corrections: a layer of the scenario such as seq1 or seq2-5, or none")
       ->type_name("LAYER")

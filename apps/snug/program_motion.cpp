@@ -1,10 +1,27 @@
 // program_motion: how a program is moved: as --controller and --tempo say, else as it was packed.
 #include "program_motion.hpp"
 
+#include <CLI/CLI.hpp>
+
+#include "options.hpp"
+#include "ranges.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/motion/program_tempo.hpp"
 
 namespace snug::app {
+
+void add_motion_words(CLI::App& verb, MotionWords& words) {
+  verb.add_option(
+          "--controller", words.controller,
+          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly; fast: bounded jerk, blends, "
+          "rows and waits that end by what is felt, as pack --tempo (default: as the program was packed)")
+      ->check(one_of({"faithful", "ideal", "fast"}))
+      ->type_name("KIND");
+  verb.add_option("--tempo", words.tempo,
+                  "share of the speeds, with fast (default: that the program was packed with, or 1)")
+      ->check(within(0.5, 1.0))
+      ->type_name("SHARE");
+}
 
 void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,
                    cell::SimulationOptions& options) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "snug/cell/simulation.hpp"
+#include "verb.hpp"
 
 namespace snug::app {
 
@@ -15,6 +16,8 @@ struct MotionWords {
   std::optional<double> tempo;            ///< only with fast
 };
 
+/// --controller and --tempo.
+void add_motion_words(CLI::App& verb, MotionWords& words);
 /// `text`: of the program's file `name`. Throws InputError for a --tempo that does not fit --controller, and for a
 /// tempo of the program that is none.
 void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,

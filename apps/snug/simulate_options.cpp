@@ -26,16 +26,7 @@ void add_program_options(CLI::App& verb, SimulateOptions& options) {
       ->type_name("FILE.csv");
   verb.add_option("--sequence", options.sequence, "item sequence of the scenario that the program packs")
       ->type_name("NAME");
-  verb.add_option(
-          "--controller", options.motion.controller,
-          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly; fast: bounded jerk, blends, "
-          "rows and waits that end by what is felt, as pack --tempo (default: as the program was packed)")
-      ->check(one_of({"faithful", "ideal", "fast"}))
-      ->type_name("KIND");
-  verb.add_option("--tempo", options.motion.tempo,
-                  "share of the speeds, with fast (default: that the program was packed with, or 1)")
-      ->check(within(0.5, 1.0))
-      ->type_name("SHARE");
+  add_motion_words(verb, options.motion);
   verb.add_option(
           "--robot", options.robot,
           "move the tool with the joints of the scenario's robot, such as ur10; absent: the tool moves by itself")

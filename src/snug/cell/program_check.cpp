@@ -18,8 +18,7 @@
 namespace snug::cell {
 namespace {
 
-constexpr double kLongestProgram = 7200.0;  ///< s
-constexpr double kRadian = 0.3;             ///< m, that a turn by 1 rad counts as
+constexpr double kRadian = 0.3;  ///< m, that a turn by 1 rad counts as
 // Below this the controller's task gives way (joint_controller.cpp): the tool is no longer where it should be.
 constexpr double kSingular = 0.05;
 // Beyond a limit by less than this is the rounding of a controller that keeps it.
@@ -92,7 +91,7 @@ class Check {
     control::MachineState state = machine_.make_state(controller(), simulation_.arm()->start());
     control::JointControllerWork work;
     Pose X_WE_last = state.tool.X_WE;
-    for (std::int64_t i = 0; static_cast<double>(i) * plan_.settings.tick < kLongestProgram; ++i) {
+    for (std::int64_t i = 0; static_cast<double>(i) * plan_.settings.tick < motion::kLongestProgram; ++i) {
       time_ = static_cast<double>(i) * plan_.settings.tick;
       const robot::JointVector q = state.joints.q;
       const motion::ToolState tool = state.tool;

@@ -8,9 +8,6 @@
 namespace snug::cell {
 namespace {
 
-constexpr double kLongestTrial = 7200.0;  ///< s
-constexpr double kSettleTime = 1.0;       ///< s, as `run` gives boxes that still move
-
 /// The row and the next are one pose: the second only switches, while the tool may still be moving.
 bool is_left_moving(const motion::PreparedProgram& plan, int row) {
   const auto& rows = plan.program.waypoints;
@@ -62,11 +59,11 @@ MotionTrial try_motion(const Simulation& simulation, const motion::PreparedProgr
     if (has_left && plan.settings.kind == motion::ControllerKind::Fast && !is_left_moving(plan, row)) {
       trial.ended[static_cast<std::size_t>(row)] = state.controller.X_WE_departure;
     }
-    if (simulation.time(state) > kLongestTrial) trial.failure = "the program did not end within two hours";
+    if (simulation.time(state) > motion::kLongestProgram) trial.failure = "the program did not end within two hours";
   }
   trial.joints.is_complete = has_ended && trial.failure.empty();
   trial.duration = simulation.time(state);
-  while (trial.failure.empty() && simulation.time(state) < trial.duration + kSettleTime) {
+  while (trial.failure.empty() && simulation.time(state) < trial.duration + motion::kSettleTime) {
     (void)advance(simulation, plan, state, work, trial);
   }
   if (simulation.arm() != nullptr) {

@@ -137,6 +137,8 @@ std::string encode_one(const T& message) {
   return bytes;
 }
 
+std::string encode_one(const Sensor& sensor) { return internal::write_sensor(sensor); }
+
 // ---- what is received
 
 template <class Wire>
@@ -353,13 +355,7 @@ const char* name_of(const Message& message) {
 }
 
 std::string encode(const Message& message) {
-  if (const auto* sensor = std::get_if<Sensor>(&message)) return internal::write_sensor(*sensor);
-  return std::visit(
-      [](const auto& alternative) -> std::string {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(alternative)>, Sensor>) return encode_one(alternative);
-        return {};
-      },
-      message);
+  return std::visit([](const auto& alternative) { return encode_one(alternative); }, message);
 }
 
 Decoded decode(std::string_view frame) {

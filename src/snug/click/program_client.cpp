@@ -16,9 +16,6 @@
 namespace snug::click {
 namespace {
 
-constexpr double kSettleTime = 1.0;         ///< s, after the last waypoint, for boxes that still move
-constexpr double kLongestProgram = 7200.0;  ///< s
-
 class ProgramClient {
  public:
   ProgramClient(Client& client, const model::Scenario& scenario, const cell::CellArm& arm,
@@ -58,7 +55,7 @@ class ProgramClient {
     find_boxes();
     state_ = arm_.make_state(scenario_.seed, link_.measured().q);
     program_ = motion::make_controller_state(state_.machine.tool.X_WE);
-    double end = kLongestProgram;
+    double end = motion::kLongestProgram;
     bool has_ended = false;
     while (link_.last().time < end) {
       const control::MachineTick tick = think();
@@ -75,7 +72,7 @@ class ProgramClient {
       if (!tick.program.finished_now || has_ended) continue;
       has_ended = true;
       result_.duration = link_.last().time;
-      end = result_.duration + kSettleTime;
+      end = result_.duration + motion::kSettleTime;
     }
     if (!has_ended) return "the program did not end within two hours";
     return client_.reset();

@@ -46,7 +46,7 @@ JointRun run_joints(const motion::PreparedProgram& plan, const JointController& 
     if (done.outcome == "Stuck") run.stuck_row = done.program.row;
     return static_cast<double>(++i) * dt < longest;
   };
-  while (!run.is_complete && run.stuck_row < 0 && tick(kLongestProgram)) {
+  while (!run.is_complete && run.stuck_row < 0 && tick(motion::kLongestProgram)) {
   }
   if (!run.is_complete) return run;
   const double settled = static_cast<double>(i) * dt + kLongestSettling;

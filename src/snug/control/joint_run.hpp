@@ -28,8 +28,6 @@ struct JointRun {
   int stuck_row = -1;                ///< that was not reached in time, -1 when all were
 };
 
-inline constexpr double kLongestProgram = 7200.0;  ///< s
-
 /// Appends what brakes the joints to a stand, to the last bit, after the run's last sample. Nothing without samples.
 void bring_to_rest(const JointController& controller, double tick, JointRun& run);
 

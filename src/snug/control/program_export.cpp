@@ -228,7 +228,7 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
   }
   script.simulated_duration = program.simulated_duration > 0.0
                                   ? program.simulated_duration
-                                  : motion::compute_duration(plan, X_WE_start, kLongestProgram);
+                                  : motion::compute_duration(plan, X_WE_start, motion::kLongestProgram);
 
   std::string& text = script.text;
   text = header(program, "m, m/s, m/s^2, rad, s; payloads in kg and m; poses in the controller's base frame");

@@ -59,6 +59,10 @@ InputError::InputError(std::string where_, std::string key_, std::string got_, s
       got(std::move(got_)),
       expected(std::move(expected_)) {}
 
+void require_number(bool holds, const char* where, const char* key, double got, const char* expected) {
+  if (!holds) throw InputError(where, key, std::to_string(got), expected);
+}
+
 std::string_view find_nearest(std::string_view word, std::span<const std::string> candidates) {
   std::string_view best;
   if (word.size() > kLongestWord) return best;

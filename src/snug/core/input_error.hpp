@@ -21,6 +21,9 @@ class InputError : public std::runtime_error {
   std::string expected;
 };
 
+/// Throws InputError of settings `where` unless the number `got` at `key` `holds` what is expected.
+void require_number(bool holds, const char* where, const char* key, double got, const char* expected);
+
 /// The candidate with the smallest edit distance to `word`, or an empty view when none is near
 /// (more than 2 edits and more than a third of the word).
 [[nodiscard]] std::string_view find_nearest(std::string_view word, std::span<const std::string> candidates);

@@ -130,6 +130,12 @@ bool is_printable(std::string_view text) {
   return true;
 }
 
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
 std::string escape_markup(std::string_view text) {
   std::string out;
   for (const char c : text) {

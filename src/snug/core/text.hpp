@@ -27,6 +27,9 @@ void check_utf8(std::string_view text, std::string_view name);
 /// Is it UTF-8 that needs no such escape? Names are, as tables show them on terminals.
 [[nodiscard]] bool is_printable(std::string_view text);
 
+/// Without spaces, tabs and carriage returns at both ends.
+[[nodiscard]] std::string_view trim(std::string_view text);
+
 /// Text for the inside of an element of HTML or SVG, or for an attribute value in double quotes.
 [[nodiscard]] std::string escape_markup(std::string_view text);
 

@@ -15,21 +15,23 @@ namespace {
 constexpr std::string_view kSequence = "episode";
 constexpr int kMostCells = 4'000'000;
 
-void require(bool holds, const char* key, double got, const char* expected) {
-  if (!holds) throw InputError("environment", key, std::to_string(got), expected);
-}
-
 void check(const Settings& s, const Parameters& p) {
-  require(s.resolution >= 1e-4 && s.resolution <= 10.0, "resolution", s.resolution, "0.0001 .. 10 m");
-  require(s.max_candidates >= 1 && s.max_candidates <= 1000, "max_candidates", s.max_candidates, "1 .. 1000");
-  require(s.max_steps >= 1, "max_steps", s.max_steps, "1 or more");
-  require(s.settle_time > 0.0 && s.settle_time <= 60.0, "settle_time", s.settle_time, "above 0, at most 60 s");
-  require(s.max_displacement > 0.0, "max_displacement", s.max_displacement, "above 0 m");
-  require(s.max_tilt > 0.0, "max_tilt", s.max_tilt, "above 0 rad");
-  require(std::abs(p.size_offset) <= 0.02, "size_offset", p.size_offset, "-0.02 .. 0.02 m");
-  require(p.friction_scale >= 0.0 && p.friction_scale <= 100.0, "friction_scale", p.friction_scale, "0 .. 100");
-  require(p.cup_scale > 0.0 && p.cup_scale <= 100.0, "cup_scale", p.cup_scale, "above 0, at most 100");
-  require(p.mass_scale > 0.0 && p.mass_scale <= 100.0, "mass_scale", p.mass_scale, "above 0, at most 100");
+  require_number(s.resolution >= 1e-4 && s.resolution <= 10.0, "environment", "resolution", s.resolution,
+                 "0.0001 .. 10 m");
+  require_number(s.max_candidates >= 1 && s.max_candidates <= 1000, "environment", "max_candidates", s.max_candidates,
+                 "1 .. 1000");
+  require_number(s.max_steps >= 1, "environment", "max_steps", s.max_steps, "1 or more");
+  require_number(s.settle_time > 0.0 && s.settle_time <= 60.0, "environment", "settle_time", s.settle_time,
+                 "above 0, at most 60 s");
+  require_number(s.max_displacement > 0.0, "environment", "max_displacement", s.max_displacement, "above 0 m");
+  require_number(s.max_tilt > 0.0, "environment", "max_tilt", s.max_tilt, "above 0 rad");
+  require_number(std::abs(p.size_offset) <= 0.02, "environment", "size_offset", p.size_offset, "-0.02 .. 0.02 m");
+  require_number(p.friction_scale >= 0.0 && p.friction_scale <= 100.0, "environment", "friction_scale",
+                 p.friction_scale, "0 .. 100");
+  require_number(p.cup_scale > 0.0 && p.cup_scale <= 100.0, "environment", "cup_scale", p.cup_scale,
+                 "above 0, at most 100");
+  require_number(p.mass_scale > 0.0 && p.mass_scale <= 100.0, "environment", "mass_scale", p.mass_scale,
+                 "above 0, at most 100");
 }
 
 void scale(model::CupElasticity& cup, double factor) {
@@ -98,7 +100,8 @@ struct Environment::State {
         asked.varies ? std::span<const packing::Item>{} : std::span<const packing::Item>(base_items));
     const double cells_y = std::ceil(container.inner_size.y() / settings.resolution - 1e-9);
     const double cells_x = std::ceil(container.inner_size.x() / settings.resolution - 1e-9);
-    require(cells_x * cells_y <= kMostCells, "resolution", settings.resolution, "one that leaves at most 4e6 cells");
+    require_number(cells_x * cells_y <= kMostCells, "environment", "resolution", settings.resolution,
+                   "one that leaves at most 4e6 cells");
     rows = static_cast<int>(cells_y);
     columns = static_cast<int>(cells_x);
   }

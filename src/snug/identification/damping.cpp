@@ -8,6 +8,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/cup/law.hpp"
 #include "snug/identification/free_swing.hpp"
+#include "snug/identification/internal/compliance.hpp"
 #include "snug/identification/internal/release_model.hpp"
 #include "snug/identification/internal/stiffness_form.hpp"
 #include "snug/numerics/dense.hpp"
@@ -21,8 +22,7 @@ namespace {
 using internal::ReleaseModel;
 using internal::Unknowns;
 
-constexpr double kDampingPriorWidth = 1000.0;  // times the prior's own size
-constexpr double kRejects = 3.29;              // deviations of chi-square by which releases contradict: about 1 in 1000
+constexpr double kRejects = 3.29;  // deviations of chi-square by which releases contradict: about 1 in 1000
 
 /// A set of releases, the samples of each that count, and how they start.
 struct Problem {
@@ -89,8 +89,8 @@ Solution solve(const Problem& problem, const std::vector<std::size_t>& which, co
       {scale.size(),
        {},
        [&scale, prior](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-         r = (x - prior.cwiseQuotient(scale)) / kDampingPriorWidth;
-         if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / kDampingPriorWidth;
+         r = (x - prior.cwiseQuotient(scale)) / internal::kPriorWidth;
+         if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / internal::kPriorWidth;
        }});
   const numerics::LeastSquaresResult found =
       numerics::solve_least_squares(terms, start.cwiseQuotient(scale), {.tolerance = 1e-8, .max_iterations = 50});

@@ -20,9 +20,8 @@ using internal::Form;
 using internal::LinearEstimate;
 using internal::NoiseAtS1;
 
-constexpr double kStiffnessPriorWidth = 1000.0;  // times the prior's own size, as in the compliance fit
-constexpr std::size_t kFewest = 4;               // poses; 24 numbers against 5 or 21
-constexpr std::size_t kForSymmetry = 10;         // poses; fewer leave the test of 16 conditions without power
+constexpr std::size_t kFewest = 4;        // poses; 24 numbers against 5 or 21
+constexpr std::size_t kForSymmetry = 10;  // poses; fewer leave the test of 16 conditions without power
 constexpr int kFolds = 5;
 
 /// Everything that a fit needs, made once for all choices of poses.
@@ -108,8 +107,8 @@ Estimate fit_by_wrench(const Setup& setup, const std::vector<double>& weight, co
   // Everything in units of the prior.
   Eigen::MatrixXd N = kKept * (start.unknown * start.unknown.transpose());
   Eigen::VectorXd b = N * kept;
-  N.diagonal().array() += 1.0 / (kStiffnessPriorWidth * kStiffnessPriorWidth);
-  b += form.numbers_of(setup.prior).cwiseQuotient(scale) / (kStiffnessPriorWidth * kStiffnessPriorWidth);
+  N.diagonal().array() += 1.0 / (internal::kPriorWidth * internal::kPriorWidth);
+  b += form.numbers_of(setup.prior).cwiseQuotient(scale) / (internal::kPriorWidth * internal::kPriorWidth);
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(form.size(), form.size());
   for (std::size_t i = 0; i < setup.balances.size(); ++i) {
     if (weight[i] == 0.0) continue;
@@ -157,8 +156,8 @@ Estimate fit_by_likelihood(const Setup& setup, const std::vector<double>& weight
   terms.push_back({form.size(),
                    {},
                    [&prior](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-                     r = (x - prior) / kStiffnessPriorWidth;
-                     if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / kStiffnessPriorWidth;
+                     r = (x - prior) / internal::kPriorWidth;
+                     if (J != nullptr) *J = Eigen::MatrixXd::Identity(x.size(), x.size()) / internal::kPriorWidth;
                    }});
   if (from.unknown.cols() > 0)
     terms.push_back(

@@ -118,7 +118,6 @@ ControllerKind controller_kind_of(std::string_view name, const std::string& wher
 
 PreparedProgram prepare(Program program, ControllerSettings settings) {
   constexpr const char* kPositive = "a finite number above 0";
-  const auto is_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
   require(is_positive(settings.tick), program, "controller tick", settings.tick, kPositive);
   require(is_positive(settings.task_stiffness), program, "task stiffness", settings.task_stiffness, kPositive);
   require(is_positive(settings.convergence_deg_per_metre), program, "convergence degrees per metre",

@@ -29,6 +29,11 @@ enum class ControllerKind {
 /// The kind of that word. Throws InputError with `where` and the words that there are.
 [[nodiscard]] ControllerKind controller_kind_of(std::string_view name, const std::string& where);
 
+/// A program under way for longer than this does not end, s.
+inline constexpr double kLongestProgram = 7200.0;
+/// What boxes that still move are given after the last waypoint, s.
+inline constexpr double kSettleTime = 1.0;
+
 struct ControllerSettings {
   ControllerKind kind = ControllerKind::Faithful;
   double tick = 0.008;                       ///< s

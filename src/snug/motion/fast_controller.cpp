@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::motion {
@@ -228,7 +229,6 @@ void check_fast(const FastSettings& settings, const std::string& where) {
     if (!ok) throw InputError(where, fmt::format("fast: {}", key), fmt::format("{}", value), expected);
   };
   require("tempo", settings.tempo, settings.tempo >= 0.1 && settings.tempo <= 1.0, "a number from 0.1 to 1");
-  const auto is_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
   for (const Pace& pace : {settings.empty, settings.held, settings.insert}) {
     for (const double value :
          {pace.max_speed, pace.max_acceleration, pace.max_turn_speed, pace.max_turn_acceleration, pace.window}) {

@@ -12,8 +12,6 @@ namespace {
 // m or rad: shorter is the rounding of poses, not a motion.
 constexpr double kNoLength = 1e-14;
 
-bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }
-
 LspbProfile two_phase_profile(double length, double duration) {
   const double peak = 2.0 * (length / duration);
   return {length, duration, 0.5 * duration, peak, peak};

@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kPart = 1.0 / kPathParts;
 
-bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }
-
 }  // namespace
 
 PathProfile::PathProfile(std::span<const double, kPathParts> rates, double acceleration, double window)

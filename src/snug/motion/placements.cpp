@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "snug/motion/internal/row_parts.hpp"
 #include "snug/motion/row_name.hpp"
 
 namespace snug::motion {
@@ -90,10 +91,9 @@ Move plan_move(const PickSpec& pick, const Pose& X_WP_place, const PlacementSett
   return move;
 }
 
-Pose at_height(Pose X, double z) {
-  X.p.z() = z;
-  return X;
-}
+using internal::at_height;
+using internal::kHold;
+using internal::kRelease;
 
 class Writer {
  public:
@@ -153,9 +153,6 @@ class Writer {
     add(move.X_WE_place, row_name("Place", move.box), kHold);
     add(move.X_WE_place, row_name("Place", move.box), kRelease);
   }
-
-  static constexpr IO kHold = {.vacuum = true};
-  static constexpr IO kRelease = {.blow_off = true};
 
   const PlacementSettings& settings_;
   std::vector<Move> moves_;

@@ -7,14 +7,17 @@
 #include <utility>
 
 #include "snug/core/check.hpp"
+#include "snug/motion/internal/row_parts.hpp"
 #include "snug/motion/row_name.hpp"
 #include "snug/motion/unwinding.hpp"
 
 namespace snug::motion {
 namespace {
 
-constexpr IO kHold{.vacuum = true};
-constexpr IO kRelease{.blow_off = true};
+using internal::at_height;
+using internal::kHold;
+using internal::kRelease;
+
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
 
 int vertical_axis_of(const Matrix3& R_WP) {
@@ -27,11 +30,6 @@ Matrix3 turn(const Vector3& axis, double angle) { return exp_rotation(angle * ax
 
 Pose shifted(Pose X, const Vector3& by) {
   X.p += by;
-  return X;
-}
-
-Pose at_height(Pose X, double z) {
-  X.p.z() = z;
   return X;
 }
 

@@ -7,18 +7,13 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::motion {
 namespace {
 
 constexpr std::string_view kKey = "tempo:";
 constexpr double kLeast = 0.1;  ///< as FastSettings
-
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 }  // namespace
 

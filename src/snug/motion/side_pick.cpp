@@ -6,14 +6,15 @@
 #include <numbers>
 
 #include "snug/core/check.hpp"
+#include "snug/motion/internal/row_parts.hpp"
 #include "snug/motion/row_name.hpp"
 #include "snug/motion/unwinding.hpp"
 
 namespace snug::motion {
 namespace {
 
-constexpr IO kHold{.vacuum = true};
-constexpr IO kRelease{.blow_off = true};
+using internal::kHold;
+using internal::kRelease;
 
 /// The axis of the box that is nearest to `direction`, with its sign, in W.
 Vector3 nearest_normal(const Matrix3& R_WP, const Vector3& direction, int* axis) {

@@ -25,12 +25,6 @@ constexpr double kLargestPosition = 100.0;       // m; a cell is a few metres, s
 constexpr std::size_t kMostWaypoints = 100'000;  // hours of motion
 constexpr double kLargestRotation = 100.0;       // rad; far beyond any sensible rotation vector, still exact to 1e-14
 
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 /// Where a field stands, for messages.
 struct Field {
   std::string_view text;

@@ -11,25 +11,25 @@ namespace snug::packing {
 
 namespace {
 
-void require(bool holds, const char* key, double got, const char* expected) {
-  if (!holds) throw InputError("packing settings", key, std::to_string(got), expected);
-}
-
 void check(const PackingSettings& s) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
-  require(within(s.decision_time, 0.0, 3600.0), "decision_time", s.decision_time, "0 .. 3600 s");
-  require(within(s.threads, 1, 256), "threads", s.threads, "1 .. 256");
-  require(within(s.max_candidates, 1, 1000), "max_candidates", s.max_candidates, "1 .. 1000");
-  require(within(s.max_flips, 0, 2), "max_flips", s.max_flips, "0, 1 or 2");
-  require(within(s.margin, 0.0, 1.0), "margin", s.margin, "0 .. 1 m");
-  require(within(s.squeeze, 0.0, 0.010), "squeeze", s.squeeze, "0 .. 0.01 m");
-  require(within(s.last_squeeze, 0.0, 0.010), "last_squeeze", s.last_squeeze, "0 .. 0.01 m");
-  require(within(s.min_support, 0.0, 1.0), "min_support", s.min_support, "0 .. 1");
-  require(within(s.com_margin, 0.0, 0.1), "com_margin", s.com_margin, "0 .. 0.1 m");
-  require(within(s.level_slack, 0.0, 0.05), "level_slack", s.level_slack, "0 .. 0.05 m");
-  require(within(s.min_slenderness, 0.0, 10.0), "min_slenderness", s.min_slenderness, "0 .. 10");
-  require(within(s.max_item_mass, 0.0, 1.0e6), "max_item_mass", s.max_item_mass, "0 .. 1e6 kg");
-  require(within(s.min_pick_face, 0.0, 10.0), "min_pick_face", s.min_pick_face, "0 .. 10 m");
+  require_number(within(s.decision_time, 0.0, 3600.0), "packing settings", "decision_time", s.decision_time,
+                 "0 .. 3600 s");
+  require_number(within(s.threads, 1, 256), "packing settings", "threads", s.threads, "1 .. 256");
+  require_number(within(s.max_candidates, 1, 1000), "packing settings", "max_candidates", s.max_candidates,
+                 "1 .. 1000");
+  require_number(within(s.max_flips, 0, 2), "packing settings", "max_flips", s.max_flips, "0, 1 or 2");
+  require_number(within(s.margin, 0.0, 1.0), "packing settings", "margin", s.margin, "0 .. 1 m");
+  require_number(within(s.squeeze, 0.0, 0.010), "packing settings", "squeeze", s.squeeze, "0 .. 0.01 m");
+  require_number(within(s.last_squeeze, 0.0, 0.010), "packing settings", "last_squeeze", s.last_squeeze, "0 .. 0.01 m");
+  require_number(within(s.min_support, 0.0, 1.0), "packing settings", "min_support", s.min_support, "0 .. 1");
+  require_number(within(s.com_margin, 0.0, 0.1), "packing settings", "com_margin", s.com_margin, "0 .. 0.1 m");
+  require_number(within(s.level_slack, 0.0, 0.05), "packing settings", "level_slack", s.level_slack, "0 .. 0.05 m");
+  require_number(within(s.min_slenderness, 0.0, 10.0), "packing settings", "min_slenderness", s.min_slenderness,
+                 "0 .. 10");
+  require_number(within(s.max_item_mass, 0.0, 1.0e6), "packing settings", "max_item_mass", s.max_item_mass,
+                 "0 .. 1e6 kg");
+  require_number(within(s.min_pick_face, 0.0, 10.0), "packing settings", "min_pick_face", s.min_pick_face, "0 .. 10 m");
 }
 
 }  // namespace

@@ -78,18 +78,14 @@ std::vector<Representative> group(const std::vector<Kind>& kinds, double toleran
   return groups;
 }
 
-void require(bool holds, const char* key, double got, const char* expected) {
-  if (!holds) throw InputError("settings", key, std::to_string(got), expected);
-}
-
 }  // namespace
 
 Reduction reduce_items(const std::vector<model::OrderLine>& lines, const ReductionSettings& settings) {
-  require(settings.count >= 1 && settings.count <= 10000, "count", settings.count, "1 .. 10000");
-  require(settings.group_tolerance >= 0.0 && settings.group_tolerance < 1.0, "group tolerance",
-          settings.group_tolerance, "0 .. 1");
-  require(settings.cover_tolerance >= 0.0 && settings.cover_tolerance < 1.0, "cover tolerance",
-          settings.cover_tolerance, "0 .. 1");
+  require_number(settings.count >= 1 && settings.count <= 10000, "settings", "count", settings.count, "1 .. 10000");
+  require_number(settings.group_tolerance >= 0.0 && settings.group_tolerance < 1.0, "settings", "group tolerance",
+                 settings.group_tolerance, "0 .. 1");
+  require_number(settings.cover_tolerance >= 0.0 && settings.cover_tolerance < 1.0, "settings", "cover tolerance",
+                 settings.cover_tolerance, "0 .. 1");
   const std::vector<Kind> kinds = kinds_of(lines);
   std::vector<Representative> groups;
   for (int round = 0; round < kRounds; ++round) {
@@ -121,9 +117,10 @@ model::Sequence draw_sequence(const model::Scenario& scenario, const std::string
   if (container == nullptr) {
     throw InputError(scenario.source_name, "target", "nothing", "a container that is to be filled");
   }
-  require(settings.fill_percent > 0.0 && settings.fill_percent <= 1000.0, "fill", settings.fill_percent,
-          "above 0, at most 1000 percent");
-  require(settings.repeat >= 0.0 && settings.repeat <= 1.0, "repeat", settings.repeat, "a probability");
+  require_number(settings.fill_percent > 0.0 && settings.fill_percent <= 1000.0, "settings", "fill",
+                 settings.fill_percent, "above 0, at most 1000 percent");
+  require_number(settings.repeat >= 0.0 && settings.repeat <= 1.0, "settings", "repeat", settings.repeat,
+                 "a probability");
   std::vector<const model::Parcel*> left;
   for (const model::Parcel& parcel : scenario.parcels) left.push_back(&parcel);
   model::Sequence sequence;

@@ -1,12 +1,12 @@
 // ArchiveWriter: writes archives beside their place, chunk by chunk, and renames them when they are whole.
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <set>
 #include <system_error>
 
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/units.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/record/internal/archive_layout.hpp"
 #include "snug/record/internal/h5.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 using namespace internal;
 
-constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+constexpr auto kNothing = static_cast<float>(kNaN);
 
 /// Properties of datasets: no times of writing, so that the same contents make the same bytes.
 Handle untimed_dataset() {

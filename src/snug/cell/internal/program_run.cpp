@@ -12,9 +12,6 @@
 namespace snug::cell::internal {
 namespace {
 
-constexpr double kLongestRun = 7200.0;    ///< s
-constexpr double kSettleTimeOfRun = 1.0;  ///< s, after the last waypoint, for boxes that still move
-
 class ProgramRun {
  public:
   ProgramRun(const model::Scenario& scenario, const RunOptions& options)
@@ -36,10 +33,11 @@ class ProgramRun {
     while (result.failure.empty() && !is_stopped_) {
       if (advance(result.failure)) break;
       if (options_.until && simulation_.time(state_) >= *options_.until) break;
-      if (simulation_.time(state_) > kLongestRun) result.failure = "the program did not end within two hours";
+      if (simulation_.time(state_) > motion::kLongestProgram)
+        result.failure = "the program did not end within two hours";
     }
     result.duration = simulation_.time(state_);
-    const double settled = result.duration + kSettleTimeOfRun;
+    const double settled = result.duration + motion::kSettleTime;
     while (result.failure.empty() && !is_stopped_ && !options_.until && simulation_.time(state_) < settled) {
       (void)advance(result.failure);
     }

@@ -14,7 +14,6 @@
 namespace snug::identification::internal {
 namespace {
 
-constexpr double kPriorWidth = 1000.0;  // times the prior's own size
 /// A direction is known when its sum exceeds the noise's own by this much, and by this much over the root of the number
 /// of poses: the noise's sum scatters by sqrt(2 / poses), five times that is no chance.
 constexpr double kLeastSignal = 1.0;

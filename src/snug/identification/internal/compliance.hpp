@@ -7,6 +7,9 @@
 
 namespace snug::identification::internal {
 
+/// How far numbers that the data does not tell may be from their prior, in sizes of the prior.
+inline constexpr double kPriorWidth = 1000.0;
+
 /// One pose as the compliance fit sees it: C g = e, with what the noise does to both.
 struct CompliancePose {
   Vector6 g, e;

@@ -170,7 +170,8 @@ TEST(RemotePlant, WhatIsNoSuchPlantIsRefused) {
        {"", "click://", "click://host", "click://:5555", "tcp://127.0.0.1:5555", "click+ipc://"}) {
     EXPECT_NE(message(address, scenario()).find("click://HOST:PORT"), std::string::npos) << address;
   }
-  EXPECT_NE(message("click+ipc:///tmp/nobody_is_there", scenario()).find("nobody answers"), std::string::npos);
+  const std::string nobody = "click+ipc://" + (std::filesystem::temp_directory_path() / "nobody_is_there").string();
+  EXPECT_NE(message(nobody, scenario()).find("nobody answers"), std::string::npos);
   Served served(drawn());
   model::Scenario more = scenario();
   more.sequences.front().items =

@@ -33,10 +33,14 @@ perception::Observation seen_at(const Pose& X_WP, std::optional<Vector3> size = 
   return seen;
 }
 
-TEST(Belief, EveryWorldHasABoxWhereItWasSeen) {
+/// Three items of the demonstrator, the first at the aligner.
+struct BeliefOfOneBox : testing::Test {
+  BeliefOfOneBox() { belief.arrives(0); }
   const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+  Belief belief{scenario, "1", quick()};
+};
+
+TEST_F(BeliefOfOneBox, EveryWorldHasABoxWhereItWasSeen) {
   const Pose nominal = belief.box(0)->X_WP;
   const auto& before = belief.take_up(at_start(scenario));
   EXPECT_GT((before[1]->pose_of(0)->p - before[0]->pose_of(0)->p).norm(), 1e-4) << "not seen: each draws its own";
@@ -48,10 +52,7 @@ TEST(Belief, EveryWorldHasABoxWhereItWasSeen) {
   }
 }
 
-TEST(Belief, SizesAreLearnedByEveryWorld) {
-  const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+TEST_F(BeliefOfOneBox, SizesAreLearnedByEveryWorld) {
   const Vector3 is = Vector3(0.1716, 0.2371, 0.0931);
   belief.see(seen_at(belief.box(0)->X_WP, is));
   for (const auto& rollout : belief.take_up(at_start(scenario))) {
@@ -60,20 +61,14 @@ TEST(Belief, SizesAreLearnedByEveryWorld) {
   }
 }
 
-TEST(Belief, ForgetsWhatIsTakenAway) {
-  const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+TEST_F(BeliefOfOneBox, ForgetsWhatIsTakenAway) {
   EXPECT_EQ(belief.expectations().size(), 1U);
   belief.forget(0);
   EXPECT_TRUE(belief.expectations().empty());
   for (const auto& rollout : belief.take_up(at_start(scenario))) EXPECT_FALSE(rollout->pose_of(0));
 }
 
-TEST(Belief, WorldsThatPredictedBadlyLoseWeightButNotAll) {
-  const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+TEST_F(BeliefOfOneBox, WorldsThatPredictedBadlyLoseWeightButNotAll) {
   const Pose is = belief.box(0)->X_WP;
   std::vector<std::vector<std::optional<Pose>>> predicted(5, std::vector<std::optional<Pose>>(3));
   for (std::size_t w = 0; w < 5; ++w) {
@@ -90,10 +85,7 @@ TEST(Belief, WorldsThatPredictedBadlyLoseWeightButNotAll) {
   EXPECT_NEAR(std::accumulate(weights.begin() + 1, weights.end(), 0.0), 4.0, 1e-12);
 }
 
-TEST(Belief, WhatIsNotSeenIsBelievedToBeWhereItWasPredicted) {
-  const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+TEST_F(BeliefOfOneBox, WhatIsNotSeenIsBelievedToBeWhereItWasPredicted) {
   Pose there = belief.box(0)->X_WP;
   there.p.x() += 0.1;
   belief.expect(std::vector<std::vector<std::optional<Pose>>>(5, {there, std::nullopt, std::nullopt}));
@@ -105,10 +97,7 @@ TEST(Belief, WhatIsNotSeenIsBelievedToBeWhereItWasPredicted) {
   EXPECT_GT(belief.box(0)->covariance(0, 0), 0.0);
 }
 
-TEST(Belief, APredictionCountsAtTheFirstLookAlone) {
-  const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+TEST_F(BeliefOfOneBox, APredictionCountsAtTheFirstLookAlone) {
   const Pose here = belief.box(0)->X_WP;
   Pose there = here;
   there.p.x() += 0.1;
@@ -120,10 +109,7 @@ TEST(Belief, APredictionCountsAtTheFirstLookAlone) {
   EXPECT_EQ(belief.box(0)->X_WP, here) << "it was seen after that motion, and nothing has moved since";
 }
 
-TEST(Belief, AMotionThatWasBrokenOffPredictsNothing) {
-  const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+TEST_F(BeliefOfOneBox, AMotionThatWasBrokenOffPredictsNothing) {
   const Pose here = belief.box(0)->X_WP;
   Pose there = here;
   there.p.x() += 0.1;
@@ -137,10 +123,7 @@ TEST(Belief, AMotionThatWasBrokenOffPredictsNothing) {
   EXPECT_FALSE(belief.box(0)->was_seen);
 }
 
-TEST(Belief, ExpectsAPredictionUntilItHasLookedAndThenWhatItSaw) {
-  const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+TEST_F(BeliefOfOneBox, ExpectsAPredictionUntilItHasLookedAndThenWhatItSaw) {
   const Pose here = belief.box(0)->X_WP;
   EXPECT_EQ(belief.expectations()[0].X_WP, here);
   Pose there = here;
@@ -153,10 +136,7 @@ TEST(Belief, ExpectsAPredictionUntilItHasLookedAndThenWhatItSaw) {
   EXPECT_EQ(belief.expectations()[0].X_WP, seen);
 }
 
-TEST(Belief, WhatIsMissingIsBelievedToBeNowhere) {
-  const model::Scenario scenario = demonstrator();
-  Belief belief(scenario, "1", quick());
-  belief.arrives(0);
+TEST_F(BeliefOfOneBox, WhatIsMissingIsBelievedToBeNowhere) {
   perception::Observation empty;
   empty.not_seen = empty.missing = {"BOX027"};
   belief.see(empty);
