@@ -129,5 +129,33 @@ class Scenes(unittest.TestCase):
         self.assertAlmostEqual(sum(contact["force_N"][2] for contact in contacts), 3 * 9.81, delta=0.05)
 
 
+class Plates(unittest.TestCase):
+    """Ten plates of 190 x 140 x 8 mm for a tote of 200 x 150 x 60 mm: seven fit."""
+
+    def pack(self, law):
+        text = (ROOT / "scenarios" / "init" / "cell.yaml").read_text()
+        text = text.replace("inner_size: [0.400, 0.300, 0.200]", "inner_size: [0.200, 0.150, 0.060]")
+        text = text.replace("stiffness: 2.5e4, damping: 50.0, full_area: 0.005", law)
+        names = [f"P{i}" for i in range(10)]
+        plates = "parcel_types:\n  - {name: plate, size: [0.190, 0.140, 0.008], mass: 0.2}\nparcels:\n"
+        plates += "".join(f"  - {{id: {name}, type: plate, material: box}}\n" for name in names)
+        before, _, after = text.partition("parcel_types:\n")
+        text = before + plates + after[after.index("# In which order"):]
+        text = text[:text.index("    items:\n")] + "    items:\n" + "".join(f"      - {{parcel: {name}, up: Z}}\n" for name in names)
+        text += "uncertainty: {size: 0.0, size_common: 0.0, contact_stiffness: 0.0, clearance: 0.0}\n"
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "plates.yaml"
+            path.write_text(text)
+            result = snug("pack", path, "--sequence", "first", "--samples", "0", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def test_soft_plates_fill_at_most_what_fits(self):
+        data = self.pack("stiffness: 2.5e4, damping: 50.0, full_area: 0.005")
+        self.assertEqual(data["executed_boxes"], 7)
+        self.assertAlmostEqual(data["executed_percent"], 100 * 7 * 0.190 * 0.140 * 0.008 / (0.200 * 0.150 * 0.060), places=6)
+        self.assertEqual(data["items_as_planned"], data["items_sent"])
+
+
 if __name__ == "__main__":
     unittest.main()

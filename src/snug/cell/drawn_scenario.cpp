@@ -56,11 +56,14 @@ void draw_parcels(const model::Uncertainty& half_width, const Rng& rng, model::S
 }
 
 void draw_contacts(const model::Uncertainty& half_width, const Rng& rng, model::Scenario& scenario) {
-  Draw friction(rng, "friction"), stiffness(rng, "contact stiffness");
+  Draw friction(rng, "friction"), stiffness(rng, "contact stiffness"), travel(rng, "contact travel");
   const double stiffer = stiffness.factor(half_width.contact_stiffness);
+  const double farther = travel.factor(half_width.contact_travel);
   const auto draw = [&](model::ContactParams& params) {
     params.friction *= friction.factor(half_width.friction);
     if (params.stiffness) *params.stiffness *= stiffer;
+    if (params.stiffness_beyond) *params.stiffness_beyond *= stiffer;
+    if (params.travel) *params.travel *= farther;
   };
   for (model::ContactPair& pair : scenario.contact_pairs) draw(pair.params);
   if (scenario.default_contact) draw(*scenario.default_contact);

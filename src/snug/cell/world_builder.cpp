@@ -22,6 +22,10 @@ physics::ContactLaw law_of(const model::Scenario& scenario, int a, int b) {
   law.restitution = params->restitution;
   law.stiffness = params->stiffness.value_or(0.0);
   law.damping = params->damping.value_or(0.0);
+  law.travel = params->travel.value_or(0.0);
+  law.stiffness_beyond = params->stiffness_beyond.value_or(0.0);
+  law.full_area = params->full_area.value_or(0.0);
+  law.edge_share = params->edge_share.value_or(law.edge_share);
   return law;
 }
 

@@ -50,6 +50,18 @@ void clip(const BoxPair& pair, bool ref_is_A, int face, const Vector3& n_A, bool
   }
 }
 
+/// Of the rectangle along the reference face that holds all corners, m^2.
+double rectangle_area(const BoxPolygon& polygon) noexcept {
+  const BoxClipPoint& first = polygon.points[0];
+  double low_u = first.u, high_u = first.u, low_v = first.v, high_v = first.v;
+  for (int i = 1; i < polygon.count; ++i) {
+    const BoxClipPoint& corner = polygon.points[static_cast<std::size_t>(i)];
+    low_u = std::min(low_u, corner.u), high_u = std::max(high_u, corner.u);
+    low_v = std::min(low_v, corner.v), high_v = std::max(high_v, corner.v);
+  }
+  return (high_u - low_u) * (high_v - low_v);
+}
+
 /// Writes the corners within the margin.
 void emit_polygon(const PairCall& call, const BoxPolygon& polygon, bool ref_is_A, int face, const Vector3& half_ref,
                   const Vector3& n_A, Manifold& out) noexcept {
@@ -61,6 +73,7 @@ void emit_polygon(const PairCall& call, const BoxPolygon& polygon, bool ref_is_A
   const Vector3 n_W = call.X_WA.R * n_A;
   const Vector3 out_of_ref = ref_is_A ? n_W : Vector3(-n_W);
   set_normal(call.swapped, n_W, out);
+  out.face_area = rectangle_area(polygon);
   for (int i = 0; i < polygon.count; ++i) {
     const BoxClipPoint& corner = polygon.points[static_cast<std::size_t>(i)];
     if (!(corner.phi <= call.margin)) continue;
@@ -177,6 +190,7 @@ bool contact_along(const BoxPair& pair, const BoxAxis& axis, double separation, 
 }  // namespace
 
 void collide_boxes(const Box& A, const Box& B, const PairCall& call, Axis& axis, Manifold& out) noexcept {
+  out.face_area = 0.0;
   if (axis.kind != AxisKind::None &&
       quick_separation(A.half, call.X_WA, B.half, call.X_WB, axis) > call.margin + kTie) {
     return;

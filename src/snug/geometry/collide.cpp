@@ -106,6 +106,7 @@ void collide_general(const Shape& A, const Shape& B, const PairCall& call, Axis&
 void collide(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_WB, double margin, PairCache& cache,
              Manifold& out) noexcept {
   out.count = 0;
+  out.face_area = std::numeric_limits<double>::infinity();
   const bool swapped = is_swapped(A, X_WA, B, X_WB);
   const Shape& first = swapped ? B : A;
   const Shape& second = swapped ? A : B;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "snug/geometry/shape.hpp"
 
@@ -23,6 +24,9 @@ struct Manifold {
   Vector3 n_AB_W = Vector3::UnitZ();  ///< unit, from A to B
   int count = 0;
   std::array<ManifoldPoint, kMaxManifoldPoints> points;
+  /// m^2, of the rectangle along one of the two faces that holds the region where they overlap, within the margin or
+  /// not; 0 where edges or corners of boxes meet. Known for two boxes; other shapes: infinite.
+  double face_area = std::numeric_limits<double>::infinity();
 };
 
 /// What a pair remembers between calls: the features that separated it last. Only saves time and breaks ties.

@@ -26,6 +26,12 @@ struct ContactParams {
   double restitution = 0.0;         ///< Newton coefficient e_N, 0 .. 1
   std::optional<double> stiffness;  ///< N/m of one contact patch (all its points together); absent: rigid
   std::optional<double> damping;    ///< Ns/m of one contact patch; absent: 0. Only with a stiffness
+  /// Soft first travel: faces bulge. Absent: `stiffness` at any depth.
+  std::optional<double> travel;            ///< m, depth up to which `stiffness` holds; with stiffness_beyond
+  std::optional<double> stiffness_beyond;  ///< N/m of one contact patch for each metre deeper, at least `stiffness`
+  /// Edges crush: boxes whose faces overlap by less than this have stiffness and damping in proportion. Absent: no.
+  std::optional<double> full_area;   ///< m^2
+  std::optional<double> edge_share;  ///< share of them that edges and corners have at least, above 0; absent: 0.02
 
   template <class Archive>
   void fields(Archive& a) {
@@ -33,6 +39,10 @@ struct ContactParams {
     a("restitution", restitution, Range::Fraction);
     a("stiffness", stiffness, Range::Positive);
     a("damping", damping, Range::NotNegative);
+    a("travel", travel, Range::Positive);
+    a("stiffness_beyond", stiffness_beyond, Range::Positive);
+    a("full_area", full_area, Range::Positive);
+    a("edge_share", edge_share, Range::Positive);
   }
   bool operator==(const ContactParams&) const = default;
 };

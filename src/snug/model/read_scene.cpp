@@ -50,6 +50,28 @@ double end_of(const HolderMove& move) {
   return std::visit([](const auto& m) { return m.start + m.duration; }, move);
 }
 
+/// A pair gives way only with a stiffness, and what says how comes complete.
+void check_softness(const MapReader& map, const ContactParams& params) {
+  if (params.damping && !params.stiffness)
+    map.require("damping").fail("damping without stiffness", "a stiffness too: a rigid contact has no damping");
+  for (const char* key : {"travel", "full_area"})
+    if (map.has(key) && !params.stiffness)
+      map.require(key).fail(std::string(key) + " without stiffness",
+                            "a stiffness too: a rigid contact does not give way");
+  if (params.travel.has_value() != params.stiffness_beyond.has_value())
+    map.require(params.travel ? "travel" : "stiffness_beyond")
+        .fail("one of travel and stiffness_beyond",
+              "both, or neither: how far a contact is soft and how stiff it is then");
+  if (params.stiffness_beyond && *params.stiffness_beyond < *params.stiffness)
+    map.require("stiffness_beyond")
+        .fail("less than the stiffness before", "at least the stiffness: what is pressed gets stiffer");
+  if (params.edge_share && !params.full_area)
+    map.require("edge_share").fail("edge_share without full_area", "a full_area too: below it faces give way more");
+  if (params.edge_share && *params.edge_share > 1.0)
+    map.require("edge_share")
+        .fail("a share of " + to_text(*params.edge_share), "a share of the stiffness, above 0, at most 1");
+}
+
 }  // namespace
 
 void ScenarioReader::read_settings(const MapReader& map) {
@@ -104,8 +126,7 @@ void ScenarioReader::read_contacts(const Value& value) {
     (void)map.require("friction");
     (void)map.require("restitution");
     read_fields(map, params);
-    if (params.damping && !params.stiffness)
-      map.require("damping").fail("damping without stiffness", "a stiffness too: a rigid contact has no damping");
+    check_softness(map, params);
     return params;
   };
   const MapReader map = value.map("contacts", {"pairs", "default"});

@@ -16,6 +16,7 @@ struct Uncertainty {
   double com = 5.0e-3;                                  ///< m, each coordinate of each centre of mass
   double friction = 0.20;                               ///< share, each pair's coefficient
   double contact_stiffness = 0.30;                      ///< share, common: of all pairs that give way
+  double contact_travel = 0.25;                         ///< share, common: of the soft travel of all pairs
   double clearance = 0.5e-3;                            ///< m, common: of parcel_clearance
   double position = 3.0e-3;                             ///< m, each box at the aligner, along Ax and Ay
   double yaw = 1.0 * std::numbers::pi / 180.0;          ///< rad, each box at the aligner
@@ -34,6 +35,7 @@ struct Uncertainty {
     a("com", com, Range::NotNegative);
     a("friction", friction, Range::Fraction);
     a("contact_stiffness", contact_stiffness, Range::Fraction);
+    a("contact_travel", contact_travel, Range::Fraction);
     a("clearance", clearance, Range::NotNegative);
     a("position", position, Range::NotNegative);
     a("yaw_deg", Degrees{yaw}, Range::NotNegative);
@@ -49,7 +51,7 @@ struct Uncertainty {
 
 /// Nothing is uncertain: what is drawn is the scenario itself.
 [[nodiscard]] constexpr Uncertainty no_uncertainty() {
-  return {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  return {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 }
 
 }  // namespace snug::model

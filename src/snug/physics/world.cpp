@@ -63,7 +63,7 @@ bool BodyState::operator==(const BodyState& other) const {
 bool PairState::operator==(const PairState& other) const {
   return geom_a == other.geom_a && geom_b == other.geom_b && cache == other.cache && count == other.count &&
          is_known == other.is_known && p_AB == other.p_AB && quat_AB.coeffs() == other.quat_AB.coeffs() &&
-         margin == other.margin && n_A == other.n_A && t_A == other.t_A &&
+         margin == other.margin && face_area == other.face_area && n_A == other.n_A && t_A == other.t_A &&
          std::equal(points.begin(), points.begin() + count, other.points.begin()) &&
          std::equal(impulses.begin(), impulses.begin() + count, other.impulses.begin());
 }
@@ -285,7 +285,7 @@ std::uint64_t hash_of(const WorldState& state) {
     hash.add((static_cast<std::uint64_t>(pair.count) << 33) | (static_cast<std::uint64_t>(pair.is_known) << 32) |
              pair.cache.features);
     add(pair.p_AB);
-    hash.add(pair.margin);
+    hash.add(pair.margin);  // the face_area follows from p_AB, quat_AB and this
     add(pair.n_A), add(pair.t_A);
     for (int i = 0; i < 4; ++i) hash.add(pair.quat_AB.coeffs()[i]);
     for (int i = 0; i < pair.count; ++i) {

@@ -46,10 +46,14 @@ struct BodyModel {
 
 /// What happens where two materials touch.
 struct ContactLaw {
-  double friction = 0.3;     ///< Coulomb coefficient, exact disc
-  double restitution = 0.0;  ///< Newton's coefficient, applied above the threshold speed
-  double stiffness = 0.0;    ///< N/m of one contact patch; 0: rigid
-  double damping = 0.0;      ///< N s/m of one contact patch, with stiffness only
+  double friction = 0.3;          ///< Coulomb coefficient, exact disc
+  double restitution = 0.0;       ///< Newton's coefficient, applied above the threshold speed
+  double stiffness = 0.0;         ///< N/m of one contact patch; 0: rigid
+  double damping = 0.0;           ///< N s/m of one contact patch, with stiffness only
+  double travel = 0.0;            ///< m, depth up to which `stiffness` holds; 0: at any depth
+  double stiffness_beyond = 0.0;  ///< N/m of one contact patch for each metre deeper than `travel`
+  double full_area = 0.0;         ///< m^2, boxes whose faces overlap by less have stiffness and damping in proportion
+  double edge_share = 0.02;       ///< share of them that edges and corners have at least, above 0
   bool operator==(const ContactLaw&) const = default;
 };
 
@@ -134,6 +138,7 @@ struct PairState {
   Vector3 p_AB = Vector3::Zero();
   Quaternion quat_AB = Quaternion::Identity();
   double margin = 0.0;             ///< m, up to which the manifold was looked for
+  double face_area = 0.0;          ///< m^2, geometry::Manifold::face_area
   Vector3 n_A = Vector3::UnitZ();  ///< from A to B, in A's body frame
   Vector3 t_A = Vector3::UnitX();  ///< first tangent, in A's body frame
   std::array<PairPoint, geometry::kMaxManifoldPoints> points;

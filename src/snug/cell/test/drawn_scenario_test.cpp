@@ -12,7 +12,9 @@ namespace snug::cell {
 namespace {
 
 TEST(DrawScenario, StaysWithinTheWidthsAndKeepsTheTurnOfBoxes) {
-  const model::Scenario scenario = with_fixed_arrivals(demonstrator(), "1");
+  model::Scenario scenario = with_fixed_arrivals(demonstrator(), "1");
+  scenario.contact_pairs.front().params.travel = 1e-3;
+  scenario.contact_pairs.front().params.stiffness_beyond = 1e5;
   const model::Uncertainty& half = scenario.uncertainty;
   for (int seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -33,6 +35,10 @@ TEST(DrawScenario, StaysWithinTheWidthsAndKeepsTheTurnOfBoxes) {
     for (std::size_t i = 0; i < scenario.contact_pairs.size(); ++i) {
       const model::ContactParams &is = drawn.contact_pairs[i].params, &was = scenario.contact_pairs[i].params;
       EXPECT_NEAR(is.friction / was.friction, 1.0, half.friction);
+      if (was.travel) {
+        EXPECT_NEAR(*is.travel / *was.travel, 1.0, half.contact_travel);
+        EXPECT_NEAR(*is.stiffness_beyond / *is.stiffness, *was.stiffness_beyond / *was.stiffness, 1e-9);
+      }
       ASSERT_EQ(is.stiffness.has_value(), was.stiffness.has_value());
       if (is.stiffness) {
         EXPECT_NEAR(*is.stiffness / *was.stiffness, 1.0, half.contact_stiffness);

@@ -57,6 +57,23 @@ TEST(BoxBox, TurnedOnItsLikeTouchesAtAnOctagonOfTheRightArea) {
   EXPECT_NEAR(std::abs(area), 2.0 * (std::sqrt(2.0) - 1.0) * 0.04, 1e-15);
 }
 
+TEST(BoxBox, KnowTheAreaOverWhichTheirFacesOverlap) {
+  const Box box{{0.1, 0.15, 0.05}};
+  const auto area = [&](const Pose& X_WB) { return collide_once(box, Pose{}, box, X_WB, 1e-3).face_area; };
+  EXPECT_NEAR(area(at(0.0, 0.0, 0.0995)), 0.2 * 0.3, 1e-12);
+  EXPECT_NEAR(area(at(0.196, 0.02, 0.0995)), 0.004 * 0.28, 1e-12);
+  EXPECT_NEAR(area(at(0.196, 0.298, 0.0995)), 0.004 * 0.002, 1e-12);
+  // A face that leans counts whole, though only its edge is within the margin.
+  EXPECT_NEAR(area(at(0.0, 0.0, 0.103, Vector3(0.0, 0.03, 0.0))), 0.2 * 0.3, 2e-3);
+  // Crossed edges have none.
+  const Pose X_WB = at(0.0, 0.0, 0.205, Vector3(0.25 * std::numbers::pi, 0.0, 0.0));
+  const Box cube{{0.1, 0.1, 0.1}};
+  const Pose X_WA = {exp_rotation(Vector3(0.0, 0.25 * std::numbers::pi, 0.0)), Vector3(0.0, 0.0, -0.07)};
+  const Manifold crossed = collide_once(cube, X_WA, cube, X_WB, 0.02);
+  ASSERT_EQ(crossed.count, 1);
+  EXPECT_EQ(crossed.face_area, 0.0);
+}
+
 TEST(BoxBox, CrossedEdgesTouchAtOnePoint) {
   const Shape cube = Box{{0.1, 0.1, 0.1}};
   // Upper edge of A along x, lower edge of B along y, both boxes on edge.

@@ -64,7 +64,7 @@ TEST(BenchScenes, S3SlidesAtOneMetrePerSecondOnFrictionOfAFifth) {
     const Body& slider = *find_body(s, "slider");
     EXPECT_NEAR(slider.V_WB.linear.norm(), 1.0, 1e-15);
     EXPECT_NEAR(std::atan2(slider.V_WB.linear.y(), slider.V_WB.linear.x()) * 180.0 / M_PI, degrees, 1e-12);
-    EXPECT_EQ(find_contact(s, {0}, {1}).value(), (ContactParams{0.2, 0.0, {}, {}}));
+    EXPECT_EQ(find_contact(s, {0}, {1}).value(), (ContactParams{0.2, 0.0, {}, {}, {}, {}, {}, {}}));
     EXPECT_EQ(slider.X_WB.p.z(), 0.0485);
   }
   const Vector3 g = bench("s3-creep").gravity;

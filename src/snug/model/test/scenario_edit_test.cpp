@@ -69,6 +69,12 @@ TEST(ScenarioEdit, ChangesOneUserOfAnAliasOnly) {
 
 TEST(ScenarioEdit, RefusesWhatTheReaderRefusesAndNamesTheKey) {
   EXPECT_NE(refusal_of("parcel_clearanc", "0.001").find("parcel_clearance"), std::string::npos);
+  const std::string rigid = "contacts.pairs.box/workbench.", soft = "contacts.pairs.box/gripper.";
+  EXPECT_NE(refusal_of(rigid + "travel", "0.001").find("travel without stiffness"), std::string::npos);
+  EXPECT_NE(refusal_of(rigid + "full_area", "0.005").find("full_area without stiffness"), std::string::npos);
+  EXPECT_NE(refusal_of(soft + "travel", "0.001").find("both, or neither"), std::string::npos);
+  EXPECT_NE(refusal_of(soft + "stiffness_beyond", "1e5").find("both, or neither"), std::string::npos);
+  EXPECT_NE(refusal_of(soft + "edge_share", "0.1").find("full_area"), std::string::npos);
   EXPECT_NE(refusal_of("solver.max_sweeps", "-1").find("max_sweeps"), std::string::npos);
   EXPECT_NE(refusal_of("solver.max_sweeps", "nan").find("max_sweeps"), std::string::npos);
   EXPECT_NE(refusal_of("parcels.NOBODY.mass", "1").find("NOBODY"), std::string::npos);

@@ -77,14 +77,18 @@ double normal_mobility(const Row& row, bool turns) {
 
 /// A spring at the middle of the step and a damper between there and its end, so placed that a body that bounces on its
 /// face decays as d says at any time step: docs/theory/contact.md, section 3.
-void fill_compliant_law(const ContactLaw& law, double dt, int points, const Contact& contact, Row& row) {
-  const double k = law.stiffness / points, d = law.damping / points;
-  const double x = law.stiffness * dt * dt * normal_mobility(row, false), y = d * dt * normal_mobility(row, true);
+void fill_compliant_law(const ContactLaw& law, double dt, const Patch& patch, const Contact& contact, Row& row) {
+  const bool is_beyond = law.travel > 0.0 && -contact.phi > law.travel;
+  const double whole = patch.share * (is_beyond ? law.stiffness_beyond : law.stiffness);
+  const double k = whole / patch.contact_count, d = patch.share * law.damping / patch.contact_count;
+  // A spring of this stiffness that bears what it bears at this depth starts here.
+  const double phi = contact.phi + (is_beyond ? law.travel * (1.0 - law.stiffness / law.stiffness_beyond) : 0.0);
+  const double x = whole * dt * dt * normal_mobility(row, false), y = d * dt * normal_mobility(row, true);
   const double theta = y > 1e-3 ? 1.0 / -std::expm1(-y) - 1.0 / y : 0.5 + y / 12.0;
   const double fitted = d * (1.0 + 0.25 * x * std::min(1.0, 4.0 * x / (y * y)));
   const double to_end = 0.25 * k * dt + theta * fitted, to_start = 0.25 * k * dt + (1.0 - theta) * fitted;
   row.gamma = 1.0 / (dt * to_end);
-  row.target = -(k * contact.phi + to_start * contact.approach) / to_end;
+  row.target = -(k * phi + to_start * contact.approach) / to_end;
 }
 
 /// The law of one contact in this step: docs/theory/contact.md, section 3.
@@ -98,7 +102,7 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
   row.is_bounce = false;
   row.is_rigid = law.stiffness <= 0.0;
   if (!row.is_rigid) {
-    fill_compliant_law(law, dt, patch.contact_count, contact, row);
+    fill_compliant_law(law, dt, patch, contact, row);
     return;
   }
   if (contact.phi + dt * mean > 0.0) {  // does not close by itself: may be pushed as far as closing

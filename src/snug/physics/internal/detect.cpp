@@ -111,6 +111,7 @@ void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& 
   pair.p_AB = now.p;
   pair.quat_AB = now.quat;
   pair.margin = margin;
+  pair.face_area = manifold.face_area;
   pair.n_A = a.R_WB.transpose() * manifold.n_AB_W;
   pair.t_A = tangent_of(pair.n_A);
   pair.count = manifold.count;
@@ -161,6 +162,11 @@ bool can_keep(const PairMemory& memory, double reach, const Scratch& work) {
          reach < patch.reach_to;
 }
 
+/// Of the stiffness of a whole face, for boxes whose faces overlap by this much.
+double share_of(const ContactLaw& law, double face_area) {
+  return face_area < law.full_area ? std::max(law.edge_share, face_area / law.full_area) : 1.0;
+}
+
 /// Adds the pair's points that can matter within this step. Returns whether one of them touches.
 bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32_t index, double reach, PairState& pair,
                   Scratch& work) {
@@ -205,6 +211,7 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
   patch.t1 = a.R_WB * pair.t_A;
   patch.t2 = n.cross(patch.t1);
   patch.law = static_cast<std::size_t>(bodies.geom_a.material * model.material_count + bodies.geom_b.material);
+  patch.share = share_of(model.laws[patch.law], pair.face_area);
   patch.belt_W = b.R_WB * bodies.geom_b.surface_velocity - a.R_WB * bodies.geom_a.surface_velocity;
   patch.has_belt = !patch.belt_W.isZero(0.0);
   return touches;

@@ -70,6 +70,7 @@ struct Patch {
   Vector3 n = Vector3::UnitZ();  ///< from A to B, W
   Vector3 t1 = Vector3::UnitX(), t2 = Vector3::UnitY();
   std::size_t law = 0;               ///< in WorldModel::laws
+  double share = 1.0;                ///< of the law's stiffness and damping
   bool has_belt = false;             ///< one of the surfaces runs
   Vector3 belt_W = Vector3::Zero();  ///< of B's surface against A's, beyond the motion of the bodies, m/s
 };

@@ -1,6 +1,7 @@
 // Compliant contacts: decay, frequency and equilibrium of the spring and damper that the law describes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -109,6 +110,93 @@ TEST(CompliantContact, DoesNotRingWhenItsDampingIsFarBeyondTheStep) {
     (void)run.step();
     ASSERT_LT(run.body(1).velocity.z(), 0.05);
   }
+}
+
+/// Soft for 1 mm, then ten times as stiff.
+ContactLaw stiffening() {
+  ContactLaw law{0.2, 0.0, 2e4, 400.0};
+  law.travel = 1e-3;
+  law.stiffness_beyond = 2e5;
+  return law;
+}
+
+TEST(CompliantContact, SinksByItsTravelAndThenOnTheStifferSlope) {
+  for (const double dt : {5e-4, 1e-3, 2e-3}) {
+    SCOPED_TRACE(dt);
+    const double light = 1.0, heavy = 6.0;  // kg: within the travel, and beyond it
+    WorldModel model = on_plane(
+        stiffening(), {box({0.1, 0.1, 0.1}, light, {-1.0, 0.0, 0.05}), box({0.1, 0.1, 0.1}, heavy, {1.0, 0.0, 0.05})});
+    model.settings.dt = dt;
+    Simulation run(model);
+    run.steps(static_cast<int>(1.0 / dt));
+    EXPECT_NEAR(0.05 - run.body(1).p_WBcm.z(), light * 9.81 / 2e4, 1e-7);
+    EXPECT_NEAR(0.05 - run.body(2).p_WBcm.z(), 1e-3 + (heavy * 9.81 - 2e4 * 1e-3) / 2e5, 1e-7);
+  }
+}
+
+TEST(CompliantContact, AddsNoMoreEnergyWhereItStiffensThanASpringTakenForTheOther) {
+  // Undamped and never off the floor: a step that begins on one slope and ends on the other takes the wrong one for at
+  // most v dt, which is worth (k2 - k1) (v dt)^2 / 2 twice in a period.
+  ContactLaw law = stiffening();
+  law.damping = 0.0;
+  const double mass = 4.0;
+  const WorldModel model = on_plane(law, {box({0.1, 0.1, 0.1}, mass, {0.0, 0.0, 0.0495})});
+  Simulation run(model);
+  const auto energy = [&] {
+    const double depth = 0.05 - run.body(1).p_WBcm.z(), more = std::max(0.0, depth - law.travel);
+    const double less = std::min(depth, law.travel);
+    return kinetic_energy(model, run.state) + potential_energy(model, run.state) + 0.5 * law.stiffness * less * less +
+           law.stiffness * law.travel * more + 0.5 * law.stiffness_beyond * more * more;
+  };
+  const double start = energy();
+  double bound = 1e-9, before = 5e-4;
+  for (int i = 0; i < 2000; ++i) {
+    (void)run.step();
+    const double depth = 0.05 - run.body(1).p_WBcm.z(), way = depth - before;
+    if ((depth > law.travel) != (before > law.travel))
+      bound += 0.5 * (law.stiffness_beyond - law.stiffness) * way * way;
+    before = depth;
+    ASSERT_LE(std::abs(energy() - start), bound) << "step " << i;
+  }
+}
+
+TEST(CompliantContact, EdgesCarryInProportionToWhatOfThemOverlaps) {
+  // A plank of 300 x 100 mm across two ledges that carry 4 mm of it at either end; whole faces begin at 2000 mm^2.
+  ContactLaw law{0.2, 0.0, 2e4, 40.0};
+  law.full_area = 2e-3;
+  law.edge_share = 0.05;
+  for (const double width : {4e-3, 10e-3, 50e-3, 0.5e-3}) {
+    SCOPED_TRACE(width);
+    WorldModel model = world(law, law);
+    model.bodies.push_back(fixed_box({0.2, 0.4, 0.1}, {-0.25 + width, 0.0, -0.05}));
+    model.bodies.push_back(fixed_box({0.2, 0.4, 0.1}, {0.25 - width, 0.0, -0.05}));
+    model.bodies.push_back(box({0.3, 0.1, 0.1}, 0.05, {0.0, 0.0, 0.05}));
+    model.finalize();
+    Simulation run(model);
+    run.steps(2000);
+    const double share = std::clamp(width * 0.1 / law.full_area, law.edge_share, 1.0);
+    const double sink = 0.05 * 9.81 / (2.0 * share * law.stiffness);
+    ASSERT_LT(sink, width);  // else the ends would be pressed apart, not down
+    EXPECT_NEAR(0.05 - run.body(2).p_WBcm.z(), sink, 1e-3 * sink);
+  }
+}
+
+TEST(CompliantContact, LetsABoxThatIsTooWideByLessThanItsTravelIntoASlotByItsOwnWeight) {
+  // 0.4 mm too wide on either side, let go 0.1 mm above the rim. Edges that carry like faces keep it up.
+  const auto depth_with = [](double full_area) {
+    ContactLaw law{0.1, 0.0, 2e4, 40.0};
+    law.full_area = full_area;
+    WorldModel model = world(law, law);
+    model.bodies.push_back(fixed_box({0.2, 0.4, 0.2}, {-0.1996, 0.0, -0.1}));
+    model.bodies.push_back(fixed_box({0.2, 0.4, 0.2}, {0.1996, 0.0, -0.1}));
+    model.bodies.push_back(box({0.2, 0.2, 0.1}, 1.0, {0.0, 0.0, 0.0501}));
+    model.finalize();
+    Simulation run(model);
+    run.steps(500);
+    return 0.05 - run.body(2).p_WBcm.z();
+  };
+  EXPECT_LT(depth_with(0.0), 1e-3);
+  EXPECT_GT(depth_with(5e-3), 0.02);
 }
 
 }  // namespace
