@@ -43,12 +43,10 @@ std::string as_json(const std::vector<experiment::Figure>& figures) {
 }
 
 experiment::Figure read_figure(const nlohmann::ordered_json& json) {
-  return {json.at("name").get<std::string>(),
-          json.at("value").is_null() ? std::nan("") : json.at("value").get<double>(),
-          json.at("unit").get<std::string>(),
-          json.at("target").get<std::string>(),
-          json.at("ok").get<bool>(),
-          json.value("skipped", std::string())};
+  return {
+      json.at("name").get<std::string>(), json.at("value").is_null() ? std::nan("") : json.at("value").get<double>(),
+      json.at("unit").get<std::string>(), json.at("target").get<std::string>(),
+      json.at("ok").get<bool>(),          json.value("skipped", std::string())};
 }
 
 std::string as_table(const std::vector<experiment::Figure>& figures) {
@@ -86,8 +84,8 @@ std::vector<experiment::Figure> run_scenes(const std::vector<std::string>& scene
       throw std::runtime_error("bench " + scene + ": " + result.error);
     for (const auto& json : list) figures.push_back(read_figure(json));
   };
-  const study::RunSummary summary =
-      study::run_study(study, [](const std::vector<std::string>& words) { return run_row(words); }, settings);
+  const study::RunSummary summary = study::run_study(
+      study, [](const std::vector<std::string>& words) { return run_row(words); }, settings);
   if (summary.left_out > 0) throw std::runtime_error("processes of the bench were killed");
   const std::string only = options.only.value_or("");
   std::erase_if(figures, [&](const auto& figure) { return !figure.name.starts_with(only); });

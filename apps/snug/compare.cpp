@@ -66,6 +66,11 @@ std::vector<SessionPoint> list_sessions(const CompareOptions& options, const std
                                         const std::vector<std::string>& sequences) {
   const std::size_t plants = static_cast<std::size_t>(options.plants);
   const std::size_t given = sequences.size() - static_cast<std::size_t>(options.random);
+  const std::size_t count = agents.size() * sequences.size() * plants;
+  if (count > kMostSessions) {
+    throw InputError("command line", "sessions", std::to_string(count),
+                     fmt::format("at most {}; `snug study` runs more (docs/studies.md)", kMostSessions));
+  }
   std::vector<SessionPoint> points;
   for (const std::string& agent : agents) {
     for (std::size_t i = 0; i < sequences.size(); ++i) {
@@ -105,6 +110,21 @@ class Printer {
   std::size_t sessions_, count_ = 0;
   bool is_terminal_ = isatty(STDERR_FILENO) != 0;
 };
+
+/// What went wrong, on standard error; the exit code.
+int say_end(const std::vector<CompareRow>& rows, std::size_t sessions, std::uint64_t left_out) {
+  const auto failed = std::ranges::count_if(rows, [](const CompareRow& row) { return !row.failure.empty(); });
+  if (is_interrupted()) std::fprintf(stderr, "snug: interrupted after %zu of %zu sessions\n", rows.size(), sessions);
+  if (failed > 0) {
+    std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", static_cast<int>(failed),
+                 rows.size());
+  }
+  if (left_out > 0) {
+    std::fprintf(stderr, "snug: failed: %llu sessions were left out: their processes were killed, or others do them\n",
+                 static_cast<unsigned long long>(left_out));
+  }
+  return failed == 0 && left_out == 0 && !is_interrupted() ? kSuccess : kRunFailed;
+}
 
 }  // namespace
 
@@ -149,17 +169,7 @@ int run_compare(const CompareOptions& options) {
   if (page) write_file(std::move(*page), format_compare_page(scenario, sessions));
   const bool is_own_container = !options.pack.changes.container && !options.pack.changes.pallet;
   print_now(format_compare_end(form, scenario, rows, is_own_container));
-  const auto failed = std::ranges::count_if(rows, [](const CompareRow& row) { return !row.failure.empty(); });
-  if (is_interrupted()) std::fprintf(stderr, "snug: interrupted after %zu of %zu sessions\n", rows.size(), points.size());
-  if (failed > 0) {
-    std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", static_cast<int>(failed),
-                 rows.size());
-  }
-  if (summary.left_out > 0) {
-    std::fprintf(stderr, "snug: failed: %llu sessions were left out: their processes were killed, or others do them\n",
-                 static_cast<unsigned long long>(summary.left_out));
-  }
-  return failed == 0 && summary.left_out == 0 && !is_interrupted() ? kSuccess : kRunFailed;
+  return say_end(rows, points.size(), summary.left_out);
 }
 
 }  // namespace snug::app

@@ -170,7 +170,7 @@ std::string format_table_end(const model::Scenario& scenario, const std::vector<
     lines += calibration_lines(agent, summarize(rows, agent).calibration);
   }
   if (!lines.empty()) text += "\nsuccess of motions         predicted  motions   predicted   observed\n" + lines;
-  if (!with_references) return text;
+  if (!with_references || sequences.empty()) return text;
   const std::vector<std::string> reporters = reporters_of(scenario, sequences);
   if (reporters.empty()) return text;
   std::size_t width = 22;

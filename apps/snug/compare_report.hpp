@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "snug/study/calibration.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/study/calibration.hpp"
 
 namespace snug::app {
 

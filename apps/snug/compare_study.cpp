@@ -6,13 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "row_values.hpp"
-#include "snug/core/input_error.hpp"
 
 namespace snug::app {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
-constexpr std::size_t kMostSessions = 20000;  // a file of a study has at most 100 000 values
 
 /// The words that all sessions have: options with their values.
 OrderedJson common_words(const PackOptions& pack, std::uint64_t seed) {
@@ -61,10 +59,6 @@ std::vector<PackedBox> read_packed(const OrderedJson& boxes) {
 
 study::Study make_compare_study(const CompareOptions& options, std::uint64_t seed,
                                 const std::vector<SessionPoint>& points) {
-  if (points.size() > kMostSessions) {
-    throw InputError("command line", "sessions", fmt::format("{}", points.size()),
-                     fmt::format("at most {}; `snug study` runs more (docs/studies.md)", kMostSessions));
-  }
   OrderedJson document{{"name", "compare"},
                        {"verb", "pack"},
                        {"scenario", options.pack.scenario},
@@ -72,10 +66,11 @@ study::Study make_compare_study(const CompareOptions& options, std::uint64_t see
                        {"design", "list"}};
   document["factors"] = {{{"option", "--agent"}}, {{"option", "--sequence"}}, {{"option", "--plant-seed"}}};
   if (options.random > 0) document["factors"].push_back({{"option", "--random-seed"}});
-  document["outputs"] = {"executed_percent", "executed_boxes",   "planned_percent",      "planned_boxes",
-                         "items_sent",       "items_as_planned", "percent_before_skips", "boxes_lost",
-                         "recoveries",       "boxes_per_hour",   "stop_reason",          "failure",
-                         "calibration",      "boxes",            "decision_seconds_median"};
+  document["outputs"] = {"executed_percent",     "executed_boxes", "planned_percent",
+                         "planned_boxes",        "items_sent",     "items_as_planned",
+                         "percent_before_skips", "boxes_lost",     "recoveries",
+                         "boxes_per_hour",       "stop_reason",    "failure",
+                         "calibration",          "boxes",          "decision_seconds_median"};
   std::string text = document.dump(2);
   text.erase(text.size() - 2);  // "\n}": the points follow, a line each
   text += ",\n  \"points\": [";

@@ -18,8 +18,10 @@ struct SessionPoint {
   bool is_random = false;  ///< the sequence is drawn
 };
 
-/// Its text is a file of a study (docs/studies.md). `seed`: of the planner. Throws InputError for more sessions than
-/// a comparison takes.
+/// The file of a study has at most 100 000 values.
+inline constexpr std::size_t kMostSessions = 20000;
+
+/// Its text is a file of a study (docs/studies.md). `seed`: of the planner; at most kMostSessions points.
 [[nodiscard]] study::Study make_compare_study(const CompareOptions& options, std::uint64_t seed,
                                               const std::vector<SessionPoint>& points);
 

@@ -19,8 +19,8 @@ struct PackOptions {
   std::string agent = "contact-aware";
   std::optional<std::uint64_t> seed;
   std::optional<std::uint64_t> random_seed;  ///< the sequence is drawn: every box of the scenario, in random order
-  std::string plant = "simulated";  ///< or where one is served: click://HOST:PORT, click+ipc://PATH
-  double patience = 10.0;           ///< s, for its answers
+  std::string plant = "simulated";           ///< or where one is served: click://HOST:PORT, click+ipc://PATH
+  double patience = 10.0;                    ///< s, for its answers
   std::uint64_t plant_seed = 1;
   double decision_time = packing::PackingSettings{}.decision_time;  ///< s
   std::optional<int> threads;                                       ///< absent: all cores

@@ -105,8 +105,7 @@ int run_repeatedly(const SimulateOptions& options, const model::Scenario& scenar
   print(options.json ? format_json(runs) : format_table(runs));
   const auto failed = std::ranges::count_if(runs, [](const RepeatedRun& run) { return !run.failure.empty(); });
   if (failed == 0) return kSuccess;
-  std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", static_cast<int>(failed),
-               runs.size());
+  std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", static_cast<int>(failed), runs.size());
   return kRunFailed;
 }
 
@@ -115,8 +114,8 @@ int run_repeatedly(const SimulateOptions& options, const model::Scenario& scenar
 int run_simulate(const SimulateOptions& options) {
   model::Scenario scenario = load_with_overrides(options);
   cell::RunOptions run_options = make_run_options(options, scenario);
-  for (const auto& [is_given, option] : {std::pair(options.monte_carlo.has_value(), "--monte-carlo"),
-                                         std::pair(options.draw.has_value(), "--draw")}) {
+  for (const auto& [is_given, option] :
+       {std::pair(options.monte_carlo.has_value(), "--monte-carlo"), std::pair(options.draw.has_value(), "--draw")}) {
     if (is_given && !run_options.program) throw InputError("command line", option, "no --program", "a program to run");
   }
   if (options.monte_carlo) return run_repeatedly(options, scenario, run_options.threads);

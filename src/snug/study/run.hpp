@@ -1,5 +1,5 @@
-// run_study: the rows that are missing, each in a process of its own, as many at a time as asked for. The one way in which
-// this program runs rows: studies, comparisons, repeated runs and benches.
+// run_study: the rows that are missing, each in a process of its own, as many at a time as asked for. The one way in
+// which this program runs rows: studies, comparisons, repeated runs and benches.
 #pragma once
 
 #include <functional>
@@ -37,8 +37,9 @@ struct RunSummary {
 };
 
 /// Runs what the tables of `folder` lack. A row whose process somebody ends (SIGKILL, SIGTERM, SIGINT, SIGHUP) is tried
-/// three times and then left for another call; any other end is its result. When the very first row of a study cannot be used (exit code 2)
-/// nothing is written and InputError says what the row said. Throws OutputError when a table cannot be written.
+/// three times and then left for another call; any other end is its result. When the very first row of a study cannot
+/// be used (exit code 2) nothing is written and InputError says what the row said. Throws OutputError when a table
+/// cannot be written.
 [[nodiscard]] RunSummary run_study(const Study& study, const Folder& folder, const Verb& verb,
                                    const RunSettings& settings);
 /// The same without tables: every row is run and told.
