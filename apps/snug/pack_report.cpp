@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "snug/study/calibration.hpp"
+
 namespace snug::app {
 namespace {
 
