@@ -6,6 +6,7 @@
 #include <cmath>
 #include <new>
 
+#include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/panel_kernels.hpp"
 
 namespace snug::physics::internal {
@@ -39,23 +40,30 @@ void subtract_transposed(int rows, int columns, const double* a, std::ptrdiff_t 
 /// Inverse of a block by Gauss and Jordan's elimination in place. Where contacts do not slide every pivot is at least
 /// 1, what the identity brings in: only below half of that are rows exchanged.
 Matrix6 invert(const BlockView& block) {
-  alignas(16) double m[6][6];
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) m[i][j] = block(i, j);
+  Pair m[6][3];  // by columns
+  for (int j = 0; j < 6; ++j) {
+    for (int i = 0; i < 3; ++i) m[j][i] = load(&block.coeffRef(2 * i, j));
   }
+#pragma GCC unroll 6
   for (int k = 0; k < 6; ++k) {
-    if (!(std::abs(m[k][k]) > 0.5)) return Matrix6(block).inverse();
-    const double scale = 1.0 / m[k][k];
-    m[k][k] = 1.0;
-    for (int j = 0; j < 6; ++j) m[k][j] *= scale;
-    for (int i = 0; i < 6; ++i) {
-      if (i == k) continue;
-      const double factor = m[i][k];
-      m[i][k] = 0.0;
-      for (int j = 0; j < 6; ++j) m[i][j] -= factor * m[k][j];
+    const double pivot = m[k][k / 2][k % 2];
+    if (!(std::abs(pivot) > 0.5)) return Matrix6(block).inverse();
+    const double scale = 1.0 / pivot;
+    m[k][k / 2][k % 2] = 1.0;
+    for (Pair& part : m[k]) part *= Pair{scale, scale};
+#pragma GCC unroll 6
+    for (int j = 0; j < 6; ++j) {
+      if (j == k) continue;
+      const double factor = m[j][k / 2][k % 2];
+      m[j][k / 2][k % 2] = 0.0;
+      for (int i = 0; i < 3; ++i) m[j][i] -= Pair{factor, factor} * m[k][i];
     }
   }
-  return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(m[0]);
+  Matrix6 inverse;
+  for (int j = 0; j < 6; ++j) {
+    for (int i = 0; i < 3; ++i) store(&inverse(2 * i, j), m[j][i]);
+  }
+  return inverse;
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/physics/internal/panel_kernels.hpp"
+
 namespace snug::physics::internal {
 namespace {
 
@@ -20,6 +22,8 @@ constexpr double kLeastFlipPenalty = 1.0;
 constexpr double kSolvedPenalty = 3e4;
 constexpr double kSolvedGrowth = 30.0;
 constexpr int kMaxCycles = 12;  ///< while each three halve the residual
+
+constexpr int kMaxPatchRows = 8;  ///< whose products are made at once
 
 constexpr double kFirstPenalty = 30.0;  ///< of the augmented Lagrangian, in units of 1 / W
 constexpr double kLeastPenalty = 0.3;
@@ -40,26 +44,27 @@ constexpr Care kThorough{0.01, 6, 300, 0.0};  ///< where that fails
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// M += sum over the three rows of a^T c.
-void add_product(const PanelBlock& M, const double (&left)[3][6], const double (&right)[3][6]) {
-  const auto& a = M.is_transposed ? right : left;
-  const auto& c = M.is_transposed ? left : right;
-  double* column = M.data;
-  for (int j = 0; j < 6; ++j, column += M.stride) {
-    const Pair c0{c[0][j], c[0][j]}, c1{c[1][j], c[1][j]}, c2{c[2][j], c[2][j]};
-    for (int k = 0; k < 6; k += 2) {
-      store(column + k, load(column + k) + (load(a[0] + k) * c0 + load(a[1] + k) * c1 + load(a[2] + k) * c2));
+/// M += the block whose columns lie behind each other at `stride`.
+void add_block(const PanelBlock& M, const double* block, std::ptrdiff_t stride) {
+  if (M.is_transposed) {
+    for (int j = 0; j < 6; ++j, block += stride) {
+      for (int i = 0; i < 6; ++i) M.data[j + i * M.stride] += block[i];
     }
+    return;
+  }
+  double* column = M.data;
+  for (int j = 0; j < 6; ++j, column += M.stride, block += stride) {
+    for (int i = 0; i < 6; i += 2) store(column + i, load(column + i) + load(block + i));
   }
 }
 
 /// slope * rows.
-void multiply(const double (&slope)[9], const double (&rows)[3][6], double (&out)[3][6]) {
+void multiply(const double (&slope)[9], const double (&rows)[3][6], double* out) {
   for (int i = 0; i < 3; ++i) {
     const Pair s0{slope[3 * i], slope[3 * i]}, s1{slope[3 * i + 1], slope[3 * i + 1]},
         s2{slope[3 * i + 2], slope[3 * i + 2]};
     for (int k = 0; k < 6; k += 2) {
-      store(out[i] + k, load(rows[0] + k) * s0 + load(rows[1] + k) * s1 + load(rows[2] + k) * s2);
+      store(out + 6 * i + k, load(rows[0] + k) * s0 + load(rows[1] + k) * s1 + load(rows[2] + k) * s2);
     }
   }
 }
@@ -130,6 +135,7 @@ class IslandProblem {
   void measure();
   void restore_best();
   void assemble();
+  void add_patch(const NewtonPatch& patch);
   void solve_system();
   void take_linear_impulses();
 
@@ -163,24 +169,34 @@ bool IslandProblem::start() {
     }
   }
   work_.solver.begin(static_cast<int>(work_.active.size()));
+  work_.patches.clear();
   const Row* last = nullptr;
-  int connection = -1;
   each_row([&](Row& row, NewtonRow& newton) {
     const double d[3] = {-row.lambda[0], -row.lambda[1], -row.lambda[2]};
     apply(row, d, work_.u_free.data());
-    const bool is_pair = row.ia >= 0 && row.ib >= 0;
-    if (is_pair && (last == nullptr || last->ia != row.ia || last->ib != row.ib)) {
-      connection = work_.solver.connect(work_.local[at(row.ia)], work_.local[at(row.ib)]);
-      last = &row;
+    if (last == nullptr || last->ia != row.ia || last->ib != row.ib || work_.patches.back().count == kMaxPatchRows) {
+      const bool is_pair = row.ia >= 0 && row.ib >= 0;
+      const int connection = is_pair ? work_.solver.connect(work_.local[at(row.ia)], work_.local[at(row.ib)]) : -1;
+      work_.patches.push_back({static_cast<int>(&row - first_), 0, connection, {}, {}, {}, {}});
     }
-    newton.connection = is_pair ? connection : -1;
+    ++work_.patches.back().count;
+    last = &row;
     newton.penalty = kPenalty;
     newton.status = ContactStatus::Unknown;
     std::copy_n(row.lambda, 3, newton.best);
     row.is_changed = true;
   });
   residual_ = best_ = worst_residual(first_, end_, u_);
-  return work_.solver.analyze();
+  if (!work_.solver.analyze()) return false;
+  for (NewtonPatch& patch : work_.patches) {
+    const Row& row = first_[patch.first];
+    if (row.ia >= 0) patch.aa = work_.solver.diagonal(work_.local[at(row.ia)]);
+    if (row.ib >= 0) patch.bb = work_.solver.diagonal(work_.local[at(row.ib)]);
+    if (patch.connection < 0) continue;
+    const BlockSolver::Coupling coupling = work_.solver.coupling(patch.connection);
+    patch.ab = coupling.ij, patch.ba = coupling.ji;
+  }
+  return true;
 }
 
 /// u from the impulses of the rows.
@@ -205,27 +221,41 @@ void IslandProblem::restore_best() {
 
 /// I + sum (J T)^T slope (J T), in blocks of the island's bodies.
 void IslandProblem::assemble() {
-  BlockSolver& solver = work_.solver;
-  solver.set_identity();
-  each_row([&](const Row& row, const NewtonRow& newton) {
-    const double(&slope)[9] = newton.law.slope;
-    if (slope[0] <= 0.0) return;
-    alignas(16) double force[3][6];
-    if (newton.connection >= 0) {
-      const BlockSolver::Coupling coupling = solver.coupling(newton.connection);
-      multiply(slope, row.a, force);
-      add_product(solver.diagonal(work_.local[at(row.ia)]), row.a, force);
-      add_product(coupling.ji, row.b, force);
-      multiply(slope, row.b, force);
-      add_product(solver.diagonal(work_.local[at(row.ib)]), row.b, force);
-      add_product(coupling.ij, row.a, force);
-      return;
+  work_.solver.set_identity();
+  for (const NewtonPatch& patch : work_.patches) add_patch(patch);
+  work_.solver.factorize();
+}
+
+/// What the contacts of one pair of bodies bring in: [a b]^T slope a and [a b]^T slope b, each one product.
+void IslandProblem::add_patch(const NewtonPatch& patch) {
+  alignas(64) double left[3 * kMaxPatchRows * 12], force_a[3 * kMaxPatchRows * 6], force_b[3 * kMaxPatchRows * 6];
+  alignas(64) double product[12 * 6];
+  const Row* row = first_ + patch.first;
+  const NewtonRow* newton = work_.rows.get() + patch.first;
+  const bool is_pair = patch.connection >= 0;
+  const int width = is_pair ? 12 : 6;
+  int depth = 0;
+  for (int i = 0; i < patch.count; ++i, ++row, ++newton) {
+    const double(&slope)[9] = newton->law.slope;
+    if (slope[0] <= 0.0) continue;
+    const double(&own)[3][6] = row->ia >= 0 ? row->a : row->b;
+    double* to = left + depth * width;
+    for (int k = 0; k < 3; ++k, to += width) {
+      std::copy_n(own[k], 6, to);
+      if (is_pair) std::copy_n(row->b[k], 6, to + 6);
     }
-    const double(&rows)[3][6] = row.ia >= 0 ? row.a : row.b;
-    multiply(slope, rows, force);
-    add_product(solver.diagonal(work_.local[at(std::max(row.ia, row.ib))]), rows, force);
-  });
-  solver.factorize();
+    multiply(slope, own, force_a + 6 * depth);
+    if (is_pair) multiply(slope, row->b, force_b + 6 * depth);
+    depth += 3;
+  }
+  if (depth == 0) return;
+  set_product({width, depth, left, width, force_a, 1, 6, product, width});
+  if (!is_pair) return add_block(first_[patch.first].ia >= 0 ? patch.aa : patch.bb, product, width);
+  add_block(patch.aa, product, width);
+  add_block(patch.ba, product + 6, width);
+  set_product({width, depth, left, width, force_b, 1, 6, product, width});
+  add_block(patch.ab, product, width);
+  add_block(patch.bb, product + 6, width);
 }
 
 /// step = A^-1 error.
@@ -390,6 +420,7 @@ NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity)
   for (std::vector<double>* v : {&u, &u_free, &u_start, &error, &step, &right}) v->assign(6 * bodies, 0.0);
   local.assign(bodies, -1);
   active.reserve(bodies);
+  patches.reserve(row_capacity);
 }
 
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {

@@ -25,8 +25,14 @@ struct NewtonRow {
   double center[3];  ///< N s, about which the augmented law is taken
   double best[3];    ///< N s, with the least residual so far
   double penalty;    ///< of the generalized step, in units of 1 / W
-  int connection;    ///< of its two bodies in the linear system, or -1
   ContactStatus status;
+};
+
+/// Rows behind each other with the same bodies, and where these stand in the linear system.
+struct NewtonPatch {
+  int first = 0, count = 0;
+  int connection = -1;  ///< of the two bodies, or -1 when only one moves
+  PanelBlock aa, bb, ab, ba;
 };
 
 struct NewtonScratch {
@@ -38,6 +44,7 @@ struct NewtonScratch {
   std::vector<double> right;                            ///< 6 per body of the island
   BlockSolver solver;
   std::unique_ptr<NewtonRow[]> rows;
+  std::vector<NewtonPatch> patches;
 };
 
 /// Improves lambda of the rows and u (consistent with each other) until the residual is accepted, or keeps the best.
