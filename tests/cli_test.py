@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import urllib.parse
 import urllib.request
 from pathlib import Path
 
@@ -1073,6 +1074,18 @@ class OtherCells(unittest.TestCase):
         words = html.unescape(re.search(r"<code>snug (.*?) -o run.h5<br>", text).group(1))
         packed = json.loads(snug(*shlex.split(words), "--json").stdout)
         self.assertEqual((packed["executed_boxes"], packed["executed_percent"]), (rows[0]["executed_boxes"], rows[0]["executed_percent"]))
+
+    def test_comparison_links_its_page_to_the_runs(self):
+        page, runs = self.folder / "compare.html", self.folder / "the runs"
+        snug("compare", CELL, "--sequences", "1", "--agents", "margin", "--plants", 2, *self.QUICK, "-o", page, "--runs", runs)
+        links = re.findall(r'<a href="(.*?)">open this run</a>', page.read_text(encoding="utf-8"))
+        self.assertEqual(len(links), 2)
+        for link in links:
+            report = self.folder / urllib.parse.unquote(link)
+            self.assertIn("<script", report.read_text(encoding="utf-8"))
+            self.assertTrue(report.with_suffix(".h5").exists())
+        (self.folder / "file").write_text("")
+        self.assert_refused(snug("compare", CELL, "--sequences", "1", "--agents", "margin", *self.QUICK, "--runs", self.folder / "file"), "--runs")
 
     def test_the_words_that_repeat_a_random_sequence_draw_it_too(self):
         page = self.folder / "it's random.html"

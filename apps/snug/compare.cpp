@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <sstream>
 
 #include "compare_page.hpp"
@@ -14,6 +15,7 @@
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "python_agent.hpp"
+#include "report.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
@@ -111,6 +113,23 @@ class Printer {
   bool is_terminal_ = isatty(STDERR_FILENO) != 0;
 };
 
+/// The folder of --runs, there before the first session.
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw InputError("command line", "--runs", "'" + folder + "': " + error.message(), "a folder");
+}
+
+/// The report page of a session's recording, beside it; nothing where nothing was sent, and so nothing recorded.
+std::string make_report(const std::string& recording, const CompareRow& row) {
+  if (row.items_sent == 0 || !std::filesystem::exists(recording)) return {};
+  ReportOptions report;
+  report.recordings = {recording};
+  report.output = std::filesystem::path(recording).replace_extension(".html").string();
+  (void)run_report(report);
+  return report.output;
+}
+
 /// What went wrong, on standard error; the exit code.
 int say_end(const std::vector<CompareRow>& rows, std::size_t sessions, std::uint64_t left_out) {
   const auto failed = std::ranges::count_if(rows, [](const CompareRow& row) { return !row.failure.empty(); });
@@ -140,6 +159,7 @@ int run_compare(const CompareOptions& options) {
   std::optional<OutputFile> page =
       reserve(files_of(options.pack.scenario, options.pack.changes, scenario), options.page);
   std::optional<study::Folder> folder;
+  if (options.runs) make_folder(*options.runs);
   if (options.dir) folder.emplace(study, *options.dir, true);
   catch_interrupts();
   std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %d plants\n", points.size(), agents.size(),
@@ -157,6 +177,10 @@ int run_compare(const CompareOptions& options) {
       throw InputError(study.source, "row " + std::to_string(result.row), result.error, "a session that can be run");
     sessions.push_back(read_session(scenario, study, points[result.row], seed, result));
     printer.add(sessions.back().row, said);
+    if (options.runs) {
+      const std::string recording = recording_of(options, result.row, points[result.row]);
+      sessions.back().report = make_report(recording, sessions.back().row);
+    }
   };
   const study::Verb pack = [each = threads / settings.processes](const std::vector<std::string>& words) {
     return run_row(words, each);
@@ -166,7 +190,7 @@ int run_compare(const CompareOptions& options) {
 
   std::vector<CompareRow> rows;
   for (const CompareSession& session : sessions) rows.push_back(session.row);
-  if (page) write_file(std::move(*page), format_compare_page(scenario, sessions));
+  if (page) write_file(std::move(*page), format_compare_page(scenario, sessions, *options.page));
   const bool is_own_container = !options.pack.changes.container && !options.pack.changes.pallet;
   print_now(format_compare_end(form, scenario, rows, is_own_container));
   return say_end(rows, points.size(), summary.left_out);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -146,7 +147,19 @@ std::string plan_view(const Vector3& inner_size, const std::vector<BoxOutline>& 
   return svg + "</svg>";
 }
 
-std::string card(const Vector3& inner_size, const CompareSession& session) {
+/// A file as a link from another: relative, with what a URL cannot hold as %XX.
+std::string link_to(const std::filesystem::path& file, const std::filesystem::path& from) {
+  std::string url;
+  const std::filesystem::path folder = std::filesystem::absolute(from).parent_path();
+  for (const char c : std::filesystem::absolute(file).lexically_relative(folder).generic_string()) {
+    const bool is_plain =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("/.-_").find(c) != std::string_view::npos;
+    url += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return url;
+}
+
+std::string card(const Vector3& inner_size, const CompareSession& session, const std::filesystem::path& page) {
   const CompareRow& row = session.row;
   std::string text = fmt::format(
       "<div class=\"card\">{}<b>{:.2f} %</b> {} boxes<br>{}, plant {}<br><small>{} of {} sent as planned, {} lost, {} "
@@ -154,6 +167,10 @@ std::string card(const Vector3& inner_size, const CompareSession& session) {
       plan_view(inner_size, session.boxes), row.executed_percent, row.executed_boxes, escape_markup(row.agent),
       row.plant_seed, row.items_as_planned, row.items_sent, row.boxes_lost, row.recoveries,
       escape_markup(row.failure.empty() ? row.stop_reason : row.failure));
+  if (!session.report.empty()) {
+    return text + fmt::format("<p><a href=\"{}\">open this run</a></p><code>{}</code></div>",
+                              link_to(session.report, page), escape_markup(session.command));
+  }
   return text + "<details><summary>see this run</summary><code>" + escape_markup(session.command) +
          " -o run.h5<br>snug report run.h5 -o run.html</code></details></div>";
 }
@@ -188,7 +205,8 @@ std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario, const std
   return outlines;
 }
 
-std::string format_compare_page(const model::Scenario& scenario, const std::vector<CompareSession>& sessions) {
+std::string format_compare_page(const model::Scenario& scenario, const std::vector<CompareSession>& sessions,
+                                const std::filesystem::path& page) {
   const std::vector<Group> agents = group_by(sessions, [](const CompareRow& row) { return row.agent; });
   std::string text = fmt::format(
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: comparison</title><style>{1}</style>"
@@ -206,7 +224,7 @@ std::string format_compare_page(const model::Scenario& scenario, const std::vect
   for (const Group& sequence : group_by(sessions, [](const CompareRow& row) { return row.sequence; })) {
     text += "<h3>Sequence " + escape_markup(sequence.label) + "</h3><div class=\"cards\">";
     for (const CompareSession& session : sessions) {
-      if (session.row.sequence == sequence.label) text += card(inner_size, session);
+      if (session.row.sequence == sequence.label) text += card(inner_size, session, page);
     }
     text += "</div>";
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,18 +23,21 @@ struct PackedBox {
   Pose X_TP;  ///< in the container
 };
 
-/// One session: its row, what it left in the container, the `snug pack` that repeats it.
+/// One session: its row, what it left in the container, the `snug pack` that repeats it, its report page.
 struct CompareSession {
   CompareRow row;
   std::vector<BoxOutline> boxes;
   std::string command;
+  std::string report;  ///< file; empty: none was made
 };
 
 /// What is seen of them from above, the lowest first.
 [[nodiscard]] std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario,
                                                     const std::vector<PackedBox>& boxes);
 
+/// `page`: the file that it will be; links to reports start at its folder.
 [[nodiscard]] std::string format_compare_page(const model::Scenario& scenario,
-                                              const std::vector<CompareSession>& sessions);
+                                              const std::vector<CompareSession>& sessions,
+                                              const std::filesystem::path& page);
 
 }  // namespace snug::app

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "row_values.hpp"
@@ -57,6 +60,13 @@ std::vector<PackedBox> read_packed(const OrderedJson& boxes) {
 
 }  // namespace
 
+std::string recording_of(const CompareOptions& options, std::size_t index, const SessionPoint& point) {
+  std::string name = fmt::format("{:03}-{}-{}-plant-{}.h5", index + 1, point.agent, point.sequence, point.plant_seed);
+  std::ranges::replace_if(
+      name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.'; }, '-');
+  return (std::filesystem::path(*options.runs) / name).string();
+}
+
 study::Study make_compare_study(const CompareOptions& options, std::uint64_t seed,
                                 const std::vector<SessionPoint>& points) {
   OrderedJson document{{"name", "compare"},
@@ -66,6 +76,7 @@ study::Study make_compare_study(const CompareOptions& options, std::uint64_t see
                        {"design", "list"}};
   document["factors"] = {{{"option", "--agent"}}, {{"option", "--sequence"}}, {{"option", "--plant-seed"}}};
   if (options.random > 0) document["factors"].push_back({{"option", "--random-seed"}});
+  if (options.runs) document["factors"].push_back({{"option", "--record"}});
   document["outputs"] = {"executed_percent",     "executed_boxes", "planned_percent",
                          "planned_boxes",        "items_sent",     "items_as_planned",
                          "percent_before_skips", "boxes_lost",     "recoveries",
@@ -78,6 +89,7 @@ study::Study make_compare_study(const CompareOptions& options, std::uint64_t see
     OrderedJson json{
         {"agent", point.agent}, {"sequence", point.sequence}, {"plant-seed", std::to_string(point.plant_seed)}};
     if (options.random > 0) json["random-seed"] = point.is_random ? std::to_string(options.random_seed) : "false";
+    if (options.runs) json["record"] = recording_of(options, static_cast<std::size_t>(&point - points.data()), point);
     text += (&point == points.data() ? "\n    " : ",\n    ") + json.dump();
   }
   return study::parse_study(text + "\n  ]\n}\n", "compare");

@@ -21,6 +21,9 @@ struct SessionPoint {
 /// The file of a study has at most 100 000 values.
 inline constexpr std::size_t kMostSessions = 20000;
 
+/// The recording that --runs leaves of a session: its number, then what it is of.
+[[nodiscard]] std::string recording_of(const CompareOptions& options, std::size_t index, const SessionPoint& point);
+
 /// Its text is a file of a study (docs/studies.md). `seed`: of the planner; at most kMostSessions points.
 [[nodiscard]] study::Study make_compare_study(const CompareOptions& options, std::uint64_t seed,
                                               const std::vector<SessionPoint>& points);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
@@ -105,7 +106,9 @@ Factor read_factor(const Reader& reader, const YAML::Node& node, Design design) 
   if (!factor.option.empty()) {
     expect_option(reader, node, factor.option);
     for (const char* own : {"--set", "--json", "-o", "--record"}) {
-      if (factor.option == own) reader.refuse(node, "option", factor.option, "another option; `set` for scenario keys");
+      const bool is_named_by_points = design == Design::List && factor.option == "--record";
+      if (factor.option == own && !is_named_by_points)
+        reader.refuse(node, "option", factor.option, "another option; `set` for scenario keys");
     }
   }
   std::string plain = factor.option;
@@ -151,6 +154,19 @@ void read_points(const Reader& reader, const YAML::Node& root, Study& study) {
     study.points.push_back(std::move(values));
   }
   study.point_count = study.points.size();
+}
+
+/// Rows leave no files but recordings, each one of its own: two rows never write the same.
+void check_recordings(const Reader& reader, const YAML::Node& root, const Study& study) {
+  const auto found = std::ranges::find(study.factors, "--record", &Factor::option);
+  if (found == study.factors.end()) return;
+  const std::size_t column = static_cast<std::size_t>(found - study.factors.begin());
+  std::set<std::string> files;
+  for (const std::vector<std::string>& point : study.points) {
+    if (point[column] == "false") continue;
+    if (study.repeat > 1 || !files.insert(point[column]).second)
+      reader.refuse(root["points"], found->name, "'" + point[column] + "' for more than one row", "a file of its own");
+  }
 }
 
 void read_design(const Reader& reader, const YAML::Node& root, Study& study) {
@@ -257,6 +273,7 @@ Study read(const Reader& reader, const YAML::Node& root) {
     reader.refuse(root["seed_by"], "seed_by", "'" + seed_by + "'", "row or repeat");
   study.seed_by = seed_by == "row" ? SeedBy::Row : SeedBy::Repeat;
   read_design(reader, root, study);
+  check_recordings(reader, root, study);
   if (study.point_count * static_cast<std::uint64_t>(study.repeat) > kMostRows)
     reader.refuse(root, "repeat", std::to_string(study.repeat), "at most 1e7 rows in all");
   read_options(reader, root, study);

@@ -122,6 +122,16 @@ TEST(Design, ListHasThePointsThatAreListed) {
   EXPECT_EQ(row_of(study, 1).values, (std::vector<std::string>{"manual", "[0, 0, -9.8]"}));
 }
 
+TEST(Design, PointsOfAListCanNameTheirRecordings) {
+  const Study study = parse_study(
+      "verb: pack\ndesign: list\nfactors: [{option: --record}]\n"
+      "points: [{record: a.h5}, {record: false}, {record: false}]\n",
+      "study.yaml");
+  EXPECT_EQ(command_of(study, row_of(study, 0)),
+            "snug pack --record a.h5 --seed " + std::to_string(row_of(study, 0).seed));
+  EXPECT_EQ(command_of(study, row_of(study, 1)).find("--record"), std::string::npos);
+}
+
 TEST(Design, FilesThatAreNoStudiesAreRefusedWithTheirLine) {
   for (const auto& [text, word] : std::vector<std::pair<std::string, std::string>>{
            {"", ""},
@@ -145,6 +155,11 @@ TEST(Design, FilesThatAreNoStudiesAreRefusedWithTheirLine) {
            {"verb: pack\nfactors: [{option: --exit, values: [1]}]\n", "exit"},
            {"verb: pack\nfactors: [{option: --a, set: b, values: [1]}]\n", "either"},
            {"verb: pack\nfactors: [{option: --a}]\n", "values"},
+           {"verb: pack\nfactors: [{option: --record, values: [a.h5, b.h5]}]\n", "--record"},
+           {"verb: pack\ndesign: list\nfactors: [{option: --record}]\npoints: [{record: a.h5}, {record: a.h5}]\n",
+            "its own"},
+           {"verb: pack\nrepeat: 2\ndesign: list\nfactors: [{option: --record}]\npoints: [{record: a.h5}]\n",
+            "its own"},
            {"verb: pack\nfactors: [{option: --a, from: 1, to: 2}]\n", "grid"},
            {"verb: pack\nfactors: [{option: --a, values: []}]\n", "values"},
            {"verb: pack\nfactors: [{option: --a, values: [1]}, {option: --a, values: [2]}]\n", "again"},
