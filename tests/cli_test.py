@@ -1074,18 +1074,21 @@ class OtherCells(unittest.TestCase):
         packed = json.loads(snug(*shlex.split(words), "--json").stdout)
         self.assertEqual((packed["executed_boxes"], packed["executed_percent"]), (rows[0]["executed_boxes"], rows[0]["executed_percent"]))
 
-    def test_the_words_that_repeat_a_random_sequence_draw_it_first(self):
+    def test_the_words_that_repeat_a_random_sequence_draw_it_too(self):
         page = self.folder / "it's random.html"
         words = ("compare", CELL, "--container", "220x220x120", "--random", 2, "--random-seed", 3, "--agents", "margin", *self.QUICK)
         rows = json.loads(snug(*words, "--json", "-o", page).stdout)["rows"]
         codes = re.findall(r"<code>(.*?) -o run.h5<br>", page.read_text(encoding="utf-8"))
         self.assertEqual(len(codes), 2)
         for row, code in zip(rows, codes):
-            draw, pack = (shlex.split(html.unescape(line)) for line in code.split("<br>"))
-            drawn = self.folder / f"{row['sequence']}.yaml"
-            snug(*[drawn if word == "random.yaml" else word for word in draw[1:]])
-            packed = json.loads(snug(*[drawn if word == "random.yaml" else word for word in pack[1:]], "--json").stdout)
+            packed = json.loads(snug(*shlex.split(html.unescape(code))[1:], "--json").stdout)
             self.assertEqual((packed["sequence"], packed["executed_percent"]), (row["sequence"], row["executed_percent"]))
+        drawn = self.folder / "random.yaml"
+        snug("items", "sequence", CELL, "--all", "--name", "random", "--sequences", 2, "--seed", 3, "-o", drawn)
+        packed = json.loads(snug("pack", CELL, "--items", drawn, "--container", "220x220x120", "--sequence", "random-2", "--agent", "margin",
+                                 "--plant-seed", rows[1]["plant_seed"], *self.QUICK, "--json").stdout)
+        self.assertEqual(packed["executed_percent"], rows[1]["executed_percent"], "the same as written to a file")
+        self.assert_refused(snug("pack", CELL, "--sequence", "1", "--random-seed", 3, *self.QUICK), "a sequence 1")
 
     def test_nothing_sent_is_nothing_as_planned(self):
         page = self.folder / "none.html"

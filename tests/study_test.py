@@ -166,6 +166,92 @@ class Study(Scratch):
             self.assertIn(word, self.snug("pack", scenario, "--sequence", "1", "--agent", agent, *words, code=2).stderr)
 
 
+class Rows(Scratch):
+    """The program's own comparisons are studies: the same runner, the same promises."""
+
+    CELL = ROOT / "scenarios" / "box-demonstrator.yaml"
+    QUICK = ("--container", "220x220x120", "--samples", "0", "--decision-time", "0.01", "--robot", "none")
+    COMPARE = ("compare", CELL, "--sequences", "1,2", "--agents", "margin,manual", "--plants", "2", *QUICK)
+
+    @staticmethod
+    def without_clock(text):
+        rows = list(csv.DictReader(text.splitlines()))
+        for row in rows:
+            del row["decision_seconds_median"]
+        return rows
+
+    def test_comparison_has_the_same_rows_at_any_number_of_threads(self):
+        one, three = (self.without_clock(self.snug(*self.COMPARE, "--csv", "--threads", threads).stdout) for threads in (1, 3))
+        self.assertEqual(len(one), 8)
+        self.assertEqual(one, three)
+        self.assertEqual([(row["agent"], row["sequence"], row["plant_seed"]) for row in one[:3]],
+                         [("margin", "1", "1"), ("margin", "1", "2"), ("margin", "2", "1")])
+
+    def test_comparison_in_a_folder_goes_on_after_a_kill_and_is_a_study(self):
+        words = (*self.COMPARE, "--csv", "--dir", "kept")
+        study = self.folder / "kept" / "study.yaml"
+
+        def done():
+            return json.loads(self.snug("study", "status", study, "--dir", "kept", "--json").stdout)["done"]
+
+        process = subprocess.Popen([SNUG, *map(str, words), "--threads", "1"], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        end = time.monotonic() + 100
+        while not study.exists() or done() < 2:
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.05)
+        process.kill()
+        process.wait()
+        self.assertLess(done(), 8)
+        whole = self.snug(*words).stdout
+        self.assertEqual(self.without_clock(whole), self.without_clock(self.snug(*self.COMPARE, "--csv").stdout))
+        self.assertEqual(self.snug(*words).stdout, whole, "nothing is done again: not even the clock differs")
+        self.snug("study", "merge", study, "--dir", "kept", "-o", "merged.csv")
+        merged = list(csv.DictReader((self.folder / "merged.csv").read_text().splitlines()))
+        self.assertEqual([(row["agent"], row["sequence"], row["plant-seed"]) for row in merged],
+                         [(row["agent"], row["sequence"], row["plant_seed"]) for row in csv.DictReader(whole.splitlines())])
+        self.assertEqual(json.loads(self.snug("study", study, "--dir", "kept", "--json").stdout)["done"], 0)
+        self.assertIn("not the study", self.snug(*words, "--skips", "1", code=2).stderr)
+
+    def test_comparison_that_is_interrupted_keeps_whole_rows(self):
+        process = subprocess.Popen([SNUG, *map(str, self.COMPARE), "--csv", "--threads", "2"], cwd=self.folder, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        head, first = process.stdout.readline(), process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        rest, said = process.communicate(timeout=100)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("interrupted after", said)
+        rows = list(csv.DictReader((head + first + rest).splitlines()))
+        self.assertTrue(0 < len(rows) < 8)
+        self.assertTrue(all(row["boxes_per_hour"] for row in rows))
+
+    def test_what_no_session_can_use_is_said_before_the_first(self):
+        for words, reason in ((("--agents", "margin,nowhere:X"), "nowhere"), (("--fault", "fire@3"), "fire"),
+                              (("--plants", "10000", "--agents", "all"), "at most 20000")):
+            result = self.snug("compare", self.CELL, "--sequences", "1", *words, *self.QUICK, "--csv", code=2)
+            self.assertIn(reason, result.stderr)
+            self.assertEqual(result.stdout, "")
+
+    def test_repeated_runs_are_the_draws_and_the_same_at_any_number_of_threads(self):
+        self.snug("pack", self.CELL, "--sequence", "1", "--agent", "margin", *self.QUICK, "--program", "p.csv")
+        run = ("simulate", self.CELL, "--program", "p.csv", "--sequence", "1", "--container", "220x220x120", "--seed", "5", "--json")
+        texts = [self.snug(*run, "--monte-carlo", "3", "--threads", threads).stdout for threads in (1, 3)]
+        self.assertEqual(*texts)
+        runs = json.loads(texts[0])["runs"]
+        self.assertEqual(len({one["state_hash"] for one in runs}), 3)
+        alone = json.loads(self.snug(*run, "--draw", "2", "-o", "second.h5").stdout)
+        self.assertEqual((alone["state_hash"], alone["filling_degree_percent"]),
+                         (runs[1]["state_hash"], runs[1]["filling_degree_percent"]))
+        self.assertTrue((self.folder / "second.h5").exists())
+        self.assertIn("--draw", self.snug("simulate", self.CELL, "--draw", "2", code=2).stderr)
+
+    def test_a_packed_program_repeated_is_the_same_at_any_number_of_threads(self):
+        run = ("pack", self.CELL, "--sequence", "1", "--agent", "margin", *self.QUICK, "--monte-carlo", "3", "--json")
+        one, two = (json.loads(self.snug(*run, "--threads", threads).stdout)["monte_carlo"] for threads in (1, 2))
+        self.assertEqual(one, two)
+        self.assertEqual(one["count"], 3)
+
+
 @unittest.skipUnless(shutil.which("slurmctld") and shutil.which("munge") and os.geteuid() == 0 and ONE_NODE.exists(),
                      "Slurm is not installed (scripts/install-deps.sh cluster), or not root")
 class Cluster(Scratch):

@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "outputs.hpp"
+#include "row_values.hpp"
 #include "shipped.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/experiment/bench.hpp"
+#include "snug/study/run.hpp"
+#include "study.hpp"
 
 namespace snug::app {
 namespace {
@@ -38,6 +42,13 @@ std::string as_json(const std::vector<experiment::Figure>& figures) {
   return document.dump(2) + "\n";
 }
 
+experiment::Figure read_figure(const nlohmann::ordered_json& json) {
+  return {
+      json.at("name").get<std::string>(), json.at("value").is_null() ? std::nan("") : json.at("value").get<double>(),
+      json.at("unit").get<std::string>(), json.at("target").get<std::string>(),
+      json.at("ok").get<bool>(),          json.value("skipped", std::string())};
+}
+
 std::string as_table(const std::vector<experiment::Figure>& figures) {
   std::string text = fmt::format("{:<34} {:>12} {:<6} {:<10} {}\n", "figure", "value", "unit", "target", "met");
   for (const experiment::Figure& figure : figures) {
@@ -51,6 +62,34 @@ std::string as_table(const std::vector<experiment::Figure>& figures) {
   const model::SolverSettings solver;
   return text + fmt::format("\nsolver of every scenario: tolerance {} m/s, at most {} sweeps, slop {} m\n",
                             solver.tolerance, solver.max_sweeps, solver.position_slop);
+}
+
+/// Each scene by itself in a process of its own, one after the other: none measures what another left behind.
+std::vector<experiment::Figure> run_scenes(const std::vector<std::string>& scenes, const BenchOptions& options) {
+  study::Study study;
+  study.name = study.source = study.verb = "bench";
+  study.options = {"--drops", std::to_string(options.drops)};
+  study.seed_option.clear();
+  study.factors = {{.name = "scene", .option = "--only", .key = {}, .values = scenes}};
+  study.point_count = scenes.size();
+  study.outputs = {{"results"}};
+  study.chunk = static_cast<int>(scenes.size());
+  std::vector<experiment::Figure> figures;
+  study::RunSettings settings;
+  settings.tell = [&](const study::RowResult& result, const std::string& said) {
+    std::fputs(said.c_str(), stderr);
+    const std::string& scene = scenes[result.row];
+    const nlohmann::ordered_json list = RowValues(result).list("results");
+    if (list.empty() && result.exit_code != kBadInput)  // else there is no such figure here
+      throw std::runtime_error("bench " + scene + ": " + result.error);
+    for (const auto& json : list) figures.push_back(read_figure(json));
+  };
+  const study::RunSummary summary = study::run_study(
+      study, [](const std::vector<std::string>& words) { return run_row(words); }, settings);
+  if (summary.left_out > 0) throw std::runtime_error("processes of the bench were killed");
+  const std::string only = options.only.value_or("");
+  std::erase_if(figures, [&](const auto& figure) { return !figure.name.starts_with(only); });
+  return figures;
 }
 
 }  // namespace
@@ -72,7 +111,9 @@ int run_bench(const BenchOptions& options) {
   bench.hard_scenes = scenarios.parent_path() / "../shared/data/scenes";
   bench.drop_scenes = options.drops;
   bench.only = options.only.value_or("");
-  const std::vector<experiment::Figure> figures = experiment::run_bench(bench);
+  const std::vector<std::string> scenes = experiment::bench_scenes(bench.only);
+  const std::vector<experiment::Figure> figures =
+      scenes.size() > 1 ? run_scenes(scenes, options) : experiment::run_bench(bench);
   if (figures.empty())
     throw InputError("command line", "--only", "'" + bench.only + "'", "the start of a figure's name");
   print(options.json ? as_json(figures) : as_table(figures));

@@ -2,6 +2,7 @@
 #include "compare.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -9,13 +10,15 @@
 
 #include "compare_page.hpp"
 #include "compare_report.hpp"
+#include "compare_study.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "python_agent.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/packing/representatives.hpp"
-#include "snug/study/design.hpp"
+#include "snug/study/run.hpp"
+#include "study.hpp"
 
 namespace snug::app {
 namespace {
@@ -38,17 +41,10 @@ std::vector<std::string> choose(const std::string& words, const std::vector<std:
 
 /// Adds sequences of every box of the scenario, in random order; their names.
 std::vector<std::string> add_random_sequences(model::Scenario& scenario, int count, std::uint64_t seed) {
-  packing::SequenceSettings settings;
-  settings.repeat = 0.0;
-  settings.all = true;
   std::vector<std::string> names;
   for (int i = 1; i <= count; ++i) {
-    const std::string name = "random-" + std::to_string(i);
-    if (model::find_sequence(scenario, name) != nullptr) {
-      throw InputError("command line", "--random", "a scenario with a sequence " + name, "one without");
-    }
-    scenario.sequences.push_back(packing::draw_sequence(scenario, name, settings, Rng(seed).split("sequence " + name)));
-    names.push_back(name);
+    names.push_back("random-" + std::to_string(i));
+    scenario.sequences.push_back(draw_order(scenario, names.back(), seed));
   }
   return names;
 }
@@ -65,88 +61,115 @@ std::vector<std::string> choose_sequences(const CompareOptions& options, model::
   return chosen;
 }
 
-/// The words of `snug pack` that do one session again.
-std::string words_of(const PackOptions& pack, const study::Trial& trial) {
-  using study::quoted;
-  const PackOptions usual;
-  std::string words =
-      fmt::format("snug pack {} --sequence {} --agent {} --seed {} --plant-seed {}", quoted(pack.scenario),
-                  quoted(pack.sequence), quoted(pack.agent), trial.seed, pack.plant_seed);
-  for (const std::string& file : pack.changes.items) words += " --items " + quoted(file);
-  if (pack.changes.container) words += " --container " + quoted(*pack.changes.container);
-  if (pack.changes.pallet) words += " --pallet " + quoted(*pack.changes.pallet);
-  for (const std::string& change : pack.changes.set) words += " --set " + quoted(change);
-  for (const std::string& change : pack.plant_set) words += " --plant-set " + quoted(change);
-  if (pack.perception != usual.perception) words += " --perception " + pack.perception;
-  if (pack.samples != usual.samples) words += fmt::format(" --samples {}", pack.samples);
-  if (pack.skips != usual.skips) words += fmt::format(" --skips {}", pack.skips);
-  if (pack.decision_time != usual.decision_time) words += fmt::format(" --decision-time {}", pack.decision_time);
-  if (pack.future != usual.future) words += " --future " + pack.future;
-  if (!pack.fault.empty()) words += " --fault " + pack.fault;
-  if (pack.tempo) words += fmt::format(" --tempo {}", *pack.tempo);
-  if (pack.robot) words += " --robot " + quoted(*pack.robot);
-  return words;
+/// Every agent packs every sequence in every plant; random sequences in plants of their own.
+std::vector<SessionPoint> list_sessions(const CompareOptions& options, const std::vector<std::string>& agents,
+                                        const std::vector<std::string>& sequences) {
+  const std::size_t plants = static_cast<std::size_t>(options.plants);
+  const std::size_t given = sequences.size() - static_cast<std::size_t>(options.random);
+  const std::size_t count = agents.size() * sequences.size() * plants;
+  if (count > kMostSessions) {
+    throw InputError("command line", "sessions", std::to_string(count),
+                     fmt::format("at most {}; `snug study` runs more (docs/studies.md)", kMostSessions));
+  }
+  std::vector<SessionPoint> points;
+  for (const std::string& agent : agents) {
+    for (std::size_t i = 0; i < sequences.size(); ++i) {
+      const std::size_t first = i > given ? (i - given) * plants : 0;
+      for (std::size_t plant = 0; plant < plants; ++plant) {
+        points.push_back({agent, sequences[i], options.pack.plant_seed + first + plant, i >= given});
+      }
+    }
+  }
+  return points;
 }
 
-/// The commands that do one session again. A random sequence is drawn first, from the boxes of the scenario's file: no
-/// words draw from others.
-std::vector<std::string> commands_of(const CompareOptions& options, const PackOptions& pack, const study::Trial& trial,
-                                     bool is_random) {
-  if (!is_random) return {words_of(pack, trial)};
-  if (!pack.changes.items.empty() || !pack.changes.set.empty()) return {};
-  return {fmt::format("snug items sequence {} --all --name random --sequences {} --seed {} -o random.yaml",
-                      study::quoted(pack.scenario), options.random, options.random_seed),
-          words_of(pack, trial) + " --items random.yaml"};
+/// What no session could use is said before the first one.
+void check_words(const PackOptions& pack, const std::vector<std::string>& agents) {
+  (void)make_plant_options(pack, {});
+  for (const std::string& agent : agents) {
+    if (is_python_agent(agent)) (void)start_python_agent(agent);
+  }
+}
+
+/// Prints rows as they come, and how many are done on a terminal.
+class Printer {
+ public:
+  Printer(CompareForm form, std::size_t sessions) : form_(form), sessions_(sessions) {}
+
+  void add(const CompareRow& row, const std::string& said) {
+    if (is_terminal_) std::fputs("\r\033[K", stderr);
+    std::fputs(said.c_str(), stderr);
+    print_now(format_compare_row(form_, row, count_ == 0));
+    ++count_;
+    if (is_terminal_ && count_ < sessions_) std::fprintf(stderr, "%zu of %zu sessions", count_, sessions_);
+    std::fflush(stderr);
+  }
+
+ private:
+  CompareForm form_;
+  std::size_t sessions_, count_ = 0;
+  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
+};
+
+/// What went wrong, on standard error; the exit code.
+int say_end(const std::vector<CompareRow>& rows, std::size_t sessions, std::uint64_t left_out) {
+  const auto failed = std::ranges::count_if(rows, [](const CompareRow& row) { return !row.failure.empty(); });
+  if (is_interrupted()) std::fprintf(stderr, "snug: interrupted after %zu of %zu sessions\n", rows.size(), sessions);
+  if (failed > 0) {
+    std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", static_cast<int>(failed),
+                 rows.size());
+  }
+  if (left_out > 0) {
+    std::fprintf(stderr, "snug: failed: %llu sessions were left out: their processes were killed, or others do them\n",
+                 static_cast<unsigned long long>(left_out));
+  }
+  return failed == 0 && left_out == 0 && !is_interrupted() ? kSuccess : kRunFailed;
 }
 
 }  // namespace
 
 int run_compare(const CompareOptions& options) {
-  SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
-  model::Scenario& scenario = loaded.scenario;
+  model::Scenario scenario = load_changed(options.pack.scenario, options.pack.changes);
   const std::vector<std::string> sequences = choose_sequences(options, scenario);
   const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents", true);
-  const std::size_t plants = static_cast<std::size_t>(options.plants);
-  const std::size_t runs = agents.size() * sequences.size() * plants;
+  const std::vector<SessionPoint> points = list_sessions(options, agents, sequences);
+  const std::uint64_t seed = options.pack.seed.value_or(scenario.seed);
+  const study::Study study = make_compare_study(options, seed, points);
   const CompareForm form = options.json ? CompareForm::Json : options.csv ? CompareForm::Csv : CompareForm::Table;
+  check_words(options.pack, agents);
   std::optional<OutputFile> page =
       reserve(files_of(options.pack.scenario, options.pack.changes, scenario), options.page);
+  std::optional<study::Folder> folder;
+  if (options.dir) folder.emplace(study, *options.dir, true);
   catch_interrupts();
-  std::vector<CompareRow> rows;
-  std::vector<CompareSession> sessions;
-  std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %zu plants\n", runs, agents.size(),
-               sequences.size(), plants);
+  std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %d plants\n", points.size(), agents.size(),
+               sequences.size(), options.plants);
   print_now(format_compare_head(form));
-  for (std::size_t run = 0; run < runs && !is_interrupted(); ++run) {
-    PackOptions pack = options.pack;
-    pack.agent = agents[run / (sequences.size() * plants)];
-    const std::size_t sequence = run / plants % sequences.size(),
-                      given = sequences.size() - static_cast<std::size_t>(options.random);
-    pack.plant_seed += run % plants + (sequence > given ? (sequence - given) * plants : 0);
-    pack.sequence = sequences[sequence];
-    const session::SessionOptions session = make_session_options(pack, loaded, pack.sequence);
-    const std::string label =
-        fmt::format("{} of {}: {}, sequence {}, plant {}", run + 1, runs, pack.agent, pack.sequence, pack.plant_seed);
-    const study::Trial trial = study::run_trial(scenario, pack.sequence, session, make_plant_options(pack, session),
-                                                make_progress_line(label));
-    rows.push_back(make_row(trial));
-    if (page) {
-      sessions.push_back(
-          {rows.back(), outline_boxes(scenario, trial), commands_of(options, pack, trial, sequence >= given)});
-    }
-    print_now(format_compare_row(form, rows.back(), run == 0));
-  }
+
+  std::vector<CompareSession> sessions;
+  Printer printer(form, points.size());
+  study::RunSettings settings;
+  const int threads = options.pack.threads.value_or(core_count());
+  settings.processes = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(threads), points.size()));
+  settings.is_stopped = is_interrupted;
+  settings.tell = [&](const study::RowResult& result, const std::string& said) {
+    if (result.exit_code == kBadInput)
+      throw InputError(study.source, "row " + std::to_string(result.row), result.error, "a session that can be run");
+    sessions.push_back(read_session(scenario, study, points[result.row], seed, result));
+    printer.add(sessions.back().row, said);
+  };
+  const study::Verb pack = [each = threads / settings.processes](const std::vector<std::string>& words) {
+    return run_row(words, each);
+  };
+  const study::RunSummary summary =
+      folder ? study::run_study(study, *folder, pack, settings) : study::run_study(study, pack, settings);
+
+  std::vector<CompareRow> rows;
+  for (const CompareSession& session : sessions) rows.push_back(session.row);
   if (page) write_file(std::move(*page), format_compare_page(scenario, sessions));
   const bool is_own_container = !options.pack.changes.container && !options.pack.changes.pallet;
   print_now(format_compare_end(form, scenario, rows, is_own_container));
-  const auto failed = std::ranges::count_if(rows, [](const CompareRow& row) { return !row.failure.empty(); });
-  if (failed == 0 && !is_interrupted()) return kSuccess;
-  if (is_interrupted()) std::fprintf(stderr, "snug: interrupted after %zu of %zu sessions\n", rows.size(), runs);
-  if (failed > 0) {
-    std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", static_cast<int>(failed),
-                 rows.size());
-  }
-  return kRunFailed;
+  return say_end(rows, points.size(), summary.left_out);
 }
 
 }  // namespace snug::app

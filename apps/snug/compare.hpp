@@ -21,6 +21,7 @@ struct CompareOptions {
   bool json = false;
   bool csv = false;
   std::optional<std::string> page;  ///< HTML file
+  std::optional<std::string> dir;   ///< folder that keeps the rows, so that the same words go on after a kill
 };
 
 void add_compare(CLI::App& app, Action& action);

@@ -13,7 +13,7 @@ constexpr const char* kCompareExamples = R"(Examples:
   snug compare scenarios/box-demonstrator.yaml --agents contact-aware --plants 6 -o compare.html
   snug compare scenarios/box-demonstrator.yaml --sequences 1,3 --agents margin,contact-aware --json
   snug compare scenarios/box-demonstrator.yaml --decision-time 0.2 --plants 3 --csv > rows.csv
-  snug compare scenarios/box-demonstrator.yaml --random 50 --agents contact-aware
+  snug compare scenarios/box-demonstrator.yaml --random 50 --agents contact-aware --dir random
   snug compare scenarios/box-demonstrator.yaml --container 400x300x200 --agents contact-aware)";
 
 }  // namespace
@@ -50,6 +50,10 @@ void add_compare(CLI::App& app, Action& action) {
   verb.add_option("-o,--output", options->page,
                   "page: charts by agent and sequence, each container from above, the words that repeat each run")
       ->type_name("FILE.html");
+  verb.add_option("--dir", options->dir,
+                  "keep every row in this folder: the same words go on after a kill; DIR/study.yaml is the comparison "
+                  "as a study (snug study status|merge|report)")
+      ->type_name("DIR");
   verb.footer(kCompareExamples);
   verb.callback([options, &action] { action = [options] { return run_compare(*options); }; });
 }

@@ -154,12 +154,8 @@ std::string card(const Vector3& inner_size, const CompareSession& session) {
       plan_view(inner_size, session.boxes), row.executed_percent, row.executed_boxes, escape_markup(row.agent),
       row.plant_seed, row.items_as_planned, row.items_sent, row.boxes_lost, row.recoveries,
       escape_markup(row.failure.empty() ? row.stop_reason : row.failure));
-  if (session.commands.empty()) return text + "</div>";
-  text += "<details><summary>see this run</summary><code>";
-  for (const std::string& command : session.commands) {
-    text += escape_markup(command) + (&command == &session.commands.back() ? " -o run.h5<br>" : "<br>");
-  }
-  return text + "snug report run.h5 -o run.html</code></details></div>";
+  return text + "<details><summary>see this run</summary><code>" + escape_markup(session.command) +
+         " -o run.h5<br>snug report run.h5 -o run.html</code></details></div>";
 }
 
 constexpr const char* kStyle =
@@ -171,11 +167,11 @@ constexpr const char* kStyle =
 
 }  // namespace
 
-std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario, const study::Trial& trial) {
+std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario, const std::vector<PackedBox>& boxes) {
   std::vector<BoxOutline> outlines;
-  for (const cell::BoxResult& box : trial.boxes) {
+  for (const PackedBox& box : boxes) {
     const model::Parcel* parcel = model::find_parcel(scenario, box.id);
-    if (box.state != cell::BoxState::Packed || parcel == nullptr) continue;
+    if (parcel == nullptr) continue;
     BoxOutline outline;
     outline.id = box.id;
     std::vector<Point> corners;

@@ -16,16 +16,22 @@ struct BoxOutline {
   double top = 0.0;                              ///< m over the container's floor
 };
 
-/// One session: its row, what it left in the container, the commands that repeat it, the last one `snug pack`; none
-/// where no commands do.
+/// A box where it is in the end, by the plant's truth.
+struct PackedBox {
+  std::string id;
+  Pose X_TP;  ///< in the container
+};
+
+/// One session: its row, what it left in the container, the `snug pack` that repeats it.
 struct CompareSession {
   CompareRow row;
   std::vector<BoxOutline> boxes;
-  std::vector<std::string> commands;
+  std::string command;
 };
 
-/// The boxes that are packed by the plant's truth, the lowest first.
-[[nodiscard]] std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario, const study::Trial& trial);
+/// What is seen of them from above, the lowest first.
+[[nodiscard]] std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario,
+                                                    const std::vector<PackedBox>& boxes);
 
 [[nodiscard]] std::string format_compare_page(const model::Scenario& scenario,
                                               const std::vector<CompareSession>& sessions);

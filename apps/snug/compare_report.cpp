@@ -170,7 +170,7 @@ std::string format_table_end(const model::Scenario& scenario, const std::vector<
     lines += calibration_lines(agent, summarize(rows, agent).calibration);
   }
   if (!lines.empty()) text += "\nsuccess of motions         predicted  motions   predicted   observed\n" + lines;
-  if (!with_references) return text;
+  if (!with_references || sequences.empty()) return text;
   const std::vector<std::string> reporters = reporters_of(scenario, sequences);
   if (reporters.empty()) return text;
   std::size_t width = 22;
@@ -227,30 +227,6 @@ std::string format_json_end(const std::vector<CompareRow>& rows) {
 }
 
 }  // namespace
-
-CompareRow make_row(const study::Trial& trial) {
-  const session::SessionResult& session = trial.session;
-  CompareRow row;
-  row.agent = session.agent;
-  row.sequence = session.sequence;
-  row.seed = trial.seed;
-  row.plant_seed = trial.plant_seed;
-  row.planned_boxes = static_cast<int>(session.plan.size());
-  row.planned_percent = session.planned_percent;
-  row.executed_boxes = trial.executed_boxes;
-  row.executed_percent = trial.executed_percent;
-  row.percent_before_skips = session.percent_before_skips.value_or(trial.executed_percent);
-  row.decision_seconds_median = session.decision_seconds_median;
-  row.items_sent = trial.items_sent;
-  row.items_as_planned = trial.items_as_planned;
-  row.boxes_lost = trial.boxes_lost;
-  row.recoveries = trial.recoveries;
-  row.boxes_per_hour = trial.boxes_per_hour;
-  row.stop_reason = session::name_of(session.stop_reason);
-  row.failure = session.failure;
-  row.calibration.add(trial);
-  return row;
-}
 
 std::string format_compare_head(CompareForm form) {
   if (form == CompareForm::Json) return "{\"rows\": [";

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "snug/model/scenario.hpp"
 #include "snug/study/calibration.hpp"
-#include "snug/study/trial.hpp"
 
 namespace snug::app {
 
 enum class CompareForm { Table, Json, Csv };
 
-/// One agent on one sequence in one plant: what is kept of a trial.
+/// One agent on one sequence in one plant: what is kept of a session.
 struct CompareRow {
   std::string agent, sequence;
   std::uint64_t seed = 0, plant_seed = 0;
@@ -22,9 +22,8 @@ struct CompareRow {
   int items_sent = 0, items_as_planned = 0, boxes_lost = 0, recoveries = 0;
   study::Calibration calibration;
   std::string stop_reason;
-  std::string failure;  ///< empty, or why the robot did not come home
+  std::string failure;  ///< empty, or why the robot did not come home, or the session broke off
 };
-[[nodiscard]] CompareRow make_row(const study::Trial& trial);
 
 /// The text in pieces: what was printed when a run is killed is whole rows.
 [[nodiscard]] std::string format_compare_head(CompareForm form);

@@ -19,6 +19,7 @@
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/motion/program_tempo.hpp"
+#include "snug/packing/representatives.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "version.hpp"
@@ -85,6 +86,16 @@ struct PackFiles {
 
 }  // namespace
 
+model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed) {
+  if (model::find_sequence(scenario, name) != nullptr) {
+    throw InputError("command line", "random order", "a scenario with a sequence " + name, "a name of its own");
+  }
+  packing::SequenceSettings settings;
+  settings.repeat = 0.0;
+  settings.all = true;
+  return packing::draw_sequence(scenario, name, settings, Rng(seed).split("sequence " + name));
+}
+
 session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
                                              const std::string& sequence) {
   session::SessionOptions session;
@@ -129,8 +140,11 @@ study::TrialProgress make_progress_line(const std::string& label) {
 }
 
 int run_pack(const PackOptions& options) {
-  const SourcedScenario loaded = load_with_sources(options.scenario, options.changes);
-  const model::Scenario& scenario = loaded.scenario;
+  SourcedScenario loaded = load_with_sources(options.scenario, options.changes);
+  model::Scenario& scenario = loaded.scenario;
+  if (options.random_seed) {
+    scenario.sequences.push_back(draw_order(scenario, options.sequence, *options.random_seed));
+  }
   const session::SessionOptions session = make_session_options(options, loaded, options.sequence);
   const simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
   const bool is_served = options.plant != "simulated";

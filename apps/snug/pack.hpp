@@ -18,8 +18,9 @@ struct PackOptions {
   ScenarioChanges changes;
   std::string agent = "contact-aware";
   std::optional<std::uint64_t> seed;
-  std::string plant = "simulated";  ///< or where one is served: click://HOST:PORT, click+ipc://PATH
-  double patience = 10.0;           ///< s, for its answers
+  std::optional<std::uint64_t> random_seed;  ///< the sequence is drawn: every box of the scenario, in random order
+  std::string plant = "simulated";           ///< or where one is served: click://HOST:PORT, click+ipc://PATH
+  double patience = 10.0;                    ///< s, for its answers
   std::uint64_t plant_seed = 1;
   double decision_time = packing::PackingSettings{}.decision_time;  ///< s
   std::optional<int> threads;                                       ///< absent: all cores
@@ -39,6 +40,8 @@ struct PackOptions {
 void add_pack(CLI::App& app, Action& action);
 /// What `pack` and `compare` have in common.
 void add_packing_options(CLI::App& verb, PackOptions& options);
+/// Every box of the scenario in an order drawn by seed and name. Throws InputError where a sequence has this name.
+[[nodiscard]] model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed);
 [[nodiscard]] session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
                                                            const std::string& sequence);
 /// Throws InputError for words that say nothing.

@@ -18,6 +18,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --perception noisy
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-set contacts.pairs.box/container.friction=0.15
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --agent examples.python.03_agent:Lowest
+  snug pack scenarios/box-demonstrator.yaml --sequence random-1 --random-seed 7
   snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant click://127.0.0.1:5555
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200
@@ -97,6 +98,11 @@ void add_pack(CLI::App& app, Action& action) {
   const auto options = std::make_shared<PackOptions>();
   verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
   verb.add_option("--sequence", options->sequence, "item sequence of the scenario")->required()->type_name("NAME");
+  verb.add_option("--random-seed", options->random_seed,
+                  "the sequence is every box of the scenario in an order drawn by this seed and the name: random-1, "
+                  "random-2, ... are those of compare --random")
+      ->check(whole(0))
+      ->type_name("N");
   verb.add_option("--agent", options->agent,
                   "who decides: a built-in agent, or a class written in Python (docs/python.md)")
       ->check(one_of(packing::agent_names(), "module:Class"))

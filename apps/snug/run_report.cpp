@@ -214,34 +214,4 @@ std::string format_json(const cell::RunResult& result) {
   return document.dump(2) + "\n";
 }
 
-std::string format_table(const cell::MonteCarloResult& result) {
-  std::string text = fmt::format("{:>4} {:>7} {:>10} {:>10}  {:<16} {}\n", "run", "packed", "filling %", "re-pick mm",
-                                 "state hash", "failure");
-  for (std::size_t i = 0; i < result.runs.size(); ++i) {
-    const cell::MonteCarloRun& run = result.runs[i];
-    text += fmt::format("{:>4} {:>4}/{:<2} {:>10.2f} {:>10.1f}  {:016x} {}\n", i + 1, run.packed, run.boxes,
-                        run.filling_degree_percent, run.worst_repick * kMm, run.state_hash, run.failure);
-  }
-  return text + fmt::format("\npacked             mean {:.1f} %, standard deviation {:.1f} %, lowest {:.1f} %\n",
-                            result.mean_packed_percent, result.standard_deviation_percent,
-                            result.lowest_packed_percent);
-}
-
-std::string format_json(const cell::MonteCarloResult& result) {
-  Json document = {{"mean_packed_percent", result.mean_packed_percent},
-                   {"standard_deviation_percent", result.standard_deviation_percent},
-                   {"lowest_packed_percent", result.lowest_packed_percent},
-                   {"failed_runs", result.failed_runs},
-                   {"runs", Json::array()}};
-  for (const cell::MonteCarloRun& run : result.runs) {
-    document["runs"].push_back({{"packed", run.packed},
-                                {"boxes", run.boxes},
-                                {"filling_degree_percent", run.filling_degree_percent},
-                                {"repick_offset_worst_mm", run.worst_repick * kMm},
-                                {"state_hash", fmt::format("{:016x}", run.state_hash)},
-                                {"failure", run.failure}});
-  }
-  return document.dump(2) + "\n";
-}
-
 }  // namespace snug::app

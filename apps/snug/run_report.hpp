@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "snug/cell/monte_carlo.hpp"
 #include "snug/cell/run.hpp"
 
 namespace snug::app {
@@ -13,9 +12,5 @@ namespace snug::app {
 
 /// One JSON document; the keys are described in docs/formats.md.
 [[nodiscard]] std::string format_json(const cell::RunResult& result);
-
-/// The same for repeated runs: a line a run, and the spread.
-[[nodiscard]] std::string format_table(const cell::MonteCarloResult& result);
-[[nodiscard]] std::string format_json(const cell::MonteCarloResult& result);
 
 }  // namespace snug::app

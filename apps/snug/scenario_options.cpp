@@ -30,6 +30,15 @@ void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes) {
       ->allow_extra_args(false);
 }
 
+OptionWords words_of(const ScenarioChanges& changes) {
+  OptionWords words;
+  for (const std::string& file : changes.items) words.emplace_back("--items", file);
+  if (changes.container) words.emplace_back("--container", *changes.container);
+  if (changes.pallet) words.emplace_back("--pallet", *changes.pallet);
+  for (const std::string& change : changes.set) words.emplace_back("--set", change);
+  return words;
+}
+
 NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, const model::Scenario& scenario) {
   NamedFiles files = {{"the scenario", find_shipped(file)}};
   for (const std::string& items : changes.items) files.push_back({"--items", find_shipped(items)});

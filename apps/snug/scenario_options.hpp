@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "outputs.hpp"
@@ -22,6 +23,10 @@ struct ScenarioChanges {
 
 /// --items, --container, --pallet and --set.
 void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes);
+/// Options with their values, in the order of the words.
+using OptionWords = std::vector<std::pair<std::string, std::string>>;
+/// The words that change a scenario so.
+[[nodiscard]] OptionWords words_of(const ScenarioChanges& changes);
 /// What is read for load_changed() and for the robot of the scenario that it returned.
 [[nodiscard]] NamedFiles files_of(const std::string& file, const ScenarioChanges& changes,
                                   const model::Scenario& scenario);

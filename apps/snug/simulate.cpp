@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "program_fit.hpp"
+#include "repeated_runs.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
-#include "snug/cell/monte_carlo.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
@@ -95,22 +95,31 @@ NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scena
   return files;
 }
 
-int run_simulate(const SimulateOptions& options) {
-  const model::Scenario scenario = load_with_overrides(options);
-  cell::RunOptions run_options = make_run_options(options, scenario);
-  if (options.monte_carlo) {
-    if (!run_options.program) throw InputError("command line", "--monte-carlo", "no --program", "a program to run");
-    if (options.record || options.csv) {
-      throw InputError("command line", "--monte-carlo", "with --record or --csv", "one of them");
-    }
-    const cell::MonteCarloResult result =
-        cell::run_monte_carlo(scenario, run_options, {*options.monte_carlo, scenario.seed, run_options.threads});
-    print(options.json ? format_json(result) : format_table(result));
-    if (result.failed_runs == 0) return kSuccess;
-    std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", result.failed_runs,
-                 result.runs.size());
-    return kRunFailed;
+namespace {
+
+int run_repeatedly(const SimulateOptions& options, const model::Scenario& scenario, int threads) {
+  if (options.record || options.csv) {
+    throw InputError("command line", "--monte-carlo", "with --record or --csv", "one of them, or --draw");
   }
+  const std::vector<RepeatedRun> runs = repeat_runs(options, scenario.seed, *options.monte_carlo, threads);
+  print(options.json ? format_json(runs) : format_table(runs));
+  const auto failed = std::ranges::count_if(runs, [](const RepeatedRun& run) { return !run.failure.empty(); });
+  if (failed == 0) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %d of %zu runs did not reach their end\n", static_cast<int>(failed), runs.size());
+  return kRunFailed;
+}
+
+}  // namespace
+
+int run_simulate(const SimulateOptions& options) {
+  model::Scenario scenario = load_with_overrides(options);
+  cell::RunOptions run_options = make_run_options(options, scenario);
+  for (const auto& [is_given, option] :
+       {std::pair(options.monte_carlo.has_value(), "--monte-carlo"), std::pair(options.draw.has_value(), "--draw")}) {
+    if (is_given && !run_options.program) throw InputError("command line", option, "no --program", "a program to run");
+  }
+  if (options.monte_carlo) return run_repeatedly(options, scenario, run_options.threads);
+  if (options.draw) scenario = draw_cell(scenario, run_options.sequence, *options.draw);
   NamedFiles outputs;
   add_file(outputs, "-o", options.record);
   add_file(outputs, "--csv", options.csv);

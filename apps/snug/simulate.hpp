@@ -32,6 +32,7 @@ struct SimulateOptions {
   std::optional<std::string> resume;    ///< recording to go on from
   std::optional<double> resume_at;      ///< s, instant of it
   std::optional<int> monte_carlo;       ///< run this many times in cells drawn from the scenario's uncertainty
+  std::optional<int> draw;              ///< the run of this number, from 1, of those
   std::optional<int> threads;           ///< absent: all cores
   bool json = false;
 };

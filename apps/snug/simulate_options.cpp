@@ -13,6 +13,7 @@ constexpr const char* kSimulateExamples = R"(Examples:
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --corrections seq1 --json
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --monte-carlo 20 --seed 7
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --seed 7 --draw 13 -o worst.h5
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --robot ur10 --csv joints.csv
   snug pack scenarios/box-demonstrator.yaml --container 400x300x200 --sequence 1 --samples 0 --program small.csv
   snug simulate scenarios/box-demonstrator.yaml --container 400x300x200 --program small.csv --sequence 1
@@ -76,10 +77,14 @@ void add_simulate(CLI::App& app, Action& action) {
   verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
   add_program_options(verb, *options);
   add_physics_options(verb, *options);
-  verb.add_option("--monte-carlo", options->monte_carlo,
-                  "run the program N times in cells drawn from the scenario's `uncertainty`")
+  CLI::Option* repeated = verb.add_option("--monte-carlo", options->monte_carlo,
+                                          "run the program N times in cells drawn from the scenario's `uncertainty`")
+                              ->check(whole(1, kMostRuns))
+                              ->type_name("N");
+  verb.add_option("--draw", options->draw, "the N-th of these runs by itself, such as the worst, to record it")
       ->check(whole(1, kMostRuns))
-      ->type_name("N");
+      ->type_name("N")
+      ->excludes(repeated);
   verb.add_option("-o,--record", options->record, "write a recording")->type_name("FILE.h5");
   verb.add_option("--record-period", options->record_period,
                   "time between frames, instead of the scenario's or 0.008; whole steps, with a program whole ticks")

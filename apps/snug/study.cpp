@@ -30,19 +30,6 @@ fs::path folder_of(const StudyOptions& options) {
   return fs::path(options.file).stem().string() + ".study";
 }
 
-/// Rows share the machine: a verb that would take every core for itself gets one.
-int run_row(const std::vector<std::string>& words) {
-  std::vector<std::string> all = {"snug"};
-  all.insert(all.end(), words.begin(), words.end());
-  const bool takes_all = words.front() == "pack" || words.front() == "compare" || words.front() == "simulate";
-  if (takes_all && std::ranges::find(words, "--threads") == words.end()) all.insert(all.end(), {"--threads", "1"});
-  std::vector<char*> argv;
-  for (std::string& word : all) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const int code = run_command_line(static_cast<int>(all.size()), argv.data());
-  return flush_stdout() ? code : std::max<int>(code, kRunFailed);
-}
-
 /// "12" or "3-7".
 std::pair<std::uint64_t, std::uint64_t> parse_chunks(const std::string& words, const study::Study& study) {
   const char* const end = words.data() + words.size();
@@ -90,6 +77,20 @@ std::function<void(std::uint64_t, std::uint64_t)> progress_line() {
 
 }  // namespace
 
+// Rows share the machine: a verb that would take every core for itself gets its part.
+int run_row(const std::vector<std::string>& words, int threads) {
+  std::vector<std::string> all = {"snug"};
+  all.insert(all.end(), words.begin(), words.end());
+  const bool takes_all = words.front() == "pack" || words.front() == "compare" || words.front() == "simulate";
+  if (takes_all && std::ranges::find(words, "--threads") == words.end())
+    all.insert(all.end(), {"--threads", std::to_string(threads)});
+  std::vector<char*> argv;
+  for (std::string& word : all) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const int code = run_command_line(static_cast<int>(all.size()), argv.data());
+  return flush_stdout() ? code : std::max<int>(code, kRunFailed);
+}
+
 int run_study(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);
   const study::Folder folder(study, folder_of(options), true);
@@ -99,7 +100,8 @@ int run_study(const StudyOptions& options) {
   if (options.chunks) std::tie(settings.first_chunk, settings.last_chunk) = parse_chunks(*options.chunks, study);
   settings.progress = progress_line();
   const auto start = std::chrono::steady_clock::now();
-  const study::RunSummary summary = study::run_study(study, folder, run_row, settings);
+  const study::RunSummary summary = study::run_study(
+      study, folder, [](const std::vector<std::string>& words) { return run_row(words); }, settings);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   const double busy = wall.count() * std::min<double>(settings.processes,
                                                       static_cast<double>(std::max<std::uint64_t>(1, summary.done)));

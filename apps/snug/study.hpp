@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "verb.hpp"
 
@@ -21,6 +22,9 @@ struct StudyOptions {
   std::optional<std::string> output;
   int worst = 10;
 };
+
+/// The verb of a row: does the words behind `snug`, with `threads` where they do not say, and returns the exit code.
+[[nodiscard]] int run_row(const std::vector<std::string>& words, int threads = 1);
 
 void add_study(CLI::App& app, Action& action);
 /// Each throws InputError for input that cannot be used.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string_view>
 
 #include "snug/cell/run.hpp"
 #include "snug/core/units.hpp"
@@ -121,35 +122,53 @@ double box_overlap(const Vector3& half_a, const Pose& X_WA, const Vector3& half_
   return std::max(0.0, least);
 }
 
-std::vector<Figure> run_bench(const BenchOptions& options) {
-  using Measure = void (*)(const BenchOptions&, std::vector<Figure>&);
-  const std::pair<const char*, Measure> scenes[] = {{"s1", internal::measure_stack},
-                                                    {"s2", internal::measure_drops},
-                                                    {"s3", internal::measure_slides},
-                                                    {"s4", internal::measure_bounce},
-                                                    {"s5", internal::measure_swing},
-                                                    {"s6", internal::measure_press},
-                                                    {"growth", internal::measure_growth},
-                                                    {"piles", internal::measure_piles},
-                                                    {"threads", internal::measure_threads},
-                                                    {"drops", internal::measure_random_drops},
-                                                    {"scenes", internal::measure_hard_scenes},
-                                                    {"program", measure_program},
-                                                    {"robot", internal::measure_robot},
-                                                    {"arm", measure_arm},
-                                                    {"click", internal::measure_click},
-                                                    {"packing", measure_packing},
-                                                    {"camera", internal::measure_camera},
-                                                    {"validation", measure_validation},
-                                                    {"identification", internal::measure_identification}};
-  std::vector<Figure> figures;
-  for (const auto& [name, measure] : scenes) {
-    const std::string scene(name);
-    const bool is_wanted = options.only.empty() || scene.starts_with(options.only) || options.only.starts_with(scene);
-    if (is_wanted) measure(options, figures);
+namespace {
+
+struct Scene {
+  const char* name;  ///< how the names of its figures start
+  void (*measure)(const BenchOptions& options, std::vector<Figure>& figures);
+};
+
+constexpr Scene kScenes[] = {{"s1", internal::measure_stack},
+                             {"s2", internal::measure_drops},
+                             {"s3", internal::measure_slides},
+                             {"s4", internal::measure_bounce},
+                             {"s5", internal::measure_swing},
+                             {"s6", internal::measure_press},
+                             {"growth", internal::measure_growth},
+                             {"piles", internal::measure_piles},
+                             {"threads", internal::measure_threads},
+                             {"drops", internal::measure_random_drops},
+                             {"scenes", internal::measure_hard_scenes},
+                             {"program", measure_program},
+                             {"robot", internal::measure_robot},
+                             {"arm", measure_arm},
+                             {"click", internal::measure_click},
+                             {"packing", measure_packing},
+                             {"camera", internal::measure_camera},
+                             {"validation", measure_validation},
+                             {"identification", internal::measure_identification}};
+
+bool is_wanted(std::string_view scene, const std::string& only) {
+  return scene.starts_with(only) || only.starts_with(scene);
+}
+
+}  // namespace
+
+std::vector<std::string> bench_scenes(const std::string& only) {
+  std::vector<std::string> scenes;
+  for (const Scene& scene : kScenes) {
+    if (is_wanted(scene.name, only)) scenes.emplace_back(only.starts_with(scene.name) ? only : scene.name);
   }
-  std::erase_if(figures,
-                [&](const Figure& figure) { return figure.name.compare(0, options.only.size(), options.only) != 0; });
+  return scenes;
+}
+
+std::vector<Figure> run_bench(const BenchOptions& options) {
+  std::vector<Figure> figures;
+  for (const Scene& scene : kScenes) {
+    if (is_wanted(scene.name, options.only)) scene.measure(options, figures);
+  }
+  std::erase_if(figures, [&](const Figure& figure) { return !figure.name.starts_with(options.only); });
   return figures;
 }
 

@@ -35,6 +35,9 @@ struct BenchOptions {
 /// collision code that it measures.
 [[nodiscard]] double box_overlap(const Vector3& half_a, const Pose& X_WA, const Vector3& half_b, const Pose& X_WB);
 
+/// What to ask for, one at a time, for all figures whose name starts with `only`: names of scenes, or `only` itself.
+[[nodiscard]] std::vector<std::string> bench_scenes(const std::string& only);
+
 /// Runs the scenes with the solver settings that scenarios have by default (checked). Timed figures are CPU time of
 /// this process. docs: README.md of this module.
 [[nodiscard]] std::vector<Figure> run_bench(const BenchOptions& options);

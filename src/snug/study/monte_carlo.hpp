@@ -32,7 +32,8 @@ struct MonteCarloResult {
   double mean_filling_percent = 0.0, lowest_filling_percent = 0.0;
 };
 
-/// Runs the program `count` times, each with everything uncertain drawn anew. Nothing is looked at on the way.
+/// Runs the program `count` times, each with everything uncertain drawn anew, as rows (run.hpp). Nothing is looked at
+/// on the way.
 [[nodiscard]] MonteCarloResult repeat(const model::Scenario& scenario, const std::string& sequence,
                                       const motion::Program& program, const std::vector<packing::Placement>& plan,
                                       const MonteCarloOptions& options);

@@ -14,8 +14,11 @@
 #include <cstdio>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <memory>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
@@ -31,8 +34,8 @@ constexpr std::size_t kMostError = 300;
 
 /// A chunk under way.
 struct Chunk {
-  TableWriter table;
-  std::uint64_t left = 0;  ///< rows not finished
+  std::optional<TableWriter> table;  ///< none without a folder
+  std::uint64_t left = 0;            ///< rows not finished
 };
 
 /// A row under way.
@@ -52,6 +55,7 @@ struct Job {
 /// In the new process: never returns.
 [[noreturn]] void be_row(const Verb& verb, const std::vector<std::string>& words, int out, int error) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a row whose caller is gone has nobody to tell
+  ::setpgid(0, 0);                     // what a terminal sends goes to the caller, who passes it on
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, 0);
   ::dup2(out, 1);
@@ -101,6 +105,13 @@ void take(int& from, std::string& into, std::size_t most) {
   if (into.size() < most) into.append(buffer, static_cast<std::size_t>(count));
 }
 
+/// By the system or a person: that says nothing about the row.
+bool was_ended_by_others(int status) {
+  if (!WIFSIGNALED(status)) return false;
+  const int number = WTERMSIG(status);
+  return number == SIGKILL || number == SIGTERM || number == SIGINT || number == SIGHUP;
+}
+
 /// The end of it, without the program's name before it.
 std::string last_words(const std::string& words) {
   std::string line = words.substr(0, words.find_last_not_of('\n') + 1);
@@ -113,18 +124,22 @@ std::string last_words(const std::string& words) {
 
 class Runner {
  public:
-  Runner(const Study& study, const Folder& folder, const Verb& verb, const RunSettings& settings)
+  /// `folder`: or null, no tables.
+  Runner(const Study& study, const Folder* folder, const Verb& verb, const RunSettings& settings)
       : study_(study), folder_(folder), verb_(verb), settings_(settings) {}
 
   RunSummary run() {
     end_ = std::min(study_.chunks(), settings_.last_chunk == UINT64_MAX ? study_.chunks() : settings_.last_chunk + 1);
     next_chunk_ = settings_.first_chunk;
+    next_told_ = next_chunk_ * static_cast<std::uint64_t>(study_.chunk);
     while (true) {
+      if (!is_stopped_ && settings_.is_stopped && settings_.is_stopped()) stop();
       while (static_cast<int>(jobs_.size()) < settings_.processes && find_work()) {
       }
       if (jobs_.empty()) break;
       watch();
     }
+    for (const auto& [row, told] : untold_) settings_.tell(told.first, told.second);
     return summary_;
   }
 
@@ -158,15 +173,20 @@ class Runner {
   void open_chunk(std::uint64_t index) {
     const auto size = static_cast<std::uint64_t>(study_.chunk);
     const std::uint64_t first = index * size, end = std::min(study_.rows(), first + size);
-    if (folder_.read(index).size() == end - first) return;  // without a lock: done is done
-    auto table = TableWriter::open(folder_.table(index));
-    const auto done = folder_.read(index);
-    if (!table) {
+    const auto chunk = std::make_shared<Chunk>();
+    std::map<std::uint64_t, RowResult> done;
+    if (folder_ != nullptr) {
+      done = folder_->read(index);
+      if (done.size() < end - first) {  // without a lock: done is done
+        chunk->table = TableWriter::open(folder_->table(index));
+        done = folder_->read(index);
+      }
+    }
+    for (const auto& [row, result] : done) tell(result, {});
+    if (folder_ != nullptr && !chunk->table) {
       summary_.left_out += end - first - done.size();
       return;
     }
-    const auto chunk = std::make_shared<Chunk>();
-    chunk->table = std::move(*table);
     for (std::uint64_t row = first; row < end; ++row) {
       if (done.contains(row)) continue;
       Job job;
@@ -184,7 +204,7 @@ class Runner {
       files.push_back({job.out, POLLIN, 0});
       files.push_back({job.error, POLLIN, 0});
     }
-    const int patience = study_.time_limit > 0.0 ? 100 : -1;
+    const int patience = study_.time_limit > 0.0 || settings_.is_stopped ? 100 : -1;
     if (::poll(files.data(), files.size(), patience) < 0 && errno != EINTR) fail("poll");
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       if (files[2 * i].revents != 0) take(jobs_[i].out, jobs_[i].output, kMostOutput);
@@ -208,8 +228,8 @@ class Runner {
     int status = 0;
     while (::waitpid(job.process, &status, 0) < 0 && errno == EINTR) {
     }
-    const bool was_killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL && !job.is_over_time;
-    if (was_killed) {  // by the system or a person: that says nothing about the row
+    if (was_ended_by_others(status) && !job.is_over_time) {
+      if (is_stopped_) return;
       if (job.tries < kMostTries) {
         waiting_.push_front(std::move(job));
         return;
@@ -230,26 +250,48 @@ class Runner {
       if (result.exit_code != 0) result.error = last_words(job.words);
       result.values = values_of(study_, job.output);
     }
+    if (is_stopped_) return tell(result, job.words);
     if (result.exit_code == 2 && job.row == 0)
       throw InputError(study_.source, "row 0", result.error,
                        "rows that can be run: " + command_of(study_, row_of(study_, 0)));
-    job.chunk->table.append(result);
+    if (job.chunk->table) job.chunk->table->append(result);
     close(*job.chunk);
     ++summary_.done;
     summary_.failed += result.exit_code != 0 ? 1 : 0;
     summary_.row_seconds += seconds;
     if (settings_.progress) settings_.progress(summary_.done, wanted_);
+    tell(result, job.words);
+  }
+
+  /// Hands results on in the order of the rows.
+  void tell(const RowResult& result, const std::string& said) {
+    if (!settings_.tell) return;
+    untold_.emplace(result.row, std::pair(result, said));
+    for (auto next = untold_.find(next_told_); next != untold_.end(); next = untold_.find(++next_told_)) {
+      const auto told = std::move(next->second);
+      untold_.erase(next);
+      settings_.tell(told.first, told.second);
+    }
+  }
+
+  void stop() {
+    is_stopped_ = true;
+    waiting_.clear();
+    next_chunk_ = end_;
+    for (const Job& job : jobs_) ::kill(job.process, SIGTERM);
   }
 
   static void close(Chunk& chunk) {
-    if (--chunk.left == 0) chunk.table.sync();
+    if (--chunk.left == 0 && chunk.table) chunk.table->sync();
   }
 
   const Study& study_;
-  const Folder& folder_;
+  const Folder* const folder_;
   const Verb& verb_;
   const RunSettings& settings_;
-  std::uint64_t next_chunk_ = 0, end_ = 0, wanted_ = 0;
+  std::uint64_t next_chunk_ = 0, end_ = 0, wanted_ = 0, next_told_ = 0;
+  bool is_stopped_ = false;
+  std::map<std::uint64_t, std::pair<RowResult, std::string>> untold_;  ///< some row before them is still under way
   std::deque<Job> waiting_;
   std::vector<Job> jobs_;
   RunSummary summary_;
@@ -258,7 +300,11 @@ class Runner {
 }  // namespace
 
 RunSummary run_study(const Study& study, const Folder& folder, const Verb& verb, const RunSettings& settings) {
-  return Runner(study, folder, verb, settings).run();
+  return Runner(study, &folder, verb, settings).run();
+}
+
+RunSummary run_study(const Study& study, const Verb& verb, const RunSettings& settings) {
+  return Runner(study, nullptr, verb, settings).run();
 }
 
 }  // namespace snug::study

@@ -1,4 +1,5 @@
-// run_study: the rows that are missing, each in a process of its own, as many at a time as asked for.
+// run_study: the rows that are missing, each in a process of its own, as many at a time as asked for. The one way in
+// which this program runs rows: studies, comparisons, repeated runs and benches.
 #pragma once
 
 #include <functional>
@@ -19,6 +20,13 @@ struct RunSettings {
   std::uint64_t last_chunk = UINT64_MAX;  ///< included
   /// Called after every row.
   std::function<void(std::uint64_t done, std::uint64_t wanted)> progress;
+  /// Called for every row that has a result, one of an earlier call too, in the order of their indices, as soon as
+  /// those before it were told; what it throws ends the call. `said`: on standard error, now. Rows that come after one
+  /// that was left out are told at the end.
+  std::function<void(const RowResult& result, const std::string& said)> tell;
+  /// Asked again and again. Once true, no row is begun, and those under way get SIGTERM; what they still give is told,
+  /// but kept in no table.
+  std::function<bool()> is_stopped;
 };
 
 struct RunSummary {
@@ -28,10 +36,13 @@ struct RunSummary {
   double row_seconds = 0.0;    ///< wall clock, sum over the rows
 };
 
-/// Runs what the tables of `folder` lack. A row whose process is killed (SIGKILL) is tried three times and then left
-/// for another call; any other end is its result. When the very first row of a study cannot be used (exit code 2)
-/// nothing is written and InputError says what the row said. Throws OutputError when a table cannot be written.
+/// Runs what the tables of `folder` lack. A row whose process somebody ends (SIGKILL, SIGTERM, SIGINT, SIGHUP) is tried
+/// three times and then left for another call; any other end is its result. When the very first row of a study cannot
+/// be used (exit code 2) nothing is written and InputError says what the row said. Throws OutputError when a table
+/// cannot be written.
 [[nodiscard]] RunSummary run_study(const Study& study, const Folder& folder, const Verb& verb,
                                    const RunSettings& settings);
+/// The same without tables: every row is run and told.
+[[nodiscard]] RunSummary run_study(const Study& study, const Verb& verb, const RunSettings& settings);
 
 }  // namespace snug::study

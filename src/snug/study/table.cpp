@@ -38,6 +38,7 @@ Cell as_cell(const Json& json) {
   if (json.is_boolean()) return json.get<bool>() ? 1.0 : 0.0;
   if (json.is_number()) return json.get<double>();
   if (json.is_string()) return json.get<std::string>();
+  if (json.is_structured()) return json.dump();  // only where a study names it
   return {};
 }
 

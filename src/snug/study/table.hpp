@@ -28,8 +28,8 @@ struct RowResult {
   }
 };
 
-/// The values kept of a verb's JSON: the outputs that the study names, else every number, truth and word that is not in
-/// a list and does not tell of a clock (seconds, wall, real_time in its name).
+/// The values kept of a verb's JSON: the outputs that the study names, a list or mapping as its text; else every
+/// number, truth and word that is not in a list and does not tell of a clock (seconds, wall, real_time in its name).
 [[nodiscard]] std::vector<std::pair<std::string, Cell>> values_of(const Study& study, const std::string& json);
 
 /// One line, ending with a sum over the others, so that a line cut short is known as such.

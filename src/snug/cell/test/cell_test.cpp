@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "snug/cell/aligner_feed.hpp"
-#include "snug/cell/monte_carlo.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/cell/task.hpp"
 #include "snug/cell/test/demonstrator.hpp"
@@ -76,25 +75,6 @@ TEST(DemoProgram, RefusesUnknownSequencesAndBoxes) {
     EXPECT_EQ(error.where, "list.yaml:7");
     EXPECT_EQ(error.key, "box");
   }
-}
-
-// ---- Monte Carlo
-
-TEST(MonteCarlo, GivesTheSameRunsWhateverTheNumberOfThreads) {
-  RunOptions options = demo_options();
-  options.until = 12.0;  // past the first pick
-  MonteCarloOptions repeated;
-  repeated.count = 3;
-  repeated.seed = 7;
-  const MonteCarloResult alone = run_monte_carlo(demonstrator(), options, repeated);
-  repeated.threads = 2;
-  const MonteCarloResult shared = run_monte_carlo(demonstrator(), options, repeated);
-  ASSERT_EQ(alone.runs.size(), 3U);
-  ASSERT_EQ(shared.runs.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(alone.runs[i].state_hash, shared.runs[i].state_hash);
-  EXPECT_NE(alone.runs[0].state_hash, alone.runs[1].state_hash);
-  repeated.seed = 8;
-  EXPECT_NE(run_monte_carlo(demonstrator(), options, repeated).runs[0].state_hash, alone.runs[0].state_hash);
 }
 
 // ---- options that do not fit

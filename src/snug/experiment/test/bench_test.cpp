@@ -24,6 +24,15 @@ TEST(BoxOverlap, SeesEdgesThatCross) {
   EXPECT_NEAR(box_overlap(half, X_WA, half, X_WB), 0.001, 1e-12);
 }
 
+TEST(Bench, NamesWhatIsToBeAskedForOneAtATime) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(bench_scenes("s"), (Names{"s1", "s2", "s3", "s4", "s5", "s6", "scenes"}));
+  EXPECT_EQ(bench_scenes("packing.load"), Names{"packing.load"}) << "a figure of one scene";
+  EXPECT_EQ(bench_scenes("nothing"), Names{});
+  EXPECT_GT(bench_scenes("").size(), 15U);
+  for (const std::string& scene : bench_scenes("")) EXPECT_EQ(bench_scenes(scene), Names{scene});
+}
+
 TEST(Bench, MeetsTheTargetsOfSlidingAndBouncing) {
   BenchOptions options;
   options.scenes = std::string(SNUG_SOURCE_DIR) + "/scenarios/bench";

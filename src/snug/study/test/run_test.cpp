@@ -116,6 +116,105 @@ TEST(RunStudy, ARowWhoseProcessIsKilledIsTriedAgainAndNeverAResult) {
   EXPECT_EQ(run_study(study, folder, test::fake, {}).done, 2U);
 }
 
+TEST(RunStudy, ARowWhoseProcessSomebodyEndsIsTriedAgainToo) {
+  const test::Scratch scratch;
+  const std::filesystem::path mark = scratch.path / "mark";
+  for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
+    std::filesystem::remove(mark);
+    const Verb once = [&](const std::vector<std::string>& words) {
+      if (words[2] == "1" && !std::filesystem::exists(mark)) {
+        std::ofstream(mark) << "seen";
+        ::raise(number);
+      }
+      return test::fake(words);
+    };
+    const RunSummary summary = run_study(test::grid(3, 1, 100), once, {});
+    EXPECT_EQ(summary.done, 6U) << number;
+    EXPECT_EQ(summary.failed, 0U) << number;
+  }
+}
+
+TEST(RunStudy, TellsEveryRowInItsOrderHoweverLongEachTakes) {
+  const test::Scratch scratch;
+  const Study study = test::grid(6, 1, 4);
+  const Verb late = [](const std::vector<std::string>& words) {
+    ::usleep(static_cast<useconds_t>(words[4] == "left" ? 30000 : 1000));
+    std::fprintf(stderr, "of %s\n", words[2].c_str());
+    return test::fake(words);
+  };
+  std::vector<std::uint64_t> told;
+  std::vector<std::string> said;
+  std::vector<RowResult> results;
+  RunSettings settings;
+  settings.processes = 4;
+  settings.tell = [&](const RowResult& result, const std::string& words) {
+    told.push_back(result.row);
+    said.push_back(words);
+    results.push_back(result);
+  };
+  const std::vector<std::uint64_t> expected = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  EXPECT_EQ(run_study(study, late, settings).done, 12U) << "without a folder";
+  EXPECT_EQ(told, expected);
+  EXPECT_EQ(said[6], "of 3\n");
+  const std::vector<RowResult> without = results;
+  const Folder folder(study, scratch.path / "f", true);
+  RunSettings some;
+  some.first_chunk = some.last_chunk = 1;
+  (void)run_study(study, folder, late, some);
+  told.clear();
+  results.clear();
+  said.clear();
+  EXPECT_EQ(run_study(study, folder, late, settings).done, 8U);
+  EXPECT_EQ(told, expected) << "rows of an earlier call are told too";
+  EXPECT_EQ(said[6], "") << "what it said is not kept";
+  EXPECT_EQ(results, without);
+}
+
+TEST(RunStudy, EndsInOrderWhenItIsStopped) {
+  const test::Scratch scratch;
+  const Study study = test::grid(20, 1, 100);
+  const Folder folder(study, scratch.path / "f", true);
+  const Verb slow = [](const std::vector<std::string>& words) {
+    ::usleep(words[2] == "0" ? 1000 : 10'000'000);
+    return test::fake(words);
+  };
+  RunSettings settings;
+  settings.processes = 2;
+  std::size_t told = 0;
+  settings.tell = [&](const RowResult&, const std::string&) { ++told; };
+  settings.is_stopped = [&] { return told == 2; };
+  const RunSummary summary = run_study(study, folder, slow, settings);
+  EXPECT_EQ(summary.done, 2U);
+  EXPECT_EQ(summary.left_out, 0U);
+  EXPECT_EQ(told, 2U);
+  EXPECT_EQ(folder.read(0).size(), 2U);
+}
+
+TEST(RunStudy, WhatARowSaysWhenItIsStoppedIsToldAndNotKept) {
+  const test::Scratch scratch;
+  const Study study = test::grid(1, 1, 100);
+  const Folder folder(study, scratch.path / "f", true);
+  const Verb orderly = [](const std::vector<std::string>& words) {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGTERM);
+    sigprocmask(SIG_BLOCK, &set, nullptr);
+    std::fputs("ready\n", stderr);
+    int number = 0;
+    sigwait(&set, &number);
+    return test::fake(words);
+  };
+  RunSettings settings;
+  settings.processes = 2;
+  int asked = 0;
+  settings.is_stopped = [&] { return ++asked > 8; };  // a tenth of a second each: both are ready by then
+  std::size_t told = 0;
+  settings.tell = [&](const RowResult& result, const std::string&) { told += result.values.empty() ? 0 : 1; };
+  EXPECT_EQ(run_study(study, folder, orderly, settings).done, 0U);
+  EXPECT_EQ(told, 2U);
+  EXPECT_TRUE(folder.read(0).empty());
+}
+
 TEST(RunStudy, AFirstRowThatCannotBeUsedEndsItWithTheReason) {
   const test::Scratch scratch;
   const Study study = test::grid(3, 1, 2);

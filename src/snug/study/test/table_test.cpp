@@ -57,10 +57,14 @@ TEST(Table, KeepsNumbersAndWordsButNoClocksAndNoLists) {
 }
 
 TEST(Table, KeepsTheOutputsThatAreNamedAlsoThoseInLists) {
-  const Study study = test::grid(2, 1, 1, "outputs: [a, in.list.1.c, wall, none, list.9]\n");
+  const Study study = test::grid(2, 1, 1, "outputs: [a, in.list.1.c, wall, none, list.9, in]\n");
   const auto values = values_of(study, R"({"wall": 3, "a": 1, "in": {"list": [0, {"c": 5}]}, "list": []})");
-  const std::vector<std::pair<std::string, Cell>> expected = {
-      {"a", 1.0}, {"in.list.1.c", 5.0}, {"wall", 3.0}, {"none", std::monostate{}}, {"list.9", std::monostate{}}};
+  const std::vector<std::pair<std::string, Cell>> expected = {{"a", 1.0},
+                                                              {"in.list.1.c", 5.0},
+                                                              {"wall", 3.0},
+                                                              {"none", std::monostate{}},
+                                                              {"list.9", std::monostate{}},
+                                                              {"in", R"({"list":[0,{"c":5}]})"}};
   EXPECT_EQ(values, expected);
 }
 
