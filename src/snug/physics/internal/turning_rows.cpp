@@ -130,7 +130,7 @@ Row* build_turning_rows(const WorldModel& model, const WorldState& state, const 
 SolveResult solve_with_turning(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end,
                                double* u, NewtonScratch& newton) noexcept {
   // Solutions of jammed bodies share forces in many ways, and the next may share them otherwise: means of bounds settle
-  // that. On random drops: decision 0026.
+  // that. On random drops: decision 0027.
   constexpr int kMaxPasses = 10, kPlainPasses = 2;
   SolveResult result = solve_rows(settings, residuals, first, end, u, newton);
   for (int pass = 0; pass < kMaxPasses && result.has_converged; ++pass) {
