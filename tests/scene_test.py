@@ -129,6 +129,41 @@ class Scenes(unittest.TestCase):
         self.assertAlmostEqual(sum(contact["force_N"][2] for contact in contacts), 3 * 9.81, delta=0.05)
 
 
+class Rolling(unittest.TestCase):
+    """A solid cylinder and a ball of 50 mm roll from 0.5 m/s; the cylinder stops after 1.5 v^2 r / (2 g rho)."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name) / "roll.yaml"
+
+    def roll(self, law):
+        text = TOP.format(duration=6.0).replace("friction: 0.4, restitution: 0.1", f"friction: 0.4, restitution: 0.1, {law}")
+        text += """- {name: roll, shapes: [{cylinder: {length: 0.2, radius: 0.05}}], mass: 0.4, material: m,
+   pose: {position: [0, 0, 0.05], rpy_deg: [90, 0, 0]}, twist: {linear: [0.5, 0, 0], angular: [0, 10, 0]}}
+- {name: top, shapes: [{capsule: {length: 0, radius: 0.05}}], mass: 0.4, material: m,
+   pose: {position: [0, 2, 0.05]}, twist: {angular: [0, 0, 20]}}
+"""
+        self.path.write_text(text)
+        return snug("simulate", self.path, "--json")
+
+    def test_what_rolls_and_what_spins_come_to_rest(self):
+        result = self.roll("rolling_resistance: 2.0e-3, torsional_friction: 5.0e-4")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        roll, top = json.loads(result.stdout)["bodies"]
+        self.assertAlmostEqual(roll["X_WB"]["p"][0], 1.5 * 0.5**2 * 0.05 / (2 * 9.81 * 2e-3), delta=1e-4)
+        self.assertEqual([roll["speed_m_s"], top["speed_m_s"]], [0, 0])
+
+    def test_without_it_they_go_on(self):
+        result = self.roll("rolling_resistance: 0")
+        self.assertAlmostEqual(json.loads(result.stdout)["bodies"][0]["X_WB"]["p"][0], 3.0, delta=1e-4)
+
+    def test_negative_lengths_are_refused(self):
+        result = self.roll("rolling_resistance: -1.0e-3")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("rolling_resistance", result.stderr)
+
+
 class Plates(unittest.TestCase):
     """Ten plates of 190 x 140 x 8 mm for a tote of 200 x 150 x 60 mm: seven fit."""
 

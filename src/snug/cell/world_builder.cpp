@@ -26,6 +26,8 @@ physics::ContactLaw law_of(const model::Scenario& scenario, int a, int b) {
   law.stiffness_beyond = params->stiffness_beyond.value_or(0.0);
   law.full_area = params->full_area.value_or(0.0);
   law.edge_share = params->edge_share.value_or(law.edge_share);
+  law.rolling_resistance = params->rolling_resistance;
+  law.torsional_friction = params->torsional_friction;
   return law;
 }
 

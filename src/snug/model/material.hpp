@@ -32,6 +32,9 @@ struct ContactParams {
   /// Edges crush: boxes whose faces overlap by less than this have stiffness and damping in proportion. Absent: no.
   std::optional<double> full_area;   ///< m^2
   std::optional<double> edge_share;  ///< share of them that edges and corners have at least, above 0; absent: 0.02
+  /// What rolls or spins on a point comes to rest: moments per normal force.
+  double rolling_resistance = 0.0;  ///< m, about the axes in the plane of the contact
+  double torsional_friction = 0.0;  ///< m, about its normal, beside what the friction of several points does
 
   template <class Archive>
   void fields(Archive& a) {
@@ -43,6 +46,8 @@ struct ContactParams {
     a("stiffness_beyond", stiffness_beyond, Range::Positive);
     a("full_area", full_area, Range::Positive);
     a("edge_share", edge_share, Range::Positive);
+    a("rolling_resistance", rolling_resistance, Range::NotNegative);
+    a("torsional_friction", torsional_friction, Range::NotNegative);
   }
   bool operator==(const ContactParams&) const = default;
 };

@@ -134,6 +134,7 @@ void put_to_sleep(const WorldModel& model, const WorldInput& input, WorldState& 
     return static_cast<std::size_t>(i);
   };
   for (const Row& row : work.rows) {
+    if (row.kind != RowKind::Contact) continue;
     if ((row.ia < 0 || row.ib < 0) && row.lambda[0] > 0.0) work.island_of_root[root_of(std::max(row.ia, row.ib))] = 1;
   }
   for (int pass = 0; pass < 2; ++pass) {
@@ -229,6 +230,7 @@ void report_contacts(Scratch& work) {
   work.has_reports = true;
   work.reports.resize(work.contacts.size());
   for (const Row& row : work.rows) {
+    if (row.kind != RowKind::Contact) continue;
     const Contact& contact = work.contacts[static_cast<std::size_t>(row.contact)];
     const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
     const Vector3 impulse = row.lambda[0] * patch.n + row.lambda[1] * patch.t1 + row.lambda[2] * patch.t2;

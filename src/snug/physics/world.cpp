@@ -64,7 +64,7 @@ bool PairState::operator==(const PairState& other) const {
   return geom_a == other.geom_a && geom_b == other.geom_b && cache == other.cache && count == other.count &&
          is_known == other.is_known && p_AB == other.p_AB && quat_AB.coeffs() == other.quat_AB.coeffs() &&
          margin == other.margin && face_area == other.face_area && n_A == other.n_A && t_A == other.t_A &&
-         std::equal(points.begin(), points.begin() + count, other.points.begin()) &&
+         turning == other.turning && std::equal(points.begin(), points.begin() + count, other.points.begin()) &&
          std::equal(impulses.begin(), impulses.begin() + count, other.impulses.begin());
 }
 
@@ -136,13 +136,16 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   contacts = BoundedVector<Contact>(contact_capacity);
   patches = BoundedVector<Patch>(std::min(model.pair_capacity, contact_capacity));
   patch_order.resize(patches.capacity());
-  rows = BoundedVector<Row>(contact_capacity);
+  const bool resists =
+      std::any_of(model.laws.begin(), model.laws.end(), [](const auto& l) { return l.resists_turning(); });
+  const std::size_t row_capacity = contact_capacity + (resists ? kMaxTurningRows * patches.capacity() : 0);
+  rows = BoundedVector<Row>(row_capacity);
   reports = BoundedVector<ContactReport>(contact_capacity);
   islands.resize(n + 1);
   island_order.resize(n + 1);
   workers.reserve(static_cast<std::size_t>(pool.size()));
   for (int i = 0; i < pool.size(); ++i) {
-    workers.push_back({NewtonScratch(n, contact_capacity), {}, {}});
+    workers.push_back({NewtonScratch(n, row_capacity), {}, {}});
     workers.back().element_bodies.reserve(n);
   }
   merged_pairs = BoundedVector<PairState>(model.pair_capacity);
@@ -294,6 +297,9 @@ std::uint64_t hash_of(const WorldState& state) {
       for (const double part : pair.impulses[static_cast<std::size_t>(i)]) hash.add(part);
       hash.add(static_cast<std::uint64_t>(point.feature));
     }
+    if (pair.turning == PairTurning{}) continue;
+    hash.add(pair.turning.pressed);
+    add(pair.turning.moment);
   }
   return hash.value();
 }

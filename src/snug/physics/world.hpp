@@ -46,14 +46,17 @@ struct BodyModel {
 
 /// What happens where two materials touch.
 struct ContactLaw {
-  double friction = 0.3;          ///< Coulomb coefficient, exact disc
-  double restitution = 0.0;       ///< Newton's coefficient, applied above the threshold speed
-  double stiffness = 0.0;         ///< N/m of one contact patch; 0: rigid
-  double damping = 0.0;           ///< N s/m of one contact patch, with stiffness only
-  double travel = 0.0;            ///< m, depth up to which `stiffness` holds; 0: at any depth
-  double stiffness_beyond = 0.0;  ///< N/m of one contact patch for each metre deeper than `travel`
-  double full_area = 0.0;         ///< m^2, boxes whose faces overlap by less have stiffness and damping in proportion
-  double edge_share = 0.02;       ///< share of them that edges and corners have at least, above 0
+  double friction = 0.3;            ///< Coulomb coefficient, exact disc
+  double restitution = 0.0;         ///< Newton's coefficient, applied above the threshold speed
+  double stiffness = 0.0;           ///< N/m of one contact patch; 0: rigid
+  double damping = 0.0;             ///< N s/m of one contact patch, with stiffness only
+  double travel = 0.0;              ///< m, depth up to which `stiffness` holds; 0: at any depth
+  double stiffness_beyond = 0.0;    ///< N/m of one contact patch for each metre deeper than `travel`
+  double full_area = 0.0;           ///< m^2, boxes whose faces overlap by less have stiffness and damping in proportion
+  double edge_share = 0.02;         ///< share of them that edges and corners have at least, above 0
+  double rolling_resistance = 0.0;  ///< m, largest moment about axes in the contact plane per normal force
+  double torsional_friction = 0.0;  ///< m, the same about the normal
+  [[nodiscard]] bool resists_turning() const { return rolling_resistance > 0.0 || torsional_friction > 0.0; }
   bool operator==(const ContactLaw&) const = default;
 };
 
@@ -129,6 +132,13 @@ struct PairPoint {
   bool operator==(const PairPoint&) const = default;
 };
 
+/// Of a pair whose law resists turning: what the last step left.
+struct PairTurning {
+  double pressed = 0.0;              ///< N s, normal impulse of all points together
+  Vector3 moment = Vector3::Zero();  ///< N m s on B along n_A, t_A and n_A x t_A
+  bool operator==(const PairTurning& other) const { return pressed == other.pressed && moment == other.moment; }
+};
+
 /// Two geoms whose fat boxes overlap, with the manifold found last.
 struct PairState {
   std::uint32_t geom_a = 0, geom_b = 0;
@@ -144,6 +154,7 @@ struct PairState {
   std::array<PairPoint, geometry::kMaxManifoldPoints> points;
   /// N s on B in the last step, at each point, along n_A, t_A and n_A x t_A.
   std::array<std::array<double, 3>, geometry::kMaxManifoldPoints> impulses{};
+  PairTurning turning;
   bool operator==(const PairState& other) const;
 };
 

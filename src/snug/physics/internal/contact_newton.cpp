@@ -69,6 +69,9 @@ void multiply(const double (&slope)[9], const double (&rows)[3][6], double* out)
   }
 }
 
+/// Of the normal axis, 1/kg. Turning rows have none; the largest penalty then makes the law of their known impulse.
+double rigid_mobility(const Row& row) { return std::max(row.W[0] - row.gamma, 1e-30); }
+
 /// J u without what kinematic bodies bring in.
 void change_of_velocity(const Row& row, const double* u, double (&xi)[3]) {
   contact_velocity(row, u, xi);
@@ -84,7 +87,7 @@ ContactStatus generalized_law(const Row& row, double penalty, const double (&xi)
   const double normal = xi[0] - row.target + row.gamma * lambda[0];
   const double z0 = lambda[0] - normal / row.W[0];
   if (z0 <= 0.0) return ContactStatus::Open;
-  const double rigid = penalty / (row.W[0] - row.gamma);
+  const double rigid = penalty / rigid_mobility(row);
   const double c = rigid / (1.0 + rigid * row.gamma);
   law.lambda[0] = lambda[0] - c * normal;
   law.slope[0] = c;
@@ -334,7 +337,7 @@ double IslandProblem::evaluate(double penalty) {
   each_row([&](const Row& row, NewtonRow& newton) {
     double xi[3];
     contact_velocity(row, work_.u.data(), xi);
-    augmented_law(row, penalty / (row.W[0] - row.gamma), penalty * row.step_t, newton.center, xi, newton.law);
+    augmented_law(row, penalty / rigid_mobility(row), penalty * row.step_t, newton.center, xi, newton.law);
     if (newton.law.lambda[0] <= 0.0) return;
     const double d[3] = {-newton.law.lambda[0], -newton.law.lambda[1], -newton.law.lambda[2]};
     apply(row, d, work_.error.data());

@@ -7,6 +7,10 @@
 
 namespace snug::physics::internal {
 
+/// What a row is: a touching point, or the resistance of a pair to rolling or spinning on each other
+/// (turning_rows.cpp).
+enum class RowKind : std::uint8_t { Contact, Rolling, Spinning };
+
 /// One frictional contact in whitened coordinates: rows n, t1, t2.
 struct alignas(16) Row {
   double a[3][6];  ///< of body A (zero when A does not move)
@@ -21,8 +25,9 @@ struct alignas(16) Row {
   double step_t;   ///< 1 / largest eigenvalue of the tangential block
   double gap_end;  ///< wanted gap after the step, m
   double position_lambda;
-  std::int32_t ia, ib;  ///< active body or -1
-  std::int32_t contact;
+  std::int32_t ia, ib;   ///< active body or -1
+  std::int32_t contact;  ///< turning: the first of the pair
+  RowKind kind;
   bool is_rigid;
   bool is_bounce;
   bool is_changed;  ///< lambda is not what the state remembers

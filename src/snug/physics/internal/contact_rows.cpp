@@ -150,7 +150,8 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
     const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
     const auto row_index = static_cast<std::size_t>(row - work.rows.begin());
     const bool is_kept = patch.is_kept && a.is_steady && b.is_steady && row->contact == patch.first_contact &&
-                         row_index + static_cast<std::size_t>(patch.contact_count) <= work.last_rows;
+                         row->kind == RowKind::Contact &&
+                         row_index + static_cast<std::size_t>(patch.row_count) <= work.last_rows;
     Side side_a, side_b;
     if (!is_kept) side_a = side_of(work, a, patch, -1.0), side_b = side_of(work, b, patch, 1.0);
     for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
@@ -160,6 +161,7 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
         row->ia = a.active;
         row->ib = b.active;
         row->contact = k;
+        row->kind = RowKind::Contact;
         std::fill_n(row->bias, 3, 0.0);
         if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, row->a);
         if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, row->b);
@@ -177,6 +179,8 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
       row->is_changed = !is_kept;
       cut_to_cone(*row);
     }
+    if (patch.row_count > patch.contact_count)
+      row = build_turning_rows(model, state, work, patch, is_kept, is_first, row);
   }
 }
 

@@ -80,6 +80,7 @@ void finish_row(Row& row) noexcept {
   };
   W[0] = product(0, 0) + row.gamma, W[1] = product(0, 1), W[2] = product(0, 2);
   W[3] = product(1, 1), W[4] = product(1, 2), W[5] = product(2, 2);
+  if (row.kind == RowKind::Spinning) W[5] = W[3];  // its third axis is none: nothing moves along it
   const double c0 = W[3] * W[5] - W[4] * W[4];
   const double c1 = W[2] * W[4] - W[1] * W[5];
   const double c2 = W[1] * W[4] - W[2] * W[3];

@@ -123,7 +123,10 @@ void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& 
     point.feature = found.feature;
     pair.impulses[static_cast<std::size_t>(i)] = {};
   }
-  if (old.count > 0 && pair.count > 0) hand_on_impulses(old, axes_of(pair).transpose() * axes_of(old), pair);
+  if (old.count == 0 || pair.count == 0) return;
+  const Matrix3 R_new_old = axes_of(pair).transpose() * axes_of(old);
+  hand_on_impulses(old, R_new_old, pair);
+  pair.turning.moment = R_new_old * old.turning.moment;
 }
 
 double approach_at(const Vector3& p_WQ, const Vector3& n, const BodyWork& a, const BodyWork& b) {
@@ -197,7 +200,10 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
     touches |= is_touching(contact, model.settings.dt);
   }
   const int count = static_cast<int>(work.contacts.size()) - first;
-  if (count == 0) return false;
+  if (count == 0) {
+    pair.turning = {};
+    return false;
+  }
   memory.patch = static_cast<int>(work.patches.size());
   Patch& patch = work.patches.push_back(Patch{});
   patch.pair = index;
@@ -212,6 +218,7 @@ bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32
   patch.t2 = n.cross(patch.t1);
   patch.law = static_cast<std::size_t>(bodies.geom_a.material * model.material_count + bodies.geom_b.material);
   patch.share = share_of(model.laws[patch.law], pair.face_area);
+  patch.row_count = count + count_turning_rows(model.laws[patch.law]);
   patch.belt_W = b.R_WB * bodies.geom_b.surface_velocity - a.R_WB * bodies.geom_a.surface_velocity;
   patch.has_belt = !patch.belt_W.isZero(0.0);
   return touches;

@@ -46,7 +46,8 @@ void build_islands(const WorldInput& input, Scratch& work) {
     patch.island = island_of(work, a >= 0 ? a : active_of(work, patch.body_b));
     Island& island = work.islands[static_cast<std::size_t>(patch.island)];
     ++island.end_patch;  // counts first, ranges below
-    island.end_row += patch.contact_count;
+    island.end_row += patch.row_count;
+    island.has_turning |= patch.row_count > patch.contact_count;
   }
   for (const ElementUse& use : input.elements) {
     BodyWork& body = work.bodies[static_cast<std::size_t>(use.body.index)];
@@ -64,6 +65,7 @@ void build_islands(const WorldInput& input, Scratch& work) {
     rows += island.end_row;
     island.end_row = rows;
   }
+  work.row_count = rows;
   for (std::size_t i = 0; i < work.patches.size(); ++i) {
     Island& island = work.islands[static_cast<std::size_t>(work.patches[i].island)];
     work.patch_order[static_cast<std::size_t>(island.end_patch++)] = static_cast<int>(i);

@@ -63,6 +63,7 @@ struct Patch {
   int body_a = 0, body_b = 0;
   int first_contact = 0;
   int contact_count = 0;
+  int row_count = 0;  ///< contacts, and what resists turning
   int island = 0;
   double reach_from = 0.0;       ///< m, has the same contacts for any reach from here
   double reach_to = 0.0;         ///< m, to below here
@@ -90,6 +91,7 @@ struct Island {
   int first_row = 0;
   int end_row = 0;
   bool has_element = false;
+  bool has_turning = false;  ///< rows that resist turning
 };
 
 /// What one thread solves islands with.
@@ -124,6 +126,7 @@ struct Scratch {
   BoundedVector<Contact> contacts;  ///< by patch
   std::vector<int> patch_order;     ///< patches by island
   BoundedVector<Row> rows;
+  int row_count = 0;  ///< of this step's islands
   BoundedVector<ContactReport> reports;
   bool has_reports = false;
   double dt = 0.0;
@@ -174,6 +177,14 @@ void unwhiten(const Whitening& whitening, const double* u, Vector3& linear, Vect
 /// with those of the row.
 void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first);
 
+constexpr int kMaxTurningRows = 2;  ///< of a patch
+[[nodiscard]] int count_turning_rows(const ContactLaw& law);
+/// Rows that resist turning, behind the contacts of the patch. Returns the end of them.
+Row* build_turning_rows(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch,
+                        bool is_kept, bool is_first, Row* row);
+/// What the next step starts from.
+void keep_moment(const Row& row, const Scratch& work, const Patch& patch, PairState& pair);
+
 // The contact problem of one island (contact_solver.cpp).
 
 struct SolveResult {
@@ -183,6 +194,9 @@ struct SolveResult {
 };
 [[nodiscard]] SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end,
                                      double* u, NewtonScratch& newton) noexcept;
+/// The same where rows resist turning: again with the normal impulses found as bounds, until they agree or nearly so.
+[[nodiscard]] SolveResult solve_with_turning(const StepSettings& settings, const Residuals& residuals, Row* first,
+                                             Row* end, double* u, NewtonScratch& newton) noexcept;
 /// Displacements that close the position errors of rigid contacts with the least kinetic measure.
 void correct_positions(const StepSettings& settings, Row* first, Row* end, const Contact* contacts, const double* u,
                        double* shift) noexcept;

@@ -45,9 +45,10 @@ void solve_plain_island(const WorldModel& model, const WorldState& state, Scratc
                         IslandWorker& worker) {
   StepReport& report = worker.report;
   build_rows(model, state, work, island, true);
+  const auto solve = island.has_turning ? solve_with_turning : solve_rows;
   const SolveResult result =
-      solve_rows(model.settings, residuals_of(model, work, island), work.rows.begin() + island.first_row,
-                 work.rows.begin() + island.end_row, work.u.data(), worker.newton);
+      solve(model.settings, residuals_of(model, work, island), work.rows.begin() + island.first_row,
+            work.rows.begin() + island.end_row, work.u.data(), worker.newton);
   report.sweeps = std::max(report.sweeps, result.iterations);
   report.residual = std::max(report.residual, result.residual);
   if (!result.has_converged) report.status = StepStatus::NotConverged;
@@ -79,6 +80,7 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
   find_element_bodies(input, work, index, worker.element_bodies);
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
+  const auto solve = island.has_turning ? solve_with_turning : solve_rows;
   SolveResult result;
   const Residuals residuals{model.settings.tolerance, model.settings.tolerance};
   double error = 0.0;
@@ -94,7 +96,7 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
     for (const ElementBody& body : worker.element_bodies) linearize_body(model, input, work, body);
     reset_plain_bodies(work, island);
     build_rows(model, state, work, island, iteration == 0);
-    if (first != end) result = solve_rows(model.settings, residuals, first, end, work.u.data(), worker.newton);
+    if (first != end) result = solve(model.settings, residuals, first, end, work.u.data(), worker.newton);
     report.sweeps = std::max(report.sweeps, result.iterations);
     for (const ElementBody& body : worker.element_bodies) {
       BodyWork& b = work.bodies[static_cast<std::size_t>(body.body)];
@@ -113,6 +115,10 @@ void keep_impulses(const Row* first, const Row* end, WorldState& state, const Sc
     if (!row->is_changed) continue;
     const Contact& contact = work.contacts[static_cast<std::size_t>(row->contact)];
     const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+    if (row->kind != RowKind::Contact) {
+      keep_moment(*row, work, patch, state.pairs[patch.pair]);
+      continue;
+    }
     state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)] = {row->lambda[0], row->lambda[1],
                                                                                  row->lambda[2]};
   }
@@ -222,7 +228,7 @@ void solve_islands(const WorldModel& model, const WorldInput& input, WorldState&
     Eigen::Map<Vector6>(work.u.data() + 6 * i) =
         whiten(work.whitening[static_cast<std::size_t>(i)], body.velocity, body.angular);
   }
-  work.rows.resize(work.contacts.size());
+  work.rows.resize(static_cast<std::size_t>(work.row_count));
   std::fill_n(work.shift.begin(), 6 * work.active_count, 0.0);
   const bool is_shared = order_islands(work);
   for (IslandWorker& worker : work.workers) worker.report = StepReport{};
