@@ -1,4 +1,4 @@
-// Broad phase: which geoms are near each other, updated only when one leaves its fat box.
+// Broad phase: which geoms are near each other, updated only when one may leave its fat box.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -40,6 +40,15 @@ FatBox tight_box(const geometry::Shape& shape, const Matrix3& R_WG, const Vector
   return {p_WG - half, p_WG + half};
 }
 
+/// Where the box can be during this step, as the body moves now.
+FatBox swept_box(const WorldModel& model, std::size_t body, const BodyWork& moving, const FatBox& tight) {
+  const double dt = model.settings.dt;
+  const Vector3 way = dt * moving.velocity_start + dt * dt * model.gravity;
+  const double turn = dt * moving.angular_start.norm() * model.masses[body].radius;
+  return {tight.lower + way.cwiseMin(0.0) - Vector3::Constant(turn),
+          tight.upper + way.cwiseMax(0.0) + Vector3::Constant(turn)};
+}
+
 bool contains(const FatBox& outer, const FatBox& inner) {
   return (outer.lower.array() <= inner.lower.array()).all() && (outer.upper.array() >= inner.upper.array()).all();
 }
@@ -79,11 +88,12 @@ void refresh_fat_boxes(const WorldModel& model, WorldState& state, Scratch& work
         const Matrix3 R_WG = moving.R_WB * geom.X_BG.R;
         const Vector3 p_WG = moving.R_WB * geom.X_BG.p + moving.p_WB;
         const FatBox tight = tight_box(geom.shape, R_WG, p_WG);
-        if (contains(fat, tight)) continue;
+        const FatBox swept = swept_box(model, i, moving, tight);
+        if (contains(fat, swept)) continue;
         const Vector3 ahead = kLookAhead * moving.velocity_start;
         const Vector3 margin = Vector3::Constant(kFatMargin);
-        fat.lower = tight.lower - margin + ahead.cwiseMin(0.0);
-        fat.upper = tight.upper + margin + ahead.cwiseMax(0.0);
+        fat.lower = swept.lower.cwiseMin(tight.lower + ahead) - margin;
+        fat.upper = swept.upper.cwiseMax(tight.upper + ahead) + margin;
       }
       work.moved.push_back(g);
       work.is_moved[static_cast<std::size_t>(g)] = 1;

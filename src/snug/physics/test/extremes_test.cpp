@@ -53,6 +53,20 @@ TEST(Fast, BoxesThatMeetDoNotPassThroughEachOther) {
   }
 }
 
+TEST(Fast, BoxesThatFallByMoreThanTheirFatBoxInAStepAreStoppedAtTheGround) {
+  for (int i = 0; i < 80; ++i) {  // every phase between steps and updates of the pairs
+    SCOPED_TRACE(i);
+    WorldModel model = on_plane({0.3, 0.0, 0.0, 0.0}, {box({0.1, 0.1, 0.1}, 0.5, {0.0, 0.0, 0.6 + 0.05 * i})});
+    model.settings.dt = 5e-3;
+    Simulation run(model);
+    double worst = 0.0;
+    for (int step = 0; step < 250; ++step) worst = std::max(worst, run.step().worst_penetration);
+    EXPECT_LT(worst, 1e-9);
+    // A landing leaves the gap that the last step would have fallen through.
+    EXPECT_NEAR(run.body(1).p_WBcm.z(), 0.05, 0.5 * 9.81 * model.settings.dt * model.settings.dt + 1e-9);
+  }
+}
+
 TEST(MassRatio, HeavyOnLightStandsWhereItWasPut) {
   for (const double ratio : {1e-4, 1e-2, 1e2, 1e4}) {
     SCOPED_TRACE(ratio);
