@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "row_values.hpp"
 #include "snug/cell/drawn_scenario.hpp"

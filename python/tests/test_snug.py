@@ -1,5 +1,6 @@
 """The module: views and their lifetime, snapshots, errors, runs and recordings."""
 import gc
+import json
 import threading
 from pathlib import Path
 
@@ -310,6 +311,26 @@ class TestPacking:
 
         with pytest.raises(KeyError):
             snug.pack(demonstrator, "1", agent=Broken(), samples=0, robot="none")
+
+    def test_repeated_runs_are_the_same_at_any_number_of_threads_also_beside_others(self, demonstrator):
+        """Each is a process of its own, split off from this one while another thread of it prints and allocates."""
+        done = threading.Event()
+
+        def work():
+            while not done.is_set():
+                json.dumps([str(i) for i in range(1000)])
+
+        thread = threading.Thread(target=work)
+        thread.start()
+        try:
+            one, two = (snug.pack(demonstrator, "1", agent="margin", samples=0, robot="none", decision_time=0.01, threads=threads,
+                                  monte_carlo=6).monte_carlo for threads in (1, 2))
+        finally:
+            done.set()
+            thread.join()
+        assert one == two
+        assert one["count"] == 6 and one["failed"] == 0 and len(one["items"]) >= 5
+        assert all(item["succeeded"] <= 6 and item["worst_distance_mm"] > 0 for item in one["items"] if item["succeeded"])
 
     def test_packing_runs_beside_other_threads(self, demonstrator):
         ticks = []
