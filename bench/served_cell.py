@@ -26,15 +26,15 @@ def row(name, value, unit, target):
     print(f"{name:<52} {value:>9.4g} {unit:<8} {target}", flush=True)
 
 
-def answer_of(*words):
+def answer_of(*words, codes=(0,)):
     result = subprocess.run([SNUG, *map(str, words), "--json"], capture_output=True, text=True, check=False)
-    if result.returncode != 0:
+    if result.returncode not in codes:
         sys.exit(f"served_cell.py: snug {words[0]}: {result.stderr or result.stdout}")
     return json.loads(result.stdout)
 
 
 def round_trips():
-    for figure in answer_of("bench", "click")["results"]:
+    for figure in answer_of("bench", "click", codes=(0, 1))["results"]:  # 1: a figure missed its target
         row(figure["name"], figure["value"], figure["unit"], figure["target"])
 
 
