@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "calibration_json.hpp"
 #include "snug/core/csv_cell.hpp"
 #include "snug/model/reported_agent.hpp"
 
@@ -132,20 +133,6 @@ std::string calibration_lines(const std::string& agent, const study::Calibration
   return text;
 }
 
-Json as_json(const study::Calibration& calibration) {
-  Json bins = Json::array();
-  for (std::size_t i = 0; i < calibration.bins.size(); ++i) {
-    const study::CalibrationBin& bin = calibration.bins[i];
-    if (bin.motions == 0) continue;
-    bins.push_back({{"from_percent", 10 * i},
-                    {"to_percent", 10 * (i + 1)},
-                    {"motions", bin.motions},
-                    {"predicted_percent", 100.0 * bin.predicted / bin.motions},
-                    {"observed_percent", 100.0 * bin.succeeded / bin.motions}});
-  }
-  return bins;
-}
-
 std::string format_table_end(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
                              bool with_references) {
   std::string text =
@@ -221,7 +208,7 @@ std::string format_json_end(const std::vector<CompareRow>& rows) {
                      {"recoveries", all.recoveries},
                      {"boxes_per_hour", all.boxes_per_hour},
                      {"decision_seconds_median", all.seconds},
-                     {"calibration", as_json(all.calibration)}});
+                     {"calibration", calibration_json(all.calibration)}});
   }
   return "\n],\n\"means\": " + means.dump(2) + "}\n";
 }

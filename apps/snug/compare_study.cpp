@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "calibration_json.hpp"
 #include "row_values.hpp"
 
 namespace snug::app {
@@ -36,15 +37,6 @@ OrderedJson common_words(const PackOptions& pack, std::uint64_t seed) {
   OrderedJson json = OrderedJson::object();
   for (const auto& [option, value] : words) json[option].push_back(value);
   return json;
-}
-
-study::Calibration read_calibration(const OrderedJson& bins) {
-  study::Calibration calibration;
-  for (const OrderedJson& json : bins) {
-    study::CalibrationBin& bin = calibration.bins.at(json.at("from_percent").get<std::size_t>() / 10);
-    bin = {json.at("motions").get<int>(), json.at("succeeded").get<int>(), json.at("predicted").get<double>()};
-  }
-  return calibration;
 }
 
 std::vector<PackedBox> read_packed(const OrderedJson& boxes) {

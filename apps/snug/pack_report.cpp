@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "snug/study/calibration.hpp"
+#include "calibration_json.hpp"
 
 namespace snug::app {
 namespace {
@@ -117,19 +117,6 @@ Json as_json(const cell::BoxResult& box) {
   return {{"id", box.id},
           {"state", cell::name_of(box.state)},
           {"X_TP", {{"p", as_json(box.X_TP.p)}, {"quat_wxyz", {q.w(), q.x(), q.y(), q.z()}}}}};
-}
-
-Json as_json(const study::Calibration& calibration) {
-  Json bins = Json::array();
-  for (std::size_t i = 0; i < calibration.bins.size(); ++i) {
-    const study::CalibrationBin& bin = calibration.bins[i];
-    if (bin.motions == 0) continue;
-    bins.push_back({{"from_percent", 10 * i},
-                    {"motions", bin.motions},
-                    {"predicted", bin.predicted},
-                    {"succeeded", bin.succeeded}});
-  }
-  return bins;
 }
 
 session::ItemSeconds sum_of_seconds(const session::SessionResult& result) {
@@ -291,7 +278,7 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
   for (const cell::BoxResult& box : trial.boxes) json["boxes"].push_back(as_json(box));
   study::Calibration calibration;
   calibration.add(trial);
-  json["calibration"] = as_json(calibration);
+  json["calibration"] = calibration_json(calibration);
   if (repeated.count > 0) json["monte_carlo"] = as_json(repeated);
   return json.dump(2) + "\n";
 }

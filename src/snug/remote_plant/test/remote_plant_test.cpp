@@ -11,6 +11,7 @@
 #include "snug/click/server.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
+#include "snug/model/test/shortened.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
 #include "snug/remote_plant/watched_cell.hpp"
 
@@ -20,11 +21,7 @@ namespace {
 using plant::PlantContract;
 
 const model::Scenario& scenario() {
-  static const model::Scenario one = [] {
-    model::Scenario loaded = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
-    loaded.sequences.front().items.resize(3);
-    return cell::with_fixed_arrivals(std::move(loaded), "1");
-  }();
+  static const model::Scenario one = cell::with_fixed_arrivals(model::test::shortened(3), "1");
   return one;
 }
 

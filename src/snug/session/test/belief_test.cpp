@@ -5,14 +5,10 @@
 
 #include <numeric>
 
+#include "snug/model/test/shortened.hpp"
+
 namespace snug::session {
 namespace {
-
-model::Scenario demonstrator() {
-  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
-  scenario.sequences.front().items.resize(3);
-  return scenario;
-}
 
 BeliefSettings quick(int threads = 1) {
   BeliefSettings settings;
@@ -36,7 +32,7 @@ perception::Observation seen_at(const Pose& X_WP, std::optional<Vector3> size = 
 /// Three items of the demonstrator, the first at the aligner.
 struct BeliefOfOneBox : testing::Test {
   BeliefOfOneBox() { belief.arrives(0); }
-  const model::Scenario scenario = demonstrator();
+  const model::Scenario scenario = model::test::shortened(3);
   Belief belief{scenario, "1", quick()};
 };
 
@@ -145,7 +141,7 @@ TEST_F(BeliefOfOneBox, WhatIsMissingIsBelievedToBeNowhere) {
 }
 
 TEST(Belief, IsTheSameWithAnyNumberOfThreads) {
-  const model::Scenario scenario = demonstrator();
+  const model::Scenario scenario = model::test::shortened(3);
   Belief one(scenario, "1", quick(1)), two(scenario, "1", quick(2));
   for (Belief* belief : {&one, &two}) belief->arrives(0);
   const auto& a = one.take_up(at_start(scenario));

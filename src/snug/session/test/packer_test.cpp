@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "snug/model/test/shortened.hpp"
 #include "snug/session/session.hpp"
 
 namespace snug::session {
@@ -14,11 +15,7 @@ namespace {
 using plant::EndReason;
 
 const model::Scenario& demonstrator() {
-  static const model::Scenario one = [] {
-    model::Scenario loaded = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
-    loaded.sequences.front().items.resize(2);  // BOX027, BOX028
-    return loaded;
-  }();
+  static const model::Scenario one = model::test::shortened(2);  // BOX027, BOX028
   return one;
 }
 

@@ -5,17 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "snug/model/test/shortened.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/session/rollout.hpp"
 
 namespace snug::session {
 namespace {
 
-model::Scenario shortened(std::size_t count) {
-  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
-  scenario.sequences.front().items.resize(count);
-  return scenario;
-}
+using model::test::shortened;
 
 cell::SimulationOptions moved_by(const std::string& robot) {
   return {motion::ControllerKind::Faithful, cup::CupMode::Phases, robot};

@@ -6,6 +6,7 @@
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
+#include "snug/model/test/shortened.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
 
 namespace snug::simulated_plant {
@@ -14,11 +15,7 @@ namespace {
 using plant::PlantContract;
 
 const model::Scenario& scenario() {
-  static const model::Scenario one = [] {
-    model::Scenario loaded = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
-    loaded.sequences.front().items.resize(3);
-    return loaded;
-  }();
+  static const model::Scenario one = model::test::shortened(3);
   return one;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "snug/model/test/shortened.hpp"
 #include "snug/study/trial.hpp"
 
 namespace snug::study {
@@ -12,8 +13,7 @@ using session::Remedy;
 using session::Trouble;
 
 Trial run_with(const char* faults, std::size_t items = 3) {
-  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
-  scenario.sequences.front().items.resize(items);
+  const model::Scenario scenario = model::test::shortened(items);
   session::SessionOptions options;
   options.packing.decision_time = 0.05;
   options.samples = 2;

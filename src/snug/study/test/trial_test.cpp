@@ -5,6 +5,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/model/other_container.hpp"
+#include "snug/model/test/shortened.hpp"
 #include "snug/study/monte_carlo.hpp"
 
 namespace snug::study {
@@ -15,11 +16,7 @@ using session::SessionOptions;
 using session::StopReason;
 using simulated_plant::SimulatedPlantOptions;
 
-model::Scenario shortened(std::size_t count) {
-  model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
-  scenario.sequences.front().items.resize(count);
-  return scenario;
-}
+using model::test::shortened;
 
 SessionOptions quick(int samples = 2) {
   SessionOptions options;
