@@ -128,6 +128,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   pair_memories.resize(model.pair_capacity);
   bodies.resize(n);
   active.resize(n);
+  carriers.reserve(n);
   whitening.resize(n);
   u.resize(6 * n + 2);
   shift.resize(6 * n + 2);
