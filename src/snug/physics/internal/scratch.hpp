@@ -73,6 +73,8 @@ struct Patch {
   std::size_t law = 0;               ///< in WorldModel::laws
   double share = 1.0;                ///< of the law's stiffness and damping
   bool has_belt = false;             ///< one of the surfaces runs
+  bool is_swept = false;             ///< holds at the end of the step: arms and normal are those of there
+  Vector3 way_a = Vector3::Zero(), way_b = Vector3::Zero();  ///< of the centres of mass, from where p_WQ is seen
   Vector3 belt_W = Vector3::Zero();  ///< of B's surface against A's, beyond the motion of the bodies, m/s
 };
 
@@ -82,7 +84,7 @@ struct Contact {
   double phi = 0.0;
   double approach = 0.0;  ///< normal relative velocity at the start of the step, m/s
   int patch = 0;
-  int point = 0;  ///< of the pair's manifold
+  int point = 0;  ///< of the pair's manifold; swept: -1
 };
 
 struct Island {
@@ -162,6 +164,14 @@ void build_islands(const WorldInput& input, Scratch& work);
 /// Velocities at the end of the step; leaves the impulses in the state.
 void solve_islands(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
                    StepReport& report);
+/// Contacts for what bodies that turn fast would run into by the end of the step as solved. Whether there are any: then
+/// the step is to be solved again.
+bool add_swept_contacts(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work);
+/// What a body moves by in this step as solved.
+struct Displacement {
+  Vector3 way = Vector3::Zero(), rotation = Vector3::Zero();  ///< of the centre of mass, m; rad
+};
+[[nodiscard]] Displacement displacement_of(const Scratch& work, int body);
 /// Positions, penetration, sleep.
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report);
 /// Fills work.reports, once a step and only when somebody asks.
