@@ -1,5 +1,7 @@
 // Swept contacts: what a body that turns fast would run into by the end of a step beside the contacts found at its start.
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 
 #include "snug/physics/internal/scratch.hpp"
 
@@ -27,9 +29,7 @@ End end_of(const WorldModel& model, const Scratch& work, int index) {
 }
 
 bool turns_fast(const WorldModel& model, const Scratch& work, int index) {
-  const BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
-  const double rotation = 0.5 * work.dt * (body.angular_start + body.angular).norm();
-  return rotation * model.masses[static_cast<std::size_t>(index)].radius > kTurn;
+  return displacement_of(work, index).rotation.norm() * model.masses[static_cast<std::size_t>(index)].radius > kTurn;
 }
 
 const Geom& geom_of(const WorldModel& model, const WorldModel::GeomRef& ref) {
@@ -51,6 +51,7 @@ bool add_swept_contacts(const WorldModel& model, const WorldInput& input, const 
   (void)input;
   bool any_fast = false;
   for (int i = 0; i < static_cast<int>(work.bodies.size()) && !any_fast; ++i) any_fast = turns_fast(model, work, i);
+  if (getenv("DBG")) fprintf(stderr, "pass step %ld\n", (long)state.step_index);
   if (!any_fast) return false;
   bool has_added = false;
   for (std::uint32_t i = 0; i < state.pairs.size(); ++i) {
@@ -70,6 +71,7 @@ bool add_swept_contacts(const WorldModel& model, const WorldInput& input, const 
                       model.settings.contact_margin, cache, manifold);
     double deepest = 0.0;
     for (int k = 0; k < manifold.count; ++k) deepest = std::min(deepest, manifold.points[static_cast<std::size_t>(k)].phi);
+    if (getenv("DBG") && deepest < -1e-3) fprintf(stderr, "step %ld pair %d %d deepest %.3f mm points %d start %.3f\n", (long)state.step_index, ref_a.body, ref_b.body, 1e3*deepest, manifold.count, 1e3*work.pair_memories[i].clearance);
     if (deepest > std::min(0.0, work.pair_memories[i].clearance) - kDepth) continue;
     if (work.patches.full() || work.contacts.capacity() - work.contacts.size() < geometry::kMaxManifoldPoints) break;
     const auto index = static_cast<int>(work.patches.size());
@@ -93,6 +95,7 @@ bool add_swept_contacts(const WorldModel& model, const WorldInput& input, const 
       const double phi = point.phi - n.dot(way_of(end_b.displacement, arm_b) - way_of(end_a.displacement, arm_a));
       work.contacts.push_back({p_WQ, phi, n.dot(velocity_at(b, arm_b) - velocity_at(a, arm_a)), index, -1});
     }
+    if (getenv("DBG")) for (int k=patch.first_contact;k<patch.first_contact+patch.contact_count;++k){ auto&c=work.contacts[k]; fprintf(stderr,"step %ld   n %.3f %.3f %.3f phi %.3f mm approach %.3f end phi %.3f shift a %.3f b %.3f mm turn %.3f %.3f\n",(long)state.step_index,n.x(),n.y(),n.z(),1e3*c.phi,c.approach,1e3*manifold.points[k-patch.first_contact].phi, 1e3*(end_a.displacement.way-0.5*work.dt*(a.velocity_start+a.velocity)).norm(),1e3*(end_b.displacement.way-0.5*work.dt*(b.velocity_start+b.velocity)).norm(), end_a.displacement.rotation.norm(), end_b.displacement.rotation.norm());}
     has_added = true;
   }
   return has_added;
