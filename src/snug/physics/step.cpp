@@ -13,7 +13,8 @@ constexpr double kFarthest = 1000.0;  ///< m; a body beyond is lost
 /// m and rad in one step. A body that would move less stands still, bit by bit: rounding keeps nothing awake. At steps
 /// of 1 ms that is 3 mm in a year.
 constexpr double kStill = 1e-13;
-constexpr int kSweeps = 3;
+/// A step is solved again at most this often for what bodies run into by turning.
+constexpr int kSweptSolves = 3;
 
 void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, const BodyState& state,
                 BodyMemory& memory, bool knows_state, BodyWork& work) {
@@ -203,6 +204,26 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
   return true;
 }
 
+/// Velocities at the end of the step. Solved again while bodies that turn fast run into others by contacts that the
+/// start of the step does not show (contact.md, section 5). False: too many contacts.
+bool solve_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
+                StepReport& report) {
+  for (int again = kSweptSolves;; --again) {
+    StepReport solved = report;
+    free_motion(model, input, work);
+    build_islands(input, work);
+    solve_islands(model, input, state, work, solved);
+    const bool is_last = again == 0 || solved.culprit.is_valid();
+    const Swept swept = is_last ? Swept::Nothing : add_swept_contacts(model, state, work);
+    if (swept == Swept::Nothing) {
+      report = solved;
+      return true;
+    }
+    if (swept == Swept::Sleepers) detect_contacts(model, input, state, work, report);
+    if (work.has_too_many_contacts) return false;
+  }
+}
+
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report) {
   for (int i = 0; i < work.active_count; ++i) {
     const int index = work.active[static_cast<std::size_t>(i)];
@@ -267,15 +288,7 @@ StepReport step(const WorldModel& model, const WorldInput& input, WorldState& st
   if (!internal::update_pairs(model, state, work)) return stop(StepStatus::TooManyPairs);
   internal::detect_contacts(model, input, state, work, report);
   if (work.has_too_many_contacts) return stop(StepStatus::TooManyPairs);
-  for (int again = internal::kSweeps; again >= 0; --again) {
-    StepReport solved = report;
-    internal::free_motion(model, input, work);
-    internal::build_islands(input, work);
-    internal::solve_islands(model, input, state, work, solved);
-    if (again > 0 && !solved.culprit.is_valid() && internal::add_swept_contacts(model, input, state, work)) continue;
-    report = solved;
-    break;
-  }
+  if (!internal::solve_step(model, input, state, work, report)) return stop(StepStatus::TooManyPairs);
   if (report.culprit.is_valid()) return stop(StepStatus::NotFinite);
   internal::end_step(model, input, state, work, report);
   work.has_reports = false;
