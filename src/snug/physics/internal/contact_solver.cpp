@@ -132,6 +132,7 @@ void correct_positions(const StepSettings& settings, Row* first, Row* end, const
   // no longer pull, since what several of them ask for at once may be far away.
   constexpr int kSweeps = 50, kMostSweeps = 1000;
   constexpr double kCoarse = 1e-6;  // m, change of a sweep
+  constexpr double kLarge = 1e-4;   // m, displacement wanted; what rests or is pressed slowly stays below
   double worst = 0.0;
   for (Row* row = first; row != end; ++row) {
     const Contact& contact = contacts[row->contact];
@@ -146,7 +147,7 @@ void correct_positions(const StepSettings& settings, Row* first, Row* end, const
   }
   if (worst <= settings.position_slop) return;
   double change = 0.0;
-  for (int sweep = 0; sweep < kSweeps || (change > kCoarse && sweep < kMostSweeps); ++sweep) {
+  for (int sweep = 0; sweep < kSweeps || (worst > kLarge && change > kCoarse && sweep < kMostSweeps); ++sweep) {
     change = 0.0;
     for (Row* row = first; row != end; ++row) {
       if (!row->is_rigid) continue;

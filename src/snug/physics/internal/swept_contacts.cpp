@@ -14,12 +14,18 @@ constexpr double kFastTurn = 1e-3;
 /// to 1.5 mm deep, with 0.2 mm 0.6, with 0.1 mm 0.3, at the same cost.
 constexpr double kDeep = 2e-4;
 
+bool turns_fast(const WorldModel& model, const Scratch& work, int index) {
+  const BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
+  if (!body.is_moving) return false;
+  const double radius = model.masses[static_cast<std::size_t>(index)].radius;
+  return displacement_of(work, index).rotation.squaredNorm() * radius * radius > kFastTurn * kFastTurn;
+}
+
 BodyEnd end_of(const WorldModel& model, const Scratch& work, int index) {
   const BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
   BodyEnd end;
   end.displacement = displacement_of(work, index);
-  const double radius = model.masses[static_cast<std::size_t>(index)].radius;
-  end.turns_fast = body.is_moving && end.displacement.rotation.norm() * radius > kFastTurn;
+  end.turns_fast = turns_fast(model, work, index);
   end.p_WBcm = body.p_WBcm + end.displacement.way;
   const Matrix3 R_WB = exp_rotation(end.displacement.rotation) * body.R_WB;
   end.X_WB = {R_WB, end.p_WBcm - R_WB * model.bodies[static_cast<std::size_t>(index)].inertia.com};
@@ -89,15 +95,19 @@ bool wake_pair(const WorldModel& model, WorldState& state, Scratch& work, int bo
   return has_woken;
 }
 
-/// Whether one of the bodies turns fast.
+/// Whether one of the bodies turns fast: then all ends are known.
 bool find_ends(const WorldModel& model, Scratch& work) {
-  bool turns_fast = false;
-  for (std::size_t i = 0; i < work.bodies.size() && !turns_fast; ++i) {
-    if (work.bodies[i].is_moving) turns_fast = end_of(model, work, static_cast<int>(i)).turns_fast;
+  bool is_one_fast = false;
+  for (int i = 0; i < static_cast<int>(work.bodies.size()) && !is_one_fast; ++i) {
+    is_one_fast = turns_fast(model, work, i);
   }
-  if (!turns_fast) return false;
-  for (std::size_t i = 0; i < work.bodies.size(); ++i) work.ends[i] = end_of(model, work, static_cast<int>(i));
-  return true;
+  if (!is_one_fast) return false;
+  bool is_finite = true;  // else the end of the step names the body
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    work.ends[i] = end_of(model, work, static_cast<int>(i));
+    is_finite = is_finite && work.ends[i].X_WB.p.allFinite() && work.ends[i].X_WB.R.allFinite();
+  }
+  return is_finite;
 }
 
 }  // namespace
