@@ -1,11 +1,8 @@
 // Check: what a look at a program says beforehand, beside what a run does.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <numbers>
 #include <utility>
 
 #include "snug/cell/corrected.hpp"
@@ -13,8 +10,6 @@
 #include "snug/cell/run.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cell/test/robot_rows.hpp"
-#include "snug/core/input_error.hpp"
-#include "snug/record/reader.hpp"
 
 namespace snug::cell {
 namespace {

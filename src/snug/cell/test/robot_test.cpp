@@ -1,15 +1,11 @@
 // The robot in the cell: what stops it, where and why; what its sensor reads.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <utility>
 
 #include "snug/cell/corrected.hpp"
-#include "snug/cell/program_check.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cell/test/robot_rows.hpp"
@@ -94,6 +90,13 @@ TEST(Robot, StopsWhereItDrivesAWristIntoTheWall) {
   EXPECT_EQ(result.stop->row, 2);
   EXPECT_EQ(result.stop->what, "joint torque");  // behind the sensor nobody feels a wrist
   EXPECT_NE(result.stop->touching.find("robot/wrist_2_link"), std::string::npos) << describe(*result.stop);
+}
+
+const record::Event* find_event(const std::vector<record::Event>& events, const std::string& kind,
+                                const std::string& body) {
+  const auto found = std::find_if(events.begin(), events.end(),
+                                  [&](const record::Event& event) { return event.kind == kind && event.body == body; });
+  return found == events.end() ? nullptr : &*found;
 }
 
 TEST(Robot, RecordsWhatALinkTouchesWithTheForceOfTheRecordedContacts) {

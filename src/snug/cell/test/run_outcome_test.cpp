@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "snug/cell/run.hpp"
@@ -16,16 +14,13 @@
 namespace snug::cell {
 namespace {
 
-namespace fs = std::filesystem;
 using snug::test::ScratchFolder;
 using test::body_of;
 using test::loading_error;
 using test::scene;
 using test::scene_text;
-using test::write;
 
 constexpr double kGravity = 9.81;
-constexpr double kPi = std::numbers::pi;
 
 TEST(ContactLimits, ASqueezedBoxIsAFailureThatNamesItAndLeavesTheResultWhole) {
   const ScratchFolder folder;

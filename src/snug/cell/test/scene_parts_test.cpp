@@ -4,14 +4,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "snug/cell/run.hpp"
 #include "snug/cell/scene.hpp"
 #include "snug/cell/test/scene_text.hpp"
-#include "snug/core/input_error.hpp"
-#include "snug/record/reader.hpp"
 
 namespace snug::cell {
 namespace {
