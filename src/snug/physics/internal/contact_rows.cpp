@@ -153,7 +153,8 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
                          row->kind == RowKind::Contact &&
                          row_index + static_cast<std::size_t>(patch.row_count) <= work.last_rows;
     Side side_a, side_b;
-    if (!is_kept) side_a = side_of(work, a, patch, patch.way_a, -1.0), side_b = side_of(work, b, patch, patch.way_b, 1.0);
+    if (!is_kept)
+      side_a = side_of(work, a, patch, patch.way_a, -1.0), side_b = side_of(work, b, patch, patch.way_b, 1.0);
     for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
       prefetch(row + 4);
       const Contact& contact = work.contacts[static_cast<std::size_t>(k)];

@@ -40,7 +40,7 @@ void throw_boxes(const WorldModel& model, std::uint64_t seed, WorldState& state)
   }
 }
 
-// More than 0.2 mm of overlap asks for contacts, three times at most; 3 mm is what decision 0028 aims at. Without swept
+// More than 0.2 mm of overlap asks for contacts, three times at most; 3 mm is what decision 0029 aims at. Without swept
 // contacts five of the first eight seeds are deeper, up to 19 mm.
 TEST(SweptContacts, KeepCornersOfThrownBoxesOutOfOthers) {
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
