@@ -186,6 +186,8 @@ class Rows(Scratch):
         self.assertEqual(one, three)
         self.assertEqual([(row["agent"], row["sequence"], row["plant_seed"]) for row in one[:3]],
                          [("margin", "1", "1"), ("margin", "1", "2"), ("margin", "2", "1")])
+        self.assertEqual(list(one[0])[-1], "failure")
+        self.assertEqual({row["failure"] for row in one}, {""})
 
     def test_comparison_in_a_folder_goes_on_after_a_kill_and_is_a_study(self):
         words = (*self.COMPARE, "--csv", "--dir", "kept")

@@ -220,7 +220,7 @@ std::string format_compare_head(CompareForm form) {
   if (form == CompareForm::Csv) {
     return "agent,sequence,planned_boxes,planned_percent,executed_boxes,executed_percent,decision_seconds_median,seed,"
            "plant_seed,items_sent,items_as_planned,boxes_lost,recoveries,percent_before_skips,stop_reason,boxes_per_"
-           "hour\n";
+           "hour,failure\n";
   }
   return fmt::format(fmt::runtime(kRow), "agent", "sequence", "seed", "plant", "plan", "%", "exec", "%", "sent",
                      "as planned", "lost", "recoveries", "boxes/h", "dec., s", "stopped");
@@ -229,11 +229,11 @@ std::string format_compare_head(CompareForm form) {
 std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_first) {
   if (form == CompareForm::Json) return (is_first ? "\n" : ",\n") + as_json(row).dump();
   if (form == CompareForm::Csv) {
-    return fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{},{},{:.4f},{},{:.1f}\n", csv_cell(row.agent),
+    return fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{},{},{:.4f},{},{:.1f},{}\n", csv_cell(row.agent),
                        csv_cell(row.sequence), row.planned_boxes, row.planned_percent, row.executed_boxes,
                        row.executed_percent, row.decision_seconds_median, row.seed, row.plant_seed, row.items_sent,
                        row.items_as_planned, row.boxes_lost, row.recoveries, row.percent_before_skips,
-                       csv_cell(row.stop_reason), row.boxes_per_hour);
+                       csv_cell(row.stop_reason), row.boxes_per_hour, csv_cell(row.failure));
   }
   return fmt::format(fmt::runtime(kRow), row.agent, row.sequence, row.seed, row.plant_seed, row.planned_boxes,
                      fmt::format("{:.2f}", row.planned_percent), row.executed_boxes,

@@ -127,6 +127,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   memories.resize(n);
   pair_memories.resize(model.pair_capacity);
   bodies.resize(n);
+  ends.resize(n);
   active.resize(n);
   carriers.reserve(n);
   whitening.resize(n);

@@ -11,8 +11,10 @@
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/replay/internal/mcap_scene.hpp"
 #include "snug/replay/internal/recorded_scenario.hpp"
+#include "snug/replay/internal/robot_frames.hpp"
 #include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/mcap_schemas.hpp"
+#include "snug/robot/link_tree.hpp"
 
 namespace snug::replay {
 namespace {
@@ -79,6 +81,7 @@ class Exporter {
   Topic tool_pose_, tool_command_, tool_twist_, cup_state_, cup_wrench_, flange_wrench_, solver_;
   std::optional<Topic> joints_, description_, robot_scene_;
   std::vector<internal::LinkLook> looks_;
+  internal::RobotFrames robot_frames_;
   JsonText text_;
   bool is_first_ = true;
   std::vector<bool> present_;
@@ -113,7 +116,7 @@ Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header, co
 
 void Exporter::write_robot(std::uint64_t ns) {
   if (description_) {
-    text_.raw("{\"data\":").quoted(robot_.urdf).raw("}");
+    text_.raw("{\"data\":").quoted(robot::embed_meshes(robot_.urdf, robot_.meshes)).raw("}");
     send(*description_, ns);
   }
   if (robot_scene_) robot_scene_->write(ns, internal::robot_message(ns, header_, looks_));
@@ -122,39 +125,44 @@ void Exporter::write_robot(std::uint64_t ns) {
 void Exporter::write_static_frames(std::uint64_t ns, const record::Frame& frame) {
   text_.raw("{\"transforms\":[");
   bool has_any = false;
-  const auto put = [&](const std::string& name, const record::PoseSample& X) {
-    text_.raw(has_any ? "," : "").transform(ns, internal::kWorldFrame, name, X);
+  robot_frames_ = internal::RobotFrames(header_, robot_.urdf, frame);
+  const auto put = [&](std::string_view parent, const std::string& name, const record::PoseSample& X) {
+    text_.raw(has_any ? "," : "").transform(ns, parent, name, X);
     has_any = true;
   };
+  for (const internal::LinkFrame& link : robot_frames_.still()) put(link.parent, link.child, link.X_PC);
   for (std::size_t i = 0; i < header_.bodies.size(); ++i) {
-    if (header_.bodies[i].kind == record::BodyKind::Static) put(header_.bodies[i].name, frame.bodies[i].X_WB);
+    if (header_.bodies[i].kind == record::BodyKind::Static)
+      put(internal::kWorldFrame, header_.bodies[i].name, frame.bodies[i].X_WB);
   }
   if (scenario_) {
     for (const model::Frame& fixed : scenario_->frames) {
       const bool is_taken = record::find_body(header_, fixed.name) >= 0 || fixed.name == internal::kWorldFrame ||
                             fixed.name == internal::kToolFrame || fixed.name == internal::kLipFrame ||
-                            fixed.name == internal::kFlangeFrame;
-      put(is_taken ? "frame/" + fixed.name : fixed.name, record::PoseSample(fixed.X_WF));
+                            fixed.name == internal::kFlangeFrame || robot_frames_.has(fixed.name);
+      put(internal::kWorldFrame, is_taken ? "frame/" + fixed.name : fixed.name, record::PoseSample(fixed.X_WF));
     }
   }
   // Without a robot its flange is where the tool is; of a robot the recording does not tell where it is.
-  if (header_.joints.empty()) {
-    text_.raw(has_any ? "," : "").transform(ns, internal::kToolFrame, internal::kFlangeFrame, {});
-    has_any = true;
-  }
+  if (header_.joints.empty()) put(internal::kToolFrame, std::string(internal::kFlangeFrame), {});
   text_.raw("]}");
   if (!has_any) return text_.clear();
   send(tf_static_, ns);
 }
 
 void Exporter::write_moving_frames(std::uint64_t ns, const record::Frame& frame) {
-  text_.raw("{\"transforms\":[").transform(ns, internal::kWorldFrame, internal::kToolFrame, frame.X_WE);
-  if (frame.cup.attached_body >= 0) {
-    text_.raw(",").transform(ns, internal::kToolFrame, internal::kLipFrame, frame.cup.X_ES);
-  }
+  text_.raw("{\"transforms\":[");
+  bool has_any = false;
+  const auto put = [&](std::string_view parent, std::string_view child, const record::PoseSample& X) {
+    text_.raw(has_any ? "," : "").transform(ns, parent, child, X);
+    has_any = true;
+  };
+  if (!robot_frames_.has(internal::kToolFrame)) put(internal::kWorldFrame, internal::kToolFrame, frame.X_WE);
+  for (const internal::LinkFrame& link : robot_frames_.moving(frame)) put(link.parent, link.child, link.X_PC);
+  if (frame.cup.attached_body >= 0) put(internal::kToolFrame, internal::kLipFrame, frame.cup.X_ES);
   for (std::size_t i = 0; i < header_.bodies.size(); ++i) {
     if (header_.bodies[i].kind == record::BodyKind::Static || !frame.bodies[i].present) continue;
-    text_.raw(",").transform(ns, internal::kWorldFrame, header_.bodies[i].name, frame.bodies[i].X_WB);
+    put(internal::kWorldFrame, header_.bodies[i].name, frame.bodies[i].X_WB);
   }
   text_.raw("]}");
   send(tf_, ns);

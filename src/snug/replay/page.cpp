@@ -1,28 +1,11 @@
 // Page: the report, one HTML file: the page that viewer/ builds with recordings inside.
 #include "snug/replay/page.hpp"
 
-#include <cstdint>
-
+#include "snug/core/base64.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
 
 namespace snug::replay {
-
-std::string base64(std::string_view bytes) {
-  static constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t triple = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      triple = (triple << 8U) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text.push_back(i + k > bytes.size() ? '=' : kDigits[(triple >> (18U - 6U * k)) & 0x3FU]);
-    }
-  }
-  return text;
-}
 
 std::string assemble_page(std::string_view page, std::span<const PageRecording> recordings) {
   const std::size_t at = page.find(kRecordingsMark);

@@ -19,6 +19,4 @@ inline constexpr std::string_view kRecordingsMark = "<!--snug:recordings-->";
 /// `page` with the recordings in the place of its mark. Throws InputError when `page` does not have exactly one.
 [[nodiscard]] std::string assemble_page(std::string_view page, std::span<const PageRecording> recordings);
 
-[[nodiscard]] std::string base64(std::string_view bytes);
-
 }  // namespace snug::replay

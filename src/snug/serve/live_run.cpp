@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "snug/core/base64.hpp"
 #include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
 
@@ -64,7 +65,7 @@ bool LiveRun::add(const record::Frame& frame) {
   if (log_.empty()) {
     replay::FrameCoder still(header_);
     still.set_static(frame);
-    log("header", replay::base64(form_of({name_, &header_, {}, "", false, 0}, still)));
+    log("header", base64(form_of({name_, &header_, {}, "", false, 0}, still)));
     origin_ = last_flush_ = Clock::now();
     if (is_paused_) log_state();
   }
@@ -94,7 +95,7 @@ void LiveRun::flush() {
                        {"frames", batch_->frames()},
                        {"events", std::move(events)}};
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-  log("frames", replay::base64(replay::encode_form(text, batch_->finish())));
+  log("frames", base64(replay::encode_form(text, batch_->finish())));
 }
 
 bool LiveRun::wait_for_turn(std::unique_lock<std::mutex>& lock) {

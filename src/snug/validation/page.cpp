@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "snug/core/base64.hpp"
 #include "snug/core/text.hpp"
 #include "snug/core/units.hpp"
 #include "snug/replay/page.hpp"
@@ -153,7 +154,7 @@ std::string moments_section(const SimulatedRun& run, const Validation& validatio
     // As pictures, so that their parts cannot be taken for each other's.
     html += fmt::format(
         "<figure><figcaption>{}</figcaption><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"></figure>\n",
-        escape_markup(figure.caption), escape_markup(figure.caption), replay::base64(replay::draw_svg(figure.figure)));
+        escape_markup(figure.caption), escape_markup(figure.caption), base64(replay::draw_svg(figure.figure)));
   }
   return html;
 }

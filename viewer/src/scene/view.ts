@@ -2,7 +2,7 @@
 
 import {
   Color, DirectionalLight, Fog, HemisphereLight, MathUtils, Matrix4, Mesh, MeshLambertMaterial, OrthographicCamera, PerspectiveCamera, Quaternion,
-  Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
+  Scene, Vector3, WebGLRenderer,
 } from "three";
 import type { Replay } from "../replay/replay";
 import { RestingContacts } from "../replay/resting";
@@ -12,7 +12,7 @@ import { Contacts, wrenchArrows } from "./contacts";
 import { Cup } from "./cup";
 import { Ghost, Plans } from "./ghost";
 import { Labels, type Label } from "./labels";
-import { aimLight, setLight } from "./lit";
+import { setLight } from "./lit";
 import { labelsOf, triadsOf } from "./marks";
 import { matrixOf } from "./maths";
 import { Measure } from "./measure";
@@ -24,17 +24,11 @@ import { Robot } from "./robot";
 import { Second } from "./second";
 import { Section, type SectionAxis } from "./section";
 import { Statics } from "./statics";
-import { placeSun, SUN } from "./sun";
+import { drawStill } from "./still";
+import { pickBox, findSurface, type Picked, type Pointing } from "./pointing";
+import { placeSun } from "./sun";
 import { Trace, type TracePoint } from "./trace";
 import { Triads } from "./triads";
-
-/** A click so near to the corner of a box means that corner. */
-const SNAP_PIXELS = 14;
-
-export interface Picked {
-  body: number;
-  corner: number;
-}
 
 export class View {
   readonly element = document.createElement("div");
@@ -338,37 +332,23 @@ export class View {
     return this.renderer_.info.render.calls;
   }
 
+  /** What the drawing shows under the points of its canvas. */
+  private get pointing(): Pointing {
+    const { boxes_: boxes, statics_: statics, movers_: movers, section, pixelSize_: pixelSize } = this;
+    return {
+      camera: this.cameras.active, width: this.width_, height: this.height_, boxes, pixelSize,
+      surfaces: [boxes.mesh, statics.group, movers.group, section.group], cuts: this.renderer_.clippingPlanes,
+    };
+  }
+
   /** The box under a point of the canvas (CSS pixels) and its corner nearest to that point. */
   pick(x: number, y: number): Picked | null {
-    const ray = new Raycaster();
-    ray.setFromCamera(new Vector2((2 * x) / this.width_ - 1, 1 - (2 * y) / this.height_), this.cameras.active);
-    this.boxes_.mesh.boundingSphere = null;
-    const [hit] = ray.intersectObject(this.boxes_.mesh);
-    if (!hit || hit.instanceId === undefined) return null;
-    const body = this.boxes_.bodies[hit.instanceId]!;
-    const X = new Matrix4();
-    this.boxes_.mesh.getMatrixAt(hit.instanceId, X);
-    const local = hit.point.clone().applyMatrix4(X.invert());
-    const corner = (local.x > 0 ? 1 : 0) + (local.y > 0 ? 2 : 0) + (local.z > 0 ? 4 : 0);
-    return { body, corner };
+    return pickBox(this.pointing, x, y);
   }
 
   /** The point of a surface under a point of the canvas (CSS pixels); of a box its corner, if that is near. */
   surfacePoint(x: number, y: number): Vector3 | null {
-    const ray = new Raycaster();
-    ray.setFromCamera(new Vector2((2 * x) / this.width_ - 1, 1 - (2 * y) / this.height_), this.cameras.active);
-    this.boxes_.mesh.boundingSphere = null;
-    const shown = this.renderer_.clippingPlanes;
-    const [hit] = ray
-      .intersectObjects([this.boxes_.mesh, this.statics_.group, this.movers_.group, this.section.group])
-      .filter(({ object, point }) => object instanceof Mesh && shown.every((plane) => plane.distanceToPoint(point) > -1e-3));
-    if (!hit) return null;
-    if (hit.object !== this.boxes_.mesh || hit.instanceId === undefined) return hit.point;
-    const X = new Matrix4();
-    this.boxes_.mesh.getMatrixAt(hit.instanceId, X);
-    const local = hit.point.clone().applyMatrix4(X.clone().invert());
-    const corner = new Vector3(Math.sign(local.x), Math.sign(local.y), Math.sign(local.z)).applyMatrix4(X);
-    return corner.distanceTo(hit.point) < SNAP_PIXELS * this.pixelSize_(corner) ? corner : hit.point;
+    return findSurface(this.pointing, x, y);
   }
 
   /** Cuts the drawing open along an axis of the container, at a part of its length. */
@@ -391,37 +371,17 @@ export class View {
   drawContainer(target: HTMLCanvasElement, from: "top" | "side", frame: number): void {
     const box = containerBox(this.replay);
     if (!box) return;
-    const { options } = this;
-    const before = { frame: this.frame_, options: { ...options } };
     this.renderer_.clippingPlanes = [];
     const hidden = [this.measure.group, this.section.group, this.movers_.group, this.cup_?.group, this.robot_?.group, this.trace_.group, this.contacts_.group, this.triads_.group,
       this.ghost_.group, this.second_.outlines.lines].filter((o) => o !== undefined && o !== null);
-    const shown = hidden.map((o) => o.visible);
     this.boxes_.update(this.replay, frame);
-    hidden.forEach((o) => (o.visible = false));
     this.boxes_.setSelected(-1);
-    const [width, height, ratio] = [this.width_, this.height_, this.renderer_.getPixelRatio()];
-    this.renderer_.setPixelRatio(1);
-    this.renderer_.setSize(2 * target.width, 2 * target.height, false);
-    const fog = this.scene_.fog;
-    this.scene_.fog = null;
-    const camera = orthoCamera(box, from, target.width / target.height);
-    // Light from where one looks: the sides that are seen are not in the dark.
-    const toSun = camera.getWorldDirection(new Vector3()).negate().setZ(0.5).normalize();
-    this.sun_.position.copy(this.sun_.target.position).addScaledVector(toSun, 3);
-    aimLight(toSun);
-    this.renderer_.render(this.scene_, camera);
-    this.sun_.position.copy(this.sun_.target.position).addScaledVector(SUN, 3);
-    aimLight(SUN);
-    const pen = target.getContext("2d")!;
-    pen.imageSmoothingQuality = "high";
-    pen.drawImage(this.canvas, 0, 0, target.width, target.height);
-    this.scene_.fog = fog;
+    const ratio = this.renderer_.getPixelRatio();
+    drawStill({ renderer: this.renderer_, scene: this.scene_, sun: this.sun_, hidden }, orthoCamera(box, from, target.width / target.height), target);
     this.renderer_.setPixelRatio(ratio);
-    this.renderer_.setSize(width, height);
-    hidden.forEach((o, i) => (o.visible = shown[i]!));
+    this.renderer_.setSize(this.width_, this.height_);
     this.boxes_.setSelected(this.selected_);
-    this.boxes_.update(this.replay, before.frame);
+    this.boxes_.update(this.replay, this.frame_);
     this.render();
   }
 

@@ -147,7 +147,7 @@ describe("measuring and cutting", () => {
     await page.mouse.click(...at(0.3 + 0.098, -0.078));
     const text = await page.evaluate(() => window.snug.measured());
     expect(Number(/^([\d.]+) mm/.exec(text)?.[1])).toBeCloseTo(200, 0);
-    expect(await page.textContent(".legend-box .measured")).toBe(text);
+    await expect.poll(() => page.textContent(".legend-box .measured")).toBe(text); // written when it is drawn
     await page.keyboard.press("Escape");
     expect(await page.evaluate(() => window.snug.measured())).toBe("");
     const before = await page.locator(".view canvas").screenshot();

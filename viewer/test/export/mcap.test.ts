@@ -3,57 +3,16 @@
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
-import { fileURLToPath } from "node:url";
-import { McapIndexedReader, McapStreamReader } from "@mcap/core";
-import { decompress } from "fzstd";
+import { join } from "node:path";
+import { McapStreamReader } from "@mcap/core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-
-const repository = join(dirname(fileURLToPath(import.meta.url)), "../../..");
-const program = process.env.SNUG || join(repository, "build/snug");
-const demonstrator = join(repository, "scenarios/box-demonstrator.yaml");
-const unpack = { zstd: (bytes: Uint8Array, size: bigint) => decompress(bytes, new Uint8Array(Number(size))) };
-
-type Json = Record<string, any>;
-interface Message {
-  topic: string;
-  schema: string;
-  ns: bigint;
-  data: Json;
-}
+import { demonstrator, messagesOf, opened, program, repository, snug, unpack, type Json, type Message } from "../support/export";
 
 let folder = "";
 let bytes: Uint8Array;
 let rows: Record<string, string>[] = [];
 let messages: Message[] = [];
 let schemas: Map<string, Json>;
-
-function snug(...words: string[]): void {
-  const done = spawnSync(program, words, { encoding: "utf8" });
-  if (done.status !== 0) throw new Error(`snug ${words.join(" ")}: ${done.stderr || done.error}`);
-}
-
-function opened(file: Uint8Array): Promise<McapIndexedReader> {
-  const readable = {
-    size: async () => BigInt(file.length),
-    read: async (offset: bigint, size: bigint) => file.slice(Number(offset), Number(offset + size)),
-  };
-  return McapIndexedReader.Initialize({ readable, decompressHandlers: unpack });
-}
-
-async function messagesOf(reader: McapIndexedReader, args: Json = {}): Promise<Message[]> {
-  const list: Message[] = [];
-  for await (const message of reader.readMessages({ validateCrcs: true, ...args })) {
-    const channel = reader.channelsById.get(message.channelId)!;
-    list.push({
-      topic: channel.topic,
-      schema: reader.schemasById.get(channel.schemaId)!.name,
-      ns: message.logTime,
-      data: JSON.parse(Buffer.from(message.data).toString("utf8")),
-    });
-  }
-  return list;
-}
 
 const on = (topic: string): Message[] => messages.filter((message) => message.topic === topic);
 const numbers = (row: Record<string, string>, ...names: string[]): number[] => names.map((name) => Number(row[name]));

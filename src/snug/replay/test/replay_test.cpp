@@ -303,17 +303,6 @@ TEST(Page, PutsRecordingsInThePlaceOfTheMark) {
   EXPECT_NE(complaint([&] { (void)assemble_page(page + page, {}); }), "");
 }
 
-TEST(Page, CodesBase64AsRfc4648Does) {
-  const std::pair<std::string, std::string> examples[] = {{"", ""},
-                                                          {"f", "Zg=="},
-                                                          {"fo", "Zm8="},
-                                                          {"foo", "Zm9v"},
-                                                          {"foob", "Zm9vYg=="},
-                                                          {"fooba", "Zm9vYmE="},
-                                                          {"foobar", "Zm9vYmFy"}};
-  for (const auto& [plain, coded] : examples) EXPECT_EQ(base64(plain), coded);
-}
-
 TEST(Page, WritesWholeFilesOrNone) {
   const ScratchFolder folder;
   write_file(folder / "a.html", "first");
