@@ -13,6 +13,8 @@ constexpr double kFarthest = 1000.0;  ///< m; a body beyond is lost
 /// m and rad in one step. A body that would move less stands still, bit by bit: rounding keeps nothing awake. At steps
 /// of 1 ms that is 3 mm in a year.
 constexpr double kStill = 1e-13;
+/// A step is solved again at most this often for what bodies run into by turning.
+constexpr int kSweptSolves = 3;
 
 void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, const BodyState& state,
                 BodyMemory& memory, bool knows_state, BodyWork& work) {
@@ -58,15 +60,9 @@ bool has_finite(const BodyState& body) {
                        body.angular_velocity.sum());
 }
 
-void move_body(const WorldModel& model, int index, Scratch& work, BodyState& state) {
+void move_body(int index, const Scratch& work, BodyState& state) {
   const BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
-  const double dt = model.settings.dt;
-  const Whitening& whitening = work.whitening[static_cast<std::size_t>(body.active)];
-  const Eigen::Map<const Vector6> shift(work.shift.data() + 6 * body.active);
-  Vector3 slide = Vector3::Zero(), turn = Vector3::Zero();
-  if (!shift.isZero(0.0)) unwhiten(whitening, shift.data(), slide, turn);
-  const Vector3 way = 0.5 * dt * (body.velocity_start + body.velocity) + slide;
-  const Vector3 rotation = 0.5 * dt * (body.angular_start + body.angular) + turn;
+  const auto [way, rotation] = displacement_of(work, index);
   if (std::max(way.squaredNorm(), rotation.squaredNorm()) > kStill * kStill) {
     state.p_WBcm += way;
     state.quat_WB = (exp_quaternion(rotation) * state.quat_WB).normalized();
@@ -156,6 +152,17 @@ void put_to_sleep(const WorldModel& model, const WorldInput& input, WorldState& 
 
 }  // namespace
 
+Displacement displacement_of(const Scratch& work, int body) {
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(body)];
+  Vector3 slide = Vector3::Zero(), turn = Vector3::Zero();
+  if (b.active >= 0) {
+    const Eigen::Map<const Vector6> shift(work.shift.data() + 6 * b.active);
+    if (!shift.isZero(0.0)) unwhiten(work.whitening[static_cast<std::size_t>(b.active)], shift.data(), slide, turn);
+  }
+  return {0.5 * work.dt * (b.velocity_start + b.velocity) + slide,
+          0.5 * work.dt * (b.angular_start + b.angular) + turn};
+}
+
 bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work) {
   bool is_anything_moving = false;
   for (const ElementUse& use : input.elements) wake(state, use.body);
@@ -197,11 +204,31 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
   return true;
 }
 
+/// Velocities at the end of the step. Solved again while bodies that turn fast run into others by contacts that the
+/// start of the step does not show (contact.md, section 5). False: too many contacts.
+bool solve_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
+                StepReport& report) {
+  for (int again = kSweptSolves;; --again) {
+    StepReport solved = report;
+    free_motion(model, input, work);
+    build_islands(input, work);
+    solve_islands(model, input, state, work, solved);
+    const bool is_last = again == 0 || solved.culprit.is_valid();
+    const Swept swept = is_last ? Swept::Nothing : add_swept_contacts(model, state, work);
+    if (swept == Swept::Nothing) {
+      report = solved;
+      return true;
+    }
+    if (swept == Swept::Sleepers) detect_contacts(model, input, state, work, report);
+    if (work.has_too_many_contacts) return false;
+  }
+}
+
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report) {
   for (int i = 0; i < work.active_count; ++i) {
     const int index = work.active[static_cast<std::size_t>(i)];
     BodyState& body = state.bodies[static_cast<std::size_t>(index)];
-    move_body(model, index, work, body);
+    move_body(index, work, body);
     if (report.culprit.is_valid()) continue;  // the first one is named
     if (!has_finite(body)) {
       report.status = StepStatus::NotFinite;
@@ -261,9 +288,7 @@ StepReport step(const WorldModel& model, const WorldInput& input, WorldState& st
   if (!internal::update_pairs(model, state, work)) return stop(StepStatus::TooManyPairs);
   internal::detect_contacts(model, input, state, work, report);
   if (work.has_too_many_contacts) return stop(StepStatus::TooManyPairs);
-  internal::free_motion(model, input, work);
-  internal::build_islands(input, work);
-  internal::solve_islands(model, input, state, work, report);
+  if (!internal::solve_step(model, input, state, work, report)) return stop(StepStatus::TooManyPairs);
   if (report.culprit.is_valid()) return stop(StepStatus::NotFinite);
   internal::end_step(model, input, state, work, report);
   work.has_reports = false;

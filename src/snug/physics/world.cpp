@@ -127,6 +127,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   memories.resize(n);
   pair_memories.resize(model.pair_capacity);
   bodies.resize(n);
+  ends.resize(n);
   active.resize(n);
   whitening.resize(n);
   u.resize(6 * n + 2);

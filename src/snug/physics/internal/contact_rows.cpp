@@ -17,12 +17,12 @@ struct Side {
   double sign = 1.0;
 };
 
-Side side_of(const Scratch& work, const BodyWork& body, const Patch& patch, double sign) {
+Side side_of(const Scratch& work, const BodyWork& body, const Patch& patch, const Vector3& way, double sign) {
   Side side;
   side.active = body.active;
   side.sign = sign;
   if (body.active < 0) return side;
-  side.p_WBcm = body.p_WBcm;
+  side.p_WBcm = body.p_WBcm + way;
   side.whitening = &work.whitening[static_cast<std::size_t>(body.active)];
   if (side.whitening->is_dense) return side;
   const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
@@ -58,8 +58,8 @@ void fill_side(const Side& side, const Patch& patch, const Vector3& p_WQ, double
 }
 
 /// Relative velocity that a moving kinematic body brings in.
-void add_bias(const BodyWork& body, const Patch& patch, const Vector3& p_WQ, double sign, Row& row) {
-  const Vector3 v = sign * (body.velocity_start + body.angular_start.cross(p_WQ - body.p_WBcm));
+void add_bias(const BodyWork& body, const Patch& patch, const Vector3& arm, double sign, Row& row) {
+  const Vector3 v = sign * (body.velocity_start + body.angular_start.cross(arm));
   row.bias[0] += patch.n.dot(v);
   row.bias[1] += patch.t1.dot(v);
   row.bias[2] += patch.t2.dot(v);
@@ -153,7 +153,8 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
                          row->kind == RowKind::Contact &&
                          row_index + static_cast<std::size_t>(patch.row_count) <= work.last_rows;
     Side side_a, side_b;
-    if (!is_kept) side_a = side_of(work, a, patch, -1.0), side_b = side_of(work, b, patch, 1.0);
+    if (!is_kept)
+      side_a = side_of(work, a, patch, patch.way_a, -1.0), side_b = side_of(work, b, patch, patch.way_b, 1.0);
     for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
       prefetch(row + 4);
       const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
@@ -165,14 +166,16 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
         std::fill_n(row->bias, 3, 0.0);
         if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, row->a);
         if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, row->b);
-        if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ, -1.0, *row);
-        if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ, 1.0, *row);
+        if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ - a.p_WBcm - patch.way_a, -1.0, *row);
+        if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ - b.p_WBcm - patch.way_b, 1.0, *row);
         if (patch.has_belt) row->bias[1] += patch.t1.dot(patch.belt_W), row->bias[2] += patch.t2.dot(patch.belt_W);
       }
       fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), *row);
       if (!is_kept) finish_row(*row);
       if (!is_first) continue;
-      if (!is_kept) {
+      if (patch.is_swept) {
+        std::fill_n(row->lambda, 3, 0.0);
+      } else if (!is_kept) {
         const auto& impulse = state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)];
         std::copy(impulse.begin(), impulse.end(), row->lambda);
       }

@@ -70,9 +70,11 @@ struct Patch {
   bool is_kept = false;          ///< the same as in the last step, at the same place
   Vector3 n = Vector3::UnitZ();  ///< from A to B, W
   Vector3 t1 = Vector3::UnitX(), t2 = Vector3::UnitY();
-  std::size_t law = 0;               ///< in WorldModel::laws
-  double share = 1.0;                ///< of the law's stiffness and damping
-  bool has_belt = false;             ///< one of the surfaces runs
+  std::size_t law = 0;    ///< in WorldModel::laws
+  double share = 1.0;     ///< of the law's stiffness and damping
+  bool has_belt = false;  ///< one of the surfaces runs
+  bool is_swept = false;  ///< found at the end of the step: arms and normal are those of there
+  Vector3 way_a = Vector3::Zero(), way_b = Vector3::Zero();  ///< swept: of the centres of mass, in this step
   Vector3 belt_W = Vector3::Zero();  ///< of B's surface against A's, beyond the motion of the bodies, m/s
 };
 
@@ -82,7 +84,7 @@ struct Contact {
   double phi = 0.0;
   double approach = 0.0;  ///< normal relative velocity at the start of the step, m/s
   int patch = 0;
-  int point = 0;  ///< of the pair's manifold
+  int point = 0;  ///< of the pair's manifold; swept: -1
 };
 
 struct Island {
@@ -92,6 +94,20 @@ struct Island {
   int end_row = 0;
   bool has_element = false;
   bool has_turning = false;  ///< rows that resist turning
+};
+
+/// What a body moves by in a step.
+struct Displacement {
+  Vector3 way = Vector3::Zero();       ///< m, of the centre of mass
+  Vector3 rotation = Vector3::Zero();  ///< rad
+};
+
+/// Where a body is at the end of the step as solved.
+struct BodyEnd {
+  Pose X_WB;
+  Vector3 p_WBcm = Vector3::Zero();
+  Displacement displacement;
+  bool turns_fast = false;
 };
 
 /// What one thread solves islands with.
@@ -120,6 +136,7 @@ struct Scratch {
   std::vector<Whitening> whitening;  ///< by active index
   std::vector<double> u;             ///< 6 per active body
   std::vector<double> shift;         ///< 6 per active body, position correction in whitened coordinates
+  std::vector<BodyEnd> ends;         ///< of each body; of steps in which one turns fast
   std::vector<int> parent;           ///< union-find over active bodies
   std::vector<int> island_of_root;
   BoundedVector<Patch> patches;
@@ -162,6 +179,15 @@ void build_islands(const WorldInput& input, Scratch& work);
 /// Velocities at the end of the step; leaves the impulses in the state.
 void solve_islands(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
                    StepReport& report);
+/// What a body moves by in this step as solved.
+[[nodiscard]] Displacement displacement_of(const Scratch& work, int body);
+enum class Swept {
+  Nothing,   ///< the step stands
+  Contacts,  ///< were added to work.patches: the step is to be solved again
+  Sleepers,  ///< were woken: contacts are to be found and the step is to be solved again
+};
+/// Looks where bodies that turn fast are at the end of the step as solved, and what they run into there.
+[[nodiscard]] Swept add_swept_contacts(const WorldModel& model, WorldState& state, Scratch& work);
 /// Positions, penetration, sleep.
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report);
 /// Fills work.reports, once a step and only when somebody asks.

@@ -119,6 +119,7 @@ void keep_impulses(const Row* first, const Row* end, WorldState& state, const Sc
       keep_moment(*row, work, patch, state.pairs[patch.pair]);
       continue;
     }
+    if (patch.is_swept) continue;  // the next step finds its own point there
     state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)] = {row->lambda[0], row->lambda[1],
                                                                                  row->lambda[2]};
   }
@@ -180,6 +181,7 @@ void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work
     const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(index)];
     body.velocity = body.velocity_start + dt * model.gravity;
     body.angular = body.angular_start;
+    body.has_result = false;
     // Inertia at the middle of the step: what makes turning under a torque second order.
     const bool turns = dt * dt * body.angular_start.squaredNorm() > 1e-18;
     BodyMemory& memory = work.memories[static_cast<std::size_t>(index)];
