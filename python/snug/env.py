@@ -79,7 +79,7 @@ class Packing(spaces.Env):
         max_steps: the episode is truncated then.
         max_flips: 1 lets boxes be put on any side (not in mode "executed": the tool brings them as they stand).
         min_support: part of the lower face that has to rest on something for a place to be offered; 0: any.
-        squeeze: m, boxes are planned this much smaller along Tx and Ty.
+        planned_interference: m (`squeeze` in earlier scripts), boxes are planned this much smaller along Tx and Ty.
         settle_time: s, in mode "statics".
         max_displacement, max_tilt: m and rad, how far a box may come to rest from where it was put.
         vary: True: the cell is drawn anew for each episode, from the scenario's `uncertainty`: sizes, masses, friction,

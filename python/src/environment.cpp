@@ -35,7 +35,8 @@ environment::Settings settings_of(const py::dict& words) {
       {"max_displacement", number(s.max_displacement)},
       {"max_tilt", number(s.max_tilt)},
       {"max_flips", whole(s.packing.max_flips)},
-      {"squeeze", number(s.packing.squeeze)},
+      {"planned_interference", number(s.packing.planned_interference)},
+      {"squeeze", number(s.packing.planned_interference)},  // its name in earlier scripts
       {"min_support", number(s.packing.min_support)},
       {"com_margin", number(s.packing.com_margin)},
       {"vary", [&](const py::handle& v) { s.varies = v.cast<bool>(); }},

@@ -200,3 +200,9 @@ def test_the_checker_of_gymnasium_is_content(demonstrator):
     from gymnasium.utils.env_checker import check_env
 
     check_env(env.Packing(demonstrator), skip_render_check=True)
+
+
+def test_the_planned_interference_is_read_under_its_earlier_name_too(demonstrator):
+    played = [play(env.Packing(demonstrator, mode="geometric", sequence="1", **{key: value}), 3)[1]
+              for key, value in (("planned_interference", 0.003), ("squeeze", 0.003))]
+    assert played[0] == played[1]

@@ -25,7 +25,7 @@ struct Settings {
   Mode mode = Mode::Geometric;
   /// Item sequence of the scenario; empty: every parcel of it, in an order drawn anew for each episode.
   std::string sequence;
-  packing::PackingSettings packing{.max_flips = 1, .squeeze = 0.0, .min_support = 0.6};
+  packing::PackingSettings packing{.max_flips = 1, .planned_interference = 0.0, .min_support = 0.6};
   double resolution = 0.01;  ///< edge of a cell of the height map
   int max_candidates = 64;
   int max_steps = 1000;      ///< an episode that has not ended then is truncated

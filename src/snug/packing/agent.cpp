@@ -20,8 +20,10 @@ void check(const PackingSettings& s) {
                  "1 .. 1000");
   require_number(within(s.max_flips, 0, 2), "packing settings", "max_flips", s.max_flips, "0, 1 or 2");
   require_number(within(s.margin, 0.0, 1.0), "packing settings", "margin", s.margin, "0 .. 1 m");
-  require_number(within(s.squeeze, 0.0, 0.010), "packing settings", "squeeze", s.squeeze, "0 .. 0.01 m");
-  require_number(within(s.last_squeeze, 0.0, 0.010), "packing settings", "last_squeeze", s.last_squeeze, "0 .. 0.01 m");
+  require_number(within(s.planned_interference, 0.0, 0.010), "packing settings", "planned_interference",
+                 s.planned_interference, "0 .. 0.01 m");
+  require_number(within(s.last_interference, 0.0, 0.010), "packing settings", "last_interference", s.last_interference,
+                 "0 .. 0.01 m");
   require_number(within(s.min_support, 0.0, 1.0), "packing settings", "min_support", s.min_support, "0 .. 1");
   require_number(within(s.com_margin, 0.0, 0.1), "packing settings", "com_margin", s.com_margin, "0 .. 0.1 m");
   require_number(within(s.level_slack, 0.0, 0.05), "packing settings", "level_slack", s.level_slack, "0 .. 0.05 m");

@@ -43,12 +43,12 @@ class ContactAwareAgent : public Agent {
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     PackingSettings settings = input_.settings;
     const Planning usual = plan_for_contact(state, settings);
-    settings.squeeze = settings.last_squeeze;
+    settings.planned_interference = settings.last_interference;
     const Planning pressed = plan_for_contact(state, settings);
     const Expected<Decision, NoPlace> decision = decide(state, item, usual);
     const bool is_full =
         !decision && (decision.error() == NoPlace::NoSpace || decision.error() == NoPlace::NoStablePlace);
-    if (!is_full || pressed.squeeze <= usual.squeeze) return decision;
+    if (!is_full || pressed.planned_interference <= usual.planned_interference) return decision;
     const Expected<Decision, NoPlace> at_last = decide(state, item, pressed);
     return at_last ? at_last : decision;
   }
@@ -60,32 +60,32 @@ class ContactAwareAgent : public Agent {
     std::vector<Item> kinds = input_.future.kinds;
     kinds.push_back(item);
     const Layout layout = to_layout(planning, make_rules(planning, kinds), state);
-    SpotList list;
+    CandidatePoseList list;
     Refusal worst = Refusal::None;
-    layout.find_spots(choice.piece, list, &worst);
-    std::vector<Spot>& spots = list.spots;
-    if (spots.empty()) return tl::unexpected(reason_of(worst));
+    layout.find_poses(choice.piece, list, &worst);
+    std::vector<CandidatePose>& poses = list.poses;
+    if (poses.empty()) return tl::unexpected(reason_of(worst));
     const Policy policy = make_policy(planning, kinds);
-    order_by_cost(layout, policy, choice.piece, spots);
-    return rank(planning, state, item, choice, layout, policy, spots);
+    order_by_cost(layout, policy, choice.piece, poses);
+    return rank(planning, state, item, choice, layout, policy, poses);
   }
 
   Expected<Decision, NoPlace> rank(const Planning& planning, const ContainerState& state, const Item& item,
                                    const Choice& choice, const Layout& layout, const Policy& policy,
-                                   const std::vector<Spot>& spots) {
+                                   const std::vector<CandidatePose>& poses) {
     std::vector<Candidate> candidates;
     std::vector<Layout> entrants;
     NoPlace reason = NoPlace::NoStablePlace;
-    for (const Spot& spot : spots) {
+    for (const CandidatePose& pose : poses) {
       if (entrants.size() >= kEntrants) break;
-      auto candidate = place_item(planning, layout, item, choice, spot, input_.is_reachable);
+      auto candidate = place_item(planning, layout, item, choice, pose, input_.is_reachable);
       if (!candidate) {
         reason = candidate.error();
         continue;
       }
       candidates.push_back(*candidate);
       entrants.push_back(layout);
-      entrants.back().add(Layout::block_at(choice.piece, spot));
+      entrants.back().add(Layout::block_at(choice.piece, pose));
     }
     if (candidates.empty()) return tl::unexpected(reason);
     return settle_race(planning, state, item, policy, candidates, entrants);
@@ -115,30 +115,30 @@ class ContactAwareAgent : public Agent {
 
   /// Of the future's kinds: made once, as orders may bring thousands of them.
   const std::vector<Piece>& pieces(const Planning& planning) {
-    if (pieces_.empty() || squeeze_ != planning.squeeze) pieces_ = pieces_of(planning, input_.future);
-    squeeze_ = planning.squeeze;
+    if (pieces_.empty() || interference_ != planning.planned_interference) pieces_ = pieces_of(planning, input_.future);
+    interference_ = planning.planned_interference;
     return pieces_;
   }
 
   AgentInput input_;
   std::vector<Piece> pieces_;
-  double squeeze_ = 0.0;  ///< with which they were made
+  double interference_ = 0.0;  ///< with which they were made
 };
 
 }  // namespace
 
 Planning plan_for_contact(const ContainerState& state, const PackingSettings& settings) {
-  // What is squeezed between walls would stick out beyond the edge of a pallet.
-  return {state.inner_size, settings, settings.max_flips, 0.0, state.has_walls ? settings.squeeze : 0.0};
+  // What is planned to press between walls would stick out beyond the edge of a pallet.
+  return {state.inner_size, settings, settings.max_flips, 0.0, state.has_walls ? settings.planned_interference : 0.0};
 }
 
 std::int64_t work_for(double seconds) { return static_cast<std::int64_t>(seconds * kPlacesPerSecond); }
 
-void order_by_cost(const Layout& layout, const Policy& policy, const Piece& piece, std::vector<Spot>& spots) {
-  std::vector<std::pair<double, Spot>> liked;
-  for (const Spot& spot : spots) liked.emplace_back(cost(layout, policy, piece, spot), spot);
-  std::stable_sort(liked.begin(), liked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < spots.size(); ++i) spots[i] = liked[i].second;
+void order_by_cost(const Layout& layout, const Policy& policy, const Piece& piece, std::vector<CandidatePose>& poses) {
+  std::vector<std::pair<double, CandidatePose>> ordered;
+  for (const CandidatePose& pose : poses) ordered.emplace_back(cost(layout, policy, piece, pose), pose);
+  std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = ordered[i].second;
 }
 
 NoPlace reason_of(Refusal worst) {
@@ -150,7 +150,7 @@ Policy make_policy(const Planning& planning, std::span<const Item> kinds) {
   std::vector<int> along, up;
   for (const Item& kind : kinds) {
     for (int axis = 0; axis < 3; ++axis) {
-      along.push_back(to_ticks(kind.size[axis] - planning.squeeze));
+      along.push_back(to_ticks(kind.size[axis] - planning.planned_interference));
       up.push_back(to_ticks(kind.size[axis]));
     }
   }

@@ -62,19 +62,19 @@ class ManualAgent : public Agent {
     settings.seed = input_.settings.seed;
     settings.threads = input_.settings.threads;
     settings.effort = work_for(input_.settings.decision_time) / 4;
-    settings.accept = [&](const Layout& on, int index, const Spot& spot) {
+    settings.accept = [&](const Layout& on, int index, const CandidatePose& pose) {
       const auto i = static_cast<std::size_t>(index);
-      return place_item(planning, on, items[i], choices[i], spot, input_.is_reachable).has_value();
+      return place_item(planning, on, items[i], choices[i], pose, input_.is_reachable).has_value();
     };
-    const std::vector<Spot> spots = plan_in_order(empty, make_policy(planning, items), pieces, settings);
-    if (spots.size() < items.size()) return std::nullopt;
+    const std::vector<CandidatePose> poses = plan_in_order(empty, make_policy(planning, items), pieces, settings);
+    if (poses.size() < items.size()) return std::nullopt;
     Layout layout = empty;
     std::vector<Placement> placements;
     Candidate candidate;
     for (std::size_t i = 0; i < items.size(); ++i) {
-      const auto placed = place_item(planning, layout, items[i], choices[i], spots[i], input_.is_reachable);
+      const auto placed = place_item(planning, layout, items[i], choices[i], poses[i], input_.is_reachable);
       if (!placed) return std::nullopt;
-      layout.add(Layout::block_at(pieces[i], spots[i]));
+      layout.add(Layout::block_at(pieces[i], poses[i]));
       placements.push_back(placed->placement);
       if (items[i].id == wanted.id) candidate = *placed;
     }

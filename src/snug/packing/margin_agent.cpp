@@ -15,10 +15,10 @@ namespace {
 constexpr Weights kWeights = {-0.25, -0.45, 0.25, -0.50, 0.03, 0.07, -0.03, -0.07, 0.33, -0.24};
 constexpr std::array<double, 4> kPlaceWeights = {-0.19, 0.06, 0.26, 0.36};
 
-double dislike_of(const Layout& layout, const Policy& policy, const Piece& piece, const Spot& spot) {
-  const Block me = Layout::block_at(piece, spot);
+double placing_cost(const Layout& layout, const Policy& policy, const Piece& piece, const CandidatePose& pose) {
+  const Block me = Layout::block_at(piece, pose);
   const double x = layout.rules().size_x, y = layout.rules().size_y;
-  return cost(layout, policy, piece, spot) + kPlaceWeights[0] * me.x1 / x + kPlaceWeights[1] * me.y1 / y +
+  return cost(layout, policy, piece, pose) + kPlaceWeights[0] * me.x1 / x + kPlaceWeights[1] * me.y1 / y +
          kPlaceWeights[2] * me.x2 / x + kPlaceWeights[3] * me.y2 / y;
 }
 
@@ -33,26 +33,27 @@ class MarginAgent : public Agent {
     if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
     const Rules rules = make_rules(planning, {});
     const Layout layout = to_layout(planning, rules, state);
-    SpotList list;
+    CandidatePoseList list;
     Refusal worst = Refusal::None;
-    layout.find_spots(choice.piece, list, &worst);
-    std::vector<Spot>& spots = list.spots;
-    if (spots.empty()) return tl::unexpected(reason_of(worst));
+    layout.find_poses(choice.piece, list, &worst);
+    std::vector<CandidatePose>& poses = list.poses;
+    if (poses.empty()) return tl::unexpected(reason_of(worst));
     Policy policy = make_policy(planning, std::span<const Item>(&item, 1));
     policy.weights = kWeights;
-    std::vector<std::pair<double, Spot>> liked;
-    for (const Spot& spot : spots) liked.emplace_back(dislike_of(layout, policy, choice.piece, spot), spot);
-    std::stable_sort(liked.begin(), liked.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
+    std::vector<std::pair<double, CandidatePose>> ordered;
+    for (const CandidatePose& pose : poses)
+      ordered.emplace_back(placing_cost(layout, policy, choice.piece, pose), pose);
+    std::stable_sort(ordered.begin(), ordered.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
     Decision decision;
     NoPlace reason = NoPlace::NoStablePlace;
-    for (const auto& [dislike, spot] : liked) {
+    for (const auto& [cost_here, pose] : ordered) {
       if (static_cast<int>(decision.candidates.size()) >= input_.settings.max_candidates) break;
-      auto candidate = place_item(planning, layout, item, choice, spot, input_.is_reachable);
+      auto candidate = place_item(planning, layout, item, choice, pose, input_.is_reachable);
       if (!candidate) {
         reason = candidate.error();
         continue;
       }
-      candidate->score = -dislike;
+      candidate->score = -cost_here;
       decision.candidates.push_back(*candidate);
     }
     if (decision.candidates.empty()) return tl::unexpected(reason);

@@ -43,12 +43,12 @@ class OfflineAgent : public Agent {
     for (std::size_t i = 0; i < plan_.size(); ++i) {
       if (i >= rest.size() || plan_[i].item != rest[i].id) return false;
       const Choice choice = make_choice(planning, rest[i]);
-      if (plan_[i].spot.stance >= static_cast<int>(choice.piece.stances.size())) return false;
-      const auto candidate = place_item(planning, layout, rest[i], choice, plan_[i].spot, input_.is_reachable);
+      if (plan_[i].pose.orientation >= static_cast<int>(choice.piece.orientations.size())) return false;
+      const auto candidate = place_item(planning, layout, rest[i], choice, plan_[i].pose, input_.is_reachable);
       if (!candidate) return false;
-      Spot spot;
-      (void)layout.settle(choice.piece, plan_[i].spot.stance, plan_[i].spot.x, plan_[i].spot.y, spot);
-      layout.add(Layout::block_at(choice.piece, spot));
+      CandidatePose pose;
+      (void)layout.settle(choice.piece, plan_[i].pose.orientation, plan_[i].pose.x, plan_[i].pose.y, pose);
+      layout.add(Layout::block_at(choice.piece, pose));
     }
     return !plan_.empty();
   }
@@ -65,33 +65,33 @@ class OfflineAgent : public Agent {
     settings.seed = input_.settings.seed;
     settings.threads = input_.settings.threads;
     settings.effort = work_for(input_.settings.decision_time) * static_cast<std::int64_t>(pieces.size());
-    settings.accept = [&](const Layout& on, int index, const Spot& spot) {
+    settings.accept = [&](const Layout& on, int index, const CandidatePose& pose) {
       const auto i = static_cast<std::size_t>(index);
-      return place_item(planning, on, rest[i], choices[i], spot, input_.is_reachable).has_value();
+      return place_item(planning, on, rest[i], choices[i], pose, input_.is_reachable).has_value();
     };
     plan_.clear();
-    for (const Spot& spot : plan_in_order(layout, make_policy(planning, rest), pieces, settings)) {
-      plan_.push_back({rest[plan_.size()].id, spot});
+    for (const CandidatePose& pose : plan_in_order(layout, make_policy(planning, rest), pieces, settings)) {
+      plan_.push_back({rest[plan_.size()].id, pose});
     }
   }
 
-  /// The planned place first, then what the policy likes.
+  /// The planned place first, then by cost.
   [[nodiscard]] Expected<Decision, NoPlace> propose(const Planning& planning, const Layout& layout, const Item& item,
                                                     const Choice& choice) const {
-    SpotList list;
+    CandidatePoseList list;
     Refusal worst = Refusal::None;
-    layout.find_spots(choice.piece, list, &worst);
-    std::vector<Spot>& spots = list.spots;
+    layout.find_poses(choice.piece, list, &worst);
+    std::vector<CandidatePose>& poses = list.poses;
     std::vector<Item> kinds = input_.future.kinds;
     kinds.push_back(item);
-    order_by_cost(layout, make_policy(planning, kinds), choice.piece, spots);
-    if (!plan_.empty()) spots.insert(spots.begin(), plan_.front().spot);
-    if (spots.empty()) return tl::unexpected(reason_of(worst));
+    order_by_cost(layout, make_policy(planning, kinds), choice.piece, poses);
+    if (!plan_.empty()) poses.insert(poses.begin(), plan_.front().pose);
+    if (poses.empty()) return tl::unexpected(reason_of(worst));
     Decision decision;
     NoPlace reason = NoPlace::NoStablePlace;
-    for (const Spot& spot : spots) {
+    for (const CandidatePose& pose : poses) {
       if (static_cast<int>(decision.candidates.size()) >= input_.settings.max_candidates) break;
-      auto candidate = place_item(planning, layout, item, choice, spot, input_.is_reachable);
+      auto candidate = place_item(planning, layout, item, choice, pose, input_.is_reachable);
       if (!candidate) {
         reason = candidate.error();
         continue;
@@ -105,7 +105,7 @@ class OfflineAgent : public Agent {
 
   struct Planned {
     std::string item;
-    Spot spot;
+    CandidatePose pose;
   };
 
   AgentInput input_;

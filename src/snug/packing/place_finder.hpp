@@ -25,8 +25,8 @@ struct Place {
 [[nodiscard]] Pose pose_at(const Place& place);
 
 /// Keeps what stands in a container and answers where an item can be lowered. The rules are those of the agents:
-/// squeeze, min_support (0: anything that touches; load limits and balance are then not asked for either), com_margin,
-/// level_slack, min_slenderness, min_pick_face, max_item_mass, max_flips. A copy is a snapshot.
+/// planned_interference, min_support (0: anything that touches; load limits and balance are then not asked for either),
+/// com_margin, level_slack, min_slenderness, min_pick_face, max_item_mass, max_flips. A copy is a snapshot.
 class PlaceFinder {
  public:
   /// `kinds`: items that may come; spaces too narrow for all of them are forgotten. Throws InputError for settings that

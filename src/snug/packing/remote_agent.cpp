@@ -87,7 +87,7 @@ class RemoteAgent final : public Agent {
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     if (!has_begun_) begin(state);
     PackingSettings rules = input_.settings;
-    rules.squeeze = state.has_walls ? rules.squeeze : 0.0;
+    rules.planned_interference = state.has_walls ? rules.planned_interference : 0.0;
     PlaceFinder finder(state, rules);
     std::vector<Place> places;
     if (auto found = finder.find(item, kMostCandidates)) {
@@ -118,7 +118,7 @@ class RemoteAgent final : public Agent {
                 {{"seed", s.seed},
                  {"decision_time", s.decision_time},
                  {"max_flips", s.max_flips},
-                 {"squeeze", s.squeeze},
+                 {"planned_interference", s.planned_interference},
                  {"min_support", s.min_support},
                  {"max_item_mass", s.max_item_mass}}},
                {"container", {{"inner_size", as_json(state.inner_size)}, {"walls", state.has_walls}}},

@@ -13,10 +13,10 @@ struct PackingSettings {
   int max_flips = 1;        ///< of the agents that flip
   double margin = 0.020;    ///< m, agent `margin`: to boxes and walls
   /// m, each box is planned this much smaller than measured along Tx and Ty: boxes give way when pressed together.
-  double squeeze = 0.001;
+  double planned_interference = 0.001;
   /// m, the same for a box that `contact-aware` has no place for otherwise; for callers that try a place before they
-  /// count on it. Not more than `squeeze`: such a box has no place.
-  double last_squeeze = 0.0;
+  /// count on it. Not more than `planned_interference`: such a box has no place.
+  double last_interference = 0.0;
   double min_support = 0.6;    ///< part of the lower face that has to rest on something
   double com_margin = 0.005;   ///< m, the centre of mass stays inside the support polygon by this
   double level_slack = 0.003;  ///< m, tops that differ by less carry a box together
@@ -34,8 +34,8 @@ struct PackingSettings {
     a("max_candidates", max_candidates);
     a("max_flips", max_flips);
     a("margin", margin);
-    a("squeeze", squeeze);
-    a("last_squeeze", last_squeeze);
+    a("planned_interference", planned_interference);
+    a("last_interference", last_interference);
     a("min_support", min_support);
     a("com_margin", com_margin);
     a("level_slack", level_slack);

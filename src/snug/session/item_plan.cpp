@@ -65,13 +65,13 @@ std::optional<FlipPlace> find_flip_place(const std::vector<geometry::Aabb>& tops
     const Vector3 low = top.lower + Vector3::Constant(kFlipRoom) + kFlipDrag * (-direction).cwiseMax(0.0);
     const Vector3 high = top.upper - Vector3::Constant(kFlipRoom) - kFlipDrag * direction.cwiseMax(0.0);
     if (low.x() > high.x() || low.y() > high.y()) continue;
-    const Vector3 spot(std::clamp(middle.x(), low.x(), high.x()), std::clamp(middle.y(), low.y(), high.y()),
-                       top.upper.z());
-    const double distance = (spot - middle).head<2>().norm();
-    const bool is_higher = best && spot.z() > best->p_WF.z() + 1e-6;
-    const bool is_as_high = best && std::abs(spot.z() - best->p_WF.z()) <= 1e-6;
+    const Vector3 nearest(std::clamp(middle.x(), low.x(), high.x()), std::clamp(middle.y(), low.y(), high.y()),
+                          top.upper.z());
+    const double distance = (nearest - middle).head<2>().norm();
+    const bool is_higher = best && nearest.z() > best->p_WF.z() + 1e-6;
+    const bool is_as_high = best && std::abs(nearest.z() - best->p_WF.z()) <= 1e-6;
     if (best && !is_higher && !(is_as_high && distance < best_distance)) continue;
-    best = FlipPlace{spot, direction};
+    best = FlipPlace{nearest, direction};
     best_distance = distance;
   }
   return best;

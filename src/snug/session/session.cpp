@@ -41,7 +41,7 @@ class Session {
     packing::AgentInput input;
     input.settings = options_.packing;
     // Plans that are made on paper first have no other place to try.
-    if (!plans_on_paper(options_)) input.settings.last_squeeze = options_.last_squeeze;
+    if (!plans_on_paper(options_)) input.settings.last_interference = options_.last_interference;
     input.future = options_.future ? *options_.future : packing::make_future_model(scenario_);
     input.sequence = packer_.items();
     input.ask = options_.ask;

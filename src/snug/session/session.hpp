@@ -18,9 +18,9 @@ struct SessionOptions {
   std::string agent = "contact-aware";
   packing::Ask ask = {};  ///< decides in its place, if set (packing/remote_agent.hpp); `agent` is then its name
   packing::PackingSettings packing;
-  /// m, of agents that decide as items come (`PackingSettings::last_squeeze`): 1 mm more than the clearance that the
-  /// demonstrator's boxes have in contact (docs/decisions/0005).
-  double last_squeeze = 0.003;
+  /// m, of agents that decide as items come (`PackingSettings::last_interference`): 1 mm more than the clearance that
+  /// the demonstrator's boxes have in contact (docs/decisions/0005).
+  double last_interference = 0.003;
   int threads = 1;             ///< results do not depend on it
   int samples = 8;             ///< sampled worlds in which every motion is rehearsed beside the nominal one; 0: none
   double accepted_rate = 1.0;  ///< success rate at which an attempt is sent at once

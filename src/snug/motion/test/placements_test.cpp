@@ -120,10 +120,10 @@ TEST(Placements, PutTheRigidlyHeldBoxWhereItShallRest) {
     const Pose X_WP_wanted = kX_WT * job.placements[b].X_TP;
     EXPECT_LT((X_WP.p - X_WP_wanted.p).norm(), 1e-14);  // roundings of metres
     EXPECT_LT(angle_between(X_WP.R, X_WP_wanted.R), 1e-14);
-    // The cup presses on the chosen spot of the top face, z of E down.
-    const Vector3 spot =
+    // The cup presses on the chosen point of the top face, z of E down.
+    const Vector3 pressed =
         job.picks[b].X_WP * Vector3(job.picks[b].cup_offset + 0.5 * job.picks[b].size.z() * Vector3::UnitZ());
-    EXPECT_LT((X_WE_pick.p - spot - job.settings.pick_length * Vector3::UnitZ()).norm(), 1e-14);
+    EXPECT_LT((X_WE_pick.p - pressed - job.settings.pick_length * Vector3::UnitZ()).norm(), 1e-14);
     EXPECT_LT((X_WE_pick.R.col(2) + Vector3::UnitZ()).norm(), 1e-14);
   }
 }

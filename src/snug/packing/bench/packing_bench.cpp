@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     if (key == "--seed") o.settings.seed = static_cast<std::uint64_t>(std::atoll(value));
     if (key == "--time") o.settings.decision_time = std::atof(value);
     if (key == "--threads") o.settings.threads = std::atoi(value);
-    if (key == "--squeeze") o.settings.squeeze = std::atof(value);
+    if (key == "--planned-interference") o.settings.planned_interference = std::atof(value);
     if (key == "--without") o.settings.without_replacement = std::atoi(value) != 0;
   }
   const model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");

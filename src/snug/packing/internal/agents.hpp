@@ -20,11 +20,11 @@ namespace snug::packing::internal {
 [[nodiscard]] Planning plan_for_contact(const ContainerState& state, const PackingSettings& settings);
 /// A decision time in places to be looked at.
 [[nodiscard]] std::int64_t work_for(double seconds);
-/// What the policy likes best comes first.
-void order_by_cost(const Layout& layout, const Policy& policy, const Piece& piece, std::vector<Spot>& spots);
+/// What costs least comes first.
+void order_by_cost(const Layout& layout, const Policy& policy, const Piece& piece, std::vector<CandidatePose>& poses);
 /// Policy for these kinds of items in a container of this size.
 [[nodiscard]] Policy make_policy(const Planning& planning, std::span<const Item> kinds);
-/// Reason for an item for which find_spots had nothing.
+/// Reason for an item for which find_poses had nothing.
 [[nodiscard]] NoPlace reason_of(Refusal worst);
 
 }  // namespace snug::packing::internal

@@ -1,4 +1,4 @@
-// Conversions: rounding to ticks, and from spots back to poses.
+// Conversions: rounding to ticks, and from candidate poses back to metres.
 #include "snug/packing/internal/convert.hpp"
 
 #include <algorithm>
@@ -36,9 +36,10 @@ void look_beside(const Planning& planning, const Layout& layout, const Block& me
     gap[side] = std::min(gap[side], free);
     if (free <= near) height[side] = std::max(height[side], b.z2 - me.z1);
   }
-  // Ticks are of squeezed boxes: the measured ones have half a squeeze less to the wall and a whole one to a box.
+  // Ticks are of boxes less the planned interference: measured ones have half of it less to the wall, all of it to a
+  // box.
   for (std::size_t side = 0; side < 4; ++side) {
-    candidate.side_gap[side] = gap[side] / kTicksPerMetre - planning.squeeze;
+    candidate.side_gap[side] = gap[side] / kTicksPerMetre - planning.planned_interference;
     candidate.side_height[side] = height[side] / kTicksPerMetre;
   }
 }
@@ -60,7 +61,8 @@ Rules make_rules(const Planning& planning, std::span<const Item> kinds) {
   rules.com_margin = to_ticks(s.com_margin);
   rules.level_slack = to_ticks(s.level_slack);
   int smallest = std::numeric_limits<int>::max();
-  for (const Item& kind : kinds) smallest = std::min(smallest, to_ticks(kind.size.minCoeff() - planning.squeeze));
+  for (const Item& kind : kinds)
+    smallest = std::min(smallest, to_ticks(kind.size.minCoeff() - planning.planned_interference));
   if (!kinds.empty()) {
     rules.min_side = std::max(1, smallest);
     rules.min_height = std::max(1, smallest);
@@ -77,13 +79,13 @@ Block to_block(const Planning& planning, const PlacedBox& box) {
     seen.low = 0.5 * (upright.low + around.low);
     seen.high = 0.5 * (upright.high + around.high);
   }
-  const double squeeze = 0.5 * planning.squeeze;
+  const double half = 0.5 * planning.planned_interference;
   Block block;
-  block.x1 = to_ticks(seen.low.x() + 0.5 * planning.inner_size.x() + squeeze);
-  block.y1 = to_ticks(seen.low.y() + 0.5 * planning.inner_size.y() + squeeze);
+  block.x1 = to_ticks(seen.low.x() + 0.5 * planning.inner_size.x() + half);
+  block.y1 = to_ticks(seen.low.y() + 0.5 * planning.inner_size.y() + half);
   block.z1 = to_ticks(seen.low.z());
-  block.x2 = std::max(block.x1 + 1, to_ticks(seen.high.x() + 0.5 * planning.inner_size.x() - squeeze));
-  block.y2 = std::max(block.y1 + 1, to_ticks(seen.high.y() + 0.5 * planning.inner_size.y() - squeeze));
+  block.x2 = std::max(block.x1 + 1, to_ticks(seen.high.x() + 0.5 * planning.inner_size.x() - half));
+  block.y2 = std::max(block.y1 + 1, to_ticks(seen.high.y() + 0.5 * planning.inner_size.y() - half));
   block.z2 = std::max(block.z1 + 1, to_ticks(seen.high.z()));
   block.mass = to_grams(box.item.mass);
   block.capacity = capacity(box.item);
@@ -106,20 +108,20 @@ Choice make_choice(const Planning& planning, const Item& item) {
   choice.piece.mass = to_grams(item.mass);
   choice.piece.capacity = capacity(item);
   choice.piece.volume = item.size.prod();
-  const int squeeze = to_ticks(planning.squeeze);
+  const int interference = to_ticks(planning.planned_interference);
   for (const Orientation& orientation : allowed_orientations(item, planning.max_flips, true)) {
     const Vector3 e = extents(orientation, item.size);
     const double breadth = std::min(e.x(), e.y());
     if (breadth < s.min_pick_face || breadth < s.min_slenderness * e.z()) continue;
-    Stance stance;
-    stance.width = std::max(1, to_ticks(e.x()) - squeeze);
-    stance.depth = std::max(1, to_ticks(e.y()) - squeeze);
-    stance.height = to_ticks(e.z());
-    const auto known = std::find(choice.piece.stances.begin(), choice.piece.stances.end(), stance);
-    if (known != choice.piece.stances.end()) {
-      choice.orientations[static_cast<std::size_t>(known - choice.piece.stances.begin())].push_back(orientation);
+    PieceOrientation standing;
+    standing.width = std::max(1, to_ticks(e.x()) - interference);
+    standing.depth = std::max(1, to_ticks(e.y()) - interference);
+    standing.height = to_ticks(e.z());
+    const auto known = std::find(choice.piece.orientations.begin(), choice.piece.orientations.end(), standing);
+    if (known != choice.piece.orientations.end()) {
+      choice.orientations[static_cast<std::size_t>(known - choice.piece.orientations.begin())].push_back(orientation);
     } else {
-      choice.piece.stances.push_back(stance);
+      choice.piece.orientations.push_back(standing);
       choice.orientations.push_back({orientation});
     }
   }
@@ -128,35 +130,35 @@ Choice make_choice(const Planning& planning, const Item& item) {
 
 std::optional<NoPlace> refuse(const Planning& planning, const Item& item, const Choice& choice) {
   if (item.mass > planning.settings.max_item_mass) return NoPlace::TooHeavy;
-  const double free_x = planning.inner_size.x() - 2.0 * planning.margin + planning.squeeze;
-  const double free_y = planning.inner_size.y() - 2.0 * planning.margin + planning.squeeze;
+  const double free_x = planning.inner_size.x() - 2.0 * planning.margin + planning.planned_interference;
+  const double free_y = planning.inner_size.y() - 2.0 * planning.margin + planning.planned_interference;
   bool fits = false;
   for (const Orientation& orientation : allowed_orientations(item, planning.max_flips, true)) {
     const Vector3 e = extents(orientation, item.size);
     fits |= e.x() <= free_x && e.y() <= free_y && e.z() <= planning.inner_size.z();
   }
   if (!fits) return NoPlace::TooBig;
-  if (choice.piece.stances.empty()) return NoPlace::NotPickable;
+  if (choice.piece.orientations.empty()) return NoPlace::NotPickable;
   return std::nullopt;
 }
 
 Expected<Candidate, NoPlace> place_item(const Planning& planning, const Layout& layout, const Item& item,
-                                        const Choice& choice, const Spot& spot,
+                                        const Choice& choice, const CandidatePose& pose,
                                         const std::function<bool(const Placement&)>& is_reachable) {
-  std::vector<Orientation> ways = choice.orientations[static_cast<std::size_t>(spot.stance)];
+  std::vector<Orientation> ways = choice.orientations[static_cast<std::size_t>(pose.orientation)];
   std::stable_sort(ways.begin(), ways.end(), [&](const Orientation& a, const Orientation& b) {
     return count_flips(item.arrival, a) < count_flips(item.arrival, b);
   });
   Piece piece = choice.piece;
-  Stance& stance = piece.stances[static_cast<std::size_t>(spot.stance)];
+  PieceOrientation& orientation = piece.orientations[static_cast<std::size_t>(pose.orientation)];
   NoPlace reason = NoPlace::NoStablePlace;
   for (const Orientation& way : ways) {
     const Matrix3 R_TP = rotation(way);
     const Vector3 com = R_TP * item.com;
-    stance.com_x = to_ticks(com.x());
-    stance.com_y = to_ticks(com.y());
-    Spot settled;
-    if (layout.settle(piece, spot.stance, spot.x, spot.y, settled) != Refusal::None) continue;
+    orientation.com_x = to_ticks(com.x());
+    orientation.com_y = to_ticks(com.y());
+    CandidatePose settled;
+    if (layout.settle(piece, pose.orientation, pose.x, pose.y, settled) != Refusal::None) continue;
     const Block me = Layout::block_at(piece, settled);
     Candidate candidate;
     candidate.placement.item = item.id;

@@ -56,15 +56,15 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
 
 }  // namespace
 
-void SpotList::clear() {
-  spots.clear();
+void CandidatePoseList::clear() {
+  poses.clear();
   used_ = 0;
   if (++round_ < 0x10000U) return;
   round_ = 1;
   std::fill(table_.begin(), table_.end(), 0);
 }
 
-bool SpotList::is_new(int stance, int x, int y) {
+bool CandidatePoseList::is_new(int orientation, int x, int y) {
   if (2 * used_ >= table_.size()) {
     std::vector<std::uint64_t> old(4 * table_.size(), 0);
     old.swap(table_);
@@ -73,12 +73,13 @@ bool SpotList::is_new(int stance, int x, int y) {
       if (key >> 48U == round_) insert(key);
     }
   }
-  // 20 bits for each coordinate (100 m), 8 for the stance, the rest tells rounds apart: older entries count as empty.
-  return insert((round_ << 48U) | (static_cast<std::uint64_t>(stance & 0xff) << 40U) |
+  // 20 bits for each coordinate (100 m), 8 for the orientation, the rest tells rounds apart: older entries count as
+  // empty.
+  return insert((round_ << 48U) | (static_cast<std::uint64_t>(orientation & 0xff) << 40U) |
                 (static_cast<std::uint64_t>(x & 0xfffff) << 20U) | static_cast<std::uint64_t>(y & 0xfffff));
 }
 
-bool SpotList::insert(std::uint64_t key) {
+bool CandidatePoseList::insert(std::uint64_t key) {
   const std::size_t mask = table_.size() - 1;
   std::size_t at = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> 40U) & mask;
   for (; table_[at] >> 48U == round_; at = (at + 1) & mask) {
@@ -94,9 +95,9 @@ Layout::Layout(const Rules& rules) : rules_(rules) {
   levels_.push_back(0);
 }
 
-Block Layout::block_at(const Piece& piece, const Spot& spot) {
-  const Stance& s = piece.stances[static_cast<std::size_t>(spot.stance)];
-  return {spot.x, spot.y, spot.z, spot.x + s.width, spot.y + s.depth, spot.z + s.height, piece.mass, piece.capacity};
+Block Layout::block_at(const Piece& piece, const CandidatePose& pose) {
+  const PieceOrientation& s = piece.orientations[static_cast<std::size_t>(pose.orientation)];
+  return {pose.x, pose.y, pose.z, pose.x + s.width, pose.y + s.depth, pose.z + s.height, piece.mass, piece.capacity};
 }
 
 void Layout::add(const Block& block) {
@@ -216,8 +217,8 @@ int Layout::highest_under(const Rectangle& area) const {
   return highest;
 }
 
-Refusal Layout::settle(const Piece& piece, int stance, int x, int y, Spot& spot) const {
-  const Stance& s = piece.stances[static_cast<std::size_t>(stance)];
+Refusal Layout::settle(const Piece& piece, int orientation, int x, int y, CandidatePose& pose) const {
+  const PieceOrientation& s = piece.orientations[static_cast<std::size_t>(orientation)];
   const Rectangle face{x, y, x + s.width, y + s.depth};
   const int margin = rules_.margin;
   if (x < margin || y < margin || face.x2 > rules_.size_x - margin || face.y2 > rules_.size_y - margin)
@@ -232,7 +233,7 @@ Refusal Layout::settle(const Piece& piece, int stance, int x, int y, Spot& spot)
     }
     support = static_cast<double>(held) / (static_cast<double>(s.width) * s.depth);
   }
-  spot = {x, y, base, stance, support};
+  pose = {x, y, base, orientation, support};
   if (support < rules_.min_support) return Refusal::Support;
   if (base > 0 && !is_balanced(face, base, x + s.width / 2 + s.com_x, y + s.depth / 2 + s.com_y))
     return Refusal::Balance;
@@ -295,21 +296,21 @@ void Layout::add_load(std::size_t upper, double mass) {
   }
 }
 
-int Layout::find_spots(const Piece& piece, SpotList& list, Refusal* worst) const {
+int Layout::find_poses(const Piece& piece, CandidatePoseList& list, Refusal* worst) const {
   list.clear();
   int looked_at = 0;
-  Spot spot;
-  const auto try_at = [&](int stance, int x, int y) {
-    if (!list.is_new(stance, x, y)) return;
+  CandidatePose pose;
+  const auto try_at = [&](int orientation, int x, int y) {
+    if (!list.is_new(orientation, x, y)) return;
     ++looked_at;
-    const Refusal refusal = settle(piece, stance, x, y, spot);
+    const Refusal refusal = settle(piece, orientation, x, y, pose);
     if (worst != nullptr && refusal != Refusal::None) *worst = std::max(*worst, refusal);
     if (refusal != Refusal::None) return;
-    list.spots.push_back(spot);
+    list.poses.push_back(pose);
   };
   const int m = rules_.margin;
-  for (int stance = 0; stance < static_cast<int>(piece.stances.size()); ++stance) {
-    const Stance& s = piece.stances[static_cast<std::size_t>(stance)];
+  for (int orientation = 0; orientation < static_cast<int>(piece.orientations.size()); ++orientation) {
+    const PieceOrientation& s = piece.orientations[static_cast<std::size_t>(orientation)];
     for (const Space& space : spaces_) {
       const Rectangle& a = space.area;
       if (!space.supported || space.level + s.height > rules_.size_z) continue;
@@ -317,15 +318,15 @@ int Layout::find_spots(const Piece& piece, SpotList& list, Refusal* worst) const
       const int x1 = std::max(a.x1, m), y1 = std::max(a.y1, m);
       const int x2 = std::min(a.x2, rules_.size_x - m) - s.width, y2 = std::min(a.y2, rules_.size_y - m) - s.depth;
       if (x2 < x1 || y2 < y1) continue;
-      try_at(stance, x1, y1);
-      if (y2 > y1) try_at(stance, x1, y2);
-      if (x2 > x1) try_at(stance, x2, y1);
-      if (x2 > x1 && y2 > y1) try_at(stance, x2, y2);
+      try_at(orientation, x1, y1);
+      if (y2 > y1) try_at(orientation, x1, y2);
+      if (x2 > x1) try_at(orientation, x2, y1);
+      if (x2 > x1 && y2 > y1) try_at(orientation, x2, y2);
     }
     for (const Block& b : blocks_) {
       if (b.z2 + s.height > rules_.size_z) continue;
       for (const int x : {b.x1, b.x2 - s.width}) {
-        for (const int y : {b.y1, b.y2 - s.depth}) try_at(stance, x, y);
+        for (const int y : {b.y1, b.y2 - s.depth}) try_at(orientation, x, y);
       }
     }
   }

@@ -26,15 +26,15 @@ struct Block {
 };
 
 /// One way in which a piece can stand.
-struct Stance {
+struct PieceOrientation {
   int width = 0, depth = 0, height = 0;  ///< along Tx, Ty, Tz
   int com_x = 0, com_y = 0;              ///< from the middle
   int tag = 0;                           ///< the caller's, for example an index of orientations
-  bool operator==(const Stance&) const = default;
+  bool operator==(const PieceOrientation&) const = default;
 };
 
 struct Piece {
-  std::vector<Stance> stances;
+  std::vector<PieceOrientation> orientations;
   int mass = 0;                    ///< g
   int capacity = Block::kNoLimit;  ///< g that may rest on it
   double volume = 0.0;             ///< m^3, as measured
@@ -53,22 +53,22 @@ struct Rules {
 };
 
 /// A piece lowered at a place. Margins are not part of it.
-struct Spot {
+struct CandidatePose {
   int x = 0, y = 0, z = 0;
-  int stance = 0;        ///< index
+  int orientation = 0;   ///< index
   double support = 0.0;  ///< part of the lower face
-  bool operator==(const Spot&) const = default;
+  bool operator==(const CandidatePose&) const = default;
 };
 
 enum class Refusal { None, Outside, Height, Support, Balance, Load };
 
-/// Spots found, each once, with the memory that finding them takes.
-class SpotList {
+/// Candidate poses found, each once, with the memory that finding them takes.
+class CandidatePoseList {
  public:
-  std::vector<Spot> spots;
+  std::vector<CandidatePose> poses;
   void clear();
   /// False when this place has been seen since clear().
-  bool is_new(int stance, int x, int y);
+  bool is_new(int orientation, int x, int y);
 
  private:
   std::vector<std::uint64_t> table_ = std::vector<std::uint64_t>(512, 0);  ///< open addressing; size a power of two
@@ -83,15 +83,16 @@ class Layout {
   explicit Layout(const Rules& rules);
 
   void add(const Block& block);
-  /// The block that a piece becomes at a spot.
-  [[nodiscard]] static Block block_at(const Piece& piece, const Spot& spot);
+  /// The block that a piece becomes at a pose.
+  [[nodiscard]] static Block block_at(const Piece& piece, const CandidatePose& pose);
 
-  /// Lowers a stance at (x, y) until it rests. Fills the spot also when it is refused for what comes after Height.
-  [[nodiscard]] Refusal settle(const Piece& piece, int stance, int x, int y, Spot& spot) const;
+  /// Lowers a piece in an orientation at (x, y) until it rests. Fills the pose also when it is refused for what comes
+  /// after Height.
+  [[nodiscard]] Refusal settle(const Piece& piece, int orientation, int x, int y, CandidatePose& pose) const;
 
   /// Corners into which the piece can be lowered, each once, in a fixed order; returns how many were looked at.
   /// `worst` tells how far the best of the refused ones came.
-  int find_spots(const Piece& piece, SpotList& list, Refusal* worst = nullptr) const;
+  int find_poses(const Piece& piece, CandidatePoseList& list, Refusal* worst = nullptr) const;
 
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   [[nodiscard]] const Rules& rules() const { return rules_; }

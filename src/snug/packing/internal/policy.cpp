@@ -1,4 +1,4 @@
-// Policy: features of a spot and their weighted sum.
+// Policy: features of a pose and their weighted sum.
 #include "snug/packing/internal/policy.hpp"
 
 #include <algorithm>
@@ -89,9 +89,9 @@ int WasteTable::waste(int length) const {
   return waste_[static_cast<std::size_t>(mm)];
 }
 
-Features see(const Layout& layout, const Policy& policy, const Piece& piece, const Spot& spot) {
+Features see(const Layout& layout, const Policy& policy, const Piece& piece, const CandidatePose& pose) {
   const Rules& rules = layout.rules();
-  const Block me = Layout::block_at(piece, spot);
+  const Block me = Layout::block_at(piece, pose);
   const double width = me.x2 - me.x1, depth = me.y2 - me.y1, height = me.z2 - me.z1;
   const double area = width * depth;
   const Surroundings s = look_round(layout, me);
@@ -106,14 +106,14 @@ Features see(const Layout& layout, const Policy& policy, const Piece& piece, con
   f[HeightWaste] = 10.0 * policy.heights.waste(rules.size_z - me.z2) * area / room;
   f[Contact] = s.contact / (2.0 * (width + depth) * height);
   f[Flush] = s.flush / (2.0 * (width + depth));
-  f[Support] = spot.support;
+  f[Support] = pose.support;
   f[Footprint] = 10.0 * area / (static_cast<double>(rules.size_x) * rules.size_y);
   for (const int gap : s.gap) f[Sliver] += gap > kTouch && gap < rules.min_side ? 1.0 : 0.0;
   return f;
 }
 
-double cost(const Layout& layout, const Policy& policy, const Piece& piece, const Spot& spot) {
-  const Features f = see(layout, policy, piece, spot);
+double cost(const Layout& layout, const Policy& policy, const Piece& piece, const CandidatePose& pose) {
+  const Features f = see(layout, policy, piece, pose);
   return std::inner_product(f.begin(), f.end(), policy.weights.begin(), 0.0);
 }
 

@@ -1,4 +1,4 @@
-// Policy: a quick opinion on where a piece should go, for roll-outs and for putting candidates in a first order.
+// Policy: a quick heuristic of where a piece should go, for roll-outs and for putting candidates in a first order.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace snug::packing::internal {
 
-/// What is seen of a piece at a spot, each as a volume in parts of the container's (or a plain ratio).
+/// What is seen of a piece at a pose, each as a volume in parts of the container's (or a plain ratio).
 enum Feature { Base, Top, Buried, SideWaste, HeightWaste, Contact, Flush, Support, Footprint, Sliver, kFeatureCount };
 using Features = std::array<double, kFeatureCount>;
 /// Added up with these; lower is better. Found as docs/theory/packing.md says.
@@ -33,7 +33,7 @@ struct Policy {
   WasteTable heights;
 };
 
-[[nodiscard]] Features see(const Layout& layout, const Policy& policy, const Piece& piece, const Spot& spot);
-[[nodiscard]] double cost(const Layout& layout, const Policy& policy, const Piece& piece, const Spot& spot);
+[[nodiscard]] Features see(const Layout& layout, const Policy& policy, const Piece& piece, const CandidatePose& pose);
+[[nodiscard]] double cost(const Layout& layout, const Policy& policy, const Piece& piece, const CandidatePose& pose);
 
 }  // namespace snug::packing::internal

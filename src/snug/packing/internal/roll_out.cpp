@@ -74,15 +74,15 @@ Future draw_future(const Prospect& prospect, double volume, Rng& rng) {
   return future;
 }
 
-bool choose(const Layout& layout, const Policy& policy, const Piece& piece, RollOutWork& work, Spot& best) {
-  work.looked_at += layout.find_spots(piece, work.list);
+bool choose(const Layout& layout, const Policy& policy, const Piece& piece, RollOutWork& work, CandidatePose& best) {
+  work.looked_at += layout.find_poses(piece, work.list);
   double lowest = 0.0;
   bool found = false;
-  for (const Spot& spot : work.list.spots) {
-    const double c = cost(layout, policy, piece, spot);
+  for (const CandidatePose& pose : work.list.poses) {
+    const double c = cost(layout, policy, piece, pose);
     if (found && c >= lowest) continue;
     lowest = c;
-    best = spot;
+    best = pose;
     found = true;
   }
   return found;
@@ -91,11 +91,11 @@ bool choose(const Layout& layout, const Policy& policy, const Piece& piece, Roll
 double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future,
                 RollOutWork& work) {
   double volume = 0.0;
-  Spot spot;
+  CandidatePose pose;
   for (const int kind : future) {
     const Piece& piece = prospect.kinds[static_cast<std::size_t>(kind)];
-    if (!choose(layout, policy, piece, work, spot)) break;
-    layout.add(Layout::block_at(piece, spot));
+    if (!choose(layout, policy, piece, work, pose)) break;
+    layout.add(Layout::block_at(piece, pose));
     volume += piece.volume;
   }
   return volume;

@@ -25,13 +25,13 @@ using Future = std::vector<int>;  ///< indices of kinds, in the order in which t
 
 /// Scratch of one thread.
 struct RollOutWork {
-  SpotList list;
+  CandidatePoseList list;
   std::int64_t looked_at = 0;  ///< places, in all roll-outs: the unit in which effort is counted
 };
 
-/// The spot that the policy likes best; false when there is none.
+/// The pose of least cost; false when there is none.
 [[nodiscard]] bool choose(const Layout& layout, const Policy& policy, const Piece& piece, RollOutWork& work,
-                          Spot& best);
+                          CandidatePose& best);
 
 /// Volume in m^3 that gets in before the first item that does not fit.
 [[nodiscard]] double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future,

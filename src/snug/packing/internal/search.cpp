@@ -15,14 +15,14 @@ namespace {
 
 struct Node {
   Layout layout;
-  std::vector<Spot> spots;
+  std::vector<CandidatePose> poses;
 };
 
-/// A spot for the next piece, not yet taken.
+/// A pose for the next piece, not yet taken.
 struct Child {
   int parent = 0;
-  Spot spot;
-  double dislike = 0.0;
+  CandidatePose pose;
+  double cost_here = 0.0;
   double volume = 0.0;  ///< of the best roll-out behind it
   double mean = 0.0;
   int best_trial = 0;
@@ -32,11 +32,11 @@ class Beam {
  public:
   Beam(const Policy& policy, const std::vector<Piece>& pieces, const SearchSettings& settings)
       : pieces_(pieces), settings_(settings), work_(static_cast<std::size_t>(std::max(1, settings.threads))) {
-    for (int trial = 0; trial < 64; ++trial) opinions_.push_back(shaken(policy, settings.seed, trial));
+    for (int trial = 0; trial < 64; ++trial) policies_.push_back(shaken(policy, settings.seed, trial));
     prospect_.kinds = pieces;
   }
 
-  std::vector<Spot> run(const Layout& start) {
+  std::vector<CandidatePose> run(const Layout& start) {
     std::vector<Node> nodes{{start, {}}};
     double placed = 0.0;
     for (int index = 0; index < static_cast<int>(pieces_.size()) && !nodes.empty(); ++index) {
@@ -57,16 +57,16 @@ class Beam {
     parallel_for(static_cast<int>(nodes.size()), settings_.threads, [&](int n, int thread) {
       RollOutWork& work = work_[static_cast<std::size_t>(thread)];
       const Layout& layout = nodes[static_cast<std::size_t>(n)].layout;
-      work.looked_at += layout.find_spots(piece, work.list);
+      work.looked_at += layout.find_poses(piece, work.list);
       std::vector<Child>& litter = litters[static_cast<std::size_t>(n)];
-      for (const Spot& spot : work.list.spots)
-        litter.push_back({n, spot, cost(layout, opinions_.front(), piece, spot)});
+      for (const CandidatePose& pose : work.list.poses)
+        litter.push_back({n, pose, cost(layout, policies_.front(), piece, pose)});
       std::stable_sort(litter.begin(), litter.end(),
-                       [](const Child& a, const Child& b) { return a.dislike < b.dislike; });
+                       [](const Child& a, const Child& b) { return a.cost_here < b.cost_here; });
       std::size_t kept = 0;
       for (const Child& child : litter) {
         if (kept >= static_cast<std::size_t>(settings_.breadth)) break;
-        if (!settings_.accept || settings_.accept(layout, index, child.spot)) litter[kept++] = child;
+        if (!settings_.accept || settings_.accept(layout, index, child.pose)) litter[kept++] = child;
       }
       litter.resize(kept);
     });
@@ -82,11 +82,11 @@ class Beam {
     parallel_for(static_cast<int>(children.size()), settings_.threads, [&](int c, int thread) {
       Child& child = children[static_cast<std::size_t>(c)];
       Layout layout = nodes[static_cast<std::size_t>(child.parent)].layout;
-      layout.add(Layout::block_at(pieces_[static_cast<std::size_t>(index)], child.spot));
+      layout.add(Layout::block_at(pieces_[static_cast<std::size_t>(index)], child.pose));
       child.volume = -1.0;
       for (int t = 0; t < settings_.trials; ++t) {
         const int trial = t == 0 ? 0 : 1 + (c * 7 + index * 3 + t) % 63;
-        const double volume = roll_out(layout, opinions_[static_cast<std::size_t>(trial)], prospect_, rest,
+        const double volume = roll_out(layout, policies_[static_cast<std::size_t>(trial)], prospect_, rest,
                                        work_[static_cast<std::size_t>(thread)]);
         child.mean += volume / settings_.trials;
         if (volume <= child.volume) continue;
@@ -97,36 +97,36 @@ class Beam {
     if (!children.empty()) each_ = static_cast<double>(effort() - before) / static_cast<double>(children.size());
   }
 
-  /// Keeps the longest line seen so far, with its roll-out played again to learn the spots.
+  /// Keeps the longest line seen so far, with its roll-out played again to learn the poses.
   void remember(const std::vector<Node>& nodes, const Child& child, int index, double placed) {
     if (placed + child.volume <= best_volume_ + 1e-12) return;
     best_volume_ = placed + child.volume;
     const Node& parent = nodes[static_cast<std::size_t>(child.parent)];
-    best_ = parent.spots;
-    best_.push_back(child.spot);
+    best_ = parent.poses;
+    best_.push_back(child.pose);
     Layout layout = parent.layout;
-    layout.add(Layout::block_at(pieces_[static_cast<std::size_t>(index)], child.spot));
+    layout.add(Layout::block_at(pieces_[static_cast<std::size_t>(index)], child.pose));
     RollOutWork work;
     for (std::size_t i = static_cast<std::size_t>(index) + 1; i < pieces_.size(); ++i) {
-      Spot spot;
-      if (!choose(layout, opinions_[static_cast<std::size_t>(child.best_trial)], pieces_[i], work, spot)) break;
-      layout.add(Layout::block_at(pieces_[i], spot));
-      best_.push_back(spot);
+      CandidatePose pose;
+      if (!choose(layout, policies_[static_cast<std::size_t>(child.best_trial)], pieces_[i], work, pose)) break;
+      layout.add(Layout::block_at(pieces_[i], pose));
+      best_.push_back(pose);
     }
   }
 
   std::vector<Node> select(const std::vector<Node>& nodes, std::vector<Child> children, int index, std::size_t width) {
     std::stable_sort(children.begin(), children.end(), [](const Child& a, const Child& b) {
-      return std::tuple(-a.volume, -a.mean, a.dislike) < std::tuple(-b.volume, -b.mean, b.dislike);
+      return std::tuple(-a.volume, -a.mean, a.cost_here) < std::tuple(-b.volume, -b.mean, b.cost_here);
     });
     std::vector<Node> next;
     std::vector<std::vector<Block>> seen;
     for (const Child& child : children) {
       if (next.size() >= width) break;
       const Node& parent = nodes[static_cast<std::size_t>(child.parent)];
-      Node node{parent.layout, parent.spots};
-      node.layout.add(Layout::block_at(pieces_[static_cast<std::size_t>(index)], child.spot));
-      node.spots.push_back(child.spot);
+      Node node{parent.layout, parent.poses};
+      node.layout.add(Layout::block_at(pieces_[static_cast<std::size_t>(index)], child.pose));
+      node.poses.push_back(child.pose);
       std::vector<Block> sorted = node.layout.blocks();
       std::sort(sorted.begin(), sorted.end(), [](const Block& a, const Block& b) {
         return std::tie(a.x1, a.y1, a.z1, a.x2, a.y2, a.z2) < std::tie(b.x1, b.y1, b.z1, b.x2, b.y2, b.z2);
@@ -151,10 +151,10 @@ class Beam {
 
   const std::vector<Piece>& pieces_;
   const SearchSettings& settings_;
-  std::vector<Policy> opinions_;
+  std::vector<Policy> policies_;
   Prospect prospect_;
   std::vector<RollOutWork> work_;
-  std::vector<Spot> best_;
+  std::vector<CandidatePose> best_;
   double best_volume_ = 0.0;
   double each_ = 1000.0;  ///< places that valuing one child takes
 };
@@ -169,8 +169,8 @@ Policy shaken(const Policy& policy, std::uint64_t seed, int number) {
   return result;
 }
 
-std::vector<Spot> plan_in_order(const Layout& start, const Policy& policy, const std::vector<Piece>& pieces,
-                                const SearchSettings& settings) {
+std::vector<CandidatePose> plan_in_order(const Layout& start, const Policy& policy, const std::vector<Piece>& pieces,
+                                         const SearchSettings& settings) {
   if (pieces.empty()) return {};
   return Beam(policy, pieces, settings).run(start);
 }

@@ -12,15 +12,17 @@ struct SearchSettings {
   std::uint64_t seed = 1;
   int threads = 1;
   std::int64_t effort = 0;  ///< places to be looked at, about
-  int breadth = 16;         ///< spots tried at each node, the policy's best
-  int trials = 2;           ///< roll-outs of each, with different opinions
+  int breadth = 16;         ///< poses tried at each node, the policy's best
+  int trials = 2;           ///< roll-outs of each, with different weights of the policy
   /// Whether piece `index` may really go there (orientation, balance, reach); absent: always.
-  std::function<bool(const Layout&, int index, const Spot&)> accept;
+  std::function<bool(const Layout&, int index, const CandidatePose&)> accept;
 };
 
-/// Spots of the first pieces, as many as got in. Beam search: every node is valued by roll-outs of the real line.
-[[nodiscard]] std::vector<Spot> plan_in_order(const Layout& start, const Policy& policy,
-                                              const std::vector<Piece>& pieces, const SearchSettings& settings);
+/// Candidate poses of the first pieces, as many as got in. Beam search: every node is valued by roll-outs of the real
+/// line.
+[[nodiscard]] std::vector<CandidatePose> plan_in_order(const Layout& start, const Policy& policy,
+                                                       const std::vector<Piece>& pieces,
+                                                       const SearchSettings& settings);
 
 /// A policy whose weights are shaken: number 0 is the policy itself.
 [[nodiscard]] Policy shaken(const Policy& policy, std::uint64_t seed, int number);

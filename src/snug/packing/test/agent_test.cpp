@@ -37,7 +37,7 @@ TEST_P(EveryAgent, PlansSoundlyOnRandomSequences) {
     const std::vector<Item> items = test::shuffled_items(scenario, seed);
     const ContainerState state = test::pack_all(*make(items), make_container_state(scenario.containers.front()), items);
     EXPECT_GE(state.boxes.size(), 3U);
-    test::expect_sound(state, PackingSettings().squeeze, PackingSettings().min_support);
+    test::expect_sound(state, PackingSettings().planned_interference, PackingSettings().min_support);
   }
 }
 
@@ -153,20 +153,20 @@ TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
     wall.X_TP.p = Vector3(0.1 * side, 0.0, 0.1);
     state.boxes.push_back(wall);
   }
-  const auto is_placed = [&](double width, double last_squeeze) {
+  const auto is_placed = [&](double width, double last_interference) {
     AgentInput input;
     input.settings.decision_time = 0.01;
-    input.settings.last_squeeze = last_squeeze;
+    input.settings.last_interference = last_interference;
     const Item item = make_box("tight", Vector3(width, 0.15, 0.19));
     const auto decision = make_agent("contact-aware", std::move(input))->decide(state, item);
     EXPECT_TRUE(decision || decision.error() == NoPlace::NoSpace);
     return decision.has_value();
   };
-  // Both neighbours are squeezed, too: there is room for twice the squeeze of one box more than the slot.
-  const double squeeze = PackingSettings().squeeze;
-  EXPECT_TRUE(is_placed(0.1 + 2.0 * squeeze, 0.0));
-  EXPECT_FALSE(is_placed(0.1 + 2.0 * squeeze + 0.001, 0.0));
-  EXPECT_TRUE(is_placed(0.1 + 2.0 * squeeze + 0.001, 0.003));
+  // Both neighbours are planned smaller, too: twice the interference of one box is there beside the slot.
+  const double interference = PackingSettings().planned_interference;
+  EXPECT_TRUE(is_placed(0.1 + 2.0 * interference, 0.0));
+  EXPECT_FALSE(is_placed(0.1 + 2.0 * interference + 0.001, 0.0));
+  EXPECT_TRUE(is_placed(0.1 + 2.0 * interference + 0.001, 0.003));
   EXPECT_TRUE(is_placed(0.1 + 2.0 * 0.003, 0.003));
   EXPECT_FALSE(is_placed(0.1 + 2.0 * 0.003 + 0.001, 0.003));
 }

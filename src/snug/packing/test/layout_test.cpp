@@ -26,7 +26,7 @@ Rules small_rules(double min_support) {
 
 Piece random_piece(Rng& rng) {
   Piece piece;
-  piece.stances.push_back(
+  piece.orientations.push_back(
       {(1 + rng.index(5)) * kCell, (1 + rng.index(5)) * kCell, (1 + rng.index(4)) * kCell, 0, 0, 0});
   return piece;
 }
@@ -36,9 +36,9 @@ Layout random_layout(double min_support, int count, Rng& rng) {
   Layout layout(small_rules(min_support));
   for (int i = 0; i < count; ++i) {
     const Piece piece = random_piece(rng);
-    Spot spot;
-    if (layout.settle(piece, 0, rng.index(12) * kCell, rng.index(9) * kCell, spot) != Refusal::None) continue;
-    layout.add(Layout::block_at(piece, spot));
+    CandidatePose pose;
+    if (layout.settle(piece, 0, rng.index(12) * kCell, rng.index(9) * kCell, pose) != Refusal::None) continue;
+    layout.add(Layout::block_at(piece, pose));
   }
   return layout;
 }
@@ -62,12 +62,12 @@ TEST(Layout, CarriesABoxOfAnyAreaThatAContainerCanHave) {
     Layout layout(rules);
     layout.add({0, 0, 0, side, side, 1000, 1000});
     Piece piece;
-    piece.stances.push_back({side, side, 1000, 0, 0, 0});
-    Spot spot;
-    EXPECT_EQ(layout.settle(piece, 0, 0, 0, spot), Refusal::None);
-    EXPECT_EQ(spot.z, 1000);
-    EXPECT_EQ(spot.support, 1.0);
-    layout.add(Layout::block_at(piece, spot));
+    piece.orientations.push_back({side, side, 1000, 0, 0, 0});
+    CandidatePose pose;
+    EXPECT_EQ(layout.settle(piece, 0, 0, 0, pose), Refusal::None);
+    EXPECT_EQ(pose.z, 1000);
+    EXPECT_EQ(pose.support, 1.0);
+    layout.add(Layout::block_at(piece, pose));
     EXPECT_NEAR(layout.columns().back(), 1000.0, 1e-9);
   }
 }
@@ -79,9 +79,9 @@ TEST(Layout, LowersAsAHeightMapDoes) {
     const Layout layout = random_layout(0.0, 8, rng);
     const Piece piece = random_piece(rng);
     const int x = rng.index(12), y = rng.index(9);
-    const Stance& s = piece.stances.front();
-    Spot spot;
-    const Refusal refusal = layout.settle(piece, 0, x * kCell, y * kCell, spot);
+    const PieceOrientation& s = piece.orientations.front();
+    CandidatePose pose;
+    const Refusal refusal = layout.settle(piece, 0, x * kCell, y * kCell, pose);
     if (x * kCell + s.width > 12 * kCell || y * kCell + s.depth > 9 * kCell) {
       EXPECT_EQ(refusal, Refusal::Outside);
       continue;
@@ -101,8 +101,8 @@ TEST(Layout, LowersAsAHeightMapDoes) {
       EXPECT_EQ(refusal, Refusal::Height);
       continue;
     }
-    EXPECT_EQ(spot.z, base);
-    EXPECT_DOUBLE_EQ(spot.support, static_cast<double>(held) / cells);
+    EXPECT_EQ(pose.z, base);
+    EXPECT_DOUBLE_EQ(pose.support, static_cast<double>(held) / cells);
   }
 }
 
@@ -114,13 +114,13 @@ TEST(Layout, FindsACornerWheneverAnyCellWouldDo) {
     const Layout layout = random_layout(0.0, 30, rng);
     const Piece piece = random_piece(rng);
     bool fits = false;
-    Spot spot;
+    CandidatePose pose;
     for (int x = 0; x < 12 && !fits; ++x) {
-      for (int y = 0; y < 9 && !fits; ++y) fits = layout.settle(piece, 0, x * kCell, y * kCell, spot) == Refusal::None;
+      for (int y = 0; y < 9 && !fits; ++y) fits = layout.settle(piece, 0, x * kCell, y * kCell, pose) == Refusal::None;
     }
-    SpotList list;
-    (void)layout.find_spots(piece, list);
-    EXPECT_EQ(list.spots.empty(), !fits);
+    CandidatePoseList list;
+    (void)layout.find_poses(piece, list);
+    EXPECT_EQ(list.poses.empty(), !fits);
     full += fits ? 0 : 1;
   }
   EXPECT_GT(full, 20);  // both answers have to occur for the test to mean anything
@@ -137,14 +137,14 @@ TEST(Layout, MirroredContainerHasMirroredCorners) {
       std::tie(b.x1, b.x2) = std::pair(layout.rules().size_x - b.x2, layout.rules().size_x - b.x1);
       mirrored.add(b);
     }
-    SpotList here, there;
-    (void)layout.find_spots(piece, here);
-    (void)mirrored.find_spots(piece, there);
+    CandidatePoseList here, there;
+    (void)layout.find_poses(piece, here);
+    (void)mirrored.find_poses(piece, there);
     using Key = std::tuple<int, int, int>;
     std::set<Key> expected, found;
-    const int width = piece.stances.front().width;
-    for (const Spot& s : here.spots) expected.insert({layout.rules().size_x - s.x - width, s.y, s.z});
-    for (const Spot& s : there.spots) found.insert({s.x, s.y, s.z});
+    const int width = piece.orientations.front().width;
+    for (const CandidatePose& s : here.poses) expected.insert({layout.rules().size_x - s.x - width, s.y, s.z});
+    for (const CandidatePose& s : there.poses) found.insert({s.x, s.y, s.z});
     EXPECT_EQ(found, expected);
   }
 }
@@ -155,11 +155,11 @@ TEST(Layout, KeepsTheMarginToWallsAndBoxes) {
   Layout layout(rules);
   layout.add({kCell, kCell, 0, 4 * kCell, 4 * kCell, 4 * kCell});
   Piece piece;
-  piece.stances.push_back({2 * kCell, 2 * kCell, 3 * kCell, 0, 0, 0});
-  SpotList list;
-  (void)layout.find_spots(piece, list);
-  ASSERT_FALSE(list.spots.empty());
-  for (const Spot& s : list.spots) {
+  piece.orientations.push_back({2 * kCell, 2 * kCell, 3 * kCell, 0, 0, 0});
+  CandidatePoseList list;
+  (void)layout.find_poses(piece, list);
+  ASSERT_FALSE(list.poses.empty());
+  for (const CandidatePose& s : list.poses) {
     EXPECT_GE(s.x, kCell);
     EXPECT_LE(s.x + 2 * kCell, 11 * kCell);
     EXPECT_TRUE(s.z == 4 * kCell || s.x >= 5 * kCell || s.y >= 5 * kCell);
@@ -170,17 +170,17 @@ TEST(Layout, BalanceAsksForTheCentreOfMassAboveTheSupport) {
   Layout layout(small_rules(0.6));
   layout.add({0, 0, 0, 3 * kCell, 2 * kCell, 2 * kCell});
   Piece piece;
-  piece.stances.push_back({4 * kCell, 2 * kCell, 2 * kCell, 0, 0, 0});  // three quarters supported
-  Spot spot;
-  EXPECT_EQ(layout.settle(piece, 0, 0, 0, spot), Refusal::None);
-  piece.stances.front().com_x = 3 * kCell / 2;  // 3.5 cells from the left, 0.5 beyond the edge
-  EXPECT_EQ(layout.settle(piece, 0, 0, 0, spot), Refusal::Balance);
+  piece.orientations.push_back({4 * kCell, 2 * kCell, 2 * kCell, 0, 0, 0});  // three quarters supported
+  CandidatePose pose;
+  EXPECT_EQ(layout.settle(piece, 0, 0, 0, pose), Refusal::None);
+  piece.orientations.front().com_x = 3 * kCell / 2;  // 3.5 cells from the left, 0.5 beyond the edge
+  EXPECT_EQ(layout.settle(piece, 0, 0, 0, pose), Refusal::Balance);
   layout.add({7 * kCell / 2, 0, 0, 5 * kCell, 2 * kCell, 2 * kCell});  // a second box bridges the gap
-  EXPECT_EQ(layout.settle(piece, 0, 0, 0, spot), Refusal::None);
+  EXPECT_EQ(layout.settle(piece, 0, 0, 0, pose), Refusal::None);
 }
 
-TEST(SpotList, RemembersOnlyThisRoundHoweverManyThereWere) {
-  SpotList list;
+TEST(CandidatePoseList, RemembersOnlyThisRoundHoweverManyThereWere) {
+  CandidatePoseList list;
   for (int round = 0; round < 70000; ++round) {
     list.clear();
     ASSERT_TRUE(list.is_new(1, 30, 40)) << round;

@@ -13,7 +13,7 @@ using test::make_box;
 
 PackingSettings exact() {
   PackingSettings settings;
-  settings.squeeze = 0.0;
+  settings.planned_interference = 0.0;
   return settings;
 }
 

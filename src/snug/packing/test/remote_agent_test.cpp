@@ -49,7 +49,7 @@ TEST(RemoteAgent, IsAskedOnceToBeginAndForEveryItem) {
   EXPECT_EQ(asked[3]["boxes"].size(), 2U);
   EXPECT_EQ(asked[3]["boxes"][1]["id"], items[1].id);
   EXPECT_GT(asked[3]["candidates"].size(), 3U);
-  test::expect_sound(state, PackingSettings().squeeze, PackingSettings().min_support);
+  test::expect_sound(state, PackingSettings().planned_interference, PackingSettings().min_support);
 }
 
 TEST(RemoteAgent, PlacesGivenAsNumbersAreLowered) {

@@ -71,7 +71,7 @@ inline void expect_sound(const ContainerState& state, double give, double min_su
     EXPECT_LE((a.high - half).x(), 0.5 * give + tick);
     EXPECT_LE((a.high - half).y(), 0.5 * give + tick);
     EXPECT_LE(a.high.z(), state.inner_size.z() + 1e-9);
-    // Both faces are squeezed by half the give: the ratio of areas differs by less than four times give / shortest
+    // Both faces are smaller by half the give: the ratio of areas differs by less than four times give / shortest
     // side.
     EXPECT_GE(support_of(state, i, slack), min_support - 4.0 * give / 0.06);
     for (std::size_t j = 0; j < i; ++j) {

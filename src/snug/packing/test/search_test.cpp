@@ -25,9 +25,9 @@ Piece tiny_piece(Rng& rng) {
   const int a = 1 + rng.index(3), b = 1 + rng.index(3), c = 1 + rng.index(2);
   Piece piece;
   for (const auto& [w, d, h] : {std::tuple(a, b, c), std::tuple(b, a, c), std::tuple(a, c, b), std::tuple(c, b, a)}) {
-    const Stance stance{w * kCell, d * kCell, h * kCell, 0, 0, 0};
-    if (std::find(piece.stances.begin(), piece.stances.end(), stance) == piece.stances.end())
-      piece.stances.push_back(stance);
+    const PieceOrientation orientation{w * kCell, d * kCell, h * kCell, 0, 0, 0};
+    if (std::find(piece.orientations.begin(), piece.orientations.end(), orientation) == piece.orientations.end())
+      piece.orientations.push_back(orientation);
   }
   piece.volume = a * b * c;
   return piece;
@@ -37,13 +37,13 @@ Piece tiny_piece(Rng& rng) {
 std::size_t pack_by_trying(const Layout& layout, const std::vector<Piece>& pieces, std::size_t index) {
   if (index == pieces.size()) return index;
   std::size_t best = index;
-  for (int stance = 0; stance < static_cast<int>(pieces[index].stances.size()); ++stance) {
+  for (int orientation = 0; orientation < static_cast<int>(pieces[index].orientations.size()); ++orientation) {
     for (int x = 0; x < 5; ++x) {
       for (int y = 0; y < 3; ++y) {
-        Spot spot;
-        if (layout.settle(pieces[index], stance, x * kCell, y * kCell, spot) != Refusal::None) continue;
+        CandidatePose pose;
+        if (layout.settle(pieces[index], orientation, x * kCell, y * kCell, pose) != Refusal::None) continue;
         Layout next = layout;
-        next.add(Layout::block_at(pieces[index], spot));
+        next.add(Layout::block_at(pieces[index], pose));
         best = std::max(best, pack_by_trying(next, pieces, index + 1));
         if (best == pieces.size()) return best;
       }
