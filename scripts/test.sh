@@ -15,5 +15,5 @@ if [ -n "$module" ]; then
   ctest --preset release -j "$jobs" -L "^$module\$"
 else
   cmake --build --preset release -j "$jobs" --target all snug_tests snug_python
-  ctest --preset release -j "$jobs" --output-junit test-results.xml
+  ctest --preset release -j "$((jobs + 1))" --output-junit test-results.xml # one more than cores: some wait for servers and schedulers
 fi

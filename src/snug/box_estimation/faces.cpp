@@ -18,6 +18,9 @@ constexpr double kBiasLeft = 0.15;
 /// The same for faces seen from the side: their lower ends are corners with what the box stands on.
 constexpr double kSideBiasLeft = 0.5;
 constexpr double kSideFacing = 0.7;
+/// rad: what is tilted more is no face of this box, but a strip of points of something else. Three times a belief's
+/// spread.
+constexpr double kMostTilt = 0.15;
 
 struct Sums {
   int face = -1;
@@ -176,6 +179,7 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
     feature.points = static_cast<int>(sums[i].count);
     const Matrix3 inverse = G.inverse();
     feature.rows.measured = inverse * sums[i].e;
+    if (feature.rows.measured.tail<2>().cwiseAbs().maxCoeff() > kMostTilt) continue;
     const double facing = std::abs(surface.offset) / f.centre.z();  // n . ray at the middle of the face
     feature.rows.covariance = covariance_of(sums[i], f, inverse, facing, errors, frame.camera);
     const Vector3 arm = f.centre - boxes[static_cast<std::size_t>(feature.box)].X_CP.p;

@@ -94,13 +94,8 @@ void Gripper::let_go(GripperEvent event, GripperState& state, std::vector<Grippe
 }
 
 void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
-                         const cup::CupCommand& command, GripperState& state, std::vector<GripperEvent>& events) const {
-  if (!command.vacuum && state.cup.phase == cup::CupPhase::Holding) {
-    state.cup.phase = cup::CupPhase::Releasing;
-    state.is_letting_go = true;
-  }
+                         const cup::SuctionCup& cup, GripperState& state, std::vector<GripperEvent>& events) const {
   const physics::ElementQuery query = query_of(*world_, world_state, state.cup.body, X_WE, V_WE);
-  const cup::SuctionCup cup = cup::cup_at(params_of(state), state.cup.pressure_gauge, state.cup.X_PS);
   state.F_S = cup.lip_wrench(query);
   state.cup.bend = cup::bend_angle(X_WE.R.transpose() * query.X_WB.R * state.cup.X_PS.R);
   GripperEvent event;
@@ -153,7 +148,15 @@ void Gripper::prepare(const physics::WorldState& world_state, const Pose& X_WE, 
   state.vacuum_time = command.vacuum ? state.vacuum_time + dt : 0.0;
   if (!command.vacuum) state.has_reported = false;
   if (command.vacuum) state.is_letting_go = false;
-  if (state.cup.phase != cup::CupPhase::Free) check_hold(world_state, X_WE, V_WE, command, state, events);
+  const auto present_cup = [&] { return cup::cup_at(params_of(state), state.cup.pressure_gauge, state.cup.X_PS); };
+  if (state.cup.phase != cup::CupPhase::Free) {
+    if (!command.vacuum && state.cup.phase == cup::CupPhase::Holding) {
+      state.cup.phase = cup::CupPhase::Releasing;
+      state.is_letting_go = true;
+    }
+    out.cup = present_cup();
+    check_hold(world_state, X_WE, V_WE, out.cup, state, events);
+  }
   if (state.cup.phase == cup::CupPhase::Free) {
     const Target target = find_target(world_state, X_WE);
     out.ignored = target.body;
@@ -167,9 +170,9 @@ void Gripper::prepare(const physics::WorldState& world_state, const Pose& X_WE, 
       out.element = &out.push;
       out.body = target.body;
     }
+    if (state.cup.phase != cup::CupPhase::Free) out.cup = present_cup();
   }
   if (state.cup.phase != cup::CupPhase::Free) {
-    out.cup = cup::cup_at(params_of(state), state.cup.pressure_gauge, state.cup.X_PS);
     out.element = &out.cup;
     out.body = state.cup.body;
     out.ignored = state.cup.body;

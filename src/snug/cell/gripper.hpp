@@ -67,7 +67,7 @@ class Gripper {
   void try_to_seal(const Target& target, const Pose& X_WE, const cup::CupCommand& command, GripperState& state,
                    std::vector<GripperEvent>& events) const;
   void check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
-                  const cup::CupCommand& command, GripperState& state, std::vector<GripperEvent>& events) const;
+                  const cup::SuctionCup& cup, GripperState& state, std::vector<GripperEvent>& events) const;
   void let_go(GripperEvent event, GripperState& state, std::vector<GripperEvent>& events) const;
 
   model::CupParams params_;

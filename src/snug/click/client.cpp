@@ -2,9 +2,11 @@
 #include "snug/click/client.hpp"
 
 #include <fmt/format.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <utility>
 
 #include "snug/click/internal/socket.hpp"
@@ -16,6 +18,7 @@ namespace {
 using Reason = Unexpected<std::string>;
 
 constexpr std::int64_t kLongestAnswer = std::int64_t{16} << 20;  ///< of an answer
+constexpr auto kAwake = std::chrono::microseconds(500);          ///< of waiting: to wake up takes longer than a step
 constexpr int kLinger = 200;                                     ///< ms, for what was said last
 
 /// The answer as one of the kind that was asked for.
@@ -53,6 +56,17 @@ struct Client::Impl {
   double patience;
   internal::Context context = internal::make_context();
   internal::Socket socket;
+
+  /// False: errno says why none came. Looks without sleeping first: a cell in step answers at once.
+  bool receive(zmq_msg_t& answer) {
+    const auto end = std::chrono::steady_clock::now() + kAwake;
+    do {
+      if (zmq_msg_recv(&answer, socket.get(), ZMQ_DONTWAIT) >= 0) return true;
+      if (errno != EAGAIN) return false;
+      ::sched_yield();
+    } while (std::chrono::steady_clock::now() < end);
+    return zmq_msg_recv(&answer, socket.get(), 0) >= 0;
+  }
 };
 
 Client::Client(const std::string& endpoint, double patience, const std::string& routing_id)
@@ -75,7 +89,7 @@ Expected<Message, std::string> Client::request(const Message& message) {
   if (zmq_send(impl_->socket.get(), frame.data(), frame.size(), 0) < 0) return fail("sending");
   zmq_msg_t answer;
   zmq_msg_init(&answer);
-  if (zmq_msg_recv(&answer, impl_->socket.get(), 0) < 0) {
+  if (!impl_->receive(answer)) {
     zmq_msg_close(&answer);
     return fail("receiving");
   }

@@ -19,15 +19,16 @@ constexpr int kSweptSolves = 3;
 void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, const BodyState& state,
                 BodyMemory& memory, bool knows_state, BodyWork& work) {
   const bool same = knows_state && memory.p_WBcm == state.p_WBcm && memory.quat_WB.coeffs() == state.quat_WB.coeffs();
-  const Matrix3 R_WB = same ? work.R_WB : state.quat_WB.toRotationMatrix();
-  const Vector3 p_WB = same ? work.p_WB : state.p_WBcm - R_WB * body.inertia.com;
-  memory.p_WBcm = state.p_WBcm;
-  memory.quat_WB = state.quat_WB;
-  work = BodyWork{};
+  if (!same) {
+    memory.p_WBcm = state.p_WBcm;
+    memory.quat_WB = state.quat_WB;
+    work.R_WB = state.quat_WB.toRotationMatrix();
+    work.p_WBcm = state.p_WBcm;
+    work.p_WB = state.p_WBcm - work.R_WB * body.inertia.com;
+  }
+  work.active = work.island = -1;
+  work.is_moving = work.has_element = work.is_steady = work.has_result = false;
   work.has_same_pose = same;
-  work.R_WB = R_WB;
-  work.p_WBcm = state.p_WBcm;
-  work.p_WB = p_WB;
   work.velocity_start = work.velocity = state.velocity;
   work.angular_start = work.angular = state.angular_velocity;
   work.speed = state.velocity.norm() + state.angular_velocity.norm() * mass.radius;
@@ -201,6 +202,7 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
       work.bodies[static_cast<std::size_t>(use.body.index)].has_element = true;
     }
   }
+  place_carriers(input, work);
   return true;
 }
 

@@ -129,6 +129,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   bodies.resize(n);
   ends.resize(n);
   active.resize(n);
+  carriers.reserve(n);
   whitening.resize(n);
   u.resize(6 * n + 2);
   shift.resize(6 * n + 2);

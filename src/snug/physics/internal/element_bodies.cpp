@@ -41,9 +41,10 @@ BodyForces evaluate_elements(const WorldModel& model, const WorldInput& input, c
   const Vector3 p_WBcm = b.p_WBcm + 0.5 * dt * v_mid;
   BodyForces forces;
   forces.inertia_W = inertia_in_world(model.masses[static_cast<std::size_t>(body)], R_WB);
-  for (const ElementUse& use : input.elements) {
+  for (std::size_t i = 0; i < input.elements.size(); ++i) {
+    const ElementUse& use = input.elements[i];
     if (use.body.index != body) continue;
-    ElementQuery query = carrier_query(input, work, use);
+    ElementQuery query = work.carriers[i];
     const Vector3 p_BoBcm_W = R_WB * model.bodies[static_cast<std::size_t>(body)].inertia.com;
     query.X_WB = {R_WB, p_WBcm - p_BoBcm_W};
     query.V_WB = {v_mid - w_mid.cross(p_BoBcm_W), w_mid};
@@ -61,6 +62,11 @@ BodyForces evaluate_elements(const WorldModel& model, const WorldInput& input, c
 Matrix6 resistance(const BodyForces& forces, double dt) { return 0.25 * dt * forces.stiffness + 0.5 * forces.damping; }
 
 }  // namespace
+
+void place_carriers(const WorldInput& input, Scratch& work) {
+  work.carriers.clear();
+  for (const ElementUse& use : input.elements) work.carriers.push_back(carrier_query(input, work, use));
+}
 
 double evaluate_body(const WorldModel& model, const WorldInput& input, const Scratch& work, ElementBody& element) {
   const BodyWork& b = work.bodies[static_cast<std::size_t>(element.body)];

@@ -22,6 +22,8 @@ struct ElementBody {
   Vector6 velocity = Vector6::Zero();  ///< guess of the velocity at the end of the step
 };
 
+/// Fills work.carriers, once a step.
+void place_carriers(const WorldInput& input, Scratch& work);
 /// The bodies with elements of one island, each once.
 void find_element_bodies(const WorldInput& input, const Scratch& work, int island, std::vector<ElementBody>& found);
 /// Evaluates the forces at the body's present velocity. Returns by how much they miss what the last linearisation

@@ -133,11 +133,12 @@ struct Scratch {
   std::vector<BodyWork> bodies;
   std::vector<int> active;  ///< bodies that move in this step; [0, active_count)
   int active_count = 0;
-  std::vector<Whitening> whitening;  ///< by active index
-  std::vector<double> u;             ///< 6 per active body
-  std::vector<double> shift;         ///< 6 per active body, position correction in whitened coordinates
-  std::vector<BodyEnd> ends;         ///< of each body; of steps in which one turns fast
-  std::vector<int> parent;           ///< union-find over active bodies
+  std::vector<ElementQuery> carriers;  ///< of each element in use, at the middle of the step
+  std::vector<Whitening> whitening;    ///< by active index
+  std::vector<double> u;               ///< 6 per active body
+  std::vector<double> shift;           ///< 6 per active body, position correction in whitened coordinates
+  std::vector<BodyEnd> ends;           ///< of each body; of steps in which one turns fast
+  std::vector<int> parent;             ///< union-find over active bodies
   std::vector<int> island_of_root;
   BoundedVector<Patch> patches;
   BoundedVector<Contact> contacts;  ///< by patch

@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+"""check_headers_test.py: tools/check_headers.py must object to a header that needs what it does not include, and to no other."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+TOOL = Path(__file__).resolve().parent.parent / "tools" / "check_headers.py"
+POSE = "#pragma once\n#include <vector>\nstruct Pose {\n  std::vector<double> numbers;\n};\n"
+
+
+class CheckHeaders(unittest.TestCase):
+    def run_on(self, files):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in files.items():
+                path = Path(folder) / "src" / "snug" / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, encoding="utf-8")
+            result = subprocess.run([sys.executable, TOOL, folder], capture_output=True, text=True, check=False)
+        return result.returncode, result.stdout + result.stderr
+
+    def test_sound_headers(self):
+        status, output = self.run_on({"spatial/pose.hpp": POSE,
+                                      "arm/arm.hpp": '#include "snug/spatial/pose.hpp"\nstruct Arm {\n  Pose base;\n  std::vector<int> joints;\n};\n'})
+        self.assertEqual((status, output.strip()), (0, "2 of 2 headers compile alone"))
+
+    def test_header_that_needs_what_another_includes(self):
+        status, output = self.run_on({"spatial/pose.hpp": POSE, "arm/arm.hpp": "struct Arm {\n  Pose base;\n};\n",
+                                      "arm/joints.hpp": "using Joints = std::vector<double>;\n"})
+        self.assertEqual(status, 1)
+        self.assertIn("snug/arm/arm.hpp does not compile alone", output)
+        self.assertIn("snug/arm/joints.hpp does not compile alone", output)
+        self.assertIn("1 of 3 headers compile alone", output)
+
+    def test_no_headers(self):
+        status, output = self.run_on({})
+        self.assertEqual(status, 1)
+        self.assertIn("no headers", output)
+
+
+if __name__ == "__main__":
+    unittest.main()
