@@ -2,14 +2,13 @@
 #include "snug/click/client.hpp"
 
 #include <fmt/format.h>
-#include <sched.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <utility>
 
 #include "snug/click/internal/socket.hpp"
+#include "snug/click/internal/spin_wait.hpp"
 #include "snug/click/simulator.hpp"
 
 namespace snug::click {
@@ -18,7 +17,6 @@ namespace {
 using Reason = Unexpected<std::string>;
 
 constexpr std::int64_t kLongestAnswer = std::int64_t{16} << 20;  ///< of an answer
-constexpr auto kAwake = std::chrono::microseconds(500);          ///< of waiting: to wake up takes longer than a step
 constexpr int kLinger = 200;                                     ///< ms, for what was said last
 
 /// The answer as one of the kind that was asked for.
@@ -57,14 +55,16 @@ struct Client::Impl {
   internal::Context context = internal::make_context();
   internal::Socket socket;
 
-  /// False: errno says why none came. Looks without sleeping first: a cell in step answers at once.
+  internal::SpinWait spin;
+
+  /// False: errno says why none came.
   bool receive(zmq_msg_t& answer) {
-    const auto end = std::chrono::steady_clock::now() + kAwake;
-    do {
-      if (zmq_msg_recv(&answer, socket.get(), ZMQ_DONTWAIT) >= 0) return true;
-      if (errno != EAGAIN) return false;
-      ::sched_yield();
-    } while (std::chrono::steady_clock::now() < end);
+    bool is_there = false;
+    const auto has_ended = [&] {
+      is_there = zmq_msg_recv(&answer, socket.get(), ZMQ_DONTWAIT) >= 0;
+      return is_there || errno != EAGAIN;
+    };
+    if (spin.wait(has_ended, internal::SpinWait::Clock::now())) return is_there;
     return zmq_msg_recv(&answer, socket.get(), 0) >= 0;
   }
 };

@@ -2,7 +2,6 @@
 #include "snug/click/server.hpp"
 
 #include <poll.h>
-#include <sched.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -20,6 +19,7 @@
 #include <vector>
 
 #include "snug/click/internal/socket.hpp"
+#include "snug/click/internal/spin_wait.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/stopwatch.hpp"
@@ -33,7 +33,6 @@ using Clock = Pacer::Clock;
 constexpr std::int64_t kMostBytes = std::int64_t{80} << 20;
 constexpr int kMostWaiting = 2;                             // messages of a peer that nobody has read yet
 constexpr int kMostUnread = 256;                            // answers that a peer does not read: then it is gone for us
-constexpr auto kAwake = std::chrono::microseconds(500);     // after a message: to wake up takes longer than a step
 constexpr auto kTakeOver = std::chrono::milliseconds(200);  // for the news that the controller before has left
 constexpr const char* kMonitor = "inproc://events";
 
@@ -102,7 +101,6 @@ struct Server::Impl {
   void ask_for_steps();
   void lose(const Simulator::Peer& peer);
   void wait();
-  [[nodiscard]] bool is_asked_soon();
   void log(const std::string& line) const {
     if (settings.log) settings.log(line);
   }
@@ -120,6 +118,7 @@ struct Server::Impl {
   std::vector<Request> kept;
   int steps_allowed = 0;  ///< step by step; -1: all
   Clock::time_point next_due = Clock::time_point::max(), last_message;
+  internal::SpinWait spin;
 };
 
 Server::Impl::Impl(Simulator& to_serve, ServerSettings server_settings)
@@ -291,19 +290,9 @@ void Server::Impl::ask_for_steps() {
   }
 }
 
-/// Looks for the next message without sleeping, for a moment after the last one: a controller in step asks again at
-/// once.
-bool Server::Impl::is_asked_soon() {
-  const Clock::time_point end = std::min(next_due, last_message + kAwake);
-  do {
-    if (is_readable(socket.get()) || is_readable(monitor.get())) return true;
-    ::sched_yield();
-  } while (Clock::now() < end && !is_stopping);
-  return false;
-}
-
 void Server::Impl::wait() {
-  if (is_asked_soon()) return;
+  const auto is_asked = [this] { return is_stopping || is_readable(socket.get()) || is_readable(monitor.get()); };
+  if (spin.wait(is_asked, last_message, next_due)) return;
   const bool asks = settings.step_by_step && settings.steps_fd >= 0 && steps_allowed >= 0;
   std::array<pollfd, 4> sources = {pollfd{stop_fd, POLLIN, 0}, pollfd{fd_of(socket.get()), POLLIN, 0},
                                    pollfd{fd_of(monitor.get()), POLLIN, 0},
