@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """served_cell.py: what a cell served over CLICK costs, beside its targets: round trips, a whole program, real time.
 
-Words: [PROGRAM.csv (default: one that `snug pack` makes)] [--sequence 1] [--corrections none] [--minutes 10]. The program is done
+Words: [PROGRAM.csv (default: one that `snug pack` makes)] [--sequence 1] [--corrections none]
+[--cup holding (of one that `snug pack` makes: phases)] [--minutes 10]. The program is done
 by `snug simulate --robot` and by `snug control` over CLICK: state hash and boxes have to be the same. For `--minutes` a controller
 sends commands at 125 Hz to `serve --async`, while the other core is kept busy. Run it with /usr/bin/python3 (python3-zmq,
 python3-protobuf) on a machine that does nothing else, real time under `chrt -f 10`. SNUG names the program (default: build/snug).
@@ -42,13 +43,13 @@ def packed(result):
     return sum(box["state"] == "packed" for box in result["boxes"])
 
 
-def whole_program(program, sequence, corrections):
+def whole_program(program, sequence, corrections, cup):
     """True when the run over CLICK ended in the state of the run in one process."""
     words = ["--sequence", sequence, "--corrections", corrections]
-    here = answer_of("simulate", CELL, "--program", program, *words, "--robot", "ur10")
+    here = answer_of("simulate", CELL, "--program", program, *words, "--robot", "ur10", "--cup", cup)
     with tempfile.TemporaryDirectory() as folder:
         endpoint = f"ipc://{folder}/cell"
-        with Served("--sequence", sequence, "--json", endpoint=endpoint) as served:
+        with Served("--sequence", sequence, "--cup", cup, "--json", endpoint=endpoint) as served:
             start = time.monotonic()
             answer_of("control", program, *words, "--click", endpoint)
             took = time.monotonic() - start
@@ -94,6 +95,7 @@ def main():
     parser.add_argument("program", nargs="?")
     parser.add_argument("--sequence", default="1")
     parser.add_argument("--corrections", default="none")
+    parser.add_argument("--cup", choices=("holding", "phases"))
     parser.add_argument("--minutes", type=float, default=10.0)
     words = parser.parse_args()
     round_trips()
@@ -102,7 +104,7 @@ def main():
         if not program:
             program = str(Path(folder, "program.csv"))
             answer_of("pack", CELL, "--sequence", words.sequence, "--agent", "margin", "--program", program)
-        is_same = whole_program(program, words.sequence, words.corrections)
+        is_same = whole_program(program, words.sequence, words.corrections, words.cup or ("holding" if words.program else "phases"))
     if words.minutes > 0.0:
         real_time(words.minutes)
     return 0 if is_same else 1
