@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/perception/obstacle.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::perception {
@@ -25,6 +26,10 @@ struct Observation {
   std::vector<PoseEstimate> seen;
   std::vector<std::string> not_seen;  ///< items that were asked for, in the order asked
   std::vector<std::string> missing;   ///< of these: their place was seen and is empty, and they were found nowhere
+  /// What is there and was not expected, the largest first; absent: this look does not tell.
+  std::optional<std::vector<Obstacle>> obstacles;
+  /// Absent with obstacles: everything was seen, and what is not among them is not there.
+  std::optional<HeightMap> heights;
   bool operator==(const Observation&) const = default;
 };
 

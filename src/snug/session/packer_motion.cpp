@@ -258,7 +258,7 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
     stops += trouble == Trouble::ProtectiveStop ? 1 : 0;
     Situation at = situation_of(culprit, trouble, report);
     at.stops = stops;
-    at.was_pressed = was_pressed;
+    at.was_pressed = was_pressed || (belief_.box(culprit) && is_under_obstacle(culprit));
     const Remedy remedy = choose_remedy(at);
     const bool is_of_motion = trouble_of(robot_.end.reason) == trouble;
     std::string detail = is_of_motion ? plant::describe(robot_.end, last_) : std::string();

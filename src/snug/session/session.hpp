@@ -9,6 +9,7 @@
 #include "snug/packing/agent.hpp"
 #include "snug/plant/plant.hpp"
 #include "snug/session/item_seconds.hpp"
+#include "snug/session/obstacles.hpp"
 #include "snug/session/recovery.hpp"
 #include "snug/session/rehearsal.hpp"
 
@@ -112,6 +113,7 @@ struct SessionResult {
   StopReason stop_reason = StopReason::NoItems;
   std::string stopped;                         ///< the same for people
   std::string failure;                         ///< empty, or why the robot did not come home in the end
+  std::vector<ObstacleReport> obstacles;       ///< that were seen, those that are gone again too
   std::optional<double> percent_before_skips;  ///< planned_percent when the first item without a place was skipped
 };
 [[nodiscard]] int recovery_count(const SessionResult& result);
