@@ -57,7 +57,7 @@ class Obstacle(unittest.TestCase):
 
     def test_a_foreign_object_is_seen_and_packed_around(self):
         recording = self.folder / "run.h5"
-        packed = self.pack("--perception", "camera", "--fault", "object@3", "-o", recording)
+        packed = self.pack("--perception", "camera", "--fault", "object@3", "--sequence", 1, "-o", recording)
         self.assertGreaterEqual(packed["executed_boxes"], 8, "it packs on")
         self.assertEqual(len(packed["objects"]), 1)
         truth = packed["objects"][0]
@@ -89,6 +89,7 @@ class Obstacle(unittest.TestCase):
         self.assertEqual(shot.returncode, 0, shot.stderr)
         bodies = {body["name"]: body for body in json.loads(shot.stdout)["bodies"]}
         self.assertIn("object1", bodies)
+        self.assertGreaterEqual(bodies["object1"]["pixels"], 0)
         self.assertTrue((self.folder / "frame-labels.png").exists())
 
     def test_it_is_forgotten_when_it_is_taken_out(self):

@@ -167,7 +167,7 @@ std::vector<Solid> Belief::solids(const perception::Observation& look) const {
 }
 
 bool Belief::has_new_obstacle(const perception::Observation& look) const {
-  return obstacles_.has_news(ObstacleMemory::find_foreign(look, solids(look)));
+  return obstacles_.has_news(obstacles_.find_foreign(look, solids(look)));
 }
 
 void Belief::drop_unconfirmed(perception::Observation& look, const perception::Observation& before) const {
@@ -178,7 +178,7 @@ void Belief::drop_unconfirmed(perception::Observation& look, const perception::O
 
 void Belief::see_obstacles(const perception::Observation& look) {
   const std::vector<Solid> boxes = solids(look);
-  obstacles_.see(look, ObstacleMemory::find_foreign(look, boxes), boxes);
+  obstacles_.see(look, obstacles_.find_foreign(look, boxes), boxes);
   const std::vector<geometry::Aabb> bodies = clear_of(obstacles_.regions(), boxes);
   if (are_alike(bodies, obstacle_bodies_)) return;
   obstacle_bodies_ = bodies;

@@ -15,7 +15,8 @@ namespace {
 using perception::Column;
 using perception::Obstacle;
 
-constexpr double kOfBox = 0.010;           ///< m, a point so near to a box where it is believed to be is the box's
+constexpr double kOfBox =
+    0.010;  ///< m, a point so near to a box where it is believed to be, or to the floor, is theirs
 constexpr std::size_t kLeastColumns = 12;  ///< 3 cm^2
 constexpr double kLeastLeft = 0.4;         ///< of the columns that were seen: what has less left is gone
 constexpr double kLower = 0.005;           ///< m, and three deviations: what is behind a column is seen
@@ -60,11 +61,13 @@ std::string describe(const ObstacleReport& report) {
       low.y(), high.x(), high.y(), high.z());
 }
 
-std::vector<Obstacle> ObstacleMemory::find_foreign(const perception::Observation& look, std::span<const Solid> boxes) {
+std::vector<Obstacle> ObstacleMemory::find_foreign(const perception::Observation& look,
+                                                   std::span<const Solid> boxes) const {
   std::vector<Obstacle> foreign;
   if (!look.obstacles) return foreign;
   for (Obstacle one : *look.obstacles) {
-    std::erase_if(one.columns, [&](const Column& column) { return is_in_any(column, boxes); });
+    std::erase_if(one.columns,
+                  [&](const Column& column) { return column.top < X_WT_.p.z() + kOfBox || is_in_any(column, boxes); });
     if (one.columns.size() >= kLeastColumns) foreign.push_back(std::move(one));
   }
   return foreign;

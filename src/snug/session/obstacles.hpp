@@ -38,10 +38,10 @@ class ObstacleMemory {
   /// `X_WT`: the container. Obstacles stand on its floor.
   explicit ObstacleMemory(const Pose& X_WT) : X_WT_(X_WT) {}
 
-  /// What a look has of obstacles: without columns that lie in one of `boxes` or within 10 mm of it, and without what
-  /// is too small then. Empty as well where the look does not tell.
-  [[nodiscard]] static std::vector<perception::Obstacle> find_foreign(const perception::Observation& look,
-                                                                      std::span<const Solid> boxes);
+  /// What a look has of obstacles: without columns that lie in one of `boxes` or within 10 mm of it, or less than that
+  /// over the floor, and without what is too small then. Empty as well where the look does not tell.
+  [[nodiscard]] std::vector<perception::Obstacle> find_foreign(const perception::Observation& look,
+                                                               std::span<const Solid> boxes) const;
   /// One of them is neither believed in nor among `others`.
   [[nodiscard]] bool has_news(const std::vector<perception::Obstacle>& foreign,
                               const std::vector<perception::Obstacle>& others = {}) const;

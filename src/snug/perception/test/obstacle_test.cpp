@@ -26,7 +26,7 @@ bool is_covered(const Column& one, const std::vector<geometry::Aabb>& boxes) {
 
 TEST(Obstacle, ColumnsOfALevelBoxAreItsFootprintAndItsTop) {
   const std::vector<Column> columns =
-      columns_of_box({Matrix3::Identity(), {0.0525, 0.1025, 0.03}}, {0.055, 0.025, 0.06});
+      columns_of_box({Matrix3::Identity(), {0.0525, 0.1025, 0.03}}, {0.0548, 0.0246, 0.06});
   EXPECT_EQ(columns.size(), 11U * 5U);
   for (const Column& one : columns) EXPECT_NEAR(one.top, 0.06, 1e-12);
   const geometry::Aabb bounds = bounds_of(columns);

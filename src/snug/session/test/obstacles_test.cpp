@@ -37,7 +37,7 @@ Observation look(const std::vector<Obstacle>& obstacles, double time = 1.0) {
 }
 
 void see(ObstacleMemory& memory, const Observation& seen, const std::vector<Solid>& boxes = {}) {
-  memory.see(seen, ObstacleMemory::find_foreign(seen, boxes), boxes);
+  memory.see(seen, memory.find_foreign(seen, boxes), boxes);
 }
 
 TEST(ObstacleMemory, RemembersWhatItSawWithPlaceAndHeight) {
@@ -121,8 +121,10 @@ TEST(ObstacleMemory, ABoxThatIsBelievedThereIsNoObstacleAndWhatLiesOnItIs) {
 }
 
 TEST(ObstacleMemory, SmallThingsAreNoise) {
-  EXPECT_TRUE(ObstacleMemory::find_foreign(look({thing(0, 0, 3, 3, -0.1)}), {}).empty());
-  EXPECT_EQ(ObstacleMemory::find_foreign(look({thing(0, 0, 4, 3, -0.1)}), {}).size(), 1U);
+  const ObstacleMemory memory(kX_WT);
+  EXPECT_TRUE(memory.find_foreign(look({thing(0, 0, 3, 3, -0.1)}), {}).empty());
+  EXPECT_EQ(memory.find_foreign(look({thing(0, 0, 4, 3, -0.1)}), {}).size(), 1U);
+  EXPECT_TRUE(memory.find_foreign(look({thing(0, 0, 20, 20, kFloor + 0.009)}), {}).empty());
 }
 
 TEST(ObstacleMemory, NewsAreWhatIsNeitherKnownNorSeenBefore) {
