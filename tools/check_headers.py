@@ -35,7 +35,9 @@ def closures(source, headers):
 
 def check(source, compiler="c++"):
     """What the compiler says of each header that it refuses, by name."""
-    command = [compiler, "-std=c++20", "-Werror", f"-I{source}", *(f"-isystem{path}" for path in EIGEN if Path(path).is_dir()), "-x"]
+    is_gcc = "Free Software Foundation" in subprocess.run([compiler, "--version"], capture_output=True, text=True, check=False).stdout
+    memory = ["--param=ggc-min-expand=1000", "--param=ggc-min-heapsize=524288"] if is_gcc else []  # tidied less often: a seventh of the time
+    command = [compiler, "-std=c++20", "-Werror", *memory, f"-I{source}", *(f"-isystem{path}" for path in EIGEN if Path(path).is_dir()), "-x"]
     headers = headers_of(source)
     includes = closures(source, headers)
 

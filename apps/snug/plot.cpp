@@ -1,10 +1,12 @@
 // plot: quantities of a recording as an SVG for papers.
 #include "plot.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "outputs.hpp"
+#include "robot_files.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/replay/page.hpp"
@@ -27,7 +29,10 @@ int run_plot(const PlotOptions& options) {
   readers.reserve(options.recordings.size());
   for (const std::string& path : options.recordings) {
     readers.emplace_back(path);
-    sources.push_back({std::filesystem::path(path).filename().string(), &readers.back()});
+    sources.push_back({std::filesystem::path(path).filename().string(), &readers.back(), ""});
+    if (std::ranges::find(options.what, "limits") != options.what.end()) {
+      sources.back().urdf = find_robot(readers.back(), path, options.urdf).urdf;
+    }
   }
   replay::Figure figure = replay::make_plot(sources, options.what, options.selection);
   figure.width_mm = options.width_mm;

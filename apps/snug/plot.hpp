@@ -1,6 +1,7 @@
 // plot: quantities of a recording as an SVG for papers.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct PlotOptions {
   std::string output;
   double width_mm = 180.0;
   double height_mm = 45.0;  ///< of each pair of axes
+  std::optional<std::string> urdf;  ///< of the robot in them, for limits; absent: looked for
   replay::Selection selection;
 };
 

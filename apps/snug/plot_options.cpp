@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* kPlotExamples = R"(Examples:
   snug plot run.h5 --what wrench -o wrench.svg
+  snug plot run.h5 --what limits -o limits.svg
   snug plot run.h5 --what pose:BOX027 --from 2 --to 20 -o box.svg
   snug plot run.h5 again.h5 --what tool --what speed --width 85 -o compare.svg)";
 
@@ -25,7 +26,7 @@ void add_plot(CLI::App& app, Action& action) {
   verb.add_option("--what", options->what,
                   "wrench (of the cup), flange (wrench on it), tool (position), error (to the command), speed, cup "
                   "(length and bend), deformation (pose of the lip), vacuum, contacts, solver, joints (of a robot), "
-                  "pose:BODY; several are drawn one below the other")
+                  "limits (used of the joints' and of the hold), pose:BODY; several are drawn one below the other")
       ->required()
       ->take_all()
       ->type_name("WORD");
@@ -38,6 +39,8 @@ void add_plot(CLI::App& app, Action& action) {
       ->check(positive())
       ->type_name("MM")
       ->capture_default_str();
+  verb.add_option("--urdf", options->urdf, "whose joints' limits are meant (default: the file that its scenario names)")
+      ->type_name("FILE.urdf");
   add_selection_options(verb, options->selection);
   verb.footer(kPlotExamples);
   verb.callback([options, &action] { action = [options] { return run_plot(*options); }; });

@@ -9,8 +9,6 @@ namespace {
 
 /// A cup that found nothing says so after this long with the vacuum on; it keeps trying.
 constexpr double kSealPatience = 0.4;  // s
-/// Share of the vacuum's set point from which on the limits of the hold count.
-constexpr double kEstablished = 0.8;
 
 physics::ElementQuery query_of(const CellWorld& world, const physics::WorldState& state, int body, const Pose& X_WE,
                                const Twist& V_WE) {
@@ -109,7 +107,7 @@ void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_W
   // While the cup draws a box in that cannot follow yet it pulls harder than the vacuum of the moment holds; the foam
   // of the lip bridges that. Limits count once the vacuum is nearly there.
   state.is_established = state.is_established || !is_holding ||
-                         state.cup.pressure_gauge <= kEstablished * params_.vacuum.pressure_gauge_hold;
+                         state.cup.pressure_gauge <= cup::kEstablishedVacuum * params_.vacuum.pressure_gauge_hold;
   const bool may_leak = is_holding && state.is_established && mode_ == cup::CupMode::Phases;
   state.cup.leak = may_leak ? cup::find_leak(params_, state.cup.pressure_gauge, state.F_S) : 0.0;
   if (is_holding && state.is_established) {

@@ -66,6 +66,10 @@ void advance_pressure(const model::CupParams& params, const CupCommand& command,
 /// along Ez, m.
 void follow_length(const model::CupParams& params, double length, CupState& state);
 
+/// Share of the vacuum's set point from which on the limits of the hold count: before, the foam of the lip bridges what
+/// the vacuum does not carry yet.
+inline constexpr double kEstablishedVacuum = 0.8;
+
 enum class HoldLoss { None, Tension, Shear, Peel, Bending };
 [[nodiscard]] const char* describe(HoldLoss loss);
 

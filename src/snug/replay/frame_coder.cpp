@@ -40,6 +40,7 @@ enum FixedChannel : std::size_t {
   kCupPose,
   kCupDeformation,
   kCupWrench,
+  kHoldUse,
   kFlangeWrench,
   kSolverResidual,
   kSolverIterations,
@@ -62,6 +63,7 @@ std::vector<ChannelWriter> fixed_channels() {
   add({"cup.pose", kPoseColumns, "m, -", "E", kPoseQuantum});
   add({"cup.deformation", {"length", "bend"}, "m, rad", "", 1.0e-5});
   add({"cup.wrench", kWrenchColumns, "N, Nm", "S", kWrenchQuantum});
+  add({"cup.hold_use", {"used"}, "", "", 1.0e-4});
   add({"flange.wrench", kWrenchColumns, "N, Nm", "F", kWrenchQuantum});
   add({"solver.residual", {"residual"}, "m/s", "", 1.0e-8});
   add({"solver.iterations", {"value"}, "", "", 1.0});
@@ -180,7 +182,7 @@ void ContactCoder::move_to(std::vector<ChannelWriter>& channels) {
 }
 
 FrameCoder::FrameCoder(const record::RecordingHeader& header)
-    : channels_(fixed_channels()), first_body_channel_(channels_.size()) {
+    : channels_(fixed_channels()), hold_use_(header), first_body_channel_(channels_.size()) {
   for (std::size_t i = 0; i < header.bodies.size(); ++i) {
     const std::string prefix = "body." + std::to_string(i);
     kinds_.push_back(header.bodies[i].kind);
@@ -223,6 +225,7 @@ void FrameCoder::put_tool(const record::Frame& frame) {
     channels_[kCupDeformation].put({kNaN, kNaN});
   }
   channels_[kCupWrench].put(row_of(cup.F_PSo_S.force, cup.F_PSo_S.torque));
+  channels_[kHoldUse].put({hold_use_.next(frame)});
   channels_[kFlangeWrench].put(row_of(frame.F_flange.force, frame.F_flange.torque));
   channels_[kSolverResidual].put({frame.solver.residual});
   channels_[kSolverIterations].put({static_cast<double>(frame.solver.iterations)});

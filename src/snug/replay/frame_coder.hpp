@@ -9,6 +9,7 @@
 
 #include "snug/record/recording.hpp"
 #include "snug/replay/form.hpp"
+#include "snug/replay/limits.hpp"
 
 namespace snug::replay {
 
@@ -54,6 +55,7 @@ class FrameCoder {
 
   std::vector<record::BodyKind> kinds_;
   std::vector<ChannelWriter> channels_;
+  HoldUse hold_use_;
   std::map<std::size_t, Quaternion> last_quat_;  ///< by channel: signs are chosen for continuity
   std::size_t first_body_channel_ = 0, first_joint_channel_ = 0;
   ContactCoder contacts_;

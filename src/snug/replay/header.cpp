@@ -11,6 +11,7 @@
 #include "snug/motion/waypoint.hpp"
 #include "snug/replay/internal/recorded_scenario.hpp"
 #include "snug/replay/internal/robot_look.hpp"
+#include "snug/replay/limits.hpp"
 #include "snug/replay/replay.hpp"
 
 namespace snug::replay {
@@ -140,6 +141,12 @@ Json looks_as_json(const record::RecordingHeader& header, const RobotDescription
   return looks;
 }
 
+Json limits_as_json(const record::RecordingHeader& header, const RobotDescription& robot) {
+  const std::optional<JointUseLimits> limits = joint_limits_of(header, robot.urdf);
+  if (!limits) return nullptr;
+  return {{"speed", limits->speed}, {"acceleration", limits->acceleration}, {"torque", limits->torque}};
+}
+
 /// Links of a robot are kinematic bodies whose names begin with this.
 constexpr const char* kLinkPrefix = "robot/";
 
@@ -150,7 +157,8 @@ Json robot_as_json(const record::RecordingHeader& header, const RobotDescription
     if (body.kind != record::BodyKind::Dynamic && body.name.starts_with(kLinkPrefix)) links.push_back(i);
   }
   if (links.empty()) return nullptr;
-  return {{"links", std::move(links)}, {"looks", looks_as_json(header, robot)}};
+  return {
+      {"links", std::move(links)}, {"looks", looks_as_json(header, robot)}, {"limits", limits_as_json(header, robot)}};
 }
 
 Json frames_as_json(const std::optional<model::Scenario>& scenario) {

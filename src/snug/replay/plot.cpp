@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/units.hpp"
+#include "snug/replay/limits.hpp"
 
 namespace snug::replay {
 namespace {
@@ -106,6 +108,29 @@ std::vector<PanelPlan> joint_panels(const record::RecordingHeader& header, const
           {"joint torque [Nm]", lines(&record::JointSample::torque)}};
 }
 
+/// What is near 100 % is what binds. Without a robot its two panels are empty.
+std::vector<PanelPlan> limit_panels(const PlotSource& source) {
+  constexpr double kPercent = 100.0;
+  const record::RecordingHeader& header = source.reader->header();
+  const std::optional<JointUseLimits> limits = joint_limits_of(header, source.urdf);
+  if (!limits && !header.joints.empty()) {
+    throw InputError(source.name, "--what limits", "a robot whose limits are not known here", "its URDF: --urdf");
+  }
+  const auto hold = std::make_shared<HoldUse>(header);
+  PanelPlan speeds{"joint speed [% of limit]", {}}, torques{"joint torque [% of limit]", {}};
+  for (std::size_t i = 0; i < header.joints.size(); ++i) {
+    speeds.lines.push_back({header.joints[i], [i, most = limits->speed[i]](const Frame& frame) {
+                              return kPercent * std::abs(frame.joints[i].velocity) / most;
+                            }});
+    torques.lines.push_back({header.joints[i], [i, most = limits->torque[i]](const Frame& frame) {
+                               return kPercent * std::abs(frame.joints[i].torque) / most;
+                             }});
+  }
+  return {{"hold of the cup used [%]", {{"cup", [hold](const Frame& frame) { return kPercent * hold->next(frame); }}}},
+          std::move(speeds),
+          std::move(torques)};
+}
+
 std::vector<PanelPlan> vacuum_panels() {
   return {{"pressure, gauge [kPa]", {{"cup", [](const Frame& frame) { return 1e-3 * frame.cup.pressure_gauge; }}}},
           {"command [0 or 1]",
@@ -159,8 +184,9 @@ std::vector<PanelPlan> pose_panels(const record::RecordingHeader& header, const 
            {{"qx", coefficient(1)}, {"qy", coefficient(2)}, {"qz", coefficient(3)}, {"qw", coefficient(0)}}}};
 }
 
-std::vector<PanelPlan> panels_of(const std::string& word, const record::RecordingHeader& header,
-                                 const std::string& source) {
+std::vector<PanelPlan> panels_of(const std::string& word, const PlotSource& from) {
+  const record::RecordingHeader& header = from.reader->header();
+  const std::string& source = from.name;
   if (word == "wrench") {
     return wrench_panels("of the cup in S", "", [](const Frame& frame) { return frame.cup.F_PSo_S; });
   }
@@ -173,6 +199,7 @@ std::vector<PanelPlan> panels_of(const std::string& word, const record::Recordin
   if (word == "deformation") return deformation_panels();
   if (word == "vacuum") return vacuum_panels();
   if (word == "joints") return joint_panels(header, source);
+  if (word == "limits") return limit_panels(from);
   if (word == "contacts") return contact_panels();
   if (word == "solver") return solver_panels();
   if (word.starts_with(kPosePrefix)) return pose_panels(header, word.substr(std::string(kPosePrefix).size()), source);
@@ -228,8 +255,8 @@ Samples sample(const PlotSource& source, const std::vector<PanelPlan>& plans, co
 }  // namespace
 
 const std::vector<std::string>& plot_words() {
-  static const std::vector<std::string> words = {"wrench",      "flange", "tool",     "error",  "speed", "cup",
-                                                 "deformation", "vacuum", "contacts", "solver", "joints"};
+  static const std::vector<std::string> words = {"wrench",      "flange", "tool",     "error",  "speed",  "cup",
+                                                 "deformation", "vacuum", "contacts", "solver", "joints", "limits"};
   return words;
 }
 
@@ -241,7 +268,7 @@ Figure make_plot(std::span<const PlotSource> sources, const std::vector<std::str
     const record::RecordingHeader& header = sources[k].reader->header();
     std::vector<PanelPlan> plans;
     for (const std::string& word : what) {
-      for (PanelPlan& plan : panels_of(word, header, sources[k].name)) plans.push_back(std::move(plan));
+      for (PanelPlan& plan : panels_of(word, sources[k])) plans.push_back(std::move(plan));
     }
     const Samples samples = sample(sources[k], plans, selection);
     figure.description += fmt::format("{}{}: snug {}, sequence '{}', seed {}", k == 0 ? "" : "; ", sources[k].name,

@@ -14,10 +14,11 @@ namespace snug::replay {
 struct PlotSource {
   std::string name;  ///< shown in the legend when there are several
   record::RecordingReader* reader = nullptr;
+  std::string urdf = {};  ///< text of the robot's, for "limits"
 };
 
 /// What can be plotted, in words: "wrench", "flange", "tool", "error", "speed", "cup", "deformation", "vacuum",
-/// "contacts", "solver", "joints"; and "pose:NAME" for a body.
+/// "contacts", "solver", "joints", "limits"; and "pose:NAME" for a body.
 [[nodiscard]] const std::vector<std::string>& plot_words();
 
 /// One figure of all the quantities in `what`, one below the other. Curves of a second source are dashed. Throws

@@ -68,6 +68,16 @@ struct ArmModel {
 [[nodiscard]] ArmModel parse_urdf(const std::string& text, const std::string& name, const std::string& tool_frame = "E",
                                   const std::filesystem::path& folder = {});
 
+/// What a joint may do, of a URDF that is wanted for nothing else.
+struct JointLimits {
+  std::string joint;
+  double max_speed = 0.0;   ///< rad/s or m/s
+  double max_effort = 0.0;  ///< Nm or N; infinity: not known
+};
+/// Of the moving joints of a URDF's text, in its order; no other part of it is looked at. None of what is no XML;
+/// InputError for a joint without a name or a number. `name` stands for the file in messages.
+[[nodiscard]] std::vector<JointLimits> parse_joint_limits(const std::string& text, const std::string& name);
+
 /// Index of the link with this name, or -1.
 [[nodiscard]] int find_link(const ArmModel& arm, std::string_view name) noexcept;
 /// Index of the joint with this name, or -1.

@@ -359,20 +359,39 @@ ArmModel load_urdf(const std::filesystem::path& path, const std::string& tool_fr
   return parse_urdf(read_file(path, "a URDF", internal::kLargestUrdf), path.string(), tool_frame, path.parent_path());
 }
 
-std::vector<std::string> find_unknown_efforts(const std::filesystem::path& path) {
-  const std::string text = read_file(path, "a URDF", internal::kLargestUrdf);
-  std::vector<std::string> found;
+namespace {
+
+/// Calls visit(joint, its limit) for each joint that has one and moves; nothing of what is no XML.
+template <class Visit>
+void visit_limits(const std::string& text, const internal::UrdfSource& source, const Visit& visit) {
   tinyxml2::XMLDocument document;
-  if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS) return found;
-  const internal::UrdfSource source{path.string(), path.parent_path()};
+  if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) return;
   for (const internal::Element& joint : internal::Element(document.RootElement(), source, "").children("joint")) {
-    if (!joint.has("limit") || joint.text("type") == "fixed") continue;
-    const internal::Element limit = joint.child("limit");
-    if (limit.number("effort") != 0.0) continue;
+    if (joint.has("limit") && joint.text("type") != "fixed") visit(joint, joint.child("limit"));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> find_unknown_efforts(const std::filesystem::path& path) {
+  std::vector<std::string> found;
+  const std::string text = read_file(path, "a URDF", internal::kLargestUrdf);
+  visit_limits(text, {path.string(), path.parent_path()}, [&](const auto& joint, const auto& limit) {
+    if (limit.number("effort") != 0.0) return;
     found.push_back(limit.where() + ": " + joint.path() +
                     ": effort 0 is taken as unknown: its torque does not stop the robot");
-  }
+  });
   return found;
+}
+
+std::vector<JointLimits> parse_joint_limits(const std::string& text, const std::string& name) {
+  std::vector<JointLimits> limits;
+  visit_limits(text, {name, {}}, [&](const auto& joint, const auto& limit) {
+    const double effort = limit.number("effort");
+    limits.push_back({joint.text("name"), limit.number("velocity"),
+                      effort > 0.0 ? effort : std::numeric_limits<double>::infinity()});
+  });
+  return limits;
 }
 
 }  // namespace snug::robot

@@ -28,6 +28,13 @@ export interface Look {
   parts: { colour: [number, number, number]; shape: Shape }[];
 }
 
+/** What the joints may do, base to tool: rad/s, rad/s2, Nm (m for joints that slide); null where the URDF does not know. */
+export interface JointLimits {
+  speed: number[];
+  acceleration: number;
+  torque: (number | null)[];
+}
+
 export interface Body {
   name: string;
   type: string;
@@ -87,7 +94,7 @@ export interface Header {
   bodies: Body[];
   container: { name: string; pose: [PoseRow, PoseRow]; inner_size: [number, number, number] } | null;
   tool: { body: number; shapes: Shape[] } | null;
-  robot: { links: number[]; looks?: Look[] } | null;
+  robot: { links: number[]; looks?: Look[]; limits?: JointLimits | null } | null;
   cup: { lip_radius: number; free_length: number; hold_length: number } | null;
   frames_named: { name: string; letter: string; X_W: PoseRow }[];
   events: ReplayEvent[];

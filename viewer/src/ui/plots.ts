@@ -19,10 +19,12 @@ const LONG = 60;
 const FIRST_WINDOW = 20;
 /** Where the cursor stands in the window, of its length. */
 const CURSOR_AT = 0.6;
+/** Of uPlot.join: where a curve has no values it has none between them either, at times of other curves. */
+const NULLS_EXPAND = 2;
 /** Curves are read for so many windows, and again when the cursor leaves them. */
 const AHEAD = 3;
 const TITLES: Record<Group, string> = {
-  box: "Box", tool: "Tool", cup: "Cup", flange: "Flange", robot: "Robot", contacts: "Contacts and solver",
+  box: "Box", tool: "Tool", cup: "Cup", flange: "Flange", limits: "Limits", robot: "Robot", contacts: "Contacts and solver",
 };
 
 /** One curve: where its number stands in the caption, and how to read it at a time. */
@@ -210,6 +212,7 @@ export class Plots {
           const [begin, stop] = range ? [replay.frameAt(range[0]), replay.frameAt(range[1]) + 1] : [0, replay.frames];
           return thin(replay, value, POINTS, begin, stop);
         }),
+        readings.map(() => [NULLS_EXPAND, NULLS_EXPAND]),
       );
     const host = make("figure", "plot", this.caption(figure, series.slice(1), readings));
     parent.append(host);

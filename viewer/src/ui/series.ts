@@ -3,7 +3,7 @@
 import type { Channel, Replay } from "../replay/replay";
 import { rotationVector } from "../scene/maths";
 
-export type Group = "box" | "tool" | "cup" | "flange" | "contacts" | "robot";
+export type Group = "box" | "tool" | "cup" | "flange" | "limits" | "contacts" | "robot";
 
 export interface Figure {
   group: Group;
@@ -37,6 +37,41 @@ const joints =
     const channel = replay.channel(`joints.${name}`);
     return channel ? channel.columnNames.slice(0, JOINTS.length).map((_, k) => (frame: number) => scale * channel.at(k, frame)) : null;
   };
+
+type Use = (frame: number) => number;
+
+/** How much of its limit each joint uses at a frame, in %, by kind of limit; null where the limits are not known. */
+function jointUses(replay: Replay): Record<"speed" | "acceleration" | "torque", Use[]> | null {
+  const limits = replay.header.robot?.limits;
+  const [velocity, torque] = [replay.channel("joints.velocity"), replay.channel("joints.torque")];
+  if (!limits || !velocity || !torque) return null;
+  const change = (k: number, frame: number): number => {
+    const [a, b] = [Math.max(frame - 1, 0), Math.min(frame + 1, replay.frames - 1)];
+    return b > a ? (velocity.at(k, b) - velocity.at(k, a)) / (replay.timeOf(b) - replay.timeOf(a)) : NaN;
+  };
+  return {
+    speed: limits.speed.map((most, k) => (frame) => (100 * Math.abs(velocity.at(k, frame))) / most),
+    acceleration: limits.speed.map((_, k) => (frame) => (100 * Math.abs(change(k, frame))) / limits.acceleration),
+    torque: limits.torque.map((most, k) => (frame) => (100 * Math.abs(torque.at(k, frame))) / (most ?? Infinity)),
+  };
+}
+
+const jointUse =
+  (kind: "speed" | "acceleration" | "torque"): Figure["values"] =>
+  (replay) =>
+    jointUses(replay)?.[kind].slice(0, JOINTS.length) ?? null;
+
+const USES = ["speed", "acceleration", "torque", "hold"];
+
+/** Of each kind of limit the joint that is nearest to it, and the hold of the cup. */
+const nearestLimits: Figure["values"] = (replay) => {
+  const uses = jointUses(replay);
+  const hold = replay.channel("cup.hold_use");
+  if (!uses && !hold) return null;
+  const none: Use = () => NaN;
+  const worst = (joints: Use[] | undefined): Use => (joints ? (frame) => Math.max(...joints.map((use) => use(frame))) : none);
+  return [worst(uses?.speed), worst(uses?.acceleration), worst(uses?.torque), hold ? (frame) => 100 * hold.at(0, frame) : none];
+};
 
 const contactPoints: Figure["values"] = (replay) => {
   if (!replay.contacts) return null;
@@ -105,6 +140,10 @@ export function figuresOf(box: string): Figure[] {
     { group: "cup", title: "Torque of the cup on the box, about S", unit: "Nm", names: XYZ, values: columns("cup.wrench", 3, 3) },
     { group: "flange", title: "Force on the flange, in F", unit: "N", names: XYZ, values: columns("flange.wrench", 0, 3) },
     { group: "flange", title: "Torque on the flange, about F", unit: "Nm", names: XYZ, values: columns("flange.wrench", 3, 3) },
+    { group: "limits", title: "Used of the nearest joint's limit, and of the hold", unit: "%", names: USES, values: nearestLimits },
+    { group: "limits", title: "Used of the joints' speeds", unit: "%", names: JOINTS, values: jointUse("speed") },
+    { group: "limits", title: "Used of the joints' acceleration", unit: "%", names: JOINTS, values: jointUse("acceleration") },
+    { group: "limits", title: "Used of the drives' torques", unit: "%", names: JOINTS, values: jointUse("torque") },
     { group: "robot", title: "Joint positions", unit: "deg", names: JOINTS, values: joints("position", DEGREES) },
     { group: "robot", title: "Joint velocities", unit: "deg/s", names: JOINTS, values: joints("velocity", DEGREES) },
     { group: "robot", title: "Joint torques of the drives", unit: "Nm", names: JOINTS, values: joints("torque") },

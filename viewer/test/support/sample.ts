@@ -10,7 +10,7 @@ export function pose(frame: number): number[] {
   return [0.3 * Math.cos(t), 0.3 * Math.sin(t), 0.2 + 0.1 * t, Math.cos(0.4 * t), 0, 0, Math.sin(0.4 * t)];
 }
 
-export function smallHeader(frames: number, extra: object = {}): Uint8Array {
+export function smallHeader(frames: number, extra: object = {}, more: ChannelInput[] = []): Uint8Array {
   const box = { kind: "box", pose: [0, 0, 0, 1, 0, 0, 0], half: [0.1, 0.08, 0.05] };
   const rows = Array.from({ length: frames }, (_, i) => i);
   const late = (i: number): number[] => (i < frames / 2 ? Array(7).fill(NaN) : [0, 0.5, 0.05, 1, 0, 0, 0]);
@@ -21,6 +21,7 @@ export function smallHeader(frames: number, extra: object = {}): Uint8Array {
     { name: "body.1.present", columns: ["present"], quantum: 1, rows: rows.map(() => [1]) },
     { name: "body.2.pose", columns: POSE, quantum: 1e-5, rows: rows.map(late) },
     { name: "body.2.present", columns: ["present"], quantum: 1, rows: rows.map((i) => [i < frames / 2 ? 0 : 1]) },
+    ...more,
   ];
   return encodeReplay(
     {

@@ -43,6 +43,30 @@ describe("figuresOf", () => {
   });
 });
 
+describe("limits", () => {
+  const USES = "Used of the nearest joint's limit, and of the hold";
+
+  it("tell for each kind the joint that is nearest to its limit", async () => {
+    const robot = { links: [], limits: { speed: [2, 1], acceleration: 4, torque: [100, null] } };
+    const times = Array.from({ length: 200 }, (_, i) => 0.01 * i);
+    const channels = [
+      { name: "joints.velocity", columns: ["a", "b"], quantum: 1e-4, rows: times.map((t) => [0.5 * t, -0.75 * t]) },
+      { name: "joints.torque", columns: ["a", "b"], quantum: 1e-2, rows: times.map(() => [-30, 1000]) },
+    ];
+    const replay = new Replay(await decodeReplay(smallHeader(200, { robot }, channels)));
+    const [speed, acceleration, torque, hold] = figuresOf("").find((f) => f.title === USES)!.values(replay)!.map((f) => f(100));
+    expect(speed).toBeCloseTo(75, 1); // of the second joint; the first is at 25 %
+    expect(acceleration).toBeCloseTo((100 * 0.75) / 4, 1);
+    expect(torque).toBeCloseTo(30, 1); // what nobody knows binds nothing
+    expect(hold).toBeNaN();
+  });
+
+  it("are not there where neither joints nor hold are known", async () => {
+    const replay = new Replay(await decodeReplay(smallHeader(20)));
+    expect(figuresOf("").find((f) => f.title === USES)!.values(replay)).toBeNull();
+  });
+});
+
 describe("restOf", () => {
   it("says when a box stopped, and nothing of one that moves to the end or never did", async () => {
     const replay = new Replay(await decodeReplay(smallHeader(200)));

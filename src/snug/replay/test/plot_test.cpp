@@ -7,6 +7,7 @@
 #include <set>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 #include "snug/record/writer.hpp"
 #include "snug/replay/plot.hpp"
 #include "snug/replay/test/scratch.hpp"
@@ -206,6 +207,7 @@ TEST_F(Plot, DrawsTheLipOnlyWhileSomethingIsHeldAndJointsOnlyOfARobot) {
 TEST_F(Plot, DrawsEachQuantityWithAUnitOnEachAxis) {
   std::vector<std::string> words = plot_words();
   words.emplace_back("pose:BOX001");
+  std::erase(words, "limits");  // this robot is made up: below
   for (const std::string& word : words) {
     SCOPED_TRACE(word);
     const Figure figure = make_plot(sources_, {word}, {});
@@ -214,6 +216,25 @@ TEST_F(Plot, DrawsEachQuantityWithAUnitOnEachAxis) {
     for (const Panel& panel : figure.panels) EXPECT_TRUE(std::regex_search(panel.y_label, std::regex("\\[.+\\]$")));
     expect_sound(draw_svg(figure));
   }
+}
+
+TEST_F(Plot, TellsHowMuchOfTheLimitsOfTheRobotWasUsed) {
+  EXPECT_THROW((void)make_plot(sources_, {"limits"}, {}), InputError);  // nobody knows them
+  const std::string scenarios = std::string(SNUG_SOURCE_DIR) + "/scenarios/";
+  recording_.header.scenario_text = read_file(scenarios + "box-demonstrator.yaml", "a scenario");
+  recording_.header.joints = {"wrist_1_joint", "elbow_joint"};
+  for (record::Frame& frame : recording_.frames) frame.joints.resize(2);
+  record::save_recording(folder_ / "ur10.h5", recording_);
+  record::RecordingReader reader(folder_ / "ur10.h5");
+  const PlotSource source = {"ur10.h5", &reader, read_file(scenarios + "robots/ur10.urdf", "a URDF")};
+  const Figure figure = make_plot({&source, 1}, {"limits"}, {});
+  ASSERT_EQ(figure.panels.size(), 3u);
+  for (std::size_t i = 0; i < recording_.frames.size(); ++i) {
+    const record::JointSample& elbow = recording_.frames[i].joints[1];
+    EXPECT_NEAR(figure.panels[1].curves[1].y[i], 100.0 * std::abs(elbow.velocity) / (0.5 * M_PI), 1e-9);
+    EXPECT_NEAR(figure.panels[2].curves[1].y[i], 100.0 * std::abs(elbow.torque) / 150.0, 1e-9);
+  }
+  expect_sound(draw_svg(figure));
 }
 
 TEST_F(Plot, DashesTheSecondRecordingAndNamesBoth) {
