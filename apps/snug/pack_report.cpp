@@ -101,8 +101,8 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["happened"] = as_json(item.happened);
     json["hold_factor"] = std::isfinite(truth.hold_factor) ? Json(rounded(truth.hold_factor, 6)) : Json();
     json["sends"] = sends_as_json(item, truth);
-    json["recoveries"] = recoveries_as_json(item.recoveries);
   }
+  if (!item.sends.empty() || !item.recoveries.empty()) json["recoveries"] = recoveries_as_json(item.recoveries);
   json["seconds"] = as_json(item.seconds);
   json["attempts"] = item.attempts;
   json["protective_stops"] = item.stops;

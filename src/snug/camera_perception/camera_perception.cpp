@@ -27,6 +27,18 @@ const model::Container& container_of(const model::Scenario& scenario) {
   return *container;
 }
 
+perception::LookFault fault_of(box_estimation::FrameFault fault) {
+  switch (fault) {
+    case box_estimation::FrameFault::None:
+      return perception::LookFault::None;
+    case box_estimation::FrameFault::TooFewPoints:
+      return perception::LookFault::TooFewPoints;
+    case box_estimation::FrameFault::ViewBlocked:
+      return perception::LookFault::ViewBlocked;
+  }
+  return perception::LookFault::None;
+}
+
 void report_obstacles(const box_estimation::Estimate& estimate, Observation& observation) {
   observation.obstacles.emplace();
   for (const box_estimation::Obstacle& one : estimate.obstacles) {
@@ -70,7 +82,8 @@ class Camera final : public perception::Perception {
       observation.seen.push_back({box.id, box.X_WP, box.covariance, std::nullopt, 0.0});
     }
     observation.obstacles.reset();  // the stations' tell nothing of the container
-    if (estimate.fault == box_estimation::FrameFault::None) report_obstacles(estimate, observation);
+    observation.fault = fault_of(estimate.fault);
+    if (observation.fault == perception::LookFault::None) report_obstacles(estimate, observation);
     for (const perception::Expectation& one : expected) {
       if (perception::find(observation, one.item) == nullptr) observation.not_seen.push_back(one.item);
     }

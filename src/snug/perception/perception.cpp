@@ -105,6 +105,18 @@ const PoseEstimate* find(const Observation& observation, const std::string& item
   return found == observation.seen.end() ? nullptr : &*found;
 }
 
+const char* name_of(LookFault fault) {
+  switch (fault) {
+    case LookFault::None:
+      return "none";
+    case LookFault::TooFewPoints:
+      return "too few points";
+    case LookFault::ViewBlocked:
+      return "view blocked";
+  }
+  return "";
+}
+
 const char* name_of(Kind kind) {
   switch (kind) {
     case Kind::Exact:

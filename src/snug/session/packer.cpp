@@ -130,12 +130,38 @@ bool Packer::is_seen_outside(const std::string& id) const {
          fit.above_rim > cell::kPackedAboveRim + slack;
 }
 
-void Packer::look() {
-  const std::vector<perception::Expectation> expected = belief_.expectations();
+perception::Observation Packer::take_picture(std::span<const perception::Expectation> expected, bool stays,
+                                             ItemReport& report) {
   perception::Observation seen = plant_.perceive(expected);
+  Situation at;
+  while (seen.fault != perception::LookFault::None && !stop_reason_) {
+    const bool is_blocked = seen.fault == perception::LookFault::ViewBlocked;
+    at.trouble = is_blocked ? Trouble::ViewBlocked : Trouble::BadPicture;
+    at.is_held = stays || is_holding();
+    ++at.pictures;
+    const Remedy remedy = choose_remedy(at);
+    report.recoveries.push_back({robot_.time, report.id, at.trouble, remedy, {}});
+    if (remedy == Remedy::Stop) stop_reason_ = StopReason::ViewBlocked;
+    if (remedy == Remedy::Stop || remedy == Remedy::Believe) break;
+    if (remedy == Remedy::MoveAway) move_home(report);
+    seen = plant_.perceive(expected);
+  }
+  return seen;
+}
+
+double Packer::size_off(int item) const {
+  const std::string& id = items_[static_cast<std::size_t>(item)].id;
+  return (model::find_parcel(belief_.nominal(), id)->size - model::find_parcel(scenario_, id)->size)
+      .cwiseAbs()
+      .maxCoeff();
+}
+
+void Packer::look(ItemReport& report, bool stays) {
+  const std::vector<perception::Expectation> expected = belief_.expectations();
+  perception::Observation seen = take_picture(expected, stays, report);
   if (!seen.missing.empty() || belief_.has_new_obstacle(seen)) {  // one picture may be bad
     const perception::Observation before = std::move(seen);
-    seen = plant_.perceive(expected);
+    seen = take_picture(expected, stays, report);
     std::erase_if(seen.missing,
                   [&](const std::string& id) { return std::ranges::find(before.missing, id) == before.missing.end(); });
     belief_.drop_unconfirmed(seen, before);

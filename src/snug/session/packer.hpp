@@ -56,7 +56,14 @@ class Packer {
     PlannedBox box;
   };
   [[nodiscard]] int index_of(const std::string& id) const;
-  void look();
+  /// `stays`: the tool does not leave for a picture that something blocks.
+  void look(ItemReport& report, bool stays = false);
+  /// One that tells something, if there is any; troubles with that are in the report.
+  [[nodiscard]] perception::Observation take_picture(std::span<const perception::Expectation> expected, bool stays,
+                                                     ItemReport& report);
+  /// m, the largest difference of the edges from what the scenario says of the item.
+  [[nodiscard]] double size_off(int item) const;
+  void move_home(ItemReport& report);
   /// Extents in T of what is in the container beside boxes.
   [[nodiscard]] std::vector<packing::Extent> obstacle_extents() const;
   /// An obstacle lies on the box: it is neither picked nor pressed on.

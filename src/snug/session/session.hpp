@@ -49,6 +49,7 @@ enum class ItemEnd {
   NotHeld,    ///< every pick failed; it was left behind
   Left,       ///< it lies where it cannot be picked, or the tries were used up
   Gone,       ///< it is not seen any more
+  WrongItem,  ///< another one came in its place; it was taken away
   NotBrought  ///< the plant did not bring it
 };
 [[nodiscard]] const char* name_of(ItemEnd end);
@@ -93,8 +94,9 @@ enum class StopReason {
   AllPacked,
   NoMoreItems,  ///< some are not packed
   NoItems,
-  NoPlace,     ///< for more items than may be skipped
-  RobotStops,  ///< protective stops did not end
+  NoPlace,      ///< for more items than may be skipped
+  RobotStops,   ///< protective stops did not end
+  ViewBlocked,  ///< something stays between camera and container
   PlantFault,
   Interrupted,  ///< by who started it
 };

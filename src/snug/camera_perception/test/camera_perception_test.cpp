@@ -111,6 +111,25 @@ TEST(CameraPerception, ReportsAForeignObjectWithItsHeightsAndForgetsNothingByIts
   EXPECT_NEAR(without.heights->at(x, y).value_or(9.0), in_container(0.0, 0.0, 0.0).p.z(), 0.003);
 }
 
+TEST(CameraPerception, SaysThatAPictureTellsNothingAndWhy) {
+  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
+  const perception::SceneBox arm{"arm", in_container(0.0, 0.1, 0.6), Vector3(0.4, 0.3, 0.1)};
+  const auto camera = make_perception(Kind::Camera, 7, scenario());
+  const perception::Observation blocked = camera->perceive({0.0, Pose{}, boxes, {arm}}, expectations(boxes));
+  EXPECT_EQ(blocked.fault, perception::LookFault::ViewBlocked);
+  model::Scenario dirty_cell = scenario();
+  dirty_cell.cameras.front().errors.loss.random = 0.7;
+  const perception::Observation dirty =
+      make_perception(Kind::Camera, 7, dirty_cell)->perceive({0.0, Pose{}, boxes}, expectations(boxes));
+  EXPECT_EQ(dirty.fault, perception::LookFault::TooFewPoints);
+  for (const perception::Observation& one : {blocked, dirty}) {
+    EXPECT_FALSE(one.obstacles) << "neither there nor gone";
+    EXPECT_TRUE(one.missing.empty());
+    EXPECT_EQ(one.not_seen, (std::vector<std::string>{"A"}));
+  }
+  EXPECT_EQ(camera->perceive({0.0, Pose{}, boxes}, expectations(boxes)).fault, perception::LookFault::None);
+}
+
 TEST(CameraPerception, StationsMeasureOutsideTheContainerWithSize) {
   const std::vector<perception::SceneBox> boxes = {{"new", scenario().aligner->X_WA, kSize}};
   const auto camera = make_perception(Kind::Camera, 7, scenario());
