@@ -7,6 +7,7 @@
 #include <atomic>
 #include <utility>
 
+#include "snug/click/internal/sensor_reader.hpp"
 #include "snug/click/internal/socket.hpp"
 #include "snug/click/internal/spin_wait.hpp"
 #include "snug/click/simulator.hpp"
@@ -56,6 +57,10 @@ struct Client::Impl {
   internal::Socket socket;
 
   internal::SpinWait spin;
+  internal::SensorReader sensors;
+
+  /// The bytes of the answer to a message.
+  [[nodiscard]] Expected<std::string, std::string> exchange(const Message& message);
 
   /// False: errno says why none came.
   bool receive(zmq_msg_t& answer) {
@@ -80,22 +85,37 @@ Client::~Client() = default;
 Client::Client(Client&&) noexcept = default;
 Client& Client::operator=(Client&&) noexcept = default;
 
-Expected<Message, std::string> Client::request(const Message& message) {
+Expected<std::string, std::string> Client::Impl::exchange(const Message& message) {
   const std::string frame = encode(message);
   const auto fail = [&](const char* what) {
-    return Reason(errno == EAGAIN ? fmt::format("{}: nobody answers within {} s", impl_->endpoint, impl_->patience)
-                                  : fmt::format("{}: {}: {}", impl_->endpoint, what, zmq_strerror(errno)));
+    return Reason(errno == EAGAIN ? fmt::format("{}: nobody answers within {} s", endpoint, patience)
+                                  : fmt::format("{}: {}: {}", endpoint, what, zmq_strerror(errno)));
   };
-  if (zmq_send(impl_->socket.get(), frame.data(), frame.size(), 0) < 0) return fail("sending");
+  if (zmq_send(socket.get(), frame.data(), frame.size(), 0) < 0) return fail("sending");
   zmq_msg_t answer;
   zmq_msg_init(&answer);
-  if (!impl_->receive(answer)) {
+  if (!receive(answer)) {
     zmq_msg_close(&answer);
     return fail("receiving");
   }
-  const std::string bytes(static_cast<const char*>(zmq_msg_data(&answer)), zmq_msg_size(&answer));
+  std::string bytes(static_cast<const char*>(zmq_msg_data(&answer)), zmq_msg_size(&answer));
   zmq_msg_close(&answer);
-  return decode(bytes);
+  return bytes;
+}
+
+Expected<Message, std::string> Client::request(const Message& message) {
+  const auto answer = impl_->exchange(message);
+  if (!answer) return Reason(answer.error());
+  return decode(*answer);
+}
+
+Client::Sensed Client::ask(const Message& message, const char* what) {
+  const auto answer = impl_->exchange(message);
+  if (!answer) return Reason(answer.error());
+  if (const Sensor* sensor = impl_->sensors.read(*answer)) return sensor;
+  auto sensor = expect<Sensor>(decode(*answer), what);
+  if (!sensor) return Reason(std::move(sensor.error()));
+  return &impl_->sensors.learn(*answer, std::move(*sensor));
 }
 
 Expected<Handshake, std::string> Client::shake_hands() {
@@ -113,11 +133,9 @@ Expected<Handshake, std::string> Client::shake_hands() {
   return handshake;
 }
 
-Expected<Sensor, std::string> Client::sense() { return expect<Sensor>(request(SensorRequest{}), "a SensorRequest"); }
+Client::Sensed Client::sense() { return ask(SensorRequest{}, "a SensorRequest"); }
 
-Expected<Sensor, std::string> Client::control(const Control& control) {
-  return expect<Sensor>(request(control), "a Control");
-}
+Client::Sensed Client::control(const Control& control) { return ask(control, "a Control"); }
 
 std::string Client::reset() {
   const auto answer = expect<Reset>(request(Reset{}), "a Reset");

@@ -24,9 +24,11 @@ class Client {
 
   /// The handshake, its version and its joints checked.
   [[nodiscard]] Expected<Handshake, std::string> shake_hands();
-  [[nodiscard]] Expected<Sensor, std::string> sense();
-  /// One step. An Error or a Reset instead of sensors is a reason.
-  [[nodiscard]] Expected<Sensor, std::string> control(const Control& control);
+  /// What a simulator senses, valid until the next sense() or control(). An Error or a Reset instead is a reason.
+  using Sensed = Expected<const Sensor*, std::string>;
+  [[nodiscard]] Sensed sense();
+  /// One step.
+  [[nodiscard]] Sensed control(const Control& control);
   /// Empty, or why it was not reset.
   [[nodiscard]] std::string reset();
   /// Ends the session; has no answer.
@@ -34,6 +36,7 @@ class Client {
 
  private:
   Client(const std::string& endpoint, double patience, const std::string& routing_id);
+  [[nodiscard]] Sensed ask(const Message& message, const char* what);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

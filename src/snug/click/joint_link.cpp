@@ -49,6 +49,8 @@ std::optional<Pose> sensed_pose(const ObjectSensors& object) {
   return is_sound ? std::optional(X_WP) : std::nullopt;
 }
 
+const Sensor JointLink::kNothing;
+
 std::string JointLink::connect(double tick) {
   auto handshake = client_.shake_hands();
   if (!handshake) return handshake.error();
@@ -104,8 +106,9 @@ std::string JointLink::find_events() {
   return fmt::format("object '{}' has no event '{}': --vacuum-event", robot_name_, settings_.vacuum_event);
 }
 
-std::string JointLink::take(Expected<Sensor, std::string> sensor) {
-  if (!sensor) return sensor.error();
+std::string JointLink::take(const Client::Sensed& sensed) {
+  if (!sensed) return sensed.error();
+  const Sensor* sensor = *sensed;
   const auto found = sensor->objects.find(robot_name_);
   if (found == sensor->objects.end()) return fmt::format("no sensors of '{}'", robot_name_);
   const ObjectSensors& robot = found->second;
@@ -127,7 +130,7 @@ std::string JointLink::take(Expected<Sensor, std::string> sensor) {
     return "the simulator senses what are no numbers";
   }
   measured_ = std::move(measured);
-  last_ = std::move(*sensor);
+  last_ = sensor;
   return {};
 }
 

@@ -40,9 +40,9 @@ class JointLink {
   [[nodiscard]] const std::string& robot() const { return robot_name_; }
   /// Where the joints were measured, in the order of the arm.
   [[nodiscard]] const control::JointMotion& measured() const { return measured_; }
-  [[nodiscard]] const Sensor& last() const { return last_; }
+  [[nodiscard]] const Sensor& last() const { return *last_; }
   /// The robot's object in it.
-  [[nodiscard]] const ObjectSensors& last_of_robot() const { return last_.objects.find(robot_name_)->second; }
+  [[nodiscard]] const ObjectSensors& last_of_robot() const { return last_->objects.find(robot_name_)->second; }
   /// Of a joint of the arm, in the lists of joint sensors.
   [[nodiscard]] std::size_t sensor_of(std::size_t joint) const { return joints_[joint].sensor; }
 
@@ -54,7 +54,7 @@ class JointLink {
   [[nodiscard]] std::string find_robot();
   [[nodiscard]] std::string find_joints();
   [[nodiscard]] std::string find_events();
-  [[nodiscard]] std::string take(Expected<Sensor, std::string> sensor);
+  [[nodiscard]] std::string take(const Client::Sensed& sensed);
 
   Client& client_;
   const robot::ArmModel& arm_;
@@ -64,7 +64,8 @@ class JointLink {
   std::vector<JointPlace> joints_;  ///< in the order of the arm
   bool has_vacuum_ = false, has_blow_off_ = false;
   control::JointMotion measured_;
-  Sensor last_;
+  static const Sensor kNothing;     ///< before the first
+  const Sensor* last_ = &kNothing;  ///< the client's
 };
 
 /// The value of a sensor of an object, or nullptr. `index`: of those with the name.

@@ -314,6 +314,13 @@ Decoded decode_handshake(std::string_view frame) {
 
 }  // namespace
 
+Expected<ObjectSensors, std::string> internal::decode_object(std::string_view bytes) {
+  Room room;
+  auto& in = *room.make<wire::SensorMessage_Object>();
+  if (!parse(bytes, in)) return Reason(kGarbled);
+  return take(in);
+}
+
 const char* name_of(ValueType type) {
   switch (type) {
     case ValueType::Angle:

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "snug/click/internal/sensor_writer.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/csv.hpp"
@@ -118,6 +120,7 @@ void ServedCell::describe_bodies(const ServedCellSettings& settings) {
     if (body.kind == physics::BodyKind::Dynamic)
       bodies_.push_back({record::log_name(body.name), id, -1, Vector3::Zero()});
   }
+  std::ranges::sort(bodies_, {}, &Body::name);
   for (const Body& body : bodies_) {
     if (handshake_.objects.contains(body.name)) {
       throw InputError(simulation_.scenario().source_name, "objects", "two of the name '" + body.name + "'",
@@ -250,6 +253,39 @@ Sensor ServedCell::sense(const cell::CellState& state, const cell::ArmReading& r
   sensor.objects.emplace(settings_.robot_object, sense_robot(state, reading, load));
   for (const Body& body : bodies_) sensor.objects.emplace(body.name, sense_body(body, state));
   return sensor;
+}
+
+std::string ServedCell::write_sensor(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load,
+                                     WrittenBodies& written) const {
+  written.bodies.resize(bodies_.size());
+  std::string frame = internal::begin_sensor();
+  bool has_robot = false;
+  const auto write_robot = [&] {
+    frame += internal::write_object(settings_.robot_object, sense_robot(state, reading, load));
+    has_robot = true;
+  };
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (!has_robot && settings_.robot_object < bodies_[i].name) write_robot();
+    frame += write_body(bodies_[i], state, written.bodies[i]);
+  }
+  if (!has_robot) write_robot();
+  return frame += internal::end_sensor(simulation_.time(state));
+}
+
+const std::string& ServedCell::write_body(const Body& body, const cell::CellState& state,
+                                          WrittenBodies::Body& written) const {
+  const physics::BodyState& now = state.world.bodies[static_cast<std::size_t>(body.id.index)];
+  const auto& p = now.p_WBcm;
+  const auto& q = now.quat_WB.coeffs();
+  const auto& v = now.velocity;
+  const auto& w = now.angular_velocity;
+  const WrittenBodies::State bits = {p[0], p[1], p[2], q[0], q[1], q[2], q[3],
+                                     v[0], v[1], v[2], w[0], w[1], w[2], now.is_present ? 1.0 : 0.0};
+  if (written.bytes.empty() || std::memcmp(written.state.data(), bits.data(), sizeof bits) != 0) {
+    written.state = bits;
+    written.bytes = internal::write_object(body.name, sense_body(body, state));
+  }
+  return written.bytes;
 }
 
 ObjectSensors ServedCell::sense_robot(const cell::CellState& state, const cell::ArmReading& reading,

@@ -1,6 +1,7 @@
 // ServedCell: the simulated cell in the words of CLICK: its objects, what they sense, what a command to them means.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +71,16 @@ struct Order {
   bool acknowledges = false;   ///< a protective stop is released
 };
 
+/// What was written of each body last: while it does not move its bytes stay what they are.
+struct WrittenBodies {
+  using State = std::array<double, 14>;  ///< all that its sensors depend on
+  struct Body {
+    State state{};
+    std::string bytes;
+  };
+  std::vector<Body> bodies;
+};
+
 class ServedCell {
  public:
   /// The simulation has a robot (checked) and outlives the served cell. Throws InputError for controls that do not fit
@@ -90,6 +101,9 @@ class ServedCell {
   [[nodiscard]] cell::OutsideCommand stand(const cup::CupCommand& cup) const;
   /// `load`: on the tool, Simulation::tool_load.
   [[nodiscard]] Sensor sense(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load) const;
+  /// encode(sense(...)), with less work. `written` is of this cell, or empty.
+  [[nodiscard]] std::string write_sensor(const cell::CellState& state, const cell::ArmReading& reading,
+                                         const Wrench& load, WrittenBodies& written) const;
 
  private:
   struct Body {
@@ -106,12 +120,15 @@ class ServedCell {
   [[nodiscard]] ObjectSensors sense_robot(const cell::CellState& state, const cell::ArmReading& reading,
                                           const Wrench& load) const;
   [[nodiscard]] ObjectSensors sense_body(const Body& body, const cell::CellState& state) const;
+  /// The bytes of a body as the state has it; written again only where it moved.
+  [[nodiscard]] const std::string& write_body(const Body& body, const cell::CellState& state,
+                                              WrittenBodies::Body& written) const;
   [[nodiscard]] const Body* find_body(std::string_view name) const;
 
   const cell::Simulation& simulation_;
   ServedCellSettings settings_;
   std::vector<control::DriveKind> kinds_;  ///< one for each joint
-  std::vector<Body> bodies_;               ///< boxes of the sequence and others that move by themselves
+  std::vector<Body> bodies_;  ///< boxes of the sequence and others that move by themselves, in the order of names
   Handshake handshake_;
 };
 

@@ -32,17 +32,20 @@ Simulator::~Simulator() = default;
 const cell::CellState& Simulator::state() const { return run_ ? run_->state() : initial_; }
 double Simulator::time() const { return cell_.simulation().time(state()); }
 std::uint64_t Simulator::hash() const { return cell_.simulation().hash(state()); }
-Message Simulator::sense() const {
-  return run_ ? cell_.sense(state(), run_->reading(), run_->tool_load())
-              : cell_.sense(state(), initial_reading_, Wrench{});
+Simulator::Reply Simulator::reply(const Message& message) { return {encode(message), holds<Error>(message)}; }
+
+Simulator::Reply Simulator::sense() {
+  return {run_ ? cell_.write_sensor(state(), run_->reading(), run_->tool_load(), written_)
+               : cell_.write_sensor(state(), initial_reading_, Wrench{}, written_),
+          false};
 }
 
 std::optional<std::string> Simulator::answer(const Peer& peer, std::string_view frame) {
-  const std::optional<Message> reply = respond(peer, frame);
+  std::optional<Reply> reply = respond(peer, frame);
   if (!reply) return std::nullopt;
   ++counts_.replies;
-  if (holds<Error>(*reply)) ++counts_.errors;
-  return encode(*reply);
+  if (reply->is_error) ++counts_.errors;
+  return std::move(reply->frame);
 }
 
 bool Simulator::is_step(const Peer& peer, std::string_view frame) const {
@@ -59,14 +62,14 @@ bool Simulator::is_handshake(std::string_view frame) {
   return message && holds<HandshakeInit>(*message);
 }
 
-std::optional<Message> Simulator::respond(const Peer& peer, std::string_view frame) {
+std::optional<Simulator::Reply> Simulator::respond(const Peer& peer, std::string_view frame) {
   if (frame.size() > kLargestFrame) {
-    return Error{fmt::format("a frame of {} bytes; {} are the most", frame.size(), kLargestFrame)};
+    return reply(Error{fmt::format("a frame of {} bytes; {} are the most", frame.size(), kLargestFrame)});
   }
   const Expected<Message, std::string> message = decode(frame);
-  if (!message) return Error{message.error()};
+  if (!message) return reply(Error{message.error()});
   if (is_watcher(peer)) return show(*message);
-  if (controller_ && *controller_ != peer) return Error{kBusy};
+  if (controller_ && *controller_ != peer) return reply(Error{kBusy});
   if (const auto* error = std::get_if<Error>(&*message)) {
     end("the controller reported: " + error->text);
     clear();
@@ -76,48 +79,48 @@ std::optional<Message> Simulator::respond(const Peer& peer, std::string_view fra
   if (const auto* init = std::get_if<HandshakeInit>(&*message)) return shake_hands(peer, *init);
   if (is_reset_ && (holds<Control>(*message) || holds<SensorRequest>(*message) || holds<Reset>(*message))) {
     is_reset_ = false;
-    return Reset{};
+    return reply(Reset{});
   }
   if (holds<SensorRequest>(*message)) return sense();
   if (holds<Reset>(*message)) {
     end("reset by the controller");
     clear();
-    return Reset{};
+    return reply(Reset{});
   }
   if (const auto* command = std::get_if<Control>(&*message)) {
-    if (!controller_) return Error{"a Control before the handshake: send HandshakeInit first"};
+    if (!controller_) return reply(Error{"a Control before the handshake: send HandshakeInit first"});
     return control(*command);
   }
-  return Error{fmt::format("a {} is for controllers; this is a simulator", name_of(*message))};
+  return reply(Error{fmt::format("a {} is for controllers; this is a simulator", name_of(*message))});
 }
 
-Message Simulator::show(const Message& message) const {
+Simulator::Reply Simulator::show(const Message& message) {
   if (const auto* init = std::get_if<HandshakeInit>(&message)) {
-    return init->version == kVersion ? Message(cell_.handshake()) : unsupported(init->version);
+    return reply(init->version == kVersion ? Message(cell_.handshake()) : Message(unsupported(init->version)));
   }
   if (holds<SensorRequest>(message)) return sense();
-  return Error{fmt::format("a {} is for controllers; this peer only looks", name_of(message))};
+  return reply(Error{fmt::format("a {} is for controllers; this peer only looks", name_of(message))});
 }
 
-Message Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
-  if (init.version != kVersion) return unsupported(init.version);
+Simulator::Reply Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
+  if (init.version != kVersion) return reply(unsupported(init.version));
   controller_ = peer;
   is_reset_ = false;
   if (!failure_.empty()) end(failure_);  // a stop that nobody acknowledged
   if (is_ended_) clear();
   command_.reset();  // nothing moves before the first Control
-  return cell_.handshake();
+  return reply(cell_.handshake());
 }
 
-Message Simulator::control(const Control& control) {
-  if (is_ended_) return Error{failure_};
+Simulator::Reply Simulator::control(const Control& control) {
+  if (is_ended_) return reply(Error{failure_});
   Expected<Order, std::string> order = cell_.understand(control, switches_, state());
-  if (!order) return Error{order.error()};
+  if (!order) return reply(Error{order.error()});
   if (!run_) {
     begin_run();
     if (!order->names_feeding) feeder_.emplace();
   }
-  if (!failure_.empty() && !order->acknowledges) return Error{failure_};
+  if (!failure_.empty() && !order->acknowledges) return reply(Error{failure_});
   switches_ = order->switches;
   take_at_once(*order);
   if (!order->moves_joints) return sense();
@@ -127,10 +130,10 @@ Message Simulator::control(const Control& control) {
     return sense();
   }
   advance(order->command);
-  if (!failure_.empty()) return Error{failure_};
-  Message reply = sense();
+  if (!failure_.empty()) return reply(Error{failure_});
+  Reply sensed = sense();
   if (settings_.batch && time() >= *settings_.batch) reset(fmt::format("{} s are over", *settings_.batch));
-  return reply;
+  return sensed;
 }
 
 void Simulator::take_at_once(const Order& order) {

@@ -87,17 +87,22 @@ class Simulator {
   static constexpr double kPatience = 0.25;
 
  private:
-  [[nodiscard]] std::optional<Message> respond(const Peer& peer, std::string_view frame);
+  struct Reply {
+    std::string frame;
+    bool is_error = false;
+  };
+  [[nodiscard]] static Reply reply(const Message& message);
+  [[nodiscard]] std::optional<Reply> respond(const Peer& peer, std::string_view frame);
   /// To a peer that looks: it never becomes the controller and changes nothing.
-  [[nodiscard]] Message show(const Message& message) const;
-  [[nodiscard]] Message shake_hands(const Peer& peer, const HandshakeInit& init);
-  [[nodiscard]] Message control(const Control& control);
+  [[nodiscard]] Reply show(const Message& message);
+  [[nodiscard]] Reply shake_hands(const Peer& peer, const HandshakeInit& init);
+  [[nodiscard]] Reply control(const Control& control);
   void begin_run();
   void advance(const cell::OutsideCommand& command);
   /// What of the order takes no time: a box comes, the robot stands, a stop is released.
   void take_at_once(const Order& order);
   void clear();
-  [[nodiscard]] Message sense() const;
+  [[nodiscard]] Reply sense();
   [[nodiscard]] const cell::CellState& state() const;
 
   SimulatorSettings settings_;
@@ -110,6 +115,7 @@ class Simulator {
   std::string failure_;                    ///< why it ended by itself, or stopped
   bool is_reset_ = false;                  ///< by the simulator; the controller is still to be told
   Switches switches_;
+  WrittenBodies written_;
   std::optional<Feeder> feeder_;
   std::optional<cell::OutsideCommand> command_;  ///< async
   std::int64_t silent_steps_ = 0;                ///< since it came

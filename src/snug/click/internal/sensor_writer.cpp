@@ -13,10 +13,8 @@ namespace snug::click::internal {
 namespace {
 
 /// Field numbers, as in click.proto; all fit into tags of one byte.
-enum Field : unsigned { kEntryKey = 1, kEntryValue = 2, kNumbers = 1, kSensorOfList = 1, kSimulatedTime = 1 };
+enum Field : unsigned { kNumbers = 1, kSensorOfList = 1 };
 enum ObjectField : unsigned { kAngles = 1, kVelocities = 2, kTorques = 3, kObjectSensors = 4, kForces = 5, kNamed = 6 };
-enum MessageField : unsigned { kType = 1, kObjects = 3, kSimVars = 4 };
-enum WireType : unsigned { kVarint = 0, kDouble = 1, kBytes = 2 };
 
 unsigned field_of(ValueType type) {
   switch (type) {
@@ -55,7 +53,7 @@ unsigned field_of(ValueType type) {
 /// Everything is put in front of what is there.
 class FrontWriter {
  public:
-  FrontWriter() { bytes_.reserve(8192); }
+  explicit FrontWriter(std::size_t room) { bytes_.reserve(room); }
 
   void tag(unsigned field, WireType type) { bytes_.push_back(static_cast<char>(field << 3U | type)); }
   void number(double value) {
@@ -150,23 +148,36 @@ void put(const ObjectSensors& object, FrontWriter& out) {
 
 }  // namespace
 
-std::string write_sensor(const Sensor& sensor) {
-  constexpr std::size_t kSensorType = 3;
-  FrontWriter out;
-  const std::size_t end = out.size();
-  if (std::bit_cast<std::uint64_t>(sensor.time) != 0) {
-    out.number(sensor.time);
-    out.tag(kSimulatedTime, kDouble);
-  }
-  out.enclose(kSimVars, end);
-  for (auto object = sensor.objects.rbegin(); object != sensor.objects.rend(); ++object) {
-    const std::size_t object_end = out.size();
-    put(object->second, out);
-    put_entry(object->first, kObjects, object_end, out);
-  }
+std::string begin_sensor() {
+  FrontWriter out(2);
   out.varint(kSensorType);
   out.tag(kType, kVarint);
   return out.take();
+}
+
+std::string write_object(const std::string& name, const ObjectSensors& object) {
+  FrontWriter out(1024);
+  const std::size_t end = out.size();
+  put(object, out);
+  put_entry(name, kObjects, end, out);
+  return out.take();
+}
+
+std::string end_sensor(double time) {
+  FrontWriter out(16);
+  const std::size_t end = out.size();
+  if (std::bit_cast<std::uint64_t>(time) != 0) {
+    out.number(time);
+    out.tag(kSimulatedTime, kDouble);
+  }
+  out.enclose(kSimVars, end);
+  return out.take();
+}
+
+std::string write_sensor(const Sensor& sensor) {
+  std::string frame = begin_sensor();
+  for (const auto& [name, object] : sensor.objects) frame += write_object(name, object);
+  return frame += end_sensor(sensor.time);
 }
 
 }  // namespace snug::click::internal

@@ -65,7 +65,7 @@ TEST(ClientServer, TalkOverTcpAndIpc) {
     for (int i = 1; i <= 10; ++i) {
       const auto sensor = client.control(control_of(kStill));
       ASSERT_TRUE(sensor.has_value()) << sensor.error();
-      EXPECT_DOUBLE_EQ(sensor->time, 0.008 * i);
+      EXPECT_DOUBLE_EQ((*sensor)->time, 0.008 * i);
     }
     EXPECT_EQ(client.reset(), "");
     const auto wrong = client.control(control_of({1.0}));
@@ -138,7 +138,7 @@ TEST(ClientServer, GiveTheCellToTheNextControllerWhenOneDies) {
   ASSERT_TRUE(handshake.has_value()) << handshake.error();
   const auto sensor = next.sense();
   ASSERT_TRUE(sensor.has_value());
-  EXPECT_EQ(sensor->time, 0.0);
+  EXPECT_EQ((*sensor)->time, 0.0);
   served.stop();
   ASSERT_EQ(served.runs.size(), 1u);
   EXPECT_EQ(served.runs[0].ended_by, "the controller left");

@@ -36,6 +36,23 @@ TEST(Simulator, TellsInTheHandshakeWhatThereIs) {
             (std::vector<ValueType>{ValueType::Position, ValueType::Rpy}));
 }
 
+TEST(ServedCell, WritesOnlyWhatMovedAndStillAllOfIt) {
+  const cell::Simulation& simulation = test::demonstrator_cell();
+  for (const bool is_plant : {false, true}) {
+    ServedCellSettings settings;
+    settings.velocities = settings.is_plant = is_plant;
+    const ServedCell cell(simulation, settings);
+    cell::OutsideRun run(simulation, {});
+    WrittenBodies written;
+    for (int i = 0; i < 120; ++i) {  // boxes come, fall the last millimetre, and come to rest
+      if (i % 20 == 10) (void)run.feed(i / 20, i % 4);
+      (void)run.advance(cell.stand({}));
+      const std::string frame = cell.write_sensor(run.state(), run.reading(), run.tool_load(), written);
+      ASSERT_EQ(frame, encode(cell.sense(run.state(), run.reading(), run.tool_load()))) << i;
+    }
+  }
+}
+
 TEST(Simulator, SendsWhatTheHandshakePromised) {
   SimulatorSettings settings;
   settings.cell.velocities = settings.cell.joint_forces = true;
