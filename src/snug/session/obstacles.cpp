@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "snug/geometry/shape.hpp"
+#include "snug/geometry/bounds.hpp"
 
 namespace snug::session {
 namespace {
@@ -30,7 +30,9 @@ constexpr double kThinnest = 0.002;        ///< m, bodies are not made thinner
 bool is_in_box(const Column& column, const Solid& box) {
   const double side = perception::kColumnSide;
   const Vector3 p_P = box.X_WP.inverse() * Vector3((column.x + 0.5) * side, (column.y + 0.5) * side, column.top);
-  return ((p_P.cwiseAbs() - 0.5 * box.size).array() < kOfBox).all();
+  // What is lower than the box is under it, or beside what carries it.
+  const double bottom = geometry::bounds(geometry::Box{0.5 * box.size}, box.X_WP).lower.z();
+  return ((p_P.cwiseAbs() - 0.5 * box.size).array() < kOfBox).all() && column.top > bottom;
 }
 
 bool is_in_any(const Column& column, std::span<const Solid> boxes) {

@@ -166,7 +166,12 @@ void Packer::look(ItemReport& report, bool stays) {
                   [&](const std::string& id) { return std::ranges::find(before.missing, id) == before.missing.end(); });
     belief_.drop_unconfirmed(seen, before);
   }
+  const std::size_t known = belief_.obstacles().reports().size();
   belief_.see(seen);
+  // It is not seen, and something that was not there stands higher over its place: that is the box, or lies on it.
+  const int own = index_of(report.id);
+  const bool has_news = belief_.obstacles().reports().size() > known;
+  if (has_news && belief_.box(own) && !belief_.box(own)->was_seen && is_under_obstacle(own)) belief_.forget(own);
   // It could be anywhere: neither where it was nor where it was to go.
   if (let_go_ >= 0 && belief_.box(let_go_) && !belief_.box(let_go_)->was_seen) belief_.forget(let_go_);
   let_go_ = -1;

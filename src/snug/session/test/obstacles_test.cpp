@@ -120,6 +120,17 @@ TEST(ObstacleMemory, ABoxThatIsBelievedThereIsNoObstacleAndWhatLiesOnItIs) {
   EXPECT_TRUE(memory.obstacles().empty());
 }
 
+TEST(ObstacleMemory, WhatABoxBridgesIsRemembered) {
+  ObstacleMemory memory(kX_WT);
+  see(memory, look({thing(0, 0, 10, 10, -0.13)}));
+  Observation covered = look({});
+  for (float& z : covered.heights->height) z = -0.02F;
+  const Solid bridge{{Matrix3::Identity(), Vector3(0.025, 0.025, -0.072)}, Vector3(0.3, 0.2, 0.1)};  // 8 mm over it
+  see(memory, covered, {bridge});
+  EXPECT_EQ(memory.obstacles().size(), 1U);
+  EXPECT_FALSE(memory.reports()[0].gone);
+}
+
 TEST(ObstacleMemory, SmallThingsAreNoise) {
   const ObstacleMemory memory(kX_WT);
   EXPECT_TRUE(memory.find_foreign(look({thing(0, 0, 3, 3, -0.1)}), {}).empty());

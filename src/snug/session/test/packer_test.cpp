@@ -29,7 +29,9 @@ class ScriptedPlant final : public plant::Plant {
   std::vector<std::string> pressed;          ///< items that were pressed on from above
   std::deque<perception::LookFault> faults;  ///< of looks; when they are used up: none
   std::optional<Vector3> size;               ///< measured of what stands at the aligner
-  int home_count = 0;                        ///< motions that do nothing but go home
+  std::optional<std::vector<perception::Obstacle>> obstacles;  ///< of every look
+  Pose X_WE_let_go;                                            ///< of the last motion with the vacuum on
+  int home_count = 0;                                          ///< motions that do nothing but go home
 
   [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
   [[nodiscard]] plant::Feedback read() override { return now_; }
@@ -49,6 +51,7 @@ class ScriptedPlant final : public plant::Plant {
     }
     if (motion.item.empty()) ++home_count;
     const motion::Waypoint& last = end == EndReason::Completed ? motion.waypoints.back() : *held;
+    if (holds) X_WE_let_go = last.X_WE;
     now_.time += 1.0;
     now_.end = {end, 0, 0.0, 0.0, ""};
     now_.X_WE = last.X_WE;
@@ -60,6 +63,7 @@ class ScriptedPlant final : public plant::Plant {
 
   [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
     perception::Observation seen;
+    seen.obstacles = obstacles;
     if (!faults.empty()) {
       seen.fault = faults.front();
       faults.pop_front();
@@ -176,6 +180,23 @@ TEST(Packer, TheToolLeavesAViewThatItBlocksAndASessionEndsWhereThatDoesNotHelp) 
   EXPECT_EQ(result.items[0].end, ItemEnd::NotHeld);
   EXPECT_TRUE(has(result.items[0], Trouble::ViewBlocked, Remedy::Stop));
   EXPECT_TRUE(result.plan.empty());
+}
+
+TEST(Packer, ABoxThatIsNotSeenWhereSomethingHigherStandsOverItsPlaceIsGone) {
+  ScriptedPlant plant;
+  plant.obstacles.emplace();
+  plant.happens = [&](int) {
+    const model::Container& container = *model::find_container(demonstrator(), demonstrator().target);
+    Pose X_WB{Matrix3::Identity(), plant.X_WE_let_go.p};
+    X_WB.p.z() = container.X_WT.p.z() + 0.13;
+    plant.obstacles = {{perception::columns_of_box(X_WB, {0.15, 0.15, 0.26}), 0.0005}};
+  };
+  const SessionResult result = pack(plant, 1);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Gone);
+  EXPECT_TRUE(has(result.items[0], Trouble::Gone, Remedy::Skip));
+  EXPECT_TRUE(result.plan.empty());
+  ASSERT_EQ(result.obstacles.size(), 1U);
+  EXPECT_NEAR(result.obstacles[0].high_T.z(), 0.26, 1e-9);
 }
 
 TEST(Packer, AnotherItemThanTheOneThatWasToComeIsTakenAway) {
