@@ -66,6 +66,8 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
       ->type_name("SHARE");
   verb.add_option("--fault", options.fault,
                   "what goes wrong in the plant: noseal@N, drop@N, stop@N, displace@N, push@N of the N-th item, "
+                  "object@N (a foreign "
+                  "box is put into the container after it), clear@N (and taken out), "
                   "separated by commas")
       ->type_name("FAULTS");
   verb.add_option("--decision-time", options.decision_time, "for deciding where an item goes, on one core")

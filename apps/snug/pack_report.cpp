@@ -101,14 +101,34 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["happened"] = as_json(item.happened);
     json["hold_factor"] = std::isfinite(truth.hold_factor) ? Json(rounded(truth.hold_factor, 6)) : Json();
     json["sends"] = sends_as_json(item, truth);
-    json["recoveries"] = recoveries_as_json(item.recoveries);
   }
+  if (!item.sends.empty() || !item.recoveries.empty()) json["recoveries"] = recoveries_as_json(item.recoveries);
   json["seconds"] = as_json(item.seconds);
   json["attempts"] = item.attempts;
   json["protective_stops"] = item.stops;
   json["decision_seconds"] = item.decision_seconds;
   json["rehearsal_seconds"] = item.rehearsal_seconds;
   return json;
+}
+
+Json as_json(const session::ObstacleReport& one) {
+  return {{"number", one.number},
+          {"seen", one.seen},
+          {"gone", one.gone ? Json(*one.gone) : Json()},
+          {"low_T", position_as_json(one.low_T)},
+          {"high_T", position_as_json(one.high_T)},
+          {"height_mm", rounded(1e3 * one.high_T.z(), 3)}};
+}
+
+/// By the plant's truth.
+Json as_json(const simulated_plant::ForeignObject& one) {
+  const Quaternion q(one.X_TB.R);
+  return {{"name", one.name},
+          {"size", as_json(simulated_plant::kForeignSize)},
+          {"is_in", one.is_in},
+          {"X_TB", {{"p", as_json(one.X_TB.p)}, {"quat_wxyz", {q.w(), q.x(), q.y(), q.z()}}}},
+          {"moved_mm", 1e3 * (one.X_TB.p - one.X_TB_put.p).norm()},
+          {"peak_force_N", one.peak_force}};
 }
 
 /// By the plant's truth.
@@ -214,6 +234,10 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
   }
   text += fmt::format("items              {} sent, {} as planned, {} lost, {} recoveries\n", trial.items_sent,
                       trial.items_as_planned, trial.boxes_lost, trial.recoveries);
+  for (const session::ObstacleReport& one : result.obstacles) {
+    text += fmt::format("obstacle {:<10}at {:.1f} s {}{}\n", one.number, one.seen, session::describe(one),
+                        one.gone ? fmt::format(", gone at {:.1f} s", *one.gone) : std::string());
+  }
   int stops = 0;
   for (const session::ItemReport& item : result.items) stops += item.stops;
   if (stops > 0) text += fmt::format("protective stops   {} attempts that were given up\n", stops);
@@ -276,6 +300,12 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
   }
   json["boxes"] = Json::array();
   for (const cell::BoxResult& box : trial.boxes) json["boxes"].push_back(as_json(box));
+  json["obstacles"] = Json::array();
+  for (const session::ObstacleReport& one : result.obstacles) json["obstacles"].push_back(as_json(one));
+  if (!trial.objects.empty()) {
+    json["objects"] = Json::array();
+    for (const simulated_plant::ForeignObject& one : trial.objects) json["objects"].push_back(as_json(one));
+  }
   study::Calibration calibration;
   calibration.add(trial);
   json["calibration"] = calibration_json(calibration);

@@ -19,7 +19,7 @@ import json
 import os
 import sys
 import traceback
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, Dict, List, Sequence
 
 
 class Values:
@@ -48,12 +48,14 @@ class Candidate(Values):
 
 
 class State:
-    """What stands in the container: `boxes` in the order of packing, `inner_size` [x, y, z], `walls`."""
+    """What stands in the container: `boxes` in the order of packing, `inner_size` [x, y, z], `walls`; `obstacles`: what
+    else is there, as dicts of `low` and `high` [x, y, z]. Candidates keep to them."""
 
-    def __init__(self, container: Dict[str, Any], boxes: List[Box]):
+    def __init__(self, container: Dict[str, Any], boxes: List[Box], obstacles: Sequence[Dict[str, List[float]]] = ()):
         self.inner_size: List[float] = container.get("inner_size", [])
         self.walls: bool = container.get("walls", True)
         self.boxes = boxes
+        self.obstacles = list(obstacles)
 
 
 class Place:
@@ -88,7 +90,7 @@ def answerer(agent: Any) -> Callable[[str], str]:
             if hasattr(agent, "begin"):
                 agent.begin(question["settings"], question["container"], question["future"])
             return "{}"
-        state = State(container, [Box(box) for box in question["boxes"]])
+        state = State(container, [Box(box) for box in question["boxes"]], question.get("obstacles", []))
         chosen = agent.decide(state, Item(question["item"]), [Candidate(one) for one in question["candidates"]])
         if chosen is None:
             return '{"places": []}'

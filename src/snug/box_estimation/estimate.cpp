@@ -244,7 +244,15 @@ class Estimator {
     report_others(result);
     const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + 2.5e-3);
     result.obstacles = internal::find_obstacles(frame_, input_, range_, mask);
+    for (Obstacle& obstacle : result.obstacles) obstacle.deviation = deviation_at(0.5 * (obstacle.low + obstacle.high));
     result.heights = internal::make_height_map(frame_, input_, range_);
+  }
+
+  /// m, standard deviation of a point in W with all that the camera states.
+  [[nodiscard]] double deviation_at(const Vector3& p_W) const {
+    const Vector3 p_C = X_CW_ * p_W;
+    const double shared = errors_.shared_covariance(p_C).topLeftCorner<3, 3>().diagonal().maxCoeff();
+    return std::sqrt(std::pow(errors_.point_error(p_C.z()), 2) + shared);
   }
 
   void report_seen(std::size_t i, const Agreement& a, BoxEstimate& estimate) const {

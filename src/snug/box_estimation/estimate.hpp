@@ -6,6 +6,7 @@
 
 #include "snug/camera/frame.hpp"
 #include "snug/camera/scene.hpp"
+#include "snug/perception/obstacle.hpp"
 
 namespace snug::box_estimation {
 
@@ -61,14 +62,16 @@ struct BoxEstimate {
 struct Obstacle {
   Vector3 low = Vector3::Zero();  ///< m, W: extent of its points
   Vector3 high = Vector3::Zero();
-  int points = 0;
+  int points = 0;                           ///< those at its rim left out
+  std::vector<perception::Column> columns;  ///< its height map
+  double deviation = 0.0;                   ///< m, standard deviation of its tops and edges
 };
 
 /// Highest point seen over each cell of a level grid, over the region; NaN where nothing was seen.
 struct HeightMap {
-  double cell = 0.005;                  ///< m
-  Eigen::Vector2d origin = {0.0, 0.0};  ///< m, W: corner of cell (0, 0)
-  camera::Grid2<float> height;          ///< m, W; rows along y, columns along x
+  double cell = perception::kColumnSide;  ///< m
+  Eigen::Vector2d origin = {0.0, 0.0};    ///< m, W: corner of cell (0, 0), whole cells from the origin of W
+  camera::Grid2<float> height;            ///< m, W; rows along y, columns along x
 };
 
 enum class FrameFault {

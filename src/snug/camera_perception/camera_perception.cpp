@@ -2,6 +2,7 @@
 #include "snug/camera_perception/camera_perception.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "snug/box_estimation/estimate.hpp"
@@ -24,6 +25,33 @@ const model::Container& container_of(const model::Scenario& scenario) {
     throw InputError(scenario.source_name, "containers", "none", "a container to look into, for --perception camera");
   }
   return *container;
+}
+
+perception::LookFault fault_of(box_estimation::FrameFault fault) {
+  switch (fault) {
+    case box_estimation::FrameFault::None:
+      return perception::LookFault::None;
+    case box_estimation::FrameFault::TooFewPoints:
+      return perception::LookFault::TooFewPoints;
+    case box_estimation::FrameFault::ViewBlocked:
+      return perception::LookFault::ViewBlocked;
+  }
+  return perception::LookFault::None;
+}
+
+void report_obstacles(const box_estimation::Estimate& estimate, Observation& observation) {
+  observation.obstacles.emplace();
+  for (const box_estimation::Obstacle& one : estimate.obstacles) {
+    observation.obstacles->push_back({one.columns, one.deviation});
+  }
+  const box_estimation::HeightMap& seen = estimate.heights;
+  perception::HeightMap& map = observation.heights.emplace();
+  const auto index = [](double corner) { return static_cast<int>(std::lround(corner / perception::kColumnSide)); };
+  map.x = index(seen.origin.x());
+  map.y = index(seen.origin.y());
+  map.cols = seen.height.cols();
+  map.rows = seen.height.rows();
+  for (const float z : seen.height.values()) map.height.push_back(std::isnan(z) ? perception::HeightMap::kUnseen : z);
 }
 
 class Camera final : public perception::Perception {
@@ -53,6 +81,9 @@ class Camera final : public perception::Perception {
       if (box.sight != box_estimation::Sight::Seen) continue;
       observation.seen.push_back({box.id, box.X_WP, box.covariance, std::nullopt, 0.0});
     }
+    observation.obstacles.reset();  // the stations' tell nothing of the container
+    observation.fault = fault_of(estimate.fault);
+    if (observation.fault == perception::LookFault::None) report_obstacles(estimate, observation);
     for (const perception::Expectation& one : expected) {
       if (perception::find(observation, one.item) == nullptr) observation.not_seen.push_back(one.item);
     }
@@ -63,11 +94,13 @@ class Camera final : public perception::Perception {
   [[nodiscard]] camera::Scene view_of(const perception::Scene& scene) const {
     camera::Scene view = known_.surroundings;
     for (const perception::SceneBox& box : scene.boxes) camera::add_box(view, box.item, box.X_WP, box.size);
+    for (const perception::SceneBox& one : scene.objects) camera::add_box(view, one.item, one.X_WP, one.size);
     return view;
   }
 
   [[nodiscard]] perception::Scene outside_of(const perception::Scene& scene) const {
     perception::Scene outside = scene;
+    outside.objects.clear();
     const Vector3 half = 0.5 * container_.inner_size + Vector3::Constant(kBeyondWall);
     std::erase_if(outside.boxes, [&](const perception::SceneBox& box) {
       const Vector3 p_TP = container_.X_WT.inverse() * box.X_WP.p;

@@ -16,19 +16,22 @@ struct PlacedBox {
   bool operator==(const PlacedBox&) const = default;
 };
 
-/// Frame T: middle of the inner floor, z up, x and y along the walls.
-struct ContainerState {
-  Vector3 inner_size = Vector3(0.37, 0.57, 0.25);  ///< m, along Tx, Ty, Tz
-  std::vector<PlacedBox> boxes;                    ///< in the order in which they were placed
-  bool has_walls = true;                           ///< false: a pallet, beside which nothing stands
-  bool operator==(const ContainerState&) const = default;
-};
-
 /// Axis-aligned extent in T, m.
 struct Extent {
   Vector3 low = Vector3::Zero();
   Vector3 high = Vector3::Zero();
   bool operator==(const Extent&) const = default;
+};
+
+/// Frame T: middle of the inner floor, z up, x and y along the walls.
+struct ContainerState {
+  Vector3 inner_size = Vector3(0.37, 0.57, 0.25);  ///< m, along Tx, Ty, Tz
+  std::vector<PlacedBox> boxes;                    ///< in the order in which they were placed
+  bool has_walls = true;                           ///< false: a pallet, beside which nothing stands
+  /// What is there and is none of the boxes: nothing is put where it is, under it or on it, within 12 mm beside it or
+  /// within 5 mm over it.
+  std::vector<Extent> obstacles = {};
+  bool operator==(const ContainerState&) const = default;
 };
 
 /// Empty state of a scenario's container.

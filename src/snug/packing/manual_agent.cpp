@@ -57,7 +57,9 @@ class ManualAgent : public Agent {
       choices.push_back(make_choice(planning, item));
       pieces.push_back(choices.back().piece);
     }
-    const Layout empty(make_rules(planning, items));
+    ContainerState emptied = state;  // obstacles stay
+    emptied.boxes.clear();
+    const Layout empty = to_layout(planning, make_rules(planning, items), emptied);
     SearchSettings settings;
     settings.seed = input_.settings.seed;
     settings.threads = input_.settings.threads;

@@ -67,7 +67,7 @@ Pose pose_at(const Place& place) { return {rotation(place.orientation), place.lo
 
 PlaceFinder::PlaceFinder(const ContainerState& container, const PackingSettings& settings, std::span<const Item> kinds)
     : impl_(std::make_unique<Impl>(container, settings, kinds)) {
-  reset(container.boxes);
+  reset(container.boxes, container.obstacles);
 }
 PlaceFinder::PlaceFinder(const PlaceFinder& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 PlaceFinder& PlaceFinder::operator=(const PlaceFinder& other) {
@@ -78,10 +78,11 @@ PlaceFinder::PlaceFinder(PlaceFinder&&) noexcept = default;
 PlaceFinder& PlaceFinder::operator=(PlaceFinder&&) noexcept = default;
 PlaceFinder::~PlaceFinder() = default;
 
-void PlaceFinder::reset(const std::vector<PlacedBox>& boxes) {
+void PlaceFinder::reset(const std::vector<PlacedBox>& boxes, const std::vector<Extent>& obstacles) {
   ContainerState state;
   state.inner_size = impl_->planning.inner_size;
   state.boxes = boxes;
+  state.obstacles = obstacles;
   impl_->layout = internal::to_layout(impl_->planning, impl_->layout.rules(), state);
 }
 

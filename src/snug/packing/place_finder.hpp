@@ -38,8 +38,8 @@ class PlaceFinder {
   PlaceFinder& operator=(PlaceFinder&&) noexcept;
   ~PlaceFinder();
 
-  /// Empty again, and then with these boxes.
-  void reset(const std::vector<PlacedBox>& boxes = {});
+  /// Empty again, and then with these boxes and obstacles.
+  void reset(const std::vector<PlacedBox>& boxes = {}, const std::vector<Extent>& obstacles = {});
   /// A box that came to stand on those before.
   void add(const PlacedBox& box);
 

@@ -97,6 +97,9 @@ class RemoteAgent final : public Agent {
     }
     Json question{{"ask", "decide"}, {"item", as_json(item)}, {"boxes", Json::array()}, {"candidates", Json::array()}};
     for (const PlacedBox& box : state.boxes) question["boxes"].push_back(as_json(box));
+    for (const Extent& one : state.obstacles) {
+      question["obstacles"].push_back({{"low", as_json(one.low)}, {"high", as_json(one.high)}});
+    }
     for (std::size_t i = 0; i < places.size(); ++i) {
       question["candidates"].push_back(as_json(places[i], static_cast<int>(i)));
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/perception/obstacle.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::perception {
@@ -20,11 +21,24 @@ struct PoseEstimate {
   bool operator==(const PoseEstimate&) const = default;
 };
 
+/// Why a look tells nothing of what it was to show.
+enum class LookFault {
+  None,
+  TooFewPoints,  ///< a dirty or blinded picture
+  ViewBlocked,   ///< something is between the camera and the container: the arm, say
+};
+[[nodiscard]] const char* name_of(LookFault fault);
+
 struct Observation {
   double time = 0.0;  ///< s, of the plant
   std::vector<PoseEstimate> seen;
   std::vector<std::string> not_seen;  ///< items that were asked for, in the order asked
   std::vector<std::string> missing;   ///< of these: their place was seen and is empty, and they were found nowhere
+  LookFault fault = LookFault::None;
+  /// What is there and was not expected, the largest first; absent: this look does not tell.
+  std::optional<std::vector<Obstacle>> obstacles;
+  /// Absent with obstacles: everything was seen, and what is not among them is not there.
+  std::optional<HeightMap> heights;
   bool operator==(const Observation&) const = default;
 };
 

@@ -29,6 +29,11 @@ Observation finished_by_all_seeing(Observation observation, std::span<const Expe
   return observation;
 }
 
+/// Of a sensor that nothing is hidden from.
+Obstacle obstacle_of(const Pose& X_WP, const Vector3& size, double deviation) {
+  return {columns_of_box(X_WP, size), deviation};
+}
+
 class Exact final : public Perception {
  public:
   [[nodiscard]] std::string_view name() const override { return name_of(Kind::Exact); }
@@ -37,6 +42,10 @@ class Exact final : public Perception {
     observation.time = scene.time;
     for (const SceneBox& box : scene.boxes) {
       observation.seen.push_back({box.item, box.X_WP, Matrix6::Zero(), box.size, 0.0});
+    }
+    observation.obstacles.emplace();
+    for (const SceneBox& object : scene.objects) {
+      observation.obstacles->push_back(obstacle_of(object.X_WP, object.size, 0.0));
     }
     return finished_by_all_seeing(std::move(observation), expected);
   }
@@ -53,14 +62,22 @@ class Noisy final : public Perception {
     Observation observation;
     observation.time = scene.time;
     for (const SceneBox& box : scene.boxes) {
-      const Vector3 shift = draw(noise_.position), turn = draw(noise_.rotation), size = box.size + draw(noise_.size);
-      const Pose X_WP{exp_rotation(turn) * box.X_WP.R, box.X_WP.p + shift};
-      observation.seen.push_back({box.item, X_WP, covariance_, size, noise_.size / std::sqrt(3.0)});
+      const SceneBox drawn = draw(box);
+      observation.seen.push_back({box.item, drawn.X_WP, covariance_, drawn.size, noise_.size / std::sqrt(3.0)});
+    }
+    observation.obstacles.emplace();
+    for (const SceneBox& object : scene.objects) {
+      const SceneBox drawn = draw(object);
+      observation.obstacles->push_back(obstacle_of(drawn.X_WP, drawn.size, noise_.position / std::sqrt(3.0)));
     }
     return finished_by_all_seeing(std::move(observation), expected);
   }
 
  private:
+  SceneBox draw(const SceneBox& box) {
+    const Vector3 shift = draw(noise_.position), turn = draw(noise_.rotation), size = box.size + draw(noise_.size);
+    return {box.item, {exp_rotation(turn) * box.X_WP.R, box.X_WP.p + shift}, size};
+  }
   Vector3 draw(double half_width) {
     const double x = rng_.uniform(-half_width, half_width), y = rng_.uniform(-half_width, half_width);
     return {x, y, rng_.uniform(-half_width, half_width)};
@@ -86,6 +103,18 @@ class DeadReckoning final : public Perception {
 const PoseEstimate* find(const Observation& observation, const std::string& item) {
   const auto found = std::ranges::find(observation.seen, item, &PoseEstimate::item);
   return found == observation.seen.end() ? nullptr : &*found;
+}
+
+const char* name_of(LookFault fault) {
+  switch (fault) {
+    case LookFault::None:
+      return "none";
+    case LookFault::TooFewPoints:
+      return "too few points";
+    case LookFault::ViewBlocked:
+      return "view blocked";
+  }
+  return "";
 }
 
 const char* name_of(Kind kind) {

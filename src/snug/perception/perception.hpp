@@ -32,6 +32,7 @@ struct Scene {
   double time = 0.0;  ///< s
   Pose X_WE;          ///< of the tool, which may stand in the way
   std::vector<SceneBox> boxes;
+  std::vector<SceneBox> objects = {};  ///< what nobody told of: seen, it is an obstacle
 };
 
 class Perception {

@@ -20,6 +20,7 @@ constexpr double kModelError = 0.004;
 constexpr double kLeastWeight = 0.25;
 constexpr double kUnseenPosition = 0.005;  ///< m, standard deviation of what was not seen
 constexpr double kUnseenRotation = 0.02;   ///< rad
+constexpr double kSameBody = 0.0015;       ///< m, obstacles' bodies that differ by less stay as they are
 
 model::Scenario coarse(model::Scenario scenario, int factor) {
   const double step = factor * scenario.time_step, ticks = scenario.controller.tick / step;
@@ -41,6 +42,19 @@ Pose drawn(const perception::PoseEstimate& seen, Rng& rng) {
   return {exp_rotation(error.tail<3>()) * seen.X_WP.R, seen.X_WP.p + error.head<3>()};
 }
 
+Pose container_pose(const model::Scenario& scenario) {
+  const model::Container* container = model::find_container(scenario, scenario.target);
+  return container != nullptr ? container->X_WT : Pose{};
+}
+
+/// The same bodies but for noise: worlds are not built anew for that.
+bool are_alike(const std::vector<geometry::Aabb>& a, const std::vector<geometry::Aabb>& b) {
+  return std::ranges::equal(a, b, [](const geometry::Aabb& one, const geometry::Aabb& other) {
+    return (one.lower - other.lower).cwiseAbs().maxCoeff() < kSameBody &&
+           (one.upper - other.upper).cwiseAbs().maxCoeff() < kSameBody;
+  });
+}
+
 int index_of(const model::Sequence& sequence, const std::string& item) {
   const auto found = std::ranges::find(sequence.items, item, &model::Item::parcel);
   return found == sequence.items.end() ? -1 : static_cast<int>(found - sequence.items.begin());
@@ -49,7 +63,11 @@ int index_of(const model::Sequence& sequence, const std::string& item) {
 }  // namespace
 
 Belief::Belief(const model::Scenario& scenario, const std::string& sequence, const BeliefSettings& settings)
-    : settings_(settings), sequence_name_(sequence), rng_(Rng(settings.seed).split("belief")) {
+    : settings_(settings),
+      sequence_name_(sequence),
+      own_bodies_(scenario.bodies.size()),
+      obstacles_(container_pose(scenario)),
+      rng_(Rng(settings.seed).split("belief")) {
   const Rng rng(settings.seed);
   const model::Scenario nominal = cell::with_fixed_arrivals(scenario, sequence);
   worlds_.push_back({coarse(nominal, settings.coarse_steps), {}, {}, true});
@@ -136,6 +154,47 @@ void Belief::see(const perception::Observation& observation) {
     if (item >= 0) forget(item);
   }
   is_prediction_new_ = false;
+  see_obstacles(observation);
+}
+
+std::vector<Solid> Belief::solids(const perception::Observation& look) const {
+  std::vector<Solid> solids;
+  for (const perception::Expectation& one : expectations()) {
+    const perception::PoseEstimate* seen = perception::find(look, one.item);
+    solids.push_back({seen != nullptr ? seen->X_WP : *one.X_WP, one.size});
+  }
+  return solids;
+}
+
+bool Belief::has_new_obstacle(const perception::Observation& look) const {
+  return obstacles_.has_news(obstacles_.find_foreign(look, solids(look)));
+}
+
+void Belief::drop_unconfirmed(perception::Observation& look, const perception::Observation& before) const {
+  if (!look.obstacles) return;
+  const std::vector<perception::Obstacle> others = before.obstacles.value_or(std::vector<perception::Obstacle>{});
+  std::erase_if(*look.obstacles, [&](const perception::Obstacle& one) { return obstacles_.has_news({one}, others); });
+}
+
+void Belief::see_obstacles(const perception::Observation& look) {
+  const std::vector<Solid> boxes = solids(look);
+  obstacles_.see(look, obstacles_.find_foreign(look, boxes), boxes);
+  const std::vector<geometry::Aabb> bodies = clear_of(obstacles_.regions(), boxes);
+  if (are_alike(bodies, obstacle_bodies_)) return;
+  obstacle_bodies_ = bodies;
+  for (World& world : worlds_) {
+    world.scenario.bodies.resize(own_bodies_);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      model::Body body;
+      body.name = "obstacle" + std::to_string(i + 1);
+      body.kind = model::BodyKind::Static;
+      body.material = world.scenario.parcels.front().material;
+      body.X_WB.p = 0.5 * (bodies[i].lower + bodies[i].upper);
+      body.shapes = {{geometry::Box{0.5 * (bodies[i].upper - bodies[i].lower)}, Pose{}}};
+      world.scenario.bodies.push_back(std::move(body));
+    }
+    world.is_stale = true;
+  }
 }
 
 void Belief::expect(const std::vector<std::vector<std::optional<Pose>>>& predicted) {

@@ -10,6 +10,7 @@
 #include "snug/packing/container_state.hpp"
 #include "snug/perception/observation.hpp"
 #include "snug/plant/plant.hpp"
+#include "snug/session/obstacles.hpp"
 #include "snug/session/rollout.hpp"
 
 namespace snug::session {
@@ -45,6 +46,13 @@ class Belief {
   [[nodiscard]] const std::optional<BelievedBox>& box(int item) const { return boxes_[static_cast<std::size_t>(item)]; }
   [[nodiscard]] std::vector<perception::Expectation> expectations() const;
 
+  /// What is believed to be in the container beside the items.
+  [[nodiscard]] const ObstacleMemory& obstacles() const { return obstacles_; }
+  /// A look shows an obstacle that was not known: one picture may be bad, so it takes another look.
+  [[nodiscard]] bool has_new_obstacle(const perception::Observation& look) const;
+  /// Takes out of `look` the obstacles that were neither known nor seen in the look before.
+  void drop_unconfirmed(perception::Observation& look, const perception::Observation& before) const;
+
   /// The item was brought: it stands where each world has boxes arrive, until it is seen.
   void arrives(int item);
   /// The box is not in the cell any more.
@@ -71,6 +79,9 @@ class Belief {
     std::vector<std::optional<Pose>> predicted;  ///< of the last motion that was sent
     bool is_stale = true;                        ///< its rollout has to be made anew: a size was measured
   };
+  /// The boxes as this look has them, or as they are believed to be.
+  [[nodiscard]] std::vector<Solid> solids(const perception::Observation& look) const;
+  void see_obstacles(const perception::Observation& look);
   void measure(int item, const perception::PoseEstimate& seen);
   [[nodiscard]] cell::CellAnchor anchor(const World& world, const plant::Feedback& robot) const;
 
@@ -78,6 +89,9 @@ class Belief {
   std::string sequence_name_;
   model::Sequence sequence_;
   std::vector<World> worlds_;
+  std::size_t own_bodies_ = 0;  ///< of the scenario; those of obstacles follow
+  std::vector<geometry::Aabb> obstacle_bodies_;
+  ObstacleMemory obstacles_;
   bool is_prediction_new_ = false;    ///< something was expected since the last look
   bool is_prediction_sound_ = false;  ///< the motion that it is of was not broken off
   std::vector<double> weights_;

@@ -19,6 +19,7 @@ namespace {
 constexpr double kAtAligner = 0.05;   ///< m, from where it was seen to arrive, level: still against the plates
 constexpr double kOnBench = 0.20;     ///< m, level, from the middle of the surface where boxes are turned
 constexpr double kOnSurface = 0.03;   ///< m, of its lower face over that surface
+constexpr double kLiesOn = 0.005;     ///< m, an obstacle that shares less with a box in plan view is beside it
 constexpr double kFootprint = 0.030;  ///< m, a middle so far beyond the walls still is the container's affair
 /// Success expected of a motion before anything is rehearsed, and of how many rollouts that is worth. From sessions in
 /// plants 101 and up.
@@ -75,12 +76,32 @@ packing::ContainerState Packer::container_state() const {
     if (std::abs(X_TP.p.x()) > half.x() || std::abs(X_TP.p.y()) > half.y() || X_TP.p.z() < 0.0) continue;
     state.boxes.push_back({items_[static_cast<std::size_t>(item)], X_TP});
   }
+  state.obstacles = obstacle_extents();
   return state;
+}
+
+std::vector<packing::Extent> Packer::obstacle_extents() const {
+  std::vector<packing::Extent> extents;
+  for (const geometry::Aabb& region : belief_.obstacles().regions()) {
+    const geometry::Aabb in_T = in_container(layout_.X_WT, region);
+    extents.push_back({in_T.lower, in_T.upper});
+  }
+  return extents;
+}
+
+bool Packer::is_under_obstacle(int item) const {
+  const packing::Extent box = packing::bounding_extent(
+      {items_[static_cast<std::size_t>(item)], layout_.X_WT.inverse() * belief_.box(item)->X_WP});
+  return std::ranges::any_of(obstacle_extents(), [&](const packing::Extent& one) {
+    const Vector3 shared = box.high.cwiseMin(one.high) - box.low.cwiseMax(one.low);
+    return shared.head<2>().minCoeff() > kLiesOn && one.high.z() > box.high.z();
+  });
 }
 
 double Packer::obstacle_top(int item) const {
   const Pose X_TW = layout_.X_WT.inverse();
   double top = 0.0;
+  for (const packing::Extent& one : obstacle_extents()) top = std::max(top, one.high.z());
   for (std::size_t i = 0; i < items_.size(); ++i) {
     const std::optional<BelievedBox>& box = belief_.box(static_cast<int>(i));
     if (!box || static_cast<int>(i) == item) continue;
@@ -109,15 +130,48 @@ bool Packer::is_seen_outside(const std::string& id) const {
          fit.above_rim > cell::kPackedAboveRim + slack;
 }
 
-void Packer::look() {
-  const std::vector<perception::Expectation> expected = belief_.expectations();
+perception::Observation Packer::take_picture(std::span<const perception::Expectation> expected, bool stays,
+                                             ItemReport& report) {
   perception::Observation seen = plant_.perceive(expected);
-  if (!seen.missing.empty()) {  // one empty place may be a bad picture
-    const std::vector<std::string> before = std::move(seen.missing);
+  Situation at;
+  while (seen.fault != perception::LookFault::None && !stop_reason_) {
+    const bool is_blocked = seen.fault == perception::LookFault::ViewBlocked;
+    at.trouble = is_blocked ? Trouble::ViewBlocked : Trouble::BadPicture;
+    at.is_held = stays || is_holding();
+    ++at.pictures;
+    const Remedy remedy = choose_remedy(at);
+    report.recoveries.push_back({robot_.time, report.id, at.trouble, remedy, {}});
+    if (remedy == Remedy::Stop) stop_reason_ = StopReason::ViewBlocked;
+    if (remedy == Remedy::Stop || remedy == Remedy::Believe) break;
+    if (remedy == Remedy::MoveAway) move_home(report);
     seen = plant_.perceive(expected);
-    std::erase_if(seen.missing, [&](const std::string& id) { return std::ranges::find(before, id) == before.end(); });
   }
+  return seen;
+}
+
+double Packer::size_off(int item) const {
+  const std::string& id = items_[static_cast<std::size_t>(item)].id;
+  return (model::find_parcel(belief_.nominal(), id)->size - model::find_parcel(scenario_, id)->size)
+      .cwiseAbs()
+      .maxCoeff();
+}
+
+void Packer::look(ItemReport& report, bool stays) {
+  const std::vector<perception::Expectation> expected = belief_.expectations();
+  perception::Observation seen = take_picture(expected, stays, report);
+  if (!seen.missing.empty() || belief_.has_new_obstacle(seen)) {  // one picture may be bad
+    const perception::Observation before = std::move(seen);
+    seen = take_picture(expected, stays, report);
+    std::erase_if(seen.missing,
+                  [&](const std::string& id) { return std::ranges::find(before.missing, id) == before.missing.end(); });
+    belief_.drop_unconfirmed(seen, before);
+  }
+  const std::size_t known = belief_.obstacles().reports().size();
   belief_.see(seen);
+  // It is not seen, and something that was not there stands higher over its place: that is the box, or lies on it.
+  const int own = index_of(report.id);
+  const bool has_news = belief_.obstacles().reports().size() > known;
+  if (has_news && belief_.box(own) && !belief_.box(own)->was_seen && is_under_obstacle(own)) belief_.forget(own);
   // It could be anywhere: neither where it was nor where it was to go.
   if (let_go_ >= 0 && belief_.box(let_go_) && !belief_.box(let_go_)->was_seen) belief_.forget(let_go_);
   let_go_ = -1;
@@ -148,7 +202,7 @@ Location Packer::locate(int item) const {
 
 bool Packer::can_be_picked(int item) const {
   const std::optional<BelievedBox>& box = belief_.box(item);
-  if (!box || !is_upright(box->X_WP.R)) return false;
+  if (!box || !is_upright(box->X_WP.R) || is_under_obstacle(item)) return false;
   if (!reaches_) return true;
   const PlannedBox planned = make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP,

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -56,11 +57,22 @@ class Packer {
     PlannedBox box;
   };
   [[nodiscard]] int index_of(const std::string& id) const;
-  void look();
+  /// `stays`: the tool does not leave for a picture that something blocks.
+  void look(ItemReport& report, bool stays = false);
+  /// One that tells something, if there is any; troubles with that are in the report.
+  [[nodiscard]] perception::Observation take_picture(std::span<const perception::Expectation> expected, bool stays,
+                                                     ItemReport& report);
+  /// m, the largest difference of the edges from what the scenario says of the item.
+  [[nodiscard]] double size_off(int item) const;
+  void move_home(ItemReport& report);
+  /// Extents in T of what is in the container beside boxes.
+  [[nodiscard]] std::vector<packing::Extent> obstacle_extents() const;
+  /// An obstacle lies on the box: it is neither picked nor pressed on.
+  [[nodiscard]] bool is_under_obstacle(int item) const;
   [[nodiscard]] Location locate(int item) const;
   [[nodiscard]] bool can_be_picked(int item) const;
-  /// m, over the inner floor of the container: the highest point of all boxes but `item` (-1: of all), those that were
-  /// left outside too: what is carried passes over it.
+  /// m, over the inner floor of the container: the highest point of all obstacles and of all boxes but `item` (-1: of
+  /// all), those that were left outside too: what is carried passes over it.
   [[nodiscard]] double obstacle_top(int item) const;
   [[nodiscard]] cell::ContainerFit fit_of(int item, const Pose& X_WP) const;
   [[nodiscard]] std::optional<Planned> plan(int item, const Decide& decide, ItemReport& report);

@@ -1,4 +1,6 @@
 // Packer: motions sent, what they came to, and what is done when that is not what was planned.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,7 +18,9 @@ namespace {
 constexpr double kLiesTurned = 0.25 * std::numbers::pi;  ///< rad, from what was planned
 constexpr double kAsRehearsed = 0.004;       ///< m, from where the nominal rollout let the box go on the way
 constexpr double kTurnedAsRehearsed = 0.05;  ///< rad
-constexpr int kMostRounds = 12;              ///< of remedies for one motion
+/// m: edges that differ by more are another item's. Tapes and damp make 2 mm of the demonstrator's.
+constexpr double kWrongSize = 0.010;
+constexpr int kMostRounds = 12;  ///< of remedies for one motion
 
 Trouble trouble_of(plant::EndReason reason) {
   switch (reason) {
@@ -81,7 +85,7 @@ bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& rep
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
     submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)}, {options_.limits.force, true}, report);
     if (robot_.end.reason != plant::EndReason::Completed || is_last) return true;
-    look();
+    look(report, true);
     const std::optional<BelievedBox>& box = belief_.box(item);
     const Pose& rehearsed = attempt.looked[stage];
     if (box && box->was_seen &&
@@ -171,7 +175,7 @@ Trouble Packer::find_trouble(int item, const packing::Placement& planned,
   const Trouble ended = trouble_of(robot_.end.reason);
   if (ended != Trouble::None && ended != Trouble::NoSeal && ended != Trouble::VacuumLost) return ended;
   if (ended != Trouble::None) retreat(report.id, report);
-  look();
+  look(report);
   const Trouble seen = assess(item, planned, before, report);
   return ended != Trouble::None ? ended : seen;
 }
@@ -236,7 +240,7 @@ void Packer::repack(int item, const Decide& decide, ItemReport& report) {
   }
   (void)send(planned->attempt, own.id, report);
   if (robot_.end.reason != plant::EndReason::Completed) retreat(own.id, report);
-  look();
+  look(report);
   if (is_gone(own.id)) return;
   if (is_seen_outside(own.id)) {
     left_out_.insert(item);
@@ -258,7 +262,7 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
     stops += trouble == Trouble::ProtectiveStop ? 1 : 0;
     Situation at = situation_of(culprit, trouble, report);
     at.stops = stops;
-    at.was_pressed = was_pressed;
+    at.was_pressed = was_pressed || (belief_.box(culprit) && is_under_obstacle(culprit));
     const Remedy remedy = choose_remedy(at);
     const bool is_of_motion = trouble_of(robot_.end.reason) == trouble;
     std::string detail = is_of_motion ? plant::describe(robot_.end, last_) : std::string();
@@ -283,13 +287,17 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
         stop_reason_ = trouble == Trouble::PlantFault ? StopReason::PlantFault : StopReason::RobotStops;
         give_up(item, trouble, report);
         return false;
+      case Remedy::LookAgain:
+      case Remedy::MoveAway:
+      case Remedy::Believe:  // of pictures: take_picture
+        break;
       case Remedy::Resume:
         resume(report.id, report);
         break;
       case Remedy::SetDown:
         set_down(planned, report);
         if (robot_.end.reason != plant::EndReason::Completed) break;
-        look();
+        look(report);
         if (can_be_picked(item)) return true;
         break;
       case Remedy::Release:
@@ -326,9 +334,20 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
     return report;
   }
   belief_.arrives(item);
-  look();
+  look(report);
+  if (stop_reason_) {
+    report.end = ItemEnd::NotHeld;
+    report.reason = name_of(*stop_reason_);
+  } else if (!is_gone(report.id) && size_off(item) > kWrongSize) {
+    report.recoveries.push_back({robot_.time, report.id, Trouble::WrongItem,
+                                 choose_remedy({.trouble = Trouble::WrongItem}),
+                                 fmt::format("edges differ by up to {:.0f} mm", 1e3 * size_off(item))});
+    report.end = ItemEnd::WrongItem;
+    report.reason = report.recoveries.back().detail;
+  }
+  const bool is_refused = report.end == ItemEnd::WrongItem;
   bool is_whole = true;
-  for (bool again = true; again && !stop_reason_;) {
+  for (bool again = !is_refused; again && !stop_reason_;) {
     again = false;
     if (is_gone(report.id)) {
       give_up(item, Trouble::Gone, report);
@@ -357,12 +376,12 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
   }
   const bool is_waiting =
       report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless || report.end == ItemEnd::NotHeld;
-  if (is_waiting || report.end == ItemEnd::Gone) belief_.forget(item);  // the next arrival takes it away
+  if (is_waiting || is_refused || report.end == ItemEnd::Gone) belief_.forget(item);  // the next arrival takes it away
   report.done = robot_.time;
   return report;
 }
 
-std::string Packer::go_home() {
+void Packer::move_home(ItemReport& report) {
   motion::Waypoint home;
   home.X_WE = scenario_.controller.X_WE_start;
   home.name = "home";
@@ -371,8 +390,12 @@ std::string Packer::go_home() {
   from.name = "home";
   motion::Program rows;
   append(rows, drivable(layout_, from, {home}));
+  submit("", rows.waypoints, {std::nullopt, false}, report);
+}
+
+std::string Packer::go_home() {
   ItemReport nobody;
-  submit("", rows.waypoints, {std::nullopt, false}, nobody);
+  move_home(nobody);
   if (robot_.end.reason == plant::EndReason::Completed) return {};
   return "on the way home: " + plant::describe(robot_.end, last_);
 }

@@ -4,6 +4,8 @@
 namespace snug::session {
 namespace {
 
+constexpr int kMostPictures = 3;  ///< that tell nothing, one after the other
+
 Remedy where_it_lies(const Situation& at) {
   const bool may_pick = at.can_be_picked && at.tries < at.most_tries;
   if (at.fits) return at.lies_turned && may_pick ? Remedy::PickAgain : Remedy::Accept;
@@ -36,6 +38,12 @@ const char* name_of(Trouble trouble) {
       return "sticks out";
     case Trouble::Gone:
       return "gone";
+    case Trouble::WrongItem:
+      return "wrong item";
+    case Trouble::BadPicture:
+      return "bad picture";
+    case Trouble::ViewBlocked:
+      return "view blocked";
     case Trouble::PlantFault:
       return "plant fault";
   }
@@ -60,6 +68,12 @@ const char* name_of(Remedy remedy) {
       return "accept";
     case Remedy::Skip:
       return "skip";
+    case Remedy::LookAgain:
+      return "look again";
+    case Remedy::MoveAway:
+      return "move away";
+    case Remedy::Believe:
+      return "believe";
     case Remedy::Stop:
       return "stop";
   }
@@ -89,7 +103,13 @@ Remedy choose_remedy(const Situation& at) {
     case Trouble::NeighbourMoved:
       return Remedy::Accept;
     case Trouble::Gone:
+    case Trouble::WrongItem:
       return Remedy::Skip;
+    case Trouble::BadPicture:
+      return at.pictures < kMostPictures ? Remedy::LookAgain : Remedy::Believe;
+    case Trouble::ViewBlocked:
+      if (at.pictures >= kMostPictures) return Remedy::Stop;
+      return at.is_held ? Remedy::LookAgain : Remedy::MoveAway;
   }
   return Remedy::Stop;
 }

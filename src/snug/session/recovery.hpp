@@ -18,6 +18,9 @@ enum class Trouble {
   NeighbourMoved,  ///< it lies where it should, but another box was moved beyond the limit
   SticksOut,       ///< it, or another box, stands over the rim or beyond a wall
   Gone,            ///< it is not seen where it could be
+  WrongItem,       ///< its edges at the aligner are other ones than those of the item that was to come
+  BadPicture,      ///< a look has too few points to tell anything
+  ViewBlocked,     ///< something is between camera and container
   PlantFault,      ///< the cell itself failed
 };
 [[nodiscard]] const char* name_of(Trouble trouble);
@@ -31,6 +34,9 @@ enum class Remedy {
   PressLevel,  ///< press on it from above, look
   Accept,      ///< it stays where it lies; what follows is planned around it
   Skip,        ///< it is left, or taken away; the next item comes
+  LookAgain,   ///< another picture
+  MoveAway,    ///< the tool goes to its start, another picture
+  Believe,     ///< go on with what is believed
   Stop,        ///< the session ends
 };
 [[nodiscard]] const char* name_of(Remedy remedy);
@@ -47,6 +53,7 @@ struct Situation {
   bool lies_turned = false;    ///< by more than 45 degrees from its plan: it takes room meant for others
   bool can_be_picked = false;  ///< seen, standing on a face, within reach of the tool
   bool was_pressed = false;    ///< since it was let go
+  int pictures = 0;            ///< that told nothing, one after the other, this one included
 };
 [[nodiscard]] Remedy choose_remedy(const Situation& situation);
 

@@ -178,6 +178,7 @@ class Session {
     result_.planned_percent = model::compute_filling_degree_percent(scenario_, container, packed);
     result_.duration = packer_.time();
     result_.program = packer_.sent();
+    result_.obstacles = packer_.belief().obstacles().reports();
   }
 
   SessionResult finish() {

@@ -9,6 +9,7 @@
 #include "snug/packing/agent.hpp"
 #include "snug/plant/plant.hpp"
 #include "snug/session/item_seconds.hpp"
+#include "snug/session/obstacles.hpp"
 #include "snug/session/recovery.hpp"
 #include "snug/session/rehearsal.hpp"
 
@@ -48,6 +49,7 @@ enum class ItemEnd {
   NotHeld,    ///< every pick failed; it was left behind
   Left,       ///< it lies where it cannot be picked, or the tries were used up
   Gone,       ///< it is not seen any more
+  WrongItem,  ///< another one came in its place; it was taken away
   NotBrought  ///< the plant did not bring it
 };
 [[nodiscard]] const char* name_of(ItemEnd end);
@@ -92,8 +94,9 @@ enum class StopReason {
   AllPacked,
   NoMoreItems,  ///< some are not packed
   NoItems,
-  NoPlace,     ///< for more items than may be skipped
-  RobotStops,  ///< protective stops did not end
+  NoPlace,      ///< for more items than may be skipped
+  RobotStops,   ///< protective stops did not end
+  ViewBlocked,  ///< something stays between camera and container
   PlantFault,
   Interrupted,  ///< by who started it
 };
@@ -112,6 +115,7 @@ struct SessionResult {
   StopReason stop_reason = StopReason::NoItems;
   std::string stopped;                         ///< the same for people
   std::string failure;                         ///< empty, or why the robot did not come home in the end
+  std::vector<ObstacleReport> obstacles;       ///< that were seen, those that are gone again too
   std::optional<double> percent_before_skips;  ///< planned_percent when the first item without a place was skipped
 };
 [[nodiscard]] int recovery_count(const SessionResult& result);

@@ -19,6 +19,8 @@ const char* name_of(ItemEnd end) {
       return "left";
     case ItemEnd::Gone:
       return "gone";
+    case ItemEnd::WrongItem:
+      return "wrong item";
     case ItemEnd::NotBrought:
       return "not brought";
   }
@@ -37,6 +39,8 @@ const char* name_of(StopReason reason) {
       return "no place";
     case StopReason::RobotStops:
       return "robot stops";
+    case StopReason::ViewBlocked:
+      return "view blocked";
     case StopReason::PlantFault:
       return "plant fault";
     case StopReason::Interrupted:

@@ -68,6 +68,7 @@ packing::Candidate measured(const packing::ContainerState& state, packing::Candi
     candidate.side_height[low] = candidate.side_height[high] = 0.0;
   }
   for (const packing::PlacedBox& other : state.boxes) add_neighbour(extent_of(other, shrink), box, candidate);
+  for (const packing::Extent& obstacle : state.obstacles) add_neighbour(obstacle, box, candidate);
   return candidate;
 }
 

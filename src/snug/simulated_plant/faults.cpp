@@ -9,7 +9,8 @@
 namespace snug::simulated_plant {
 namespace {
 
-constexpr std::array kKinds{FaultKind::NoSeal, FaultKind::Drop, FaultKind::Stop, FaultKind::Displace, FaultKind::Push};
+constexpr std::array kKinds{FaultKind::NoSeal, FaultKind::Drop,   FaultKind::Stop, FaultKind::Displace,
+                            FaultKind::Push,   FaultKind::Object, FaultKind::Clear};
 constexpr int kMostItems = 100'000;
 
 Fault parse_fault(std::string_view word) {
@@ -28,7 +29,7 @@ Fault parse_fault(std::string_view word) {
     return fault;
   }
   throw InputError("command line", "--fault", "'" + std::string(word) + "'",
-                   "noseal, drop, stop, displace or push, each with @N, separated by commas");
+                   "noseal, drop, stop, displace, push, object or clear, each with @N, separated by commas");
 }
 
 }  // namespace
@@ -45,6 +46,10 @@ const char* name_of(FaultKind kind) {
       return "displace";
     case FaultKind::Push:
       return "push";
+    case FaultKind::Object:
+      return "object";
+    case FaultKind::Clear:
+      return "clear";
   }
   return "";
 }

@@ -13,6 +13,8 @@ enum class FaultKind {
   Stop,      ///< the robot stops for protection while it carries the item
   Displace,  ///< the item, let go in the container, is moved 30 mm away, on top of others where they are in the way
   Push,      ///< the same with the packed box that is nearest to it
+  Object,    ///< once the item, or the next that is, is let go in the container, something foreign is put in there
+  Clear,     ///< at that time, foreign objects are taken out again
 };
 [[nodiscard]] const char* name_of(FaultKind kind);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "snug/simulated_plant/simulated_plant.hpp"
 
@@ -96,17 +97,31 @@ void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWa
     break_suction();
     note("drop", current_, "it falls from the cup");
   }
+  if (!is_let_go(plan)) return;
+  if (pending_.displace || pending_.push) move_boxes(plan, course);
+  if (put_and_take_objects()) {
+    settle(plan, course);
+    objects_.note_rest();
+  }
+}
+
+bool SimulatedPlant::is_let_go(const motion::PreparedProgram& plan) const {
+  const cell::CellWorld& world = simulation_.world();
+  const physics::BodyId body = world.parcels[static_cast<std::size_t>(current_)];
   // The last motion of an item ends with the box let go and the tool over it.
   const model::Container* container = model::find_container(simulation_.scenario(), simulation_.scenario().target);
-  if (container == nullptr || !state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) return;
+  if (container == nullptr || !state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) return false;
   const Vector3 p_TP = container->X_WT.inverse() * physics::pose_of(world.model, state_.world, body).p;
   const bool is_in = p_TP.z() > 0.0 && (p_TP.cwiseAbs() - 0.5 * container->inner_size).head<2>().maxCoeff() < 0.0;
-  const bool is_over = is_in && plan.program.waypoints.back().name.starts_with("PostPlace") && !is_held &&
-                       state_.controller.phase == motion::ControllerPhase::Finished;
-  if (!is_over || (!pending_.displace && !pending_.push)) return;
+  return is_in && plan.program.waypoints.back().name.starts_with("PostPlace") &&
+         state_.gripper.cup.body != body.index && state_.controller.phase == motion::ControllerPhase::Finished;
+}
+
+void SimulatedPlant::move_boxes(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
+  const cell::CellWorld& world = simulation_.world();
   int item = current_;
   if (pending_.push && !pending_.displace) {
-    const Vector3 p = physics::pose_of(world.model, state_.world, body).p;
+    const Vector3 p = physics::pose_of(world.model, state_.world, world.parcels[static_cast<std::size_t>(current_)]).p;
     double nearest = 1e9;
     item = -1;
     for (const cell::BoxResult& box : boxes()) {
@@ -124,6 +139,27 @@ void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWa
   if (item < 0) return;
   move_aside(item, kind);
   settle(plan, course);
+}
+
+bool SimulatedPlant::put_and_take_objects() {
+  const bool is_clearing = std::exchange(clear_is_due_, false);
+  if (is_clearing) {
+    objects_.take_out(state_);
+    note("clear", current_, "foreign objects are taken out");
+  }
+  const int due = std::exchange(objects_due_, 0);
+  for (int i = 0; i < due; ++i) {
+    const ForeignObject* object = objects_.put(state_);
+    if (object == nullptr) {
+      note("object", current_, "no room for it in the container");
+      continue;
+    }
+    const Vector3 p = 1e3 * object->X_TB.p, size = 1e3 * kForeignSize;
+    note("object", current_,
+         fmt::format("{}, {:.0f} x {:.0f} x {:.0f} mm, is put at ({:.0f}, {:.0f}, {:.0f}) mm", object->name, size.x(),
+                     size.y(), size.z(), p.x(), p.y(), p.z()));
+  }
+  return is_clearing || due > 0;
 }
 
 }  // namespace snug::simulated_plant

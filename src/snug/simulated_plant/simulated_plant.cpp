@@ -22,10 +22,13 @@ model::Scenario draw_plant(const model::Scenario& scenario, const std::string& s
 SimulatedPlant::SimulatedPlant(const model::Scenario& scenario, const std::string& sequence,
                                const SimulatedPlantOptions& options)
     : options_(options),
-      simulation_(draw_plant(model::with_values(scenario, options.set, "--plant-set"), sequence, options.seed),
-                  sequence, options.simulation),
+      simulation_(
+          with_objects(draw_plant(model::with_values(scenario, options.set, "--plant-set"), sequence, options.seed),
+                       options.faults),
+          sequence, options.simulation),
       state_(simulation_.make_state()),
       work_(simulation_.make_workspace()),
+      objects_(simulation_, options.faults, options.seed),
       perception_(camera_perception::make_perception(options.perception, options.seed, scenario)),
       was_brought_(simulation_.sequence().items.size(), false) {
   read_sensors({}, {});
@@ -68,6 +71,8 @@ bool SimulatedPlant::bring(const std::string& item) {
     pending_.stop |= fault.kind == FaultKind::Stop;
     pending_.displace |= fault.kind == FaultKind::Displace;
     pending_.push |= fault.kind == FaultKind::Push;
+    objects_due_ += fault.kind == FaultKind::Object ? 1 : 0;
+    clear_is_due_ |= fault.kind == FaultKind::Clear;
   }
   return true;
 }
@@ -89,6 +94,10 @@ perception::Observation SimulatedPlant::perceive(std::span<const perception::Exp
     const model::Scenario& scenario = simulation_.scenario();
     scene.boxes.push_back({id, physics::pose_of(world.model, state_.world, body),
                            model::collision_size(scenario, *model::find_parcel(scenario, id))});
+  }
+  for (const ForeignObject& one : objects_.objects()) {
+    if (one.is_in)
+      scene.objects.push_back({one.name, physics::pose_of(world.model, state_.world, one.body), kForeignSize});
   }
   return perception_->perceive(scene, expected);
 }
@@ -123,6 +132,7 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
                              plant::MotionWatch& course) {
   if (simulation_.is_at_end(plan, state_)) return false;
   const cell::CellTick tick = simulation_.advance(plan, state_, work_);
+  objects_.watch(state_, work_);
   course.follow(tick.row, simulation_.time(state_), state_.controller.phase == motion::ControllerPhase::Waiting);
   if (watcher_) watcher_(tick);
   inject(plan, course);
@@ -154,6 +164,7 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWa
   const double at_least = is_fast ? plant::kExactSettle : plant::kLaggedSettle;
   while (plant::is_settling(start, simulation_.time(state_), speed(), at_least)) {
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
+    objects_.watch(state_, work_);
     if (watcher_) watcher_(tick);
     if (tick.failure.empty()) continue;
     if (!work_.arm.stop) fail(tick, course);  // a stop now: the tool was where it was to come

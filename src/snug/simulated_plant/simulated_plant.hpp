@@ -11,6 +11,7 @@
 #include "snug/perception/perception.hpp"
 #include "snug/plant/motion_watch.hpp"
 #include "snug/simulated_plant/faults.hpp"
+#include "snug/simulated_plant/foreign_objects.hpp"
 
 namespace snug::simulated_plant {
 
@@ -54,6 +55,8 @@ class SimulatedPlant final : public plant::Plant {
   /// Of the item brought last: how many times what it did to the cup the vacuum could have carried, at the worst
   /// instant.
   [[nodiscard]] double least_hold_factor() const { return state_.gripper.least_hold_factor; }
+  /// Those that faults asked for.
+  [[nodiscard]] const std::vector<ForeignObject>& objects() const { return objects_.objects(); }
   [[nodiscard]] const std::vector<Call>& calls() const { return calls_; }
   /// Called after each tick of the controller.
   void watch(std::function<void(const cell::CellTick&)> watcher) { watcher_ = std::move(watcher); }
@@ -70,6 +73,11 @@ class SimulatedPlant final : public plant::Plant {
   void inject(const motion::PreparedProgram& plan, plant::MotionWatch& course);
   void break_suction();
   void move_aside(int item, FaultKind kind);
+  /// Whether anything was done: boxes and objects have to come to rest then.
+  [[nodiscard]] bool put_and_take_objects();
+  /// The last motion of the item has ended: it was let go in the container and the tool is over it.
+  [[nodiscard]] bool is_let_go(const motion::PreparedProgram& plan) const;
+  void move_boxes(const motion::PreparedProgram& plan, plant::MotionWatch& course);
   void note(const char* kind, int item, std::string text);
   void read_sensors(const plant::MotionWatch& course, const plant::End& end);
   [[nodiscard]] Pose X_WE() const;
@@ -79,12 +87,15 @@ class SimulatedPlant final : public plant::Plant {
   cell::Simulation simulation_;
   cell::CellState state_;
   cell::CellWorkspace work_;
+  ForeignObjects objects_;
   std::unique_ptr<perception::Perception> perception_;
   plant::Feedback feedback_;
   std::vector<bool> was_brought_;
   int brought_count_ = 0;
-  int current_ = -1;    ///< item brought last
-  ItemFaults pending_;  ///< of that item
+  int current_ = -1;     ///< item brought last
+  ItemFaults pending_;   ///< of that item
+  int objects_due_ = 0;  ///< to be put in when an item is let go in the container
+  bool clear_is_due_ = false;
   bool is_stopped_ = false;
   bool has_failed_ = false;
   std::vector<Call> calls_;

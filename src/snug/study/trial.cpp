@@ -146,6 +146,7 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
   trial.plant_seed = options.seed;
   trial.plant = options;
   trial.calls = plant.calls();
+  trial.objects = plant.objects();
   return trial;
 }
 
@@ -166,6 +167,14 @@ std::vector<record::Event> events_of(const session::SessionResult& result) {
       if (!recovery.detail.empty()) text += " (" + recovery.detail + ")";
       events.push_back({recovery.time, "recovery", item.id, std::move(text), {}});
     }
+  }
+  for (const session::ObstacleReport& one : result.obstacles) {
+    events.push_back({one.seen,
+                      "obstacle",
+                      fmt::format("obstacle {}", one.number),
+                      session::describe(one),
+                      {{"height", one.high_T.z()}}});
+    if (one.gone) events.push_back({*one.gone, "obstacle", fmt::format("obstacle {}", one.number), "it is gone", {}});
   }
   std::ranges::stable_sort(events, {}, &record::Event::time);
   return events;

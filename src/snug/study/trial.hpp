@@ -40,6 +40,7 @@ struct Trial {
   double unturned_cycle = 0.0;  ///< s, mean of the items that were placed at once without turning them; 0: none
   std::vector<TrueItem> items;
   std::vector<cell::BoxResult> boxes;
+  std::vector<simulated_plant::ForeignObject> objects;  ///< that faults put into the plant
   std::uint64_t state_hash = 0;
   std::vector<simulated_plant::Call> calls;
   simulated_plant::SimulatedPlantOptions plant;
@@ -53,7 +54,7 @@ using TrialProgress = std::function<void(const Trial& so_far, int item, int item
                               const session::SessionOptions& session,
                               const simulated_plant::SimulatedPlantOptions& plant, const TrialProgress& progress = {});
 
-/// What the session did, as events of a recording: what it predicted, troubles and remedies.
+/// What the session did, as events of a recording: what it predicted, troubles and remedies, obstacles.
 [[nodiscard]] std::vector<record::Event> events_of(const session::SessionResult& result);
 
 }  // namespace snug::study

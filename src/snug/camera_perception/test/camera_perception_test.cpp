@@ -85,6 +85,51 @@ TEST(CameraPerception, AnEmptyPlaceIsMissingAndAMovedBoxIsFound) {
   EXPECT_LT((found->X_WP.p - boxes[0].X_WP.p).norm(), 0.005);
 }
 
+TEST(CameraPerception, ReportsAForeignObjectWithItsHeightsAndForgetsNothingByItself) {
+  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
+  const Vector3 size(0.09, 0.07, 0.06);
+  const perception::SceneBox object{"stranger", in_container(-0.05, -0.12, 0.03), size};
+  const auto camera = make_perception(Kind::Camera, 7, scenario());
+  const perception::Observation with = camera->perceive({0.0, Pose{}, boxes, {object}}, expectations(boxes));
+  ASSERT_TRUE(with.obstacles);
+  ASSERT_EQ(with.obstacles->size(), 1U);
+  const perception::Obstacle& one = with.obstacles->front();
+  EXPECT_GT(one.deviation, 1e-4);
+  EXPECT_LT(one.deviation, 2e-3);
+  const geometry::Aabb seen = perception::bounds_of(one.columns);
+  const Vector3 low = object.X_WP.p - 0.5 * size, high = object.X_WP.p + 0.5 * size;
+  EXPECT_NEAR(seen.upper.z(), high.z(), 0.002);
+  for (int axis = 0; axis < 2; ++axis) {  // whole columns; edges lose a few points
+    EXPECT_NEAR(seen.lower[axis], low[axis], perception::kColumnSide + 0.002);
+    EXPECT_NEAR(seen.upper[axis], high[axis], perception::kColumnSide + 0.002);
+  }
+  ASSERT_TRUE(with.heights);
+  const int x = perception::column_of(object.X_WP.p.x()), y = perception::column_of(object.X_WP.p.y());
+  EXPECT_NEAR(with.heights->at(x, y).value_or(9.0), high.z(), 0.002);
+  const perception::Observation without = camera->perceive({0.0, Pose{}, boxes, {}}, expectations(boxes));
+  EXPECT_TRUE(without.obstacles->empty());
+  EXPECT_NEAR(without.heights->at(x, y).value_or(9.0), in_container(0.0, 0.0, 0.0).p.z(), 0.003);
+}
+
+TEST(CameraPerception, SaysThatAPictureTellsNothingAndWhy) {
+  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
+  const perception::SceneBox arm{"arm", in_container(0.0, 0.1, 0.6), Vector3(0.4, 0.3, 0.1)};
+  const auto camera = make_perception(Kind::Camera, 7, scenario());
+  const perception::Observation blocked = camera->perceive({0.0, Pose{}, boxes, {arm}}, expectations(boxes));
+  EXPECT_EQ(blocked.fault, perception::LookFault::ViewBlocked);
+  model::Scenario dirty_cell = scenario();
+  dirty_cell.cameras.front().errors.loss.random = 0.7;
+  const perception::Observation dirty =
+      make_perception(Kind::Camera, 7, dirty_cell)->perceive({0.0, Pose{}, boxes}, expectations(boxes));
+  EXPECT_EQ(dirty.fault, perception::LookFault::TooFewPoints);
+  for (const perception::Observation& one : {blocked, dirty}) {
+    EXPECT_FALSE(one.obstacles) << "neither there nor gone";
+    EXPECT_TRUE(one.missing.empty());
+    EXPECT_EQ(one.not_seen, (std::vector<std::string>{"A"}));
+  }
+  EXPECT_EQ(camera->perceive({0.0, Pose{}, boxes}, expectations(boxes)).fault, perception::LookFault::None);
+}
+
 TEST(CameraPerception, StationsMeasureOutsideTheContainerWithSize) {
   const std::vector<perception::SceneBox> boxes = {{"new", scenario().aligner->X_WA, kSize}};
   const auto camera = make_perception(Kind::Camera, 7, scenario());

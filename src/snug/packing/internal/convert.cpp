@@ -14,6 +14,10 @@ constexpr double kUprightTilt = 0.105;
 /// m: neighbours nearer to the rim of a side than this count for `side_height`.
 constexpr double kBeside = 0.060;
 
+// m, kept to obstacles. Beside: boxes are let down up to 10 mm off their place and slid, and pushed against what is
+// within 7 mm (session/item_plan.cpp). Over: what carries a box beside an obstacle gives way a little.
+constexpr double kObstacleSide = 0.012, kObstacleTop = 0.005;
+
 int to_grams(double mass) { return static_cast<int>(std::lround(std::clamp(mass * 1000.0, 0.0, 1.0e9))); }
 
 int capacity(const Item& item) {
@@ -92,11 +96,28 @@ Block to_block(const Planning& planning, const PlacedBox& box) {
   return block;
 }
 
+/// Thin, at its top: what is under it is full or lost, and boxes under it come before it.
+Block to_block(const Planning& planning, const Extent& obstacle) {
+  Block block;
+  const Vector3 corner(0.5 * planning.inner_size.x(), 0.5 * planning.inner_size.y(), 0.0);
+  const Vector3 low = obstacle.low + corner - Vector3::Constant(kObstacleSide);
+  const Vector3 high = obstacle.high + corner + Vector3(kObstacleSide, kObstacleSide, kObstacleTop);
+  block.x1 = to_ticks(low.x());
+  block.y1 = to_ticks(low.y());
+  block.x2 = std::max(block.x1 + 1, to_ticks(high.x()));
+  block.y2 = std::max(block.y1 + 1, to_ticks(high.y()));
+  block.z2 = std::max(1, to_ticks(high.z()));
+  block.z1 = block.z2 - 1;
+  block.is_obstacle = true;
+  return block;
+}
+
 Layout to_layout(const Planning& planning, const Rules& rules, const ContainerState& state) {
   Layout layout(rules);
   // From below: what rests on a box has to come after it.
   std::vector<Block> blocks;
   for (const PlacedBox& box : state.boxes) blocks.push_back(to_block(planning, box));
+  for (const Extent& obstacle : state.obstacles) blocks.push_back(to_block(planning, obstacle));
   std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.z1 < b.z1; });
   for (const Block& block : blocks) layout.add(block);
   return layout;

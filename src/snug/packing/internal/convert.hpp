@@ -21,6 +21,8 @@ struct Planning {
 [[nodiscard]] int to_ticks(double metres);
 [[nodiscard]] Rules make_rules(const Planning& planning, std::span<const Item> kinds);
 [[nodiscard]] Block to_block(const Planning& planning, const PlacedBox& box);
+/// With the room that is kept to it.
+[[nodiscard]] Block to_block(const Planning& planning, const Extent& obstacle);
 /// Everything that stands in the container, in the order of the state.
 [[nodiscard]] Layout to_layout(const Planning& planning, const Rules& rules, const ContainerState& state);
 

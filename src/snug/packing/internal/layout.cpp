@@ -109,6 +109,7 @@ void Layout::add(const Block& block) {
   const double area = static_cast<double>(face.x2 - face.x1) * (face.y2 - face.y1);
   columns_.push_back(std::max(0.0, block.z2 - below / area));
   blocks_.push_back(block);
+  has_obstacles_ |= block.is_obstacle;
   by_axis_.x1.push_back(block.x1);
   by_axis_.y1.push_back(block.y1);
   by_axis_.x2.push_back(block.x2);
@@ -124,6 +125,7 @@ void Layout::add(const Block& block) {
   }
   const int margin = rules_.margin;
   split_spaces({face.x1 - margin, face.y1 - margin, face.x2 + margin, face.y2 + margin}, block.z2);
+  if (block.is_obstacle) return;  // no level to put anything on
   const int level = level_of(block.z2);
   if (level + rules_.min_height > rules_.size_z) return;
   for (Space& space : spaces_) {
@@ -234,11 +236,18 @@ Refusal Layout::settle(const Piece& piece, int orientation, int x, int y, Candid
     support = static_cast<double>(held) / (static_cast<double>(s.width) * s.depth);
   }
   pose = {x, y, base, orientation, support};
+  if (has_obstacles_ && rests_on_obstacle(face, base)) return Refusal::Support;
   if (support < rules_.min_support) return Refusal::Support;
   if (base > 0 && !is_balanced(face, base, x + s.width / 2 + s.com_x, y + s.depth / 2 + s.com_y))
     return Refusal::Balance;
   if (has_limits_ && base > 0 && !carries(face, base, piece.mass)) return Refusal::Load;
   return Refusal::None;
+}
+
+bool Layout::rests_on_obstacle(const Rectangle& face, int base) const {
+  return std::ranges::any_of(blocks_, [&](const Block& b) {
+    return b.is_obstacle && b.z2 <= base && base - b.z2 <= rules_.level_slack && shared_area(face, b) > 0;
+  });
 }
 
 bool Layout::is_balanced(const Rectangle& face, int base, int com_x, int com_y) const {

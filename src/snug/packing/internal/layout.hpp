@@ -19,8 +19,9 @@ struct Rectangle {
 /// An upright box that stands in the container.
 struct Block {
   int x1 = 0, y1 = 0, z1 = 0, x2 = 0, y2 = 0, z2 = 0;
-  int mass = 0;             ///< g
-  int capacity = kNoLimit;  ///< g that may rest on it
+  int mass = 0;              ///< g
+  int capacity = kNoLimit;   ///< g that may rest on it
+  bool is_obstacle = false;  ///< nothing rests on it
   static constexpr int kNoLimit = 1 << 30;
   bool operator==(const Block&) const = default;
 };
@@ -114,6 +115,7 @@ class Layout {
   [[nodiscard]] bool is_supported(int level, const Rectangle& area) const;
   [[nodiscard]] bool is_balanced(const Rectangle& face, int base, int com_x, int com_y) const;
   [[nodiscard]] bool carries(const Rectangle& face, int base, int mass) const;
+  [[nodiscard]] bool rests_on_obstacle(const Rectangle& face, int base) const;
   void add_load(std::size_t upper, double mass);
 
   Rules rules_;
@@ -124,6 +126,7 @@ class Layout {
   std::vector<double> columns_;
   std::vector<double> loads_;  ///< g on each block; kept only when a block has a limit
   bool has_limits_ = false;
+  bool has_obstacles_ = false;
   std::vector<Space> spaces_;
   std::vector<int> levels_;
 };

@@ -50,6 +50,29 @@ TEST_P(EveryAgent, StaysOverTheSlabOfAPallet) {
   test::expect_sound(state, 0.0, PackingSettings().min_support);  // nothing gives way: nothing holds it from the side
 }
 
+/// Two things that nobody expected, one on the floor and one standing higher.
+TEST_P(EveryAgent, KeepsToObstaclesAndPutsNothingOnThem) {
+  ContainerState start = make_container_state(scenario.containers.front());
+  start.obstacles = {{Vector3(-0.14, -0.20, 0.0), Vector3(-0.05, -0.13, 0.06)},
+                     {Vector3(0.08, 0.10, 0.0), Vector3(0.15, 0.19, 0.11)}};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(seed);
+    const std::vector<Item> items = test::shuffled_items(scenario, seed);
+    const ContainerState state = test::pack_all(*make(items), start, items);
+    EXPECT_EQ(state.obstacles, start.obstacles);
+    EXPECT_GE(state.boxes.size(), 3U);
+    for (const PlacedBox& box : state.boxes) {
+      const Extent me = upright_extent(box);
+      for (const Extent& obstacle : start.obstacles) {
+        // 12 mm beside it less the planned interference, or 5 mm over it.
+        const Vector3 shared = me.high.cwiseMin(obstacle.high) - me.low.cwiseMax(obstacle.low);
+        const bool is_beside = shared.head<2>().minCoeff() < -0.012 + PackingSettings().planned_interference;
+        EXPECT_TRUE(is_beside || me.low.z() > obstacle.high.z() + 0.005) << box.item.id;
+      }
+    }
+  }
+}
+
 TEST_P(EveryAgent, DecidesTheSameAtAnyNumberOfThreads) {
   const std::vector<Item> items = test::shuffled_items(scenario, 9);
   ContainerState one = make_container_state(scenario.containers.front());

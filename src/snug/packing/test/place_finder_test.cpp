@@ -53,6 +53,31 @@ TEST(PlaceFinder, KeptFromItemToItemFindsWhatAFreshOneFinds) {
   }
 }
 
+/// A bridge over an obstacle stands on boxes higher than it; nothing rests on the obstacle itself, alone or in part.
+TEST(PlaceFinder, BridgesAnObstacleAndRestsNothingOnIt) {
+  ContainerState state;
+  state.inner_size = Vector3(0.6, 0.4, 0.4);
+  state.obstacles = {{Vector3(-0.05, -0.05, 0.0), Vector3(0.05, 0.05, 0.06)}};
+  PlaceFinder finder(state, exact());
+  const Orientation flat;
+  const Item wide = make_box("wide", Vector3(0.4, 0.1, 0.1));
+  EXPECT_EQ(finder.lower(wide, flat, 0.0, 0.0).error(), NoPlace::NoStablePlace);
+  EXPECT_EQ(finder.lower(make_box("beside", Vector3(0.1, 0.1, 0.1)), flat, 0.105, 0.0).error(), NoPlace::NoStablePlace);
+  EXPECT_TRUE(finder.lower(make_box("beside", Vector3(0.1, 0.1, 0.1)), flat, 0.115, 0.0));
+  for (const double x : {-0.13, 0.13}) {
+    finder.add({make_box("pillar", Vector3(0.13, 0.1, 0.08)), {Matrix3::Identity(), Vector3(x, 0.0, 0.04)}});
+  }
+  const auto bridge = finder.lower(wide, flat, 0.0, 0.0);
+  ASSERT_TRUE(bridge);
+  EXPECT_NEAR(bridge->low_T.z(), 0.08, 1e-9);
+  // As high as what carries beside it, within the slack of tops: it would rest on the obstacle, too.
+  finder.reset({}, {{Vector3(-0.05, -0.05, 0.0), Vector3(0.05, 0.05, 0.074)}});
+  for (const double x : {-0.13, 0.13}) {
+    finder.add({make_box("pillar", Vector3(0.13, 0.1, 0.08)), {Matrix3::Identity(), Vector3(x, 0.0, 0.04)}});
+  }
+  EXPECT_FALSE(finder.lower(wide, flat, 0.0, 0.0));
+}
+
 TEST(PlaceFinder, LowersABoxOntoWhatIsThere) {
   ContainerState state;
   state.inner_size = Vector3(0.6, 0.4, 0.4);

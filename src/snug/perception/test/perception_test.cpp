@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "snug/core/input_error.hpp"
 
 namespace snug::perception {
@@ -28,6 +30,24 @@ TEST(Perception, ExactTellsWhatIsThereAndWhatIsMissing) {
   EXPECT_TRUE(find(seen, "B")->covariance.isZero(0.0));
   EXPECT_EQ(seen.not_seen, std::vector<std::string>{"C"});
   EXPECT_EQ(seen.missing, seen.not_seen) << "nothing is hidden from it";
+}
+
+TEST(Perception, WhatNobodyToldOfIsAnObstacleToWhoLooks) {
+  Scene scene = two_boxes();
+  EXPECT_TRUE(make_perception(Kind::Exact, 1)->perceive(scene, {}).obstacles->empty());
+  scene.objects.push_back({"stranger", Pose{Matrix3::Identity(), Vector3(0.0525, 0.0, 0.05)}, {0.095, 0.05, 0.1}});
+  const Observation exact = make_perception(Kind::Exact, 1)->perceive(scene, {});
+  ASSERT_EQ(exact.obstacles->size(), 1U);
+  EXPECT_FALSE(exact.heights) << "it sees everything";
+  EXPECT_EQ(find(exact, "stranger"), nullptr);
+  const geometry::Aabb bounds = bounds_of(exact.obstacles->front().columns);
+  EXPECT_NEAR(bounds.upper.x(), 0.1, 1e-12);
+  EXPECT_NEAR(bounds.upper.z(), 0.1, 1e-12);
+  const Observation noisy = make_perception(Kind::Noisy, 1)->perceive(scene, {});
+  ASSERT_EQ(noisy.obstacles->size(), 1U);
+  EXPECT_NEAR(noisy.obstacles->front().deviation, NoiseLevels{}.position / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(bounds_of(noisy.obstacles->front().columns).upper.z(), 0.1, 0.004);
+  EXPECT_FALSE(make_perception(Kind::DeadReckoning, 1)->perceive(scene, {}).obstacles);
 }
 
 TEST(Perception, DeadReckoningSeesNothing) {

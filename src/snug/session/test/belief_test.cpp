@@ -140,6 +140,50 @@ TEST_F(BeliefOfOneBox, WhatIsMissingIsBelievedToBeNowhere) {
   EXPECT_TRUE(belief.expectations().empty());
 }
 
+perception::Observation with_object(const model::Scenario& scenario) {
+  perception::Observation seen;
+  const model::Container& container = *model::find_container(scenario, scenario.target);
+  const Pose X_WP = container.X_WT * Pose{Matrix3::Identity(), Vector3(0.05, -0.1, 0.03)};
+  seen.obstacles = {{perception::columns_of_box(X_WP, {0.09, 0.07, 0.06}), 0.0005}};
+  return seen;
+}
+
+TEST_F(BeliefOfOneBox, EveryWorldHasBodiesForAnObstacleAndNoneWhenItIsGone) {
+  const std::size_t before = belief.nominal().bodies.size();
+  const perception::Observation look = with_object(scenario);
+  EXPECT_TRUE(belief.has_new_obstacle(look));
+  belief.see(look);
+  EXPECT_FALSE(belief.has_new_obstacle(look));
+  const double floor = model::find_container(scenario, scenario.target)->X_WT.p.z();
+  for (const auto& rollout : belief.take_up(at_start(scenario))) {
+    const auto& bodies = rollout->simulation().scenario().bodies;
+    ASSERT_EQ(bodies.size(), before + 1);
+    const model::Body& body = bodies.back();
+    EXPECT_EQ(body.kind, model::BodyKind::Static);
+    const double half = std::get<geometry::Box>(body.shapes.front().shape).half.z();
+    EXPECT_NEAR(body.X_WB.p.z() + half, floor + 0.06 + 0.001, 1e-9) << "two deviations over it";
+  }
+  perception::Observation empty;
+  empty.obstacles.emplace();
+  belief.see(empty);
+  for (const auto& rollout : belief.take_up(at_start(scenario))) {
+    EXPECT_EQ(rollout->simulation().scenario().bodies.size(), before);
+  }
+}
+
+TEST_F(BeliefOfOneBox, AnObstacleOfOneBadPictureIsDropped) {
+  perception::Observation look = with_object(scenario), before;
+  before.obstacles.emplace();
+  belief.drop_unconfirmed(look, before);
+  EXPECT_TRUE(look.obstacles->empty());
+  look = with_object(scenario);
+  belief.drop_unconfirmed(look, look);
+  EXPECT_EQ(look.obstacles->size(), 1U);
+  belief.see(look);
+  belief.drop_unconfirmed(look, before);
+  EXPECT_EQ(look.obstacles->size(), 1U) << "known";
+}
+
 TEST(Belief, IsTheSameWithAnyNumberOfThreads) {
   const model::Scenario scenario = model::test::shortened(3);
   Belief one(scenario, "1", quick(1)), two(scenario, "1", quick(2));

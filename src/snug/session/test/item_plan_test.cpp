@@ -88,6 +88,19 @@ TEST(Measured, SeesWallsAndNeighboursAndStandsOnWhatCarries) {
   EXPECT_NEAR(seen.side_gap[1], 0.5 * packing::ContainerState{}.inner_size.x() - 0.02, 1e-12);
 }
 
+TEST(Measured, SeesAnObstacleBesideAndIsNotPushedAgainstIt) {
+  packing::ContainerState state;
+  state.obstacles = {{Vector3(-0.1, -0.1, 0.0), Vector3(0.0, 0.1, 0.09)}};
+  packing::Candidate candidate;
+  const Vector3 size = Vector3::Constant(0.1);
+  candidate.placement.X_TP.p = Vector3(0.0615, 0.0, 0.05);  // at the 12 mm that are kept, less an interference
+  const packing::Candidate seen = measured(state, candidate, size, 0.0);
+  EXPECT_NEAR(seen.side_gap[0], 0.0115, 1e-12);
+  EXPECT_NEAR(seen.side_height[0], 0.09, 1e-12);
+  EXPECT_NEAR(seen.placement.X_TP.p.z(), 0.05, 1e-12) << "it carries nothing";
+  for (const Insertion& one : choose_insertions(seen, size)) EXPECT_GE(one.overtravel_T.x(), 0.0);
+}
+
 TEST(Measured, SeesNothingBesideTheEdgeOfAPallet) {
   const packing::Candidate seen = seen_beside_a_cube(false);
   EXPECT_NEAR(seen.side_gap[0], 0.005, 1e-12);

@@ -22,11 +22,16 @@ const model::Scenario& demonstrator() {
 /// A plant without physics: motions that hold a box end as the script says, looks show what the test puts there.
 class ScriptedPlant final : public plant::Plant {
  public:
-  std::deque<EndReason> ends;               ///< of motions with the vacuum on; when they are used up: Completed
-  std::map<std::string, Pose> visible;      ///< X_WP
-  std::set<std::string> missing;            ///< seen to be nowhere
-  std::function<void(int motion)> happens;  ///< after each of those motions, from 1; may be empty
-  std::vector<std::string> pressed;         ///< items that were pressed on from above
+  std::deque<EndReason> ends;                ///< of motions with the vacuum on; when they are used up: Completed
+  std::map<std::string, Pose> visible;       ///< X_WP
+  std::set<std::string> missing;             ///< seen to be nowhere
+  std::function<void(int motion)> happens;   ///< after each of those motions, from 1; may be empty
+  std::vector<std::string> pressed;          ///< items that were pressed on from above
+  std::deque<perception::LookFault> faults;  ///< of looks; when they are used up: none
+  std::optional<Vector3> size;               ///< measured of what stands at the aligner
+  std::optional<std::vector<perception::Obstacle>> obstacles;  ///< of every look
+  Pose X_WE_let_go;                                            ///< of the last motion with the vacuum on
+  int home_count = 0;                                          ///< motions that do nothing but go home
 
   [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
   [[nodiscard]] plant::Feedback read() override { return now_; }
@@ -44,7 +49,9 @@ class ScriptedPlant final : public plant::Plant {
     for (const motion::Waypoint& row : motion.waypoints) {
       if (row.name.ends_with("_press") && row.name.starts_with("PlaceSlow")) pressed.push_back(motion.item);
     }
+    if (motion.item.empty()) ++home_count;
     const motion::Waypoint& last = end == EndReason::Completed ? motion.waypoints.back() : *held;
+    if (holds) X_WE_let_go = last.X_WE;
     now_.time += 1.0;
     now_.end = {end, 0, 0.0, 0.0, ""};
     now_.X_WE = last.X_WE;
@@ -56,7 +63,16 @@ class ScriptedPlant final : public plant::Plant {
 
   [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
     perception::Observation seen;
+    seen.obstacles = obstacles;
+    if (!faults.empty()) {
+      seen.fault = faults.front();
+      faults.pop_front();
+    }
     for (const perception::Expectation& one : expected) {
+      if (size) {
+        seen.seen.push_back({one.item, *one.X_WP, Matrix6::Zero(), size, 0.0});
+        continue;
+      }
       if (const auto found = visible.find(one.item); found != visible.end()) {
         seen.seen.push_back({one.item, found->second, Matrix6::Zero(), {}, 0.0});
         continue;
@@ -126,6 +142,77 @@ TEST(Packer, RehearsesAnewWhatWasPickedInVain) {
   EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
   EXPECT_EQ(result.items[0].sends.size(), 2U);
   EXPECT_EQ(result.items[0].attempts, 2);
+}
+
+bool has(const ItemReport& item, Trouble trouble, Remedy remedy) {
+  return std::ranges::any_of(item.recoveries,
+                             [&](const Recovery& one) { return one.trouble == trouble && one.remedy == remedy; });
+}
+
+TEST(Packer, ABadPictureIsTakenAgainAndThenBeliefGoesOn) {
+  using perception::LookFault;
+  ScriptedPlant plant;
+  plant.faults = {LookFault::TooFewPoints};
+  SessionResult result = pack(plant, 1);
+  EXPECT_TRUE(has(result.items[0], Trouble::BadPicture, Remedy::LookAgain));
+  EXPECT_FALSE(has(result.items[0], Trouble::BadPicture, Remedy::Believe));
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed);
+  ScriptedPlant blind;
+  blind.faults.assign(100, LookFault::TooFewPoints);
+  result = pack(blind, 2);
+  EXPECT_TRUE(has(result.items[0], Trouble::BadPicture, Remedy::Believe));
+  EXPECT_EQ(result.plan.size(), 2U) << "as with dead reckoning";
+}
+
+TEST(Packer, TheToolLeavesAViewThatItBlocksAndASessionEndsWhereThatDoesNotHelp) {
+  using perception::LookFault;
+  ScriptedPlant plant;
+  plant.faults = {LookFault::ViewBlocked};
+  SessionResult result = pack(plant, 1);
+  EXPECT_TRUE(has(result.items[0], Trouble::ViewBlocked, Remedy::MoveAway));
+  EXPECT_EQ(plant.home_count, 2) << "once for the view, once in the end";
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed);
+  ScriptedPlant blocked;
+  blocked.faults.assign(100, LookFault::ViewBlocked);
+  result = pack(blocked, 2);
+  EXPECT_EQ(result.stop_reason, StopReason::ViewBlocked);
+  EXPECT_EQ(result.items.size(), 1U);
+  EXPECT_EQ(result.items[0].end, ItemEnd::NotHeld);
+  EXPECT_TRUE(has(result.items[0], Trouble::ViewBlocked, Remedy::Stop));
+  EXPECT_TRUE(result.plan.empty());
+}
+
+TEST(Packer, ABoxThatIsNotSeenWhereSomethingHigherStandsOverItsPlaceIsGone) {
+  ScriptedPlant plant;
+  plant.obstacles.emplace();
+  plant.happens = [&](int) {
+    const model::Container& container = *model::find_container(demonstrator(), demonstrator().target);
+    Pose X_WB{Matrix3::Identity(), plant.X_WE_let_go.p};
+    X_WB.p.z() = container.X_WT.p.z() + 0.13;
+    plant.obstacles = {{perception::columns_of_box(X_WB, {0.15, 0.15, 0.26}), 0.0005}};
+  };
+  const SessionResult result = pack(plant, 1);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Gone);
+  EXPECT_TRUE(has(result.items[0], Trouble::Gone, Remedy::Skip));
+  EXPECT_TRUE(result.plan.empty());
+  ASSERT_EQ(result.obstacles.size(), 1U);
+  EXPECT_NEAR(result.obstacles[0].high_T.z(), 0.26, 1e-9);
+}
+
+TEST(Packer, AnotherItemThanTheOneThatWasToComeIsTakenAway) {
+  ScriptedPlant plant;
+  const model::Parcel& parcel = *model::find_parcel(demonstrator(), "BOX027");
+  plant.size = parcel.size - Vector3::Constant(demonstrator().parcel_clearance) + Vector3(0.0, 0.02, 0.0);
+  SessionResult result = pack(plant, 1);
+  EXPECT_EQ(result.items[0].end, ItemEnd::WrongItem);
+  EXPECT_TRUE(has(result.items[0], Trouble::WrongItem, Remedy::Skip));
+  EXPECT_EQ(result.items[0].reason, "edges differ by up to 20 mm");
+  EXPECT_TRUE(result.plan.empty());
+  EXPECT_TRUE(result.items[0].sends.empty());
+  ScriptedPlant right;  // within what a tape measure is off
+  right.size = *plant.size - Vector3(0.0, 0.0185, 0.0);
+  result = pack(right, 1);
+  EXPECT_NE(result.items[0].end, ItemEnd::WrongItem);
 }
 
 TEST(Packer, ABoxThatDoesNotStandAtTheAlignerIsGone) {

@@ -82,6 +82,21 @@ TEST(ChooseRemedy, ABoxThatMeetsTooMuchForceIsPutDownOnTheBenchWhereThereIsOne) 
   }
 }
 
+TEST(ChooseRemedy, PicturesAreTakenThreeTimesThenBeliefGoesOnAndABlockedViewEndsTheSession) {
+  Situation situation = at(Trouble::BadPicture);
+  for (situation.pictures = 1; situation.pictures < 3; ++situation.pictures) {
+    EXPECT_EQ(choose_remedy(situation), Remedy::LookAgain);
+  }
+  EXPECT_EQ(choose_remedy(situation), Remedy::Believe);
+  situation = at(Trouble::ViewBlocked);
+  situation.pictures = 1;
+  EXPECT_EQ(choose_remedy(situation), Remedy::MoveAway);
+  situation.is_held = true;
+  EXPECT_EQ(choose_remedy(situation), Remedy::LookAgain) << "not with a box";
+  situation.pictures = 3;
+  EXPECT_EQ(choose_remedy(situation), Remedy::Stop);
+}
+
 TEST(ChooseRemedy, EveryTroubleHasARemedyAndAName) {
   for (int i = 1; i <= static_cast<int>(Trouble::PlantFault); ++i) {
     const Trouble trouble = static_cast<Trouble>(i);

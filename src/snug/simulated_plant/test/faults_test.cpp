@@ -15,6 +15,7 @@ TEST(Faults, AreReadInTheOrderWritten) {
                                     {FaultKind::Stop, 9},
                                     {FaultKind::Push, 11}};
   EXPECT_EQ(parse_faults("drop@3,noseal@5,displace@7,stop@9,push@11"), expected);
+  EXPECT_EQ(parse_faults("object@3,clear@6"), (std::vector<Fault>{{FaultKind::Object, 3}, {FaultKind::Clear, 6}}));
   EXPECT_TRUE(parse_faults("").empty());
 }
 

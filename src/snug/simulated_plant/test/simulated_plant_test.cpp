@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
@@ -103,6 +105,36 @@ TEST(SimulatedPlant, AStopHoldsTheBoxAndAsksForAnAcknowledgement) {
   EXPECT_EQ(plant.submit(rest).end.reason, plant::EndReason::Refused);
   plant.acknowledge();
   EXPECT_EQ(plant.submit(rest).end.reason, plant::EndReason::Completed);
+}
+
+/// Twenty seeds, one object after the other: inside the walls, apart from each other, and not the same place each time.
+TEST(ForeignObjects, StandWhereThereIsRoomAtAPlaceDrawnByTheSeed) {
+  const std::vector<Fault> faults{{FaultKind::Object, 1}, {FaultKind::Object, 2}};
+  const cell::Simulation simulation(with_objects(scenario(), faults), "1", {});
+  const model::Container& container = *model::find_container(scenario(), scenario().target);
+  std::set<double> places;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    cell::CellState state = simulation.make_state();
+    ForeignObjects objects(simulation, faults, seed);
+    ASSERT_EQ(objects.objects().size(), 2U);
+    for (int i = 0; i < 2; ++i) {
+      const ForeignObject* one = objects.put(state);
+      ASSERT_NE(one, nullptr);
+      EXPECT_TRUE(cell::fit_in(container.inner_size, kForeignSize, one->X_TB).is_in);
+    }
+    EXPECT_EQ(objects.put(state), nullptr) << "there are two";
+    const Vector3 apart = objects.objects()[0].X_TB.p - objects.objects()[1].X_TB.p;
+    EXPECT_TRUE(apart.head<2>().cwiseAbs().maxCoeff() > kForeignSize.y() || apart.z() < -0.99 * kForeignSize.z());
+    places.insert(objects.objects()[0].X_TB.p.x());
+    objects.take_out(state);
+    EXPECT_FALSE(objects.objects()[0].is_in);
+    EXPECT_FALSE(state.world.bodies[static_cast<std::size_t>(objects.objects()[1].body.index)].is_present);
+  }
+  EXPECT_GT(places.size(), 8U);
+}
+
+TEST(ForeignObjects, AreNoPartOfACellWithoutSuchAFault) {
+  EXPECT_EQ(with_objects(scenario(), {{FaultKind::Drop, 1}, {FaultKind::Clear, 2}}), scenario());
 }
 
 }  // namespace

@@ -77,6 +77,24 @@ TEST(Recovery, APushedNeighbourIsSeenAndWhatFollowsIsPlannedAroundIt) {
   expect_nothing_in_the_way(trial);
 }
 
+/// Seen, with its height, planned around, and forgotten when it is taken out: by whoever looks.
+TEST(Recovery, AForeignObjectIsPlannedAroundUntilItIsGone) {
+  const Trial trial = run_with("object@1,clear@3", 4);
+  ASSERT_EQ(trial.objects.size(), 1U);
+  const simulated_plant::ForeignObject& truth = trial.objects[0];
+  EXPECT_FALSE(truth.is_in);
+  EXPECT_LT((truth.X_TB.p - truth.X_TB_put.p).norm(), 0.002) << "nothing pushed it";
+  ASSERT_EQ(trial.session.obstacles.size(), 1U);
+  const session::ObstacleReport& seen = trial.session.obstacles[0];
+  EXPECT_NEAR(seen.high_T.z(), truth.X_TB.p.z() + 0.5 * simulated_plant::kForeignSize.z(), 0.003);
+  ASSERT_TRUE(seen.gone);
+  EXPECT_GT(*seen.gone, seen.seen);
+  EXPECT_EQ(trial.executed_boxes, 4) << trial.session.stopped;
+  EXPECT_EQ(trial.items_as_planned, 4);
+  const std::vector<record::Event> events = events_of(trial.session);
+  EXPECT_EQ(std::ranges::count(events, "obstacle", &record::Event::kind), 2);
+}
+
 TEST(Recovery, AllOfThemInOneSession) {
   const Trial trial = run_with("drop@1,noseal@2,displace@3,stop@4", 5);
   EXPECT_GE(trial.recoveries, 4);
