@@ -1,4 +1,4 @@
-// Rollout: one simulated course of events of a cell that could be: nominal or sampled; runs waypoints, can go back.
+// Rollout: one simulated run of a cell that could be, nominal or sampled: does waypoints, can go back.
 #include "snug/session/rollout.hpp"
 
 #include <fmt/format.h>

@@ -31,7 +31,7 @@ struct Factor {
 
 /// A number of a row's result that is kept.
 struct Output {
-  std::string name;          ///< path in the JSON of the verb, such as executions.success_percent
+  std::string name;          ///< path in the JSON of the verb, such as monte_carlo.success_percent
   bool is_worst_low = true;  ///< which end of it the report calls worst
   bool operator==(const Output&) const = default;
 };

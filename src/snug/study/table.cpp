@@ -53,7 +53,7 @@ void flatten(const Json& json, const std::string& prefix, std::vector<std::pair<
   }
 }
 
-/// "executions.items.0.succeeded"; keys themselves may hold dots.
+/// "monte_carlo.items.0.succeeded"; keys themselves may hold dots.
 const Json* find(const Json& json, const std::string& path) {
   if (json.is_object() && json.contains(path)) return &json[path];
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {

@@ -45,12 +45,12 @@ export class CupState {
 }
 
 /** Radius over the way from E (0) to S (1), in lip radii: socket, folds, foam lip. */
-function profile(s: number, squeeze: number): number {
+function profile(s: number, compression: number): number {
   if (s < 0.1) return 0.44;
   if (s > 0.84) return 0.74 + 0.26 * Math.min(1, (s - 0.84) / 0.1);
   const phase = ((s - 0.1) / 0.74) * FOLDS;
   const wave = 1 - Math.abs(2 * (phase - Math.floor(phase)) - 1);
-  return 0.58 + (0.2 + 0.12 * squeeze) * wave;
+  return 0.58 + (0.2 + 0.12 * compression) * wave;
 }
 
 export class Cup {
@@ -116,7 +116,7 @@ export class Cup {
     const turn = new Quaternion(X_ES[4], X_ES[5], X_ES[6], X_ES[3]);
     const axis = new Vector3(0, 0, 1).applyQuaternion(turn);
     const length = Math.max(0.01, end.length());
-    const squeeze = Math.min(1, Math.max(0, 1.6 - length / 0.045));
+    const compression = Math.min(1, Math.max(0, 1.6 - length / 0.045));
     const q = new Quaternion();
     const none = new Quaternion();
     const centre = new Vector3();
@@ -131,7 +131,7 @@ export class Cup {
       const h3 = s * s * (s - 1) * length;
       centre.set(h3 * axis.x, h3 * axis.y, h2 + h3 * axis.z).addScaledVector(end, h1);
       q.slerpQuaternions(none, turn, h1);
-      const radius = this.lipRadius_ * profile(s, squeeze);
+      const radius = this.lipRadius_ * profile(s, compression);
       const isLip = s > 0.84;
       for (let k = 0; k <= SEGMENTS; ++k) {
         const angle = (2 * Math.PI * k) / SEGMENTS;

@@ -12,6 +12,8 @@ import { figuresOf, thin, type Figure, type Group } from "./series";
 const HEIGHT = 106;
 const HEIGHT_WIDE = 150;
 const POINTS = 1600;
+/** Room for the longest label of a value, such as -0.025 Nm, px; the same in all plots, so that their times are in line. */
+const LABELS = 62;
 /** Lengths of the window that follows the cursor, s; 0 is the whole run. */
 const WINDOWS = [0, 120, 60, 20, 5, 1];
 /** Of longer runs a column of this width shows a window at first, s. */
@@ -300,7 +302,7 @@ export class Plots {
       width: this.width_,
       height: this.height,
       series,
-      padding: [5, 8, 0, 0],
+      padding: [5, 18, 0, 0], // room for half a label of the time
       legend: { show: false },
       cursor: {
         sync: { key: "snug" },
@@ -320,7 +322,7 @@ export class Plots {
       },
       axes: [
         { ...axis, size: 22, gap: 2, values: (_: uPlot, ticks: number[]) => ticks.map((t) => `${t} s`) },
-        { ...axis, size: unit.length > 3 ? 58 : 46, gap: 3, space: 17, values: (_: uPlot, ticks: number[]) => ticks.map((v, i) => (i === ticks.length - 1 && unit !== "1" ? `${tick(v)} ${unit}` : tick(v))) },
+        { ...axis, size: LABELS, gap: 3, space: 17, values: (_: uPlot, ticks: number[]) => ticks.map((v, i) => (i === ticks.length - 1 && unit !== "1" ? `${tick(v)} ${unit}` : tick(v))) },
       ],
       hooks: {
         draw: [(plot: uPlot) => this.drawCursor(plot)],

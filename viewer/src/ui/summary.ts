@@ -29,7 +29,7 @@ export function headline(replay: Replay): HTMLElement {
     }
   }
   add("simulated", `${(speed?.duration_s ?? replay.end - replay.start).toFixed(1)} s`, "", "middle");
-  if (speed) add("speed", `${speed.real_time_factor.toFixed(0)}× real time`, `${speed.wall_s.toFixed(2)} s of computing`, "minor");
+  if (speed && speed.wall_s > 0) add("speed", `${speed.real_time_factor.toFixed(0)}× real time`, `${speed.wall_s.toFixed(2)} s of computing`, "minor");
   add("step", `${milliseconds(h.dt)} ms`, `recorded every ${milliseconds(h.record_period)} ms, ${replay.frames} frames`, "minor");
   add("seed", h.seed || "-", "of everything random", "minor");
   add("version", h.snug_version || "-", `snug ${h.snug_version}: ${h.name}, scenario ${h.scenario.name}`, "minor version");
