@@ -15,7 +15,7 @@ struct PlotOptions {
   std::vector<std::string> what;
   std::string output;
   double width_mm = 180.0;
-  double height_mm = 45.0;  ///< of each pair of axes
+  double height_mm = 45.0;          ///< of each pair of axes
   std::optional<std::string> urdf;  ///< of the robot in them, for limits; absent: looked for
   replay::Selection selection;
 };
