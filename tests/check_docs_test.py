@@ -34,6 +34,17 @@ class CheckDocs(unittest.TestCase):
     def test_ignores_links_in_code(self):
         self.assertEqual(self.run_on("`[x](none.md)`\n```\n[y](none.md)\n```\n")[0], 0)
 
+    def test_refuses_a_page_that_the_index_of_the_site_does_not_list(self):
+        with tempfile.TemporaryDirectory() as folder:
+            docs = Path(folder) / "docs"
+            (docs / "theory").mkdir(parents=True)
+            for name in ("listed", "forgotten", "theory/contact"):
+                (docs / f"{name}.md").write_text("# A page\n")
+            (docs / "index.md").write_text("# All\n\n```{toctree}\n:glob:\n\nlisted\ntheory/*\n```\n\nforgotten\n")
+            result = subprocess.run([sys.executable, TOOL, folder], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.stdout.splitlines(), [f"{docs}/forgotten.md:1: in no list of docs/index.md"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1078,7 +1078,9 @@ class OtherCells(unittest.TestCase):
     def test_comparison_links_its_page_to_the_runs(self):
         page, runs = self.folder / "compare.html", self.folder / "the runs"
         snug("compare", CELL, "--sequences", "1", "--agents", "margin", "--plants", 2, *self.QUICK, "-o", page, "--runs", runs)
-        links = re.findall(r'<a href="(.*?)">open this run</a>', page.read_text(encoding="utf-8"))
+        text = page.read_text(encoding="utf-8")
+        self.assertEqual(text.count('class="mean"'), 4 * (1 + 1 + 2), "four measures of one agent, one sequence, two plants")
+        links = re.findall(r'<a href="(.*?)">open this run</a>', text)
         self.assertEqual(len(links), 2)
         for link in links:
             report = self.folder / urllib.parse.unquote(link)
@@ -1091,7 +1093,9 @@ class OtherCells(unittest.TestCase):
         page = self.folder / "it's random.html"
         words = ("compare", CELL, "--container", "220x220x120", "--random", 2, "--random-seed", 3, "--agents", "margin", *self.QUICK)
         rows = json.loads(snug(*words, "--json", "-o", page).stdout)["rows"]
-        codes = re.findall(r"<code>(.*?) -o run.h5<br>", page.read_text(encoding="utf-8"))
+        text = page.read_text(encoding="utf-8")
+        self.assertEqual(text.count('class="mean"'), 4 * (1 + 2), "each in a plant of its own: lines by plant would repeat them")
+        codes = re.findall(r"<code>(.*?) -o run.h5<br>", text)
         self.assertEqual(len(codes), 2)
         for row, code in zip(rows, codes):
             packed = json.loads(snug(*shlex.split(html.unescape(code))[1:], "--json").stdout)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""check_docs.py [ROOT]: every relative link and picture of the Markdown files leads to a file and, with #, to a heading.
+"""check_docs.py [ROOT]: every relative link and picture of the Markdown files leads to a file and, with #, to a heading;
+every page of docs/ is in a list of docs/index.md, from which the documentation site is made.
 
 Prints `file:line: what is wrong` and exits with 1. Addresses on the net are not visited.
 """
@@ -46,8 +47,19 @@ def anchors(path):
     return found
 
 
+def pages_not_listed(root):
+    """Pages of docs/ that no list (toctree) of its index names: the site cannot be made without them."""
+    index = root / "docs" / "index.md"
+    if not index.exists():
+        return []
+    lists = re.findall(r"^```{toctree}\n(.*?)^```", index.read_text(encoding="utf-8"), re.S | re.M)
+    entries = [line.strip() for text in lists for line in text.splitlines() if line.strip() and not line.startswith(":")]
+    listed = {file.resolve() for entry in entries for file in index.parent.glob(entry + ".md") if not entry.startswith("..")}
+    return [f"{path}:1: in no list of docs/index.md" for path in sorted((root / "docs").rglob("*.md")) if path != index and path.resolve() not in listed]
+
+
 def check(root):
-    problems, count = [], 0
+    problems, count = pages_not_listed(root), 0
     for path in markdown_files(root):
         for number, line in prose_lines(path):
             for target in LINK.findall(line):

@@ -47,8 +47,9 @@ void add_compare(CLI::App& app, Action& action) {
   add_packing_options(verb, options->pack);
   CLI::Option* json = verb.add_flag("--json", options->json, "print rows as JSON");
   verb.add_flag("--csv", options->csv, "print rows as CSV")->excludes(json);
-  verb.add_option("-o,--output", options->page,
-                  "page: charts by agent and sequence, each container from above, the words that repeat each run")
+  verb.add_option(
+          "-o,--output", options->page,
+          "page: charts by agent, sequence and plant, each container from above, the words that repeat each run")
       ->type_name("FILE.html");
   verb.add_option("--runs", options->runs,
                   "leave a recording and its report page of every session in this folder; the page of -o links to them")

@@ -1,4 +1,5 @@
-// The page of a comparison: charts by agent and sequence, and every container from above, in one file without scripts.
+// The page of a comparison: charts by agent, sequence and plant, every container from above; one file without scripts.
+// scripts.
 #include "compare_page.hpp"
 
 #include <fmt/format.h>
@@ -8,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "dot_chart.hpp"
 #include "snug/core/text.hpp"
-#include "snug/replay/page.hpp"
 
 namespace snug::app {
 namespace {
@@ -39,7 +40,7 @@ std::vector<Point> hull_of(std::vector<Point> points) {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// One number of each session, on an axis that all charts share; NaN where it has none.
+/// One number of each session; NaN where it has none.
 struct Measure {
   const char* title;
   double (*value)(const CompareRow& row);
@@ -60,60 +61,6 @@ struct Group {
   std::vector<const CompareRow*> rows;
 };
 
-/// A line for each group: a dot for each session, a bar at their mean.
-std::string chart(const Measure& measure, const std::vector<Group>& groups) {
-  double low = 0.0, high = 1.0;
-  bool is_first = true;
-  for (const Group& group : groups) {
-    for (const CompareRow* row : group.rows) {
-      const double value = measure.value(*row);
-      if (std::isnan(value)) continue;
-      low = is_first ? value : std::min(low, value);
-      high = is_first ? value : std::max(high, value);
-      is_first = false;
-    }
-  }
-  const double margin = std::max(0.05 * (high - low), 1e-3 * std::abs(high) + 1e-6);
-  low = std::max(0.0, low - margin);  // nothing here is negative
-  high += margin;
-  constexpr double kLabel = 190.0, kPlot = 430.0, kMean = 90.0, kLine = 22.0;
-  const auto x = [&](double value) { return kLabel + kPlot * (value - low) / (high - low); };
-  const double height = kLine * static_cast<double>(groups.size()) + 22.0;
-  std::string svg = fmt::format("<figure><figcaption>{}</figcaption><svg width=\"{}\" height=\"{}\" role=\"img\">",
-                                measure.title, kLabel + kPlot + kMean, height);
-  double y = 14.0;
-  for (const Group& group : groups) {
-    double sum = 0.0;
-    int count = 0;
-    svg += fmt::format(
-        "<text x=\"{}\" y=\"{:.0f}\" text-anchor=\"end\">{}</text><line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" "
-        "y2=\"{:.0f}\" class=\"rule\"/>",
-        kLabel - 8.0, y + 4.0, escape_markup(group.label), kLabel, kLabel + kPlot, y, y);
-    for (const CompareRow* row : group.rows) {
-      const double value = measure.value(*row);
-      if (std::isnan(value)) continue;
-      sum += value;
-      ++count;
-      svg += fmt::format(
-          "<circle cx=\"{:.1f}\" cy=\"{:.0f}\" r=\"4\"><title>{}, sequence {}, plant {}: {:.4g}</title>"
-          "</circle>",
-          x(value), y, escape_markup(row->agent), escape_markup(row->sequence), row->plant_seed, value);
-    }
-    if (count > 0) {
-      const double mean = sum / count;
-      svg += fmt::format(
-          "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" y2=\"{2:.0f}\" class=\"mean\"/>"
-          "<text x=\"{3}\" y=\"{4:.0f}\">mean {5:.3g}</text>",
-          x(mean), y - 9.0, y + 9.0, kLabel + kPlot + 8.0, y + 4.0, mean);
-    }
-    y += kLine;
-  }
-  return svg + fmt::format(
-                   "<text x=\"{}\" y=\"{:.0f}\">{:.4g}</text><text x=\"{}\" y=\"{:.0f}\" text-anchor=\"end\">"
-                   "{:.4g}</text></svg></figure>",
-                   kLabel, height - 4.0, low, kLabel + kPlot, height - 4.0, high);
-}
-
 template <class Label>
 std::vector<Group> group_by(const std::vector<CompareSession>& sessions, const Label& label) {
   std::vector<Group> groups;
@@ -124,6 +71,33 @@ std::vector<Group> group_by(const std::vector<CompareSession>& sessions, const L
     found->rows.push_back(&session.row);
   }
   return groups;
+}
+
+/// Every measure of these groups, in two columns.
+std::string charts(const char* title, const std::vector<Group>& groups) {
+  std::string text = fmt::format("<h2>{}</h2><div class=\"charts\">", title);
+  for (const Measure& measure : kMeasures) {
+    std::vector<DotLine> lines;
+    for (const Group& group : groups) {
+      lines.push_back({group.label, {}});
+      for (const CompareRow* row : group.rows) {
+        lines.back().dots.push_back({measure.value(*row), fmt::format("{}, sequence {}, plant {}", row->agent,
+                                                                      row->sequence, row->plant_seed)});
+      }
+    }
+    text += draw_dot_chart(measure.title, lines);
+  }
+  return text + "</div>";
+}
+
+/// Whether each plant packs one sequence only: then lines by plant would repeat those by sequence.
+bool has_plants_of_their_own(const std::vector<CompareSession>& sessions) {
+  for (const CompareSession& one : sessions) {
+    for (const CompareSession& other : sessions) {
+      if (one.row.plant_seed == other.row.plant_seed && one.row.sequence != other.row.sequence) return false;
+    }
+  }
+  return sessions.front().row.sequence != sessions.back().row.sequence;
 }
 
 /// The container's floor plan, y of T upwards; higher boxes are lighter and drawn later.
@@ -177,8 +151,7 @@ std::string card(const Vector3& inner_size, const CompareSession& session, const
 
 constexpr const char* kStyle =
     "body{font:14px/1.45 system-ui,sans-serif;max-width:1180px;margin:2em auto;padding:0 1em;color:#1d2733}"
-    "figure{margin:1em 0}figcaption{font-weight:600}svg text{font-size:11px;fill:#44505c}circle{fill:#2b6cb0;"
-    "fill-opacity:.65}.rule{stroke:#e3e8ed}.mean{stroke:#c05621;stroke-width:3}.floor{fill:#f4f1ec;stroke:#1d2733}"
+    ".charts{display:flex;flex-wrap:wrap;gap:14px 20px}.floor{fill:#f4f1ec;stroke:#1d2733}"
     "polygon{stroke:#4a3a22;stroke-width:1}.cards{display:flex;flex-wrap:wrap;gap:18px}.card{width:230px}"
     "code{font-size:11px;overflow-wrap:anywhere}small{color:#56626e}";
 
@@ -207,18 +180,23 @@ std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario, const std
 
 std::string format_compare_page(const model::Scenario& scenario, const std::vector<CompareSession>& sessions,
                                 const std::filesystem::path& page) {
-  const std::vector<Group> agents = group_by(sessions, [](const CompareRow& row) { return row.agent; });
   std::string text = fmt::format(
-      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: comparison</title><style>{1}</style>"
-      "</head><body><h1>{0}: {2} sessions compared</h1><p>Each dot is a session: an agent packs a sequence in a plant "
-      "of its own, and what is true of the plant counts. Bars are means.</p><h2>By agent</h2>",
-      escape_markup(scenario.name), kStyle, sessions.size());
-  for (const Measure& measure : kMeasures) text += chart(measure, agents);
-  text += "<h2>By sequence</h2>";
-  std::vector<Group> both =
+      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: "
+      "comparison</title><style>{1}{2}</style>"
+      "</head><body><h1>{0}: {3} sessions compared</h1><p>Each dot is a session: an agent packs a sequence in a plant "
+      "of its own, and what is true of the plant counts. Bars are means.</p>",
+      escape_markup(scenario.name), kStyle, kDotChartStyle, sessions.size());
+  text += charts("By agent", group_by(sessions, [](const CompareRow& row) { return row.agent; }));
+  std::vector<Group> groups =
       group_by(sessions, [](const CompareRow& row) { return fmt::format("{}: {}", row.sequence, row.agent); });
-  std::ranges::stable_sort(both, {}, [](const Group& group) { return group.rows.front()->sequence; });
-  text += chart(kMeasures[0], both);
+  std::ranges::stable_sort(groups, {}, [](const Group& group) { return group.rows.front()->sequence; });
+  text += charts("By sequence", groups);
+  if (!has_plants_of_their_own(sessions)) {
+    groups = group_by(sessions,
+                      [](const CompareRow& row) { return fmt::format("plant {}: {}", row.plant_seed, row.agent); });
+    std::ranges::stable_sort(groups, {}, [](const Group& group) { return group.rows.front()->plant_seed; });
+    text += charts("By seed of the plant", groups);
+  }
   const Vector3 inner_size = model::find_container(scenario, scenario.target)->inner_size;
   text += "<h2>Containers from above</h2><p>Lighter boxes reach higher.</p>";
   for (const Group& sequence : group_by(sessions, [](const CompareRow& row) { return row.sequence; })) {

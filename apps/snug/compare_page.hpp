@@ -1,4 +1,4 @@
-// The page of a comparison: charts by agent and sequence, and every container from above, in one file without scripts.
+// The page of a comparison: charts by agent, sequence and plant, every container from above; one file without scripts.
 #pragma once
 
 #include <array>

@@ -54,9 +54,9 @@ void add_export(CLI::App& app, Action& action) {
       ->check(one_of({"faithful", "fast"}))
       ->type_name("KIND");
   verb.add_option("--tempo", options->motion.tempo,
-                  "of a program: share of the speeds, with fast (default: that it was packed with, or 1)")
+                  "of a program: fraction of the speeds, with fast (default: that it was packed with, or 1)")
       ->check(within(0.5, 1.0))
-      ->type_name("SHARE");
+      ->type_name("FRACTION");
   verb.add_flag(
       "--unchecked", options->is_unchecked,
       "of a program: write it without simulating it first; otherwise it is refused where the robot stops or a box "

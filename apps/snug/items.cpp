@@ -120,7 +120,7 @@ int run_items_reduce(const ItemsReduceOptions& options) {
     print(as_json(reduction));
     return kSuccess;
   }
-  std::printf("%-4s %26s %9s %7s %8s\n", "", "size mm", "mass kg", "boxes", "share %");
+  std::printf("%-4s %26s %9s %7s %8s\n", "", "size mm", "mass kg", "boxes", "boxes %");
   for (std::size_t i = 0; i < reduction.representatives.size(); ++i) {
     const packing::Representative& r = reduction.representatives[i];
     std::printf("R%-3zu %8.1f %8.1f %8.1f %9.3f %7d %8.1f\n", i + 1, 1e3 * r.size.x(), 1e3 * r.size.y(),

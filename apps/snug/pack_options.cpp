@@ -58,12 +58,13 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
           "the scenario's robot, such as ur10, whose joints move the tool in the plant, or none: the tool moves "
           "by itself (default: the scenario's robot)")
       ->type_name("NAME");
-  verb.add_option("--tempo", options.tempo,
-                  "move fast: exactly on paths of bounded jerk, blended where nothing is switched, rows in contact and "
-                  "waits for the vacuum ended by what is felt; share of the speeds (absent: with the demonstrator's "
-                  "lag)")
+  verb.add_option(
+          "--tempo", options.tempo,
+          "move fast: exactly on paths of bounded jerk, blended where nothing is switched, waypoints in contact "
+          "and waits for the vacuum end by what is felt; fraction of the speeds (absent: with the demonstrator's "
+          "lag)")
       ->check(within(0.5, 1.0))
-      ->type_name("SHARE");
+      ->type_name("FRACTION");
   verb.add_option("--fault", options.fault,
                   "what goes wrong in the plant: noseal@N, drop@N, stop@N, displace@N, push@N of the N-th item, "
                   "object@N (a foreign "
@@ -95,8 +96,8 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
 }
 
 void add_pack(CLI::App& app, Action& action) {
-  CLI::App& verb =
-      *app.add_subcommand("pack", "pack a simulated plant: decide where each box goes, rehearse, send, look, recover");
+  CLI::App& verb = *app.add_subcommand(
+      "pack", "pack a simulated plant: decide where each box goes, rehearse, send, perceive, recover");
   const auto options = std::make_shared<PackOptions>();
   verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
   verb.add_option("--sequence", options->sequence, "item sequence of the scenario")->required()->type_name("NAME");

@@ -18,9 +18,9 @@ void add_motion_words(CLI::App& verb, MotionWords& words) {
       ->check(one_of({"faithful", "ideal", "fast"}))
       ->type_name("KIND");
   verb.add_option("--tempo", words.tempo,
-                  "share of the speeds, with fast (default: that the program was packed with, or 1)")
+                  "fraction of the speeds, with fast (default: that the program was packed with, or 1)")
       ->check(within(0.5, 1.0))
-      ->type_name("SHARE");
+      ->type_name("FRACTION");
 }
 
 void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,

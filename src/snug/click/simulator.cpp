@@ -99,7 +99,7 @@ Simulator::Reply Simulator::show(const Message& message) {
     return reply(init->version == kVersion ? Message(cell_.handshake()) : Message(unsupported(init->version)));
   }
   if (holds<SensorRequest>(message)) return sense();
-  return reply(Error{fmt::format("a {} is for controllers; this peer only looks", name_of(message))});
+  return reply(Error{fmt::format("a {} is for controllers; this peer is an observer", name_of(message))});
 }
 
 Simulator::Reply Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {

@@ -69,7 +69,7 @@ void check_softness(const MapReader& map, const ContactParams& params) {
     map.require("edge_share").fail("edge_share without full_area", "a full_area too: below it faces give way more");
   if (params.edge_share && *params.edge_share > 1.0)
     map.require("edge_share")
-        .fail("a share of " + to_text(*params.edge_share), "a share of the stiffness, above 0, at most 1");
+        .fail("a fraction of " + to_text(*params.edge_share), "a fraction of the stiffness, above 0, at most 1");
 }
 
 }  // namespace

@@ -9,8 +9,9 @@ import { meshOfShapes, toolShapes } from "./movers";
 import { Outlines } from "./outlines";
 import type { Palette } from "./palette";
 
-/** X_WP that the command asked for when the box was let go, with the cup undeformed. */
+/** X_WP that the command asked for when the vacuum was switched off, with the cup undeformed. */
 export interface PlannedPlace {
+  /** When the cup let go, s: the lip stays on the box for a while, and the command moves on. */
   time: number;
   X_WP: Matrix4;
 }
@@ -53,14 +54,22 @@ export class Plans {
       const event = replay.header.events[this.events_]!;
       if (event.kind !== "release") continue;
       const body = replay.bodyIndex(event.body);
-      // The last frame at which it is still held: at most a few before the event.
-      let frame = replay.frameAt(event.time);
-      for (let k = 0; k < 4 && frame > 0 && replay.attachedBody(frame) !== body; ++k) --frame;
-      const X_WP = this.commanded(body, frame);
+      const X_WP = this.commanded(body, this.releasedAt(body, event.time));
       if (!X_WP) continue;
       if (!this.places_.has(body)) this.places_.set(body, []);
       this.places_.get(body)!.push({ time: event.time, X_WP });
     }
+  }
+
+  /** The frame whose command says where the box was to be let go: the last with vacuum, or where it was lost the last at which it was held. */
+  private releasedAt(body: number, time: number): number {
+    const { replay } = this;
+    let held = replay.frameAt(time);
+    for (let k = 0; k < 4 && held > 0 && replay.attachedBody(held) !== body; ++k) --held; // at most a few before the event
+    const command = replay.channel("cup.command");
+    let frame = held;
+    while (command && command.at(0, frame) === 0 && replay.attachedBody(frame) === body) --frame;
+    return replay.attachedBody(frame) === body ? frame : held;
   }
 
   /** The place that a carried box is on its way to; else the one where it was put last, or will be put first. */
@@ -97,7 +106,7 @@ export class Plans {
     const offset = this.offsetAt(body, frame, place);
     if (!offset) return "";
     const [x, y, z] = offset.millimetres.map((v) => v.toFixed(1).replace(/^-(0\.0)$/, "$1"));
-    return `${name} lies ${x}, ${y}, ${z} mm and ${offset.degrees.toFixed(1)}° from its planned place`;
+    return `${name} lies ${x}, ${y}, ${z} mm, ${offset.degrees.toFixed(1)}° from its planned place`;
   }
 }
 

@@ -124,9 +124,14 @@ export class App {
     return bar;
   }
 
+  /** Where nothing is a tool there is nothing to look along. */
+  private get cameraNames(): readonly CameraName[] {
+    return CAMERA_NAMES.filter((name) => name !== "tool" || this.replay.hasTool);
+  }
+
   private toolbar(): HTMLElement {
     const cameras = make("div", "cameras");
-    for (const name of CAMERA_NAMES) {
+    for (const name of this.cameraNames) {
       const choose = button(name, `Camera ${name} (${CAMERA_NAMES.indexOf(name) + 1})`, () => this.useCamera(name));
       this.cameraButtons_.set(name, choose);
       cameras.append(choose);
@@ -275,7 +280,7 @@ export class App {
         this.about_.hide();
       },
     };
-    CAMERA_NAMES.forEach((name, k) => (actions[String(k + 1)] = () => this.useCamera(name)));
+    this.cameraNames.forEach((name, k) => (actions[String(k + 1)] = () => this.useCamera(name)));
     const action = actions[e.key];
     if (!action) return;
     e.preventDefault();

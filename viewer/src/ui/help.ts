@@ -45,7 +45,7 @@ export function helpOverlay(palette: () => Palette): HTMLElement {
       [p.cupWrench, "force of the cup on the box"],
       [p.flangeWrench, "force on the flange"],
       [p.ghost, "dashed: where the command has the tool and the held box"],
-      [p.select, "dashed, a ghost while the box is carried: its planned place, where the command at its release would have put it, the cup undeformed"],
+      [p.select, "dashed, a ghost while the box is carried: its planned place, where the command would have put it when the vacuum was switched off, the cup undeformed"],
       [p.trace, "trace: shift-click a corner of a box"],
     ] as const) {
       const swatch = make("i", "swatch");

@@ -62,6 +62,12 @@ describe("layouts", () => {
     expect(await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight])).toEqual([width, height]);
     const states = await page.locator(".box .state").all();
     for (const state of states) expect((await state.boundingBox())!.height).toBeLessThan(24);
+    await page.keyboard.press("w");
+    const plots = await boxOf(page, ".plots");
+    for (const button of await page.locator(".toolbar button:visible, .toolbar summary:visible").all()) {
+      const box = (await button.boundingBox())!;
+      expect(box.x + box.width, `${await button.textContent() ?? ""} beside wide plots`).toBeLessThanOrEqual(plots.x);
+    }
     expect(errors).toEqual([]);
     await close();
   });
@@ -93,6 +99,7 @@ describe("a scene without tool", () => {
     await page.waitForSelector(".plot");
     expect(await page.locator(".group summary").allTextContents()).toEqual(["Contacts and solver"]);
     expect(await page.textContent(".headline")).not.toContain("packed");
+    expect(await page.locator(".cameras").first().locator("button").allTextContents()).toEqual(["cell", "top", "side"]);
     expect(await page.locator(".fill-row").count()).toBe(0);
     // Its middle is a box: a click there selects it.
     const drawing = await boxOf(page, ".view canvas");

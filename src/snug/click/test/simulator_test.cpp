@@ -216,7 +216,7 @@ TEST(Simulator, AnswersWhoOnlyLooksBesideTheController) {
   EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{}, watcher)));
   EXPECT_NE(talk.error(HandshakeInit{2}, watcher).find("not supported"), std::string::npos);
   for (const Message& message : {Message(control_of({1, 1, 1, 1, 1, 1})), Message(Reset{}), Message(Error{"stop"})}) {
-    EXPECT_NE(talk.error(message, watcher).find("only looks"), std::string::npos) << name_of(message);
+    EXPECT_NE(talk.error(message, watcher).find("is an observer"), std::string::npos) << name_of(message);
   }
   EXPECT_FALSE(talk.simulator.leave(watcher));
   EXPECT_EQ(talk.simulator.hash(), hash);
