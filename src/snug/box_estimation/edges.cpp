@@ -10,10 +10,11 @@ namespace {
 
 constexpr double kInset = 0.04;  // part of an edge's length at either end that is left out
 constexpr int kLeastLines = 8;
-constexpr double kLeastPart = 0.35;      // of the lines across an edge on which its end has to be seen
-constexpr int kWindow = 3;               // px, around an edge once it is known roughly
-constexpr double kRoundingError = 0.29;  // px, standard deviation of where a grid of pixels puts an end
-constexpr double kDrop = 2.5e-3;         // m: an edge of depth that loses points
+constexpr double kLeastPart = 0.35;          // of the lines across an edge on which its end has to be seen
+constexpr int kWindow = 3;                   // samples, around an edge once it is known roughly
+constexpr double kRoundingError = 0.29;      // samples, standard deviation of where a grid of pixels puts an end
+constexpr int kLeastPixelsOfNextFace = 200;  // behind a ridge
+constexpr double kRidgeError = 0.3;          // of how far points count as a face's own behind a ridge
 
 enum class Kind : std::uint8_t { Outside, On, Before, Behind, None };  // None: no point
 
@@ -31,6 +32,9 @@ struct Line {
 struct Edge {
   Vector3 middle, along, outward, n;  // in C; n the face's normal
   double length = 0.0;
+  /// Behind a ridge the box's next face is seen: how much more it looks away from the camera than this one, as the
+  /// tangent; 0: no ridge, what is seen behind the edge lies deeper.
+  double ridge = 0.0;
 };
 
 /// One edge as the frame shows it.
@@ -46,7 +50,7 @@ class EdgeSearch {
         neighbours_(neighbours),
         body_(body) {}
 
-  /// False when the edge is not in the picture.
+  /// False when the edge is not in the picture, or across the lines of pixels.
   bool gather() {
     const Vector3 a = edge_.middle - (0.5 - kInset) * edge_.length * edge_.along;
     const Vector3 b = edge_.middle + (0.5 - kInset) * edge_.length * edge_.along;
@@ -68,16 +72,17 @@ class EdgeSearch {
       const int middle = static_cast<int>(std::lround(at));
       Line line;
       for (int d = -reach_; d <= reach_; ++d) line.samples.push_back(sample(k, middle + sign * d, line));
-      if (line.samples.size() >= 2) lines_.push_back(std::move(line));
+      lines_.push_back(std::move(line));
     }
-    return static_cast<int>(lines_.size()) >= kLeastLines;
+    spacing_ = mean_spacing();
+    return static_cast<int>(lines_.size()) >= kLeastLines && spacing_ > 0.2 * pixel();
   }
 
   /// Where most lines agree that the face ends: the offset that leaves the fewest points of the face outside and the
   /// fewest others inside. Points before the face tell nothing.
   [[nodiscard]] double rough_offset() const {
     constexpr double kBin = 0.4e-3;
-    const double far = reach_ * pixel() + kBin;
+    const double far = reach_ * spacing_ + kBin;
     const auto count = static_cast<std::size_t>(2.0 * far / kBin) + 1;
     std::vector<double> gain(count, 0.0);
     for (const Line& line : lines_)
@@ -109,7 +114,7 @@ class EdgeSearch {
 
   /// Counts the points of the face in a window around the rough end, on each line.
   [[nodiscard]] std::optional<Found> refine(double rough) const {
-    const double step = pixel();
+    const double step = spacing_;
     std::vector<Eigen::Vector2d> ends;  // t, s
     int drops = 0, steps = 0;
     for (const Line& line : lines_) {
@@ -117,7 +122,7 @@ class EdgeSearch {
       bool is_blocked = false;
       double first = 1e9;
       for (const Sample& sample : line.samples) {
-        const double d = (sample.s - rough) / step;  // px
+        const double d = (sample.s - rough) / step;  // samples
         if (sample.kind == Kind::Outside) continue;
         if (d > -kWindow - 2.5 && d < kWindow + 1.5 && sample.kind == Kind::Before) is_blocked = true;
         if (d >= -kWindow - 2.5 && d < -kWindow && sample.kind != Kind::On) ++inner_off;
@@ -142,12 +147,27 @@ class EdgeSearch {
     return straight_line(ends, drops > steps / 2);
   }
 
-  [[nodiscard]] double pixel() const {
-    return std::abs(edge_.middle.z()) / (is_steep_ ? frame_.camera.intrinsics.fx : frame_.camera.intrinsics.fy);
-  }
+  /// m, outward from sample to sample. A line of pixels crosses an edge that is turned against the grid obliquely: its
+  /// samples are nearer to each other than pixels are.
+  [[nodiscard]] double spacing() const { return spacing_; }
   [[nodiscard]] double drift() const { return drift_; }
 
  private:
+  [[nodiscard]] double pixel() const {
+    return std::abs(edge_.middle.z()) / (is_steep_ ? frame_.camera.intrinsics.fx : frame_.camera.intrinsics.fy);
+  }
+
+  [[nodiscard]] double mean_spacing() const {
+    double sum = 0.0, count = 0.0;
+    for (const Line& line : lines_)
+      for (std::size_t i = 1; i < line.samples.size(); ++i) {
+        if (line.samples[i - 1].kind == Kind::Outside || line.samples[i].kind == Kind::Outside) continue;
+        sum += line.samples[i].s - line.samples[i - 1].s;
+        count += 1.0;
+      }
+    return count > 0.0 ? sum / count : 0.0;
+  }
+
   Sample sample(int major, int minor, Line& line) const {
     const int row = is_steep_ ? major : minor, col = is_steep_ ? minor : major;
     if (!frame_.depth.is_inside(row, col)) return {};
@@ -216,6 +236,7 @@ class EdgeSearch {
   int body_;
   bool is_steep_ = false;
   double drift_ = 0.0;  // px, by which the edge crosses the grid of pixels
+  double spacing_ = 0.0;
   std::vector<Line> lines_;
 };
 
@@ -237,7 +258,7 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
   const double tolerance = std::max(3.5 * errors.point_error(depth), 0.5e-3);
   EdgeSearch search(frame, edge, tolerance, settings.reach, settings.ignores_neighbours ? &prediction : nullptr, body);
   if (!search.gather()) return std::nullopt;
-  const double rough = search.rough_offset(), step = search.pixel();
+  const double rough = search.rough_offset(), step = search.spacing();
   is_coarse = std::abs(rough) > (settings.reach - kWindow - 2) * step;
   if (is_coarse) {
     // Too near the end of the band to be counted. At its very end all of the band is face, or none: the end lies
@@ -250,15 +271,16 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
   }
   const auto found = search.refine(rough);
   if (!found) return std::nullopt;
-  const double lost = found->is_drop ? errors.edge_shift() * step : 0.0;
-  Rows rows = make_rows(edge, box.X_CP.p, found->offset + lost, found->slope);
+  // Edges of depth lose points. Over a ridge points count as the face's own until the next face is a tolerance lower.
+  const double beyond = tolerance * edge.ridge;
+  const double lost = edge.ridge == 0.0 && found->is_drop ? errors.edge_shift() * step : 0.0;
+  Rows rows = make_rows(edge, box.X_CP.p, found->offset + lost - beyond, found->slope);
   // The grid of pixels rounds all lines of an edge along it alike, and evens out where the edge crosses it.
   const double rounding = kRoundingError * step / std::max(1.0, search.drift());
   const double single =
       found->spread * found->spread + std::pow(kRoundingError * step, 2) * (search.drift() >= 1.0 ? 0.0 : 0.2);
-  const double mean = rounding * rounding + 2.0 * single / found->lines;
+  const double mean = rounding * rounding + 2.0 * single / found->lines + std::pow(kRidgeError * beyond, 2);
   rows.covariance = Vector3(mean, mean / (found->length * found->length), 1.0).asDiagonal();
-  (void)kDrop;
   return rows;
 }
 
@@ -270,10 +292,16 @@ std::vector<EdgeFeature> find_edges(const camera::Frame& frame, const Prediction
   std::vector<int> seen(prediction.cast.surfaces.size(), 0);
   for (const std::int32_t s : prediction.cast.surface.values())
     if (s >= 0) ++seen[static_cast<std::size_t>(s)];
+  const auto shows = [&](int body, int face) {
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (prediction.cast.surfaces[i].body == body && prediction.cast.surfaces[i].face == face)
+        return seen[i] >= kLeastPixelsOfNextFace;
+    return false;
+  };
   std::vector<EdgeFeature> features;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const camera::Surface& surface = prediction.cast.surfaces[i];
-    if (surface.body < prediction.first_box || seen[i] < 200) continue;
+    if (surface.body < prediction.first_box + settings.first_box || seen[i] < 200) continue;
     const int index = surface.body - prediction.first_box;
     const TrackedBox& box = boxes[static_cast<std::size_t>(index)];
     const int axis = surface.face / 2;
@@ -288,6 +316,8 @@ std::vector<EdgeFeature> find_edges(const camera::Frame& frame, const Prediction
         edge.along = box.X_CP.R.col(along);
         edge.length = 2.0 * box.half(along);
         edge.middle = box.X_CP.p + box.half(axis) * surface.n_C + box.half(across) * edge.outward;
+        if (shows(surface.body, 2 * across + side))
+          edge.ridge = std::max(0.0, edge.outward.dot(edge.middle) / edge.n.dot(edge.middle));
         EdgeFeature feature;
         const auto rows = measure(frame, box, edge, errors, settings, prediction, surface.body, feature.is_coarse);
         if (!rows) continue;

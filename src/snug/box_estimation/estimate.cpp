@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "snug/box_estimation/internal/joint_fit.hpp"
 #include "snug/box_estimation/internal/obstacles.hpp"
-#include "snug/box_estimation/internal/search.hpp"
+#include "snug/box_estimation/internal/relocate.hpp"
 
 namespace snug::box_estimation {
 namespace {
@@ -15,6 +16,8 @@ namespace {
 using internal::Agreement;
 using internal::ErrorModel;
 using internal::FitStart;
+using internal::Lost;
+using internal::Place;
 using internal::Prediction;
 using internal::TrackedBox;
 
@@ -30,7 +33,14 @@ constexpr double kMostBlocked = 0.25;       // of pixels with points above the r
 constexpr double kMovedDistance = 0.010, kMovedAngle = 3.0 * kDegree;
 constexpr double kLeaning = 4.0 * kDegree;
 constexpr double kMostTolerance = 0.02;  // m, of a face from where it was believed to be
-constexpr double kFoundSpread = 0.05;    // m and rad: the belief of a box that was found elsewhere
+constexpr double kLeastGone = 0.7;       // of a place: it is empty
+constexpr double kPartThatTells =
+    0.15;  // of what a box would show alone: less of its place does not tell that it is empty
+constexpr double kTakenOverlap = 0.01;  // m, of solids: one of them is not there
+constexpr double kOverRim = 0.12;       // m: so high over the region boxes are looked for
+constexpr int kMostRounds = 4;          // of looking for lost boxes
+// A tracked box may be another one: seen through, sides not as long as its own, far from its belief.
+constexpr double kDoubtfulPartOn = 0.97, kDoubtfulMisfit = 3e-3, kDoubtfulDeviations = 4.0;
 
 TrackedBox make_tracked(const ExpectedBox& box, const Pose& X_CW) {
   TrackedBox tracked;
@@ -49,7 +59,7 @@ class Estimator {
         X_CW_(frame.camera.X_WC.inverse()),
         errors_(frame.camera),
         surroundings_C_(internal::in_camera(input.surroundings, frame.camera.X_WC)),
-        range_(internal::pixel_range(frame.camera, input.region_low, input.region_high)),
+        range_(internal::pixel_range(frame.camera, input.region_low, input.region_high + Vector3(0.0, 0.0, kOverRim))),
         tolerance_(std::max(6e-3, 4.0 * errors_.point_error(frame.camera.range.focus))) {}
 
   Estimate run() {
@@ -63,7 +73,8 @@ class Estimator {
     result.fault = judge_frame(result.point_part);
     if (result.fault != FrameFault::None) return result;
     track();
-    look_for_others();
+    track_uncovered();
+    look_for_lost();
     drop_bad_fits();
     report(result);
     return result;
@@ -78,9 +89,10 @@ class Estimator {
   }
 
   FrameFault judge_frame(double& part) const {
+    const internal::PixelRange range = internal::pixel_range(frame_.camera, input_.region_low, input_.region_high);
     int points = 0, blocked = 0;
-    for (int r = range_.first_row; r < range_.end_row; ++r)
-      for (int c = range_.first_col; c < range_.end_col; ++c) {
+    for (int r = range.first_row; r < range.end_row; ++r)
+      for (int c = range.first_col; c < range.end_col; ++c) {
         const double depth = frame_.depth(r, c);
         if (depth == 0.0) continue;
         ++points;
@@ -88,7 +100,7 @@ class Estimator {
         const double z = frame_.camera.X_WC.R.row(2).dot(p_C) + frame_.camera.X_WC.p.z();
         blocked += z > input_.region_high.z() ? 1 : 0;
       }
-    const int pixels = range_.rows() * range_.cols();
+    const int pixels = range.rows() * range.cols();
     part = pixels > 0 ? static_cast<double>(points) / pixels : 0.0;
     if (part < kLeastFramePart) return FrameFault::TooFewPoints;
     return blocked > kMostBlocked * pixels ? FrameFault::ViewBlocked : FrameFault::None;
@@ -123,6 +135,7 @@ class Estimator {
     const std::vector<Agreement> agreement = internal::compare(frame_, predict(all), tolerances);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Agreement& a = agreement[i];
+      was_in_view_.push_back(a.pixels >= kLeastPointsOfBox);
       if (agrees(a, kLeastPartOn)) {
         tracked_.push_back(all[i]);
         ids_.push_back(i);
@@ -130,6 +143,17 @@ class Estimator {
         others_.push_back(i);
       }
     }
+    fit(FitStart::Belief, 6);
+    keep_good();
+  }
+
+  /// Boxes that are seen where they are believed to be, now that what should have covered them is not tracked.
+  void track_uncovered() {
+    std::vector<std::size_t> uncovered;
+    for (const std::size_t i : others_)
+      if (agrees(look_at_belief(i), kLeastPartOn)) uncovered.push_back(i);
+    if (uncovered.empty()) return;
+    for (const std::size_t i : uncovered) add(i, make_tracked(input_.boxes[i], X_CW_));
     fit(FitStart::Belief, 6);
     keep_good();
   }
@@ -176,54 +200,68 @@ class Estimator {
     return internal::compare(frame_, predict(boxes), tolerances).back();
   }
 
-  /// Boxes that are evidently not where they were believed to be: looked for among what nothing explains. A box whose
-  /// place is covered may well be there.
-  void look_for_others() {
-    for (int round = 0; round < 3 && !others_.empty(); ++round) {
+  /// Boxes that are not where they were believed to be, and those that may be taken for others.
+  void look_for_lost() {
+    std::vector<std::optional<Pose>> tracked(input_.boxes.size());  // X_CP
+    doubt(tracked);
+    for (int round = 0; round < kMostRounds && !others_.empty(); ++round) {
       std::sort(others_.begin(), others_.end());
-      const Prediction prediction = predict(tracked_);
-      const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + 1.5e-3);
-      std::vector<internal::Wanted> wanted;
+      std::vector<Lost> lost;
+      std::vector<std::size_t> boxes;  // of the input
       for (const std::size_t i : others_) {
-        const Agreement a = look_at_belief(i);
-        if (a.on + a.farther < std::max(kLeastPointsOfBox, a.nearer)) continue;
-        wanted.push_back({static_cast<int>(i), 0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP});
+        const double gone = part_gone(i);
+        // What was covered is where it was, as long as its place is not seen to be empty.
+        if (!was_in_view_[i] && gone < 0.5) continue;
+        lost.push_back({{0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP}, gone, tracked[i]});
+        boxes.push_back(i);
       }
-      std::vector<camera::SceneShape> solids = surroundings_C_.shapes;
-      for (const TrackedBox& box : tracked_) solids.push_back({geometry::Box{box.half}, box.X_CP, 0});
-      const auto found = internal::find_boxes(frame_, prediction, mask, wanted, solids, errors_);
+      const internal::Known known{frame_, input_, range_, surroundings_C_, tracked_, errors_, fit_tolerance()};
+      const std::vector<Place> found = internal::relocate(known, lost);
       if (found.empty()) break;
-      const std::size_t before = tracked_.size();
-      for (const internal::FoundBox& one : found) add_found(wanted[static_cast<std::size_t>(one.wanted)], one.X_CP);
+      for (const Place& place : found) add(boxes[place.lost], place.box);
       fit(FitStart::Near, 4);
-      if (turn_to_fit(before)) fit(FitStart::Near, 3);
       keep_good();
     }
     if (!tracked_.empty()) fit(FitStart::Near, 3);
   }
 
-  /// Found boxes (from `first` on) whose seen sides are as long as others of theirs are turned to match. True when any
-  /// was.
-  bool turn_to_fit(std::size_t first) {
-    bool has_turned = false;
-    for (std::size_t i = first; i < tracked_.size(); ++i) {
-      const auto turned = internal::turned_to_sizes(tracked_[i], fit_.size_misfit[i],
-                                                    input_.boxes[ids_[i]].X_WP.R.transpose() * frame_.camera.X_WC.R);
-      if (!turned) continue;
-      tracked_[i].X_CP = tracked_[i].X_CP_prior = *turned;
-      has_turned = true;
-    }
-    return has_turned;
+  /// How surely a box is not where it was believed to be, 0 .. 1: its place is seen through, or a tracked box is in it.
+  [[nodiscard]] double part_gone(std::size_t i) const {
+    if (is_taken(i)) return 1.0;
+    const Agreement a = look_at_belief(i);
+    const double least = kPartThatTells * pixels_alone(make_tracked(input_.boxes[i], X_CW_));
+    return a.farther / std::max({least, kLeastPointsOfBox * 1.0, a.on + a.nearer + a.farther * 1.0});
   }
 
-  void add_found(const internal::Wanted& wanted, const Pose& X_CP) {
-    const auto index = static_cast<std::size_t>(wanted.box);
-    TrackedBox box = make_tracked(input_.boxes[index], X_CW_);
-    box.X_CP = box.X_CP_prior = X_CP;
-    box.prior_information = Matrix6::Identity() / (kFoundSpread * kFoundSpread);
-    tracked_.push_back(box);
-    ids_.push_back(index);
-    std::erase(others_, index);
+  /// Whether a tracked box is where box i was believed to be.
+  [[nodiscard]] bool is_taken(std::size_t i) const {
+    const TrackedBox box = make_tracked(input_.boxes[i], X_CW_);
+    return std::any_of(tracked_.begin(), tracked_.end(), [&](const TrackedBox& other) {
+      return internal::overlap(box, other) > kTakenOverlap + 2.5 * input_.boxes[i].position_spread;
+    });
+  }
+
+  /// Tracked boxes that may be others are lost again; where they were tracked is one of the places that they can have.
+  void doubt(std::vector<std::optional<Pose>>& tracked) {
+    const std::vector<Agreement> agreement = compare(tracked_);
+    std::vector<bool> is_sure;
+    for (std::size_t i = 0; i < tracked_.size(); ++i) {
+      const ExpectedBox& box = input_.boxes[ids_[i]];
+      const Vector3& misfit = fit_.size_misfit[i];
+      const Pose X_WP = frame_.camera.X_WC * tracked_[i].X_CP;
+      const bool has_its_size =
+          !(misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > kDoubtfulMisfit);
+      is_sure.push_back(agreement[i].part_on() >= kDoubtfulPartOn && has_its_size &&
+                        (X_WP.p - box.X_WP.p).norm() < kDoubtfulDeviations * box.position_spread);
+      if (!is_sure.back()) tracked[ids_[i]] = tracked_[i].X_CP;
+    }
+    keep(is_sure);
+  }
+
+  void add(std::size_t box, const TrackedBox& tracked) {
+    tracked_.push_back(tracked);
+    ids_.push_back(box);
+    std::erase(others_, box);
   }
 
   /// Until all that are left agree with the frame.
@@ -305,9 +343,7 @@ class Estimator {
   /// Of those that were not found: is the place where each should be seen, and empty?
   void report_others(Estimate& result) const {
     for (const std::size_t i : others_) {
-      const Agreement a = look_at_belief(i);
-      const int points = a.on + a.nearer + a.farther;
-      if (points >= kLeastPointsOfBox && a.farther > 0.7 * points) result.boxes[i].sight = Sight::Missing;
+      if (part_gone(i) > kLeastGone) result.boxes[i].sight = Sight::Missing;
     }
   }
 
@@ -321,6 +357,7 @@ class Estimator {
   std::vector<TrackedBox> tracked_;
   std::vector<std::size_t> ids_;     ///< of the input, for each tracked box
   std::vector<std::size_t> others_;  ///< not tracked
+  std::vector<bool> was_in_view_;    ///< of each box of the input: should be seen, if all are as believed
   internal::FitResult fit_;
 };
 

@@ -141,7 +141,7 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
   std::vector<FaceFrame> frames(cast.surfaces.size());
   for (std::size_t i = 0; i < cast.surfaces.size(); ++i) {
     const camera::Surface& surface = cast.surfaces[i];
-    if (surface.body < prediction.first_box) continue;
+    if (surface.body < prediction.first_box + settings.first_box) continue;
     sums[i].face = surface.face;
     frames[i] = frame_of(boxes[static_cast<std::size_t>(surface.body - prediction.first_box)], surface.face);
   }

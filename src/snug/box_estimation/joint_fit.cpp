@@ -18,13 +18,19 @@ namespace {
 /// m: how far solids may overlap, a standard deviation: soft boxes give way by about that.
 constexpr double kOverlap = 1.0e-3;
 
+/// Normal equations of the boxes that are not held.
 class System {
  public:
-  explicit System(std::size_t boxes)
-      : H_(Eigen::MatrixXd::Zero(size(boxes), size(boxes))), g_(Eigen::VectorXd::Zero(size(boxes))) {}
+  System(std::size_t boxes, int held) : held_(held) {
+    const Eigen::Index size = 6 * (static_cast<Eigen::Index>(boxes) - held);
+    H_ = Eigen::MatrixXd::Zero(size, size);
+    g_ = Eigen::VectorXd::Zero(size);
+  }
+  /// Of box `box` of the list; negative when it is held, or nothing that could move.
+  [[nodiscard]] Eigen::Index row_of(int box) const { return 6 * static_cast<Eigen::Index>(box - held_); }
 
   void add(int box, const Rows& rows) {
-    const Eigen::Index at = 6 * box;
+    const Eigen::Index at = row_of(box);
     const Eigen::MatrixXd J = rows.J.topRows(rows.count);
     const Eigen::MatrixXd W = rows.covariance.topLeftCorner(rows.count, rows.count).inverse();
     H_.block<6, 6>(at, at) += J.transpose() * W * J;
@@ -33,26 +39,25 @@ class System {
   void add_prior(int box, const TrackedBox& tracked) {
     Vector6 off;
     off << tracked.X_CP_prior.p - tracked.X_CP.p, log_rotation(tracked.X_CP_prior.R * tracked.X_CP.R.transpose());
-    H_.block<6, 6>(6 * box, 6 * box) += tracked.prior_information;
-    g_.segment<6>(6 * box) += tracked.prior_information * off;
+    H_.block<6, 6>(row_of(box), row_of(box)) += tracked.prior_information;
+    g_.segment<6>(row_of(box)) += tracked.prior_information * off;
   }
-  /// `gap` m along n (from a to b) at point p, that should not be negative. b < 0: something fixed.
+  /// `gap` m along n (from a to b) at point p, that should not be negative. b < 0: surroundings.
   void add_overlap(int a, int b, const std::vector<TrackedBox>& boxes, const Vector3& n, const Vector3& p, double gap) {
     const auto jacobian = [&](int box, double sign) {
-      Vector6 J;
-      J << sign * n, sign * (p - boxes[static_cast<std::size_t>(box)].X_CP.p).cross(n);
+      Vector6 J = Vector6::Zero();
+      if (row_of(box) >= 0) J << sign * n, sign * (p - boxes[static_cast<std::size_t>(box)].X_CP.p).cross(n);
       return J;
     };
     const double weight = 1.0 / (kOverlap * kOverlap);
-    const Vector6 Ja = jacobian(a, -1.0);
-    H_.block<6, 6>(6 * a, 6 * a) += weight * Ja * Ja.transpose();
-    g_.segment<6>(6 * a) -= weight * gap * Ja;
-    if (b < 0) return;
-    const Vector6 Jb = jacobian(b, 1.0);
-    H_.block<6, 6>(6 * b, 6 * b) += weight * Jb * Jb.transpose();
-    H_.block<6, 6>(6 * a, 6 * b) += weight * Ja * Jb.transpose();
-    H_.block<6, 6>(6 * b, 6 * a) += weight * Jb * Ja.transpose();
-    g_.segment<6>(6 * b) -= weight * gap * Jb;
+    const std::array<std::pair<Eigen::Index, Vector6>, 2> both = {
+        {{row_of(a), jacobian(a, -1.0)}, {row_of(b), jacobian(b, 1.0)}}};
+    for (const auto& [row, J] : both) {
+      if (row < 0) continue;
+      g_.segment<6>(row) -= weight * gap * J;
+      for (const auto& [col, K] : both)
+        if (col >= 0) H_.block<6, 6>(row, col) += weight * J * K.transpose();
+    }
   }
 
   [[nodiscard]] Eigen::VectorXd solve() const { return H_.ldlt().solve(g_); }
@@ -61,12 +66,12 @@ class System {
   }
 
  private:
-  static Eigen::Index size(std::size_t boxes) { return 6 * static_cast<Eigen::Index>(boxes); }
+  int held_;
   Eigen::MatrixXd H_;
   Eigen::VectorXd g_;
 };
 
-void add_overlaps(const std::vector<TrackedBox>& boxes, const camera::Scene& surroundings_C, System& system) {
+void add_overlaps(const std::vector<TrackedBox>& boxes, int held, const camera::Scene& surroundings_C, System& system) {
   const auto add = [&](int a, int b, const geometry::Shape& A, const Pose& X_CA, const geometry::Shape& B,
                        const Pose& X_CB) {
     if ((X_CA.p - X_CB.p).norm() > geometry::bounding_radius(A) + geometry::bounding_radius(B)) return;
@@ -80,12 +85,12 @@ void add_overlaps(const std::vector<TrackedBox>& boxes, const camera::Scene& sur
         system.add_overlap(a, b, boxes, manifold.n_AB_W, 0.5 * (point.p_WA + point.p_WB), point.phi);
     }
   };
-  for (std::size_t a = 0; a < boxes.size(); ++a) {
-    const geometry::Shape box_a = geometry::Box{boxes[a].half};
-    for (std::size_t b = a + 1; b < boxes.size(); ++b)
-      add(static_cast<int>(a), static_cast<int>(b), box_a, boxes[a].X_CP, geometry::Box{boxes[b].half}, boxes[b].X_CP);
+  for (std::size_t b = static_cast<std::size_t>(held); b < boxes.size(); ++b) {
+    const geometry::Shape box_b = geometry::Box{boxes[b].half};
+    for (std::size_t a = static_cast<std::size_t>(held); a < b; ++a)
+      add(static_cast<int>(a), static_cast<int>(b), geometry::Box{boxes[a].half}, boxes[a].X_CP, box_b, boxes[b].X_CP);
     for (const camera::SceneShape& fixed : surroundings_C.shapes)
-      add(static_cast<int>(a), -1, box_a, boxes[a].X_CP, fixed.shape, fixed.X_WG);
+      add(static_cast<int>(b), -1, box_b, boxes[b].X_CP, fixed.shape, fixed.X_WG);
   }
 }
 
@@ -108,12 +113,14 @@ void note_size(const std::vector<EdgeFeature>& edges, const std::vector<TrackedB
 }  // namespace
 
 FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const camera::Scene& surroundings_C,
-                    std::vector<TrackedBox> boxes, const ErrorModel& errors, FitStart start, int steps) {
+                    std::vector<TrackedBox> boxes, const ErrorModel& errors, FitStart start, int steps, int held) {
   FitResult result;
+  const auto first = static_cast<std::size_t>(held);
   const double noise = errors.point_error(frame.camera.range.focus);
   for (int step = 0; step < steps && !boxes.empty(); ++step) {
     const bool is_last = step + 1 == steps;
     FeatureSettings settings;
+    settings.first_box = held;
     // From a belief that is off by centimetres to the camera's noise: first the planes alone, since edges are looked
     // for in them. From rough poses on, edges at once: without them boxes would go back to the belief.
     const int left = steps - 1 - step;
@@ -123,61 +130,32 @@ FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const c
     settings.reach = left >= 2 ? 16 : left == 1 ? 9 : 7;
     settings.ignores_neighbours = left < 2;
     const Prediction prediction = predict(frame, range, surroundings_C, boxes);
-    System system(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) system.add_prior(static_cast<int>(i), boxes[i]);
+    System system(boxes.size(), held);
+    for (std::size_t i = first; i < boxes.size(); ++i) system.add_prior(static_cast<int>(i), boxes[i]);
     for (const FaceFeature& face : fit_faces(frame, prediction, boxes, errors, settings))
       system.add(face.box, face.rows);
     std::vector<EdgeFeature> edges;
     if (!planes_only) edges = find_edges(frame, prediction, boxes, errors, settings);
     for (const EdgeFeature& edge : edges)
       if (!edge.is_coarse || left >= 2) system.add(edge.box, edge.rows);
-    add_overlaps(boxes, surroundings_C, system);
+    add_overlaps(boxes, held, surroundings_C, system);
     const Eigen::VectorXd change = system.solve();
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const Vector6 own = change.segment<6>(6 * static_cast<Eigen::Index>(i));
+    for (std::size_t i = first; i < boxes.size(); ++i) {
+      const Vector6 own = change.segment<6>(system.row_of(static_cast<int>(i)));
       boxes[i].X_CP.p += own.head<3>();
       boxes[i].X_CP.R = orthonormalized(exp_rotation(own.tail<3>()) * boxes[i].X_CP.R);
     }
     if (!is_last) continue;
     const Eigen::MatrixXd covariance = system.covariance();
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      result.covariance.push_back(
-          covariance.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)));
+    result.covariance.assign(boxes.size(), Matrix6::Zero());
+    for (std::size_t i = first; i < boxes.size(); ++i) {
+      const Eigen::Index row = system.row_of(static_cast<int>(i));
+      result.covariance[i] = covariance.block<6, 6>(row, row);
+    }
     note_size(edges, boxes, result);
   }
   result.boxes = std::move(boxes);
   return result;
-}
-
-std::optional<Pose> turned_to_sizes(const TrackedBox& box, const Vector3& size_misfit, const Matrix3& R_PC_believed) {
-  constexpr double kBetter = 1.0e-3;  // m: less than that is noise
-  // The axis whose face looks most toward the camera; its length is not seen.
-  int depth_axis = 0;
-  (box.X_CP.R.transpose() * box.X_CP.p.normalized()).cwiseAbs().maxCoeff(&depth_axis);
-  const auto misfit_of = [&](const std::array<int, 3>& order) {  // box axis order[k] lies where axis k lay
-    double sum = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      const double seen = 2.0 * box.half(k) + size_misfit(k);
-      if (k != depth_axis && std::isfinite(seen))
-        sum += std::abs(seen - 2.0 * box.half(order[static_cast<std::size_t>(k)]));
-    }
-    return sum;
-  };
-  std::array<int, 3> order = {0, 1, 2}, best = order;
-  const double now = misfit_of(order);
-  double least = now - kBetter;
-  while (std::next_permutation(order.begin(), order.end())) {
-    if (misfit_of(order) >= least) continue;
-    least = misfit_of(order);
-    best = order;
-  }
-  if (best == std::array<int, 3>{0, 1, 2}) return std::nullopt;
-  Matrix3 R_CP;
-  for (int k = 0; k < 3; ++k) R_CP.col(best[static_cast<std::size_t>(k)]) = box.X_CP.R.col(k);
-  if (R_CP.determinant() < 0.0) R_CP.col(0) = -R_CP.col(0);
-  const Vector3 into = box.X_CP.R.col(depth_axis) * (box.X_CP.R.col(depth_axis).dot(box.X_CP.p) > 0.0 ? 1.0 : -1.0);
-  const double deeper = box.half(best[static_cast<std::size_t>(depth_axis)]) - box.half(depth_axis);
-  return Pose{nearest_equal_rotation(R_CP, R_PC_believed.transpose()), box.X_CP.p + deeper * into};
 }
 
 }  // namespace snug::box_estimation::internal

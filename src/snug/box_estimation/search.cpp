@@ -1,4 +1,4 @@
-// find_boxes: flat patches of unexplained points, rectangles around them, boxes whose faces these can be.
+// propose_poses: flat patches of unexplained points, rectangles around them, boxes whose faces these can be.
 #include "snug/box_estimation/internal/search.hpp"
 
 #include <algorithm>
@@ -17,9 +17,15 @@ namespace {
 constexpr int kBlock = 6;              // px, side of the blocks that patches grow from
 constexpr double kSameNormal = 0.985;  // cosine between neighbouring blocks of a patch: 10 degrees
 constexpr int kLeastBlocks = 6;
-constexpr double kFit = 0.007;         // m: by so much a patch may be wider or narrower than a face
-constexpr double kSizeError = 0.0020;  // m, standard deviation of the side of a rectangle around a patch
-constexpr int kSamples = 14;           // a side, of a face that is compared with the frame
+constexpr double kFit = 0.007;               // m: by so much a patch may be wider or narrower than a face
+constexpr double kSizeError = 0.0020;        // m, standard deviation of the side of a rectangle around a patch
+constexpr int kSamples = 14;                 // a side, of a face that is compared with the frame
+constexpr double kLeastProposedPart = 0.75;  // of the points where a proposed box should be
+constexpr double kLeastScore = 6e-4;         // m^2
+constexpr double kUnexplained = 1.5e-3;      // m, beyond the tolerance of fitted faces
+constexpr double kRim = 0.05;                // m: boxes may lie on the rim of the region
+constexpr int kMostPoses = 12;               // of a box
+constexpr double kSamePlace = 0.006, kSameTurn = 0.08;  // m, rad: poses that are not proposed twice
 
 struct Block {
   int count = 0;
@@ -204,7 +210,7 @@ class Judge {
   /// Area of it that is seen where it should be, m^2, less three times what is seen through, less what other things
   /// explain.
   [[nodiscard]] double score(const Vector3& half, const Pose& X_CP, double& part_on) const {
-    double on = 0.0, through = 0.0, taken = 0.0, all = 0.0;
+    double on = 0.0, through = 0.0, taken = 0.0;
     for (int face = 0; face < 6; ++face) {
       const int axis = face / 2, a = (axis + 1) % 3, b = (axis + 2) % 3;
       const Vector3 n = X_CP.R.col(axis) * (face % 2 == 1 ? 1.0 : -1.0);
@@ -216,7 +222,7 @@ class Judge {
         for (int k = 0; k < kSamples; ++k) {
           const Vector3 p = centre + half(a) * ((2 * i + 1.0) / kSamples - 1.0) * 0.96 * X_CP.R.col(a) +
                             half(b) * ((2 * k + 1.0) / kSamples - 1.0) * 0.96 * X_CP.R.col(b);
-          add(p, area, facing, on, through, taken, all);
+          add(p, area, facing, on, through, taken);
         }
     }
     const double seen = on + through + taken;
@@ -225,14 +231,12 @@ class Judge {
   }
 
  private:
-  void add(const Vector3& p, double area, double facing, double& on, double& through, double& taken,
-           double& all) const {
+  void add(const Vector3& p, double area, double facing, double& on, double& through, double& taken) const {
     const Eigen::Vector2d pixel = camera::project(frame_.camera.intrinsics, p);
     const int col = static_cast<int>(std::lround(pixel.x())), row = static_cast<int>(std::lround(pixel.y()));
     if (!frame_.depth.is_inside(row, col)) return;
     const double depth = frame_.depth(row, col);
     if (depth == 0.0) return;
-    all += area;
     const double off = (depth - p.z()) * facing;
     if (off > tolerance_) {
       through += area;
@@ -249,24 +253,16 @@ class Judge {
   double tolerance_;
 };
 
-/// By how much a place is less likely because the box would be in something, or stand on nothing. Rough poses are off
-/// by some millimetres.
-double standing(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
-  constexpr double kSlack = 0.006;
-  const geometry::Shape box = geometry::Box{half};
-  double least = kSlack;
-  for (const camera::SceneShape& solid : solids_C) {
-    if ((X_CP.p - solid.X_WG.p).norm() >
-        geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + kSlack)
-      continue;
-    geometry::PairCache cache;
-    geometry::Manifold manifold;
-    geometry::collide(box, X_CP, solid.shape, solid.X_WG, kSlack, cache, manifold);
-    for (int i = 0; i < manifold.count; ++i) least = std::min(least, manifold.points[static_cast<std::size_t>(i)].phi);
-  }
-  if (least >= kSlack) return 0.6;
-  return least > -kSlack ? 1.0 : std::max(0.1, 1.0 + 40.0 * (least + kSlack));
+/// Whether a point is in the region, over it, or at its rim.
+bool is_about(const EstimateInput& input, const Vector3& p_W) {
+  return (p_W.array() > input.region_low.array() - kRim).all() &&
+         (p_W.head<2>().array() < input.region_high.head<2>().array() + kRim).all();
 }
+
+struct Scored {
+  double score = 0.0;
+  Pose X_CP;
+};
 
 /// Calls visit(pose, likeliness) for each way in which a face of the box can be the rectangle, or a part of it seen.
 template <class Visit>
@@ -309,52 +305,62 @@ camera::Grid2<std::uint8_t> unexplained(const camera::Frame& frame, const Predic
         mask(r, c) = 1;
         continue;
       }
-      const camera::Surface& surface = prediction.cast.surfaces[static_cast<std::size_t>(s)];
-      const double ratio = static_cast<double>(depth) * prediction.cast.inverse_depth(r, c) - 1.0;
-      const double off = surface.is_flat() ? -surface.offset * ratio : ratio / prediction.cast.inverse_depth(r, c);
-      if (off < -tolerance) mask(r, c) = 1;
+      if (distance_outward(prediction, s, r, c, depth) > tolerance) mask(r, c) = 1;
     }
   return mask;
 }
 
-std::vector<FoundBox> find_boxes(const camera::Frame& frame, const Prediction& prediction,
-                                 const camera::Grid2<std::uint8_t>& unexplained_points,
-                                 const std::vector<Wanted>& wanted, const std::vector<camera::SceneShape>& solids_C,
-                                 const ErrorModel& errors) {
-  const double noise = errors.point_error(frame.camera.range.focus);
-  const std::vector<Patch> patches = Patches(frame, prediction, unexplained_points, noise).grow();
-  const Judge judge(frame, prediction, unexplained_points, noise);
-  std::vector<FoundBox> candidates;
-  for (const Patch& patch : patches) {
-    if (patch.points.size() < 40) continue;
+double likely_place(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
+  constexpr double kSlack = 0.006;  // m: rough poses are off by that
+  const geometry::Shape box = geometry::Box{half};
+  double least = kSlack;
+  for (const camera::SceneShape& solid : solids_C) {
+    if ((X_CP.p - solid.X_WG.p).norm() >
+        geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + kSlack)
+      continue;
+    geometry::PairCache cache;
+    geometry::Manifold manifold;
+    geometry::collide(box, X_CP, solid.shape, solid.X_WG, kSlack, cache, manifold);
+    for (int i = 0; i < manifold.count; ++i) least = std::min(least, manifold.points[static_cast<std::size_t>(i)].phi);
+  }
+  if (least >= kSlack) return 0.6;
+  return least > -kSlack ? 1.0 : std::max(0.1, 1.0 + 40.0 * (least + kSlack));
+}
+
+std::vector<std::vector<Pose>> propose_poses(const Known& known, const Prediction& prediction,
+                                             const std::vector<Wanted>& wanted,
+                                             const std::vector<camera::SceneShape>& solids_C) {
+  const camera::Frame& frame = known.frame;
+  const double noise = known.errors.point_error(frame.camera.range.focus);
+  const auto points = unexplained(frame, prediction, known.tolerance + kUnexplained);
+  const Judge judge(frame, prediction, points, noise);
+  std::vector<std::vector<Scored>> all(wanted.size());
+  for (const Patch& patch : Patches(frame, prediction, points, noise).grow()) {
+    if (patch.points.size() < 40 || !is_about(known.input, frame.camera.X_WC * patch.mean)) continue;
     const Rectangle rectangle = rectangle_of(patch);
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      FoundBox best{static_cast<int>(i), {}, 0.0};
-      const double shrink = 2.0 * errors.edge_shift() * patch.mean.z() / frame.camera.intrinsics.fx;
+    const double shrink = 2.0 * known.errors.edge_shift() * patch.mean.z() / frame.camera.intrinsics.fx;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
       each_pose(wanted[i], rectangle, patch.n, shrink, [&](const Pose& X_CP, double likeliness) {
         double part_on = 0.0;
         double score = judge.score(wanted[i].half, X_CP, part_on);
-        if (part_on < 0.75) return;
-        score *= likeliness * standing(wanted[i].half, X_CP, solids_C);
-        // Of boxes and turns alike, the one that is nearest to what was.
-        score *= 1.0 + 0.05 * std::exp(-(X_CP.p - wanted[i].X_CP_prior.p).norm() / 0.1) +
-                 0.05 * std::exp(-angle_between(X_CP.R, wanted[i].X_CP_prior.R) / 0.5);
-        if (score > best.score) best = {static_cast<int>(i), X_CP, score};
+        if (part_on < kLeastProposedPart) return;
+        score *= likeliness * likely_place(wanted[i].half, X_CP, solids_C);
+        if (score > kLeastScore) all[i].push_back({score, X_CP});
       });
-      if (best.score > 6e-4) candidates.push_back(best);
+  }
+  std::vector<std::vector<Pose>> poses(wanted.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    std::stable_sort(all[i].begin(), all[i].end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
+    for (const Scored& one : all[i]) {
+      const bool is_known = std::any_of(poses[i].begin(), poses[i].end(), [&](const Pose& other) {
+        return (other.p - one.X_CP.p).norm() < kSamePlace &&
+               angle_between(nearest_equal_rotation(one.X_CP.R, other.R), other.R) < kSameTurn;
+      });
+      if (!is_known) poses[i].push_back(one.X_CP);
+      if (static_cast<int>(poses[i].size()) == kMostPoses) break;
     }
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const FoundBox& a, const FoundBox& b) { return a.score > b.score; });
-  std::vector<FoundBox> found;
-  for (const FoundBox& candidate : candidates) {
-    const double radius = wanted[static_cast<std::size_t>(candidate.wanted)].half.minCoeff();
-    const bool is_taken = std::any_of(found.begin(), found.end(), [&](const FoundBox& other) {
-      return other.wanted == candidate.wanted || (other.X_CP.p - candidate.X_CP.p).norm() < radius;
-    });
-    if (!is_taken) found.push_back(candidate);
-  }
-  return found;
+  return poses;
 }
 
 }  // namespace snug::box_estimation::internal

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/geometry/manifold.hpp"
+
 namespace snug::box_estimation::internal {
 
 PixelRange pixel_range(const model::CameraParams& camera, const Vector3& low, const Vector3& high) {
@@ -25,6 +27,18 @@ PixelRange pixel_range(const model::CameraParams& camera, const Vector3& low, co
   };
   return {clamp(std::floor(low_row), all.end_row), clamp(std::ceil(high_row) + 1.0, all.end_row),
           clamp(std::floor(low_col), all.end_col), clamp(std::ceil(high_col) + 1.0, all.end_col)};
+}
+
+PixelRange pixels_around(const camera::Frame& frame, const PixelRange& range, const TrackedBox& box, int border) {
+  model::CameraParams at_origin = frame.camera;
+  at_origin.X_WC = Pose{};
+  const Vector3 reach = box.X_CP.R.cwiseAbs() * box.half;
+  const PixelRange own = pixel_range(at_origin, box.X_CP.p - reach, box.X_CP.p + reach);
+  const auto between = [](int value, int low, int high) { return std::clamp(value, low, high); };
+  return {between(own.first_row - border, range.first_row, range.end_row),
+          between(own.end_row + border, range.first_row, range.end_row),
+          between(own.first_col - border, range.first_col, range.end_col),
+          between(own.end_col + border, range.first_col, range.end_col)};
 }
 
 camera::Scene in_camera(const camera::Scene& scene, const Pose& X_WC) {
@@ -76,6 +90,37 @@ std::vector<Agreement> compare(const camera::Frame& frame, const Prediction& pre
     }
   }
   return all;
+}
+
+int disagreeing(const camera::Frame& frame, const Prediction& prediction, const PixelRange& range, double tolerance) {
+  int count = 0;
+  for (int row = range.first_row; row < range.end_row; ++row)
+    for (int col = range.first_col; col < range.end_col; ++col) {
+      const double depth = frame.depth(row, col);
+      if (depth == 0.0) continue;
+      const int r = row - prediction.range.first_row, c = col - prediction.range.first_col;
+      const std::int32_t s = prediction.cast.surface(r, c);
+      if (s < 0 || std::abs(distance_outward(prediction, s, r, c, depth)) > tolerance) ++count;
+    }
+  return count;
+}
+
+double overlap(const TrackedBox& a, const TrackedBox& b) {
+  const geometry::Shape A = geometry::Box{a.half}, B = geometry::Box{b.half};
+  if ((a.X_CP.p - b.X_CP.p).norm() > a.half.norm() + b.half.norm()) return 0.0;
+  geometry::PairCache cache;
+  geometry::Manifold manifold;
+  geometry::collide(A, a.X_CP, B, b.X_CP, 0.0, cache, manifold);
+  double deepest = 0.0;
+  for (int i = 0; i < manifold.count; ++i)
+    deepest = std::max(deepest, -manifold.points[static_cast<std::size_t>(i)].phi);
+  return deepest;
+}
+
+double distance_outward(const Prediction& prediction, std::int32_t surface, int r, int c, double depth) {
+  const camera::Surface& seen = prediction.cast.surfaces[static_cast<std::size_t>(surface)];
+  const double w = prediction.cast.inverse_depth(r, c), ratio = depth * w - 1.0;
+  return seen.is_flat() ? seen.offset * ratio : -ratio / w;
 }
 
 }  // namespace snug::box_estimation::internal

@@ -34,6 +34,7 @@ struct FeatureSettings {
   int reach = 14;          ///< px, on either side of where an edge should be
   /// Whether points of a face's plane count where another box should be seen: its face may be as high.
   bool ignores_neighbours = false;
+  int first_box = 0;  ///< boxes before it are not measured
 };
 
 /// Faces with enough points. Points near the edges of what is seen of a face are left out.

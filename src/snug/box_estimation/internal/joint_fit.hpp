@@ -19,14 +19,10 @@ enum class FitStart {
   Near,    ///< off by millimetres
 };
 
-/// Gauss-Newton steps, each with a new prediction and narrower gates. `surroundings_C`: in C.
+/// Gauss-Newton steps, each with a new prediction and narrower gates. `surroundings_C`: in C. The first `held` boxes
+/// stay where they are and are not measured.
 [[nodiscard]] FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range,
                                   const camera::Scene& surroundings_C, std::vector<TrackedBox> boxes,
-                                  const ErrorModel& errors, FitStart start, int steps);
-
-/// The pose in which the box's sides match what was seen of them better than they do now, its seen face in the same
-/// plane; none when they match best as it is. `R_PC_believed`: of poses that are equal, the one nearest to it.
-[[nodiscard]] std::optional<Pose> turned_to_sizes(const TrackedBox& box, const Vector3& size_misfit,
-                                                  const Matrix3& R_PC_believed);
+                                  const ErrorModel& errors, FitStart start, int steps, int held = 0);
 
 }  // namespace snug::box_estimation::internal

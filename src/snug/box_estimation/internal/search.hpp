@@ -1,35 +1,38 @@
-// find_boxes: boxes that are not where they were believed to be, from flat patches that nothing else explains.
+// propose_poses: where boxes may be that are not where they were believed to be, from flat patches of points.
 #pragma once
-
-#include <optional>
 
 #include "snug/box_estimation/internal/view.hpp"
 
 namespace snug::box_estimation::internal {
 
-/// A box that is looked for.
-struct Wanted {
-  int box = 0;  ///< index of the caller
-  Vector3 half = Vector3::Zero();
-  Pose X_CP_prior;
+/// What is known of a frame when boxes are looked for in it.
+struct Known {
+  const camera::Frame& frame;
+  const EstimateInput& input;
+  const PixelRange& range;
+  const camera::Scene& surroundings_C;
+  const std::vector<TrackedBox>& boxes;  ///< tracked: they stay where they are
+  const ErrorModel& errors;
+  double tolerance = 0.0;  ///< m, of points from the faces of a fitted box
 };
 
-struct FoundBox {
-  int wanted = 0;  ///< index into the list
-  Pose X_CP;
-  double score = 0.0;
+/// A box that is looked for.
+struct Wanted {
+  Vector3 half = Vector3::Zero();
+  Pose X_CP_prior;
 };
 
 /// Points before what is predicted: 1 where something stands that the prediction does not have.
 [[nodiscard]] camera::Grid2<std::uint8_t> unexplained(const camera::Frame& frame, const Prediction& prediction,
                                                       double tolerance);
 
-/// The best poses for wanted boxes, each box at most once, the surest first. Poses are rough: some millimetres. A box
-/// stands on one of `solids_C` and in none of them.
-[[nodiscard]] std::vector<FoundBox> find_boxes(const camera::Frame& frame, const Prediction& prediction,
-                                               const camera::Grid2<std::uint8_t>& unexplained_points,
-                                               const std::vector<Wanted>& wanted,
-                                               const std::vector<camera::SceneShape>& solids_C,
-                                               const ErrorModel& errors);
+/// For each wanted box rough poses, some millimetres off, the likeliest first. `prediction`: of what is known.
+[[nodiscard]] std::vector<std::vector<Pose>> propose_poses(const Known& known, const Prediction& prediction,
+                                                           const std::vector<Wanted>& wanted,
+                                                           const std::vector<camera::SceneShape>& solids_C);
+
+/// How likely it is to find a box there, 0 .. 1: less where it would be in one of the solids, or touch none.
+[[nodiscard]] double likely_place(const Vector3& half, const Pose& X_CP,
+                                  const std::vector<camera::SceneShape>& solids_C);
 
 }  // namespace snug::box_estimation::internal

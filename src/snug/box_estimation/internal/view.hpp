@@ -27,6 +27,9 @@ struct PixelRange {
 
 /// The pixels in which points of a box in W (corners low and high) can be seen.
 [[nodiscard]] PixelRange pixel_range(const model::CameraParams& camera, const Vector3& low, const Vector3& high);
+/// Those in which a box can be seen, with `border` pixels around, within `range`.
+[[nodiscard]] PixelRange pixels_around(const camera::Frame& frame, const PixelRange& range, const TrackedBox& box,
+                                       int border);
 
 /// What is seen of surroundings and tracked boxes. Bodies: first the surroundings', then the boxes in their order.
 struct Prediction {
@@ -53,5 +56,17 @@ struct Agreement {
 /// `tolerances`: m, of each box's points from its faces.
 [[nodiscard]] std::vector<Agreement> compare(const camera::Frame& frame, const Prediction& prediction,
                                              const std::vector<double>& tolerances);
+
+/// m, how deep two boxes are in each other, along the direction of least depth; 0: apart.
+[[nodiscard]] double overlap(const TrackedBox& a, const TrackedBox& b);
+
+/// m, by which a point of this depth is before the surface that is predicted in cell (r, c) of the prediction, along
+/// its outward normal; negative: behind it.
+[[nodiscard]] double distance_outward(const Prediction& prediction, std::int32_t surface, int r, int c, double depth);
+
+/// Points in `range` that are not where they should be: farther than `tolerance` from what is predicted there, along
+/// its normal. `range`: within that of the prediction.
+[[nodiscard]] int disagreeing(const camera::Frame& frame, const Prediction& prediction, const PixelRange& range,
+                              double tolerance);
 
 }  // namespace snug::box_estimation::internal
