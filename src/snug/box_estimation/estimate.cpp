@@ -41,6 +41,7 @@ constexpr double kOverRim = 0.12;       // m: so high over the region boxes are 
 constexpr int kMostRounds = 4;          // of looking for lost boxes
 // A tracked box may be another one: seen through, sides not as long as its own, far from its belief.
 constexpr double kDoubtfulPartOn = 0.97, kDoubtfulMisfit = 3e-3, kDoubtfulDeviations = 4.0;
+constexpr double kDoubtfulOverlap = 6e-3;  // m: so deep in a box that was found
 
 TrackedBox make_tracked(const ExpectedBox& box, const Pose& X_CW) {
   TrackedBox tracked;
@@ -202,22 +203,25 @@ class Estimator {
 
   /// Boxes that are not where they were believed to be, and those that may be taken for others.
   void look_for_lost() {
-    std::vector<std::optional<Pose>> tracked(input_.boxes.size());  // X_CP
+    std::vector<std::optional<TrackedBox>> tracked(input_.boxes.size());  // those that are doubted
     doubt(tracked);
     for (int round = 0; round < kMostRounds && !others_.empty(); ++round) {
       std::sort(others_.begin(), others_.end());
       std::vector<Lost> lost;
       std::vector<std::size_t> boxes;  // of the input
       for (const std::size_t i : others_) {
-        const double gone = part_gone(i);
+        const Agreement a = look_at_belief(i);
+        const double gone = part_gone(i, a);
         // What was covered is where it was, as long as its place is not seen to be empty.
         if (!was_in_view_[i] && gone < 0.5) continue;
-        lost.push_back({{0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP}, gone, tracked[i]});
+        lost.push_back(
+            {{0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP}, gone, a.on >= kLeastPointsOfBox, tracked[i]});
         boxes.push_back(i);
       }
       const internal::Known known{frame_, input_, range_, surroundings_C_, tracked_, errors_, fit_tolerance()};
       const std::vector<Place> found = internal::relocate(known, lost);
       if (found.empty()) break;
+      doubt_overlapped(found, tracked);
       for (const Place& place : found) add(boxes[place.lost], place.box);
       fit(FitStart::Near, 4);
       keep_good();
@@ -226,9 +230,9 @@ class Estimator {
   }
 
   /// How surely a box is not where it was believed to be, 0 .. 1: its place is seen through, or a tracked box is in it.
-  [[nodiscard]] double part_gone(std::size_t i) const {
+  /// `a`: what is seen of its place.
+  [[nodiscard]] double part_gone(std::size_t i, const Agreement& a) const {
     if (is_taken(i)) return 1.0;
-    const Agreement a = look_at_belief(i);
     const double least = kPartThatTells * pixels_alone(make_tracked(input_.boxes[i], X_CW_));
     return a.farther / std::max({least, kLeastPointsOfBox * 1.0, a.on + a.nearer + a.farther * 1.0});
   }
@@ -242,7 +246,7 @@ class Estimator {
   }
 
   /// Tracked boxes that may be others are lost again; where they were tracked is one of the places that they can have.
-  void doubt(std::vector<std::optional<Pose>>& tracked) {
+  void doubt(std::vector<std::optional<TrackedBox>>& tracked) {
     const std::vector<Agreement> agreement = compare(tracked_);
     std::vector<bool> is_sure;
     for (std::size_t i = 0; i < tracked_.size(); ++i) {
@@ -253,9 +257,21 @@ class Estimator {
           !(misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > kDoubtfulMisfit);
       is_sure.push_back(agreement[i].part_on() >= kDoubtfulPartOn && has_its_size &&
                         (X_WP.p - box.X_WP.p).norm() < kDoubtfulDeviations * box.position_spread);
-      if (!is_sure.back()) tracked[ids_[i]] = tracked_[i].X_CP;
+      if (!is_sure.back()) tracked[ids_[i]] = tracked_[i];
     }
     keep(is_sure);
+  }
+
+  /// So are those that would be in a box that was found.
+  void doubt_overlapped(const std::vector<Place>& found, std::vector<std::optional<TrackedBox>>& tracked) {
+    std::vector<bool> is_free;
+    for (std::size_t i = 0; i < tracked_.size(); ++i) {
+      is_free.push_back(std::none_of(found.begin(), found.end(), [&](const Place& place) {
+        return internal::overlap(tracked_[i], place.box) > kDoubtfulOverlap;
+      }));
+      if (!is_free.back()) tracked[ids_[i]] = tracked_[i];
+    }
+    keep(is_free);
   }
 
   void add(std::size_t box, const TrackedBox& tracked) {
@@ -343,7 +359,7 @@ class Estimator {
   /// Of those that were not found: is the place where each should be seen, and empty?
   void report_others(Estimate& result) const {
     for (const std::size_t i : others_) {
-      if (part_gone(i) > kLeastGone) result.boxes[i].sight = Sight::Missing;
+      if (part_gone(i, look_at_belief(i)) > kLeastGone) result.boxes[i].sight = Sight::Missing;
     }
   }
 

@@ -10,13 +10,15 @@ namespace snug::box_estimation::internal {
 namespace {
 
 constexpr double kSpread = 0.05;  // m and rad: the belief of a box at a proposed pose
-constexpr int kFitSteps = 4;
+constexpr int kFitSteps = 4, kFitStepsFromBelief = 6;
 constexpr int kBorder = 20;              // px, around a box that is fitted by itself
 constexpr int kLeastPoints = 150;        // on it
 constexpr double kLeastPartThere = 0.8;  // of the points that tell whether it is there
 constexpr double kMostOverlap = 0.02;    // m, of boxes that are fitted one by one
 constexpr int kMostTries = 100'000;      // combinations of places
 
+constexpr double kSeenThrough = 1.0;  // px, more than for others, for each point behind the box
+constexpr double kLeastGain = 300.0;  // px: less explains nothing
 // What a pose that explains the frame says for and against the box, as the logarithm of a likelihood; one unit weighs
 // as much as kEvidence pixels.
 constexpr double kEvidence = 800.0;
@@ -25,7 +27,8 @@ constexpr double kMostMisfit = 6.0;     // standard deviations: farther off is n
 constexpr double kUnseen = 1.0;         // a side of which not both ends are seen
 constexpr double kNear = 0.3;           // at its old place, and turned as it was
 constexpr double kCovered = 1.5;        // its old place is not seen to be empty
-constexpr double kTracked = 1.0;        // where it was tracked
+constexpr double kElsewhere = 0.03;     // m, from its old place
+constexpr double kInPlace = 1.0;        // fitted from its old place, or where it was tracked
 
 /// Of the two sides of the face that looks most toward the camera: do they have the length that they should?
 double size_evidence(const TrackedBox& box, const Vector3& size_misfit) {
@@ -48,24 +51,24 @@ class Trials {
   }
   [[nodiscard]] const std::vector<camera::SceneShape>& solids_C() const { return solids_C_; }
 
-  /// The box fitted from this pose on, and what speaks for it; none when the frame does not show it there.
-  [[nodiscard]] std::optional<Place> fit(std::size_t index, const Lost& lost, const Pose& X_CP, double evidence) const {
+  /// The box fitted from where it stands on, and what speaks for it; none when the frame does not show it there.
+  [[nodiscard]] std::optional<Place> fit(std::size_t index, const Lost& lost, const TrackedBox& from, FitStart start,
+                                         double evidence) const {
     std::vector<TrackedBox> boxes = known_.boxes;
-    boxes.push_back({lost.box.half, X_CP, X_CP, Matrix6::Identity() / (kSpread * kSpread)});
+    boxes.push_back(from);
     const PixelRange range = pixels_around(known_.frame, known_.range, boxes.back(), kBorder);
     const int held = static_cast<int>(known_.boxes.size());
     const FitResult fitted = fit_boxes(known_.frame, range, known_.surroundings_C, std::move(boxes), known_.errors,
-                                       FitStart::Near, kFitSteps, held);
+                                       start, start == FitStart::Near ? kFitSteps : kFitStepsFromBelief, held);
     const TrackedBox& box = fitted.boxes.back();
     const Prediction with = predict(known_.frame, range, known_.surroundings_C, fitted.boxes);
     const Agreement agreement =
         compare(known_.frame, with, std::vector<double>(fitted.boxes.size(), known_.tolerance)).back();
     if (agreement.on < kLeastPoints || agreement.part_on() < kLeastPartThere) return std::nullopt;
     Place place{index, box, 0.0};
-    place.box.X_CP_prior = box.X_CP;
     evidence += std::log(likely_place(box.half, box.X_CP, solids_C_)) + size_evidence(box, fitted.size_misfit.back()) +
                 nearness(lost, box.X_CP);
-    place.gain = disagreeing(known_.frame, without_, range, known_.tolerance) -
+    place.gain = -kSeenThrough * agreement.farther + disagreeing(known_.frame, without_, range, known_.tolerance) -
                  disagreeing(known_.frame, with, range, known_.tolerance) + kEvidence * evidence;
     return place;
   }
@@ -150,12 +153,24 @@ std::vector<Place> relocate(const Known& known, const std::vector<Lost>& lost) {
   for (const Lost& one : lost) wanted.push_back(one.box);
   const auto poses = propose_poses(known, without, wanted, trials.solids_C());
   std::vector<Place> places;
-  const auto add = [&](std::size_t index, const Pose& X_CP, double evidence) {
-    if (auto place = trials.fit(index, lost[index], X_CP, evidence)) places.push_back(*place);
-  };
   for (std::size_t i = 0; i < lost.size(); ++i) {
-    if (lost[i].tracked) add(i, *lost[i].tracked, kTracked);
-    for (const Pose& X_CP : poses[i]) add(i, X_CP, -kCovered * (1.0 - lost[i].gone));
+    if (lost[i].tracked) {
+      // As long as nothing says more, it stays.
+      const auto place = trials.fit(i, lost[i], *lost[i].tracked, FitStart::Near, kInPlace);
+      places.push_back(place && place->gain > 1.0 ? *place : Place{i, *lost[i].tracked, 1.0});
+    }
+    const auto add = [&](const Pose& X_CP, FitStart start, double evidence) {
+      const TrackedBox box{lost[i].box.half, X_CP, X_CP, Matrix6::Identity() / (kSpread * kSpread)};
+      auto place = trials.fit(i, lost[i], box, start, evidence);
+      if (!place || !(place->gain > kLeastGain)) return;
+      place->box.X_CP_prior = place->box.X_CP;
+      places.push_back(*place);
+    };
+    if (!lost[i].tracked && lost[i].is_seen_in_place) add(lost[i].box.X_CP_prior, FitStart::Belief, kInPlace);
+    for (const Pose& X_CP : poses[i]) {
+      const bool is_elsewhere = (X_CP.p - lost[i].box.X_CP_prior.p).norm() > kElsewhere;
+      add(X_CP, FitStart::Near, is_elsewhere ? -kCovered * (1.0 - lost[i].gone) : 0.0);
+    }
   }
   return best_together(places, lost.size());
 }

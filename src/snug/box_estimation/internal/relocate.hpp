@@ -9,8 +9,9 @@ namespace snug::box_estimation::internal {
 
 struct Lost {
   Wanted box;
-  double gone = 1.0;            ///< of the points that tell whether it is where it was believed to be, those behind it
-  std::optional<Pose> tracked;  ///< X_CP: where it would be if it were what was taken for it
+  double gone = 1.0;  ///< of the points that tell whether it is where it was believed to be, those behind it
+  bool is_seen_in_place = false;      ///< something as high as it is seen where it was believed to be
+  std::optional<TrackedBox> tracked;  ///< where it is if it is what was taken for it
 };
 
 struct Place {
