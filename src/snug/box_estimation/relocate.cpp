@@ -9,7 +9,7 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr double kSpread = 0.05;  // m and rad: the belief of a box at a proposed pose
+constexpr double kSpread = 0.012, kTurn = 0.05;  // m, rad: how far a box may be from where a pose was proposed
 constexpr int kFitSteps = 4, kFitStepsFromBelief = 6;
 constexpr int kBorder = 20;              // px, around a box that is fitted by itself
 constexpr int kLeastPoints = 150;        // on it
@@ -29,6 +29,13 @@ constexpr double kNear = 0.3;           // at its old place, and turned as it wa
 constexpr double kCovered = 1.5;        // its old place is not seen to be empty
 constexpr double kElsewhere = 0.03;     // m, from its old place
 constexpr double kInPlace = 1.0;        // fitted from its old place, or where it was tracked
+
+Matrix6 proposal_information() {
+  Matrix6 information = Matrix6::Zero();
+  information.topLeftCorner<3, 3>() = Matrix3::Identity() / (kSpread * kSpread);
+  information.bottomRightCorner<3, 3>() = Matrix3::Identity() / (kTurn * kTurn);
+  return information;
+}
 
 /// Of the two sides of the face that looks most toward the camera: do they have the length that they should?
 double size_evidence(const TrackedBox& box, const Vector3& size_misfit) {
@@ -160,7 +167,7 @@ std::vector<Place> relocate(const Known& known, const std::vector<Lost>& lost) {
       places.push_back(place && place->gain > 1.0 ? *place : Place{i, *lost[i].tracked, 1.0});
     }
     const auto add = [&](const Pose& X_CP, FitStart start, double evidence) {
-      const TrackedBox box{lost[i].box.half, X_CP, X_CP, Matrix6::Identity() / (kSpread * kSpread)};
+      const TrackedBox box{lost[i].box.half, X_CP, X_CP, proposal_information()};
       auto place = trials.fit(i, lost[i], box, start, evidence);
       if (!place || !(place->gain > kLeastGain)) return;
       place->box.X_CP_prior = place->box.X_CP;
