@@ -255,7 +255,7 @@ class Estimator {
       const Pose X_WP = frame_.camera.X_WC * tracked_[i].X_CP;
       const bool has_its_size =
           !(misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > kDoubtfulMisfit);
-      is_sure.push_back(agreement[i].part_on() >= kDoubtfulPartOn && has_its_size &&
+      is_sure.push_back(agreement[i].part_on() >= kDoubtfulPartOn && has_its_size && !fit_.is_larger[i] &&
                         (X_WP.p - box.X_WP.p).norm() < kDoubtfulDeviations * box.position_spread);
       if (!is_sure.back()) tracked[ids_[i]] = tracked_[i];
     }

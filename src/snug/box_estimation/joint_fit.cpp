@@ -98,6 +98,9 @@ void add_overlaps(const std::vector<TrackedBox>& boxes, int held, const camera::
 void note_size(const std::vector<EdgeFeature>& edges, const std::vector<TrackedBox>& boxes, FitResult& result) {
   result.size_error.assign(boxes.size(), 0.0);
   result.size_misfit.assign(boxes.size(), Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  result.is_larger.assign(boxes.size(), false);
+  for (const EdgeFeature& edge : edges)
+    if (edge.is_coarse && edge.rows.measured(0) > 0.0) result.is_larger[static_cast<std::size_t>(edge.box)] = true;
   for (const EdgeFeature& low : edges)
     for (const EdgeFeature& high : edges) {
       if (low.box != high.box || low.axis != high.axis || low.side != 0 || high.side != 1) continue;

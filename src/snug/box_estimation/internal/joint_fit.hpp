@@ -11,6 +11,7 @@ struct FitResult {
   /// m, along each axis of P by how much farther apart opposite edges are than the box is long; NaN where not both were
   /// seen.
   std::vector<Vector3> size_misfit;
+  std::vector<bool> is_larger;     ///< a face goes on beyond where its edge was looked for
   std::vector<double> size_error;  ///< the largest of them, in standard deviations
 };
 
