@@ -19,6 +19,15 @@ export async function readDropped(name: string, bytes: Uint8Array): Promise<Repl
   throw new ReplayError("This is not a recording of snug", `${name} is neither a recording (.h5) nor a report (.html) of snug.`, "`snug simulate ... -o run.h5` makes a recording, `snug report run.h5 -o run.html` a report.");
 }
 
+/** A recording does not have the meshes of its robot (`snug report` adds them): one with the links of the robot that is shown looks like it. */
+function borrowLooks(replay: Replay, shown: Replay): void {
+  const [robot, other] = [replay.header.robot, shown.header.robot];
+  if (!robot || robot.looks?.length || !other?.looks?.length) return;
+  const rows = new Map(robot.links.map((link) => [replay.bodies[link]!.name, link]));
+  if (rows.size !== other.links.length || !other.links.every((link) => rows.has(shown.bodies[link]!.name))) return;
+  robot.looks = other.looks.map((look) => ({ ...look, body: rows.get(shown.bodies[look.body]!.name)! }));
+}
+
 export interface DropTarget {
   /** What is shown now; null when nothing is. */
   current(): Replay | null;
@@ -59,6 +68,7 @@ export function acceptDrops(target: DropTarget): void {
     const [first, second] = replays;
     if (!first) return;
     const current = target.current();
+    if (current) for (const replay of replays) borrowLooks(replay, current);
     if (onto && current) target.show(current, first);
     else target.show(first, second ?? null);
   }

@@ -140,6 +140,7 @@ function toast(error: unknown): void {
 }
 
 function show(first: Replay, second: Replay | null): App {
+  const before = current?.replay === first ? current : null; // something is laid over it
   current?.dispose();
   const app = (current = new App(first, second, theme(), fragment.has("picture")));
   document.getElementById("app")!.replaceChildren(app.element);
@@ -147,6 +148,7 @@ function show(first: Replay, second: Replay | null): App {
   app.start();
   if (fragment.has("picture")) showPicture(app);
   else followAddress(app);
+  if (before) app.goOnFrom(before);
   window.snug = handleOf(app);
   return app;
 }

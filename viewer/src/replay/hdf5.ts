@@ -12,6 +12,8 @@ import { completeHeader, type Body, type Header, type PoseRow, type ReplayEvent,
 const LARGEST = 200e6;
 const POSE = ["x", "y", "z", "qw", "qx", "qy", "qz"];
 const WRENCH = ["fx", "fy", "fz", "tx", "ty", "tz"];
+/** Of a program's 13 columns, from 0 (docs/formats.md). */
+const NAME_COLUMN = 6;
 const KINDS = ["static", "kinematic", "dynamic"] as const;
 
 const SIGNATURE = [0x89, 0x48, 0x44, 0x46];
@@ -162,7 +164,7 @@ function headerOf(source: Source, name: string, frames: number, times: Float64Ar
   const links = bodies.flatMap((body, k) => (body.kind !== "dynamic" && body.name.startsWith("robot/") ? [k] : []));
   const [poses, size, container] = [source.numbers("container/pose"), source.numbers("container/inner_size"), source.text("container/name")];
   const steps = source.numbers("step");
-  const rows = source.text("program").split(/\r?\n/).filter((line) => /^[^,;]+[,;]/.test(line)).map((line) => line.split(/[,;]/)[0]!.trim());
+  const rows = source.text("program").split(/\r?\n/).filter((line) => /^[^#]+,/.test(line)).map((line) => line.split(",")[NAME_COLUMN]?.trim() ?? "");
   const number = (key: string, fallback: number): number => {
     const value = Number(source.attribute(key));
     return Number.isFinite(value) && value > 0 ? value : fallback;

@@ -97,16 +97,19 @@ export class Plans {
     return { millimetres: [1000 * d.x, 1000 * d.y, 1000 * d.z], degrees };
   }
 
-  /** The same in words; of a box that has not been put there yet only that it will be; empty while no place is known. */
-  textAt(body: number, name: string, frame: number): string {
+  /** The same in words, as short as a legend has it, or with its parts along the axes of W; of a box that has not been put there yet only
+   * that it will be; empty while no place is known. */
+  textAt(body: number, name: string, frame: number, isLong = false): string {
     const time = this.replay.timeOf(frame);
     const place = this.placeAt(body, time);
     if (!place) return "";
     if (this.isCarried(body, time) || place.time >= time) return `planned place of ${name}`;
     const offset = this.offsetAt(body, frame, place);
     if (!offset) return "";
+    const degrees = `${offset.degrees.toFixed(1)}° from its planned place`;
+    if (!isLong) return `${name}: ${Math.hypot(...offset.millimetres).toFixed(1)} mm, ${degrees}`;
     const [x, y, z] = offset.millimetres.map((v) => v.toFixed(1).replace(/^-(0\.0)$/, "$1"));
-    return `${name} lies ${x}, ${y}, ${z} mm, ${offset.degrees.toFixed(1)}° from its planned place`;
+    return `${name} lies x ${x}, y ${y}, z ${z} mm (in W), ${degrees}`;
   }
 }
 

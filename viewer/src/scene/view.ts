@@ -320,8 +320,8 @@ export class View {
   }
 
   /** How far the marked box is from where the command would have put it; empty while that is not known. */
-  offsetText(): string {
-    return this.marked < 0 ? "" : this.plans.textAt(this.marked, this.boxes_.shortNameOf(this.marked), this.frame_);
+  offsetText(isLong = false): string {
+    return this.marked < 0 ? "" : this.plans.textAt(this.marked, this.boxes_.shortNameOf(this.marked), this.frame_, isLong);
   }
 
   get contactsDrawn(): { awake: number; resting: number } {

@@ -21,6 +21,12 @@ export function flatten(value: unknown, path = ""): [string, string][] {
   return Object.entries(value as Record<string, unknown>).flatMap(([key, inner]) => flatten(inner, path ? `${path}.${key}` : key));
 }
 
+/** Why a packing session ended; empty when nothing was packed by one. */
+function endOfSession(replay: Replay): string {
+  const ended = replay.header.settings?.ended;
+  return typeof ended === "string" ? ended : "";
+}
+
 function facts(replay: Replay): HTMLElement {
   const { header: h } = replay;
   const rows: Cell[][] = [
@@ -34,7 +40,7 @@ function facts(replay: Replay): HTMLElement {
     ["recorded", `every ${milliseconds(h.record_period)} ms, ${replay.frames} frames, ${(replay.size / 1e6).toFixed(2)} MB in this page`],
     ["simulated", seconds(h.speed?.duration_s ?? replay.end - replay.start)],
     ["computed in", h.speed ? `${seconds(h.speed.wall_s)}, ${h.speed.real_time_factor.toFixed(0)} times as fast as it happens` : "-"],
-    ["ended", h.result?.failure || (h.complete ? "in order" : h.interrupted ? "early, by who watched it" : "not in order")],
+    ["ended", h.result?.failure || endOfSession(replay) || (h.complete ? "in order" : h.interrupted ? "early, by who watched it" : "not in order")],
   ];
   return make("section", "", make("h3", "", "What ran"), table([], rows));
 }

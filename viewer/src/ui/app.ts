@@ -83,6 +83,13 @@ export class App {
     }, 50);
   }
 
+  /** At the time, and with the camera and the box, at which another showed the same run. */
+  goOnFrom(other: App): void {
+    this.useCamera(other.view.cameras.name);
+    this.player.setTime(other.player.time);
+    this.itemEvents.select(other.itemEvents.selected);
+  }
+
   /** After a live run has grown: what is drawn from all of it. */
   refresh(): void {
     this.element.querySelector(".headline")!.replaceWith(headline(this.replay));

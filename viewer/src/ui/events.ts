@@ -42,7 +42,12 @@ export function restOf(replay: Replay, body: number): ItemEvent | null {
 
 /** More events than this are shown for the selected and the held box only, until all are asked for. */
 const MOST_EVENTS = 24;
-const BAD = new Set(["lost", "dropped", "bend", "slip", "outside", "out of cell", "deep contact"]);
+const BAD = new Set(["recovery", "refused", "lost", "dropped", "bend", "slip", "outside", "out of cell", "deep contact"]);
+
+/** What the session has to say of a box, beside what happened to it. */
+const OF_SESSION = new Set(["recovery", "refused"]);
+
+const merged = (own: ItemEvent[], more: ItemEvent[]): ItemEvent[] => (more.length ? [...own, ...more].sort((a, b) => a.time - b.time) : own);
 
 export class ItemEvents {
   readonly element = make("aside", "item-events");
@@ -86,7 +91,8 @@ export class ItemEvents {
   private boxes(): { id: string; state: string; up: string; events: ItemEvent[] }[] {
     const { result, events } = this.replay.header;
     if (result?.boxes.length) {
-      return result.boxes.map((box) => ({ id: box.id, state: box.state ?? "", up: box.up, events: box.events }));
+      const ofSession = events.filter((event) => OF_SESSION.has(event.kind));
+      return result.boxes.map((box) => ({ id: box.id, state: box.state ?? "", up: box.up, events: merged(box.events, ofSession.filter((e) => e.body === box.id)) }));
     }
     return this.replay.bodies
       .filter((body) => body.kind === "dynamic")

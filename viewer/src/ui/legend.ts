@@ -77,7 +77,7 @@ export class Legend {
     this.count_.textContent = `${awake} contact points${resting ? `, ${resting} at rest` : ""}`;
     this.place_.hidden = offset === "";
     this.place_.lastElementChild!.textContent = offset;
-    this.place_.title = offset;
+    this.place_.title = options.ghost ? view.offsetText(true) : "";
     this.trace_.hidden = trace === "";
     this.trace_.lastElementChild!.textContent = trace;
   }

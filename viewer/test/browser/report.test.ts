@@ -177,6 +177,8 @@ describe("the recording itself, dropped onto the page", () => {
     await expect.poll(() => opened.page.title(), { timeout: 100_000 }).toBe("snug: r.h5");
     expect(await opened.page.evaluate(() => window.snug.frames)).toBe(table.get("t")!.length);
     expect(await opened.page.textContent(".headline")).toMatch(/sequence 1packed ?\d+ of \d+/);
+    await opened.page.evaluate(() => window.snug.setTime(60));
+    expect(await opened.page.textContent(".timeline"), "the waypoint by its name").toMatch(/(Pick|Place|Twist|Box)\w*\(BOX\d+\)/);
     for (const row of [0, 5000, table.get("t")!.length - 1]) {
       for (const box of boxes.slice(0, 4)) {
         const found = await opened.page.evaluate(([t, name]) => (window.snug.setTime(t), window.snug.bodyPose(name)), [table.get("t")![row]!, box] as const);

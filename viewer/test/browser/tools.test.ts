@@ -188,8 +188,10 @@ describe("files that are dropped", () => {
     await expect.poll(() => page.title()).toBe("snug: dropped");
     expect(await page.evaluate(() => window.snug.frames)).toBe(50);
     const report = readFileSync(fileURLToPath(pageWith("dropped-report", [smallHeader(70, { name: "in a report" })])));
+    await page.evaluate(() => window.snug.setTime(0.2));
     await drop(page, "report.html", report, 0.8);
     await expect.poll(() => page.evaluate(() => window.snug.toggles("second", true))).toBe(true);
+    expect(await page.evaluate(() => window.snug.time), "what is shown goes on from where it was").toBeCloseTo(0.2, 6);
     expect(await page.title()).toBe("snug: dropped");
     const about = async (): Promise<string | null> => {  // as it is when it is opened
       await page.keyboard.press("Escape");
