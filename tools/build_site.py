@@ -18,6 +18,7 @@ from check_docs import LINK, prose_lines  # noqa: E402  # pylint: disable=wrong-
 
 SPHINX = "/usr/bin/sphinx-build"  # with the system's Python, whatever other is first on the path
 PAGES = ("README.md", "CHANGELOG.md", "docs/**/*.md", "viewer/README.md", "src/snug/*/README.md", "scenarios/examples/README.md")
+NORMALIZE = Path("/usr/share/javascript/normalize.css/normalize.css")
 INDEX = '<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url=docs/index.html"><a href="docs/index.html">snug</a>\n'
 
 
@@ -46,6 +47,16 @@ def version():
     return re.search(r"project\(snug[^)]*VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(), re.S).group(1)
 
 
+def mend_theme(static):
+    """Debian's furo imports a style from the root of a web server, and a script as a module: neither is found from disk."""
+    style = static / "styles" / "furo.css"
+    style.write_text(re.sub(r"@import url\(/javascript/[^)]*\);", lambda _: NORMALIZE.read_text(), style.read_text()))
+    script, module = static / "scripts" / "furo.js", static / "scripts" / "gumshoe-patched.js"
+    text, count = re.subn(r'^import Gumshoe from "[^"]*";\n', "", script.read_text())
+    if count:
+        script.write_text(module.read_text() + text)
+
+
 def main(arguments):
     if len(arguments) != 2:
         print(__doc__, file=sys.stderr)
@@ -64,6 +75,7 @@ def main(arguments):
         result = subprocess.run(words, check=False, env={"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8", "SNUG_SITE_VERSION": version()})
         if result.returncode != 0:
             return result.returncode
+    mend_theme(out / "_static")
     (out / "index.html").write_text(INDEX)
     print(f"{len(pages())} pages: {out / 'index.html'}")
     return 0
