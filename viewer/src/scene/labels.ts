@@ -1,6 +1,6 @@
 // Labels: short texts that stay at points of the scene, as HTML above the drawing (crisp at any size).
 
-import { Vector3, type Camera } from "three";
+import { Vector3, type Camera, type Plane } from "three";
 
 export interface Label {
   id: string;
@@ -18,9 +18,11 @@ export class Labels {
     this.host.className = "labels";
   }
 
-  update(labels: Label[], camera: Camera, width: number, height: number): void {
+  /** Labels of what the planes cut away are not shown. */
+  update(labels: Label[], camera: Camera, width: number, height: number, cuts: Plane[] = []): void {
     const seen = new Set<string>();
     for (const label of labels) {
+      if (cuts.some((plane) => plane.distanceToPoint(label.at) < 0)) continue;
       this.v_.copy(label.at).project(camera);
       if (this.v_.z > 1 || Math.abs(this.v_.x) > 1.1 || Math.abs(this.v_.y) > 1.1) continue;
       seen.add(label.id);

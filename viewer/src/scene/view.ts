@@ -287,7 +287,7 @@ export class View {
     this.section.update(this.frame_);
     this.renderer_.render(this.scene_, this.cameras.active);
     this.updateCopy();
-    this.labels_.update(labels, this.cameras.active, this.width_, this.height_);
+    this.labels_.update(labels, this.cameras.active, this.width_, this.height_, this.renderer_.clippingPlanes);
     const now = performance.now();
     this.drawn_.push(now);
     if (this.drawn_.length > 600) this.drawn_.splice(0, 300);

@@ -34,7 +34,7 @@ function facts(replay: Replay): HTMLElement {
     ["made by", `snug ${h.snug_version || "-"}`],
     ["scenario", h.scenario.name || "-"],
     ["sequence", h.sequence || "-"],
-    ["program", h.program.name ? `${h.program.name}, ${h.program.names.length} rows` : "-"],
+    ["program", h.program.name ? `${h.program.name}, ${h.program.names.length} waypoints` : "-"],
     ["seed", h.seed || "-"],
     ["time step", `${milliseconds(h.dt)} ms`],
     ["recorded", `every ${milliseconds(h.record_period)} ms, ${replay.frames} frames, ${(replay.size / 1e6).toFixed(2)} MB in this page`],

@@ -157,11 +157,15 @@ describe("measuring and cutting", () => {
     await expect.poll(() => page.textContent(".legend-box .measured")).toBe(text); // written when it is drawn
     await page.keyboard.press("Escape");
     expect(await page.evaluate(() => window.snug.measured())).toBe("");
+    await page.click(".item-events .head"); // a selected box has its name
+    await expect.poll(() => page.locator(".labels .label").count()).toBeGreaterThan(0);
     const before = await page.locator(".view canvas").screenshot();
     await page.evaluate(() => window.snug.section("x", 0.85));
     await page.keyboard.press("1");
     await page.waitForTimeout(700);
     expect((await page.locator(".view canvas").screenshot()).equals(before)).toBe(false);
+    await page.evaluate(() => window.snug.section("z", 0));
+    await expect.poll(() => page.locator(".labels .label").count(), { message: "what is cut away has no label" }).toBe(0);
     expect(errors).toEqual([]);
     await close();
   });
