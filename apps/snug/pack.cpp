@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <span>
 
 #include "interrupt.hpp"
@@ -33,10 +34,17 @@ void record(const model::Scenario& scenario, const study::Trial& trial, OutputFi
   recorded.file = &file;
   recorded.version = version_text();
   recorded.events = study::events_of(trial.session);
+  recorded.warnings = study::warnings_of(trial.session);
   const std::string& robot = trial.plant.simulation.robot;
-  recorded.settings_json =
-      fmt::format(R"({{"cup":"phases","controller":"{}","corrections":"none","robot":"{}","plant_seed":{}}})",
-                  motion::name_of(trial.plant.simulation.controller), robot.empty() ? "none" : robot, trial.plant_seed);
+  recorded.settings_json = nlohmann::ordered_json{
+      {"cup", "phases"},
+      {"controller", motion::name_of(trial.plant.simulation.controller)},
+      {"corrections", "none"},
+      {"robot", robot.empty() ? "none" : robot},
+      {"plant_seed", trial.plant_seed},
+      {"agent", trial.session.agent},
+      {"ended",
+       trial.session.stopped}}.dump();
   recorded.describe = [](const cell::RunResult& one) { return format_json(one); };
   (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
 }

@@ -75,6 +75,18 @@ Json recoveries_as_json(const std::vector<session::Recovery>& recoveries) {
   return list;
 }
 
+Json attempts_as_json(const std::vector<session::FailedAttempt>& attempts) {
+  Json list = Json::array();
+  for (const session::FailedAttempt& one : attempts) {
+    list.push_back({{"planned", as_json(one.planned)},
+                    {"insertion", session::name_of(one.skill)},
+                    {"succeeded", one.succeeded},
+                    {"samples_succeeded", one.success_rate},
+                    {"reason", one.reason}});
+  }
+  return list;
+}
+
 Json as_json(const session::ItemSeconds& seconds) {
   return {{"travel", rounded(seconds.travel, 6)},   {"carry", rounded(seconds.carry, 6)},
           {"regrasp", rounded(seconds.regrasp, 6)}, {"insert", rounded(seconds.insert, 6)},
@@ -105,6 +117,7 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
   if (!item.sends.empty() || !item.recoveries.empty()) json["recoveries"] = recoveries_as_json(item.recoveries);
   json["seconds"] = as_json(item.seconds);
   json["attempts"] = item.attempts;
+  json["failed_attempts"] = attempts_as_json(item.failed_attempts);
   json["protective_stops"] = item.stops;
   json["decision_seconds"] = item.decision_seconds;
   json["rehearsal_seconds"] = item.rehearsal_seconds;
@@ -178,6 +191,21 @@ std::string describe_hold(const study::Trial& trial) {
                      worst->hold_factor, worst->id);
 }
 
+/// "         tried  100.6, 238.7, 116.1 mm, +Y up, tilted: it would stick out", a line for each
+std::string describe(const std::vector<session::FailedAttempt>& attempts) {
+  std::string text;
+  for (const session::FailedAttempt& one : attempts) {
+    const Vector3 p = 1e3 * one.planned.X_TP.p;
+    const std::string rate =
+        one.succeeded ? fmt::format(", {:.0f} % of the samples succeed", 100.0 * one.success_rate) : std::string();
+    text += fmt::format("         tried {:7.1f} {:7.1f} {:7.1f} mm, {}{} up, {}{}: {}\n", p.x(), p.y(), p.z(),
+                        one.planned.orientation.up_sign > 0 ? '+' : '-',
+                        static_cast<char>('X' + static_cast<int>(one.planned.orientation.up)),
+                        session::name_of(one.skill), rate, one.reason);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string format_pack_head(const std::string& sequence, const session::SessionOptions& session,
@@ -200,6 +228,7 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
   if (item.sends.empty()) {
     text = fmt::format("{:<8} {}: {}  (decided in {:.2f} s, {} attempts)\n", item.id, session::name_of(item.end),
                        item.reason, item.decision_seconds, item.attempts);
+    text += describe(item.failed_attempts);
   } else {
     const Vector3 p = 1e3 * item.planned.X_TP.p;
     text = fmt::format(

@@ -82,14 +82,17 @@ void save_recording(const model::Scenario& scenario, const study::Trial& trial, 
   recorded.file = &file;
   recorded.version = SNUG_VERSION;
   recorded.events = study::events_of(trial.session);
+  recorded.warnings = study::warnings_of(trial.session);
   const std::string& robot = trial.plant.simulation.robot;
   recorded.settings_json = nlohmann::json{
       {"cup", "phases"},
       {"controller", "faithful"},
       {"corrections", "none"},
       {"robot", robot.empty() ? "none" : robot},
-      {"plant_seed",
-       trial.plant_seed}}.dump();
+      {"plant_seed", trial.plant_seed},
+      {"agent", trial.session.agent},
+      {"ended",
+       trial.session.stopped}}.dump();
   recorded.describe = [](const cell::RunResult& one) { return app::format_json(one); };
   (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
 }

@@ -19,6 +19,17 @@ constexpr int kFirstSamples = 3;    ///< rehearsed before the others: where most
 /// Along the floor.
 double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
 
+/// Whether a point is not over the floor of the container.
+bool is_beside(const Vector3& inner, const Vector3& p_T) {
+  return std::abs(p_T.x()) > 0.5 * inner.x() || std::abs(p_T.y()) > 0.5 * inner.y();
+}
+
+std::string describe_outside(const cell::ContainerFit& fit, bool is_beside, double off) {
+  return is_beside ? fmt::format("it would be left beside the container, {:.0f} mm from its place", 1e3 * off)
+                   : fmt::format("it would stick out ({:.0f} mm beyond a wall, {:.0f} mm over the rim)",
+                                 1e3 * fit.outside, 1e3 * fit.above_rim);
+}
+
 }  // namespace
 
 Rehearsal::Rehearsal(Belief& belief, const CellLayout& layout, const std::function<bool(const Pose& X_WE)>& reaches,
@@ -60,14 +71,12 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
   }
   const Pose X_TP_is = X_TW * *X_WP;
   const cell::ContainerFit fit = fit_of(box_.item, *X_WP);
-  if (!fit.is_in || rollout.is_held(box_.item)) {
-    fail(AttemptFailure::SticksOut,
-         rollout.is_held(box_.item)
-             ? std::string("it still hangs from the cup")
-             : fmt::format("it would stick out ({:.0f} mm beyond a wall, {:.0f} mm over the rim)", 1e3 * fit.outside,
-                           1e3 * fit.above_rim));
-  }
   const double off = level_distance(X_TP_is, X_TP), turned = angle_between(X_TP_is.R, X_TP.R);
+  if (rollout.is_held(box_.item)) {
+    fail(AttemptFailure::SticksOut, "it still hangs from the cup");
+  } else if (!fit.is_in) {
+    fail(AttemptFailure::SticksOut, describe_outside(fit, is_beside(inner, X_TP_is.p), off));
+  }
   if (off > limits_.position) fail(AttemptFailure::OffPlace, fmt::format("{:.0f} mm from its place", 1e3 * off));
   if (turned > limits_.tilt) {
     fail(AttemptFailure::Tilted, fmt::format("{:.0f} degrees from its place", turned * 180.0 / std::numbers::pi));

@@ -63,6 +63,15 @@ struct Send {
   Trouble trouble = Trouble::None;  ///< found when it had ended
 };
 
+/// A way to bring an item to a place that was rehearsed and did not go well in every rollout.
+struct FailedAttempt {
+  packing::Placement planned;
+  InsertionSkill skill = InsertionSkill::TopDown;
+  bool succeeded = false;     ///< in the nominal world; then `success_rate` of the samples is below 1
+  double success_rate = 0.0;  ///< of the samples, by weight
+  std::string reason;         ///< for people: of the nominal world, else of the first sample that failed
+};
+
 struct ItemReport {
   std::string id;
   ItemEnd end = ItemEnd::NoPlace;
@@ -72,7 +81,8 @@ struct ItemReport {
   Reorientation reorientation = Reorientation::None;
   InsertionSkill skill = InsertionSkill::TopDown;
   int flips = 0;
-  int attempts = 0;                ///< that were rehearsed for this item
+  int attempts = 0;                            ///< that were rehearsed for this item
+  std::vector<FailedAttempt> failed_attempts;  ///< of these, in their order
   int stops = 0;                   ///< of them that ended with a protective stop of the robot, in the nominal world
   int samples = 0;                 ///< in which the one that was sent was rehearsed beside the nominal world
   double success_rate = 0.0;       ///< of these, by weight; means nothing without samples
@@ -89,6 +99,9 @@ struct ItemReport {
   ItemSeconds seconds;             ///< of all its motions, recoveries included: done - begin
   [[nodiscard]] bool is_packed() const { return end == ItemEnd::Placed || end == ItemEnd::Accepted; }
 };
+
+/// How it ended and why: "no place: no space left".
+[[nodiscard]] std::string describe(const ItemReport& item);
 
 enum class StopReason {
   AllPacked,

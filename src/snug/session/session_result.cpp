@@ -27,6 +27,11 @@ const char* name_of(ItemEnd end) {
   return "";
 }
 
+std::string describe(const ItemReport& item) {
+  const std::string end = name_of(item.end);
+  return item.reason.empty() || item.reason == end ? end : end + ": " + item.reason;
+}
+
 const char* name_of(StopReason reason) {
   switch (reason) {
     case StopReason::AllPacked:

@@ -105,6 +105,7 @@ cell::RunResult record(const model::Scenario& scenario, const std::string& seque
   result.repicks = plant.state().event_log.repicks();
   result.solver = plant.work().solver.summary(plant.simulation().world());
   result.lost = plant.work().lost;
+  result.warnings = recorded.warnings;
   result.state_hash = plant.simulation().hash(plant.state());
   course.close(recorded.describe ? recorded.describe(result) : "");
   return result;

@@ -153,6 +153,9 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
 std::vector<record::Event> events_of(const session::SessionResult& result) {
   std::vector<record::Event> events;
   for (const session::ItemReport& item : result.items) {
+    if (item.sends.empty() && !item.reason.empty()) {
+      events.push_back({item.done, "refused", item.id, session::describe(item), {}});
+    }
     for (const session::Send& send : item.sends) {
       const Vector3 p = 1e3 * send.planned.X_TP.p;
       events.push_back({send.time,
@@ -178,6 +181,15 @@ std::vector<record::Event> events_of(const session::SessionResult& result) {
   }
   std::ranges::stable_sort(events, {}, &record::Event::time);
   return events;
+}
+
+std::vector<std::string> warnings_of(const session::SessionResult& result) {
+  std::vector<std::string> warnings;
+  if (!result.failure.empty()) warnings.push_back(result.failure);
+  for (const session::ItemReport& item : result.items) {
+    if (!item.sends.empty() && !item.is_packed()) warnings.push_back(item.id + " " + session::describe(item));
+  }
+  return warnings;
 }
 
 }  // namespace snug::study

@@ -56,5 +56,8 @@ using TrialProgress = std::function<void(const Trial& so_far, int item, int item
 
 /// What the session did, as events of a recording: what it predicted, troubles and remedies, obstacles.
 [[nodiscard]] std::vector<record::Event> events_of(const session::SessionResult& result);
+/// What went wrong in the end, for whoever looks at its recording: boxes that were sent and are not packed, each with
+/// its reason, and why the robot did not come home.
+[[nodiscard]] std::vector<std::string> warnings_of(const session::SessionResult& result);
 
 }  // namespace snug::study

@@ -105,5 +105,50 @@ TEST(Recovery, AllOfThemInOneSession) {
   EXPECT_TRUE(std::ranges::is_sorted(events, {}, &record::Event::time));
 }
 
+TEST(SessionRecord, EveryAttemptForAnItemWithoutPlaceHasItsReason) {
+  const model::Scenario scenario = model::test::shortened(1);
+  session::SessionOptions options;
+  options.packing.decision_time = 0.05;
+  options.samples = 0;
+  options.limits.force = 10.0;  // N: less than any pick takes
+  const Trial trial = run_trial(scenario, "1", options, {});
+  ASSERT_EQ(trial.session.items.size(), 1U);
+  const session::ItemReport& item = trial.session.items[0];
+  EXPECT_EQ(item.end, session::ItemEnd::NoPlace) << item.reason;
+  EXPECT_GT(item.attempts, 0);
+  EXPECT_EQ(static_cast<int>(item.failed_attempts.size()), item.attempts);
+  for (const session::FailedAttempt& one : item.failed_attempts) {
+    EXPECT_FALSE(one.succeeded);
+    EXPECT_FALSE(one.reason.empty());
+    EXPECT_EQ(one.planned.item, item.id);
+  }
+}
+
+TEST(SessionRecord, SaysWhatWasRefusedAndWhatWasLostWithReasons) {
+  session::SessionResult result;
+  session::ItemReport refused, lost, packed;
+  refused.id = "A";
+  refused.end = session::ItemEnd::NoPlace;
+  refused.reason = "no space left";
+  refused.done = 4.0;
+  lost.id = "B";
+  lost.end = session::ItemEnd::Left;
+  lost.reason = "leaning";
+  lost.sends.resize(1);
+  packed.id = "C";
+  packed.end = session::ItemEnd::Placed;
+  packed.sends.resize(1);
+  result.items = {packed, lost, refused};
+  result.failure = "the robot did not come home";
+
+  const std::vector<record::Event> events = events_of(result);
+  const auto event = std::ranges::find(events, "refused", &record::Event::kind);
+  ASSERT_NE(event, events.end());
+  EXPECT_EQ(event->body, "A");
+  EXPECT_EQ(event->time, 4.0);
+  EXPECT_EQ(event->text, "no place: no space left");
+  EXPECT_EQ(warnings_of(result), (std::vector<std::string>{"the robot did not come home", "B left: leaning"}));
+}
+
 }  // namespace
 }  // namespace snug::study
