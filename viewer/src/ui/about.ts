@@ -39,7 +39,7 @@ function facts(replay: Replay): HTMLElement {
     ["time step", `${milliseconds(h.dt)} ms`],
     ["recorded", `every ${milliseconds(h.record_period)} ms, ${replay.frames} frames, ${(replay.size / 1e6).toFixed(2)} MB in this page`],
     ["simulated", seconds(h.speed?.duration_s ?? replay.end - replay.start)],
-    ["computed in", h.speed ? `${seconds(h.speed.wall_s)}, ${h.speed.real_time_factor.toFixed(0)} times as fast as it happens` : "-"],
+    ["computed in", h.speed && h.speed.wall_s > 0 ? `${seconds(h.speed.wall_s)}, ${h.speed.real_time_factor.toFixed(0)} times as fast as it happens` : "-"],
     ["ended", h.result?.failure || endOfSession(replay) || (h.complete ? "in order" : h.interrupted ? "early, by who watched it" : "not in order")],
   ];
   return make("section", "", make("h3", "", "What ran"), table([], rows));

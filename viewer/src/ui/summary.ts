@@ -70,7 +70,7 @@ export function fillBars(replay: Replay, second: Replay | null, isLarge = false)
   if (ours === null && !table) return null;
   const rows: FillRow[] = [];
   if (ours !== null) {
-    const boxes = result?.packed === null || result?.packed === undefined ? "" : `${result.packed} boxes`;
+    const boxes = result?.packed === null || result?.packed === undefined ? "" : `${result.packed} box${result.packed === 1 ? "" : "es"}`;
     rows.push({ name: "this run", about: boxes, percent: ours, isOurs: true, hint: "Volume of the packed boxes over that of the container (report eq. 1)" });
   }
   const theirs = second?.header.result?.filling_degree_percent ?? null;
