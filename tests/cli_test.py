@@ -279,6 +279,19 @@ class Robot(unittest.TestCase):
         self.assertEqual(len(lines), 1, result.stdout)
         self.assertIn("rows 2-4", lines[0])
 
+    def test_program_of_another_sequence_is_warned_of_by_every_verb_that_does_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, out = Path(folder) / "program.csv", Path(folder) / "out"
+            self.assertEqual(snug("program", CELL, ROOT / "scenarios" / "demo-placements.yaml", "--sequence", "1", "-o", path).returncode, 0)
+            check = ("check", CELL, "--program", path)
+            simulate = ("simulate", CELL, "--program", path, "--until", "1")
+            export = ("export", path, "--scenario", CELL, "--format", "ros-trajectory", "--unchecked", "-o", out)
+            for words in (check, simulate, export):
+                with self.subTest(words[0]):
+                    self.assertIn("program.csv does not fit sequence 2:", snug(*words, "--sequence", "2").stderr)
+                    self.assertNotIn("does not fit", snug(*words, "--sequence", "1").stderr)
+
+
 class Cup(unittest.TestCase):
     assert_refused = CommandLine.assert_refused
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "outputs.hpp"
+#include "program_fit.hpp"
 #include "robot_warnings.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
@@ -106,8 +107,10 @@ int run_check(const CheckOptions& options) {
   check.controller = how.controller;
   check.tempo = how.tempo;
   print_robot_warnings(scenario);
-  const motion::Program program = cell::corrected(scenario, motion::parse_program(text, options.program),
-                                                  options.corrections == "none" ? "" : options.corrections);
+  const motion::Program read = motion::parse_program(text, options.program);
+  if (options.sequence) warn_misfit(scenario, *options.sequence, read);
+  const motion::Program program =
+      cell::corrected(scenario, read, options.corrections == "none" ? "" : options.corrections);
   const cell::CheckResult result = cell::check_program(scenario, program, check);
   print(options.json ? format_json(result) : format_table(result));
   return result.is_ok ? kSuccess : kRunFailed;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "outputs.hpp"
+#include "program_fit.hpp"
 #include "robot_warnings.hpp"
 #include "scenario_options.hpp"
 #include "snug/cell/corrected.hpp"
@@ -67,9 +68,11 @@ int run_control(const ControlOptions& options) {
   cell::SimulationOptions how;
   const std::string text = read_file(options.program, "a program file (CSV)");
   choose_motion(options.motion, text, options.program, how);
+  const motion::Program program = motion::parse_program(text, options.program);
+  if (options.sequence) warn_misfit(scenario, *options.sequence, program);
   const std::string corrections = options.corrections == "none" ? "" : options.corrections;
-  const motion::PreparedProgram plan = cell::prepare(
-      scenario, sequence, how, cell::corrected(scenario, motion::parse_program(text, options.program), corrections));
+  const motion::PreparedProgram plan =
+      cell::prepare(scenario, sequence, how, cell::corrected(scenario, program, corrections));
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
   click::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
                                         options.sequence ? &sequence : nullptr};

@@ -45,7 +45,10 @@ void add_export(CLI::App& app, Action& action) {
   verb.add_option("--scenario", options->scenario, "of a program: scenario file with the robot, its limits and gains")
       ->type_name("SCENARIO.yaml");
   add_scenario_changes(verb, options->changes);
-  verb.add_option("--sequence", options->sequence, "of a program: item sequence whose gain counts")->type_name("NAME");
+  verb.add_option(
+          "--sequence", options->sequence,
+          "of a program: item sequence that it packs: which boxes it carries, and their masses (default: the first)")
+      ->type_name("NAME");
   verb.add_option("--corrections", options->corrections, "of a program: a layer of the scenario, or none")
       ->type_name("LAYER")
       ->capture_default_str();

@@ -64,17 +64,17 @@ struct LoadedProgram {
     const std::string layer = options.corrections == "none" ? "" : ", corrections " + options.corrections;
     const std::string tempo = is_fast() ? fmt::format(", tempo {}", plan.settings.fast.tempo) : "";
     const Pose& X_WE_start = simulation.scenario().controller.X_WE_start;
-    return {
-        .plan = done,
-        .arm = simulation.arm()->model(),
-        .q_start = simulation.arm()->start(),
-        .loads = find_loads(),
-        .notes = {fmt::format("snug {}", version_text()),
-                  fmt::format("program {}, {} rows{}{}", options.input, plan.program.waypoints.size(), layer, tempo),
-                  fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name,
-                              simulation.sequence().name, simulation.arm()->model().name)},
-        .simulated_duration = is_fast() && trial ? trial->duration : motion::compute_duration(plan, X_WE_start),
-        .simulated_with = simulated_with()};
+    return {.plan = done,
+            .arm = simulation.arm()->model(),
+            .q_start = simulation.arm()->start(),
+            .loads = find_loads(),
+            .notes = {fmt::format("snug {}", version_text()),
+                      fmt::format("program {}, {} waypoints{}{}", options.input, plan.program.waypoints.size(), layer,
+                                  tempo),
+                      fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name,
+                                  simulation.sequence().name, simulation.arm()->model().name)},
+            .simulated_duration = is_fast() && trial ? trial->duration : motion::compute_duration(plan, X_WE_start),
+            .simulated_with = simulated_with()};
   }
 
   [[nodiscard]] std::string simulated_with() const {
@@ -138,6 +138,7 @@ LoadedProgram load(const ExportOptions& options) {
   print_robot_warnings(scenario);
   std::string sequence = options.sequence;
   if (sequence.empty() && !scenario.sequences.empty()) sequence = scenario.sequences.front().name;
+  warn_misfit(scenario, sequence, motion::load_program(options.input));
   return {scenario, sequence, options};
 }
 
@@ -176,7 +177,7 @@ int write_run(const ExportOptions& options, OutputFile output, Format format) {
   }
   if (!program.is_fast() && !is_exportable(program, program.plan)) return kRunFailed;
   write_file(std::move(output), format(run, arm.model(), program));
-  std::fprintf(stderr, "%s: %zu rows, %.1f s\n", options.output.c_str(), program.plan.program.waypoints.size(),
+  std::fprintf(stderr, "%s: %zu waypoints, %.1f s\n", options.output.c_str(), program.plan.program.waypoints.size(),
                static_cast<double>(run.samples.size()) * program.plan.settings.tick);
   return kSuccess;
 }
