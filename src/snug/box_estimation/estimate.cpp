@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "snug/box_estimation/internal/findings.hpp"
 #include "snug/box_estimation/internal/joint_fit.hpp"
 #include "snug/box_estimation/internal/obstacles.hpp"
 #include "snug/box_estimation/internal/relocate.hpp"
@@ -21,7 +21,6 @@ using internal::Place;
 using internal::Prediction;
 using internal::TrackedBox;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kLeastPointsOfBox = 150;      // on a box, to say that it was seen
 constexpr double kLeastPartOn = 0.6;        // of the points where a box should be, to fit it from where it was believed
 constexpr double kLeastPartOnAfter = 0.85;  // the same after the fit
@@ -30,12 +29,9 @@ constexpr double kMostSpread = 0.015;       // m: a pose less sure than this was
 constexpr double kLeastVisible = 0.04;      // of what a box would show alone
 constexpr double kLeastFramePart = 0.5;     // of pixels with a point
 constexpr double kMostBlocked = 0.25;       // of pixels with points above the region
-constexpr double kMovedDistance = 0.010, kMovedAngle = 3.0 * kDegree;
-constexpr double kLeaning = 4.0 * kDegree;
-constexpr double kMostTolerance = 0.02;  // m, of a face from where it was believed to be
-constexpr double kLeastGone = 0.7;       // of a place: it is empty
-constexpr double kPartThatTells =
-    0.15;  // of what a box would show alone: less of its place does not tell that it is empty
+constexpr double kMostTolerance = 0.02;     // m, of a face from where it was believed to be
+constexpr double kLeastGone = 0.7;          // of a place: it is empty
+constexpr double kPartThatTells = 0.15;     // of what a box would show alone: seen to say that its place is empty
 constexpr double kTakenOverlap = 0.01;  // m, of solids: one of them is not there
 constexpr double kOverRim = 0.12;       // m: so high over the region boxes are looked for
 constexpr int kMostRounds = 4;          // of looking for lost boxes
@@ -326,27 +322,7 @@ class Estimator {
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = frame_.camera.X_WC.R;
     const Matrix6 covariance = fit_.covariance[i] + errors_.shared_covariance(tracked_[i].X_CP.p);
     estimate.covariance = turn * covariance * turn.transpose();
-    add_findings(i, box, estimate);
-  }
-
-  void add_findings(std::size_t i, const ExpectedBox& box, BoxEstimate& estimate) const {
-    const double distance = (estimate.X_WP.p - box.X_WP.p).norm(), angle = angle_between(estimate.X_WP.R, box.X_WP.R);
-    if ((distance > kMovedDistance && distance > 3.0 * box.position_spread) ||
-        (angle > kMovedAngle && angle > 3.0 * box.rotation_spread))
-      estimate.findings.push_back(Finding::Moved);
-    if (estimate.X_WP.R.row(2).cwiseAbs().maxCoeff() < std::cos(kLeaning))
-      estimate.findings.push_back(Finding::Leaning);
-    const Vector3 reach = estimate.X_WP.R.cwiseAbs() * (0.5 * box.size);
-    const Vector3 low = estimate.X_WP.p - reach, high = estimate.X_WP.p + reach;
-    const double rim_slack = 0.005;
-    if (high.z() > input_.region_high.z() - 0.001 && input_.region_high.z() < 1e2)
-      if ((low.head<2>().array() < input_.region_low.head<2>().array() - rim_slack).any() ||
-          (high.head<2>().array() > input_.region_high.head<2>().array() + rim_slack).any())
-        estimate.findings.push_back(Finding::OnRim);
-    const Vector3& misfit = fit_.size_misfit[i];
-    if (fit_.size_error[i] > 4.0 && misfit.array().isFinite().any() &&
-        misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > 3e-3)
-      estimate.findings.push_back(Finding::WrongSize);
+    estimate.findings = internal::findings_of(estimate, box, input_, fit_.size_misfit[i], fit_.size_error[i]);
   }
 
   [[nodiscard]] int pixels_alone(const TrackedBox& box) const {
@@ -391,21 +367,6 @@ EstimateInput make_input(const model::Scenario& scenario, const model::Container
 
 Estimate estimate_boxes(const camera::Frame& frame, const EstimateInput& input) {
   return Estimator(frame, input).run();
-}
-
-const char* name_of(Sight sight) {
-  constexpr const char* kNames[] = {"seen", "hidden", "missing"};
-  return kNames[static_cast<int>(sight)];
-}
-
-const char* name_of(Finding finding) {
-  constexpr const char* kNames[] = {"moved", "leaning", "on_rim", "wrong_size"};
-  return kNames[static_cast<int>(finding)];
-}
-
-const char* name_of(FrameFault fault) {
-  constexpr const char* kNames[] = {"none", "too_few_points", "view_blocked"};
-  return kNames[static_cast<int>(fault)];
 }
 
 Matrix3 nearest_equal_rotation(const Matrix3& R_WP, const Matrix3& R_WP_near) {

@@ -32,7 +32,7 @@ struct EstimateInput {
 enum class Sight {
   Seen,     ///< measured
   Hidden,   ///< covered by something else: where it is is belief, not measurement
-  Missing,  ///< its place is seen and empty, and it was found nowhere else
+  Missing,  ///< its place is seen and empty, or another box is in it, and it was found nowhere else
 };
 
 /// What a session has to know beside the pose.
