@@ -13,6 +13,7 @@ constexpr int kLeastLines = 8;
 constexpr double kLeastPart = 0.35;          // of the lines across an edge on which its end has to be seen
 constexpr int kWindow = 3;                   // samples, around an edge once it is known roughly
 constexpr double kRoundingError = 0.29;      // samples, standard deviation of where a grid of pixels puts an end
+constexpr int kWidestShadow = 40;            // px, of no points, beyond which it is looked for what casts it
 constexpr int kLeastPixelsOfNextFace = 200;  // behind a ridge
 constexpr double kRidgeError = 0.3;          // of how far points count as a face's own behind a ridge
 
@@ -27,6 +28,7 @@ struct Sample {
 struct Line {
   double t = 0.0;  // m, along the edge from its middle
   std::vector<Sample> samples;
+  Kind beyond = Kind::Outside;  // of the first point behind the samples
 };
 
 struct Edge {
@@ -72,6 +74,10 @@ class EdgeSearch {
       const int middle = static_cast<int>(std::lround(at));
       Line line;
       for (int d = -reach_; d <= reach_; ++d) line.samples.push_back(sample(k, middle + sign * d, line));
+      line.beyond = line.samples.back().kind;
+      Line ignored;
+      for (int d = reach_ + 1; d <= reach_ + kWidestShadow && line.beyond == Kind::None; ++d)
+        line.beyond = sample(k, middle + sign * d, ignored).kind;
       lines_.push_back(std::move(line));
     }
     spacing_ = mean_spacing();
@@ -132,7 +138,9 @@ class EdgeSearch {
         on += sample.kind == Kind::On ? 1 : 0;
         outer_on += sample.kind == Kind::On && d > kWindow - 1.5 ? 1 : 0;
       }
-      if (is_blocked || outer_on > 0 || inner_off > 1 || inside < 2 * kWindow - 1) continue;
+      if (is_blocked || ends_in_shadow(line, rough + (kWindow - 1) * step) || outer_on > 0 || inner_off > 1 ||
+          inside < 2 * kWindow - 1)
+        continue;
       for (const Sample& sample : line.samples) {
         const double d = (sample.s - rough) / step;
         if (d < 0.5 || d > 4.0) continue;
@@ -194,6 +202,13 @@ class EdgeSearch {
     if (s < 0) return false;
     const int body = neighbours_->cast.surfaces[static_cast<std::size_t>(s)].body;
     return body >= neighbours_->first_box && body != body_;
+  }
+
+  /// Whether something before the face is what comes next behind `s`: the face may go on below, covered or unlit.
+  [[nodiscard]] static bool ends_in_shadow(const Line& line, double s) {
+    for (const Sample& sample : line.samples)
+      if (sample.s > s && sample.kind != Kind::None && sample.kind != Kind::Outside) return sample.kind == Kind::Before;
+    return line.beyond == Kind::Before;
   }
 
   /// Through the ends by least squares, twice: those beyond three standard deviations are left out the second time.

@@ -134,11 +134,19 @@ std::string payload(const RobotProgram& program, const std::optional<CarriedLoad
   return fmt::format("set_payload({:.4f}, [{:.5f}, {:.5f}, {:.5f}])\n", mass, com.x(), com.y(), com.z());
 }
 
-/// Comments: what it was made of, units, and the loads that it carries with the rows they are carried on the way to.
+/// Pose of the cup's TCP in tool0, in the robot's notation.
+std::string tcp_of(const RobotProgram& program) {
+  const Pose X_WE = robot::forward_tool(program.arm, robot::JointVector::Zero(program.arm.joint_count()));
+  return ur_pose(pose_of(program.arm, "tool0").inverse() * X_WE);
+}
+
+/// Comments: what it was made of, units, tool, and the loads that it carries with the rows they are carried on the way
+/// to.
 std::string header(const RobotProgram& program, const std::string& units) {
   std::string text;
   for (const std::string& note : program.notes) text += "# " + printable(note, kLongestNote) + "\n";
   text += "# units: " + units + "\n";
+  text += fmt::format("# tool: {} (TCP in tool0: position, rotation vector)\n", tcp_of(program));
   text += "# payload table, gripper and box, centre of mass in tool0:\n";
   const auto line = [&](const std::string& rows, const std::optional<CarriedLoad>& load) {
     std::string words = payload(program, load);
@@ -190,9 +198,8 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
   const motion::PreparedProgram& plan = program.plan;
   const std::vector<motion::Waypoint>& waypoints = plan.program.waypoints;
   SNUG_CHECK(program.loads.size() == waypoints.size(), "one load for each row");
-  const robot::ArmPose zero = robot::forward(program.arm, robot::JointVector::Zero(program.arm.joint_count()));
   const Pose X_BaseW = pose_of(program.arm, "base").inverse();
-  const std::string tcp = ur_pose(pose_of(program.arm, "tool0").inverse() * zero.X_WE);
+  const std::string tcp = tcp_of(program);
   const Pose X_WE_start = robot::forward_tool(program.arm, program.q_start);
   const std::vector<ScriptRow> rows = plan_rows(plan, X_WE_start);
 
@@ -232,7 +239,6 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
 
   std::string& text = script.text;
   text = header(program, "m, m/s, m/s^2, rad, s; payloads in kg and m; poses in the controller's base frame");
-  text += fmt::format("# tool: set_tcp({})\n", tcp);
   text += "def snug_program():\n";
   text +=
       fmt::format("  # {:.1f} s nominal from the start pose: {} moves from stop to stop (blends make them shorter),\n",

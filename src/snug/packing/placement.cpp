@@ -31,7 +31,7 @@ std::string_view describe(NoPlace reason) {
     case NoPlace::TooBig:
       return "too big for the container";
     case NoPlace::TooHeavy:
-      return "too heavy for the robot";
+      return "too heavy to be carried (max_item_mass)";
     case NoPlace::NotPickable:
       return "no face that the cup can hold";
     case NoPlace::NoSpace:

@@ -178,8 +178,9 @@ TEST(RosTrajectory, HasStrictlyGrowingTimesAndAllJoints) {
   const Exported exported;
   std::istringstream text(format_ros_trajectory(exported.run, exported.for_robot(), 0.04));
   double last = -1.0;
-  int points = 0, names = 0;
+  int points = 0, names = 0, tools = 0;
   for (std::string line; std::getline(text, line);) {
+    if (line.find("# tool: p[0.000000, 0.000000, 0.335000,") == 0) ++tools;  // 35 mm sensor, 300 mm rod
     long long seconds = 0, nanoseconds = 0;
     if (line.find("_joint") != std::string::npos) ++names;
     if (std::sscanf(line.c_str(), "    time_from_start: {sec: %lld, nanosec: %lld}", &seconds, &nanoseconds) != 2)
@@ -190,6 +191,7 @@ TEST(RosTrajectory, HasStrictlyGrowingTimesAndAllJoints) {
     EXPECT_GT(time, last);
     last = time;
   }
+  EXPECT_EQ(tools, 1);
   EXPECT_EQ(names, 6);
   EXPECT_EQ(points, static_cast<int>((exported.run.samples.size() + 4) / 5) + 1);
   EXPECT_NEAR(last, exported.run.samples.back().time + 0.008, 1e-8);
