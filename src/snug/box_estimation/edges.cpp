@@ -29,6 +29,7 @@ struct Line {
   double t = 0.0;  // m, along the edge from its middle
   std::vector<Sample> samples;
   Kind beyond = Kind::Outside;  // of the first point behind the samples
+  bool is_covered = false;      // the face should end where something before it begins, not at its edge
 };
 
 struct Edge {
@@ -42,14 +43,15 @@ struct Edge {
 /// One edge as the frame shows it.
 class EdgeSearch {
  public:
-  EdgeSearch(const camera::Frame& frame, const Edge& edge, double tolerance, int reach, const Prediction* neighbours,
-             int body)
+  EdgeSearch(const camera::Frame& frame, const Edge& edge, double tolerance, int reach, const Prediction& prediction,
+             bool ignores_neighbours, int body)
       : frame_(frame),
         edge_(edge),
         offset_(edge.n.dot(edge.middle)),
         tolerance_(tolerance),
         reach_(reach),
-        neighbours_(neighbours),
+        prediction_(prediction),
+        ignores_neighbours_(ignores_neighbours),
         body_(body) {}
 
   /// False when the edge is not in the picture, or across the lines of pixels.
@@ -74,12 +76,15 @@ class EdgeSearch {
       const int middle = static_cast<int>(std::lround(at));
       Line line;
       for (int d = -reach_; d <= reach_; ++d) line.samples.push_back(sample(k, middle + sign * d, line));
+      line.is_covered = is_covered(k, middle, sign);
       line.beyond = line.samples.back().kind;
       Line ignored;
       for (int d = reach_ + 1; d <= reach_ + kWidestShadow && line.beyond == Kind::None; ++d)
         line.beyond = sample(k, middle + sign * d, ignored).kind;
       lines_.push_back(std::move(line));
     }
+    const Vector3& p_CL = frame_.camera.p_CL;
+    is_lit_from_outside_ = p_CL != Vector3::Zero() && edge_.outward.dot(p_CL - edge_.middle) > 0.0;
     spacing_ = mean_spacing();
     return static_cast<int>(lines_.size()) >= kLeastLines && spacing_ > 0.2 * pixel();
   }
@@ -195,17 +200,36 @@ class EdgeSearch {
 
   /// Whether another box should be seen in a pixel.
   [[nodiscard]] bool is_neighbour(int row, int col) const {
-    if (neighbours_ == nullptr) return false;
-    const int r = row - neighbours_->range.first_row, c = col - neighbours_->range.first_col;
-    if (!neighbours_->cast.surface.is_inside(r, c)) return false;
-    const std::int32_t s = neighbours_->cast.surface(r, c);
+    if (!ignores_neighbours_) return false;
+    const int r = row - prediction_.range.first_row, c = col - prediction_.range.first_col;
+    if (!prediction_.cast.surface.is_inside(r, c)) return false;
+    const std::int32_t s = prediction_.cast.surface(r, c);
     if (s < 0) return false;
-    const int body = neighbours_->cast.surfaces[static_cast<std::size_t>(s)].body;
-    return body >= neighbours_->first_box && body != body_;
+    const int body = prediction_.cast.surfaces[static_cast<std::size_t>(s)].body;
+    return body >= prediction_.first_box && body != body_;
+  }
+
+  /// Whether the face is predicted to end, near its edge, where something before it begins.
+  [[nodiscard]] bool is_covered(int major, int middle, int sign) const {
+    bool was_own = false;
+    for (int d = -reach_; d <= reach_; ++d) {
+      const int row = is_steep_ ? major : middle + sign * d, col = is_steep_ ? middle + sign * d : major;
+      const int r = row - prediction_.range.first_row, c = col - prediction_.range.first_col;
+      if (!prediction_.cast.surface.is_inside(r, c)) return false;
+      const std::int32_t s = prediction_.cast.surface(r, c);
+      const bool is_own = s >= 0 && prediction_.cast.surfaces[static_cast<std::size_t>(s)].body == body_;
+      if (was_own && !is_own) {
+        const double z = offset_ / edge_.n.dot(camera::pixel_ray(frame_.camera.intrinsics, col, row));
+        return s >= 0 && z * prediction_.cast.inverse_depth(r, c) > 1.0;
+      }
+      was_own = is_own;
+    }
+    return false;
   }
 
   /// Whether something before the face is what comes next behind `s`: the face may go on below, covered or unlit.
-  [[nodiscard]] static bool ends_in_shadow(const Line& line, double s) {
+  [[nodiscard]] bool ends_in_shadow(const Line& line, double s) const {
+    if (!line.is_covered && !is_lit_from_outside_) return false;
     for (const Sample& sample : line.samples)
       if (sample.s > s && sample.kind != Kind::None && sample.kind != Kind::Outside) return sample.kind == Kind::Before;
     return line.beyond == Kind::Before;
@@ -247,10 +271,12 @@ class EdgeSearch {
   Edge edge_;
   double offset_, tolerance_;
   int reach_;
-  const Prediction* neighbours_;  ///< null: not looked at
+  const Prediction& prediction_;
+  bool ignores_neighbours_;
   int body_;
   bool is_steep_ = false;
-  double drift_ = 0.0;  // px, by which the edge crosses the grid of pixels
+  bool is_lit_from_outside_ = false;  // shadows fall inward: what is before the face behind its edge casts them on it
+  double drift_ = 0.0;                // px, by which the edge crosses the grid of pixels
   double spacing_ = 0.0;
   std::vector<Line> lines_;
 };
@@ -271,7 +297,7 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
                             int body, bool& is_coarse) {
   const double depth = edge.middle.z();
   const double tolerance = std::max(3.5 * errors.point_error(depth), 0.5e-3);
-  EdgeSearch search(frame, edge, tolerance, settings.reach, settings.ignores_neighbours ? &prediction : nullptr, body);
+  EdgeSearch search(frame, edge, tolerance, settings.reach, prediction, settings.ignores_neighbours, body);
   if (!search.gather()) return std::nullopt;
   const double rough = search.rough_offset(), step = search.spacing();
   is_coarse = std::abs(rough) > (settings.reach - kWindow - 2) * step;
