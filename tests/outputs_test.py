@@ -7,6 +7,7 @@ import resource
 import shutil
 import signal
 import stat
+import struct
 import subprocess
 import tempfile
 import time
@@ -20,7 +21,8 @@ TASK = ROOT / "scenarios" / "tosses" / "task.yaml"
 ORDERS = ROOT / "scenarios" / "orders-example.csv"
 PLACEMENTS = ROOT / "scenarios" / "demo-placements.yaml"
 QUICK = ("--samples", 0, "--decision-time", 0.02, "--robot", "none")
-COMMIT_BYTE = 2**62 + 1  # docs/formats.md, "While a run goes on"
+WRITER_BYTE, COMMIT_BYTE = 2**62, 2**62 + 1  # docs/formats.md, "While a run goes on"
+FLOCK = "hhqqi"  # struct flock: type, whence, start, length, process
 
 
 def start(*words, **settings):
@@ -64,6 +66,17 @@ class Folder(unittest.TestCase):
         path = self.folder / "one.csv"
         path.write_text("order,length_mm,width_mm,height_mm,mass_kg\none,120,110,105,0.3\n")
         return path
+
+    def are_being_written(self, count):
+        """Do writers hold the locks of `count` files of the folder? Asked without taking a lock."""
+        def is_locked(path):
+            try:
+                with open(path, "rb") as file:
+                    asked = struct.pack(FLOCK, fcntl.F_RDLCK, os.SEEK_SET, WRITER_BYTE, 1, 0)
+                    return struct.unpack(FLOCK, fcntl.fcntl(file, fcntl.F_GETLK, asked)[:struct.calcsize(FLOCK)])[0] != fcntl.F_UNLCK
+            except FileNotFoundError:
+                return False
+        return sum(is_locked(path) for path in self.folder.iterdir() if not path.is_symlink()) == count
 
     def wait_for(self, condition):
         for _ in range(12000):
@@ -281,7 +294,7 @@ class TwoWriters(Folder):
         (self.folder / "link.h5").symlink_to("run.h5")
         first = start("simulate", DROP, "--until", 300, "-o", recording)
         self.addCleanup(first.communicate)
-        self.wait_for(lambda: first.poll() is not None or len(self.names()) == 2)
+        self.wait_for(lambda: first.poll() is not None or self.are_being_written(1))
         first.send_signal(signal.SIGSTOP)
         for words in (("simulate", DROP, "--until", 1, "-o", recording), ("simulate", DROP, "--until", 1, "-o", self.folder / "link.h5"),
                       ("simulate", DROP, "--until", 1, "--csv", recording)):
@@ -301,7 +314,7 @@ class TwoWriters(Folder):
         first = start(*words, "--program", outputs[0], "--plan", outputs[1], "-o", outputs[2])
         self.addCleanup(first.communicate)
         self.addCleanup(first.kill)
-        self.wait_for(lambda: len(self.names()) == 3)
+        self.wait_for(lambda: first.poll() is not None or self.are_being_written(3))
         for option, output in zip(("--program", "--plan", "-o"), outputs):
             with self.subTest(option=option):
                 self.assert_busy(*words, option, output)
