@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "snug/box_estimation/internal/features.hpp"
+#include "snug/camera/loss.hpp"
 
 namespace snug::box_estimation::internal {
 namespace {
@@ -12,7 +13,8 @@ constexpr double kInset = 0.04;  // part of an edge's length at either end that 
 constexpr int kLeastLines = 8;
 constexpr double kLeastPart = 0.35;          // of the lines across an edge on which its end has to be seen
 constexpr int kWindow = 3;                   // samples, around an edge once it is known roughly
-constexpr double kRoundingError = 0.29;      // samples, standard deviation of where a grid of pixels puts an end
+constexpr double kOffsetError = 0.12;        // samples, of what all lines of an edge have in common
+constexpr double kDriftError = 0.2;          // px, of the drift that a fit finds
 constexpr int kWidestShadow = 40;            // px, of no points, beyond which it is looked for what casts it
 constexpr int kLeastPixelsOfNextFace = 200;  // behind a ridge
 constexpr double kRidgeError = 0.3;          // of how far points count as a face's own behind a ridge
@@ -34,7 +36,7 @@ struct Line {
 
 struct Edge {
   Vector3 middle, along, outward, n;  // in C; n the face's normal
-  double length = 0.0;
+  double length = 0.0, width = 0.0;   // m, of the face along the edge and across it
   /// Behind a ridge the box's next face is seen: how much more it looks away from the camera than this one, as the
   /// tangent; 0: no ridge, what is seen behind the edge lies deeper.
   double ridge = 0.0;
@@ -312,16 +314,23 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
   }
   const auto found = search.refine(rough);
   if (!found) return std::nullopt;
-  // Edges of depth lose points. Over a ridge points count as the face's own until the next face is a tolerance lower.
-  const double beyond = tolerance * edge.ridge;
-  const double lost = edge.ridge == 0.0 && found->is_drop ? errors.edge_shift() * step : 0.0;
+  const double part_lost = found->is_drop ? camera::edge_loss_at_ridge(edge.ridge, step) : 0.0;
+  // Over a ridge points count as the face's own until the next face is a tolerance lower.
+  const double beyond = (1.0 - part_lost) * tolerance * edge.ridge;
+  const double lost = part_lost * errors.edge_shift() * step;
   Rows rows = make_rows(edge, box.X_CP.p, found->offset + lost - beyond, found->slope);
-  // The grid of pixels rounds all lines of an edge along it alike, and evens out where the edge crosses it.
-  const double rounding = kRoundingError * step / std::max(1.0, search.drift());
-  const double single =
-      found->spread * found->spread + std::pow(kRoundingError * step, 2) * (search.drift() >= 1.0 ? 0.0 : 0.2);
-  const double mean = rounding * rounding + 2.0 * single / found->lines + std::pow(kRidgeError * beyond, 2);
-  rows.covariance = Vector3(mean, mean / (found->length * found->length), 1.0).asDiagonal();
+  // Where between two pixels the edge lies decides what is rounded, and whether points are lost at a ridge: alike on
+  // all lines of an edge along the grid; it evens out where the edge crosses the grid.
+  const double of_place = step * step * (1.0 / 12.0 + part_lost * (1.0 - part_lost) * std::pow(errors.edge_shift(), 2));
+  const double drift = search.drift();
+  const double alike = std::pow(std::max(0.0, 1.0 - drift), 2);  // of the mean over `drift` pixels
+  const double likely = std::hypot(drift, kDriftError);
+  const double tilting = likely < 1.0 ? likely * (1.2 - likely) : 0.2 / (likely * likely);
+  const double of_lines = found->spread * found->spread / found->lines;
+  const double offset = of_place * alike + of_lines + std::pow(kOffsetError * step, 2) +
+                        std::pow(errors.length_error(0.5 * edge.width), 2) + std::pow(kRidgeError * beyond, 2);
+  const double slope = (of_place * tilting + of_lines) / (found->length * found->length);
+  rows.covariance = Vector3(offset, slope, 1.0).asDiagonal();
   return rows;
 }
 
@@ -356,6 +365,7 @@ std::vector<EdgeFeature> find_edges(const camera::Frame& frame, const Prediction
         edge.outward = box.X_CP.R.col(across) * (side == 1 ? 1.0 : -1.0);
         edge.along = box.X_CP.R.col(along);
         edge.length = 2.0 * box.half(along);
+        edge.width = 2.0 * box.half(across);
         edge.middle = box.X_CP.p + box.half(axis) * surface.n_C + box.half(across) * edge.outward;
         if (shows(surface.body, 2 * across + side))
           edge.ridge = std::max(0.0, edge.outward.dot(edge.middle) / edge.n.dot(edge.middle));

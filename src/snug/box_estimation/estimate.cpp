@@ -32,9 +32,9 @@ constexpr double kMostBlocked = 0.25;       // of pixels with points above the r
 constexpr double kMostTolerance = 0.02;     // m, of a face from where it was believed to be
 constexpr double kLeastGone = 0.7;          // of a place: it is empty
 constexpr double kPartThatTells = 0.15;     // of what a box would show alone: seen to say that its place is empty
-constexpr double kTakenOverlap = 0.01;  // m, of solids: one of them is not there
-constexpr double kOverRim = 0.12;       // m: so high over the region boxes are looked for
-constexpr int kMostRounds = 4;          // of looking for lost boxes
+constexpr double kTakenOverlap = 0.01;      // m, of solids: one of them is not there
+constexpr double kOverRim = 0.12;           // m: so high over the region boxes are looked for
+constexpr int kMostRounds = 4;              // of looking for lost boxes
 // A tracked box may be another one: seen through, sides not as long as its own, far from its belief.
 constexpr double kDoubtfulPartOn = 0.97, kDoubtfulMisfit = 3e-3, kDoubtfulDeviations = 4.0;
 constexpr double kDoubtfulOverlap = 6e-3;  // m: so deep in a box that was found

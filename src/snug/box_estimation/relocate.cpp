@@ -22,7 +22,7 @@ constexpr double kLeastGain = 300.0;  // px: less explains nothing
 // What a pose that explains the frame says for and against the box, as the logarithm of a likelihood; one unit weighs
 // as much as kEvidence pixels.
 constexpr double kEvidence = 800.0;
-constexpr double kApartError = 1.2e-3;  // m, standard deviation of how far apart opposite edges are seen
+constexpr double kApartError = 0.8e-3;  // m, standard deviation of how far apart opposite edges are seen
 constexpr double kMostMisfit = 6.0;     // standard deviations: farther off is not less likely
 constexpr double kUnseen = 1.0;         // a side of which not both ends are seen
 constexpr double kNear = 0.3;           // at its old place, and turned as it was

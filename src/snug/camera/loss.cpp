@@ -17,6 +17,11 @@ std::vector<float> edge_loss(const model::PointLoss& loss) {
   return probabilities;
 }
 
+double edge_loss_at_ridge(double ridge, double step) {
+  // Each surface continued to the other's pixel is nearer to it by the part of step / ridge on its own side.
+  return std::clamp(1.0 - 2.0 * kEdgeOfDepth * ridge / step, 0.0, 1.0);
+}
+
 GrazingLoss::GrazingLoss(const model::PointLoss& loss)
     : onset_(static_cast<float>(std::cos(loss.grazing_onset))),
       full_(static_cast<float>(std::cos(loss.grazing_full))) {}

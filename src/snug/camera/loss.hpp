@@ -11,6 +11,13 @@ namespace snug::camera {
 /// %.
 [[nodiscard]] std::vector<float> edge_loss(const model::PointLoss& loss);
 
+/// Two pixels that are farther apart along the optical axis than their surfaces explain, m: an edge of depth.
+inline constexpr double kEdgeOfDepth = 2.5e-3;
+
+/// For which part of the places that a ridge can have between two pixels it is an edge of depth. The face behind it
+/// is seen, `ridge` times less than from before (a tangent; 0: not at all); `step`: m between pixels.
+[[nodiscard]] double edge_loss_at_ridge(double ridge, double step);
+
 /// How many points are lost on faces that are seen from the side.
 class GrazingLoss {
  public:

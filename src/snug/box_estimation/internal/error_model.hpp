@@ -17,6 +17,8 @@ class ErrorModel {
   [[nodiscard]] double likeness() const { return likeness_; }
   /// Covariance of the waves at two pixels, m^2.
   [[nodiscard]] double wave_covariance(double dcol, double drow) const;
+  /// Standard deviation of a length, m.
+  [[nodiscard]] double length_error(double length) const { return camera_.errors.trueness.dimension * length; }
   /// How many pixels of a face are missing, on average, at each crossing of an edge of depth; and their variance.
   [[nodiscard]] double edge_shift() const { return edge_shift_; }
   [[nodiscard]] double edge_variance() const { return edge_variance_; }

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/camera/loss.hpp"
 #include "snug/core/parallel.hpp"
 
 namespace snug::camera::internal {
 namespace {
 
 constexpr int kRowsSearchedAtOnce = 32;
-constexpr double kJump = 2.5e-3;     // m: two pixels farther apart than their surfaces explain are an edge of depth
 constexpr double kRoundJump = 5e-3;  // m: the same where a surface is curved
 constexpr double kMeet = 1e-7;       // 1/m
 
@@ -29,7 +29,7 @@ std::uint8_t border_between(const Cast& cast, int row, int col, int row_b, int c
   const double wb_at_a = wb - b.inverse.x() * dc - b.inverse.y() * dr;
   const double far = 1e3;
   const double za_at_b = wa_at_b > 1e-3 ? 1.0 / wa_at_b : far, zb_at_a = wb_at_a > 1e-3 ? 1.0 / wb_at_a : far;
-  if (std::min(std::abs(za_at_b - zb), std::abs(zb_at_a - za)) > kJump) return jump;
+  if (std::min(std::abs(za_at_b - zb), std::abs(zb_at_a - za)) > kEdgeOfDepth) return jump;
   return wb > wa_at_b + kMeet && wa > wb_at_a + kMeet ? corner : 0;
 }
 
