@@ -28,7 +28,8 @@ constexpr double kLeastOfPixels = 0.08;     // of the pixels where it should be 
 constexpr double kMostSpread = 0.015;       // m: a pose less sure than this was not seen
 constexpr double kLeastVisible = 0.04;      // of what a box would show alone
 constexpr double kLeastFramePart = 0.5;     // of pixels with a point
-constexpr double kMostBlocked = 0.25;       // of pixels with points above the region
+constexpr double kMostAbove = 0.5;          // of pixels with points above the region
+constexpr double kMostHighAbove = 0.25;     // the same where no box can lie: over kOverRim
 constexpr double kMostTolerance = 0.02;     // m, of a face from where it was believed to be
 constexpr double kLeastGone = 0.7;          // of a place: it is empty
 constexpr double kPartThatTells = 0.15;     // of what a box would show alone: seen to say that its place is empty
@@ -87,7 +88,7 @@ class Estimator {
 
   FrameFault judge_frame(double& part) const {
     const internal::PixelRange range = internal::pixel_range(frame_.camera, input_.region_low, input_.region_high);
-    int points = 0, blocked = 0;
+    int points = 0, above = 0, high_above = 0;
     for (int r = range.first_row; r < range.end_row; ++r)
       for (int c = range.first_col; c < range.end_col; ++c) {
         const double depth = frame_.depth(r, c);
@@ -95,12 +96,14 @@ class Estimator {
         ++points;
         const Vector3 p_C = depth * camera::pixel_ray(frame_.camera.intrinsics, c, r);
         const double z = frame_.camera.X_WC.R.row(2).dot(p_C) + frame_.camera.X_WC.p.z();
-        blocked += z > input_.region_high.z() ? 1 : 0;
+        above += z > input_.region_high.z() ? 1 : 0;
+        high_above += z > input_.region_high.z() + kOverRim ? 1 : 0;
       }
     const int pixels = range.rows() * range.cols();
     part = pixels > 0 ? static_cast<double>(points) / pixels : 0.0;
     if (part < kLeastFramePart) return FrameFault::TooFewPoints;
-    return blocked > kMostBlocked * pixels ? FrameFault::ViewBlocked : FrameFault::None;
+    const bool is_blocked = above > kMostAbove * pixels || high_above > kMostHighAbove * pixels;
+    return is_blocked ? FrameFault::ViewBlocked : FrameFault::None;
   }
 
   [[nodiscard]] Prediction predict(const std::vector<TrackedBox>& boxes) const {
@@ -155,11 +158,13 @@ class Estimator {
     keep_good();
   }
 
-  /// Those that agree with the frame.
-  void keep_good() {
+  /// Those that agree with the frame; returns the others.
+  std::vector<std::size_t> keep_good() {
+    const std::size_t before = others_.size();
     std::vector<bool> is_good;
     for (const Agreement& a : compare(tracked_)) is_good.push_back(agrees(a, kLeastPartOnAfter));
     keep(is_good);
+    return {others_.begin() + static_cast<std::ptrdiff_t>(before), others_.end()};
   }
 
   /// m, from a face after the fit.
@@ -220,7 +225,7 @@ class Estimator {
       doubt_overlapped(found, tracked);
       for (const Place& place : found) add(boxes[place.lost], place.box);
       fit(FitStart::Near, 4);
-      keep_good();
+      for (const std::size_t i : keep_good()) tracked[i].reset();
     }
     if (!tracked_.empty()) fit(FitStart::Near, 3);
   }

@@ -22,13 +22,16 @@ constexpr double kLeastGain = 300.0;  // px: less explains nothing
 // What a pose that explains the frame says for and against the box, as the logarithm of a likelihood; one unit weighs
 // as much as kEvidence pixels.
 constexpr double kEvidence = 800.0;
-constexpr double kApartError = 0.8e-3;  // m, standard deviation of how far apart opposite edges are seen
-constexpr double kMostMisfit = 6.0;     // standard deviations: farther off is not less likely
-constexpr double kUnseen = 1.0;         // a side of which not both ends are seen
-constexpr double kNear = 0.3;           // at its old place, and turned as it was
-constexpr double kCovered = 1.5;        // its old place is not seen to be empty
-constexpr double kElsewhere = 0.03;     // m, from its old place
-constexpr double kInPlace = 1.0;        // fitted from its old place, or where it was tracked
+constexpr double kApartError = 0.8e-3;   // m, standard deviation of how far apart opposite edges are seen
+constexpr double kMostMisfit = 6.0;      // standard deviations: farther off is not less likely
+constexpr double kUnseen = 1.0;          // a side of which not both ends are seen
+constexpr double kInTheAir = -0.5;       // it touches nothing
+constexpr double kOverlapError = 4e-3;   // m, standard deviation of how deep a box is in another
+constexpr double kMostOverlapped = 2.0;  // standard deviations
+constexpr double kNear = 0.3;            // at its old place, and turned as it was
+constexpr double kCovered = 1.5;         // its old place is not seen to be empty
+constexpr double kElsewhere = 0.03;      // m, from its old place
+constexpr double kInPlace = 1.0;         // fitted from its old place, or where it was tracked
 
 Matrix6 proposal_information() {
   Matrix6 information = Matrix6::Zero();
@@ -48,6 +51,12 @@ double size_evidence(const TrackedBox& box, const Vector3& size_misfit) {
     sum -= std::isfinite(misfit) ? 0.5 * std::pow(std::min(misfit, kMostMisfit), 2) : kUnseen;
   }
   return sum;
+}
+
+/// Boxes stand on something, in nothing. What they are in may itself be a little elsewhere.
+double place_evidence(double gap) {
+  if (gap >= kTouch) return kInTheAir;
+  return -0.5 * std::pow(std::min(std::max(0.0, -gap) / kOverlapError, kMostOverlapped), 2);
 }
 
 class Trials {
@@ -73,8 +82,8 @@ class Trials {
         compare(known_.frame, with, std::vector<double>(fitted.boxes.size(), known_.tolerance)).back();
     if (agreement.on < kLeastPoints || agreement.part_on() < kLeastPartThere) return std::nullopt;
     Place place{index, box, 0.0};
-    evidence += std::log(likely_place(box.half, box.X_CP, solids_C_)) + size_evidence(box, fitted.size_misfit.back()) +
-                nearness(lost, box.X_CP);
+    evidence += place_evidence(least_gap(box.half, box.X_CP, solids_C_)) +
+                size_evidence(box, fitted.size_misfit.back()) + nearness(lost, box.X_CP);
     place.gain = -kSeenThrough * agreement.farther + disagreeing(known_.frame, without_, range, known_.tolerance) -
                  disagreeing(known_.frame, with, range, known_.tolerance) + kEvidence * evidence;
     return place;

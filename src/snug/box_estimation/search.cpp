@@ -291,6 +291,14 @@ void each_pose(const Wanted& wanted, const Rectangle& rectangle, const Vector3& 
     }
 }
 
+/// How likely it is to find a box there, 0 .. 1: less where it would be in one of the solids, or touch none. Rough
+/// poses are off by a few millimetres.
+double likely_place(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
+  const double gap = least_gap(half, X_CP, solids_C);
+  if (gap >= kTouch) return 0.6;
+  return gap > -kTouch ? 1.0 : std::max(0.1, 1.0 + 40.0 * (gap + kTouch));
+}
+
 }  // namespace
 
 camera::Grid2<std::uint8_t> unexplained(const camera::Frame& frame, const Prediction& prediction, double tolerance) {
@@ -310,21 +318,19 @@ camera::Grid2<std::uint8_t> unexplained(const camera::Frame& frame, const Predic
   return mask;
 }
 
-double likely_place(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
-  constexpr double kSlack = 0.006;  // m: rough poses are off by that
+double least_gap(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
   const geometry::Shape box = geometry::Box{half};
-  double least = kSlack;
+  double least = kTouch;
   for (const camera::SceneShape& solid : solids_C) {
     if ((X_CP.p - solid.X_WG.p).norm() >
-        geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + kSlack)
+        geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + kTouch)
       continue;
     geometry::PairCache cache;
     geometry::Manifold manifold;
-    geometry::collide(box, X_CP, solid.shape, solid.X_WG, kSlack, cache, manifold);
+    geometry::collide(box, X_CP, solid.shape, solid.X_WG, kTouch, cache, manifold);
     for (int i = 0; i < manifold.count; ++i) least = std::min(least, manifold.points[static_cast<std::size_t>(i)].phi);
   }
-  if (least >= kSlack) return 0.6;
-  return least > -kSlack ? 1.0 : std::max(0.1, 1.0 + 40.0 * (least + kSlack));
+  return least;
 }
 
 std::vector<std::vector<Pose>> propose_poses(const Known& known, const Prediction& prediction,

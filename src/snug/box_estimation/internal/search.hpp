@@ -31,8 +31,9 @@ struct Wanted {
                                                            const std::vector<Wanted>& wanted,
                                                            const std::vector<camera::SceneShape>& solids_C);
 
-/// How likely it is to find a box there, 0 .. 1: less where it would be in one of the solids, or touch none.
-[[nodiscard]] double likely_place(const Vector3& half, const Pose& X_CP,
-                                  const std::vector<camera::SceneShape>& solids_C);
+/// Beyond this gap things do not touch, m.
+inline constexpr double kTouch = 0.006;
+/// m, between a box and the nearest of the solids, at most kTouch; negative: so deep in one of them.
+[[nodiscard]] double least_gap(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C);
 
 }  // namespace snug::box_estimation::internal
