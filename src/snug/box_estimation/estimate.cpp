@@ -155,12 +155,23 @@ class Estimator {
     if (uncovered.empty()) return;
     for (const std::size_t i : uncovered) add(i, make_tracked(input_.boxes[i], X_CW_));
     fit(FitStart::Belief, 6);
+    if (drop_seen_through()) fit(FitStart::Belief, 6);
     keep_good();
+  }
+
+  /// What they cover is not covered. Whether there was any.
+  bool drop_seen_through() {
+    std::vector<bool> is_solid;
+    for (const Agreement& a : compare(tracked_))
+      is_solid.push_back(a.on + a.farther < kLeastPointsOfBox || a.part_on() >= kLeastPartOnAfter);
+    keep(is_solid);
+    return tracked_.size() < is_solid.size();
   }
 
   /// Those that agree with the frame; returns the others.
   std::vector<std::size_t> keep_good() {
     const std::size_t before = others_.size();
+    drop_seen_through();
     std::vector<bool> is_good;
     for (const Agreement& a : compare(tracked_)) is_good.push_back(agrees(a, kLeastPartOnAfter));
     keep(is_good);

@@ -171,9 +171,13 @@ std::vector<Place> relocate(const Known& known, const std::vector<Lost>& lost) {
   std::vector<Place> places;
   for (std::size_t i = 0; i < lost.size(); ++i) {
     if (lost[i].tracked) {
-      // As long as nothing says more, it stays.
-      const auto place = trials.fit(i, lost[i], *lost[i].tracked, FitStart::Near, kInPlace);
-      places.push_back(place && place->gain > 1.0 ? *place : Place{i, *lost[i].tracked, 1.0});
+      const TrackedBox& tracked = *lost[i].tracked;
+      const auto place = trials.fit(i, lost[i], tracked, FitStart::Near, kInPlace);
+      // As long as nothing says more it stays, unless it is not seen there and another box is.
+      if (place && place->gain > 1.0)
+        places.push_back(*place);
+      else if (place || least_gap(tracked.half, tracked.X_CP, trials.solids_C()) > -kMostOverlap)
+        places.push_back({i, tracked, 1.0});
     }
     const auto add = [&](const Pose& X_CP, FitStart start, double evidence) {
       const TrackedBox box{lost[i].box.half, X_CP, X_CP, proposal_information()};
