@@ -52,19 +52,15 @@ double ErrorModel::wave_covariance(double dcol, double drow) const {
   return part(waves.local, waves.local_length) + part(waves.global, waves.global_length);
 }
 
-Matrix6 ErrorModel::shared_covariance(const Vector3& p_CP) const {
+perception::CommonError ErrorModel::common_error(const Vector3& p_CP) const {
   const model::HandEye& eye = camera_.errors.hand_eye;
   const model::Trueness& trueness = camera_.errors.trueness;
-  Eigen::Matrix<double, 6, 3> turn = Eigen::Matrix<double, 6, 3>::Zero();  // of the camera about its own axes
-  turn.topRows<3>() = -skew(p_CP);
-  turn.bottomRows<3>() = Matrix3::Identity();
-  Vector6 scale = Vector6::Zero();
-  scale.head<3>() = p_CP - Vector3(0.0, 0.0, camera_.range.focus);
-  Matrix6 covariance = eye.rotation * eye.rotation * turn * turn.transpose() +
-                       trueness.dimension * trueness.dimension * scale * scale.transpose();
-  covariance.topLeftCorner<3, 3>() +=
-      (eye.position * eye.position + trueness.position * trueness.position) * Matrix3::Identity();
-  return covariance;
+  perception::CommonError error = perception::CommonError::Zero();
+  error.topLeftCorner<3, 3>() = -eye.rotation * skew(p_CP);  // of the camera about its own axes
+  error.bottomLeftCorner<3, 3>() = eye.rotation * Matrix3::Identity();
+  error.block<3, 3>(0, 3) = std::hypot(eye.position, trueness.position) * Matrix3::Identity();
+  error.topRightCorner<3, 1>() = trueness.dimension * (p_CP - Vector3(0.0, 0.0, camera_.range.focus));
+  return error;
 }
 
 }  // namespace snug::box_estimation::internal

@@ -317,8 +317,8 @@ class Estimator {
   /// m, standard deviation of a point in W with all that the camera states.
   [[nodiscard]] double deviation_at(const Vector3& p_W) const {
     const Vector3 p_C = X_CW_ * p_W;
-    const double shared = errors_.shared_covariance(p_C).topLeftCorner<3, 3>().diagonal().maxCoeff();
-    return std::sqrt(std::pow(errors_.point_error(p_C.z()), 2) + shared);
+    const double common = errors_.common_error(p_C).topRows<3>().rowwise().norm().maxCoeff();
+    return std::hypot(errors_.point_error(p_C.z()), common);
   }
 
   void report_seen(std::size_t i, const Agreement& a, BoxEstimate& estimate) const {
@@ -336,8 +336,8 @@ class Estimator {
     estimate.X_WP = {nearest_equal_rotation(X_WP.R, box.X_WP.R), X_WP.p};
     Matrix6 turn = Matrix6::Zero();
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = frame_.camera.X_WC.R;
-    const Matrix6 covariance = fit_.covariance[i] + errors_.shared_covariance(tracked_[i].X_CP.p);
-    estimate.covariance = turn * covariance * turn.transpose();
+    estimate.common = turn * errors_.common_error(tracked_[i].X_CP.p);
+    estimate.covariance = turn * fit_.covariance[i] * turn.transpose() + estimate.common * estimate.common.transpose();
     estimate.findings = internal::findings_of(estimate, box, input_, fit_.size_misfit[i], fit_.size_error[i]);
   }
 

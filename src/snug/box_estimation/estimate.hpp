@@ -6,7 +6,7 @@
 
 #include "snug/camera/frame.hpp"
 #include "snug/camera/scene.hpp"
-#include "snug/perception/obstacle.hpp"
+#include "snug/perception/observation.hpp"
 
 namespace snug::box_estimation {
 
@@ -52,6 +52,8 @@ struct BoxEstimate {
   /// frame does not tell the ends of a box apart: the pose is that of its four equal ones which is nearest to the
   /// belief.
   Matrix6 covariance = Matrix6::Zero();
+  /// What part of the error comes from the camera's own place and scale, which all boxes of its frames share.
+  perception::CommonError common = perception::CommonError::Zero();
   int points = 0;             ///< that lie on it
   double visible_part = 0.0;  ///< of the points that it would have alone in the frame, 0 .. 1
   double rms = 0.0;           ///< m, of its points from its faces

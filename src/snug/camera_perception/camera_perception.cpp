@@ -79,7 +79,7 @@ class Camera final : public perception::Perception {
     for (const box_estimation::BoxEstimate& box : estimate.boxes) {
       if (box.sight == box_estimation::Sight::Missing) observation.missing.push_back(box.id);
       if (box.sight != box_estimation::Sight::Seen) continue;
-      observation.seen.push_back({box.id, box.X_WP, box.covariance, std::nullopt, 0.0});
+      observation.seen.push_back({box.id, box.X_WP, box.covariance, std::nullopt, 0.0, box.common});
     }
     observation.obstacles.reset();  // the stations' tell nothing of the container
     observation.fault = fault_of(estimate.fault);

@@ -10,6 +10,10 @@
 
 namespace snug::perception {
 
+/// How an error (6, as in `covariance`) depends on what all poses of a sensor have in common: seven standard normals
+/// that stay the same from look to look, such as where the sensor really is (6) and its scale.
+using CommonError = Eigen::Matrix<double, 6, 7>;
+
 /// One box as it was seen.
 struct PoseEstimate {
   std::string item;  ///< id
@@ -18,6 +22,8 @@ struct PoseEstimate {
   Matrix6 covariance = Matrix6::Zero();
   std::optional<Vector3> size;  ///< m, along Px, Py, Pz, where it was measured
   double size_deviation = 0.0;  ///< m, standard deviation of each edge of `size`
+  /// What part of the error is common: its product with its transpose is a part of `covariance`.
+  CommonError common = CommonError::Zero();
   bool operator==(const PoseEstimate&) const = default;
 };
 

@@ -35,10 +35,11 @@ Matrix6 unseen_covariance() {
   return covariance;
 }
 
-/// A pose drawn from an estimate.
-Pose drawn(const perception::PoseEstimate& seen, Rng& rng) {
-  Vector6 error;
-  for (int i = 0; i < 6; ++i) error[i] = std::sqrt(std::max(0.0, seen.covariance(i, i))) * rng.normal();
+/// A pose drawn from an estimate, where the errors that poses have in common are `common` standard deviations.
+Pose drawn(const perception::PoseEstimate& seen, const CommonDraw& common, Rng& rng) {
+  const Matrix6 own = seen.covariance - seen.common * seen.common.transpose();
+  Vector6 error = seen.common * common;
+  for (int i = 0; i < 6; ++i) error[i] += std::sqrt(std::max(0.0, own(i, i))) * rng.normal();
   return {exp_rotation(error.tail<3>()) * seen.X_WP.R, seen.X_WP.p + error.head<3>()};
 }
 
@@ -70,11 +71,14 @@ Belief::Belief(const model::Scenario& scenario, const std::string& sequence, con
       rng_(Rng(settings.seed).split("belief")) {
   const Rng rng(settings.seed);
   const model::Scenario nominal = cell::with_fixed_arrivals(scenario, sequence);
-  worlds_.push_back({coarse(nominal, settings.coarse_steps), {}, {}, true});
+  worlds_.push_back({coarse(nominal, settings.coarse_steps), {}, {}});
   sequence_ = *model::find_sequence(worlds_[0].scenario, sequence);
   for (int i = 0; i < settings.samples; ++i) {
     const Rng own = rng.split("sample " + std::to_string(i));
-    worlds_.push_back({coarse(cell::draw_scenario(nominal, sequence, own), settings.coarse_steps), {}, {}, true});
+    World& world =
+        worlds_.emplace_back(World{coarse(cell::draw_scenario(nominal, sequence, own), settings.coarse_steps), {}, {}});
+    Rng sensors = own.split("sensors");
+    for (double& normal : world.common) normal = sensors.normal();
   }
   for (World& world : worlds_) {
     world.poses.resize(sequence_.items.size());
@@ -135,7 +139,8 @@ void Belief::see(const perception::Observation& observation) {
     const bool is_new = !boxes_[i] || !boxes_[i]->was_seen;
     boxes_[i] = BelievedBox{seen.X_WP, seen.covariance, true};
     if (is_new && seen.size) measure(item, seen);
-    for (std::size_t w = 0; w < worlds_.size(); ++w) worlds_[w].poses[i] = w == 0 ? seen.X_WP : drawn(seen, rng_);
+    for (std::size_t w = 0; w < worlds_.size(); ++w)
+      worlds_[w].poses[i] = w == 0 ? seen.X_WP : drawn(seen, worlds_[w].common, rng_);
   }
   for (const std::string& id : observation.not_seen) {
     const int item = index_of(sequence_, id);

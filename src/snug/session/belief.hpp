@@ -24,6 +24,8 @@ struct BeliefSettings {
   cell::SimulationOptions simulation;  ///< of the nominal world; sampled ones move the tool without joints
 };
 
+using CommonDraw = Eigen::Matrix<double, perception::CommonError::ColsAtCompileTime, 1>;
+
 /// Where a box is believed to be.
 struct BelievedBox {
   Pose X_WP;  ///< mean
@@ -77,6 +79,7 @@ class Belief {
     model::Scenario scenario;
     std::vector<std::optional<Pose>> poses;      ///< X_WP of the items, where this world has them
     std::vector<std::optional<Pose>> predicted;  ///< of the last motion that was sent
+    CommonDraw common = CommonDraw::Zero();      ///< standard normals: errors of the sensors
     bool is_stale = true;                        ///< its rollout has to be made anew: a size was measured
   };
   /// The boxes as this look has them, or as they are believed to be.

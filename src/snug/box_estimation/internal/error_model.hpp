@@ -2,6 +2,7 @@
 #pragma once
 
 #include "snug/model/camera_params.hpp"
+#include "snug/perception/observation.hpp"
 
 namespace snug::box_estimation::internal {
 
@@ -22,8 +23,9 @@ class ErrorModel {
   /// How many pixels of a face are missing, on average, at each crossing of an edge of depth; and their variance.
   [[nodiscard]] double edge_shift() const { return edge_shift_; }
   [[nodiscard]] double edge_variance() const { return edge_variance_; }
-  /// Covariance of a pose at X_CP that comes from the camera's own place and scale, in C: [translation; rotation].
-  [[nodiscard]] Matrix6 shared_covariance(const Vector3& p_CP) const;
+  /// Error [translation; rotation] in C of a pose at p_CP that comes from the camera's own place and scale: times seven
+  /// standard normals, the same for all poses.
+  [[nodiscard]] perception::CommonError common_error(const Vector3& p_CP) const;
 
  private:
   model::CameraParams camera_;

@@ -86,10 +86,13 @@ TEST(EstimateBoxes, FindsBoxesInAPerfectFrameToATenthOfAMillimetre) {
 TEST(EstimateBoxes, ErrorsAreAsLargeAsTheirCovarianceSays) {
   const Cell cell;
   const std::vector<Box> boxes = three_boxes();
-  double sum = 0.0;
+  double sum = 0.0, product = 0.0, stated = 0.0;
   constexpr int kFrames = 40;
   for (std::uint64_t seed = 1; seed <= kFrames; ++seed) {
     const Estimate estimate = estimate_boxes(look(cell, boxes, seed), expect(cell, boxes, seed));
+    const BoxEstimate &a = estimate.boxes[0], &b = estimate.boxes[1];
+    product += (a.X_WP.p - boxes[0].X_WP.p).dot(b.X_WP.p - boxes[1].X_WP.p);
+    stated += (a.common * b.common.transpose()).topLeftCorner<3, 3>().trace();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const BoxEstimate& box = estimate.boxes[i];
       ASSERT_EQ(box.sight, Sight::Seen) << seed;
@@ -101,6 +104,9 @@ TEST(EstimateBoxes, ErrorsAreAsLargeAsTheirCovarianceSays) {
   }
   // One value of six degrees for each camera (its boxes share its errors): 40 of them, four standard errors.
   EXPECT_NEAR(sum, 1.0, 4.0 * std::sqrt(2.0 / (6.0 * kFrames)));
+  // What two boxes have in common. Of a product of normals with correlation r the relative variance is 1 + 1/r^2, of
+  // three axes a third; r is 0.8 here.
+  EXPECT_NEAR(product / stated, 1.0, 4.0 * std::sqrt((1.0 + 1.0 / (0.8 * 0.8)) / (3.0 * kFrames)));
 }
 
 /// Boxes side by side, as high as each other: between them no edge, and of their sides no more than a strip is seen.

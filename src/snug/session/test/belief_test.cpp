@@ -48,6 +48,36 @@ TEST_F(BeliefOfOneBox, EveryWorldHasABoxWhereItWasSeen) {
   }
 }
 
+TEST_F(BeliefOfOneBox, ErrorsThatPosesHaveInCommonLeaveWhatIsBetweenBoxesAsItWasSeen) {
+  belief.arrives(1);
+  perception::CommonError common = perception::CommonError::Zero();
+  common.topLeftCorner<3, 3>() = 0.003 * Matrix3::Identity();
+  perception::Observation seen;
+  for (const int item : {0, 1}) {
+    const Pose X_WP{Matrix3::Identity(), Vector3(0.0, 0.4 * item, 3.0)};  // in the air, away from everything
+    seen.seen.push_back({belief.sequence().items[static_cast<std::size_t>(item)].parcel,
+                         X_WP,
+                         common * common.transpose(),
+                         {},
+                         0.0,
+                         common});
+  }
+  std::vector<Vector3> first;
+  for (int look = 0; look < 2; ++look) {
+    belief.see(seen);
+    const auto& worlds = belief.take_up(at_start(scenario));
+    for (std::size_t w = 0; w < worlds.size(); ++w) {
+      const Vector3 a = worlds[w]->pose_of(0)->p, b = worlds[w]->pose_of(1)->p;
+      EXPECT_LT((b - a - Vector3(0.0, 0.4, 0.0)).norm(), 1e-9) << w;
+      if (look == 0) first.push_back(a);
+      EXPECT_EQ(a, first[w]) << "the camera is where it was";
+      if (w > 0) {
+        EXPECT_GT((a - first[w - 1]).norm(), 1e-4) << "each world has its own";
+      }
+    }
+  }
+}
+
 TEST_F(BeliefOfOneBox, SizesAreLearnedByEveryWorld) {
   const Vector3 is = Vector3(0.1716, 0.2371, 0.0931);
   belief.see(seen_at(belief.box(0)->X_WP, is));
