@@ -13,7 +13,7 @@ PROGRAMS = ROOT.parent / "shared" / "data" / "waypoints"
 
 def accept(folder):
     return subprocess.run([sys.executable, ROOT / "tools" / "acceptance.py", folder], capture_output=True, text=True,
-                          check=False, timeout=280)
+                          check=False, timeout=1100)
 
 
 def rows(text):

@@ -21,7 +21,7 @@ CUP_DATA = ROOT.parent / "shared" / "data" / "cup"
 
 def snug(*words, stdin=""):
     return subprocess.run([SNUG, *map(str, words)], input=stdin, capture_output=True, text=True, check=False,
-                          timeout=240)
+                          timeout=1100)
 
 
 class CommandLine(unittest.TestCase):

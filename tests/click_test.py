@@ -330,12 +330,12 @@ class Click(unittest.TestCase):
             program.write_text("\n".join(rows))
             words = [str(program), "--sequence", "1", "--json"]
             simulated = subprocess.run([SNUG, "simulate", str(CELL), "--program", words[0], *words[1:], "--robot", "ur10"],
-                                       capture_output=True, text=True, check=False, timeout=240)
+                                       capture_output=True, text=True, check=False, timeout=1100)
             self.assertEqual(simulated.returncode, 0, simulated.stderr)
             endpoint = f"ipc://{folder}/cell"
             with Served("--sequence", "1", "--json", endpoint=endpoint) as served:
                 controlled = subprocess.run([SNUG, "control", *words, "--click", endpoint], capture_output=True, text=True,
-                                            check=False, timeout=240)
+                                            check=False, timeout=1100)
                 self.assertEqual(controlled.returncode, 0, controlled.stderr)
                 served.end()
             self.assertEqual(json.loads(served.stdout)["state_hash"], json.loads(simulated.stdout)["state_hash"])

@@ -119,7 +119,7 @@ class Commands(unittest.TestCase):
         with subprocess.Popen(line, shell=True, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                               start_new_session=True) as process:
             try:
-                _, errors = process.communicate(timeout=WAIT if is_long else 280)
+                _, errors = process.communicate(timeout=WAIT if is_long else 600)
             except subprocess.TimeoutExpired:
                 os.killpg(process.pid, 9)
                 process.communicate()

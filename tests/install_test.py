@@ -13,7 +13,7 @@ CONSUMER = ROOT / "tests" / "consumer"
 
 
 def run(*words, **more):
-    return subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False, timeout=280, **more)
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False, timeout=1100, **more)
 
 
 class Installed(unittest.TestCase):

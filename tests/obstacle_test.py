@@ -20,7 +20,7 @@ SIZES = {name: [float(edge) for edge in edges.split(",")]
 
 
 def run(*words):
-    return subprocess.run([SNUG, *map(str, words)], text=True, capture_output=True, timeout=280)
+    return subprocess.run([SNUG, *map(str, words)], text=True, capture_output=True, timeout=1100)
 
 
 def axes(quat_wxyz):

@@ -30,7 +30,7 @@ def start(*words, **settings):
 
 
 def run(*words, **settings):
-    return subprocess.run([SNUG, *map(str, words)], stderr=subprocess.PIPE, text=True, check=False, timeout=240, **settings)
+    return subprocess.run([SNUG, *map(str, words)], stderr=subprocess.PIPE, text=True, check=False, timeout=1100, **settings)
 
 
 class Folder(unittest.TestCase):
@@ -301,7 +301,7 @@ class TwoWriters(Folder):
             with self.subTest(words=words):
                 self.assert_busy(*words)
         first.send_signal(signal.SIGCONT)
-        self.assertEqual(first.wait(timeout=240), 0)
+        self.assertEqual(first.wait(timeout=1100), 0)
         self.assertEqual(self.names(), ["link.h5", "run.h5"])
         alone = self.folder / "alone.csv", self.folder / "of-two.csv"
         self.assertEqual(snug("simulate", DROP, "--until", 300, "--csv", alone[0]).returncode, 0)

@@ -55,7 +55,7 @@ class ServedPlant(unittest.TestCase):
 
     def pack(self, *words, sequence="two"):
         return subprocess.run([SNUG, "pack", CELL, "--items", self.items, "--sequence", sequence, *map(str, QUICK + words), "--json"],
-                              text=True, capture_output=True, timeout=250)
+                              text=True, capture_output=True, timeout=1100)
 
     @staticmethod
     def comparable(packed):

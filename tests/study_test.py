@@ -41,7 +41,7 @@ class Scratch(unittest.TestCase):
 
     def snug(self, *words, code=0, **more):
         result = subprocess.run([SNUG, *map(str, words)], cwd=self.folder, capture_output=True, text=True, check=False,
-                                timeout=280, **more)
+                                timeout=1100, **more)
         self.assertEqual(result.returncode, code, result.stderr)
         return result
 
