@@ -189,6 +189,7 @@ namespace {
 
 // Settings of the estimator were chosen on seeds below 50000; these judge.
 constexpr std::uint64_t kJudgeSeed = 50'000;
+constexpr int kBoxes = 15;
 constexpr int kScenes = 200;           // boxes of one frame share the camera's errors
 constexpr int kDisturbedScenes = 100;  // of each kind: 99 % is one of them
 
@@ -198,12 +199,18 @@ double mean_chi_square(const CameraScore& score) {
   return score.chi_square.empty() ? 0.0 : sum / static_cast<double>(score.chi_square.size());
 }
 
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
 double percent(int part, int all) { return all > 0 ? 100.0 * part / all : 0.0; }
 
 /// The frames of one camera, undisturbed. `has_targets`: those of the demonstrator's class.
 void measure_at_rest(const model::Scenario& scenario, const model::CameraParams& camera, const std::string& name,
-                     bool has_targets, std::vector<Figure>& figures) {
-  const CameraScore score = score_camera(scenario, camera, {kJudgeSeed, kScenes, 15, Disturbance::None, false});
+                     int boxes, bool has_targets, std::vector<Figure>& figures) {
+  const CameraScore score = score_camera(scenario, camera, {kJudgeSeed, kScenes, boxes, Disturbance::None, false});
   const auto add = [&](const std::string& what, double value, const std::string& unit, double limit) {
     if (has_targets)
       figures.push_back(at_most(name + what, value, unit, limit));
@@ -213,8 +220,10 @@ void measure_at_rest(const model::Scenario& scenario, const model::CameraParams&
   figures.push_back({name + "visible_boxes", static_cast<double>(score.visible), "boxes", "", true});
   add("position_median_mm", at_part(score.position_mm, 0.5), "mm", 1.0);
   add("position_p95_mm", at_part(score.position_mm, 0.95), "mm", 2.5);
+  figures.push_back({name + "position_rms_mm", root_mean_square(score.position_mm), "mm", "", true});
   add("angle_median_deg", at_part(score.angle_deg, 0.5), "deg", 0.3);
   add("angle_p95_deg", at_part(score.angle_deg, 0.95), "deg", 0.7);
+  figures.push_back({name + "angle_rms_deg", root_mean_square(score.angle_deg), "deg", "", true});
   figures.push_back({name + "seen_percent", percent(score.visible_seen, score.visible), "%", "", true});
   add("hidden_seen_percent", percent(score.hidden_seen, score.hidden), "%", 0.1);
   figures.push_back({name + "more_than_20mm_off", static_cast<double>(score.wrong), "boxes", "", true});
@@ -233,7 +242,7 @@ void measure_disturbed(const model::Scenario& scenario, const model::CameraParam
       {"moved", Disturbance::Moved}, {"tipped", Disturbance::Tipped}, {"taken", Disturbance::Taken}};
   std::uint64_t seed = kJudgeSeed + 200;
   for (const auto& [name, kind] : kinds) {
-    const CameraScore score = score_camera(scenario, camera, {seed, kDisturbedScenes, 15, kind, false});
+    const CameraScore score = score_camera(scenario, camera, {seed, kDisturbedScenes, kBoxes, kind, false});
     const double found = percent(score.disturbed_found, score.disturbed);
     figures.push_back({fmt::format("camera.{}.found_percent", name), found, "%", ">= 99", found >= 99.0});
     figures.push_back(
@@ -248,12 +257,13 @@ void measure_camera(const BenchOptions& options, std::vector<Figure>& figures) {
   const model::Scenario scenario = model::load_scenario(options.scenario);
   if (scenario.cameras.empty()) return;
   const model::CameraParams& camera = scenario.cameras.front();
-  measure_at_rest(scenario, camera, "camera.rest.", true, figures);
+  measure_at_rest(scenario, camera, "camera.rest.", kBoxes, true, figures);
+  measure_at_rest(scenario, camera, "camera.alone.", 1, true, figures);
   measure_disturbed(scenario, camera, figures);
   model::CameraParams cheap = model::make_camera("active_stereo");
   cheap.name = camera.name;
   cheap.X_WC = camera.X_WC;
-  measure_at_rest(scenario, cheap, "camera.active_stereo.", false, figures);
+  measure_at_rest(scenario, cheap, "camera.active_stereo.", kBoxes, false, figures);
 }
 
 }  // namespace snug::experiment::internal
