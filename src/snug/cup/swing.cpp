@@ -23,8 +23,8 @@ double longest_swing(const model::CupParams& params, const SpatialInertia& box_S
   K(3, 3) += box_S.mass * gravity * r.z();
   K(4, 4) += box_S.mass * gravity * r.z();
   if (!is_positive_definite(M) || !is_positive_definite(K)) return std::numeric_limits<double>::infinity();
-  // K x = w^2 M x: the slowest w is the largest eigenvalue of K^-1 M.
-  return 2.0 * std::numbers::pi * std::sqrt(spectral_radius(inverse(K) * M));
+  // M x = w^-2 K x
+  return 2.0 * std::numbers::pi * std::sqrt(largest_eigenvalue(M, K));
 }
 
 double longest_swing(const model::CupParams& params, const SpatialInertia& box, const Vector3& size,

@@ -1,9 +1,8 @@
 // Kinematics: forward chain, Jacobians, and how near to singular they are.
 #include "snug/robot/kinematics.hpp"
 
+#include <algorithm>
 #include <cmath>
-
-#include <Eigen/Eigenvalues>
 
 #include "snug/spatial/matrix6.hpp"
 
@@ -104,16 +103,11 @@ Twist segment_twist(const ArmModel& arm, const ArmPose& at, const JointVector& q
 }
 
 double singularity_measure(const Jacobian& J_WE, double length) noexcept {
-  // The smallest singular value from J J^T (6 x 6, or J^T J for fewer joints): fixed size, so nothing is allocated.
+  // The smallest singular value from J J^T, which has 6 - n eigenvalues of zero more where n < 6 joints move the tool.
   Jacobian scaled = J_WE;
   scaled.topRows<3>() /= length;
-  if (J_WE.cols() < 6) {
-    const JointMatrix gram = scaled.transpose() * scaled;
-    const Eigen::SelfAdjointEigenSolver<JointMatrix> solver(gram, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
-  }
   const Matrix6 gram = scaled * scaled.transpose();
-  return std::sqrt(std::max(0.0, symmetric_eigenvalues(gram)(0)));
+  return std::sqrt(std::max(0.0, symmetric_eigenvalues(gram)(6 - std::min<Eigen::Index>(6, J_WE.cols()))));
 }
 
 }  // namespace snug::robot

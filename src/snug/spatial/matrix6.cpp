@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <cmath>
+#include <numbers>
 
 namespace snug {
 
@@ -12,7 +14,10 @@ Vector6 symmetric_eigenvalues(const Matrix6& M) noexcept {
   return Eigen::SelfAdjointEigenSolver<Matrix6>(M, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-double spectral_radius(const Matrix6& M) noexcept { return M.eigenvalues().cwiseAbs().maxCoeff(); }
+double largest_eigenvalue(const Matrix6& A, const Matrix6& B) noexcept {
+  const Matrix6 C = inverse(Eigen::LLT<Matrix6>(B).matrixL());
+  return symmetric_eigenvalues(C * A.selfadjointView<Eigen::Lower>() * C.transpose())[5];
+}
 
 bool is_positive_definite(const Matrix6& M) noexcept { return Eigen::LLT<Matrix6>(M).info() == Eigen::Success; }
 
@@ -21,7 +26,15 @@ Matrix6 inverse(const Matrix6& M) noexcept { return M.inverse(); }
 Vector6 solve(const Matrix6& M, const Vector6& b) noexcept { return M.partialPivLu().solve(b); }
 
 Quaternion rotation_between(const Vector3& from, const Vector3& to) noexcept {
-  return Quaternion::FromTwoVectors(from, to);
+  const Vector3 a = from.normalized(), b = to.normalized();
+  const double cosine = b.dot(a);
+  // Where they are (almost) opposite their cross product tells no axis.
+  if (cosine < -1.0 + 1e-12) return Quaternion(Eigen::AngleAxisd(std::numbers::pi, a.unitOrthogonal()));
+  const double s = std::sqrt(2.0 * (1.0 + cosine));
+  Quaternion q;
+  q.vec() = a.cross(b) * (1.0 / s);
+  q.w() = 0.5 * s;
+  return q;
 }
 
 }  // namespace snug

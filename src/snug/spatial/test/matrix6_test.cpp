@@ -32,10 +32,17 @@ TEST(Matrix6, KnowsWhatIsPositiveDefinite) {
   EXPECT_FALSE(is_positive_definite(M));
 }
 
-TEST(Matrix6, TheSpectralRadiusIsThatOfTheLargestEigenvalueAlsoWhereItIsComplex) {
-  Matrix6 M = Matrix6::Identity();
-  M.topLeftCorner<2, 2>() << 0.0, -5.0, 5.0, 0.0;  // +-5i
-  EXPECT_NEAR(spectral_radius(M), 5.0, 1e-12);
+TEST(Matrix6, TheLargestEigenvalueOfAPairIsThatOfTheQuotientOfItsForms) {
+  Rng rng(7);
+  for (int trial = 0; trial < 20; ++trial) {
+    Matrix6 V;
+    for (double& v : V.reshaped()) v = rng.normal();
+    Vector6 lambda;
+    for (double& l : lambda) l = rng.normal();
+    // With B = V^T V and A = V^T diag(lambda) V the pair's eigenvalues are lambda.
+    const Matrix6 B = V.transpose() * V, A = V.transpose() * lambda.asDiagonal() * V;
+    EXPECT_NEAR(largest_eigenvalue(A, B), lambda.maxCoeff(), 1e-12 * inverse(B).norm() * A.norm());
+  }
 }
 
 TEST(RotationBetween, TurnsOneDirectionToTheOtherByTheSmallestAngle) {
