@@ -10,6 +10,7 @@
 #include "snug/identification/free_flight.hpp"
 #include "snug/identification/internal/at_rest.hpp"
 #include "snug/identification/internal/motion_error.hpp"
+#include "snug/identification/internal/program_motion.hpp"
 #include "snug/identification/internal/scene_motion.hpp"
 #include "snug/model/number_edit.hpp"
 
@@ -96,7 +97,7 @@ void SceneExperiment::find_flights() {
       flights_[m].push_back(internal::count_flight_rows(scenario, body, task_.start));
 }
 
-Eigen::VectorXd SceneExperiment::own_deviation() const { return internal::own_deviation(task_.own); }
+Eigen::VectorXd SceneExperiment::own_deviation() const { return internal::own_deviation(task_); }
 
 Eigen::Index SceneExperiment::samples_of(std::size_t motion) const {
   return internal::count_residuals(task_, motions_[motion]);
@@ -106,13 +107,9 @@ Eigen::Index SceneExperiment::residuals_of(std::size_t motion) const {
   return samples_of(motion) + own_deviation().size();
 }
 
-MotionError SceneExperiment::simulate(const model::Scenario& scenario, std::size_t motion,
-                                      const Eigen::VectorXd& own) const {
-  const internal::OwnValues values(task_.own, own);
-  const internal::SimulatedMotion simulated =
-      task_.program ? internal::simulate_program(scenario, task_, motions_[motion], values)
-                    : internal::simulate_scene(scenario, task_, motions_[motion], flights_[motion], values);
-  MotionError error = internal::compare(task_, motions_[motion], simulated, values);
+MotionError SceneExperiment::compare(const internal::SimulatedMotion& simulated, std::size_t motion,
+                                     const Eigen::VectorXd& own) const {
+  MotionError error = internal::compare(task_, motions_[motion], simulated, internal::OwnValues(task_, own));
   const Eigen::VectorXd deviation = own_deviation();
   if (deviation.size() > 0 && error.failure.empty()) {
     const Eigen::VectorXd used = own.size() > 0 ? own : Eigen::VectorXd(Eigen::VectorXd::Zero(deviation.size()));
@@ -133,14 +130,30 @@ std::vector<MotionError> SceneExperiment::evaluate(std::span<const Eigen::Vector
       failures[i] = error.what();
     }
   });
+  std::vector<internal::ProgramRun> runs(task_.program ? points.size() : 0);
+  std::vector<double> ends(runs.size(), 0.0);
+  for (const Job& job : jobs)
+    if (task_.program)
+      ends[job.point] =
+          std::max(ends[job.point], internal::end_of(task_, motions_[job.motion], internal::OwnValues(task_, job.own)));
+  parallel_for(static_cast<int>(runs.size()), threads_, [&](int index, int) {
+    const auto i = static_cast<std::size_t>(index);
+    if (scenarios[i] && ends[i] > 0.0) runs[i] = internal::run_program(*scenarios[i], task_, ends[i]);
+  });
   std::vector<MotionError> errors(jobs.size());
   parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
     const Job& job = jobs[static_cast<std::size_t>(index)];
     MotionError& error = errors[static_cast<std::size_t>(index)];
-    if (scenarios[job.point])
-      error = simulate(*scenarios[job.point], job.motion, job.own);
-    else
+    if (!scenarios[job.point]) {
       error.failure = failures[job.point];
+      return;
+    }
+    const RecordedMotion& motion = motions_[job.motion];
+    const internal::OwnValues own(task_, job.own);
+    error = compare(task_.program
+                        ? internal::motion_of(runs[job.point], task_, motion, own)
+                        : internal::simulate_scene(*scenarios[job.point], task_, motion, flights_[job.motion], own),
+                    job.motion, job.own);
   });
   return errors;
 }
@@ -149,7 +162,7 @@ std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& 
   if (task_.start.from != model::StartFrom::FreeFlight)
     throw InputError(task_.path.string(), "start", "no free flight", "from: free_flight, whose noise sets the floor");
   const model::Scenario scenario = scenario_at(values);
-  const internal::OwnValues own(task_.own, {});
+  const internal::OwnValues own(task_, {});
   std::vector<MotionError> errors(motions_.size());
   parallel_for(static_cast<int>(motions_.size()), threads_, [&](int index, int) {
     const auto m = static_cast<std::size_t>(index);

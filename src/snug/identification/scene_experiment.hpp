@@ -12,6 +12,10 @@
 
 namespace snug::identification {
 
+namespace internal {
+struct SimulatedMotion;
+}
+
 /// How far the simulation of one recording is from it.
 struct MotionError {
   double position = 0.0;         ///< m, mean over samples and bodies
@@ -48,8 +52,8 @@ class SceneExperiment {
     std::size_t motion = 0;    ///< recording
     Eigen::VectorXd own = {};  ///< its own unknowns; empty: all zero
   };
-  /// `points`: values of all parameters of the task, in its order. Each job is a simulation; the result does not depend
-  /// on the number of threads. What cannot be simulated says so.
+  /// `points`: values of all parameters of the task, in its order. Each job is a simulation, but all jobs of a point
+  /// share one run of a program; the result does not depend on the number of threads. What cannot be simulated says so.
   [[nodiscard]] std::vector<MotionError> evaluate(std::span<const Eigen::VectorXd> points,
                                                   std::span<const Job> jobs) const;
   /// Errors that the noise of the start alone sets: each recording is replaced by its own simulation, the poses of its
@@ -73,8 +77,8 @@ class SceneExperiment {
   [[nodiscard]] SceneError summarize(std::span<const MotionError> errors) const;
 
  private:
-  [[nodiscard]] MotionError simulate(const model::Scenario& scenario, std::size_t motion,
-                                     const Eigen::VectorXd& own) const;
+  [[nodiscard]] MotionError compare(const internal::SimulatedMotion& simulated, std::size_t motion,
+                                    const Eigen::VectorXd& own) const;
   void check_bodies() const;
   void find_flights();
 

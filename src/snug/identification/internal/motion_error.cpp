@@ -32,7 +32,7 @@ MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, 
   if (!error.failure.empty()) return error;
   const std::size_t begin = first_sample_of(task, motion), end = sample_count(task, motion);
   const int numbers = numbers_of(task);
-  error.residuals = Eigen::VectorXd::Zero(count_residuals(task, motion) + own_deviation(task.own).size());
+  error.residuals = Eigen::VectorXd::Zero(count_residuals(task, motion) + own_deviation(task).size());
   const double rotation_noise = task.position_noise / task.rotation_position_ratio;
   Eigen::Index at = 0;
   double count = 0.0;
@@ -44,7 +44,7 @@ MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, 
       const record::PoseSample& recorded = is_result ? *body.result : body.poses[k];
       const record::PoseSample& predicted = simulated.bodies[b][k];
       if (!record::is_tracked(recorded) || !record::is_tracked(predicted)) continue;
-      const Pose X = predicted.pose(), M = recorded.pose();
+      const Pose X = predicted.pose() * own.X_BM[b], M = recorded.pose();
       shift = X.p + own.bias - M.p;
       turn = log_rotation(M.R.transpose() * X.R);
       if (task.use_position) error.residuals.segment<3>(at) = shift / task.position_noise;

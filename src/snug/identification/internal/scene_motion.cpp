@@ -53,21 +53,27 @@ void drive(model::Scenario& scenario, const RecordedMotion& motion) {
 
 }  // namespace
 
-OwnValues::OwnValues(const model::OwnSettings& settings, const Eigen::VectorXd& values) {
+OwnValues::OwnValues(const model::SceneTask& task, const Eigen::VectorXd& values) : X_BM(task.tracked.size()) {
   if (values.size() == 0) return;
+  const model::OwnSettings& settings = task.own;
   Eigen::Index at = 0;
-  const auto take3 = [&](double deviation, Vector3& to) {
-    if (!(deviation > 0.0)) return;
-    to = values.segment<3>(at);
+  const auto take3 = [&](double deviation) -> Vector3 {
+    if (!(deviation > 0.0)) return Vector3::Zero();
     at += 3;
+    return values.segment<3>(at - 3);
   };
-  take3(settings.velocity, start.linear);
-  take3(settings.angular_velocity, start.angular);
+  start.linear = take3(settings.velocity);
+  start.angular = take3(settings.angular_velocity);
   if (settings.delay > 0.0) delay = values[at++];
-  take3(settings.bias, bias);
+  bias = take3(settings.bias);
+  for (Pose& X : X_BM) {
+    X.p = take3(settings.frame_position);
+    X.R = exp_rotation(take3(settings.frame_rotation));
+  }
 }
 
-Eigen::VectorXd own_deviation(const model::OwnSettings& settings) {
+Eigen::VectorXd own_deviation(const model::SceneTask& task) {
+  const model::OwnSettings& settings = task.own;
   std::vector<double> deviation;
   const auto add = [&](double value, int count) {
     if (value > 0.0) deviation.insert(deviation.end(), static_cast<std::size_t>(count), value);
@@ -76,6 +82,10 @@ Eigen::VectorXd own_deviation(const model::OwnSettings& settings) {
   add(settings.angular_velocity, 3);
   add(settings.delay, 1);
   add(settings.bias, 3);
+  for (std::size_t i = 0; i < task.tracked.size(); ++i) {
+    add(settings.frame_position, 3);
+    add(settings.frame_rotation, 3);
+  }
   return Eigen::Map<const Eigen::VectorXd>(deviation.data(), static_cast<Eigen::Index>(deviation.size()));
 }
 

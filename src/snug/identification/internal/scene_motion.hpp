@@ -1,4 +1,4 @@
-// simulate_scene, simulate_program: where tracked bodies would have been at the times of a recording.
+// simulate_scene: where tracked bodies would have been at the times of a recording.
 #pragma once
 
 #include <string>
@@ -13,13 +13,15 @@ namespace snug::identification::internal {
 /// What a recording has of its own, by name.
 struct OwnValues {
   /// `values`: in the order of own_deviation(); empty: all zero.
-  OwnValues(const model::OwnSettings& settings, const Eigen::VectorXd& values);
+  OwnValues(const model::SceneTask& task, const Eigen::VectorXd& values);
   Twist start;                     ///< added to the start twist of each tracked body
   double delay = 0.0;              ///< s
   Vector3 bias = Vector3::Zero();  ///< m
+  std::vector<Pose> X_BM;          ///< of each tracked body: the frame that was recorded
 };
-/// Standard deviations expected of velocity (3), angular velocity (3), delay, bias (3), as far as they are fitted.
-[[nodiscard]] Eigen::VectorXd own_deviation(const model::OwnSettings& settings);
+/// Standard deviations expected of velocity (3), angular velocity (3), delay, bias (3), then of each tracked body's
+/// frame: position (3), rotation vector (3); as far as they are fitted.
+[[nodiscard]] Eigen::VectorXd own_deviation(const model::SceneTask& task);
 
 struct SimulatedMotion {
   /// X_WB by tracked body at each time of the recording; not a number where the simulation does not reach.
@@ -40,7 +42,5 @@ struct SimulatedMotion {
 [[nodiscard]] SimulatedMotion simulate_scene(const model::Scenario& scenario, const model::SceneTask& task,
                                              const RecordedMotion& motion, const std::vector<std::size_t>& flights,
                                              const OwnValues& own);
-[[nodiscard]] SimulatedMotion simulate_program(const model::Scenario& scenario, const model::SceneTask& task,
-                                               const RecordedMotion& motion, const OwnValues& own);
 
 }  // namespace snug::identification::internal

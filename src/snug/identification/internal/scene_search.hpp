@@ -43,8 +43,9 @@ class SceneSearch {
   /// Scatter, then least squares from the start and from the best point found. Where chi2 per degree of freedom stays
   /// above `rescue`, points are scattered even if none were asked for.
   std::string search_squares(double rescue);
-  /// Of all parameters; zero where one is not free. Squares: inverse information, enlarged by chi2 per degree of
-  /// freedom above 1. Distance: from the scatter of the recordings' slopes and the curvature of the mean.
+  /// Of all parameters; zero where one is not free. Squares: inverse information, as far as the sum of squares rises as
+  /// it says, enlarged by chi2 per degree of freedom above 1. Distance: from the scatter of the recordings' slopes and
+  /// the curvature of the mean.
   [[nodiscard]] Eigen::MatrixXd covariance();
   [[nodiscard]] SplitErrors errors_at(const Eigen::VectorXd& values) const;
 
@@ -59,6 +60,7 @@ class SceneSearch {
   [[nodiscard]] std::vector<Eigen::VectorXd> scattered(int count) const;
   void take(const Eigen::VectorXd& free_values, double cost, const char* phase);
   double least_squares_from(const Eigen::VectorXd& start, std::string& message);
+  [[nodiscard]] Eigen::MatrixXd squares_covariance() const;
   [[nodiscard]] Eigen::MatrixXd distance_covariance();
   /// Shifts of the free parameters at which the mean cost has risen by more than its roughness.
   [[nodiscard]] Eigen::VectorXd curvature_steps(const Eigen::VectorXd& middle);

@@ -152,6 +152,22 @@ parameters:
   EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.2);
 }
 
+TEST_F(SceneFitTest, FindsWhereTheRecordedFrameSitsInItsBody) {
+  // 9 mm and 1.7 degrees off: without unknowns of its own for them friction would have to explain what it cannot.
+  const Pose X_BM{exp_rotation(Vector3(0.02, -0.01, 0.02)), Vector3(0.005, -0.006, 0.004)};
+  std::vector<RecordedMotion> motions{record({{"contacts.pairs[0].friction", 0.25}}, 16)};
+  for (record::PoseSample& pose : motions[0].tracked[0].poses) pose = pose.pose() * X_BM;
+  const std::string rest = R"(search: {local: 100, held_back: 0}
+parameters:
+  - {name: friction, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.8], step: 0.002}
+)";
+  const SceneFit fit =
+      identify_scene(SceneExperiment(task("own: {frame_position: 0.005, frame_rotation_deg: 1}\n" + rest), motions, 2));
+  EXPECT_NEAR(fit.values[0], 0.25, 0.01);
+  EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.2);
+  EXPECT_GT(identify_scene(SceneExperiment(task(rest), motions, 2)).chi2_per_dof, 100.0);
+}
+
 TEST_F(SceneFitTest, FindsACentreOfMassThatIsAside) {
   const std::vector<model::NumberEdit> truth{{"bodies.parcel.com[0]", 0.012}, {"bodies.parcel.com[1]", -0.007}};
   const model::SceneTask com = task(R"(search: {local: 100, held_back: 0}
