@@ -1,4 +1,4 @@
-// JointPace: how fast the joints of the scenario's robot let the tool go along a straight way.
+// JointPace: how fast the joints of the scenario's robot let the tool go, and gain speed, along a straight way.
 #include "snug/cell/joint_pace.hpp"
 
 #include <algorithm>
@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kLooks = 16;  ///< at the joints, along a way
 /// Left of the limits: the speed between two looks is their mean, its peak lies a little above.
 constexpr double kReserve = 0.95;
+/// Of the joints' accelerations; what is left is for the controller, which makes up for what it is late.
+constexpr double kOfSpeedingUp = 0.5, kOfBending = 0.3;
 
 /// rad (m), the short way round for joints that turn.
 double difference(const robot::Joint& joint, double from, double to) {
@@ -25,25 +27,39 @@ double difference(const robot::Joint& joint, double from, double to) {
 
 }  // namespace
 
-void JointPace::limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates) const noexcept {
+void JointPace::limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates,
+                      std::span<double> accelerations) const noexcept {
   const auto first = inverse_.nearest(X_WA, posture_);
   if (!first) return;
-  robot::JointVector q = *first;
+  robot::JointVector q = *first, slope_before;
   const Vector3 turn_W = X_WA.R * log_rotation(X_WA.R.transpose() * X_WB.R);
+  const auto lower = [](std::span<double> limits, std::size_t look, double limit) {
+    for (std::size_t i = look * limits.size() / kLooks; i < (look + 1) * limits.size() / kLooks; ++i)
+      limits[i] = std::min(limits[i], limit);
+  };
   for (std::size_t look = 0; look < kLooks; ++look) {
     const double share = static_cast<double>(look + 1) / kLooks;
     const Pose X_WE{exp_rotation(share * turn_W) * X_WA.R, X_WA.p + share * (X_WB.p - X_WA.p)};
     const std::optional<robot::JointVector> next = inverse_.refine(X_WE, q);
     if (!next) return;
+    robot::JointVector slope(q.size());  // of each joint by the share of the way
     double rate = std::numeric_limits<double>::infinity();
     for (Eigen::Index j = 0; j < q.size(); ++j) {
       const robot::Joint& joint = inverse_.arm().joints[static_cast<std::size_t>(j)];
-      const double way = std::abs(difference(joint, q[j], (*next)[j])) * kLooks;
-      if (way > 0.0) rate = std::min(rate, kReserve * share_ * joint.max_speed / way);
+      slope[j] = difference(joint, q[j], (*next)[j]) * kLooks;
+      if (slope[j] != 0.0) rate = std::min(rate, kReserve * share_ * joint.max_speed / std::abs(slope[j]));
     }
-    for (std::size_t i = look * rates.size() / kLooks; i < (look + 1) * rates.size() / kLooks; ++i) {
-      rates[i] = std::min(rates[i], rate);
+    lower(rates, look, rate);
+    // q'' = slope s'' + bend s'^2: each may have its part of what the joints can do.
+    const double steepest = slope.cwiseAbs().maxCoeff();
+    if (steepest > 0.0) lower(accelerations, look, kOfSpeedingUp * acceleration_ / steepest);
+    if (look > 0) {
+      const double bend = (slope - slope_before).cwiseAbs().maxCoeff() * kLooks;
+      const double most = bend > 0.0 ? std::sqrt(kOfBending * acceleration_ / bend) : rate;
+      lower(rates, look - 1, most);
+      lower(rates, look, most);
     }
+    slope_before = slope;
     q = *next;
   }
 }
@@ -56,7 +72,8 @@ std::unique_ptr<const JointPace> make_joint_pace(const model::Scenario& scenario
   robot::JointVector posture = robot::joint_vector(scenario.robot->posture);
   if (posture.size() == 0) posture.setZero(arm.joint_count());
   return std::make_unique<const JointPace>(std::move(arm), std::move(posture),
-                                           tempo * scenario.robot->velocity_fraction);
+                                           tempo * scenario.robot->velocity_fraction,
+                                           scenario.robot->max_joint_acceleration);
 }
 
 }  // namespace snug::cell

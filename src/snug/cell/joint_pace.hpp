@@ -1,4 +1,4 @@
-// JointPace: how fast the joints of the scenario's robot let the tool go along a straight way.
+// JointPace: how fast the joints of the scenario's robot let the tool go, and gain speed, along a straight way.
 #pragma once
 
 #include <memory>
@@ -13,17 +13,18 @@ namespace snug::cell {
 
 class JointPace final : public motion::PathLimits {
  public:
-  /// `share`: of the joints' largest speeds.
-  JointPace(robot::ArmModel arm, robot::JointVector posture, double share)
-      : inverse_(arm), posture_(std::move(posture)), share_(share) {}
+  /// `share`: of the joints' largest speeds. `acceleration`: of every joint, rad/s^2 (m/s^2).
+  JointPace(robot::ArmModel arm, robot::JointVector posture, double share, double acceleration)
+      : inverse_(arm), posture_(std::move(posture)), share_(share), acceleration_(acceleration) {}
   /// Along the branch of the inverse that begins nearest to the robot's posture. Parts that the arm does not reach are
   /// left as they are: whether it reaches them is not asked here.
-  void limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates) const noexcept override;
+  void limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates,
+             std::span<double> accelerations) const noexcept override;
 
  private:
   robot::InverseKinematics inverse_;
   robot::JointVector posture_;
-  double share_;
+  double share_, acceleration_;
 };
 
 /// With the share of the scenario (velocity_fraction) and the tempo. None without a robot, where its file is not there,

@@ -19,9 +19,9 @@ struct Sensed {
 struct FastSettings {
   double tempo = 1.0;  ///< 0.1 .. 1: share of all speeds; accelerations go with its square
   /// Rows that touch nothing, the cup empty. The joints limit the speed too.
-  Pace empty = {2.0, 6.0, 2.5, 6.0, 0.10};
+  Pace empty = {2.0, 8.0, 2.5, 8.0, 0.10};
   /// The same with a box: averaged over a window in which most boxes swing a whole number of times (3 to 8 Hz).
-  Pace held = {2.0, 4.0, 2.5, 5.0, 0.25};
+  Pace held = {2.0, 5.0, 2.5, 6.0, 0.25};
   /// A held box on its way in (Place). Other rows that touch something have the scenario's limits for their names.
   Pace insert = {0.6, 4.0, 1.5, 3.0, 0.10};
   double contact_window = 0.10;  ///< s, of those others

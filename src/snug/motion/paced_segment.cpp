@@ -26,11 +26,11 @@ PacedSegment::PacedSegment(const Pose& X_WA, const Pose& X_WB, const Pace& pace,
   if (length < kNoMotion && angle < kNoMotion) return;
   constexpr double kFree = std::numeric_limits<double>::infinity();
   const auto per = [&](double limit, double whole) { return whole < kNoMotion ? kFree : limit / whole; };
-  std::array<double, kPathParts> rates{};
+  std::array<double, kPathParts> rates{}, accelerations{};
   rates.fill(std::min(per(pace.max_speed, length), per(pace.max_turn_speed, angle)));
-  if (others != nullptr) others->limit(X_WA, X_WB, rates);
-  profile_ = PathProfile(rates, std::min(per(pace.max_acceleration, length), per(pace.max_turn_acceleration, angle)),
-                         pace.window);
+  accelerations.fill(std::min(per(pace.max_acceleration, length), per(pace.max_turn_acceleration, angle)));
+  if (others != nullptr) others->limit(X_WA, X_WB, rates, accelerations);
+  profile_ = PathProfile(rates, accelerations, pace.window);
 }
 
 PacedSegment::Increment PacedSegment::increment(double t) const noexcept {

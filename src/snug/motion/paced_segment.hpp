@@ -9,15 +9,16 @@
 
 namespace snug::motion {
 
-/// What else than the tool's own limits bounds the speed along a straight way: the joints.
+/// What else than the tool's own limits bounds the motion along a straight way: the joints.
 class PathLimits {
  public:
   PathLimits() = default;
   PathLimits(const PathLimits&) = delete;
   PathLimits& operator=(const PathLimits&) = delete;
   virtual ~PathLimits() = default;
-  /// Lowers `rates`, the largest share of the way per second in each of as many equal parts.
-  virtual void limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates) const noexcept = 0;
+  /// Lowers the largest share of the way per second, and per second squared, in each of as many equal parts.
+  virtual void limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates,
+                     std::span<double> accelerations) const noexcept = 0;
 };
 
 /// Limits of one segment. SI units.

@@ -14,18 +14,20 @@ constexpr double kPart = 1.0 / kPathParts;
 
 }  // namespace
 
-PathProfile::PathProfile(std::span<const double, kPathParts> rates, double acceleration, double window)
+PathProfile::PathProfile(std::span<const double, kPathParts> rates, std::span<const double, kPathParts> accelerations,
+                         double window)
     : window_(window) {
-  SNUG_CHECK(is_positive(acceleration) && is_positive(window), "acceleration and window must be finite and positive");
+  SNUG_CHECK(std::ranges::all_of(accelerations, is_positive) && is_positive(window),
+             "accelerations and window must be finite and positive");
   SNUG_CHECK(std::ranges::all_of(rates, [](double rate) { return rate > 0.0; }), "speeds along a way must be positive");
   // Squares of the rates at the ends of the parts: below the limits of both neighbours, reachable from either side.
   std::array<double, kPathParts + 1> square{};
-  const double gain = 2.0 * acceleration * kPart;
+  const auto gain = [&](std::size_t part) { return 2.0 * accelerations[part] * kPart; };
   for (std::size_t i = 1; i < kPathParts; ++i) {
     const double rate = std::min(rates[i - 1], rates[i]);
-    square[i] = std::min(rate * rate, square[i - 1] + gain);
+    square[i] = std::min(rate * rate, square[i - 1] + gain(i - 1));
   }
-  for (std::size_t i = kPathParts; i-- > 0;) square[i] = std::min(square[i], square[i + 1] + gain);
+  for (std::size_t i = kPathParts; i-- > 0;) square[i] = std::min(square[i], square[i + 1] + gain(i));
   for (std::size_t i = 0; i <= kPathParts; ++i) rate_[i] = std::sqrt(square[i]);
   for (std::size_t i = 0; i < kPathParts; ++i) {
     const double dt = 2.0 * kPart / (rate_[i] + rate_[i + 1]);  // constant acceleration within a part

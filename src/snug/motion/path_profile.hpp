@@ -7,19 +7,20 @@
 
 namespace snug::motion {
 
-inline constexpr int kPathParts = 32;  ///< equal parts of a way, each with a limit of its own
+inline constexpr int kPathParts = 32;  ///< equal parts of a way, each with limits of its own
 
-/// Share of a way from 0 to 1, from rest to rest: the fastest within a speed limit for each part and one acceleration
-/// limit for all, then averaged over a moving window. The average keeps both limits, bounds the jerk by twice the
-/// acceleration limit over the window, and leaves nothing of a vibration whose period fits into the window a whole
-/// number of times.
+/// Share of a way from 0 to 1, from rest to rest: the fastest within a speed and an acceleration limit for each part,
+/// then averaged over a moving window. The average keeps limits that are the same in all parts (near a lower one it has
+/// the mean over the window), bounds the jerk by twice the acceleration limit over the window, and leaves nothing of a
+/// vibration whose period fits into the window a whole number of times.
 class PathProfile {
  public:
   /// No way: at its end from the beginning.
   PathProfile() = default;
-  /// `rates`: largest speed in each part, 1/s, positive, may be infinite. `acceleration`: 1/s^2, finite and positive.
+  /// `rates`: largest speed in each part, 1/s, positive, may be infinite. `accelerations`: 1/s^2, the same, finite.
   /// `window`: s, positive (all checked).
-  PathProfile(std::span<const double, kPathParts> rates, double acceleration, double window);
+  PathProfile(std::span<const double, kPathParts> rates, std::span<const double, kPathParts> accelerations,
+              double window);
 
   struct Sample {
     double share = 1.0;

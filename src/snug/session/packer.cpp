@@ -63,6 +63,7 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
   }
   sent_.name = "pack";
   layout_.spares_wrist = options.simulation.controller == motion::ControllerKind::Fast;
+  if (!layout_.spares_wrist) options_.limits.hold_factor = 0.0;
 }
 
 packing::ContainerState Packer::container_state() const {

@@ -189,6 +189,11 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion&
       outcome.failure = AttemptFailure::Rollout;
       outcome.text = episode.is_complete() ? episode.arm_contact : episode.text;
     }
+    const double hold_factor = rollout.state().gripper.least_hold_factor;
+    if (outcome.failure == AttemptFailure::None && hold_factor < limits_.hold_factor) {
+      outcome.failure = AttemptFailure::HoldMargin;
+      outcome.text = fmt::format("the cup would hold only {:.1f} times its load", hold_factor);
+    }
     attempt.ends[i] = rollout.poses();
     return outcome;
   };

@@ -20,6 +20,9 @@ struct PlaceLimits {
   double tilt = 6.0 * std::numbers::pi / 180.0;  ///< rad, from how it was planned
   double displacement = 0.020;                   ///< m, of a box that was there before
   double force = 150.0;                          ///< N, of the cup on the box: an attempt is given up
+  /// How many times its load the cup must be able to hold, all the way; of fast motions only. Plants differ from
+  /// rehearsals: more than the 2 that is to be kept.
+  double hold_factor = 2.2;
 };
 
 struct AttemptForces {
@@ -33,6 +36,7 @@ enum class AttemptFailure {
   None,
   Grasp,         ///< see Attempt::grasp_problem
   Rollout,       ///< it ended early: force, protective stop, arm contact
+  HoldMargin,    ///< PlaceLimits::hold_factor
   Gone,          ///< the box left the cell
   SticksOut,     ///< over the rim or beyond a wall
   OffPlace,      ///< PlaceLimits::position
