@@ -143,7 +143,7 @@ function(snug_module name)
     snug_use_precompiled(snug_${name} library)
   endif()
   if(SNUG_FAST_BUILD AND NOT ARG_ALONE)  # two fifths less work; ALONE: names of their files collide
-    set_target_properties(snug_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(snug_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
   endif()
   if(SNUG_TESTS)
     add_custom_target(${name}_tests)  # what `make test MODULE=<name>` builds

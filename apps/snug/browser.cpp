@@ -25,7 +25,7 @@ namespace snug::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::seconds kAnswerPatience(120);  // for one answer, on a machine that is busy
 constexpr std::chrono::seconds kGoodbye(5);

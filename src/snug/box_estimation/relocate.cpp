@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSpread = 0.012, kTurn = 0.05;  // m, rad: how far a box may be from where a pose was proposed
 constexpr int kFitSteps = 4, kFitStepsFromBelief = 6;
-constexpr int kBorder = 20;              // px, around a box that is fitted by itself
+constexpr int kMargin = 20;              // px, around a box that is fitted by itself
 constexpr int kLeastPoints = 150;        // on it
 constexpr double kLeastPartThere = 0.8;  // of the points that tell whether it is there
 constexpr double kMostOverlap = 0.02;    // m, of boxes that are fitted one by one
@@ -72,7 +72,7 @@ class Trials {
                                          double evidence) const {
     std::vector<TrackedBox> boxes = known_.boxes;
     boxes.push_back(from);
-    const PixelRange range = pixels_around(known_.frame, known_.range, boxes.back(), kBorder);
+    const PixelRange range = pixels_around(known_.frame, known_.range, boxes.back(), kMargin);
     const int held = static_cast<int>(known_.boxes.size());
     const FitResult fitted = fit_boxes(known_.frame, range, known_.surroundings_C, std::move(boxes), known_.errors,
                                        start, start == FitStart::Near ? kFitSteps : kFitStepsFromBelief, held);

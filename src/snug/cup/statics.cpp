@@ -1,8 +1,6 @@
 // settle: where a load comes to rest under a held cup, found without simulating.
 #include "snug/cup/statics.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -84,7 +82,7 @@ bool is_usable(const HeldLoad& load) {
   const bool is_finite = load.R_WE.allFinite() && std::isfinite(load.mass) && load.p_SScm.allFinite() &&
                          load.stiffness.allFinite() && load.X_ES2.R.allFinite() && load.X_ES2.p.allFinite() &&
                          load.X_SS1.R.allFinite() && load.X_SS1.p.allFinite() && load.gravity_W.allFinite();
-  return is_finite && load.mass >= 0.0 && Eigen::LLT<Matrix6>(load.stiffness).info() == Eigen::Success;
+  return is_finite && load.mass >= 0.0 && is_positive_definite(load.stiffness);
 }
 
 struct NewtonResult {
@@ -100,7 +98,7 @@ NewtonResult solve(const Balance& balance, const Pose& start, double fraction, c
   double error = scaled_norm(wrench);
   for (int i = 0; i < options.max_iterations && error > tolerance; ++i) {
     ++iterations;
-    Vector6 dx = -balance.tangent(H, fraction).partialPivLu().solve(wrench);
+    Vector6 dx = -snug::solve(balance.tangent(H, fraction), wrench);
     if (!dx.allFinite()) return {false, H};
     dx *= std::min({1.0, options.max_turn / std::max(dx.tail<3>().norm(), 1e-300),
                     kMaxShift / std::max(dx.head<3>().norm(), 1e-300)});

@@ -24,7 +24,7 @@ double longest_swing(const model::CupParams& params, const SpatialInertia& box_S
   K(4, 4) += box_S.mass * gravity * r.z();
   if (!is_positive_definite(M) || !is_positive_definite(K)) return std::numeric_limits<double>::infinity();
   // M x = w^-2 K x
-  return 2.0 * std::numbers::pi * std::sqrt(largest_eigenvalue(M, K));
+  return 2.0 * std::numbers::pi * std::sqrt(spectral_radius(M, K));
 }
 
 double longest_swing(const model::CupParams& params, const SpatialInertia& box, const Vector3& size,

@@ -65,8 +65,7 @@ void measure_planted(const BenchOptions& options, std::vector<Figure>& figures) 
   const model::Sensors sensors = model::load_sensors(options.sensors);
   task.position_noise = sensors.motion_capture.position_noise;
   task.rotation_noise = sensors.motion_capture.rotation_noise;
-  // The frame of the box's markers is off by a constant, which is no noise; so is the world's, which others tell.
-  task.own.bias = sensors.motion_capture.position_error;
+  // The frame of the box's markers is off by a constant, which is no noise; the world's, the robot's base, is not.
   task.own.delay = kDelay;
   task.own.frame_position = sensors.motion_capture.position_error;
   task.own.frame_rotation = sensors.motion_capture.rotation_error;

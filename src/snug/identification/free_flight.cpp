@@ -1,12 +1,12 @@
 // Free flight: Gauss-Newton on Euler's equations, linear least squares on the parabola.
 #include "snug/identification/free_flight.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
 #include "snug/core/check.hpp"
+#include "snug/numerics/dense.hpp"
 
 namespace snug::identification {
 namespace {
@@ -57,7 +57,7 @@ FlightStart fit_free_flight(std::span<const double> times, std::span<const recor
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     R = turn_freely(times, start.X_WB.R, w, inertia.inertia, inverse);
     const Eigen::VectorXd r = misfit(poses, R);
-    Eigen::Matrix<double, Eigen::Dynamic, 6> J(r.size(), 6);
+    Eigen::MatrixXd J(r.size(), 6);
     constexpr double kShift = 1e-6;
     for (int j = 0; j < 6; ++j) {
       const Vector3 unit = Vector3::Unit(j % 3) * kShift;
@@ -65,7 +65,7 @@ FlightStart fit_free_flight(std::span<const double> times, std::span<const recor
                                     : turn_freely(times, start.X_WB.R, w + unit, inertia.inertia, inverse);
       J.col(j) = (r - misfit(poses, moved)) / kShift;
     }
-    const Vector6 change = (J.transpose() * J).ldlt().solve(J.transpose() * r);
+    const Vector6 change = numerics::solve_symmetric(J.transpose() * J, J.transpose() * r);
     start.X_WB.R = orthonormalized(exp_rotation(change.head<3>()) * start.X_WB.R);
     w += change.tail<3>();
     if (change.norm() < 1e-10) break;

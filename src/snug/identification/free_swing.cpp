@@ -40,7 +40,7 @@ class Dynamics {
 
   /// 1/s, of the fastest mode or decay.
   [[nodiscard]] double fastest_rate() const {
-    return std::max(std::sqrt(largest_eigenvalue(swing_.K, M_)), largest_eigenvalue(swing_.D, M_));
+    return std::max(std::sqrt(spectral_radius(swing_.K, M_)), spectral_radius(swing_.D, M_));
   }
 
   [[nodiscard]] State rate(const State& at) const {

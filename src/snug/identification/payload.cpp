@@ -1,7 +1,6 @@
 // PayloadEstimator: weak-form balances of momentum, and an information filter over them.
 #include "snug/identification/payload.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -21,7 +20,7 @@ constexpr int kLawIterations = 6;       // each reduces the error by some 20 at 
 constexpr double kOverlap = 4.0 / 3.0;  // of variance: neighbouring windows share a sixth of their squares
 constexpr double kLever = 0.1;          // m, of pose noise on torques: a box's size
 
-using Row3 = Eigen::Matrix<double, 3, 16>;
+using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 /// I a as a matrix times (Ixx, Iyy, Izz, Ixy, Ixz, Iyz).
 Eigen::Matrix<double, 3, 6> inertia_columns(const Vector3& a) {
@@ -41,16 +40,16 @@ Vector6 wrench_at(const Pose& X_EA, const Vector6& wrench_E) {
 
 Pose lip_under_wrench(const Matrix6& K, const CupFrames& frames, const Vector6& wrench_E) {
   Pose H;
-  const Eigen::LLT<Matrix6> factor(K);
+  const Matrix6 K_inverse = inverse(K);
   for (int i = 0; i < kLawIterations; ++i) {
     const Vector6 f = wrench_at(frames.X_ES2 * H, wrench_E);
     const Vector6 g = snug::solve(cup::deformation_jacobian(H).transpose(), -4.0 * f);
-    const Vector6 e = factor.solve(g);
+    const Vector6 e = K_inverse * g;
     // e back to a pose: the odd part of R has length 2 sin(angle), and the law ends at 45 degrees.
     const Vector3 odd = 0.5 * e.tail<3>();
     const double sine = std::min(odd.norm(), std::sqrt(0.5));
     H.R = sine < 1e-12 ? Matrix3(Matrix3::Identity()) : exp_rotation(odd.normalized() * std::asin(sine));
-    H.p = (Matrix3::Identity() + H.R.transpose()).partialPivLu().solve(Vector3(e.head<3>()));
+    H.p = (Matrix3::Identity() + H.R.transpose()).inverse() * e.head<3>();
   }
   return frames.X_ES2 * H * frames.X_SS1.inverse();
 }
@@ -59,7 +58,7 @@ double PayloadEstimate::mass_deviation() const { return std::sqrt(covariance(0, 
 Vector3 PayloadEstimate::com_deviation() const { return covariance.diagonal().segment<3>(1).cwiseSqrt(); }
 
 PayloadEstimator::PayloadEstimator(const PayloadSettings& settings) : settings_(settings) {
-  Eigen::Matrix<double, kUnknowns, 1> deviation;
+  Eigen::VectorXd deviation(kUnknowns);
   deviation << settings.mass_prior, Vector3::Constant(settings.moment_prior), Vector6::Constant(settings.inertia_prior),
       Vector3::Constant(settings.force_bias), Vector3::Constant(settings.torque_bias);
   information_ = deviation.cwiseAbs2().cwiseInverse().asDiagonal();
@@ -83,7 +82,7 @@ void PayloadEstimator::balance() {
   // lever, is not among that of torques.
   const Vector3 origin = instants_[instants_.size() / 2].p_WE;
   const Vector3& g = settings_.gravity_W;
-  Row3 force = Row3::Zero(), torque = Row3::Zero();
+  Rows force = Rows::Zero(3, kUnknowns), torque = Rows::Zero(3, kUnknowns);
   Vector3 force_sum = Vector3::Zero(), torque_sum = Vector3::Zero();
   double lever_square = 0.0;  // sum of phi^2 times the sensor's distance^2, times dt^2
   for (std::size_t k = 0; k < instants_.size(); ++k) {
@@ -139,26 +138,25 @@ void PayloadEstimator::balance() {
 PayloadEstimate PayloadEstimator::estimate() const {
   PayloadEstimate result;
   result.windows = windows_;
-  using Information = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-  Information information = information_;
+  Eigen::MatrixXd information = information_;
   // What is expected of inertia over mass, once the mass is known well enough to say what that means in kg m^2.
   const double rough = std::max(numerics::solve_symmetric(information_, weighted_)(0, 0), 1e-3);
   for (int i = 0; i < 6; ++i) {
-    Eigen::Matrix<double, kUnknowns, 1> row = Eigen::Matrix<double, kUnknowns, 1>::Zero();
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(kUnknowns);
     row[4 + i] = 1.0;
     if (i < 3) row[0] = -settings_.gyration_square;
     const double deviation = (i < 3 ? 1.0 : 0.5) * settings_.gyration_square_prior * rough;
     information += row * row.transpose() / (deviation * deviation);
   }
-  const Eigen::Matrix<double, kUnknowns, 1> x = numerics::solve_symmetric(information, weighted_);
-  const Eigen::Matrix<double, kUnknowns, kUnknowns> all = numerics::invert_symmetric(information);
+  const Eigen::VectorXd x = numerics::solve_symmetric(information, weighted_);
+  const Eigen::MatrixXd all = numerics::invert_symmetric(information);
   const double mass = std::max(x[0], 1e-6);
   const Vector3 com = x.segment<3>(1) / mass;
   Matrix3 about_lip;
   about_lip << x[4], x[7], x[8], x[7], x[5], x[9], x[8], x[9], x[6];
   result.load_S = {mass, com, about_lip + mass * skew(com) * skew(com)};
   // com = moment / mass; inertia about it = about the lip + mass com^ com^.
-  Eigen::Matrix<double, 10, 10> J = Eigen::Matrix<double, 10, 10>::Identity();
+  Eigen::MatrixXd J = Eigen::MatrixXd::Identity(10, 10);
   J.block<3, 1>(1, 0) = -com / mass;
   J.block<3, 3>(1, 1) /= mass;
   const auto six = [](const Matrix3& I) {
@@ -169,7 +167,7 @@ PayloadEstimate PayloadEstimator::estimate() const {
     const Matrix3 unit = skew(Vector3(Vector3::Unit(i)));
     J.block<6, 1>(4, 1 + i) = six(unit * skew(com) + skew(com) * unit);
   }
-  result.covariance = J * all.topLeftCorner<10, 10>() * J.transpose();
+  result.covariance = J * all.topLeftCorner(10, 10) * J.transpose();
   return result;
 }
 

@@ -68,8 +68,8 @@ class PayloadEstimator {
 
   PayloadSettings settings_;
   std::vector<Instant> instants_;  ///< of the window
-  Eigen::Matrix<double, kUnknowns, kUnknowns> information_;
-  Eigen::Matrix<double, kUnknowns, 1> weighted_ = Eigen::Matrix<double, kUnknowns, 1>::Zero();
+  Eigen::MatrixXd information_;
+  Eigen::VectorXd weighted_ = Eigen::VectorXd::Zero(kUnknowns);
   int windows_ = 0;
 };
 

@@ -20,7 +20,7 @@ using internal::Value;
 // A quaternion written with four digits is this near to unit length.
 constexpr double kUnitTolerance = 1e-3;
 
-Matrix3 read_rotation(const MapReader& map) {
+Matrix3 read_orientation(const MapReader& map) {
   map.forbid_together("yaw_deg", "quat_wxyz");
   if (const auto yaw = map.find("yaw_deg")) return exp_rotation(Vector3(0.0, 0.0, yaw->radians_from_degrees()));
   const auto quat = map.find("quat_wxyz");
@@ -46,7 +46,7 @@ std::vector<PlacementEntry> read_list(const Value& root, const Scenario& scenari
       box.fail("a parcel of the scenario" + internal::nearest_hint(entry.parcel, ids));
     }
     if (!placed.insert(entry.parcel).second) box.fail("each box at most once");
-    entry.X_TP = {read_rotation(map), map.require("position").position()};
+    entry.X_TP = {read_orientation(map), map.require("position").position()};
     const std::string where = box.where();
     entry.line = std::stoi(where.substr(where.rfind(':') + 1));
     entries.push_back(std::move(entry));

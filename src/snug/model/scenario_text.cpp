@@ -22,7 +22,7 @@ void set(YAML::Node map, const char* key, const YAML::Node& value) {
   map[key] = value;
 }
 
-YAML::Node find_entry(const YAML::Node& root, const std::string& container) {
+YAML::Node entry_of(const YAML::Node& root, const std::string& container) {
   for (const YAML::Node& entry : root["containers"]) {
     if (entry["name"].Scalar() == container) return entry;
   }
@@ -65,7 +65,7 @@ std::string text_with_items(const std::string& text, const YAML::Node& items, co
 
 std::string text_with_target(const std::string& text, const Container& container, const std::string& why) {
   YAML::Node root = YAML::Load(text);
-  const YAML::Node entry = find_entry(root, container.name);
+  const YAML::Node entry = entry_of(root, container.name);
   set(entry, "inner_size", as_yaml(container.inner_size));
   set(entry, "walls", as_yaml(container.has_walls));
   set(entry, "holds_all", as_yaml(container.holds_all));

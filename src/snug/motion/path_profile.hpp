@@ -11,8 +11,8 @@ inline constexpr int kPathParts = 32;  ///< equal parts of a way, each with limi
 
 /// Share of a way from 0 to 1, from rest to rest: the fastest within a speed and an acceleration limit for each part,
 /// then averaged over a moving window. The average keeps limits that are the same in all parts (near a lower one it has
-/// the mean over the window), bounds the jerk by twice the acceleration limit over the window, and leaves nothing of a
-/// vibration whose period fits into the window a whole number of times.
+/// the mean over the window), bounds the jerk by twice the largest acceleration limit over the window, and leaves
+/// nothing of a vibration whose period fits into the window a whole number of times.
 class PathProfile {
  public:
   /// No way: at its end from the beginning.

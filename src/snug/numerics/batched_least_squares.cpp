@@ -4,6 +4,7 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "snug/core/check.hpp"
@@ -86,6 +87,68 @@ class BatchedTermCost final : public ceres::CostFunction {
   std::size_t term_;
 };
 
+/// The sum of squares around the start of a problem, along the axes of its inverse information.
+class RisingSquares {
+ public:
+  explicit RisingSquares(const BatchedProblem& at) : at_(at) {
+    for (const BatchedProblem::Term& term : at.terms) own_.push_back(term.own);
+    found_ = differentiate(at, at.start, own_);
+    const auto steps = at.step.asDiagonal();
+    const Eigen::MatrixXd information = steps * shared_information(found_, at.start.size()) * steps;
+    const Eigenpairs axes = symmetric_eigenpairs(invert_symmetric(information));
+    directions_ = steps * axes.vectors;
+    deviation_ = axes.values.cwiseMax(0.0).cwiseSqrt();
+  }
+
+  [[nodiscard]] const Eigen::MatrixXd& directions() const { return directions_; }  ///< columns
+  [[nodiscard]] const Eigen::VectorXd& deviation() const { return deviation_; }    ///< along each of them
+
+  /// By which factor the sum of squares at `count` deviations says that each is too short; 1: it is not.
+  [[nodiscard]] Eigen::VectorXd lengthening(const Eigen::VectorXd& deviation, double count) const {
+    constexpr double kMost = 4.0;
+    const Eigen::Index n = deviation.size();
+    std::vector<BatchedProblem::Job> jobs;
+    std::vector<double> shares;  // of the way, where a bound does not cut it
+    for (Eigen::Index k = 0; k < n; ++k) {
+      for (const double sign : {1.0, -1.0}) {
+        const Eigen::VectorXd way = sign * count * deviation[k] * directions_.col(k);
+        const Eigen::VectorXd there = (at_.start + way).cwiseMax(at_.lower).cwiseMin(at_.upper);
+        shares.push_back((there - at_.start).cwiseQuotient(at_.step).norm() / way.cwiseQuotient(at_.step).norm());
+        for (std::size_t i = 0; i < at_.terms.size(); ++i) jobs.push_back({i, there, own_[i]});
+      }
+    }
+    const std::vector<Eigen::VectorXd> residuals = at_.evaluate(jobs);
+    Eigen::VectorXd factors = Eigen::VectorXd::Ones(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      double rise = 0.0, wanted = 0.0;
+      for (std::size_t side = 2 * static_cast<std::size_t>(k); side < 2 * static_cast<std::size_t>(k) + 2; ++side) {
+        wanted += std::pow(count * shares[side], 2);
+        for (std::size_t i = 0; i < at_.terms.size(); ++i) {
+          const Eigen::VectorXd& r = residuals[side * at_.terms.size() + i];
+          if (r.size() == found_.residuals[i].size()) rise += squares(i, r) - squares(i, found_.residuals[i]);
+        }
+      }
+      if (rise < 0.5 * wanted) factors[k] = std::min(kMost, std::sqrt(wanted / std::max(rise, 1e-3 * wanted)));
+    }
+    return factors;
+  }
+
+ private:
+  [[nodiscard]] double squares(std::size_t term, const Eigen::VectorXd& r) const {
+    const Eigen::MatrixXd& J = found_.jacobians[term];
+    const Eigen::Index own = J.cols() - at_.start.size();
+    if (own <= 0) return r.squaredNorm();
+    const Eigen::MatrixXd by_own = J.rightCols(own);
+    return (r - by_own * solve_by_qr(by_own, r)).squaredNorm();
+  }
+
+  const BatchedProblem& at_;
+  std::vector<Eigen::VectorXd> own_;
+  BatchedDerivatives found_;
+  Eigen::MatrixXd directions_;
+  Eigen::VectorXd deviation_;
+};
+
 }  // namespace
 
 BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
@@ -150,6 +213,20 @@ Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n)
     information += shared.transpose() * shared;
   }
   return information;
+}
+
+Eigen::MatrixXd squares_covariance(const BatchedProblem& at) {
+  // At two and at four deviations along each axis the sum of squares has to have risen by their square; where it rises
+  // by less than half of that the axis is lengthened until it does.
+  constexpr int kRounds = 3;
+  const RisingSquares squares(at);
+  Eigen::VectorXd deviation = squares.deviation();
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::VectorXd factors = squares.lengthening(deviation, 2.0).cwiseMax(squares.lengthening(deviation, 4.0));
+    if (factors.maxCoeff() <= 1.0) break;
+    deviation = deviation.cwiseProduct(factors);
+  }
+  return squares.directions() * deviation.cwiseAbs2().asDiagonal() * squares.directions().transpose();
 }
 
 BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& options) {

@@ -62,8 +62,9 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
     items_[i].arrival = packing::nearest_orientation(R_AW * X_WP.R);
   }
   sent_.name = "pack";
-  layout_.spares_wrist = options.simulation.controller == motion::ControllerKind::Fast;
-  if (!layout_.spares_wrist) options_.limits.hold_factor = 0.0;
+  const bool is_fast = options.simulation.controller == motion::ControllerKind::Fast;
+  layout_.spares_wrist = is_fast;
+  if (!is_fast) options_.limits.hold_factor = 0.0;
 }
 
 packing::ContainerState Packer::container_state() const {

@@ -14,9 +14,11 @@ Vector6 symmetric_eigenvalues(const Matrix6& M) noexcept {
   return Eigen::SelfAdjointEigenSolver<Matrix6>(M, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-double largest_eigenvalue(const Matrix6& A, const Matrix6& B) noexcept {
-  const Matrix6 C = inverse(Eigen::LLT<Matrix6>(B).matrixL());
-  return symmetric_eigenvalues(C * A.selfadjointView<Eigen::Lower>() * C.transpose())[5];
+Matrix6 cholesky(const Matrix6& M) noexcept { return Eigen::LLT<Matrix6>(M).matrixL(); }
+
+double spectral_radius(const Matrix6& A, const Matrix6& B) noexcept {
+  const Matrix6 C = inverse(cholesky(B));
+  return symmetric_eigenvalues(C * A.selfadjointView<Eigen::Lower>() * C.transpose()).cwiseAbs().maxCoeff();
 }
 
 bool is_positive_definite(const Matrix6& M) noexcept { return Eigen::LLT<Matrix6>(M).info() == Eigen::Success; }

@@ -7,8 +7,10 @@ namespace snug {
 
 /// Ascending; of M, symmetric, the lower half is read.
 [[nodiscard]] Vector6 symmetric_eigenvalues(const Matrix6& M) noexcept;
-/// Largest lambda of A x = lambda B x; A symmetric, B symmetric and positive definite: their lower halves are read.
-[[nodiscard]] double largest_eigenvalue(const Matrix6& A, const Matrix6& B) noexcept;
+/// Largest |lambda| of A x = lambda B x; A symmetric, B symmetric and positive definite: their lower halves are read.
+[[nodiscard]] double spectral_radius(const Matrix6& A, const Matrix6& B) noexcept;
+/// L, lower triangular, of M = L L^T, symmetric and positive definite: its lower half is read.
+[[nodiscard]] Matrix6 cholesky(const Matrix6& M) noexcept;
 /// Of M, symmetric: its lower half is read.
 [[nodiscard]] bool is_positive_definite(const Matrix6& M) noexcept;
 /// By LU with partial pivoting; of a singular matrix numbers that are not finite.

@@ -1,7 +1,6 @@
 // The compliance fit: C g = e is linear in C.
 #include "snug/identification/internal/compliance.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -131,13 +130,13 @@ LinearEstimate fit_compliance(const std::vector<CompliancePose>& poses, const st
 
 std::vector<std::size_t> find_odd_poses(const std::vector<CompliancePose>& poses, const NoiseAtS1& noise,
                                         const Form& form, const Matrix6& prior) {
-  const Eigen::LLT<Matrix6> W(weight_of_e(noise));
+  const Matrix6 U = cholesky(weight_of_e(noise)).transpose();
   // Least squares by weights that fall with the misfit, from plain sums: no compensation, it does not matter here.
   std::vector<Wide> A;
   std::vector<Vector6> b;
   for (const CompliancePose& pose : poses) {
-    A.push_back(W.matrixU() * columns(form, pose.g));
-    b.push_back(W.matrixU() * pose.e);
+    A.push_back(U * columns(form, pose.g));
+    b.push_back(U * pose.e);
   }
   const Eigen::VectorXd width = kPriorWidth * form.scale_in(inverse(prior));
   std::vector<double> weight(poses.size(), 1.0), sizes(poses.size());

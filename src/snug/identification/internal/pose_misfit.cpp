@@ -1,7 +1,6 @@
 // Misfit of one static pose.
 #include "snug/identification/internal/pose_misfit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "snug/core/input_error.hpp"
@@ -98,15 +97,15 @@ Misfit compute_misfit(const Balance& balance, const Matrix6& K, const NoiseAtS1&
   Vector6 shift = Vector6::Zero();
   Pose H = balance.H;
   Misfit misfit;
-  Eigen::LLT<Matrix6> factor;
+  Matrix6 whitening;  // inverse of the lower factor of the covariance
   for (int i = 0;; ++i) {
     const Matrix6 A = (cup::spring_tangent(H, K) - balance.wanted_tangent(H)) * noise.to_S1 * twist_of_shift(shift);
     const Vector6 gap = cup::spring_wrench(H, K) - balance.wanted(H) - A * shift;
     Matrix6 covariance = A * noise.pose_S.asDiagonal() * A.transpose();
     if (!balance.is_gravity) covariance += noise.wrench;
-    factor.compute(covariance);
-    misfit.residual = factor.matrixL().solve(gap);
-    const Vector6 next = -(noise.pose_S.asDiagonal() * (A.transpose() * factor.solve(gap)));
+    whitening = inverse(cholesky(covariance));
+    misfit.residual = whitening * gap;
+    const Vector6 next = -(noise.pose_S.asDiagonal() * (A.transpose() * (whitening.transpose() * misfit.residual)));
     const double change = ((next - shift).cwiseAbs2().cwiseQuotient(noise.pose_S)).sum();
     shift = next;
     H = deformation_at(moved(balance.X_ES, shift), frames);
@@ -116,7 +115,7 @@ Misfit compute_misfit(const Balance& balance, const Matrix6& K, const NoiseAtS1&
   misfit.jacobian.resize(6, form->size());
   for (Eigen::Index i = 0; i < form->size(); ++i)
     misfit.jacobian.col(i) = cup::spring_wrench(H, form->numbers[static_cast<std::size_t>(i)].basis);
-  factor.matrixL().solveInPlace(misfit.jacobian);
+  misfit.jacobian = (whitening * misfit.jacobian).eval();
   return misfit;
 }
 

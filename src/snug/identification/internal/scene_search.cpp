@@ -362,72 +362,13 @@ SplitErrors SceneSearch::errors_at(const Eigen::VectorXd& values) const {
   return split;
 }
 
-Eigen::MatrixXd SceneSearch::squares_covariance() const {
-  // Touch and release make residuals jump, and differences take a jump for a slope: the inverse information is then too
-  // small. At two and at four deviations along each of its axes the sum of squares has to have risen by their square;
-  // where it rises by less than half of that the axis is lengthened until it does.
-  constexpr double kMostLengthening = 4.0;
-  constexpr int kRounds = 3;
-  const numerics::BatchedProblem at = problem();
-  const auto n = at.start.size();
-  std::vector<Eigen::VectorXd> own;
-  for (const numerics::BatchedProblem::Term& term : at.terms) own.push_back(term.own);
-  const numerics::BatchedDerivatives found = numerics::differentiate(at, at.start, own);
-  const Eigen::MatrixXd C = numerics::invert_symmetric(numerics::shared_information(found, n));
-  const numerics::Eigenpairs axes =
-      numerics::symmetric_eigenpairs(at.step.cwiseInverse().asDiagonal() * C * at.step.cwiseInverse().asDiagonal());
-  const Eigen::MatrixXd directions = at.step.asDiagonal() * axes.vectors;
-  Eigen::VectorXd deviation = axes.values.cwiseMax(0.0).cwiseSqrt();
-  // Own unknowns follow by their slopes.
-  const auto squares = [&](std::size_t term, const Eigen::VectorXd& r) {
-    const Eigen::MatrixXd& J = found.jacobians[term];
-    if (J.cols() == n) return r.squaredNorm();
-    const Eigen::MatrixXd by_own = J.rightCols(J.cols() - n);
-    return (r - by_own * numerics::solve_by_qr(by_own, r)).squaredNorm();
-  };
-  /// By which factor the sum of squares at `count` deviations along each axis says that it is too short; 1: it is not.
-  const auto lengthening = [&](double count) {
-    std::vector<numerics::BatchedProblem::Job> jobs;
-    std::vector<double> shares;  // of the way, where a bound does not cut it
-    for (Eigen::Index k = 0; k < n; ++k) {
-      for (const double sign : {1.0, -1.0}) {
-        const Eigen::VectorXd way = sign * count * deviation[k] * directions.col(k);
-        const Eigen::VectorXd there = (at.start + way).cwiseMax(at.lower).cwiseMin(at.upper);
-        shares.push_back((there - at.start).cwiseQuotient(at.step).norm() / way.cwiseQuotient(at.step).norm());
-        for (std::size_t i = 0; i < at.terms.size(); ++i) jobs.push_back({i, there, own[i]});
-      }
-    }
-    const std::vector<Eigen::VectorXd> residuals = at.evaluate(jobs);
-    Eigen::VectorXd factors = Eigen::VectorXd::Ones(n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      double rise = 0.0, wanted = 0.0;
-      for (std::size_t side = 2 * static_cast<std::size_t>(k); side < 2 * static_cast<std::size_t>(k) + 2; ++side) {
-        wanted += std::pow(count * shares[side], 2);
-        for (std::size_t i = 0; i < at.terms.size(); ++i) {
-          const Eigen::VectorXd& r = residuals[side * at.terms.size() + i];
-          if (r.size() == found.residuals[i].size()) rise += squares(i, r) - squares(i, found.residuals[i]);
-        }
-      }
-      if (rise < 0.5 * wanted)
-        factors[k] = std::min(kMostLengthening, std::sqrt(wanted / std::max(rise, 1e-3 * wanted)));
-    }
-    return factors;
-  };
-  for (int round = 0; round < kRounds; ++round) {
-    const Eigen::VectorXd factors = lengthening(2.0).cwiseMax(lengthening(4.0));
-    if (factors.maxCoeff() <= 1.0) break;
-    deviation = deviation.cwiseProduct(factors);
-  }
-  return directions * deviation.cwiseAbs2().asDiagonal() * directions.transpose();
-}
-
 Eigen::MatrixXd SceneSearch::covariance() {
   Eigen::MatrixXd of_free;
   if (experiment_.task().loss == model::TaskLoss::Distance) {
     of_free = distance_covariance();
   } else {
     const double chi2 = chi2_per_dof(evaluate_all(experiment_, best_));
-    of_free = squares_covariance() * std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
+    of_free = numerics::squares_covariance(problem()) * std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
   }
   const auto all = static_cast<Eigen::Index>(experiment_.task().parameters.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);

@@ -60,7 +60,6 @@ class SceneSearch {
   [[nodiscard]] std::vector<Eigen::VectorXd> scattered(int count) const;
   void take(const Eigen::VectorXd& free_values, double cost, const char* phase);
   double least_squares_from(const Eigen::VectorXd& start, std::string& message);
-  [[nodiscard]] Eigen::MatrixXd squares_covariance() const;
   [[nodiscard]] Eigen::MatrixXd distance_covariance();
   /// Shifts of the free parameters at which the mean cost has risen by more than its roughness.
   [[nodiscard]] Eigen::VectorXd curvature_steps(const Eigen::VectorXd& middle);

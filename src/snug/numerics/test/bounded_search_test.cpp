@@ -91,5 +91,40 @@ TEST(BatchedLeastSquares, SaysSoWhenNothingCanBeSimulated) {
   EXPECT_FALSE(solve_batched(problem).has_converged);
 }
 
+TEST(BatchedLeastSquares, TheCovarianceOfLinearResidualsIsTheInverseOfTheirInformation) {
+  BatchedProblem problem = decays(two(2.0, 1.3));
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(20, 2);
+  problem.evaluate = [&](const std::vector<BatchedProblem::Job>& jobs) {
+    std::vector<VectorXd> residuals;
+    for (const BatchedProblem::Job& job : jobs)
+      residuals.emplace_back(30.0 * (A * (job.shared - problem.start)).array() + 5.0 * job.own[0]);
+    return residuals;
+  };
+  const Eigen::MatrixXd C = squares_covariance(problem);
+  const std::vector<VectorXd> own(3, VectorXd::Zero(1));
+  const Eigen::MatrixXd information = shared_information(differentiate(problem, problem.start, own), 2);
+  EXPECT_LT((C * information - Eigen::MatrixXd::Identity(2, 2)).norm(), 1e-6);
+}
+
+TEST(BatchedLeastSquares, TheCovarianceIsThatOfTheWayAtLargeWhereResidualsJump) {
+  // Slope 10 between jumps, slope 1 at large: the standard error is 1, the inverse information says 0.1.
+  BatchedProblem problem;
+  problem.start = VectorXd::Zero(1);
+  problem.lower = VectorXd::Constant(1, -10.0);
+  problem.upper = VectorXd::Constant(1, 10.0);
+  problem.step = VectorXd::Constant(1, 1e-3);
+  problem.terms.push_back({1, {}, {}});
+  problem.evaluate = [](const std::vector<BatchedProblem::Job>& jobs) {
+    std::vector<VectorXd> residuals;
+    for (const BatchedProblem::Job& job : jobs) {
+      const double between = 0.02 * std::round(job.shared[0] / 0.02);
+      residuals.emplace_back(VectorXd::Constant(1, between + 10.0 * (job.shared[0] - between)));
+    }
+    return residuals;
+  };
+  EXPECT_NEAR(shared_information(differentiate(problem, problem.start, {VectorXd()}), 1)(0, 0), 100.0, 1e-6);
+  EXPECT_NEAR(std::sqrt(squares_covariance(problem)(0, 0)), 1.0, 0.1);
+}
+
 }  // namespace
 }  // namespace snug::numerics
