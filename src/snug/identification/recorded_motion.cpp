@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <span>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
@@ -57,6 +59,18 @@ void add_row(const Table& table, std::size_t row, const BodyColumns& columns, Re
   if (columns.has_result) body.result = pose_at(table, row, columns.result);
 }
 
+/// The mean of poses that are near each other; lost if any of them is.
+record::PoseSample mean_pose(std::span<const record::PoseSample> poses) {
+  Vector3 p = Vector3::Zero(), turn = Vector3::Zero();
+  for (const record::PoseSample& sample : poses) {
+    if (!record::is_tracked(sample)) return record::lost_pose();
+    p += sample.p;
+    turn += log_rotation(poses.front().pose().R.transpose() * sample.pose().R);
+  }
+  const double share = 1.0 / static_cast<double>(poses.size());
+  return Pose{poses.front().pose().R * exp_rotation(share * turn), share * p};
+}
+
 }  // namespace
 
 std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const std::string& text,
@@ -102,7 +116,7 @@ std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const st
 std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, const record::Recording& simulated,
                                                const std::vector<record::ArchiveRecording>& recordings,
                                                const std::string& where) {
-  constexpr std::size_t kEach = 6;  // of samples at 360 Hz: boxes move at some Hz
+  constexpr double kMeanOver = 1.0 / 60.0;  // s: boxes move at some Hz
   const validation::SimulatedRun run = validation::make_run(simulated, "simulation");
   std::vector<RecordedMotion> motions;
   for (const record::ArchiveRecording& recording : recordings) {
@@ -113,9 +127,19 @@ std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, con
     RecordedMotion& motion = motions.emplace_back();
     motion.name = recording.name;
     const double end = task.simulation_time.value_or(run.times.back());
-    for (std::size_t k = 0; k < measured.pose_times.size(); k += kEach)
-      if (measured.pose_times[k] >= 0.0 && measured.pose_times[k] <= end)
-        motion.times.push_back(measured.pose_times[k]);
+    const std::vector<double>& times = measured.pose_times;
+    const double period =
+        (times.back() - times.front()) / static_cast<double>(std::max<std::size_t>(1, times.size() - 1));
+    const auto each = static_cast<std::size_t>(std::clamp(std::round(kMeanOver / period), 1.0, 1e6));
+    motion.averaged = static_cast<int>(each);
+    motion.spread = period * std::sqrt((static_cast<double>(each * each) - 1.0) / 12.0);
+    std::vector<std::size_t> firsts;  // of the samples of each mean
+    for (std::size_t k = 0; k + each <= times.size(); k += each) {
+      const double middle = 0.5 * (times[k] + times[k + each - 1]);
+      if (middle < motion.spread || middle > end - motion.spread) continue;
+      firsts.push_back(k);
+      motion.times.push_back(middle);
+    }
     for (const model::RecordedObject& object : task.tracked) {
       const int index = record::find_body(run.header, object.body);
       if (index < 0 || measured.bodies[static_cast<std::size_t>(index)].empty())
@@ -123,8 +147,7 @@ std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, con
       RecordedBody& body = motion.tracked.emplace_back();
       body.body = object.body;
       const std::vector<record::PoseSample>& poses = measured.bodies[static_cast<std::size_t>(index)];
-      for (std::size_t k = 0; k < measured.pose_times.size(); k += kEach)
-        if (measured.pose_times[k] >= 0.0 && measured.pose_times[k] <= end) body.poses.push_back(poses[k]);
+      for (const std::size_t first : firsts) body.poses.push_back(mean_pose(std::span(poses).subspan(first, each)));
     }
     if (motion.times.size() < 2)
       throw InputError(where, recording.name, "hardly any poses", "some of the time simulated");

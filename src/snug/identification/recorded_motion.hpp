@@ -24,6 +24,8 @@ struct RecordedBody {
 struct RecordedMotion {
   std::string name;                     ///< "train.csv, toss 12"
   std::vector<double> times;            ///< s, growing
+  int averaged = 1;                     ///< samples that each pose is the mean of
+  double spread = 0.0;                  ///< s, standard deviation of their times
   std::vector<RecordedBody> tracked;    ///< in the order of the task
   std::vector<RecordedBody> kinematic;  ///< in the order of the task
   bool operator==(const RecordedMotion&) const = default;
@@ -38,8 +40,8 @@ struct RecordedMotion {
                                                         const std::string& name);
 
 /// What an archive recorded of the task's bodies, on the clock of the simulation of the task's scenario: one motion for
-/// each recording of a sequence. Throws InputError for a tracked body that was not recorded, and where no clock is
-/// found.
+/// each recording of a sequence, as means over about a sixtieth of a second. Throws InputError for a tracked body that
+/// was not recorded, and where no clock is found.
 [[nodiscard]] std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task,
                                                              const record::Recording& simulated,
                                                              const std::vector<record::ArchiveRecording>& recordings,

@@ -103,34 +103,30 @@ class RisingSquares {
   [[nodiscard]] const Eigen::MatrixXd& directions() const { return directions_; }  ///< columns
   [[nodiscard]] const Eigen::VectorXd& deviation() const { return deviation_; }    ///< along each of them
 
-  /// By which factor the sum of squares at `count` deviations says that each is too short; 1: it is not.
-  [[nodiscard]] Eigen::VectorXd lengthening(const Eigen::VectorXd& deviation, double count) const {
-    constexpr double kMost = 4.0;
-    const Eigen::Index n = deviation.size();
+  struct Rise {
+    double found = 0.0;   ///< of the sum of squares
+    double wanted = 0.0;  ///< deviations squared
+  };
+  /// At `count` deviations along each axis there and back: 2 k and 2 k + 1 are those of axis k.
+  [[nodiscard]] std::vector<Rise> rises(const Eigen::VectorXd& deviation, double count) const {
+    std::vector<Rise> result;
     std::vector<BatchedProblem::Job> jobs;
-    std::vector<double> shares;  // of the way, where a bound does not cut it
-    for (Eigen::Index k = 0; k < n; ++k) {
+    for (Eigen::Index k = 0; k < deviation.size(); ++k) {
       for (const double sign : {1.0, -1.0}) {
         const Eigen::VectorXd way = sign * count * deviation[k] * directions_.col(k);
         const Eigen::VectorXd there = (at_.start + way).cwiseMax(at_.lower).cwiseMin(at_.upper);
-        shares.push_back((there - at_.start).cwiseQuotient(at_.step).norm() / way.cwiseQuotient(at_.step).norm());
+        const double share = (there - at_.start).cwiseQuotient(at_.step).norm() / way.cwiseQuotient(at_.step).norm();
+        result.push_back({0.0, std::pow(count * share, 2)});
         for (std::size_t i = 0; i < at_.terms.size(); ++i) jobs.push_back({i, there, own_[i]});
       }
     }
     const std::vector<Eigen::VectorXd> residuals = at_.evaluate(jobs);
-    Eigen::VectorXd factors = Eigen::VectorXd::Ones(n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      double rise = 0.0, wanted = 0.0;
-      for (std::size_t side = 2 * static_cast<std::size_t>(k); side < 2 * static_cast<std::size_t>(k) + 2; ++side) {
-        wanted += std::pow(count * shares[side], 2);
-        for (std::size_t i = 0; i < at_.terms.size(); ++i) {
-          const Eigen::VectorXd& r = residuals[side * at_.terms.size() + i];
-          if (r.size() == found_.residuals[i].size()) rise += squares(i, r) - squares(i, found_.residuals[i]);
-        }
-      }
-      if (rise < 0.5 * wanted) factors[k] = std::min(kMost, std::sqrt(wanted / std::max(rise, 1e-3 * wanted)));
+    for (std::size_t j = 0; j < jobs.size(); ++j) {
+      const std::size_t i = jobs[j].term;
+      if (residuals[j].size() == found_.residuals[i].size())
+        result[j / at_.terms.size()].found += squares(i, residuals[j]) - squares(i, found_.residuals[i]);
     }
-    return factors;
+    return result;
   }
 
  private:
@@ -217,16 +213,32 @@ Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n)
 
 Eigen::MatrixXd squares_covariance(const BatchedProblem& at) {
   // At two and at four deviations along each axis the sum of squares has to have risen by their square; where it rises
-  // by less than half of that the axis is lengthened until it does.
+  // by less than half of that the axis is lengthened until it does. What it strays from its parabola it strays at its
+  // minimum, too: a point as good by chance may be the root of that many deviations away.
   constexpr int kRounds = 3;
+  constexpr double kMost = 4.0;  // of a round
   const RisingSquares squares(at);
   Eigen::VectorXd deviation = squares.deviation();
-  for (int round = 0; round < kRounds; ++round) {
-    const Eigen::VectorXd factors = squares.lengthening(deviation, 2.0).cwiseMax(squares.lengthening(deviation, 4.0));
-    if (factors.maxCoeff() <= 1.0) break;
+  double roughness = 0.0;
+  for (int round = 0; round <= kRounds; ++round) {
+    Eigen::VectorXd factors = Eigen::VectorXd::Ones(deviation.size());
+    double strayed = 0.0;
+    for (const double count : {2.0, 4.0}) {
+      const std::vector<RisingSquares::Rise> rises = squares.rises(deviation, count);
+      for (Eigen::Index k = 0; k < deviation.size(); ++k) {
+        const auto &there = rises[2 * static_cast<std::size_t>(k)], &back = rises[2 * static_cast<std::size_t>(k) + 1];
+        const double found = there.found + back.found, wanted = there.wanted + back.wanted;
+        if (found < 0.5 * wanted)
+          factors[k] = std::max(factors[k], std::min(kMost, std::sqrt(wanted / std::max(found, 1e-3 * wanted))));
+        if (count == 2.0) strayed += std::pow(there.found - there.wanted, 2) + std::pow(back.found - back.wanted, 2);
+      }
+    }
+    roughness = std::sqrt(strayed / static_cast<double>(2 * std::max<Eigen::Index>(1, deviation.size())));
+    if (factors.maxCoeff() <= 1.0 || round == kRounds) break;
     deviation = deviation.cwiseProduct(factors);
   }
-  return squares.directions() * deviation.cwiseAbs2().asDiagonal() * squares.directions().transpose();
+  const Eigen::VectorXd variance = (1.0 + roughness) * deviation.cwiseAbs2();
+  return squares.directions() * variance.asDiagonal() * squares.directions().transpose();
 }
 
 BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& options) {

@@ -55,8 +55,8 @@ struct BatchedDerivatives {
 /// J^T J of the shared unknowns with those of each term eliminated.
 [[nodiscard]] Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index shared);
 /// Of the shared unknowns at the start of a problem, which is a minimum, residuals in units of their noise: the inverse
-/// of shared_information, longer along the axes where the sum of squares rises by less than that says (residuals that
-/// jump have slopes that say too much). Own unknowns follow by their slopes.
+/// of shared_information, larger where the sum of squares rises by less than that says or strays from a parabola, as it
+/// does where residuals jump. Own unknowns follow by their slopes.
 [[nodiscard]] Eigen::MatrixXd squares_covariance(const BatchedProblem& at);
 
 }  // namespace snug::numerics

@@ -1,6 +1,8 @@
 // compare: a simulated motion less a recorded one.
 #include "snug/identification/internal/motion_error.hpp"
 
+#include <cmath>
+
 #include "snug/record/archive.hpp"
 
 namespace snug::identification::internal {
@@ -33,7 +35,8 @@ MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, 
   const std::size_t begin = first_sample_of(task, motion), end = sample_count(task, motion);
   const int numbers = numbers_of(task);
   error.residuals = Eigen::VectorXd::Zero(count_residuals(task, motion) + own_deviation(task).size());
-  const double rotation_noise = task.position_noise / task.rotation_position_ratio;
+  const double position_noise = task.position_noise / std::sqrt(static_cast<double>(motion.averaged));
+  const double rotation_noise = position_noise / task.rotation_position_ratio;
   Eigen::Index at = 0;
   double count = 0.0;
   for (std::size_t b = 0; b < motion.tracked.size(); ++b) {
@@ -47,7 +50,7 @@ MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, 
       const Pose X = predicted.pose() * own.X_BM[b], M = recorded.pose();
       shift = X.p + own.bias - M.p;
       turn = log_rotation(M.R.transpose() * X.R);
-      if (task.use_position) error.residuals.segment<3>(at) = shift / task.position_noise;
+      if (task.use_position) error.residuals.segment<3>(at) = shift / position_noise;
       if (task.use_rotation) error.residuals.segment<3>(at + (task.use_position ? 3 : 0)) = turn / rotation_noise;
       error.position += shift.norm();
       error.rotation += turn.norm();

@@ -25,6 +25,12 @@ namespace {
 
 constexpr double kGap = 0.1;  // s, between frames that are one motion
 
+record::PoseSample midway(const record::PoseSample& a, const record::PoseSample& b) {
+  if (!record::is_tracked(a) || !record::is_tracked(b)) return record::lost_pose();
+  const Matrix3 R = a.pose().R;
+  return Pose{R * exp_rotation(0.5 * log_rotation(R.transpose() * b.pose().R)), 0.5 * (a.p + b.p)};
+}
+
 }  // namespace
 
 ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& task, double until) {
@@ -52,7 +58,12 @@ SimulatedMotion motion_of(const ProgramRun& run, const model::SceneTask& task, c
     std::vector<record::PoseSample>& poses = simulated.bodies.emplace_back(motion.times.size(), record::lost_pose());
     if (index < 0) continue;
     validation::PoseCursor cursor(run.seen.times, run.seen.bodies[static_cast<std::size_t>(index)]);
-    for (std::size_t k = 0; k < count; ++k) poses[k] = cursor.at(motion.times[k] - own.delay, kGap);
+    for (std::size_t k = 0; k < count; ++k) {
+      // The mean of what is curved, too: two instants as far from the middle as those averaged are in the mean.
+      const double middle = motion.times[k] - own.delay;
+      poses[k] = cursor.at(middle - motion.spread, kGap);
+      if (motion.spread > 0.0) poses[k] = midway(poses[k], cursor.at(middle + motion.spread, kGap));
+    }
   }
   return simulated;
 }

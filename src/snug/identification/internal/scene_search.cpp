@@ -184,9 +184,10 @@ SceneSearch::Derivatives SceneSearch::differentiate() const {
     const Eigen::MatrixXd& J = found.jacobians[i];
     if (J.cols() < n) continue;
     const Eigen::Index rows = experiment_.samples_of(fitted_[i]);
+    const double averaged = experiment_.motions()[fitted_[i]].averaged;
     for (Eigen::Index row = 0; row < rows; ++row) {
       Eigen::VectorXd& sum = row % each < positions ? result.position_rms : result.rotation_rms;
-      sum += J.row(row).head(n).transpose().cwiseAbs2();
+      sum += J.row(row).head(n).transpose().cwiseAbs2() / averaged;
     }
     samples += static_cast<double>(rows) / each;
   }
@@ -353,7 +354,7 @@ SplitErrors SceneSearch::errors_at(const Eigen::VectorXd& values) const {
       const Eigen::Index rows = experiment_.samples_of(m) / bodies, cut = held_rows(m) / bodies;
       if (errors[m].residuals.size() < rows * bodies) continue;
       for (Eigen::Index b = 0; b < bodies; ++b)
-        sum += errors[m].residuals.segment((b + 1) * rows - cut, cut).squaredNorm();
+        sum += errors[m].residuals.segment((b + 1) * rows - cut, cut).squaredNorm() / experiment_.motions()[m].averaged;
       samples += static_cast<double>(cut * bodies) / each;
     }
     split.held_back_error = 1e3 * task.position_noise * std::sqrt(sum / std::max(1.0, samples));

@@ -10,6 +10,8 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/identification/free_flight.hpp"
+#include "snug/identification/internal/motion_error.hpp"
+#include "snug/identification/internal/program_motion.hpp"
 #include "snug/model/number_edit.hpp"
 
 namespace snug::identification {
@@ -226,6 +228,48 @@ TEST_F(SceneFitTest, SaysWhichBodyAndWhichPathIsWrong) {
   EXPECT_NE(key.find("friction"), std::string::npos) << key;
   const std::string list = message("parameters: [{name: a, path: bodies.parcel.size, value: 1, bounds: [0, 2]}]");
   EXPECT_NE(list.find("single number"), std::string::npos) << list;
+}
+
+TEST(ProgramMotion, OfAnAcceleratedBodyIsTheMeanWhereARecordingHasMeans) {
+  constexpr double kPeriod = 1.0 / 360.0;
+  const auto at = [](double t) {
+    return Pose{exp_rotation(Vector3(0.0, 0.0, 3.0 * t * t)), Vector3(2.0 * t * t, 0.1 * t, 0.0)};
+  };
+  internal::ProgramRun run;
+  run.seen.header.bodies.emplace_back().name = "parcel";
+  run.seen.bodies.resize(1);
+  for (int i = 0; i <= 4000; ++i) {
+    run.seen.times.push_back(1e-4 * i);
+    run.seen.bodies[0].emplace_back(at(1e-4 * i));
+  }
+  RecordedMotion motion;
+  motion.averaged = 6;
+  motion.spread = kPeriod * std::sqrt(35.0 / 12.0);
+  motion.tracked.push_back({"parcel", {}, {}, {}});
+  for (const double middle : {0.1, 0.3}) {
+    Vector3 p = Vector3::Zero(), turn = Vector3::Zero();
+    for (int k = 0; k < 6; ++k) {
+      const Pose X = at(middle + (k - 2.5) * kPeriod);
+      p += X.p / 6.0, turn += log_rotation(X.R) / 6.0;
+    }
+    motion.times.push_back(middle);
+    motion.tracked[0].poses.emplace_back(Pose{exp_rotation(turn), p});
+  }
+  model::SceneTask task;
+  task.start.from = model::StartFrom::Scenario;
+  task.tracked = {{"parcel", {}, {}, {}}};
+  task.position_noise = 1e-4;
+  task.rotation_position_ratio = 0.1;
+  const internal::OwnValues own(task, {});
+  internal::SimulatedMotion simulated = internal::motion_of(run, task, motion, own);
+  // Between samples at 10 kHz the line is 4 m/s^2 dt^2 / 8 = 5 nm off; what stands in the middle alone is 45 um off.
+  EXPECT_LT(internal::compare(task, motion, simulated, own).position, 1e-8);
+  EXPECT_LT(internal::compare(task, motion, simulated, own).rotation, 2e-8);
+  EXPECT_NEAR((at(0.1).p - motion.tracked[0].poses[0].p).norm(), 4.5e-5, 1e-6);
+  // A mean of six is known sqrt(6) times as well as a sample.
+  const record::PoseSample& first = simulated.bodies[0][0];
+  simulated.bodies[0][0] = Pose{first.pose().R, first.p + Vector3(1e-4, 0.0, 0.0)};
+  EXPECT_NEAR(internal::compare(task, motion, simulated, own).residuals[0], std::sqrt(6.0), 1e-3);
 }
 
 TEST(FreeFlight, IsFoundFromPosesOfATumblingBody) {
