@@ -97,6 +97,11 @@ function(snug_test name)
   target_compile_definitions(${name} PRIVATE SNUG_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   snug_compile_options(${name} COLD)
   snug_use_precompiled(${name} test)
+  if(SNUG_FAST_BUILD)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    list(FILTER ARG_SOURCES INCLUDE REGEX "allocation_count.cpp$")  # replaces operator new: g++ warns where it sees both ends
+    set_source_files_properties(${ARG_SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   add_dependencies(snug_tests ${name})
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1200)

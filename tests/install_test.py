@@ -76,16 +76,16 @@ class Installed(unittest.TestCase):
         self.assertIn("stable", result.stdout)
 
     def test_project_that_asks_for_one_module_gets_it(self):
-        build, result = self.configure(CONSUMER, "-DSNUG_COMPONENTS=geometry")
+        build, result = self.configure(CONSUMER, "-DSNUG_COMPONENTS=spatial")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.make(build)
-        self.assertEqual(run(build / "consumer").stdout, "-0.010\n")
+        self.assertEqual(run(build / "consumer").stdout, "1.571\n")
 
     def test_project_that_asks_for_an_unknown_module_is_told_the_known(self):
-        _, result = self.configure(CONSUMER, "-DSNUG_COMPONENTS=geometri")
+        _, result = self.configure(CONSUMER, "-DSNUG_COMPONENTS=spatail")
         self.assertNotEqual(result.returncode, 0)
-        self.assertIn("'geometri'", result.stderr)
-        self.assertIn("geometry", result.stderr)
+        self.assertIn("'spatail'", result.stderr)
+        self.assertIn("spatial", result.stderr)
 
 
 class Sources(unittest.TestCase):
@@ -96,10 +96,11 @@ class Sources(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stderr)
             targets = run("cmake", "--build", folder, "--target", "help").stdout
             self.assertNotIn("snug_cell", targets)
-            self.assertNotIn("geometry_test", targets)
+            self.assertNotIn("spatial_test", targets)
+            self.assertNotIn("snug_geometry", targets)
             result = run("cmake", "--build", folder)
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-            self.assertEqual(run(Path(folder) / "consumer").stdout, "-0.010\n")
+            self.assertEqual(run(Path(folder) / "consumer").stdout, "1.571\n")
 
 
 if __name__ == "__main__":

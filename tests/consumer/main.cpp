@@ -1,16 +1,12 @@
-// consumer: two boxes that overlap by 10 mm. Prints how far they are apart, m.
+// consumer: a box turned by a quarter about its vertical axis. Prints the angle, rad.
 #include <cstdio>
+#include <numbers>
 
-#include "snug/geometry/manifold.hpp"
+#include "snug/spatial/pose.hpp"
 
 int main() {
-  const snug::geometry::Shape box = snug::geometry::Box{{0.1, 0.1, 0.1}};
   snug::Pose X_WB;
-  X_WB.p = snug::Vector3(0.0, 0.0, 0.19);
-  snug::geometry::PairCache cache;
-  snug::geometry::Manifold manifold;
-  snug::geometry::collide(box, snug::Pose{}, box, X_WB, 0.0, cache, manifold);
-  if (manifold.count == 0) return 1;
-  std::printf("%.3f\n", manifold.points[0].phi);
+  X_WB.R = snug::exp_rotation(snug::Vector3::UnitZ() * std::numbers::pi / 2);
+  std::printf("%.3f\n", snug::angle_between(X_WB.R, snug::Pose{}.R));
   return 0;
 }

@@ -16,8 +16,10 @@ double median_deviation(std::vector<double> sizes, int degrees) {
   return sizes[sizes.size() / 2] / median_norm;
 }
 
-std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int degrees, double floor) {
-  const double limit = kOutlierDeviations * std::max(floor, median_deviation(sizes, degrees));
+std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int degrees, double floor, int unknowns) {
+  const double left = static_cast<double>(sizes.size()) - static_cast<double>(unknowns) / degrees;
+  const double few = unknowns > 0 ? 1.0 + 5.0 / std::max(1.0, left) : 1.0;
+  const double limit = kOutlierDeviations * std::max(floor, few * median_deviation(sizes, degrees));
   std::vector<std::size_t> found;
   for (std::size_t k = 0; k < sizes.size(); ++k)
     if (sizes[k] > limit) found.push_back(k);

@@ -11,7 +11,10 @@ namespace snug::numerics {
 [[nodiscard]] double median_deviation(std::vector<double> sizes, int degrees);
 
 /// Indices of the sizes beyond 6 standard deviations of the rest; deviations below `floor` (rounding of exact data)
-/// count as that.
-[[nodiscard]] std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int degrees, double floor);
+/// count as that. Where so many unknowns were fitted to the same few numbers the median of what they leave is too
+/// small by chance: it is enlarged by 1 + 5 / (sizes - unknowns / degrees) (Rousseeuw and Leroy, Robust Regression and
+/// Outlier Detection, 1987, chapter 5).
+[[nodiscard]] std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int degrees, double floor,
+                                                     int unknowns = 0);
 
 }  // namespace snug::numerics

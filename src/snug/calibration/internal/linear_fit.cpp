@@ -57,7 +57,7 @@ LinearFit fit_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::
   const Eigen::VectorXd robust = A * fit_robustly(A, b, group, floor) - b;
   std::vector<double> sizes;
   for (Eigen::Index k = 0; k < groups; ++k) sizes.push_back(group_size(robust, group, k));
-  fit.outliers = numerics::find_outliers(sizes, static_cast<int>(group), floor);
+  fit.outliers = numerics::find_outliers(sizes, static_cast<int>(group), floor, static_cast<int>(A.cols()));
   return fit;
 }
 

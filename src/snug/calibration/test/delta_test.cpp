@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "snug/calibration/exact_arm.hpp"
+#include "snug/calibration/test/nominal.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/core/write_file.hpp"
@@ -13,16 +14,13 @@
 namespace snug::calibration {
 namespace {
 
+using test::nominal;
+
 const std::filesystem::path kUrdf = SNUG_SOURCE_DIR "/scenarios/robots/ur10.urdf";
 const std::filesystem::path kData = SNUG_SOURCE_DIR "/../shared/data/ur10";
 
 #define SKIP_WITHOUT_DATA() \
   if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no reference data at " << kData
-
-const robot::ArmModel& nominal() {
-  static const robot::ArmModel arm = robot::load_urdf(kUrdf);
-  return arm;
-}
 
 /// Nominal parameters typed from the published table.
 DhTable ur10_table() {

@@ -3,16 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "snug/calibration/test/nominal.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 
 namespace snug::calibration {
 namespace {
 
-Vector3 normal3(Rng& rng, double size) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return size * Vector3(x, y, z);
-}
+using test::normal3;
 
 /// Rows of a board that the tool holds before a camera 1 m over it, measured with noise.
 Table make_table(Rng& rng, const Pose& X_WC, const Pose& X_EB, int rows, double position_noise, double angle_noise,

@@ -9,6 +9,7 @@
 #include "snug/calibration/exact_arm.hpp"
 #include "snug/calibration/force_sensor.hpp"
 #include "snug/calibration/identify.hpp"
+#include "snug/calibration/test/nominal.hpp"
 #include "snug/calibration/tool_tip.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
@@ -17,12 +18,8 @@
 namespace snug::calibration {
 namespace {
 
-const robot::ArmModel& nominal() {
-  static const robot::ArmModel arm = robot::load_urdf(SNUG_SOURCE_DIR "/scenarios/robots/ur10.urdf");
-  return arm;
-}
-
-Vector3 normal3(Rng& rng, double size) { return size * Vector3(rng.normal(), rng.normal(), rng.normal()); }
+using test::nominal;
+using test::normal3;
 
 void append(Table& table, std::vector<double> row) {
   table.rows.push_back(std::move(row));

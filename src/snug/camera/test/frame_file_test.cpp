@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "snug/camera/render.hpp"
 #include "snug/core/input_error.hpp"
 

@@ -16,11 +16,10 @@ namespace {
 
 using snug::test::ScratchFolder;
 using test::body_of;
+using test::kGravity;
 using test::loading_error;
 using test::scene;
 using test::scene_text;
-
-constexpr double kGravity = 9.81;
 
 TEST(ContactLimits, ASqueezedBoxIsAFailureThatNamesItAndLeavesTheResultWhole) {
   const ScratchFolder folder;

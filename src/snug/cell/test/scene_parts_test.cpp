@@ -16,12 +16,12 @@ namespace {
 namespace fs = std::filesystem;
 using snug::test::ScratchFolder;
 using test::body_of;
+using test::kGravity;
 using test::loading_error;
 using test::scene;
 using test::scene_text;
 using test::write;
 
-constexpr double kGravity = 9.81;
 constexpr double kPi = std::numbers::pi;
 
 TEST(Belt, CarriesABoxAtFrictionUntilItMovesWithTheBelt) {

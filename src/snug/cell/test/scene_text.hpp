@@ -14,6 +14,8 @@
 
 namespace snug::cell::test {
 
+inline constexpr double kGravity = 9.81;  ///< m/s^2, of every scene here
+
 /// Writes a file into the folder and says where it is.
 inline std::filesystem::path write(const snug::test::ScratchFolder& folder, const std::string& name,
                                    const std::string& text) {

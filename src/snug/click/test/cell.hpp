@@ -16,6 +16,8 @@ inline const cell::Simulation& demonstrator_cell() {
   return simulation;
 }
 
+inline const std::vector<double> kStill(6, 0.0);  ///< speeds of joints
+
 inline Control control_of(const std::vector<double>& values, const Named<bool>& events = {}) {
   Control control;
   control.objects["ur10"] = {CommandList::Values, values, events};

@@ -16,8 +16,7 @@ namespace {
 
 using test::control_of;
 using test::demonstrator_cell;
-
-const std::vector<double> kStill(6, 0.0);
+using test::kStill;
 
 std::string an_address() {
   static int count = 0;

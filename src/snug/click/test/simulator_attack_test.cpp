@@ -11,9 +11,8 @@ namespace snug::click {
 namespace {
 
 using test::control_of;
+using test::kStill;
 using test::Talk;
-
-const std::vector<double> kStill(6, 0.0);
 
 /// What a peer may send by mistake or on purpose: frames that were changed a little, cut, lengthened or made up.
 std::string mutate(std::string frame, Rng& rng) {

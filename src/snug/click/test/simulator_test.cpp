@@ -14,9 +14,8 @@ namespace snug::click {
 namespace {
 
 using test::control_of;
+using test::kStill;
 using test::Talk;
-
-const std::vector<double> kStill(6, 0.0);
 
 std::vector<double> angles_of(const Message& message) { return std::get<Sensor>(message).objects.at("ur10").angles; }
 

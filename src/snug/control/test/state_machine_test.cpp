@@ -11,15 +11,15 @@
 namespace snug::control {
 namespace {
 
-struct Drive {
+struct MachineDrive {
   JointController controller;
   StateMachine machine;
   motion::PreparedProgram plan;
   MachineState state;
   JointControllerWork work;
 
-  Drive(motion::Program program, motion::ControllerKind kind, double stiffness = 10.0,
-        const StateSettings& settings = {})
+  MachineDrive(motion::Program program, motion::ControllerKind kind, double stiffness = 10.0,
+               const StateSettings& settings = {})
       : controller(test::make_controller(stiffness)),
         machine(make_demonstrator_machine(settings)),
         plan(motion::prepare(std::move(program), test::program_settings(kind, stiffness))),
@@ -46,7 +46,7 @@ struct Agreement {
   int limited_ticks = 0;
 };
 
-Agreement compare(Drive& drive) {
+Agreement compare(MachineDrive& drive) {
   Agreement result;
   motion::ControllerState point = motion::make_controller_state(drive.state.tool.X_WE);
   motion::ToolState tool = point.command;
@@ -77,14 +77,14 @@ Agreement compare(Drive& drive) {
 }
 
 TEST(StateMachine, PassesFromInitialToOperationInTheFirstTick) {
-  Drive drive(moves({{0.05, 0.0, 0.0}}), motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.05, 0.0, 0.0}}), motion::ControllerKind::Faithful);
   const MachineTick tick = drive.tick();
   EXPECT_EQ(drive.machine.name_of(tick.state), "Operation");
   EXPECT_EQ(tick.program.departed, 0);
 }
 
 TEST(StateMachine, EndsWithOkWhenTheProgramIsDone) {
-  Drive drive(moves({{0.02, 0.0, 0.0}}), motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.02, 0.0, 0.0}}), motion::ControllerKind::Faithful);
   for (int i = 0; i < 2000; ++i) {
     const MachineTick tick = drive.tick();
     if (!tick.program.finished_now) continue;
@@ -96,8 +96,8 @@ TEST(StateMachine, EndsWithOkWhenTheProgramIsDone) {
 }
 
 TEST(StateMachine, KeepsToThePointModelWhereNoLimitIsActive) {
-  Drive drive(moves({{0.1, 0.0, 0.0}, {0.1, 0.15, -0.05}, {-0.05, 0.1, 0.0}, {0.0, 0.0, 0.0}}),
-              motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.1, 0.15, -0.05}, {-0.05, 0.1, 0.0}, {0.0, 0.0, 0.0}}),
+                     motion::ControllerKind::Faithful);
   const Agreement result = compare(drive);
   EXPECT_EQ(result.limited_ticks, 0);
   // The joints' accelerations are constant over a tick, the tool's are not quite: nothing else differs.
@@ -107,7 +107,7 @@ TEST(StateMachine, KeepsToThePointModelWhereNoLimitIsActive) {
 }
 
 TEST(StateMachine, IsOnTheReferenceOfTheIdealController) {
-  Drive drive(moves({{0.1, 0.0, 0.0}, {0.1, 0.15, -0.05}, {0.0, 0.0, 0.0}}), motion::ControllerKind::Ideal);
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.1, 0.15, -0.05}, {0.0, 0.0, 0.0}}), motion::ControllerKind::Ideal);
   double worst = 0.0;
   for (int i = 0; i < 1000; ++i) {
     const MachineTick tick = drive.tick();
@@ -118,7 +118,7 @@ TEST(StateMachine, IsOnTheReferenceOfTheIdealController) {
 }
 
 TEST(StateMachine, ComesToHoldWhenARowIsOutOfReach) {
-  Drive drive(moves({{0.1, 0.0, 0.0}, {0.0, -3.0, 0.0}}), motion::ControllerKind::Faithful, 10.0, {2.0});
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.0, -3.0, 0.0}}), motion::ControllerKind::Faithful, 10.0, {2.0});
   for (int i = 0; i < 5000; ++i) {
     const MachineTick tick = drive.tick();
     if (tick.outcome != "Stuck") continue;
@@ -133,7 +133,7 @@ TEST(StateMachine, ComesToHoldWhenARowIsOutOfReach) {
 }
 
 TEST(StateMachine, GoesOnFromACopyWithTheSameBytes) {
-  Drive drive(moves({{0.1, 0.0, 0.0}, {0.0, 0.2, 0.0}}), motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.0, 0.2, 0.0}}), motion::ControllerKind::Faithful);
   for (int i = 0; i < 100; ++i) (void)drive.tick();
   const MachineState kept = drive.state;
   for (int i = 0; i < 300; ++i) (void)drive.tick();
@@ -165,7 +165,7 @@ class CountingState final : public State {
 };
 
 TEST(StateMachine, LeadsAStateThroughItsLife) {
-  Drive drive(moves({{0.1, 0.0, 0.0}}), motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}}), motion::ControllerKind::Faithful);
   CountingState::Calls calls;
   std::vector<std::unique_ptr<State>> states;
   states.push_back(std::make_unique<CountingState>(calls));
@@ -184,7 +184,7 @@ TEST(StateMachine, RunsTheRealProgramsAtTheTempoOfThePointModel) {
   const std::filesystem::path path =
       std::filesystem::path(SNUG_SOURCE_DIR) / ".." / "shared" / "data" / "waypoints" / "poses1real.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
-  Drive drive(motion::load_program(path), motion::ControllerKind::Faithful);
+  MachineDrive drive(motion::load_program(path), motion::ControllerKind::Faithful);
   const Agreement result = compare(drive);
   // Without limits it would be as above. Half of the shoulder's speed, which the controller may use, cuts its fastest
   // turns for 3 % of the ticks: it catches up within the row, and the whole takes half a second longer (measured 0.47

@@ -11,23 +11,18 @@
 namespace snug::cup {
 namespace {
 
+using test::difference;
 using test::random_pose;
 using test::random_stiffness;
 using test::random_vector;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 model::CupElasticity default_cup() { return {2500.0, 6000.0, 5.0, 3.0, 0.0}; }
 
 /// H moved along the body twist nu for a time h: right tangent at h = 0, which is all that a derivative needs.
 Pose moved(const Pose& H, const Vector6& nu, double h) {
   return {H.R * exp_rotation(h * nu.tail<3>()), H.p + H.R * (h * nu.head<3>())};
-}
-
-/// Central difference of fourth order.
-template <class F>
-auto difference(const F& f, double h) -> decltype(f(h)) {
-  return ((8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h));
 }
 
 /// [Ad_g] for twists with the linear part first.
@@ -103,7 +98,7 @@ TEST(CupLaw, WithFiveNumbersDoesNotKnowDirectionsAroundTheCupNorMirrors) {
     const Pose H = random_pose(rng, 1.8, 0.05);
     const Matrix6 K = as_matrix({rng.uniform(100.0, 5000.0), rng.uniform(100.0, 8000.0), rng.uniform(5.0, 10.0),
                                  rng.uniform(1.0, 6.0), rng.uniform(-20.0, 20.0)});
-    const Pose g{exp_rotation(Vector3(0.0, 0.0, rng.uniform(-kPi, kPi))), Vector3::Zero()};
+    const Pose g{exp_rotation(Vector3(0.0, 0.0, rng.uniform(-pi, pi))), Vector3::Zero()};
     const Pose turned = g.inverse() * H * g, mirrored{M * H.R * M, M * H.p};
     const Vector6 f = spring_wrench(H, K);
     EXPECT_NEAR(potential(turned, K), potential(H, K), 1e-12 * potential(H, K));
@@ -188,7 +183,7 @@ TEST(CupLaw, SoftensAsTheSineOfTwiceTheAngleInPureRotation) {
   const Matrix6 K = as_matrix(default_cup());
   for (int deg = -180; deg <= 180; deg += 5) {
     SCOPED_TRACE(deg);
-    const double theta = deg * kPi / 180.0;
+    const double theta = deg * pi / 180.0;
     for (int axis = 0; axis < 3; ++axis) {
       const double k = axis == 2 ? 3.0 : 5.0;
       const Pose H{exp_rotation(theta * Vector3::Unit(axis)), Vector3::Zero()};
@@ -208,7 +203,7 @@ TEST(CupLaw, IsBlindToHalfTurns) {
   for (int i = 0; i < 50; ++i) {
     const Vector3 n = random_vector(rng, 1.0).normalized();
     const Vector3 o = 0.05 * n.cross(random_vector(rng, 1.0));
-    const Pose H{exp_rotation(kPi * n), o};
+    const Pose H{exp_rotation(pi * n), o};
     const Matrix6 K = random_stiffness(rng);
     EXPECT_LE(potential(H, K), 1e-24 * K.norm());  // e is rounding, about 1e-16 a unit
     EXPECT_LE(spring_wrench(H, K).norm(), 1e-12 * K.norm());

@@ -11,7 +11,7 @@
 namespace snug::cup {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// The default cup, hanging straight down.
 HeldLoad hanging(double mass, const Vector3& p_SScm) {
@@ -124,7 +124,7 @@ TEST(Settle, SaysSoWhenTheMomentIsMoreThanTheCupCanHold) {
       EXPECT_FALSE(result.is_stable);
       EXPECT_GT(result.load_fraction, 0.0);
       EXPECT_TRUE(result.X_ES.p.allFinite());
-      EXPECT_TRUE(result.load_fraction < 1.0 || result.bend >= kPi / 4.0);
+      EXPECT_TRUE(result.load_fraction < 1.0 || result.bend >= pi / 4.0);
     }
   }
 }
@@ -133,7 +133,7 @@ TEST(Settle, TwistsAsTheClosedFormSaysUpToARightAngle) {
   // Torsion by a weight beside a horizontal axis, every other direction rigid: (k/2) sin(2 a) = m g L cos(a), so
   // sin(a) = m g L / k while that is below 1; heavier loads hang straight down, held by gravity alone.
   HeldLoad load;
-  load.R_WE = exp_rotation(Vector3(-0.5 * kPi, 0.0, 0.0));  // Ez along Wy, Ex along Wx
+  load.R_WE = exp_rotation(Vector3(-0.5 * pi, 0.0, 0.0));  // Ez along Wy, Ex along Wx
   load.p_SScm = Vector3(0.1, 0.0, 0.0);
   load.stiffness = as_matrix({1e9, 1e9, 1e6, 3.0, 0.0});
   for (const double share : {0.1, 0.5, 0.9, 0.99}) {
@@ -148,7 +148,7 @@ TEST(Settle, TwistsAsTheClosedFormSaysUpToARightAngle) {
   load.mass = 1.01 * 3.0 / (9.81 * 0.1);
   const SettleResult beyond = settle(load);
   EXPECT_EQ(beyond.status, SettleStatus::Converged);
-  EXPECT_NEAR(angle_between(beyond.H.R, Matrix3::Identity()), 0.5 * kPi, 1e-3);
+  EXPECT_NEAR(angle_between(beyond.H.R, Matrix3::Identity()), 0.5 * pi, 1e-3);
 }
 
 TEST(Settle, RefusesWhatIsNotALoad) {

@@ -6,6 +6,7 @@
 namespace snug::cup {
 namespace {
 
+using test::difference;
 using test::random_pose;
 using test::random_stiffness;
 using test::random_vector;
@@ -49,11 +50,6 @@ physics::ElementQuery moved(const Scene& s, const Vector6& x, const Vector6& v) 
   q.X_WB.p = q.p_WBcm - arm;
   q.V_WB = {v_cm - w.cross(arm), w};
   return q;
-}
-
-template <class F>
-auto difference(const F& f, double h) -> decltype(f(h)) {
-  return ((8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h));
 }
 
 TEST(SuctionCup, StiffnessAndDampingAreTheDerivativesOfItsWrenchWhileEverythingMoves) {

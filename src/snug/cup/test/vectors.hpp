@@ -72,4 +72,10 @@ inline Matrix6 random_stiffness(Rng& rng) {
   return scale.asDiagonal() * spd * scale.asDiagonal();
 }
 
+/// Central difference of fourth order of f at zero.
+template <class F>
+auto difference(const F& f, double h) -> decltype(f(h)) {
+  return ((8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h));
+}
+
 }  // namespace snug::cup::test

@@ -15,13 +15,13 @@ namespace {
 using test::at;
 using test::collide_once;
 using test::features;
+using test::kRounding;
+using test::kTable;
 using test::least_phi;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 // Sums of a few numbers below 1 m.
-constexpr double kRounding = 1e-15;
 
-const Shape kTable = Box{{0.2, 0.2, 0.05}};
 const Shape kBox = Box{{0.1, 0.08, 0.05}};
 
 TEST(BoxBox, FlatOnTableTouchesAtItsFourLowerCorners) {
@@ -41,7 +41,7 @@ TEST(BoxBox, FlatOnTableTouchesAtItsFourLowerCorners) {
 
 TEST(BoxBox, TurnedOnItsLikeTouchesAtAnOctagonOfTheRightArea) {
   const Shape cube = Box{{0.1, 0.1, 0.1}};
-  const Manifold m = collide_once(cube, at(0, 0, 0), cube, at(0, 0, 0.2, {0, 0, kPi / 4}), 1e-3);
+  const Manifold m = collide_once(cube, at(0, 0, 0), cube, at(0, 0, 0.2, {0, 0, pi / 4}), 1e-3);
   ASSERT_EQ(m.count, 8);
   std::vector<Vector3> corners;
   for (const ManifoldPoint& point : m.points) corners.push_back(point.p_WA);
@@ -78,8 +78,8 @@ TEST(BoxBox, CrossedEdgesTouchAtOnePoint) {
   const Shape cube = Box{{0.1, 0.1, 0.1}};
   // Upper edge of A along x, lower edge of B along y, both boxes on edge.
   const double diagonal = 0.1 * std::numbers::sqrt2;
-  const Manifold m = collide_once(cube, at(0, 0, 0, {kPi / 4, 0, 0}), cube,
-                                  at(0.02, 0.03, 2 * diagonal - 1e-3, {0, kPi / 4, 0}), 1e-3);
+  const Manifold m =
+      collide_once(cube, at(0, 0, 0, {pi / 4, 0, 0}), cube, at(0.02, 0.03, 2 * diagonal - 1e-3, {0, pi / 4, 0}), 1e-3);
   ASSERT_EQ(m.count, 1);
   EXPECT_NEAR((m.n_AB_W - Vector3::UnitZ()).norm(), 0.0, 1e-15);
   EXPECT_NEAR(m.points[0].phi, -1e-3, kRounding);
@@ -142,7 +142,7 @@ TEST(BoxBox, FaceLeaningOnARimKeepsBothEndsOfTheRimWhileItRocks) {
   const Shape wall = Box{{0.005, 0.2, 0.1}};
   const double rock = 0.004;
   for (const double gap : {-1e-4, 5e-4}) {  // overlapping at one end, and apart
-    const Matrix3 R = exp_rotation({0, kPi / 6, 0}) * exp_rotation({rock, 0, 0});
+    const Matrix3 R = exp_rotation({0, pi / 6, 0}) * exp_rotation({rock, 0, 0});
     const Pose X_WB{R, Vector3(0.005, 0, 0.1) + R * Vector3(0, 0, 0.05 + gap)};
     const Manifold m = collide_once(wall, at(0, 0, 0), kBox, X_WB, 2e-3);
     ASSERT_EQ(m.count, 2) << gap;

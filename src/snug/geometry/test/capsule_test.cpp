@@ -12,13 +12,13 @@ namespace {
 
 using test::at;
 using test::collide_once;
+using test::kAlongX;
+using test::kRounding;
+using test::kTable;
 using test::least_phi;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kRounding = 1e-15;  // sums of a few numbers below 1 m
-const Shape kTable = Box{{0.2, 0.2, 0.05}};
+using std::numbers::pi;
 const Shape kCapsule = Capsule{0.1, 0.02};
-const Vector3 kAlongX{0, kPi / 2, 0};
 
 TEST(BoxCapsule, LyingOnAFaceTouchesAtTwoPoints) {
   const Manifold m = collide_once(kTable, at(0, 0, 0), kCapsule, at(0.02, 0, 0.069, kAlongX), 1e-3);
@@ -41,7 +41,7 @@ TEST(BoxCapsule, HangingOverTheRimTouchesAtItsEndAndAtTheRim) {
 
 TEST(BoxCapsule, TiltedTouchesFaceWithItsLowerEndAndTheOtherEndStaysApart) {
   const double tilt = 5e-3;
-  const Manifold m = collide_once(kTable, at(0, 0, 0), kCapsule, at(0, 0, 0.07, {0, kPi / 2 + tilt, 0}), 2e-3);
+  const Manifold m = collide_once(kTable, at(0, 0, 0), kCapsule, at(0, 0, 0.07, {0, pi / 2 + tilt, 0}), 2e-3);
   ASSERT_EQ(m.count, 2);
   EXPECT_NEAR(least_phi(m), -0.1 * std::sin(tilt), kRounding);
   // The upper end meets the normal through its round wall, r / cos(tilt) from the axis.
@@ -59,7 +59,7 @@ TEST(BoxCapsule, StandingTouchesAtOnePointBelowItsEnd) {
 TEST(BoxCapsule, AgainstAnEdgeTouchesAtOnePointAlongTheShortestLine) {
   // Axis parallel to y, outside the upper edge at 45 degrees.
   const double off = 0.02 / std::numbers::sqrt2;
-  const Manifold m = collide_once(kTable, at(0, 0, 0), kCapsule, at(0.2 + off, 0, 0.05 + off, {kPi / 2, 0, 0}), 1e-3);
+  const Manifold m = collide_once(kTable, at(0, 0, 0), kCapsule, at(0.2 + off, 0, 0.05 + off, {pi / 2, 0, 0}), 1e-3);
   ASSERT_EQ(m.count, 1);
   EXPECT_NEAR(m.points[0].phi, 0.0, kRounding);
   EXPECT_NEAR((m.n_AB_W - Vector3(1, 0, 1).normalized()).norm(), 0.0, 1e-14);
@@ -96,7 +96,7 @@ TEST(HullCapsule, AgreesWithTheBoxThatTheHullIs) {
     corners.emplace_back((v & 1) != 0 ? 0.2 : -0.2, (v & 2) != 0 ? 0.2 : -0.2, (v & 4) != 0 ? 0.05 : -0.05);
   }
   const Shape hull = make_convex_hull(corners).value();
-  const Pose X_WB = at(0.1, 0.02, 0.0699, {0.1, kPi / 2 + 1e-3, 0.2});
+  const Pose X_WB = at(0.1, 0.02, 0.0699, {0.1, pi / 2 + 1e-3, 0.2});
   const Manifold a = collide_once(kTable, at(0, 0, 0), kCapsule, X_WB, 1e-3);
   const Manifold b = collide_once(hull, at(0, 0, 0), kCapsule, X_WB, 1e-3);
   ASSERT_GT(a.count, 0);
@@ -106,7 +106,7 @@ TEST(HullCapsule, AgreesWithTheBoxThatTheHullIs) {
 
 TEST(CapsuleCapsule, CrossedTouchWhereTheAxesAreNearest) {
   const Manifold m =
-      collide_once(kCapsule, at(0, 0, 0, kAlongX), kCapsule, at(0.03, 0.02, 0.0401, {kPi / 2, 0, 0}), 1e-3);
+      collide_once(kCapsule, at(0, 0, 0, kAlongX), kCapsule, at(0.03, 0.02, 0.0401, {pi / 2, 0, 0}), 1e-3);
   ASSERT_EQ(m.count, 1);
   EXPECT_NEAR(m.points[0].phi, 1e-4, kRounding);
   EXPECT_NEAR((m.n_AB_W - Vector3::UnitZ()).norm(), 0.0, 1e-13);
@@ -114,7 +114,7 @@ TEST(CapsuleCapsule, CrossedTouchWhereTheAxesAreNearest) {
 }
 
 TEST(CapsuleCapsule, WithCrossingAxesStillHasADirection) {
-  const Manifold m = collide_once(kCapsule, at(0, 0, 0, kAlongX), kCapsule, at(0, 0, 0, {kPi / 2, 0, 0}), 0.0);
+  const Manifold m = collide_once(kCapsule, at(0, 0, 0, kAlongX), kCapsule, at(0, 0, 0, {pi / 2, 0, 0}), 0.0);
   ASSERT_EQ(m.count, 1);
   EXPECT_NEAR(m.points[0].phi, -0.04, kRounding);
   EXPECT_NEAR(std::abs(m.n_AB_W.z()), 1.0, 1e-14);

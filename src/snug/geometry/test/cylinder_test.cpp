@@ -14,23 +14,23 @@ namespace {
 
 using test::at;
 using test::collide_once;
+using test::kAlongX;
+using test::kTable;
 using test::least_phi;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kRounding = 1e-14;  // sums and roots of numbers below 1 m
-const Shape kTable = Box{{0.2, 0.2, 0.05}};
+using std::numbers::pi;
+constexpr double kCurvedRounding = 1e-14;  // sums and roots of numbers below 1 m
 const Shape kCylinder = Cylinder{0.1, 0.03};
-const Vector3 kAlongX{0, kPi / 2, 0};
 
 TEST(Cylinder, LyingOnAFaceTouchesAlongItsSide) {
   const Manifold m = collide_once(kTable, at(0, 0, 0), kCylinder, at(0.02, 0, 0.079, kAlongX), 1e-3);
   ASSERT_EQ(m.count, 2);
-  EXPECT_NEAR((m.n_AB_W - Vector3::UnitZ()).norm(), 0.0, kRounding);
+  EXPECT_NEAR((m.n_AB_W - Vector3::UnitZ()).norm(), 0.0, kCurvedRounding);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_NEAR(m.points[i].phi, -1e-3, kRounding);
-    EXPECT_NEAR(std::abs(m.points[i].p_WA.x() - 0.02), 0.1, kRounding);
-    EXPECT_NEAR(m.points[i].p_WA.y(), 0.0, kRounding);
-    EXPECT_NEAR(m.points[i].p_WA.z(), 0.05, kRounding);
+    EXPECT_NEAR(m.points[i].phi, -1e-3, kCurvedRounding);
+    EXPECT_NEAR(std::abs(m.points[i].p_WA.x() - 0.02), 0.1, kCurvedRounding);
+    EXPECT_NEAR(m.points[i].p_WA.y(), 0.0, kCurvedRounding);
+    EXPECT_NEAR(m.points[i].p_WA.z(), 0.05, kCurvedRounding);
   }
 }
 
@@ -38,8 +38,8 @@ TEST(Cylinder, StandingOnAFaceTouchesOnItsRim) {
   const Manifold m = collide_once(kTable, at(0, 0, 0), kCylinder, at(0.02, 0.01, 0.1499), 1e-3);
   ASSERT_EQ(m.count, kMaxManifoldPoints);
   for (std::size_t i = 0; i < kMaxManifoldPoints; ++i) {
-    EXPECT_NEAR(m.points[i].phi, -1e-4, kRounding);
-    EXPECT_NEAR((m.points[i].p_WB - Vector3(0.02, 0.01, 0.0499)).norm(), 0.03, kRounding);
+    EXPECT_NEAR(m.points[i].phi, -1e-4, kCurvedRounding);
+    EXPECT_NEAR((m.points[i].p_WB - Vector3(0.02, 0.01, 0.0499)).norm(), 0.03, kCurvedRounding);
   }
 }
 
@@ -47,7 +47,7 @@ TEST(Cylinder, TiltedALittleTouchesDeepestWhereItsRimIsLowest) {
   Rng rng = Rng(3).split("cylinder tilt");
   for (int i = 0; i < 200; ++i) {
     SCOPED_TRACE(i);
-    const double tilt = rng.uniform(1e-5, 0.1), heading = rng.uniform(0.0, 2.0 * kPi);
+    const double tilt = rng.uniform(1e-5, 0.1), heading = rng.uniform(0.0, 2.0 * pi);
     const Vector3 turn = tilt * Vector3(-std::sin(heading), std::cos(heading), 0.0);  // leans toward the heading
     const double lowest = 0.1 * std::cos(tilt) + 0.03 * std::sin(tilt);
     const Manifold m = collide_once(kTable, at(0, 0, 0), kCylinder, at(0, 0, 0.05 + lowest - 1e-4, turn), 1e-2);
@@ -65,27 +65,27 @@ TEST(Cylinder, TiltedALittleTouchesDeepestWhereItsRimIsLowest) {
 
 TEST(Cylinder, LyingAcrossAnEdgeTouchesAtOnePoint) {
   // A bar along x over the edge of the table that runs along y, turned by 45 degrees about y.
-  const Vector3 turn{0, kPi / 4, 0};
+  const Vector3 turn{0, pi / 4, 0};
   const Shape bar = Cylinder{0.5, 0.02};
   const Vector3 edge(0.2, 0.0, 0.05);
   const Vector3 n = Vector3(1, 0, 1).normalized();
-  const Pose X_WB{exp_rotation({0, 3 * kPi / 4, 0}), edge + (0.02 + 1e-3) * n};
+  const Pose X_WB{exp_rotation({0, 3 * pi / 4, 0}), edge + (0.02 + 1e-3) * n};
   const Manifold m = collide_once(kTable, at(0, 0, 0), bar, X_WB, 2e-3);
   ASSERT_EQ(m.count, 1);
-  EXPECT_NEAR(m.points[0].phi, 1e-3, kRounding);
+  EXPECT_NEAR(m.points[0].phi, 1e-3, kCurvedRounding);
   EXPECT_NEAR((m.points[0].p_WA - edge).norm(), 0.0, 1e-12);
 }
 
 TEST(Cylinder, PipesSideBySideTouchAtTwoPointsAndCrossedAtOne) {
   const Manifold beside = collide_once(kCylinder, at(0, 0, 0, kAlongX), kCylinder, at(0.05, 0, 0.0599, kAlongX), 1e-3);
   ASSERT_EQ(beside.count, 2);
-  EXPECT_NEAR((beside.n_AB_W - Vector3::UnitZ()).norm(), 0.0, kRounding);
-  EXPECT_NEAR(std::min(beside.points[0].p_WA.x(), beside.points[1].p_WA.x()), -0.05, kRounding);
-  EXPECT_NEAR(std::max(beside.points[0].p_WA.x(), beside.points[1].p_WA.x()), 0.1, kRounding);
+  EXPECT_NEAR((beside.n_AB_W - Vector3::UnitZ()).norm(), 0.0, kCurvedRounding);
+  EXPECT_NEAR(std::min(beside.points[0].p_WA.x(), beside.points[1].p_WA.x()), -0.05, kCurvedRounding);
+  EXPECT_NEAR(std::max(beside.points[0].p_WA.x(), beside.points[1].p_WA.x()), 0.1, kCurvedRounding);
   const Manifold crossed =
-      collide_once(kCylinder, at(0, 0, 0, kAlongX), kCylinder, at(0.01, 0.02, 0.0599, {kPi / 2, 0, 0}), 1e-3);
+      collide_once(kCylinder, at(0, 0, 0, kAlongX), kCylinder, at(0.01, 0.02, 0.0599, {pi / 2, 0, 0}), 1e-3);
   ASSERT_EQ(crossed.count, 1);
-  EXPECT_NEAR(crossed.points[0].phi, -1e-4, kRounding);
+  EXPECT_NEAR(crossed.points[0].phi, -1e-4, kCurvedRounding);
   EXPECT_NEAR((crossed.points[0].p_WA - Vector3(0.01, 0.0, 0.03)).norm(), 0.0, 1e-12);
 }
 
@@ -93,9 +93,9 @@ TEST(Cylinder, StackedOnEndsTouchesWhereBothEndsAre) {
   const Manifold m = collide_once(kCylinder, at(0, 0, 0), Cylinder{0.1, 0.05}, at(0.04, 0, 0.2), 1e-3);
   ASSERT_EQ(m.count, kMaxManifoldPoints);
   for (std::size_t i = 0; i < kMaxManifoldPoints; ++i) {
-    EXPECT_NEAR(m.points[i].phi, 0.0, kRounding);
-    EXPECT_LE((m.points[i].p_WA - Vector3(0, 0, 0.1)).norm(), 0.03 + kRounding);
-    EXPECT_LE((m.points[i].p_WA - Vector3(0.04, 0, 0.1)).norm(), 0.05 + kRounding);
+    EXPECT_NEAR(m.points[i].phi, 0.0, kCurvedRounding);
+    EXPECT_LE((m.points[i].p_WA - Vector3(0, 0, 0.1)).norm(), 0.03 + kCurvedRounding);
+    EXPECT_LE((m.points[i].p_WA - Vector3(0.04, 0, 0.1)).norm(), 0.05 + kCurvedRounding);
   }
 }
 
@@ -134,7 +134,7 @@ TEST(Cylinder, BoundsAreThoseOfItsSupport) {
     const Aabb box = bounds(Cylinder{0.2, 0.05}, X);
     Vector3 upper = Vector3::Constant(-1.0);
     for (int k = 0; k < 3600; ++k) {
-      const double t = k * kPi / 1800.0;
+      const double t = k * pi / 1800.0;
       for (const double z : {-0.2, 0.2}) upper = upper.cwiseMax(X * Vector3(0.05 * std::cos(t), 0.05 * std::sin(t), z));
     }
     EXPECT_LT((box.upper - upper).cwiseAbs().maxCoeff(), 1e-7);  // 0.05 (0.05 degrees)^2
@@ -211,8 +211,8 @@ Vector3 random_turn(Rng& rng) {
   const Vector3 turn(rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-2, 2));
   const double kind = rng.uniform(0.0, 1.0);
   if (kind < 0.15) return Vector3::Zero();
-  if (kind < 0.3) return {0.5 * kPi, 0.0, 0.0};
-  if (kind < 0.4) return {0.0, 0.5 * kPi, 0.0};
+  if (kind < 0.3) return {0.5 * pi, 0.0, 0.0};
+  if (kind < 0.4) return {0.0, 0.5 * pi, 0.0};
   return turn;
 }
 

@@ -4,11 +4,16 @@
 #include <algorithm>
 #include <initializer_list>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "snug/geometry/manifold.hpp"
 
 namespace snug::geometry::test {
+
+inline constexpr double kRounding = 1e-15;  ///< sums of a few numbers below 1 m
+inline const Shape kTable = Box{{0.2, 0.2, 0.05}};
+inline const Vector3 kAlongX{0, std::numbers::pi / 2, 0};  ///< turns z to x
 
 inline Manifold collide_once(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_WB, double margin) {
   PairCache cache;

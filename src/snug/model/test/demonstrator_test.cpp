@@ -11,10 +11,7 @@
 namespace snug::model {
 namespace {
 
-const Scenario& demonstrator() {
-  static const Scenario scenario = load_scenario(test::project_file("scenarios/box-demonstrator.yaml"));
-  return scenario;
-}
+using test::demonstrator;
 
 TEST(Demonstrator, HasTheFourTypesAndEighteenBoxesOfTables8And9) {
   const Scenario& s = demonstrator();

@@ -8,13 +8,14 @@
 #include <set>
 
 #include "snug/core/input_error.hpp"
+#include "snug/model/test/scenario_text.hpp"
 
 namespace snug::model {
 namespace {
 
-const std::filesystem::path kSource = SNUG_SOURCE_DIR;
+using test::demonstrator;
 
-Scenario demonstrator() { return load_scenario(kSource / "scenarios/box-demonstrator.yaml"); }
+const std::filesystem::path kSource = SNUG_SOURCE_DIR;
 
 std::string where_of_error(std::string_view csv) {
   try {

@@ -9,7 +9,7 @@
 namespace snug::model {
 namespace {
 
-Scenario demonstrator() { return load_scenario(test::project_file("scenarios/box-demonstrator.yaml")); }
+using test::demonstrator;
 
 const Container& target_of(const Scenario& scenario) { return *find_container(scenario, scenario.target); }
 

@@ -11,10 +11,7 @@
 namespace snug::model {
 namespace {
 
-const Scenario& demonstrator() {
-  static const Scenario scenario = load_scenario(test::project_file("scenarios/box-demonstrator.yaml"));
-  return scenario;
-}
+using test::demonstrator;
 
 /// `key` of the second placement, which stands in line 3 of a text of three lines.
 struct Mistake {

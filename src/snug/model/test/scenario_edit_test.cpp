@@ -8,7 +8,7 @@
 namespace snug::model {
 namespace {
 
-Scenario demonstrator() { return load_scenario(test::project_file("scenarios/box-demonstrator.yaml")); }
+using test::demonstrator;
 
 Scenario with(const std::string& key, const std::string& value) {
   return with_values(demonstrator(), {{key, value}}, "--set");

@@ -20,6 +20,11 @@ inline std::filesystem::path project_file(const std::string& relative) {
   return std::filesystem::path(SNUG_SOURCE_DIR) / relative;
 }
 
+inline const Scenario& demonstrator() {
+  static const Scenario scenario = load_scenario(project_file("scenarios/box-demonstrator.yaml"));
+  return scenario;
+}
+
 inline std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;

@@ -15,7 +15,6 @@
 namespace snug::motion {
 namespace {
 
-constexpr double kTick = 0.008;
 constexpr int kWaitTicks = 63;  // 0.5 s / 8 ms = 62.5, rounded up
 
 Waypoint row(const std::string& name, const Vector3& p, const IO& io = {}, const Vector3& rotation = Vector3::Zero()) {

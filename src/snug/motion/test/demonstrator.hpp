@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/rng.hpp"
 #include "snug/motion/controller.hpp"
 #include "snug/motion/corrections.hpp"
 
@@ -59,6 +60,13 @@ std::string where_it_fails(Call&& call) {
     return error.where + " " + error.key;
   }
   return "no error";
+}
+
+inline constexpr double kTick = 0.008;      // s, of the demonstrator's controller
+inline constexpr double kRounding = 1e-12;  // a few operations on numbers near 1
+
+inline Vector3 random_vector(Rng& rng, double size) {
+  return {rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
 }
 
 }  // namespace snug::motion

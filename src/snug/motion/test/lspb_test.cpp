@@ -14,7 +14,7 @@
 namespace snug::motion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double log_uniform(Rng& rng, double low, double high) { return low * std::pow(high / low, rng.uniform()); }
 
@@ -35,8 +35,8 @@ Case random_case(Rng& rng) {
   Case c;
   c.limits = {0.005, log_uniform(rng, 0.01, 100.0), log_uniform(rng, 0.01, 100.0), log_uniform(rng, 0.01, 100.0),
               log_uniform(rng, 0.01, 100.0)};
-  c.X_WA = {exp_rotation(rng.uniform(0.0, kPi) * random_unit(rng)), random_unit(rng)};
-  const double angle = rng.index(8) == 0 ? 0.0 : rng.index(8) == 0 ? kPi : log_uniform(rng, 1e-6, kPi);
+  c.X_WA = {exp_rotation(rng.uniform(0.0, pi) * random_unit(rng)), random_unit(rng)};
+  const double angle = rng.index(8) == 0 ? 0.0 : rng.index(8) == 0 ? pi : log_uniform(rng, 1e-6, pi);
   const double length = rng.index(8) == 0 ? 0.0 : log_uniform(rng, 1e-6, 3.0);
   c.X_WB = {c.X_WA.R * exp_rotation(angle * random_unit(rng)), c.X_WA.p + length * random_unit(rng)};
   return c;
@@ -180,7 +180,7 @@ TEST(Lspb, GivesTheTwistOfItsPose) {
     SCOPED_TRACE(i);
     Case c = random_case(rng);
     c.limits = {0.005, 3.0, 0.5, 2.0, 1.5};
-    c.X_WB = {c.X_WA.R * exp_rotation(rng.uniform(0.1, kPi) * random_unit(rng)), c.X_WA.p + random_unit(rng)};
+    c.X_WB = {c.X_WA.R * exp_rotation(rng.uniform(0.1, pi) * random_unit(rng)), c.X_WA.p + random_unit(rng)};
     const LspbSegment segment(c.X_WA, c.X_WB, c.limits);
     const double h = 1e-5;
     const double t = rng.uniform(h, segment.duration() - h);
@@ -261,14 +261,14 @@ TEST(Lspb, OfTinyMovesIsFiniteAndExact) {
 TEST(Lspb, OfAHalfTurnChoosesOneAxisAlways) {
   for (const Vector3& axis :
        {Vector3(0.0, 0.0, 1.0), Vector3(0.0, -1.0, 0.0), Vector3(1.0, -2.0, 0.5).normalized().eval()}) {
-    const Pose X_WB{exp_rotation(kPi * axis), Vector3::Zero()};
-    const Pose X_WB_other{exp_rotation(-kPi * axis), Vector3::Zero()};
+    const Pose X_WB{exp_rotation(pi * axis), Vector3::Zero()};
+    const Pose X_WB_other{exp_rotation(-pi * axis), Vector3::Zero()};
     const LspbSegment one(Pose{}, X_WB, {});
     const LspbSegment other(Pose{}, X_WB_other, {});
-    EXPECT_NEAR(one.rotation().length, kPi, 1e-12);
+    EXPECT_NEAR(one.rotation().length, pi, 1e-12);
     EXPECT_NEAR(std::abs(one.axis_W().dot(axis)), 1.0, 1e-12);
     EXPECT_LT((one.axis_W() - other.axis_W()).norm(), 1e-12);
-    EXPECT_NEAR(angle_between(one.sample(0.5 * one.duration()).X_WE.R, X_WB.R), 0.5 * kPi, 1e-9);
+    EXPECT_NEAR(angle_between(one.sample(0.5 * one.duration()).X_WE.R, X_WB.R), 0.5 * pi, 1e-9);
   }
 }
 

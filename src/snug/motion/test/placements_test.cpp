@@ -15,7 +15,7 @@
 namespace snug::motion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kRimW = -0.03;
 const Pose kX_WT{Matrix3::Identity(), Vector3(0.505, -0.35, -0.282)};
 
@@ -24,7 +24,7 @@ PlacementSettings demonstrator_placement_settings() {
   settings.X_WT = kX_WT;
   settings.rim_height = 0.252;
   settings.obstacle_top = 0.0;
-  settings.X_WE_home = {exp_rotation(Vector3(0.0, -kPi, 0.0)), Vector3(-0.146, -0.69, 0.206)};
+  settings.X_WE_home = {exp_rotation(Vector3(0.0, -pi, 0.0)), Vector3(-0.146, -0.69, 0.206)};
   return settings;
 }
 
@@ -51,9 +51,8 @@ Job two_boxes() {
   const Vector3 small(0.17, 0.236, 0.095);
   const Vector3 tall(0.205, 0.3, 0.2);
   Job job;
-  job.picks = {standing("BOX027", small, 0.0), standing("BOX013", tall, 0.5 * kPi)};
-  job.placements = {lying("BOX027", small, -0.05, -0.1, 0.0, 0.5 * kPi),
-                    lying("BOX013", tall, -0.05, -0.1, 0.095, 2.5)};
+  job.picks = {standing("BOX027", small, 0.0), standing("BOX013", tall, 0.5 * pi)};
+  job.placements = {lying("BOX027", small, -0.05, -0.1, 0.0, 0.5 * pi), lying("BOX013", tall, -0.05, -0.1, 0.095, 2.5)};
   return job;
 }
 
@@ -169,7 +168,7 @@ TEST(Placements, StopAboveTheNeighboursBeforeGoingDownBetweenThem) {
 
 TEST(Placements, TurnABoxThatLiesOnItsSideAboutTheVerticalOnly) {
   Job job = two_boxes();
-  const Matrix3 R_side = exp_rotation(Vector3(0.5 * kPi, 0.0, 0.0));  // Py up
+  const Matrix3 R_side = exp_rotation(Vector3(0.5 * pi, 0.0, 0.0));  // Py up
   job.picks[0].X_WP.R = exp_rotation(Vector3(0.0, 0.0, 1.0)) * R_side;
   job.picks[0].X_WP.p.z() = -0.105 + 0.5 * job.picks[0].size.y();
   job.placements[0].X_TP.R = exp_rotation(Vector3(0.0, 0.0, -2.0)) * R_side;
@@ -187,7 +186,7 @@ TEST(Placements, AreRefusedWithTheReason) {
   job = two_boxes();
   job.placements[1] = job.placements[0];
   EXPECT_EQ(refusal_of(job), NoProgram::PlacedTwice);
-  for (const Vector3& turn : {Vector3(0.5 * kPi, 0.0, 0.0), Vector3(0.0, kPi, 0.0), Vector3(0.0, -0.5 * kPi, 0.0)}) {
+  for (const Vector3& turn : {Vector3(0.5 * pi, 0.0, 0.0), Vector3(0.0, pi, 0.0), Vector3(0.0, -0.5 * pi, 0.0)}) {
     job = two_boxes();
     job.placements[0].X_TP.R = exp_rotation(turn);
     EXPECT_EQ(refusal_of(job), NoProgram::NeedsFlip);

@@ -5,16 +5,17 @@
 
 #include <numbers>
 
+#include "snug/motion/test/demonstrator.hpp"
+
 namespace snug::motion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kRounding = 1e-12;  // a few operations on numbers near 1
+using std::numbers::pi;
 
 /// A cup without sag of length 0.05 m in the middle of the upper face of a box that stands upright.
 ToolFor rigid(const Vector3& size) {
   return [size](const Pose& X_WP) {
-    return X_WP * Pose{exp_rotation(Vector3(0.0, kPi, 0.0)), Vector3(0.0, 0.0, 0.5 * size.z() + 0.05)};
+    return X_WP * Pose{exp_rotation(Vector3(0.0, pi, 0.0)), Vector3(0.0, 0.0, 0.5 * size.z() + 0.05)};
   };
 }
 
@@ -46,8 +47,8 @@ TEST(FlipRows, EndFlatOnTheSideThatFacedAway) {
   intent.size = Vector3(0.2, 0.12, 0.1);
   intent.p_WF = Vector3(0.3, 0.1, 0.02);
   intent.press = 0.0;
-  intent.tilt = 0.5 * kPi;
-  intent.X_PE = {exp_rotation(Vector3(0.0, kPi, 0.0)), Vector3(0.0, 0.0, 0.1)};
+  intent.tilt = 0.5 * pi;
+  intent.X_PE = {exp_rotation(Vector3(0.0, pi, 0.0)), Vector3(0.0, 0.0, 0.1)};
   intent.tool_for = rigid(intent.size);
   const auto rows = flip_rows(intent);
   ASSERT_EQ(rows.size(), 7u);

@@ -7,18 +7,18 @@
 #include <numbers>
 
 #include "snug/core/rng.hpp"
+#include "snug/motion/test/demonstrator.hpp"
 #include "snug/motion/unwinding.hpp"
 
 namespace snug::motion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kRounding = 1e-12;  // a few operations on numbers near 1
+using std::numbers::pi;
 
 TEST(SidePickRotation, PointsAtTheFaceAndIsUprightAgainWhenTheFaceIsUp) {
   Rng rng(2);
   for (int i = 0; i < 50; ++i) {
-    const double heading = rng.uniform(-kPi, kPi), yaw = rng.uniform(-kPi, kPi), incline = rng.uniform(0.0, 0.3);
+    const double heading = rng.uniform(-pi, pi), yaw = rng.uniform(-pi, pi), incline = rng.uniform(0.0, 0.3);
     const Vector3 face(std::cos(heading), std::sin(heading), 0.0);
     const Matrix3 R_WE = side_pick_rotation(face, yaw, incline);
     EXPECT_NEAR(R_WE.col(2).dot(-face), std::cos(incline), kRounding);
@@ -26,7 +26,7 @@ TEST(SidePickRotation, PointsAtTheFaceAndIsUprightAgainWhenTheFaceIsUp) {
     // The turn that brings the face up brings the tool, pressed squarely, upright to the yaw asked for.
     const Matrix3 R_WE_up = face_up(side_pick_rotation(face, yaw, 0.0), face);
     ASSERT_TRUE(yaw_of(R_WE_up));
-    EXPECT_NEAR(std::remainder(*yaw_of(R_WE_up) - yaw, 2.0 * kPi), 0.0, 1e-9);
+    EXPECT_NEAR(std::remainder(*yaw_of(R_WE_up) - yaw, 2.0 * pi), 0.0, 1e-9);
     EXPECT_NEAR((face_up(Matrix3::Identity(), face) * face).z(), 1.0, kRounding);
   }
 }
@@ -77,7 +77,7 @@ TEST(SetDownRows, PutTheBoxOnTheSurfaceAndLetGo) {
   intent.size = Vector3(0.2, 0.12, 0.1);
   intent.X_WP = {Matrix3::Identity(), Vector3(0.3, 0.1, 0.05)};
   intent.tool_for = [](const Pose& X_WP) {
-    return X_WP * Pose{exp_rotation(Vector3(0.0, kPi, 0.0)), Vector3(0.0, 0.0, 0.1)};
+    return X_WP * Pose{exp_rotation(Vector3(0.0, pi, 0.0)), Vector3(0.0, 0.0, 0.1)};
   };
   const auto rows = set_down_rows(intent);
   ASSERT_EQ(rows.size(), 5u);

@@ -6,15 +6,10 @@
 #include <cmath>
 
 #include "snug/core/rng.hpp"
+#include "snug/motion/test/demonstrator.hpp"
 
 namespace snug::motion {
 namespace {
-
-constexpr double kTick = 0.008;
-
-Vector3 random_vector(Rng& rng, double size) {
-  return {rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
-}
 
 struct Ends {
   ToolState start;

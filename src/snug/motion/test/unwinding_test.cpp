@@ -11,11 +11,11 @@
 namespace snug::motion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Matrix3 pointing_down(double yaw, double tilt = 0.0) {
   return exp_rotation(Vector3(tilt, 0.0, 0.0)) * exp_rotation(Vector3(0.0, 0.0, yaw)) *
-         exp_rotation(Vector3(0.0, kPi, 0.0));
+         exp_rotation(Vector3(0.0, pi, 0.0));
 }
 
 Waypoint row_at(double yaw, double tilt = 0.0) {
@@ -34,43 +34,43 @@ TEST(YawOf, IsThatOfAToolThatPointsDownAndNothingElse) {
     EXPECT_TRUE(upright_tool(yaw).isApprox(pointing_down(yaw), 1e-12));
     EXPECT_NEAR(*yaw_of(pointing_down(yaw, 0.2)), yaw, 0.011) << "tilted a little";  // up to (1 - cos 0.2) / 2
   }
-  EXPECT_FALSE(yaw_of(pointing_down(0.3, 0.5 * kPi)));
+  EXPECT_FALSE(yaw_of(pointing_down(0.3, 0.5 * pi)));
   EXPECT_FALSE(yaw_of(Matrix3::Identity()));
 }
 
 TEST(WithTurns, AddsNothingToTurnsThatAreSure) {
-  const auto rows = with_turns(row_at(-1.2), {row_at(1.2), row_at(-0.5), row_at(-0.5, kPi / 2), row_at(1.5)}, 0.0);
+  const auto rows = with_turns(row_at(-1.2), {row_at(1.2), row_at(-0.5), row_at(-0.5, pi / 2), row_at(1.5)}, 0.0);
   EXPECT_EQ(rows.size(), 4u);
 }
 
 TEST(WithTurns, TurnsOnTheSpotOverTheNeutralSideWhenTheTurnIsHalfATurn) {
-  Waypoint before = row_at(-0.5 * kPi);
+  Waypoint before = row_at(-0.5 * pi);
   before.io.vacuum = true;
   for (const double off : {-0.02, 0.0, 0.02}) {
-    const auto rows = with_turns(before, {row_at(0.5 * kPi + off)}, 0.0);
+    const auto rows = with_turns(before, {row_at(0.5 * pi + off)}, 0.0);
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(rows[0].name, "Row_turn");
     EXPECT_TRUE(rows[0].io.vacuum);
     EXPECT_EQ(rows[0].X_WE.p, before.X_WE.p);
     EXPECT_NEAR(*yaw_of(rows[0].X_WE.R), 0.5 * off, 1e-12);
-    EXPECT_NEAR(turn_between(before, rows[0]) + turn_between(rows[0], rows[1]), kPi + off, 1e-12);
+    EXPECT_NEAR(turn_between(before, rows[0]) + turn_between(rows[0], rows[1]), pi + off, 1e-12);
   }
   // With another neutral the other way.
-  const auto other = with_turns(row_at(0.5 * kPi), {row_at(-0.5 * kPi)}, kPi);
+  const auto other = with_turns(row_at(0.5 * pi), {row_at(-0.5 * pi)}, pi);
   ASSERT_EQ(other.size(), 2u);
-  EXPECT_NEAR(std::abs(*yaw_of(other[0].X_WE.R)), kPi, 1e-12);
+  EXPECT_NEAR(std::abs(*yaw_of(other[0].X_WE.R)), pi, 1e-12);
 }
 
 TEST(WithTurns, TurnsOnTheWayWhereThatIsWanted) {
-  const Waypoint before = row_at(-0.6 * kPi);
-  Waypoint goal = row_at(0.6 * kPi);
+  const Waypoint before = row_at(-0.6 * pi);
+  Waypoint goal = row_at(0.6 * pi);
   goal.X_WE.p += Vector3(1.0, -0.4, 0.2);
   goal.io.vacuum = true;
   const auto rows = with_turns(before, {goal}, 0.0, true);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_TRUE(rows[0].io.vacuum) << "it is already on the way to the row";
   EXPECT_TRUE(rows[0].X_WE.p.isApprox(before.X_WE.p + Vector3(0.5, -0.2, 0.1)));
-  EXPECT_NEAR(turn_between(before, rows[0]), 0.6 * kPi, 1e-12);
+  EXPECT_NEAR(turn_between(before, rows[0]), 0.6 * pi, 1e-12);
   EXPECT_EQ(rows[1].X_WE, goal.X_WE);
 }
 
@@ -91,16 +91,16 @@ TEST(WithTurns, KeepsTheToolUnwoundOverAnyProgram) {
     Waypoint before = row_at(neutral);
     double accumulated = 0.0;
     for (int i = 0; i < 500; ++i) {
-      const double yaw = neutral + rng.uniform(-0.99 * kPi, 0.99 * kPi);
+      const double yaw = neutral + rng.uniform(-0.99 * pi, 0.99 * pi);
       for (const Waypoint& row : with_turns(before, {row_at(yaw, rng.uniform(-0.1, 0.1))}, neutral)) {
         const double turn = turn_between(before, row);
-        EXPECT_LT(std::abs(turn), 155.0 * kPi / 180.0);
+        EXPECT_LT(std::abs(turn), 155.0 * pi / 180.0);
         accumulated += turn;
         before = row;
       }
       // Little tilts make the shorter way a little different from a turn about the vertical: not a whole one.
-      const double wanted = std::remainder(yaw - neutral, 2.0 * kPi);
-      EXPECT_NEAR(std::remainder(*yaw_of(before.X_WE.R) - neutral, 2.0 * kPi), wanted, 0.02);
+      const double wanted = std::remainder(yaw - neutral, 2.0 * pi);
+      EXPECT_NEAR(std::remainder(*yaw_of(before.X_WE.R) - neutral, 2.0 * pi), wanted, 0.02);
       EXPECT_LT(std::abs(accumulated), 4.0 + 1e-3 * i);
     }
   }

@@ -30,10 +30,6 @@ std::string with_column(int column, const std::string& value) {
   return text.substr(0, begin) + value + text.substr(std::min(text.find(',', begin), text.size()));
 }
 
-Vector3 random_vector(Rng& rng, double size) {
-  return {rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
-}
-
 double largest_difference(const Pose& a, const Pose& b) {
   return std::max((a.p - b.p).cwiseAbs().maxCoeff(), (a.R - b.R).cwiseAbs().maxCoeff());
 }

@@ -8,11 +8,12 @@
 #include <tuple>
 
 #include "snug/core/rng.hpp"
+#include "snug/packing/test/scene.hpp"
 
 namespace snug::packing::internal {
 namespace {
 
-constexpr int kCell = 100;  ///< ticks; everything here is a multiple, so the map is exact
+using packing::test::kCell;
 
 Rules small_rules(double min_support) {
   Rules rules;

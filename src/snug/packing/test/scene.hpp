@@ -11,6 +11,8 @@
 
 namespace snug::packing::test {
 
+inline constexpr int kCell = 100;  ///< ticks; small layouts are of multiples of it, so that their maps are exact
+
 inline model::Scenario demonstrator() {
   return model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
 }

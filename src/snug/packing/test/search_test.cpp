@@ -5,10 +5,12 @@
 
 #include <algorithm>
 
+#include "snug/packing/test/scene.hpp"
+
 namespace snug::packing::internal {
 namespace {
 
-constexpr int kCell = 100;  ///< ticks
+using packing::test::kCell;
 
 Policy plain_policy() { return {default_weights(), WasteTable({kCell}, 10 * kCell), WasteTable({kCell}, 10 * kCell)}; }
 

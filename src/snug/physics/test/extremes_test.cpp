@@ -8,7 +8,7 @@
 namespace snug::physics::test {
 namespace {
 
-const Vector3 kBox(0.1, 0.1, 0.1);
+const Vector3 kCube(0.1, 0.1, 0.1);
 
 TEST(Fast, BoxesDoNotPassThroughAThinWallAtAnyStepThatTheIssueNames) {
   for (const double dt : {1e-3, 4e-3, 20e-3}) {
@@ -16,7 +16,7 @@ TEST(Fast, BoxesDoNotPassThroughAThinWallAtAnyStepThatTheIssueNames) {
       for (const double start : {-0.3, -0.5, -0.523}) {
         SCOPED_TRACE(testing::Message() << "dt " << dt << ", speed " << speed << ", start " << start);
         WorldModel model = world({0.2, 0.0, 0.0, 0.0}, {0.2, 0.0, 0.0, 0.0});
-        model.bodies = {fixed_box({0.005, 2.0, 2.0}, Vector3::Zero()), box(kBox, 0.5, {start, 0.0, 0.0})};
+        model.bodies = {fixed_box({0.005, 2.0, 2.0}, Vector3::Zero()), box(kCube, 0.5, {start, 0.0, 0.0})};
         model.gravity.setZero();
         model.settings.dt = dt;
         model.finalize();
@@ -37,7 +37,7 @@ TEST(Fast, BoxesThatMeetDoNotPassThroughEachOther) {
     for (const double speed : {2.0, 20.0}) {
       SCOPED_TRACE(testing::Message() << "dt " << dt << ", speed " << speed);
       WorldModel model = world({0.2, 0.0, 0.0, 0.0}, {});
-      model.bodies = {box(kBox, 0.5, {-0.5, 0.0, 0.0}), box(kBox, 0.5, {0.5, 0.0, 0.0})};
+      model.bodies = {box(kCube, 0.5, {-0.5, 0.0, 0.0}), box(kCube, 0.5, {0.5, 0.0, 0.0})};
       model.gravity.setZero();
       model.settings.dt = dt;
       model.finalize();
@@ -71,7 +71,7 @@ TEST(MassRatio, HeavyOnLightStandsWhereItWasPut) {
   for (const double ratio : {1e-4, 1e-2, 1e2, 1e4}) {
     SCOPED_TRACE(ratio);
     const WorldModel model =
-        on_plane({0.3, 0.0, 0.0, 0.0}, {box(kBox, 0.1, {0.0, 0.0, 0.05}), box(kBox, 0.1 * ratio, {0.01, 0.0, 0.15})});
+        on_plane({0.3, 0.0, 0.0, 0.0}, {box(kCube, 0.1, {0.0, 0.0, 0.05}), box(kCube, 0.1 * ratio, {0.01, 0.0, 0.15})});
     Simulation run(model);
     for (int i = 0; i < 500; ++i) ASSERT_EQ(run.step().status, StepStatus::Converged) << i;
     Vector3 force = Vector3::Zero();
@@ -92,11 +92,11 @@ TEST(EmptyWorld, Steps) {
   Simulation nothing(model);
   EXPECT_EQ(nothing.step().status, StepStatus::Converged);
   EXPECT_EQ(nothing.state.step_index, 1);
-  model.bodies = {fixed_box(kBox, Vector3::Zero())};
+  model.bodies = {fixed_box(kCube, Vector3::Zero())};
   model.finalize();
   Simulation fixed(model);
   EXPECT_EQ(fixed.step().status, StepStatus::Converged);
-  BodyModel point = box(kBox, 1.0, {0.0, 0.0, 1.0});
+  BodyModel point = box(kCube, 1.0, {0.0, 0.0, 1.0});
   point.geoms.clear();  // falls through everything
   model.bodies.push_back(point);
   model.finalize();
@@ -108,9 +108,9 @@ TEST(EmptyWorld, Steps) {
 }
 
 TEST(Absent, BodiesDoNotMoveTouchOrCount) {
-  const WorldModel model = on_plane(
-      {0.2, 0.0, 0.0, 0.0}, {box(kBox, 0.5, {0.0, 0.0, 0.05}), box(kBox, 0.5, {0.0, 0.0, 0.12}),  // overlaps the first
-                             box(kBox, 0.5, {0.0, 0.0, 0.3})});
+  const WorldModel model = on_plane({0.2, 0.0, 0.0, 0.0}, {box(kCube, 0.5, {0.0, 0.0, 0.05}),
+                                                           box(kCube, 0.5, {0.0, 0.0, 0.12}),  // overlaps the first
+                                                           box(kCube, 0.5, {0.0, 0.0, 0.3})});
   Simulation run(model);
   set_present(run.state, BodyId{2}, false);
   const double energy = potential_energy(model, run.state);
@@ -134,7 +134,7 @@ TEST(ForcedOverlap, BetweenAWallAndAKinematicPusherDoesNotExplode) {
   WorldModel model = world({0.3, 0.0, 0.0, 0.0}, {0.3, 0.0, 0.0, 0.0});
   BodyModel press = fixed_box({0.5, 0.5, 0.05}, {0.0, 0.0, 0.1751});
   press.kind = BodyKind::Kinematic;
-  model.bodies = {fixed_box({1.0, 1.0, 0.1}, {0.0, 0.0, -0.05}), press, box(kBox, 0.5, {0.0, 0.0, 0.05})};
+  model.bodies = {fixed_box({1.0, 1.0, 0.1}, {0.0, 0.0, -0.05}), press, box(kCube, 0.5, {0.0, 0.0, 0.05})};
   model.finalize();
   Simulation run(model);
   double fastest = 0.0;
@@ -151,7 +151,7 @@ TEST(ForcedOverlap, BetweenAWallAndAKinematicPusherDoesNotExplode) {
   EXPECT_LT(fastest, 0.2);  // twice the press, until the overlap is nearly half of the box
 }
 
-struct Spring final : ForceElement {
+struct CentringSpring final : ForceElement {
   [[nodiscard]] ElementResponse evaluate(const ElementQuery& query) const noexcept override {
     ElementResponse response;
     response.wrench.head<3>() = -200.0 * (query.p_WBcm - query.X_WE.p);
@@ -161,12 +161,12 @@ struct Spring final : ForceElement {
 };
 
 TEST(ForceElements, OfManyOnOneBodyAddUp) {
-  const Spring spring;
+  const CentringSpring spring;
   WorldModel model = world({}, {});
   BodyModel carrier = fixed_box({0.01, 0.01, 0.01}, {0.0, 0.0, 1.0});
   carrier.kind = BodyKind::Kinematic;
   carrier.geoms.clear();  // it is inside of the box
-  model.bodies = {carrier, box(kBox, 2.0, {0.0, 0.0, 1.0})};
+  model.bodies = {carrier, box(kCube, 2.0, {0.0, 0.0, 1.0})};
   model.finalize();
   Simulation run(model);
   const std::vector<ElementUse> uses(20, {&spring, BodyId{0}, {}, BodyId{1}});

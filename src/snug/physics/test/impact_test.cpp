@@ -10,8 +10,6 @@
 namespace snug::physics::test {
 namespace {
 
-const Vector3 kBox(0.2, 0.2, 0.1);
-
 /// Speed after a flat box hit the plane with this speed, without gravity, from a gap it closes within the step.
 double rebound(double speed, const ContactLaw& law, double gap_share, double sideways = 0.0) {
   WorldModel model = on_plane(law, {box(kBox, 0.5, {0.0, 0.0, 0.05 + gap_share * speed * 1e-3})});

@@ -1,11 +1,15 @@
 // Scenes of the physics tests: boxes, a plane, a container.
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "snug/physics/world.hpp"
 
 namespace snug::physics::test {
+
+inline const Vector3 kBox(0.2, 0.2, 0.1);  ///< m
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 inline BodyModel box(const Vector3& size, double mass, const Vector3& p_WB) {
   BodyModel body;

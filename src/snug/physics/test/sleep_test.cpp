@@ -10,8 +10,6 @@
 namespace snug::physics::test {
 namespace {
 
-const Vector3 kBox(0.2, 0.2, 0.1);
-
 /// Two stacks of two boxes 1 m apart on a plane: bodies 1, 2 and 3, 4; body 5 a kinematic plate far above; 6 a
 /// kinematic pusher beside the first stack.
 WorldModel two_stacks() {

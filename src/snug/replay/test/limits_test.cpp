@@ -16,7 +16,7 @@ namespace {
 const std::string kScenarios = std::string(SNUG_SOURCE_DIR) + "/scenarios/";
 
 /// Of the demonstrator's cell, whose arm is a UR10 at half of its speeds.
-record::RecordingHeader make_header() {
+record::RecordingHeader ur10_header() {
   record::RecordingHeader header;
   header.scenario_text = read_file(kScenarios + "box-demonstrator.yaml", "a scenario");
   header.joints = {"shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
@@ -27,7 +27,7 @@ record::RecordingHeader make_header() {
 std::string ur10() { return read_file(kScenarios + "robots/ur10.urdf", "a URDF"); }
 
 TEST(JointUseLimits, AreThoseOfTheUrdfAtTheSpeedsThatTheScenarioAllows) {
-  const auto limits = joint_limits_of(make_header(), ur10());
+  const auto limits = joint_limits_of(ur10_header(), ur10());
   ASSERT_TRUE(limits.has_value());
   ASSERT_EQ(limits->speed.size(), 6U);
   EXPECT_NEAR(limits->speed[0], 0.5 * 120.0 * std::numbers::pi / 180.0, 1e-12);  // 120 degrees/s
@@ -37,7 +37,7 @@ TEST(JointUseLimits, AreThoseOfTheUrdfAtTheSpeedsThatTheScenarioAllows) {
 }
 
 TEST(JointUseLimits, AreNotGuessed) {
-  record::RecordingHeader header = make_header();
+  record::RecordingHeader header = ur10_header();
   EXPECT_FALSE(joint_limits_of(header, "").has_value());
   EXPECT_FALSE(joint_limits_of(header, "no XML <").has_value());
   EXPECT_FALSE(joint_limits_of(header, "<robot><joint type='revolute'><limit/></joint></robot>").has_value());
@@ -45,7 +45,7 @@ TEST(JointUseLimits, AreNotGuessed) {
   EXPECT_FALSE(joint_limits_of(header, ur10()).has_value());
   header.joints.clear();
   EXPECT_FALSE(joint_limits_of(header, ur10()).has_value());
-  header = make_header();
+  header = ur10_header();
   header.scenario_text = "of: another version";
   EXPECT_FALSE(joint_limits_of(header, ur10()).has_value());
 }
@@ -61,7 +61,7 @@ record::Frame held(double pressure, const Vector3& force) {
 }
 
 TEST(HoldUse, IsTheLoadOverWhatVacuumAndLipCarry) {
-  const record::RecordingHeader header = make_header();
+  const record::RecordingHeader header = ur10_header();
   const model::CupParams cup = model::parse_scenario(header.scenario_text, "scenario").cup;
   const double pressure = cup.vacuum.pressure_gauge_hold;
   const double suction = -pressure * std::numbers::pi / 4.0 * cup.effective_diameter * cup.effective_diameter;
@@ -74,7 +74,7 @@ TEST(HoldUse, IsTheLoadOverWhatVacuumAndLipCarry) {
 }
 
 TEST(HoldUse, BeginsWhenTheVacuumIsEstablishedAndEndsWithTheHold) {
-  const record::RecordingHeader header = make_header();
+  const record::RecordingHeader header = ur10_header();
   const double full = model::parse_scenario(header.scenario_text, "scenario").cup.vacuum.pressure_gauge_hold;
   const Vector3 load(0.0, 0.0, -5.0);
   HoldUse use(header);

@@ -35,7 +35,7 @@ std::string as_obj(const model::DrawnMesh& mesh) {
   return text;
 }
 
-record::RecordingHeader make_header() {
+record::RecordingHeader arm_header() {
   record::RecordingHeader header;
   header.bodies.push_back({"robot/arm", "", record::BodyKind::Kinematic, 0.0, Vector3::Zero(), {}});
   return header;
@@ -64,7 +64,7 @@ TEST(MergeVertices, MovesNoVertexFartherThanACellIsWide) {
 }
 
 TEST(RobotLook, IsOfLinksThatAreBodiesAndHasAsManyTrianglesAsAPageMayHave) {
-  const record::RecordingHeader header = make_header();
+  const record::RecordingHeader header = arm_header();
   const RobotDescription robot = robot_with(make_square(60));
   const auto whole = find_looks(header, robot, 100'000);
   ASSERT_EQ(whole.size(), 1U);  // 'none' is no body of the recording

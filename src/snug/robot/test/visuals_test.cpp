@@ -17,15 +17,16 @@ constexpr const char* kTriangle =
     "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid "
     "t\n";
 
-std::string robot_with(const std::string& visuals) {
+std::string robot_drawn_with(const std::string& visuals) {
   return "<robot name='r'><material name='blue'><color rgba='0 0 1 1'/></material><link name='arm'>" + visuals +
          "</link></robot>";
 }
 
 TEST(Visuals, HaveShapesPosesAndColoursOfMaterialsByName) {
   const auto links = parse_visuals(
-      robot_with("<visual><origin xyz='1 2 3'/><geometry><box size='2 4 6'/></geometry><material name='blue'/></visual>"
-                 "<visual><geometry><sphere radius='0.5'/></geometry></visual>"),
+      robot_drawn_with(
+          "<visual><origin xyz='1 2 3'/><geometry><box size='2 4 6'/></geometry><material name='blue'/></visual>"
+          "<visual><geometry><sphere radius='0.5'/></geometry></visual>"),
       {});
   ASSERT_EQ(links.size(), 1U);
   EXPECT_EQ(links[0].link, "arm");
@@ -39,9 +40,9 @@ TEST(Visuals, HaveShapesPosesAndColoursOfMaterialsByName) {
 }
 
 TEST(Visuals, OfMeshesAreTrianglesScaledAsTheUrdfSays) {
-  const auto links =
-      parse_visuals(robot_with("<visual><geometry><mesh filename='t.stl' scale='0.5 0.5 0.5'/></geometry></visual>"),
-                    {{"t.stl", kTriangle}});
+  const auto links = parse_visuals(
+      robot_drawn_with("<visual><geometry><mesh filename='t.stl' scale='0.5 0.5 0.5'/></geometry></visual>"),
+      {{"t.stl", kTriangle}});
   ASSERT_EQ(links.size(), 1U);
   const auto& mesh = std::get<model::DrawnMesh>(links[0].visuals.at(0).shape);
   EXPECT_EQ(mesh.triangles.size(), 1U);
@@ -55,13 +56,13 @@ TEST(Visuals, LeaveOutWhatCannotBeDrawn) {
                              "<visual><geometry><box size='1 nan 1'/></geometry></visual>",
                              "<visual><geometry><sphere radius='-1'/></geometry></visual>",
                              "<visual><geometry><cone/></geometry></visual>"}) {
-    EXPECT_TRUE(parse_visuals(robot_with(visual), {}).empty()) << visual;
+    EXPECT_TRUE(parse_visuals(robot_drawn_with(visual), {}).empty()) << visual;
   }
   EXPECT_TRUE(parse_visuals("no XML", {}).empty());
   EXPECT_TRUE(parse_visuals("", {}).empty());
-  EXPECT_TRUE(
-      parse_visuals(robot_with("<visual><geometry><mesh filename='t.stl'/></geometry></visual>"), {{"t.stl", "broken"}})
-          .empty());
+  EXPECT_TRUE(parse_visuals(robot_drawn_with("<visual><geometry><mesh filename='t.stl'/></geometry></visual>"),
+                            {{"t.stl", "broken"}})
+                  .empty());
 }
 
 TEST(Visuals, ReadEachMeshFileOnceAndNoneBeyondTheLimit) {
@@ -69,8 +70,8 @@ TEST(Visuals, ReadEachMeshFileOnceAndNoneBeyondTheLimit) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "t.stl") << kTriangle;
   const std::string mesh = "<visual><geometry><mesh filename='t.stl'/></geometry></visual>";
-  std::ofstream(folder / "r.urdf") << robot_with(mesh + mesh +
-                                                 "<visual><geometry><mesh filename='none.stl'/></geometry></visual>");
+  std::ofstream(folder / "r.urdf") << robot_drawn_with(
+      mesh + mesh + "<visual><geometry><mesh filename='none.stl'/></geometry></visual>");
   const auto files = read_visual_meshes(folder / "r.urdf", 1000);
   ASSERT_EQ(files.size(), 1U);
   EXPECT_EQ(files[0].name, "t.stl");

@@ -257,7 +257,7 @@ TEST_F(ServerTest, RefusesAnAddressThatItCannotHave) {
   EXPECT_THROW(Server({"127.0.0.1", 0}, {"a page without the mark", {}, nullptr}), InputError);
 }
 
-record::Frame frame_at(int i) {
+record::Frame empty_frame_at(int i) {
   record::Frame frame;
   frame.time = 0.008 * i;
   return frame;
@@ -270,7 +270,7 @@ TEST_F(ServerTest, StreamsARunToEachWatcherFromItsBeginning) {
   const Client early(server_->port());
   early.send("GET /live HTTP/1.1\r\nHost: localhost\r\n\r\n");
   live_.begin({});
-  for (int i = 1; i < 50; ++i) live_.add(frame_at(i));
+  for (int i = 1; i < 50; ++i) live_.add(empty_frame_at(i));
   live_.finish("", "");
   const std::string end = R"(data: {"failure":""})";
   const std::string told = early.read(end);
@@ -302,7 +302,7 @@ TEST_F(ServerTest, TakesCommandsFromItsOwnPageOnly) {
 
 TEST_F(ServerTest, RefusesMoreWatchersThanItHasThreadsFor) {
   live_.begin({});
-  live_.add(frame_at(1));
+  live_.add(empty_frame_at(1));
   start({kPage, {}, &live_});
   std::vector<std::unique_ptr<Client>> watchers;
   for (int i = 0; i < 8; ++i) {

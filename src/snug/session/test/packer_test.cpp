@@ -14,7 +14,7 @@ namespace {
 
 using plant::EndReason;
 
-const model::Scenario& demonstrator() {
+const model::Scenario& two_boxes() {
   static const model::Scenario one = model::test::shortened(2);  // BOX027, BOX028
   return one;
 }
@@ -86,21 +86,21 @@ class ScriptedPlant final : public plant::Plant {
  private:
   plant::Feedback now_ = [] {
     plant::Feedback start;
-    start.X_WE = demonstrator().controller.X_WE_start;
+    start.X_WE = two_boxes().controller.X_WE_start;
     return start;
   }();
   int motions_ = 0;
 };
 
-SessionOptions quick() {
+SessionOptions quick_options() {
   SessionOptions options;
   options.agent = "margin";
   options.samples = 0;
   return options;
 }
 
-SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick()) {
-  model::Scenario scenario = demonstrator();
+SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick_options()) {
+  model::Scenario scenario = two_boxes();
   scenario.sequences.front().items.resize(static_cast<std::size_t>(items));
   return session::pack(scenario, "1", options, plant);
 }
@@ -136,7 +136,7 @@ TEST(Packer, DoesNotKnowWhereABoxIsThatFellOrWasLetGoEarlyAndIsNotSeen) {
 TEST(Packer, RehearsesAnewWhatWasPickedInVain) {
   ScriptedPlant plant;
   plant.ends = {EndReason::NoSeal};
-  SessionOptions options = quick();
+  SessionOptions options = quick_options();
   options.max_attempts = options.most_attempts = 1;  // used up by the first motion
   const SessionResult result = pack(plant, 1, options);
   EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
@@ -186,7 +186,7 @@ TEST(Packer, ABoxThatIsNotSeenWhereSomethingHigherStandsOverItsPlaceIsGone) {
   ScriptedPlant plant;
   plant.obstacles.emplace();
   plant.happens = [&](int) {
-    const model::Container& container = *model::find_container(demonstrator(), demonstrator().target);
+    const model::Container& container = *model::find_container(two_boxes(), two_boxes().target);
     Pose X_WB{Matrix3::Identity(), plant.X_WE_let_go.p};
     X_WB.p.z() = container.X_WT.p.z() + 0.13;
     plant.obstacles = {{perception::columns_of_box(X_WB, {0.15, 0.15, 0.26}), 0.0005}};
@@ -201,8 +201,8 @@ TEST(Packer, ABoxThatIsNotSeenWhereSomethingHigherStandsOverItsPlaceIsGone) {
 
 TEST(Packer, AnotherItemThanTheOneThatWasToComeIsTakenAway) {
   ScriptedPlant plant;
-  const model::Parcel& parcel = *model::find_parcel(demonstrator(), "BOX027");
-  plant.size = parcel.size - Vector3::Constant(demonstrator().parcel_clearance) + Vector3(0.0, 0.02, 0.0);
+  const model::Parcel& parcel = *model::find_parcel(two_boxes(), "BOX027");
+  plant.size = parcel.size - Vector3::Constant(two_boxes().parcel_clearance) + Vector3(0.0, 0.02, 0.0);
   SessionResult result = pack(plant, 1);
   EXPECT_EQ(result.items[0].end, ItemEnd::WrongItem);
   EXPECT_TRUE(has(result.items[0], Trouble::WrongItem, Remedy::Skip));
@@ -240,7 +240,7 @@ TEST(Packer, ABoxThatIsMissingLaterIsNotPackedAnyMore) {
 
 TEST(Packer, PressesOnNothingThatLiesOutsideTheContainer) {
   ScriptedPlant plant;
-  const Pose X_WT = model::find_container(demonstrator(), demonstrator().target)->X_WT;
+  const Pose X_WT = model::find_container(two_boxes(), two_boxes().target)->X_WT;
   plant.happens = [&](int) { plant.visible["BOX027"] = {X_WT.R, X_WT.p + Vector3(0.0, 1.0, 0.0)}; };
   const SessionResult result = pack(plant, 1);
   EXPECT_FALSE(result.items[0].is_packed());
@@ -253,7 +253,7 @@ TEST(Packer, WhoInterruptsWhenAllIsDoneInterruptsNothing) {
   ScriptedPlant plant;
   bool is_done = false;
   plant.happens = [&](int) { is_done = true; };
-  SessionOptions options = quick();
+  SessionOptions options = quick_options();
   options.is_interrupted = [&] { return is_done; };
   EXPECT_EQ(pack(plant, 1, options).stop_reason, StopReason::AllPacked);
   is_done = false;
