@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
@@ -18,7 +20,8 @@ namespace snug::identification {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kLost = 1.0;  // m and rad: what a recording without a simulation counts as
+constexpr double kOwnStep = 0.01;  // of what is expected of an own unknown, for differences
+constexpr double kLost = 1.0;      // m and rad: what a recording without a simulation counts as
 
 }  // namespace
 
@@ -107,6 +110,21 @@ Eigen::Index SceneExperiment::residuals_of(std::size_t motion) const {
   return samples_of(motion) + own_deviation().size();
 }
 
+numerics::BatchedProblem::Term SceneExperiment::term_of(std::size_t motion) const {
+  const Eigen::VectorXd deviation = own_deviation();
+  const Eigen::Index samples = samples_of(motion);
+  const auto bodies = static_cast<Eigen::Index>(motions_[motion].tracked.size());
+  numerics::BatchedProblem::Term term{
+      residuals_of(motion), Eigen::VectorXd::Zero(deviation.size()), kOwnStep * deviation, {}};
+  for (const std::optional<std::size_t> body : internal::own_bodies(task_)) {
+    const Eigen::Index expected = samples + static_cast<Eigen::Index>(term.own_rows.size());  // that it is small
+    const Eigen::Index count = body ? samples / bodies : samples;
+    const Eigen::Index first = body ? static_cast<Eigen::Index>(*body) * count : 0;
+    term.own_rows.push_back({{first, count}, {expected, 1}});
+  }
+  return term;
+}
+
 MotionError SceneExperiment::compare(const internal::SimulatedMotion& simulated, std::size_t motion,
                                      const Eigen::VectorXd& own) const {
   MotionError error = internal::compare(task_, motions_[motion], simulated, internal::OwnValues(task_, own));
@@ -140,20 +158,35 @@ std::vector<MotionError> SceneExperiment::evaluate(std::span<const Eigen::Vector
     const auto i = static_cast<std::size_t>(index);
     if (scenarios[i] && ends[i] > 0.0) runs[i] = internal::run_program(*scenarios[i], task_, ends[i]);
   });
-  std::vector<MotionError> errors(jobs.size());
-  parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
-    const Job& job = jobs[static_cast<std::size_t>(index)];
-    MotionError& error = errors[static_cast<std::size_t>(index)];
-    if (!scenarios[job.point]) {
-      error.failure = failures[job.point];
-      return;
-    }
+  // What a recording has of its own moves bodies by their start and the delay only.
+  std::map<std::pair<std::pair<std::size_t, std::size_t>, std::vector<double>>, std::size_t> known;
+  std::vector<std::size_t> first, simulation_of;  // job of each simulation, simulation of each job
+  for (std::size_t j = 0; j < jobs.size(); ++j) {
+    const internal::OwnValues own(task_, jobs[j].own);
+    const Vector6 start = as_vector(own.start);
+    std::vector<double> moving(start.data(), start.data() + start.size());
+    moving.push_back(own.delay);
+    const auto [at, is_new] = known.insert({{{jobs[j].point, jobs[j].motion}, std::move(moving)}, first.size()});
+    if (is_new) first.push_back(j);
+    simulation_of.push_back(at->second);
+  }
+  std::vector<internal::SimulatedMotion> simulated(first.size());
+  parallel_for(static_cast<int>(first.size()), threads_, [&](int index, int) {
+    const auto i = static_cast<std::size_t>(index);
+    const Job& job = jobs[first[i]];
     const RecordedMotion& motion = motions_[job.motion];
     const internal::OwnValues own(task_, job.own);
-    error = compare(task_.program
-                        ? internal::motion_of(runs[job.point], task_, motion, own)
-                        : internal::simulate_scene(*scenarios[job.point], task_, motion, flights_[job.motion], own),
-                    job.motion, job.own);
+    if (!scenarios[job.point])
+      simulated[i].failure = failures[job.point];
+    else if (task_.program)
+      simulated[i] = internal::motion_of(runs[job.point], task_, motion, own);
+    else
+      simulated[i] = internal::simulate_scene(*scenarios[job.point], task_, motion, flights_[job.motion], own);
+  });
+  std::vector<MotionError> errors(jobs.size());
+  parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
+    const auto j = static_cast<std::size_t>(index);
+    errors[j] = compare(simulated[simulation_of[j]], jobs[j].motion, jobs[j].own);
   });
   return errors;
 }

@@ -9,6 +9,7 @@
 #include "snug/identification/recorded_motion.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/model/scene_task.hpp"
+#include "snug/numerics/batched_least_squares.hpp"
 
 namespace snug::identification {
 
@@ -52,8 +53,9 @@ class SceneExperiment {
     std::size_t motion = 0;    ///< recording
     Eigen::VectorXd own = {};  ///< its own unknowns; empty: all zero
   };
-  /// `points`: values of all parameters of the task, in its order. Each job is a simulation, but all jobs of a point
-  /// share one run of a program; the result does not depend on the number of threads. What cannot be simulated says so.
+  /// `points`: values of all parameters of the task, in its order. Each job is a simulation, but those of a point that
+  /// differ in nothing that moves a body share one, and all of a program share one run. The result does not depend on
+  /// the number of threads. What cannot be simulated says so.
   [[nodiscard]] std::vector<MotionError> evaluate(std::span<const Eigen::VectorXd> points,
                                                   std::span<const Job> jobs) const;
   /// Errors that the noise of the start alone sets: each recording is replaced by its own simulation, the poses of its
@@ -70,6 +72,8 @@ class SceneExperiment {
   [[nodiscard]] Eigen::Index residuals_of(std::size_t motion) const;
   /// Numbers measured in a recording: residuals less those that stand for expectations.
   [[nodiscard]] Eigen::Index samples_of(std::size_t motion) const;
+  /// A recording as a term of a sum of squares that is computed in batches; its own unknowns start at zero.
+  [[nodiscard]] numerics::BatchedProblem::Term term_of(std::size_t motion) const;
 
   /// mm: with TaskLoss::Distance the mean distance of centres and, times the ratio, of angles; with Squares the root of
   /// the mean of both squared.

@@ -15,6 +15,34 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+using RowRun = std::pair<Eigen::Index, Eigen::Index>;
+
+bool share_rows(const std::vector<RowRun>& a, const std::vector<RowRun>& b) {
+  for (const RowRun& p : a)
+    for (const RowRun& q : b)
+      if (p.first < q.first + q.second && q.first < p.first + p.second) return true;
+  return false;
+}
+
+/// Own unknowns in groups of which no two share a row (Curtis, Powell and Reid, 1974), each in the first that takes it.
+std::vector<std::vector<Eigen::Index>> unknowns_apart(const BatchedProblem::Term& term) {
+  std::vector<std::vector<Eigen::Index>> groups;
+  const auto rows_of = [&](Eigen::Index j) { return term.own_rows[static_cast<std::size_t>(j)]; };
+  for (Eigen::Index j = 0; j < term.own.size(); ++j) {
+    const auto takes_it = [&](const std::vector<Eigen::Index>& group) {
+      if (term.own_rows.empty()) return false;
+      return std::none_of(group.begin(), group.end(),
+                          [&](Eigen::Index k) { return share_rows(rows_of(j), rows_of(k)); });
+    };
+    const auto group = std::find_if(groups.begin(), groups.end(), takes_it);
+    if (group == groups.end())
+      groups.push_back({j});
+    else
+      group->push_back(j);
+  }
+  return groups;
+}
+
 /// What the batch found at the unknowns of last time.
 struct Batch {
   const BatchedProblem& problem;
@@ -93,6 +121,10 @@ class RisingSquares {
   explicit RisingSquares(const BatchedProblem& at) : at_(at) {
     for (const BatchedProblem::Term& term : at.terms) own_.push_back(term.own);
     found_ = differentiate(at, at.start, own_);
+    for (const Eigen::MatrixXd& J : found_.jacobians) {
+      const auto own = J.rightCols(std::max<Eigen::Index>(0, J.cols() - at.start.size()));
+      own_normal_.push_back(own.transpose() * own);
+    }
     const auto steps = at.step.asDiagonal();
     const Eigen::MatrixXd information = steps * shared_information(found_, at.start.size()) * steps;
     const Eigenpairs axes = symmetric_eigenpairs(invert_symmetric(information));
@@ -130,17 +162,18 @@ class RisingSquares {
   }
 
  private:
+  /// Of the residuals of a term, less what its own unknowns can take of them.
   [[nodiscard]] double squares(std::size_t term, const Eigen::VectorXd& r) const {
-    const Eigen::MatrixXd& J = found_.jacobians[term];
-    const Eigen::Index own = J.cols() - at_.start.size();
-    if (own <= 0) return r.squaredNorm();
-    const Eigen::MatrixXd by_own = J.rightCols(own);
-    return (r - by_own * solve_by_qr(by_own, r)).squaredNorm();
+    const Eigen::MatrixXd& normal = own_normal_[term];
+    if (normal.size() == 0) return r.squaredNorm();
+    const Eigen::VectorXd slope = found_.jacobians[term].rightCols(normal.cols()).transpose() * r;
+    return r.squaredNorm() - slope.dot(solve_symmetric(normal, slope).col(0));
   }
 
   const BatchedProblem& at_;
   std::vector<Eigen::VectorXd> own_;
   BatchedDerivatives found_;
+  std::vector<Eigen::MatrixXd> own_normal_;  ///< J^T J of each term's own unknowns
   Eigen::MatrixXd directions_;
   Eigen::VectorXd deviation_;
 };
@@ -155,6 +188,7 @@ BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::Vec
     std::size_t term, plus, minus;
     Eigen::Index column;
     double span;
+    std::vector<RowRun> rows = {};  // empty: all
   };
   std::vector<Column> columns;
   for (std::size_t i = 0; i < problem.terms.size(); ++i) jobs.push_back({i, shared, own[i]});
@@ -170,11 +204,15 @@ BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::Vec
     }
   }
   for (std::size_t i = 0; i < problem.terms.size(); ++i) {
-    for (Eigen::Index j = 0; j < own[i].size(); ++j) {
-      const double h = problem.terms[i].own_step[j];
+    for (const std::vector<Eigen::Index>& together : unknowns_apart(problem.terms[i])) {
       BatchedProblem::Job plus{i, shared, own[i]}, minus = plus;
-      plus.own[j] += h, minus.own[j] -= h;
-      columns.push_back({i, jobs.size(), jobs.size() + 1, n + j, 2.0 * h});
+      for (const Eigen::Index j : together) {
+        const double h = problem.terms[i].own_step[j];
+        plus.own[j] += h, minus.own[j] -= h;
+        columns.push_back({i, jobs.size(), jobs.size() + 1, n + j, 2.0 * h});
+        if (!problem.terms[i].own_rows.empty())
+          columns.back().rows = problem.terms[i].own_rows[static_cast<std::size_t>(j)];
+      }
       jobs.push_back(std::move(plus));
       jobs.push_back(std::move(minus));
     }
@@ -183,14 +221,16 @@ BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::Vec
   SNUG_CHECK(values.size() == jobs.size(), "each job of a batch has residuals");
   BatchedDerivatives found;
   for (std::size_t i = 0; i < problem.terms.size(); ++i)
-    found.jacobians.emplace_back(values[i].size(), n + own[i].size());
+    found.jacobians.push_back(Eigen::MatrixXd::Zero(values[i].size(), n + own[i].size()));
   for (const Column& column : columns) {
     const Eigen::VectorXd &plus = values[column.plus], &minus = values[column.minus];
     Eigen::MatrixXd& J = found.jacobians[column.term];
-    if (plus.size() != J.rows() || minus.size() != J.rows())
-      J.resize(0, 0);
-    else if (J.cols() > 0)
-      J.col(column.column) = (plus - minus) / column.span;
+    if (plus.size() != J.rows() || minus.size() != J.rows()) J.resize(0, 0);
+    if (J.cols() == 0) continue;
+    if (column.rows.empty()) J.col(column.column) = (plus - minus) / column.span;
+    for (const auto& [first, count] : column.rows)
+      J.col(column.column).segment(first, count) =
+          (plus.segment(first, count) - minus.segment(first, count)) / column.span;
   }
   values.resize(problem.terms.size());
   found.residuals = std::move(values);

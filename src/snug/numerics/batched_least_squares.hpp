@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace snug::numerics {
@@ -14,6 +15,9 @@ struct BatchedProblem {
   struct Term {
     Eigen::Index residuals = 1;
     Eigen::VectorXd own, own_step;  ///< often empty
+    /// Rows that each own unknown changes, as runs {first, count}; empty: any may change all. Unknowns that share no
+    /// row are moved together.
+    std::vector<std::vector<std::pair<Eigen::Index, Eigen::Index>>> own_rows = {};
   };
   std::vector<Term> terms;
 

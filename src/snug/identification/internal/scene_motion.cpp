@@ -89,6 +89,14 @@ Eigen::VectorXd own_deviation(const model::SceneTask& task) {
   return Eigen::Map<const Eigen::VectorXd>(deviation.data(), static_cast<Eigen::Index>(deviation.size()));
 }
 
+std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task) {
+  const std::size_t bodies = task.tracked.size(), count = static_cast<std::size_t>(own_deviation(task).size());
+  const std::size_t each = (task.own.frame_position > 0.0 ? 3U : 0U) + (task.own.frame_rotation > 0.0 ? 3U : 0U);
+  std::vector<std::optional<std::size_t>> result(count - bodies * each);
+  for (std::size_t b = 0; b < bodies; ++b) result.insert(result.end(), each, b);
+  return result;
+}
+
 std::size_t sample_count(const model::SceneTask& task, const RecordedMotion& motion) {
   if (!task.simulation_time) return motion.times.size();
   const double start = task.start.from == model::StartFrom::Scenario ? 0.0 : motion.times.front();

@@ -1,6 +1,7 @@
 // simulate_scene: where tracked bodies would have been at the times of a recording.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct OwnValues {
 /// Standard deviations expected of velocity (3), angular velocity (3), delay, bias (3), then of each tracked body's
 /// frame: position (3), rotation vector (3); as far as they are fitted.
 [[nodiscard]] Eigen::VectorXd own_deviation(const model::SceneTask& task);
+/// The tracked body whose residuals alone an own unknown changes, of each of them; none: those of all bodies.
+[[nodiscard]] std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task);
 
 struct SimulatedMotion {
   /// X_WB by tracked body at each time of the recording; not a number where the simulation does not reach.

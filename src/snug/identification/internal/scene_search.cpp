@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kRescuePoints = 20;       // scattered for each free parameter when a fit fails
-constexpr double kOwnStep = 0.01;       // of what is expected of an own unknown, for differences
 constexpr double kFirstSubplex = 0.05;  // of the span
 
 std::string identity_of(const SceneExperiment& experiment) {
@@ -43,40 +42,46 @@ std::vector<MotionError> evaluate_all(const SceneExperiment& experiment, const E
   if (deviation.size() == 0) return now;
   // Levenberg-Marquardt of each recording alone, all recordings in step.
   constexpr int kIterations = 8;
+  constexpr double kSettled = 1e-9;  // of a sum of squares
+  numerics::BatchedProblem problem;
+  std::vector<Eigen::VectorXd> own;
+  for (std::size_t m = 0; m < count; ++m) {
+    problem.terms.push_back(experiment.term_of(m));
+    own.push_back(problem.terms.back().own);
+  }
+  const auto errors_of = [&](const std::vector<numerics::BatchedProblem::Job>& batch) {
+    std::vector<SceneExperiment::Job> jobs_of_batch;
+    for (const numerics::BatchedProblem::Job& job : batch) jobs_of_batch.push_back({0, job.term, job.own});
+    return experiment.evaluate(points, jobs_of_batch);
+  };
+  problem.evaluate = [&](const std::vector<numerics::BatchedProblem::Job>& batch) {
+    std::vector<Eigen::VectorXd> residuals;
+    for (MotionError& error : errors_of(batch)) residuals.push_back(std::move(error.residuals));
+    return residuals;
+  };
   std::vector<double> damping(count, 1e-3);
-  for (std::size_t m = 0; m < count; ++m) jobs[m].own = Eigen::VectorXd::Zero(deviation.size());
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    std::vector<SceneExperiment::Job> moved;
-    for (const SceneExperiment::Job& job : jobs) {
-      for (Eigen::Index j = 0; j < 2 * deviation.size(); ++j) {
-        moved.push_back(job);
-        moved.back().own[j / 2] += (j % 2 == 0 ? kOwnStep : -kOwnStep) * deviation[j / 2];
-      }
-    }
-    const std::vector<MotionError> around = experiment.evaluate(points, moved);
-    std::vector<SceneExperiment::Job> tried = jobs;
+  bool is_settled = false;
+  for (int iteration = 0; iteration < kIterations && !is_settled; ++iteration) {
+    const numerics::BatchedDerivatives at = numerics::differentiate(problem, {}, own);
+    std::vector<numerics::BatchedProblem::Job> tried;
     for (std::size_t m = 0; m < count; ++m) {
-      if (!now[m].failure.empty()) continue;
-      Eigen::MatrixXd J(now[m].residuals.size(), deviation.size());
-      bool is_whole = true;
-      for (Eigen::Index j = 0; j < deviation.size(); ++j) {
-        const std::size_t at = 2 * (m * static_cast<std::size_t>(deviation.size()) + static_cast<std::size_t>(j));
-        is_whole = is_whole && around[at].failure.empty() && around[at + 1].failure.empty();
-        if (is_whole) J.col(j) = (around[at].residuals - around[at + 1].residuals) / (2.0 * kOwnStep * deviation[j]);
-      }
-      if (!is_whole) continue;
+      tried.push_back({m, {}, own[m]});
+      const Eigen::MatrixXd& J = at.jacobians[m];
+      if (J.cols() == 0) continue;
       Eigen::MatrixXd normal = J.transpose() * J;
       normal.diagonal() *= 1.0 + damping[m];
-      tried[m].own -= numerics::solve_symmetric(normal, J.transpose() * now[m].residuals).col(0);
+      tried[m].own -= numerics::solve_symmetric(normal, J.transpose() * at.residuals[m]).col(0);
     }
-    const std::vector<MotionError> then = experiment.evaluate(points, tried);
+    std::vector<MotionError> then = errors_of(tried);
+    is_settled = true;
     for (std::size_t m = 0; m < count; ++m) {
-      const bool is_better = then[m].failure.empty() && now[m].failure.empty() &&
-                             then[m].residuals.squaredNorm() < now[m].residuals.squaredNorm();
+      const double before = now[m].residuals.squaredNorm(), after = then[m].residuals.squaredNorm();
+      const bool is_better = then[m].failure.empty() && now[m].failure.empty() && after < before;
       damping[m] *= is_better ? 0.1 : 10.0;
+      is_settled = is_settled && std::abs(before - after) <= kSettled * before;
       if (!is_better) continue;
-      jobs[m] = tried[m];
-      now[m] = then[m];
+      own[m] = tried[m].own;
+      now[m] = std::move(then[m]);
     }
   }
   return now;
@@ -132,10 +137,7 @@ numerics::BatchedProblem SceneSearch::problem() const {
   numerics::BatchedProblem problem;
   problem.start = free_of(best_);
   problem.lower = lower_, problem.upper = upper_, problem.step = step_;
-  const Eigen::VectorXd deviation = experiment_.own_deviation();
-  for (const std::size_t m : fitted_)
-    problem.terms.push_back(
-        {experiment_.residuals_of(m), Eigen::VectorXd::Zero(deviation.size()), kOwnStep * deviation});
+  for (const std::size_t m : fitted_) problem.terms.push_back(experiment_.term_of(m));
   problem.evaluate = [this](const std::vector<numerics::BatchedProblem::Job>& batch) {
     std::vector<Eigen::VectorXd> points;
     std::vector<SceneExperiment::Job> jobs;

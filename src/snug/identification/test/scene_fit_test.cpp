@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <string>
 
 #include "snug/cell/scene.hpp"
 #include "snug/core/input_error.hpp"
@@ -168,6 +169,45 @@ parameters:
   EXPECT_NEAR(fit.values[0], 0.25, 0.01);
   EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.2);
   EXPECT_GT(identify_scene(SceneExperiment(task(rest), motions, 2)).chi2_per_dof, 100.0);
+}
+
+TEST_F(SceneFitTest, OwnUnknownsChangeTheRowsThatTheirTermNamesAndNoOther) {
+  std::string two = kThrown;
+  two.insert(two.find("bodies:"), "    - {between: [box, box], friction: 0.3, restitution: 0.1}\n");
+  std::ofstream(folder_ / "scene.yaml")
+      << two << "  - {name: other, size: [0.1, 0.1, 0.1], mass: 0.5, material: box, pose: {position: [3, 3, 0.05]}, "
+      << "twist: {angular: [0, 0, 1]}}\n";
+  RecordedMotion motion = record({}, 17);
+  motion.tracked.push_back(motion.tracked.front());
+  motion.tracked.back().body = "other";
+  model::SceneTask both = task(
+      "own: {velocity: 0.1, delay: 0.01, bias: 0.001, frame_position: 0.005, frame_rotation_deg: 1}\n"
+      "search: {local: 10, held_back: 0}\n"
+      "parameters: [{name: friction, path: \"contacts.pairs[0].friction\", value: 0.3, bounds: [0.05, 0.8], step: "
+      "0.002}]\n");
+  both.tracked.push_back(both.tracked.front());
+  both.tracked.back().body = "other";
+  const SceneExperiment scene(both, {motion}, 1);
+  const numerics::BatchedProblem::Term term = scene.term_of(0);
+  ASSERT_EQ(term.own.size(), 3 + 1 + 3 + 2 * 6);
+  ASSERT_EQ(term.own_rows.size(), static_cast<std::size_t>(term.own.size()));
+  const std::vector<Eigen::VectorXd> points{scene.start()};
+  const auto residuals = [&](const Eigen::VectorXd& own) {
+    return scene.evaluate(points, std::vector<SceneExperiment::Job>{{0, 0, own}}).front().residuals;
+  };
+  const Eigen::VectorXd before = residuals(term.own);
+  ASSERT_EQ(before.size(), term.residuals);
+  for (Eigen::Index j = 0; j < term.own.size(); ++j) {
+    SCOPED_TRACE(j);
+    Eigen::VectorXd moved = term.own;
+    moved[j] += term.own_step[j];
+    Eigen::VectorXd change = residuals(moved) - before;
+    for (const auto& [first, count] : term.own_rows[static_cast<std::size_t>(j)]) {
+      EXPECT_GT(change.segment(first, count).norm(), 0.0);
+      change.segment(first, count).setZero();
+    }
+    EXPECT_EQ(change.norm(), 0.0);
+  }
 }
 
 TEST_F(SceneFitTest, FindsACentreOfMassThatIsAside) {

@@ -106,6 +106,40 @@ TEST(BatchedLeastSquares, TheCovarianceOfLinearResidualsIsTheInverseOfTheirInfor
   EXPECT_LT((C * information - Eigen::MatrixXd::Identity(2, 2)).norm(), 1e-6);
 }
 
+TEST(BatchedLeastSquares, MovesUnknownsTogetherThatShareNoRow) {
+  // Five rows each of their own, one unknown that changes all, and the expectation of each in a row at the end.
+  constexpr Eigen::Index kBlocks = 4, kRows = 5, kOwn = kBlocks + 1;
+  BatchedProblem problem;
+  problem.start = problem.lower = problem.upper = problem.step = VectorXd(0);
+  BatchedProblem::Term term{kBlocks * kRows + kOwn, VectorXd::LinSpaced(kOwn, 0.1, 0.5),
+                            VectorXd::Constant(kOwn, 1e-4)};
+  std::size_t jobs_done = 0;
+  problem.evaluate = [&](const std::vector<BatchedProblem::Job>& jobs) {
+    jobs_done += jobs.size();
+    std::vector<VectorXd> residuals;
+    for (const BatchedProblem::Job& job : jobs) {
+      VectorXd r(kBlocks * kRows + kOwn);
+      for (Eigen::Index k = 0; k < kBlocks * kRows; ++k)
+        r[k] = std::sin(job.own[0] + static_cast<double>(k)) +
+               std::exp(job.own[1 + k / kRows] * static_cast<double>(k % kRows));
+      r.tail(kOwn) = 3.0 * job.own;
+      residuals.push_back(r);
+    }
+    return residuals;
+  };
+  problem.terms = {term};
+  const Eigen::MatrixXd one_by_one = differentiate(problem, problem.start, {term.own}).jacobians.front();
+  EXPECT_EQ(jobs_done, 1U + 2U * kOwn);
+  for (Eigen::Index j = 0; j < kOwn; ++j) {
+    const Eigen::Index first = j == 0 ? 0 : (j - 1) * kRows, count = j == 0 ? kBlocks * kRows : kRows;
+    problem.terms.front().own_rows.push_back({{first, count}, {kBlocks * kRows + j, 1}});
+  }
+  jobs_done = 0;
+  const Eigen::MatrixXd together = differentiate(problem, problem.start, {term.own}).jacobians.front();
+  EXPECT_EQ(jobs_done, 1U + 2U * 2U);
+  EXPECT_EQ(together, one_by_one);
+}
+
 TEST(BatchedLeastSquares, TheCovarianceIsThatOfTheWayAtLargeWhereResidualsJump) {
   // Slope 10 between jumps, slope 1 at large: the standard error is 1, the inverse information says 0.1.
   BatchedProblem problem;
