@@ -47,8 +47,21 @@ std::vector<std::vector<Eigen::Index>> unknowns_apart(const BatchedProblem::Term
 struct Batch {
   const BatchedProblem& problem;
   BatchedDerivatives found;
+  std::vector<Eigen::MatrixXd> reduced;  ///< triangular factor of [J r] of each term, when there are derivatives
   bool has_jacobians = false;
 };
+
+/// Rows that Ceres gets of a term: of many residuals only as many as have the same sum of squares and slopes.
+Eigen::Index reduced_rows(const BatchedProblem& problem, std::size_t term) {
+  const BatchedProblem::Term& of = problem.terms[term];
+  return std::min(of.residuals, problem.start.size() + of.own.size() + 1);
+}
+
+Eigen::MatrixXd reduce(const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
+  Eigen::MatrixXd all(r.size(), J.cols() + 1);
+  all << J, r;
+  return all.rows() > all.cols() ? triangular_factor(all) : all;
+}
 
 std::vector<Eigen::VectorXd> evaluate_at(const BatchedProblem& problem, const Eigen::VectorXd& shared,
                                          const std::vector<Eigen::VectorXd>& own) {
@@ -81,6 +94,13 @@ class Prepare final : public ceres::EvaluationCallback {
     else
       batch_.found = {evaluate_at(batch_.problem, shared, own), {}};
     batch_.has_jacobians = with_jacobians;
+    batch_.reduced.assign(batch_.found.residuals.size(), {});
+    for (std::size_t i = 0; with_jacobians && i < batch_.reduced.size(); ++i) {
+      const Eigen::VectorXd& r = batch_.found.residuals[i];
+      const Eigen::MatrixXd& J = batch_.found.jacobians[i];
+      if (r.size() == batch_.problem.terms[i].residuals && J.rows() == r.size() && J.allFinite() && r.allFinite())
+        batch_.reduced[i] = reduce(J, r);
+    }
   }
 
  private:
@@ -92,21 +112,26 @@ class BatchedTermCost final : public ceres::CostFunction {
  public:
   BatchedTermCost(const Batch& batch, std::size_t term) : batch_(batch), term_(term) {
     const BatchedProblem::Term& of = batch.problem.terms[term];
-    set_num_residuals(static_cast<int>(of.residuals));
+    set_num_residuals(static_cast<int>(reduced_rows(batch.problem, term)));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(batch.problem.start.size()));
     if (of.own.size() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.own.size()));
   }
 
   bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
     const Eigen::VectorXd& r = batch_.found.residuals[term_];
-    if (r.size() != num_residuals() || !r.allFinite()) return false;
-    Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
-    if (jacobians == nullptr) return true;
-    const Eigen::MatrixXd& J = batch_.found.jacobians[term_];
-    if (J.rows() != r.size() || !J.allFinite()) return false;
-    const Eigen::Index n = batch_.problem.start.size(), own = J.cols() - n;
-    if (jacobians[0] != nullptr) Eigen::Map<RowMajor>(jacobians[0], r.size(), n) = J.leftCols(n);
-    if (own > 0 && jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], r.size(), own) = J.rightCols(own);
+    if (r.size() != batch_.problem.terms[term_].residuals || !r.allFinite()) return false;
+    Eigen::Map<Eigen::VectorXd> given(residuals, num_residuals());
+    if (jacobians == nullptr) {  // what counts is the sum of squares
+      given.setZero();
+      given[0] = r.norm();
+      return true;
+    }
+    const Eigen::MatrixXd& R = batch_.reduced[term_];
+    if (R.rows() != given.size()) return false;
+    given = R.col(R.cols() - 1);
+    const Eigen::Index n = batch_.problem.start.size(), own = R.cols() - 1 - n;
+    if (jacobians[0] != nullptr) Eigen::Map<RowMajor>(jacobians[0], R.rows(), n) = R.leftCols(n);
+    if (own > 0 && jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], R.rows(), own) = R.middleCols(n, own);
     return true;
   }
 
@@ -282,7 +307,7 @@ Eigen::MatrixXd squares_covariance(const BatchedProblem& at) {
 }
 
 BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& options) {
-  Batch batch{given, {}, false};
+  Batch batch{given, {}, {}, false};
   // In one run of memory, as Ceres sorts unknowns by their addresses.
   Eigen::Index count = given.start.size();
   for (const BatchedProblem::Term& term : given.terms) count += term.own.size();

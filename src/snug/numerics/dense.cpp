@@ -20,6 +20,11 @@ Eigen::MatrixXd solve_by_qr(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) 
   return A.colPivHouseholderQr().solve(B);
 }
 
+Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& A) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
+  return qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>();
+}
+
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A) { return A.completeOrthogonalDecomposition().pseudoInverse(); }
 
 Eigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& A) {

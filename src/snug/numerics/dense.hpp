@@ -13,6 +13,8 @@ namespace snug::numerics {
 [[nodiscard]] Eigen::MatrixXd invert(const Eigen::MatrixXd& A);
 /// X that makes |A X - B| least, by QR with column pivoting. A: n x k of full rank, n >= k; B: n x m.
 [[nodiscard]] Eigen::MatrixXd solve_by_qr(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// R, k x k, of A = Q R. A: n x k, n >= k. Sums of squares of A's columns and their products are those of R's.
+[[nodiscard]] Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& A);
 /// Moore and Penrose's, by a complete orthogonal decomposition.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 

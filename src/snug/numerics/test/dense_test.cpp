@@ -62,5 +62,13 @@ TEST(Dense, EigenpairsAscendAndAreWhatTheySay) {
   }
 }
 
+TEST(TriangularFactor, HasTheProductsOfTheColumns) {
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(40, 5);
+  const Eigen::MatrixXd R = triangular_factor(A);
+  ASSERT_EQ(R.rows(), 5);
+  EXPECT_LT((R.transpose() * R - A.transpose() * A).norm(), 1e-13 * A.squaredNorm());
+  EXPECT_EQ(R.triangularView<Eigen::StrictlyLower>().toDenseMatrix().norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace snug::numerics
