@@ -99,7 +99,7 @@ function(snug_test name)
   snug_use_precompiled(${name} test)
   if(SNUG_FAST_BUILD)
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-    list(FILTER ARG_SOURCES INCLUDE REGEX "allocation_[a-z]+.cpp$")  # operator new replaced: not for the others, too
+    list(FILTER ARG_SOURCES INCLUDE REGEX "allocation_[a-z]+.cpp$")  # these replace operator new or malloc
     set_source_files_properties(${ARG_SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
   add_dependencies(snug_tests ${name})

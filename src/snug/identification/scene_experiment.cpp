@@ -106,21 +106,17 @@ Eigen::Index SceneExperiment::samples_of(std::size_t motion) const {
   return internal::count_residuals(task_, motions_[motion]);
 }
 
-Eigen::Index SceneExperiment::residuals_of(std::size_t motion) const {
-  return samples_of(motion) + own_deviation().size();
-}
-
 numerics::BatchedProblem::Term SceneExperiment::term_of(std::size_t motion) const {
   const Eigen::VectorXd deviation = own_deviation();
   const Eigen::Index samples = samples_of(motion);
   const auto bodies = static_cast<Eigen::Index>(motions_[motion].tracked.size());
   numerics::BatchedProblem::Term term{
-      residuals_of(motion), Eigen::VectorXd::Zero(deviation.size()), kOwnStep * deviation, {}};
+      samples + deviation.size(), Eigen::VectorXd::Zero(deviation.size()), kOwnStep * deviation, {}};
   for (const std::optional<std::size_t> body : internal::own_bodies(task_)) {
-    const Eigen::Index expected = samples + static_cast<Eigen::Index>(term.own_rows.size());  // that it is small
+    const Eigen::Index prior = samples + static_cast<Eigen::Index>(term.own_rows.size());  // its row
     const Eigen::Index count = body ? samples / bodies : samples;
     const Eigen::Index first = body ? static_cast<Eigen::Index>(*body) * count : 0;
-    term.own_rows.push_back({{first, count}, {expected, 1}});
+    term.own_rows.push_back({{first, count}, {prior, 1}});
   }
   return term;
 }

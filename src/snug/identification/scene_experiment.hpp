@@ -69,8 +69,7 @@ class SceneExperiment {
   [[nodiscard]] const std::vector<RecordedMotion>& motions() const { return motions_; }
   [[nodiscard]] Eigen::VectorXd start() const;          ///< values of the task
   [[nodiscard]] Eigen::VectorXd own_deviation() const;  ///< expected of the own unknowns; empty when there are none
-  [[nodiscard]] Eigen::Index residuals_of(std::size_t motion) const;
-  /// Numbers measured in a recording: residuals less those that stand for expectations.
+  /// Numbers measured in a recording: residuals less those of own unknowns against what is expected of them.
   [[nodiscard]] Eigen::Index samples_of(std::size_t motion) const;
   /// A recording as a term of a sum of squares that is computed in batches; its own unknowns start at zero.
   [[nodiscard]] numerics::BatchedProblem::Term term_of(std::size_t motion) const;

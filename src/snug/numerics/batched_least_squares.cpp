@@ -208,6 +208,9 @@ class RisingSquares {
 BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
                                  const std::vector<Eigen::VectorXd>& own) {
   const Eigen::Index n = shared.size();
+  for (const BatchedProblem::Term& term : problem.terms)
+    SNUG_CHECK(term.own_rows.empty() || term.own_rows.size() == static_cast<std::size_t>(term.own.size()),
+               "rows are named of all own unknowns or of none");
   std::vector<BatchedProblem::Job> jobs;
   struct Column {
     std::size_t term, plus, minus;

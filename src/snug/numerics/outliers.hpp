@@ -11,9 +11,9 @@ namespace snug::numerics {
 [[nodiscard]] double median_deviation(std::vector<double> sizes, int degrees);
 
 /// Indices of the sizes beyond 6 standard deviations of the rest; deviations below `floor` (rounding of exact data)
-/// count as that. Where so many unknowns were fitted to the same few numbers the median of what they leave is too
-/// small by chance: it is enlarged by 1 + 5 / (sizes - unknowns / degrees) (Rousseeuw and Leroy, Robust Regression and
-/// Outlier Detection, 1987, chapter 5).
+/// count as that. `unknowns`: how many were fitted to the numbers that the sizes are left of; the median of few
+/// residuals is then too small, and is enlarged by 1 + 5 / (sizes - unknowns / degrees) (Rousseeuw and Leroy, Robust
+/// Regression and Outlier Detection, 1987, chapter 5).
 [[nodiscard]] std::vector<std::size_t> find_outliers(const std::vector<double>& sizes, int degrees, double floor,
                                                      int unknowns = 0);
 

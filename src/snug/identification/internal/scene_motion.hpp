@@ -23,7 +23,7 @@ struct OwnValues {
 /// Standard deviations expected of velocity (3), angular velocity (3), delay, bias (3), then of each tracked body's
 /// frame: position (3), rotation vector (3); as far as they are fitted.
 [[nodiscard]] Eigen::VectorXd own_deviation(const model::SceneTask& task);
-/// The tracked body whose residuals alone an own unknown changes, of each of them; none: those of all bodies.
+/// For each own unknown: the one tracked body of which it changes residuals; none: it may change those of all.
 [[nodiscard]] std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task);
 
 struct SimulatedMotion {

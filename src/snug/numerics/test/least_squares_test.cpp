@@ -86,5 +86,15 @@ TEST(Outliers, AreFoundAmongHalfAsManyAndNoiseIsNone) {
   EXPECT_EQ(find_outliers(sizes, 6, 0.0), std::vector<std::size_t>{17});
 }
 
+TEST(Outliers, OfAFitToFewNumbersAreFartherOff) {
+  // Deviation 1 by the median; 18 unknowns of 12 sizes of six numbers: 6 (1 + 5 / (12 - 3)) = 9.33.
+  std::vector<double> sizes(12, 2.3126);
+  sizes[4] = 9.2;
+  EXPECT_EQ(find_outliers(sizes, 6, 0.0), std::vector<std::size_t>{4});
+  EXPECT_TRUE(find_outliers(sizes, 6, 0.0, 18).empty());
+  sizes[4] = 9.4;
+  EXPECT_EQ(find_outliers(sizes, 6, 0.0, 18), std::vector<std::size_t>{4});
+}
+
 }  // namespace
 }  // namespace snug::numerics
