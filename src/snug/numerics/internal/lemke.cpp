@@ -8,13 +8,17 @@
 #include <lcp_cst.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace snug::numerics::internal {
 
 struct Lemke::Options {
   SolverOptions* options = solver_options_create(SICONOS_LCP_LEMKE);
   Options() { options->iparam[SICONOS_IPARAM_MAX_ITER] = 500; }  // a few times the largest number of rows
-  ~Options() { solver_options_delete(options); }
+  ~Options() {
+    solver_options_delete(options);  // what it holds
+    std::free(options);
+  }
   Options(const Options&) = delete;
   Options& operator=(const Options&) = delete;
 };
