@@ -21,7 +21,11 @@ constexpr double kLeastFlipPenalty = 1.0;
 /// Of contacts whose status stays in islands that are solved and at rest: what a step leaves of a slow mode is 1 / p.
 constexpr double kSolvedPenalty = 3e4;
 constexpr double kSolvedGrowth = 30.0;
-constexpr int kMaxCycles = 12;  ///< while each three halve the residual
+
+constexpr int kLeastClustered = 30;        ///< rows, of islands that are looked at in parts
+constexpr int kClusterRounds = 12;         ///< parts solved, each time with one more ring of bodies around them
+constexpr double kClusterResidual = 0.5;   ///< of the tolerance, to which parts are solved
+constexpr int kCyclesWithoutClusters = 2;  ///< generalized steps where more than half is unsolved
 
 constexpr int kMaxPatchRows = 8;  ///< whose products are made at once
 
@@ -145,6 +149,7 @@ class IslandProblem {
   void take_linear_impulses();
 
   void run_cycles(int count);
+  void solve_clusters();
   void linearise();
 
   void augment(const Care& care);
@@ -211,7 +216,11 @@ void IslandProblem::apply_impulses() {
 }
 
 void IslandProblem::measure() {
-  residual_ = worst_residual(first_, end_, u_);
+  residual_ = 0.0;
+  each_row([&](const Row& row, NewtonRow& newton) {
+    newton.residual = natural_map(row, u_);
+    residual_ = std::max(residual_, newton.residual);
+  });
   if (!(residual_ < best_)) return;
   best_ = residual_;
   each_row([](const Row& row, NewtonRow& newton) { std::copy_n(row.lambda, 3, newton.best); });
@@ -405,13 +414,30 @@ void IslandProblem::augment(const Care& care) {
   restore_best();
 }
 
+/// A few contacts keep changing their status while all others are solved: these are solved among themselves, then a
+/// generalized step carries what that changes to the rest.
+void IslandProblem::solve_clusters() {
+  ClusterScratch& clusters = *work_.clusters;
+  const Residuals residuals{kClusterResidual * tolerance_, kClusterResidual * tolerance_};
+  for (int round = 0; round < kClusterRounds && !is_solved(); ++round) {
+    if (!clusters.rows.find(first_, work_.rows.get(), work_.patches, tolerance_, round)) {
+      run_cycles(kCyclesWithoutClusters);
+      continue;
+    }
+    for (std::size_t i = 0; i < clusters.rows.count(); ++i) {
+      const std::span<Row> rows = clusters.rows[i];
+      (void)newton_rows(residuals, rows.data(), rows.data() + rows.size(), u_, clusters.newton);
+    }
+    clusters.rows.put_back(first_);
+    measure();
+    if (!is_solved()) run_cycles(1);
+  }
+}
+
 int IslandProblem::solve() {
   if (!std::isfinite(best_)) return 0;  // the caller says so
   run_cycles(kCycles);
-  for (double before = 2.0 * best_; !is_solved() && iterations_ < kMaxCycles && best_ < 0.5 * before;) {
-    before = best_;
-    run_cycles(3);
-  }
+  if (!is_solved() && work_.clusters && end_ - first_ >= kLeastClustered) solve_clusters();
   restore_best();
   if (!is_solved()) augment(kQuick);
   if (!is_solved()) augment(kThorough);
@@ -421,13 +447,19 @@ int IslandProblem::solve() {
 
 }  // namespace
 
-NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity)
+NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity, bool has_clusters)
     : solver(bodies, row_capacity), rows(new NewtonRow[row_capacity]) {
+  if (has_clusters) {
+    clusters.reset(new ClusterScratch{{bodies, row_capacity}, {bodies, row_capacity, false}});
+  }
   for (std::vector<double>* v : {&u, &u_free, &u_start, &error, &step, &right}) v->assign(6 * bodies, 0.0);
   local.assign(bodies, -1);
   active.reserve(bodies);
   patches.reserve(row_capacity);
 }
+
+NewtonScratch::~NewtonScratch() = default;
+NewtonScratch::NewtonScratch(NewtonScratch&&) noexcept = default;
 
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {
   IslandProblem problem(residuals, first, end, u, work);

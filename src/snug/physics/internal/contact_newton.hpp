@@ -8,6 +8,7 @@
 
 #include "snug/physics/internal/block_solver.hpp"
 #include "snug/physics/internal/contact_row.hpp"
+#include "snug/physics/internal/row_clusters.hpp"
 
 namespace snug::physics::internal {
 
@@ -25,6 +26,7 @@ struct NewtonRow {
   double center[3];  ///< N s, about which the augmented law is taken
   double best[3];    ///< N s, with the least residual so far
   double penalty;    ///< of the generalized step, in units of 1 / W
+  double residual;   ///< m/s, as measured last
   ContactStatus status;
 };
 
@@ -35,8 +37,13 @@ struct NewtonPatch {
   PanelBlock aa, bb, ab, ba;
 };
 
+struct ClusterScratch;
+
 struct NewtonScratch {
-  NewtonScratch(std::size_t bodies, std::size_t rows);
+  /// Without clusters: of what solves the clusters of another.
+  NewtonScratch(std::size_t bodies, std::size_t rows, bool has_clusters = true);
+  ~NewtonScratch();
+  NewtonScratch(NewtonScratch&&) noexcept;
 
   std::vector<int> active;                              ///< the island's bodies, by active index
   std::vector<int> local;                               ///< of each active body: its place in `active`, or -1
@@ -45,6 +52,12 @@ struct NewtonScratch {
   BlockSolver solver;
   std::unique_ptr<NewtonRow[]> rows;
   std::vector<NewtonPatch> patches;
+  std::unique_ptr<ClusterScratch> clusters;
+};
+
+struct ClusterScratch {
+  RowClusters rows;
+  NewtonScratch newton;
 };
 
 /// Improves lambda of the rows and u (consistent with each other) until the residual is accepted, or keeps the best.
