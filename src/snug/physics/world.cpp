@@ -147,7 +147,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   island_order.resize(n + 1);
   workers.reserve(static_cast<std::size_t>(pool.size()));
   for (int i = 0; i < pool.size(); ++i) {
-    workers.push_back({NewtonScratch(n, row_capacity), {}, {}});
+    workers.push_back({NewtonScratch(n, row_capacity), PositionCorrection(n, row_capacity), {}, {}});
     workers.back().element_bodies.reserve(n);
   }
   merged_pairs = BoundedVector<PairState>(model.pair_capacity);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "snug/physics/internal/panel_kernels.hpp"
 
@@ -50,27 +51,40 @@ constexpr double kNear = 10.0;                ///< of the tolerance
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+using Singles = float __attribute__((vector_size(8)));
+
+void store_single(float* p, Pair value) {
+  const Singles singles = __builtin_convertvector(value, Singles);
+  std::memcpy(p, &singles, sizeof singles);
+}
+
 /// M += the block whose columns lie behind each other at `stride`.
-void add_block(const PanelBlock& M, const double* block, std::ptrdiff_t stride) {
+void add_block(const PanelBlock& M, const float* block, std::ptrdiff_t stride) {
   if (M.is_transposed) {
     for (int j = 0; j < 6; ++j, block += stride) {
       for (int i = 0; i < 6; ++i) M.data[j + i * M.stride] += block[i];
     }
     return;
   }
-  double* column = M.data;
+  float* column = M.data;
   for (int j = 0; j < 6; ++j, column += M.stride, block += stride) {
-    for (int i = 0; i < 6; i += 2) store(column + i, load(column + i) + load(block + i));
+    for (int i = 0; i < 6; i += 2) {
+      Singles sum, part;
+      std::memcpy(&sum, column + i, sizeof sum);
+      std::memcpy(&part, block + i, sizeof part);
+      sum += part;
+      std::memcpy(column + i, &sum, sizeof sum);
+    }
   }
 }
 
 /// slope * rows.
-void multiply(const double (&slope)[9], const double (&rows)[3][6], double* out) {
+void multiply(const double (&slope)[9], const double (&rows)[3][6], float* out) {
   for (int i = 0; i < 3; ++i) {
     const Pair s0{slope[3 * i], slope[3 * i]}, s1{slope[3 * i + 1], slope[3 * i + 1]},
         s2{slope[3 * i + 2], slope[3 * i + 2]};
     for (int k = 0; k < 6; k += 2) {
-      store(out + 6 * i + k, load(rows[0] + k) * s0 + load(rows[1] + k) * s1 + load(rows[2] + k) * s2);
+      store_single(out + 6 * i + k, load(rows[0] + k) * s0 + load(rows[1] + k) * s1 + load(rows[2] + k) * s2);
     }
   }
 }
@@ -84,11 +98,16 @@ void change_of_velocity(const Row& row, const double* u, double (&xi)[3]) {
   for (int k = 0; k < 3; ++k) xi[k] -= row.bias[k];
 }
 
+ContactStatus open_law(AugmentedLaw& law) {
+  std::fill_n(law.slope, 9, 0.0);
+  std::fill_n(law.lambda, 3, 0.0);
+  return ContactStatus::Open;
+}
+
 /// Law of one step of Alart and Curnier's generalized Newton method: the status is that of the natural map, the law of
 /// that status is linearised about the present impulse and velocity. law.lambda is its answer at xi.
 ContactStatus generalized_law(const Row& row, double penalty, const double (&xi)[3], AugmentedLaw& law) {
-  std::fill_n(law.slope, 9, 0.0);
-  std::fill_n(law.lambda, 3, 0.0);
+  (void)open_law(law);
   const double* lambda = row.lambda;
   const double normal = xi[0] - row.target + row.gamma * lambda[0];
   const double z0 = lambda[0] - normal / row.W[0];
@@ -142,6 +161,7 @@ class IslandProblem {
   [[nodiscard]] bool is_solved() const { return best_ <= tolerance_; }
   void apply_impulses();
   void measure();
+  void keep_best();
   void restore_best();
   void assemble();
   void add_patch(const NewtonPatch& patch);
@@ -221,6 +241,10 @@ void IslandProblem::measure() {
     newton.residual = natural_map(row, u_);
     residual_ = std::max(residual_, newton.residual);
   });
+  keep_best();
+}
+
+void IslandProblem::keep_best() {
   if (!(residual_ < best_)) return;
   best_ = residual_;
   each_row([](const Row& row, NewtonRow& newton) { std::copy_n(row.lambda, 3, newton.best); });
@@ -242,8 +266,8 @@ void IslandProblem::assemble() {
 
 /// What the contacts of one pair of bodies bring in: [a b]^T slope a and [a b]^T slope b, each one product.
 void IslandProblem::add_patch(const NewtonPatch& patch) {
-  alignas(64) double left[3 * kMaxPatchRows * 12], force_a[3 * kMaxPatchRows * 6], force_b[3 * kMaxPatchRows * 6];
-  alignas(64) double product[12 * 6];
+  alignas(64) float left[3 * kMaxPatchRows * 12], force_a[3 * kMaxPatchRows * 6], force_b[3 * kMaxPatchRows * 6];
+  alignas(64) float product[12 * 6];
   const Row* row = first_ + patch.first;
   const NewtonRow* newton = work_.rows.get() + patch.first;
   const bool is_pair = patch.connection >= 0;
@@ -253,10 +277,12 @@ void IslandProblem::add_patch(const NewtonPatch& patch) {
     const double(&slope)[9] = newton->law.slope;
     if (slope[0] <= 0.0) continue;
     const double(&own)[3][6] = row->ia >= 0 ? row->a : row->b;
-    double* to = left + depth * width;
+    float* to = left + depth * width;
     for (int k = 0; k < 3; ++k, to += width) {
-      std::copy_n(own[k], 6, to);
-      if (is_pair) std::copy_n(row->b[k], 6, to + 6);
+      for (int m = 0; m < 6; m += 2) {
+        store_single(to + m, load(own[k] + m));
+        if (is_pair) store_single(to + 6 + m, load(row->b[k] + m));
+      }
     }
     multiply(slope, own, force_a + 6 * depth);
     if (is_pair) multiply(slope, row->b, force_b + 6 * depth);
@@ -284,31 +310,37 @@ void IslandProblem::solve_system() {
   }
 }
 
-/// Laws about the present state and the momentum error that they leave.
+/// Residuals of the present state, laws about it, and the momentum error that these leave.
 void IslandProblem::linearise() {
   for (const int body : work_.active) {
     for (int k = 6 * body; k < 6 * body + 6; ++k) work_.error[at(k)] = work_.u_free[at(k)] - u_[k];
   }
+  residual_ = 0.0;
   each_row([&](const Row& row, NewtonRow& newton) {
-    double xi[3];
-    contact_velocity(row, u_, xi);
+    double xi[3] = {};
+    const bool is_open = stays_open(row, u_);
+    if (!is_open) contact_velocity(row, u_, xi);
+    newton.residual = is_open ? 0.0 : natural_map(row, xi, row.lambda);
+    residual_ = std::max(residual_, newton.residual);
     const ContactStatus before = newton.status;
-    newton.status = generalized_law(row, newton.penalty, xi, newton.law);
+    newton.status = is_open ? open_law(newton.law) : generalized_law(row, newton.penalty, xi, newton.law);
     if (before != ContactStatus::Unknown) {
       if (before != newton.status) {
         newton.penalty = std::max(kLeastFlipPenalty, std::min(kPenalty, newton.penalty) / kFlipCut);
-        (void)generalized_law(row, newton.penalty, xi, newton.law);
+        if (!is_open) (void)generalized_law(row, newton.penalty, xi, newton.law);
       } else {
         newton.penalty = is_solved() ? std::min(kSolvedPenalty, newton.penalty * kSolvedGrowth)
                                      : std::min(kPenalty, newton.penalty * kFlipRecovery);
       }
     }
-    apply(row, newton.law.lambda, work_.error.data());
+    if (!is_open) apply(row, newton.law.lambda, work_.error.data());
   });
+  keep_best();
 }
 
-/// Impulses of the linear laws for work_.step, cut to the cone.
+/// Impulses of the linear laws for work_.step, cut to the cone, and u from them.
 void IslandProblem::take_linear_impulses() {
+  for (const int body : work_.active) std::copy_n(work_.u_free.data() + 6 * body, 6, u_ + 6 * body);
   each_row([&](Row& row, const NewtonRow& newton) {
     const double(&slope)[9] = newton.law.slope;
     double* lambda = row.lambda;
@@ -323,21 +355,22 @@ void IslandProblem::take_linear_impulses() {
       lambda[i] = newton.law.lambda[i] - (slope[3 * i] * xi[0] + slope[3 * i + 1] * xi[1] + slope[3 * i + 2] * xi[2]);
     }
     project_to_disc(row.mu * normal, lambda[1], lambda[2]);
+    apply(row, row.lambda, u_);
   });
 }
 
 /// Generalized Newton steps with sweeps between them, which mend what the steps leave near single contacts.
 void IslandProblem::run_cycles(int count) {
   for (int i = 0; i < count && best_ > wanted_; ++i) {
-    ++iterations_;
     linearise();
+    if (best_ <= wanted_) return;
+    ++iterations_;
     assemble();
     solve_system();
     take_linear_impulses();
-    apply_impulses();
     for (int k = 0; k < kSweepsPerCycle; ++k) (void)sweep_rows(first_, end_, u_, sweeps_++ % 2 == 0);
-    measure();
   }
+  measure();
 }
 
 /// Momentum error u - u_free - sum (J T)^T lambda(u) of every body at work.u; returns its norm.

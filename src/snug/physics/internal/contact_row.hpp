@@ -22,9 +22,8 @@ struct alignas(16) Row {
   double target;     ///< least allowed normal velocity (regularised when compliant), m/s
   double gamma;      ///< compliance in nn, (m/s)/(N s)
   double mu;
-  double step_t;   ///< 1 / largest eigenvalue of the tangential block
-  double gap_end;  ///< wanted gap after the step, m
-  double position_lambda;
+  double step_t;         ///< 1 / largest eigenvalue of the tangential block
+  double gap_end;        ///< wanted gap after the step, m
   std::int32_t ia, ib;   ///< active body or -1
   std::int32_t contact;  ///< turning: the first of the pair
   RowKind kind;
@@ -64,6 +63,14 @@ inline void contact_velocity(const Row& row, const double* u, double (&xi)[3]) {
   xi[2] = row.bias[2] + (s2[0] + s2[1]);
 }
 
+/// Relative velocity along one axis.
+inline double relative_velocity(const Row& row, int axis, const double* u) {
+  Pair s{};
+  if (row.ia >= 0) s = dot(row.a[axis], u + 6 * row.ia);
+  if (row.ib >= 0) s += dot(row.b[axis], u + 6 * row.ib);
+  return row.bias[axis] + (s[0] + s[1]);
+}
+
 inline void apply(const Row& row, const double (&d)[3], double* u) {
   if (row.ia >= 0) add_scaled(u + 6 * row.ia, row.a, d);
   if (row.ib >= 0) add_scaled(u + 6 * row.ib, row.b, d);
@@ -90,7 +97,14 @@ inline double natural_map(const Row& row, const double (&xi)[3], const double* l
   return std::max(rn, std::sqrt(r1 * r1 + r2 * r2) / row.step_t);
 }
 
+/// An open contact that stays open, as most of a pile do: what its tangents do is of no concern.
+inline bool stays_open(const Row& row, const double* u) {
+  return row.lambda[0] == 0.0 && row.lambda[1] == 0.0 && row.lambda[2] == 0.0 &&
+         relative_velocity(row, 0, u) >= row.target;
+}
+
 inline double natural_map(const Row& row, const double* u) {
+  if (stays_open(row, u)) return 0.0;
   double xi[3];
   contact_velocity(row, u, xi);
   return natural_map(row, xi, row.lambda);
@@ -107,14 +121,6 @@ inline double worst_residual(const Row* first, const Row* end, const double* u) 
   double worst = 0.0;
   for (const Row* row = first; row != end; ++row) worst = std::max(worst, natural_map(*row, u));
   return worst;
-}
-
-/// Relative velocity along one axis.
-inline double relative_velocity(const Row& row, int axis, const double* u) {
-  Pair s{};
-  if (row.ia >= 0) s = dot(row.a[axis], u + 6 * row.ia);
-  if (row.ib >= 0) s += dot(row.b[axis], u + 6 * row.ib);
-  return row.bias[axis] + (s[0] + s[1]);
 }
 
 /// A contact law around given impulses: what it answers to a relative velocity, and minus its derivative.

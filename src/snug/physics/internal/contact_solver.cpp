@@ -46,6 +46,7 @@ inline void solve_local(const Row& row, const double (&xi)[3], double (&lambda)[
 
 /// One visit; returns the size of the change in relative velocity, m/s.
 inline double relax(Row& row, double* u) {
+  if (stays_open(row, u)) return 0.0;
   double xi[3];
   contact_velocity(row, u, xi);
   double lambda[3];
@@ -121,54 +122,6 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
   }
   result.has_converged = false;
   return result;
-}
-
-void correct_positions(const StepSettings& settings, Row* first, Row* end, const Contact* contacts, const double* u,
-                       double* shift) noexcept {
-  const double dt = settings.dt;
-  // Old overlaps are pushed out no faster than this; what this step's impacts overshot is undone at once.
-  constexpr double kRecoverySpeed = 0.2;
-  // Bodies jammed between heavier ones need more sweeps: with 50 alone they end up to 8 mm inside a wall. Then bounces
-  // no longer pull, since what several of them ask for at once may be far away.
-  constexpr int kSweeps = 50, kMostSweeps = 1000;
-  constexpr double kCoarse = 1e-6;  // m, change of a sweep
-  constexpr double kLarge = 1e-4;   // m, displacement wanted; what rests or is pressed slowly stays below
-  double worst = 0.0;
-  for (Row* row = first; row != end; ++row) {
-    const Contact& contact = contacts[row->contact];
-    const double gap = contact.phi + 0.5 * dt * (contact.approach + relative_velocity(*row, 0, u));
-    const double error = row->gap_end - gap;
-    const double cap = dt * (0.5 * std::abs(contact.approach) + kRecoverySpeed);
-    const bool is_swept = contact.point < 0;                 // not an old overlap
-    row->gap_end = is_swept ? error : std::min(error, cap);  // from here on: wanted displacement
-    row->position_lambda = 0.0;
-    if (!row->is_rigid) continue;
-    worst = std::max(worst, row->is_bounce ? std::abs(error) : error);
-  }
-  if (worst <= settings.position_slop) return;
-  double change = 0.0;
-  for (int sweep = 0; sweep < kSweeps || (worst > kLarge && change > kCoarse && sweep < kMostSweeps); ++sweep) {
-    change = 0.0;
-    for (Row* row = first; row != end; ++row) {
-      if (!row->is_rigid) continue;
-      double moved = 0.0;
-      for (int k = 0; k < 6; ++k) {
-        if (row->ia >= 0) moved += row->a[0][k] * shift[6 * row->ia + k];
-        if (row->ib >= 0) moved += row->b[0][k] * shift[6 * row->ib + k];
-      }
-      double lambda = row->position_lambda + (row->gap_end - moved) / row->W[0];
-      if (!row->is_bounce || sweep >= kSweeps) lambda = std::max(0.0, lambda);
-      const double d = lambda - row->position_lambda;
-      if (d == 0.0) continue;
-      row->position_lambda = lambda;
-      for (int k = 0; k < 6; ++k) {
-        if (row->ia >= 0) shift[6 * row->ia + k] += row->a[0][k] * d;
-        if (row->ib >= 0) shift[6 * row->ib + k] += row->b[0][k] * d;
-      }
-      change = std::max(change, std::abs(d) * row->W[0]);
-    }
-    if (change <= 0.1 * settings.position_slop) break;
-  }
 }
 
 }  // namespace snug::physics::internal

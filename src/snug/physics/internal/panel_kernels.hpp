@@ -9,11 +9,11 @@ namespace snug::physics::internal {
 /// k) of B at b[j * row_b + k * column_b]. `rows` is even.
 struct PanelProduct {
   int rows, depth;
-  const double* a;
+  const float* a;
   std::ptrdiff_t stride_a;
-  const double* b;
+  const float* b;
   std::ptrdiff_t row_b, column_b;
-  double* c;
+  float* c;
   std::ptrdiff_t stride_c;
 };
 

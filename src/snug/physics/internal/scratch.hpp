@@ -9,6 +9,7 @@
 #include "snug/physics/internal/contact_newton.hpp"
 #include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/element_bodies.hpp"
+#include "snug/physics/internal/position_correction.hpp"
 #include "snug/physics/world.hpp"
 
 namespace snug::physics::internal {
@@ -113,6 +114,7 @@ struct BodyEnd {
 /// What one thread solves islands with.
 struct IslandWorker {
   NewtonScratch newton;
+  PositionCorrection positions;
   std::vector<ElementBody> element_bodies;  ///< of the island being solved
   StepReport report;                        ///< of its islands of this step
 };
@@ -224,8 +226,5 @@ struct SolveResult {
 /// The same where rows resist turning: again with the normal impulses found as bounds, until they agree or nearly so.
 [[nodiscard]] SolveResult solve_with_turning(const StepSettings& settings, const Residuals& residuals, Row* first,
                                              Row* end, double* u, NewtonScratch& newton) noexcept;
-/// Displacements that close the position errors of rigid contacts with the least kinetic measure.
-void correct_positions(const StepSettings& settings, Row* first, Row* end, const Contact* contacts, const double* u,
-                       double* shift) noexcept;
 
 }  // namespace snug::physics::internal

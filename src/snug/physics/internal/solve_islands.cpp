@@ -137,7 +137,7 @@ void solve_island(const WorldModel& model, const WorldInput& input, WorldState& 
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
   keep_impulses(first, end, state, work);
-  correct_positions(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
+  worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
   read_velocities(work, island);
 }
 

@@ -1,0 +1,53 @@
+// PositionCorrection: displacements that close the position errors of rigid contacts with the least kinetic measure.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "snug/physics/internal/contact_row.hpp"
+#include "snug/physics/world.hpp"
+
+namespace snug::physics::internal {
+
+struct Contact;
+
+/// docs/theory/contact.md, section 5. Gauss-Seidel over the normals of an island; from sweep to sweep only those are
+/// visited of which a body has moved: mostly a small part. Never allocates after construction.
+class PositionCorrection {
+ public:
+  PositionCorrection(std::size_t bodies, std::size_t rows);
+
+  /// Adds to `shift`, 6 numbers per active body in whitened coordinates, zero at first.
+  void run(const StepSettings& settings, const Row* first, const Row* end, const Contact* contacts, const double* u,
+           double* shift) noexcept;
+
+ private:
+  /// The normal axis of a rigid contact.
+  struct alignas(16) Normal {
+    double a[6], b[6];
+    double W;
+    double wanted;  ///< m, displacement
+    double lambda;  ///< of the displacement, in units of impulses
+    bool is_bounce;
+  };
+  struct Bodies {
+    int a, b;  ///< active bodies, or -1
+  };
+
+  /// Returns the largest displacement wanted, m.
+  double find_errors(const StepSettings& settings, const Row* first, const Row* end, const Contact* contacts,
+                     const double* u);
+  /// Returns the largest change, m. Bodies that it moves by more than `least` have their flag set.
+  double sweep(bool is_bounce_pulled, double least, double* shift);
+  double visit(std::size_t i, bool is_bounce_pulled, double* shift);
+  void take_moved();
+
+  std::unique_ptr<Normal[]> normals_;
+  std::unique_ptr<Bodies[]> bodies_;  ///< of each normal, apart: they are looked through for those to visit
+  std::size_t count_ = 0;
+  std::vector<std::size_t> visited_;
+  std::vector<char> has_moved_;  ///< of each active body, and one more that never does
+};
+
+}  // namespace snug::physics::internal
