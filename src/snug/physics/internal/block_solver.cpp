@@ -16,23 +16,22 @@ constexpr std::align_val_t kAlignment{64};
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-using Block = Eigen::Matrix<float, 6, 6>;
 using Stride = Eigen::OuterStride<>;
-using BlockMap = Eigen::Map<Block, 0, Stride>;
-using BlockView = Eigen::Map<const Block, 0, Stride>;
+using BlockMap = Eigen::Map<Matrix6, 0, Stride>;
+using BlockView = Eigen::Map<const Matrix6, 0, Stride>;
 
 /// y += A x over a panel of `rows` x `columns` numbers.
-void add_product(int rows, int columns, const float* a, std::ptrdiff_t stride, const float* x, float* y) {
+void add_product(int rows, int columns, const double* a, std::ptrdiff_t stride, const double* x, double* y) {
   for (int k = 0; k < columns; ++k, a += stride) {
-    const float factor = x[k];
+    const double factor = x[k];
     for (int i = 0; i < rows; ++i) y[i] += a[i] * factor;
   }
 }
 
 /// y -= A^T x, sums over even and odd rows apart.
-void subtract_transposed(int rows, int columns, const float* a, std::ptrdiff_t stride, const float* x, float* y) {
+void subtract_transposed(int rows, int columns, const double* a, std::ptrdiff_t stride, const double* x, double* y) {
   for (int k = 0; k < columns; ++k, a += stride) {
-    float even = 0.0F, odd = 0.0F;
+    double even = 0.0, odd = 0.0;
     for (int i = 0; i < rows; i += 2) even += a[i] * x[i], odd += a[i + 1] * x[i + 1];
     y[k] -= even + odd;
   }
@@ -40,15 +39,15 @@ void subtract_transposed(int rows, int columns, const float* a, std::ptrdiff_t s
 
 /// Inverse of a block by Gauss and Jordan's elimination in place. Where contacts do not slide every pivot is at least
 /// 1, what the identity brings in: only below half of that are rows exchanged.
-Block invert(const BlockView& block) {
+Matrix6 invert(const BlockView& block) {
   Pair m[6][3];  // by columns
   for (int j = 0; j < 6; ++j) {
-    for (int i = 0; i < 3; ++i) m[j][i] = Pair{block(2 * i, j), block(2 * i + 1, j)};
+    for (int i = 0; i < 3; ++i) m[j][i] = load(&block.coeffRef(2 * i, j));
   }
 #pragma GCC unroll 6
   for (int k = 0; k < 6; ++k) {
     const double pivot = m[k][k / 2][k % 2];
-    if (!(std::abs(pivot) > 0.5)) return block.cast<double>().inverse().cast<float>();
+    if (!(std::abs(pivot) > 0.5)) return Matrix6(block).inverse();
     const double scale = 1.0 / pivot;
     m[k][k / 2][k % 2] = 1.0;
     for (Pair& part : m[k]) part *= Pair{scale, scale};
@@ -60,9 +59,9 @@ Block invert(const BlockView& block) {
       for (int i = 0; i < 3; ++i) m[j][i] -= Pair{factor, factor} * m[k][i];
     }
   }
-  Block inverse;
+  Matrix6 inverse;
   for (int j = 0; j < 6; ++j) {
-    for (int i = 0; i < 6; ++i) inverse(i, j) = static_cast<float>(m[j][i / 2][i % 2]);
+    for (int i = 0; i < 3; ++i) store(&inverse(2 * i, j), m[j][i]);
   }
   return inverse;
 }
@@ -70,9 +69,9 @@ Block invert(const BlockView& block) {
 }  // namespace
 
 LazyStore::LazyStore(std::size_t count)
-    : data_(static_cast<float*>(::operator new(std::max<std::size_t>(1, count) * sizeof(float), kAlignment))) {}
+    : data_(static_cast<double*>(::operator new(std::max<std::size_t>(1, count) * sizeof(double), kAlignment))) {}
 
-void LazyStore::Free::operator()(float* data) const { ::operator delete(data, kAlignment); }
+void LazyStore::Free::operator()(double* data) const { ::operator delete(data, kAlignment); }
 
 BlockSolver::BlockSolver(std::size_t bodies, std::size_t connections)
     : pattern_(bodies, connections),
@@ -87,9 +86,9 @@ void BlockSolver::set_identity() {
   for (int f = 0; f < pattern_.front_count(); ++f) {
     const Front& front = pattern_.front(f);
     const auto width = static_cast<std::size_t>(front.width);
-    std::fill_n(lower(front), 36 * width * at(front.height()), 0.0F);
-    std::fill_n(upper(front), 36 * width * at(front.rows()), 0.0F);
-    for (int k = 0; k < 6 * front.width; ++k) lower(front)[k * (lower_stride(front) + 1)] = 1.0F;
+    std::fill_n(lower(front), 36 * width * at(front.height()), 0.0);
+    std::fill_n(upper(front), 36 * width * at(front.rows()), 0.0);
+    for (int k = 0; k < 6 * front.width; ++k) lower(front)[k * (lower_stride(front) + 1)] = 1.0;
   }
 }
 
@@ -131,16 +130,16 @@ void BlockSolver::place_rows(const Front& front) {
 void BlockSolver::take_update(const Front& front, const BlockPattern::Update& update) {
   const Front& source = pattern_.front(update.source);
   const int* rows = pattern_.rows(source);
-  const float* source_lower = lower(source) + 6 * source.width;  // its rows below the diagonal
-  const float* source_upper = upper(source);
+  const double* source_lower = lower(source) + 6 * source.width;  // its rows below the diagonal
+  const double* source_upper = upper(source);
   const std::ptrdiff_t ld = lower_stride(source), ud = upper_stride(source);
   const std::ptrdiff_t front_ld = lower_stride(front), front_ud = upper_stride(front);
   const int depth = 6 * source.width, count = source.rows();
-  const auto subtract = [&](int first, float* to, std::ptrdiff_t stride, int above) {
+  const auto subtract = [&](int first, double* to, std::ptrdiff_t stride, int above) {
     const int height = 6 * (count - first);
     for (int i = first; i < count; ++i) {
-      float* c = to + 6 * (place_[at(rows[i])] - above);
-      const float* p = product_.data() + 6 * (i - first);
+      double* c = to + 6 * (place_[at(rows[i])] - above);
+      const double* p = product_.data() + 6 * (i - first);
       for (int j = 0; j < 6; ++j, c += stride, p += height) {
         for (int k = 0; k < 6; ++k) c[k] -= p[k];
       }
@@ -161,21 +160,21 @@ void BlockSolver::take_update(const Front& front, const BlockPattern::Update& up
 
 /// LU of the panel, one body after the other.
 void BlockSolver::eliminate(const Front& front) {
-  float* panel = lower(front);
-  float* side = upper(front);
+  double* panel = lower(front);
+  double* side = upper(front);
   const std::ptrdiff_t ld = lower_stride(front), ud = upper_stride(front);
   const int beside = 6 * front.rows();
   for (int c = 0; c < front.width; ++c) {
     const int below = 6 * (front.height() - c - 1);
-    float* pivot = panel + 6 * c * (ld + 1);
-    const Block inverse = invert(BlockView(pivot, Stride(ld)));
+    double* pivot = panel + 6 * c * (ld + 1);
+    const Matrix6 inverse = invert(BlockView(pivot, Stride(ld)));
     BlockMap(pivot, Stride(ld)) = inverse;
     if (below == 0) continue;
-    float* column = pivot + 6;
+    double* column = pivot + 6;
     set_product({below, 6, column, ld, inverse.data(), 6, 1, product_.data(), below});
     for (int k = 0; k < 6; ++k) std::copy_n(product_.data() + k * below, below, column + k * ld);
     for (int d = c + 1; d < front.width; ++d) {
-      const float* right = panel + 6 * c + 6 * d * ld;  // U(c, d)
+      const double* right = panel + 6 * c + 6 * d * ld;  // U(c, d)
       subtract_product({below, 6, column, ld, right, ld, 1, panel + 6 * (c + 1) + 6 * d * ld, ld});
       if (beside == 0) continue;
       subtract_product({beside, 6, side + 6 * c * ud, ud, panel + 6 * d + 6 * c * ld, 1, ld, side + 6 * d * ud, ud});
@@ -193,14 +192,12 @@ void BlockSolver::factorize() {
 }
 
 void BlockSolver::solve(double* x) {
-  using Vector = Eigen::Matrix<float, 6, 1>;
-  using Part = Eigen::Map<Vector>;
-  using Outside = Eigen::Map<Vector6>;
-  for (int k = 0; k < count(); ++k) Part(x_.data() + 6 * k) = Outside(x + 6 * pattern_.body(k)).cast<float>();
+  using Part = Eigen::Map<Vector6>;
+  for (int k = 0; k < count(); ++k) Part(x_.data() + 6 * k) = Part(x + 6 * pattern_.body(k));
   for (int f = 0; f < pattern_.front_count(); ++f) {
     const Front& front = pattern_.front(f);
     const std::ptrdiff_t ld = lower_stride(front);
-    float* own = x_.data() + 6 * front.first;
+    double* own = x_.data() + 6 * front.first;
     for (int c = 0; c < front.width; ++c) {
       for (int d = c + 1; d < front.width; ++d) {
         Part(own + 6 * d).noalias() -= BlockView(lower(front) + 6 * d + 6 * c * ld, Stride(ld)) * Part(own + 6 * c);
@@ -208,7 +205,7 @@ void BlockSolver::solve(double* x) {
     }
     const int rows = front.rows();
     if (rows == 0) continue;
-    std::fill_n(gathered_.begin(), 6 * rows, 0.0F);
+    std::fill_n(gathered_.begin(), 6 * rows, 0.0);
     add_product(6 * rows, 6 * front.width, lower(front) + 6 * front.width, ld, own, gathered_.data());
     const int* row = pattern_.rows(front);
     for (int i = 0; i < rows; ++i) Part(x_.data() + 6 * row[i]) -= Part(gathered_.data() + 6 * i);
@@ -216,20 +213,20 @@ void BlockSolver::solve(double* x) {
   for (int f = pattern_.front_count() - 1; f >= 0; --f) {
     const Front& front = pattern_.front(f);
     const std::ptrdiff_t ld = lower_stride(front);
-    float* own = x_.data() + 6 * front.first;
+    double* own = x_.data() + 6 * front.first;
     const int rows = front.rows();
     const int* row = pattern_.rows(front);
     for (int i = 0; i < rows; ++i) Part(gathered_.data() + 6 * i) = Part(x_.data() + 6 * row[i]);
     subtract_transposed(6 * rows, 6 * front.width, upper(front), upper_stride(front), gathered_.data(), own);
     for (int c = front.width - 1; c >= 0; --c) {
-      Vector part = Part(own + 6 * c);
+      Vector6 part = Part(own + 6 * c);
       for (int d = c + 1; d < front.width; ++d) {
         part.noalias() -= BlockView(lower(front) + 6 * c + 6 * d * ld, Stride(ld)) * Part(own + 6 * d);
       }
       Part(own + 6 * c).noalias() = BlockView(lower(front) + 6 * c * (ld + 1), Stride(ld)) * part;
     }
   }
-  for (int k = 0; k < count(); ++k) Outside(x + 6 * pattern_.body(k)) = Part(x_.data() + 6 * k).cast<double>();
+  for (int k = 0; k < count(); ++k) Part(x + 6 * pattern_.body(k)) = Part(x_.data() + 6 * k);
 }
 
 }  // namespace snug::physics::internal

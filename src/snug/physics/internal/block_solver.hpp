@@ -14,26 +14,26 @@ namespace snug::physics::internal {
 class LazyStore {
  public:
   explicit LazyStore(std::size_t count);
-  [[nodiscard]] float* get() { return data_.get(); }
+  [[nodiscard]] double* get() { return data_.get(); }
 
  private:
   struct Free {
-    void operator()(float* data) const;
+    void operator()(double* data) const;
   };
-  std::unique_ptr<float, Free> data_;
+  std::unique_ptr<double, Free> data_;
 };
 
 /// A 6 x 6 block within a panel, stored by columns, or its transpose so.
 struct PanelBlock {
-  float* data = nullptr;
+  double* data = nullptr;
   std::ptrdiff_t stride = 6;
   bool is_transposed = false;
 };
 
-/// LU factorisation, in single precision, of matrices I + sum J^T S J, whose pattern is symmetric and whose blocks on
-/// the diagonal stay regular without pivoting. Fronts of bodies (BlockPattern) have dense panels; each takes over what
-/// earlier ones change in it, in their order, so that fill, work and the bytes of the result depend on the pattern
-/// alone. Never allocates after construction.
+/// LU factorisation of matrices I + sum J^T S J, whose pattern is symmetric and whose blocks on the diagonal stay
+/// regular without pivoting. Fronts of bodies (BlockPattern) have dense panels; each takes over what earlier ones
+/// change in it, in their order, so that fill, work and the bytes of the result depend on the pattern alone. Never
+/// allocates after construction.
 ///
 /// For a pattern: begin(n), connect(i, j) for pairs of bodies that share contacts, analyze(). For a matrix:
 /// set_identity(), add to diagonal() and coupling(), factorize(), solve().
@@ -58,8 +58,7 @@ class BlockSolver {
 
   /// Overwrites the matrix by its factors.
   void factorize();
-  /// A^-1 x in place, 6 entries a body; to some six digits of the largest, which is enough for steps of Newton's
-  /// method.
+  /// A^-1 x in place, 6 entries a body.
   void solve(double* x);
 
   [[nodiscard]] int count() const { return pattern_.count(); }
@@ -71,10 +70,10 @@ class BlockSolver {
 
   /// Panel of a front: its own bodies and below them its rows, 6 numbers each. Below the diagonal, L with unit
   /// diagonal; on it, the inverse of U's; above it, within the front, U.
-  [[nodiscard]] float* lower(const Front& front) { return lower_.get() + 36 * front.panel; }
+  [[nodiscard]] double* lower(const Front& front) { return lower_.get() + 36 * front.panel; }
   [[nodiscard]] std::ptrdiff_t lower_stride(const Front& front) const { return 6 * front.height(); }
   /// U beside the front's own bodies, transposed: its rows, 6 numbers each, for each of its bodies.
-  [[nodiscard]] float* upper(const Front& front) { return upper_.get() + 36 * front.panel; }
+  [[nodiscard]] double* upper(const Front& front) { return upper_.get() + 36 * front.panel; }
   [[nodiscard]] std::ptrdiff_t upper_stride(const Front& front) const { return 6 * front.rows(); }
 
   void place_rows(const Front& front);
@@ -83,10 +82,10 @@ class BlockSolver {
 
   BlockPattern pattern_;
   LazyStore lower_, upper_;
-  Index place_;                 ///< of each rank in the panel at hand
-  std::vector<float> product_;  ///< six columns of a panel
-  std::vector<float> x_;        ///< by rank
-  std::vector<float> gathered_;
+  Index place_;                  ///< of each rank in the panel at hand
+  std::vector<double> product_;  ///< six columns of a panel
+  std::vector<double> x_;        ///< by rank
+  std::vector<double> gathered_;
 };
 
 }  // namespace snug::physics::internal

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "snug/physics/internal/panel_kernels.hpp"
 
@@ -24,9 +23,9 @@ constexpr double kSolvedPenalty = 3e4;
 constexpr double kSolvedGrowth = 30.0;
 
 constexpr int kLeastClustered = 30;        ///< rows, of islands that are looked at in parts
-constexpr int kClusterRounds = 12;         ///< parts solved, each time with one more ring of bodies around them
+constexpr int kClusterRounds = 20;         ///< parts solved, each time with one more ring of bodies around them
 constexpr double kClusterResidual = 0.5;   ///< of the tolerance, to which parts are solved
-constexpr int kCyclesWithoutClusters = 2;  ///< generalized steps where more than half is unsolved
+constexpr int kCyclesWithoutClusters = 1;  ///< generalized steps where more than half is unsolved
 
 constexpr int kMaxPatchRows = 8;  ///< whose products are made at once
 
@@ -51,40 +50,27 @@ constexpr double kNear = 10.0;                ///< of the tolerance
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-using Singles = float __attribute__((vector_size(8)));
-
-void store_single(float* p, Pair value) {
-  const Singles singles = __builtin_convertvector(value, Singles);
-  std::memcpy(p, &singles, sizeof singles);
-}
-
 /// M += the block whose columns lie behind each other at `stride`.
-void add_block(const PanelBlock& M, const float* block, std::ptrdiff_t stride) {
+void add_block(const PanelBlock& M, const double* block, std::ptrdiff_t stride) {
   if (M.is_transposed) {
     for (int j = 0; j < 6; ++j, block += stride) {
       for (int i = 0; i < 6; ++i) M.data[j + i * M.stride] += block[i];
     }
     return;
   }
-  float* column = M.data;
+  double* column = M.data;
   for (int j = 0; j < 6; ++j, column += M.stride, block += stride) {
-    for (int i = 0; i < 6; i += 2) {
-      Singles sum, part;
-      std::memcpy(&sum, column + i, sizeof sum);
-      std::memcpy(&part, block + i, sizeof part);
-      sum += part;
-      std::memcpy(column + i, &sum, sizeof sum);
-    }
+    for (int i = 0; i < 6; i += 2) store(column + i, load(column + i) + load(block + i));
   }
 }
 
 /// slope * rows.
-void multiply(const double (&slope)[9], const double (&rows)[3][6], float* out) {
+void multiply(const double (&slope)[9], const double (&rows)[3][6], double* out) {
   for (int i = 0; i < 3; ++i) {
     const Pair s0{slope[3 * i], slope[3 * i]}, s1{slope[3 * i + 1], slope[3 * i + 1]},
         s2{slope[3 * i + 2], slope[3 * i + 2]};
     for (int k = 0; k < 6; k += 2) {
-      store_single(out + 6 * i + k, load(rows[0] + k) * s0 + load(rows[1] + k) * s1 + load(rows[2] + k) * s2);
+      store(out + 6 * i + k, load(rows[0] + k) * s0 + load(rows[1] + k) * s1 + load(rows[2] + k) * s2);
     }
   }
 }
@@ -266,8 +252,8 @@ void IslandProblem::assemble() {
 
 /// What the contacts of one pair of bodies bring in: [a b]^T slope a and [a b]^T slope b, each one product.
 void IslandProblem::add_patch(const NewtonPatch& patch) {
-  alignas(64) float left[3 * kMaxPatchRows * 12], force_a[3 * kMaxPatchRows * 6], force_b[3 * kMaxPatchRows * 6];
-  alignas(64) float product[12 * 6];
+  alignas(64) double left[3 * kMaxPatchRows * 12], force_a[3 * kMaxPatchRows * 6], force_b[3 * kMaxPatchRows * 6];
+  alignas(64) double product[12 * 6];
   const Row* row = first_ + patch.first;
   const NewtonRow* newton = work_.rows.get() + patch.first;
   const bool is_pair = patch.connection >= 0;
@@ -277,12 +263,10 @@ void IslandProblem::add_patch(const NewtonPatch& patch) {
     const double(&slope)[9] = newton->law.slope;
     if (slope[0] <= 0.0) continue;
     const double(&own)[3][6] = row->ia >= 0 ? row->a : row->b;
-    float* to = left + depth * width;
+    double* to = left + depth * width;
     for (int k = 0; k < 3; ++k, to += width) {
-      for (int m = 0; m < 6; m += 2) {
-        store_single(to + m, load(own[k] + m));
-        if (is_pair) store_single(to + 6 + m, load(row->b[k] + m));
-      }
+      std::copy_n(own[k], 6, to);
+      if (is_pair) std::copy_n(row->b[k], 6, to + 6);
     }
     multiply(slope, own, force_a + 6 * depth);
     if (is_pair) multiply(slope, row->b, force_b + 6 * depth);
@@ -452,11 +436,14 @@ void IslandProblem::augment(const Care& care) {
 void IslandProblem::solve_clusters() {
   ClusterScratch& clusters = *work_.clusters;
   const Residuals residuals{kClusterResidual * tolerance_, kClusterResidual * tolerance_};
+  int rings = 0;
   for (int round = 0; round < kClusterRounds && !is_solved(); ++round) {
-    if (!clusters.rows.find(first_, work_.rows.get(), work_.patches, tolerance_, round)) {
+    if (!clusters.rows.find(first_, work_.rows.get(), work_.patches, tolerance_, rings)) {
       run_cycles(kCyclesWithoutClusters);
+      rings = std::max(0, rings - 1);
       continue;
     }
+    ++rings;
     for (std::size_t i = 0; i < clusters.rows.count(); ++i) {
       const std::span<Row> rows = clusters.rows[i];
       (void)newton_rows(residuals, rows.data(), rows.data() + rows.size(), u_, clusters.newton);
@@ -480,10 +467,10 @@ int IslandProblem::solve() {
 
 }  // namespace
 
-NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity, bool has_clusters)
+NewtonScratch::NewtonScratch(std::size_t bodies, std::size_t row_capacity, int levels)
     : solver(bodies, row_capacity), rows(new NewtonRow[row_capacity]) {
-  if (has_clusters) {
-    clusters.reset(new ClusterScratch{{bodies, row_capacity}, {bodies, row_capacity, false}});
+  if (levels > 0) {
+    clusters.reset(new ClusterScratch{{bodies, row_capacity}, {bodies, row_capacity, levels - 1}});
   }
   for (std::vector<double>* v : {&u, &u_free, &u_start, &error, &step, &right}) v->assign(6 * bodies, 0.0);
   local.assign(bodies, -1);

@@ -40,8 +40,8 @@ struct NewtonPatch {
 struct ClusterScratch;
 
 struct NewtonScratch {
-  /// Without clusters: of what solves the clusters of another.
-  NewtonScratch(std::size_t bodies, std::size_t rows, bool has_clusters = true);
+  /// `levels`: how often parts of an island are looked at in parts again.
+  NewtonScratch(std::size_t bodies, std::size_t rows, int levels = 2);
   ~NewtonScratch();
   NewtonScratch(NewtonScratch&&) noexcept;
 

@@ -9,11 +9,11 @@ namespace snug::physics::internal {
 /// k) of B at b[j * row_b + k * column_b]. `rows` is even.
 struct PanelProduct {
   int rows, depth;
-  const float* a;
+  const double* a;
   std::ptrdiff_t stride_a;
-  const float* b;
+  const double* b;
   std::ptrdiff_t row_b, column_b;
-  float* c;
+  double* c;
   std::ptrdiff_t stride_c;
 };
 
