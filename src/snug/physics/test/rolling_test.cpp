@@ -217,7 +217,7 @@ TEST(RollingResistance, IsTheSameWithAnotherWorkspaceAndFromASnapshot) {
   model.settings.sleep.enabled = true;
   WorldState one = make_state(model), turns = make_state(model);
   Workspace work_one(model), work_a(model), work_b(model, 2);
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0; i < 9000; ++i) {
     const StepReport report = step(model, {}, one, work_one);
     (void)step(model, {}, turns, i % 3 == 0 ? work_a : work_b);
     ASSERT_EQ(report.status, StepStatus::Converged) << i;
