@@ -1,11 +1,16 @@
 // Contact solver: velocities that satisfy Signorini, Newton and the exact Coulomb disc at all contacts of an island.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "snug/physics/internal/scratch.hpp"
 
 namespace snug::physics::internal {
 namespace {
+
+/// Sweeps go on while two of them leave less than this of their changes, else Newton's method takes over.
+constexpr double kQuick = 0.3;
+constexpr int kLeastSweeps = 3, kMostSweeps = 20;
 
 /// Impulses of a sliding contact: a few exact alternations of the normal and the tangential law.
 inline void solve_sliding(const Row& row, const double (&xi)[3], double (&lambda)[3]) {
@@ -98,10 +103,8 @@ void finish_row(Row& row) noexcept {
 
 SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end, double* u,
                        NewtonScratch& newton) noexcept {
-  // Small islands mostly get there by sweeps, which cost less than a linear system.
-  constexpr std::ptrdiff_t kSmall = 256;
-  const bool is_calm = residuals.wanted < residuals.accepted;  // the last digits are what sweeps are slowest at
-  const int sweeps_before_newton = end - first <= kSmall && !is_calm ? 20 : 6;
+  bool is_newton_done = false;
+  double changes[2] = {};                                                 // of the last two sweeps
   for (Row* row = first; row != end; ++row) apply(*row, row->lambda, u);  // warm start
   SolveResult result;
   while (result.iterations < settings.max_sweeps) {
@@ -115,8 +118,13 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
       result.residual = worst_residual(first, end, u);
       if (result.residual <= residuals.wanted) return result;
     }
-    if (result.iterations < sweeps_before_newton) continue;
-    if (result.iterations == sweeps_before_newton) result.iterations += newton_rows(residuals, first, end, u, newton);
+    const bool is_slow = change > kQuick * changes[0];
+    changes[0] = std::exchange(changes[1], change);
+    if (!is_newton_done) {
+      if (result.iterations < kLeastSweeps || (!is_slow && result.iterations < kMostSweeps)) continue;
+      is_newton_done = true;
+      result.iterations += newton_rows(residuals, first, end, u, newton);
+    }
     result.residual = worst_residual(first, end, u);
     if (result.residual <= residuals.accepted) return result;
   }
