@@ -8,9 +8,16 @@
 namespace snug::physics::internal {
 namespace {
 
-/// Sweeps go on while two of them leave less than this of their changes, else Newton's method takes over.
-constexpr double kQuick = 0.3;
-constexpr int kLeastSweeps = 3, kMostSweeps = 20;
+/// Sweeps go on for as long as two of them leave less than `slow` of the change before, else Newton's method takes
+/// over. Small islands get more of them: they cost less than a linear system, and share the load of flat faces more
+/// evenly.
+struct Patience {
+  int least;
+  double slow;
+};
+constexpr std::ptrdiff_t kSmallIsland = 256;  ///< rows
+constexpr Patience kSmall{6, 0.8}, kLarge{3, 0.3};
+constexpr int kMostSweeps = 20;  ///< before Newton's method
 
 /// Impulses of a sliding contact: a few exact alternations of the normal and the tangential law.
 inline void solve_sliding(const Row& row, const double (&xi)[3], double (&lambda)[3]) {
@@ -103,6 +110,7 @@ void finish_row(Row& row) noexcept {
 
 SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end, double* u,
                        NewtonScratch& newton) noexcept {
+  const Patience patience = end - first <= kSmallIsland ? kSmall : kLarge;
   bool is_newton_done = false;
   double changes[2] = {};                                                 // of the last two sweeps
   for (Row* row = first; row != end; ++row) apply(*row, row->lambda, u);  // warm start
@@ -118,10 +126,10 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
       result.residual = worst_residual(first, end, u);
       if (result.residual <= residuals.wanted) return result;
     }
-    const bool is_slow = change > kQuick * changes[0];
+    const bool is_slow = change > patience.slow * changes[0];
     changes[0] = std::exchange(changes[1], change);
     if (!is_newton_done) {
-      if (result.iterations < kLeastSweeps || (!is_slow && result.iterations < kMostSweeps)) continue;
+      if (result.iterations < patience.least || (!is_slow && result.iterations < kMostSweeps)) continue;
       is_newton_done = true;
       result.iterations += newton_rows(residuals, first, end, u, newton);
     }

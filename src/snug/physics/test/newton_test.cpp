@@ -8,7 +8,7 @@
 namespace snug::physics::test {
 namespace {
 
-constexpr int kSweepsBeforeNewton = 20;  // docs/theory/contact.md, 4
+constexpr int kSweepsBeforeNewton = 6;  // docs/theory/contact.md, 4
 
 class Jam : public testing::TestWithParam<double> {};
 
