@@ -12,10 +12,10 @@ namespace {
 
 // Chosen on some 550 problems on which sweeps fail (a settling pile of 300 boxes, random drops at mass ratios to 1000,
 // a wall): least time among those with which all of them are solved.
-constexpr int kCycles = 5;             ///< generalized steps that are tried in any case
+constexpr int kCycles = 4;             ///< generalized steps that are tried in any case
 constexpr int kSweepsPerCycle = 2;     ///< of Gauss-Seidel after each
-constexpr double kPenalty = 300.0;     ///< of generalized steps, in units of 1 / W of each contact
-constexpr double kFlipCut = 3.0;       ///< of the penalty of a contact whose status changes from step to step
+constexpr double kPenalty = 600.0;     ///< of generalized steps, in units of 1 / W of each contact
+constexpr double kFlipCut = 5.0;       ///< of the penalty of a contact whose status changes from step to step
 constexpr double kFlipRecovery = 1.5;  ///< of the penalty of one whose status stays
 constexpr double kLeastFlipPenalty = 1.0;
 /// Of contacts whose status stays in islands that are solved and at rest: what a step leaves of a slow mode is 1 / p.
