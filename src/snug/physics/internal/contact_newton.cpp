@@ -14,6 +14,7 @@ namespace {
 // a wall): least time among those with which all of them are solved.
 constexpr int kCycles = 4;             ///< generalized steps that are tried in any case
 constexpr int kSweepsPerCycle = 2;     ///< of Gauss-Seidel after each
+constexpr int kSweepsAnew = 20;        ///< before the steps of a second try
 constexpr double kPenalty = 600.0;     ///< of generalized steps, in units of 1 / W of each contact
 constexpr double kFlipCut = 5.0;       ///< of the penalty of a contact whose status changes from step to step
 constexpr double kFlipRecovery = 1.5;  ///< of the penalty of one whose status stays
@@ -154,6 +155,8 @@ class IslandProblem {
   void solve_system();
   void take_linear_impulses();
 
+  void solve_from_here();
+  void start_anew();
   void run_cycles(int count);
   void solve_clusters();
   void linearise();
@@ -454,12 +457,32 @@ void IslandProblem::solve_clusters() {
   }
 }
 
-int IslandProblem::solve() {
-  if (!std::isfinite(best_)) return 0;  // the caller says so
+/// Back to no impulses and a few sweeps: where steps cycle without end depends on where they began.
+void IslandProblem::start_anew() {
+  each_row([](Row& row, NewtonRow& newton) {
+    std::fill_n(row.lambda, 3, 0.0);
+    newton.penalty = kPenalty;
+    newton.status = ContactStatus::Unknown;
+  });
+  apply_impulses();
+  for (int i = 0; i < kSweepsAnew; ++i) (void)sweep_rows(first_, end_, u_, i % 2 == 0);
+}
+
+/// What solves nearly all problems.
+void IslandProblem::solve_from_here() {
   run_cycles(kCycles);
   if (!is_solved() && work_.clusters && end_ - first_ >= kLeastClustered) solve_clusters();
   restore_best();
   if (!is_solved()) augment(kQuick);
+}
+
+int IslandProblem::solve() {
+  if (!std::isfinite(best_)) return 0;  // the caller says so
+  solve_from_here();
+  if (!is_solved()) {
+    start_anew();
+    solve_from_here();
+  }
   if (!is_solved()) augment(kThorough);
   if (!is_solved() && best_ <= kNear * tolerance_) augment(kLast);
   return iterations_;
