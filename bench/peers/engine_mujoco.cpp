@@ -52,14 +52,14 @@ std::string scene_xml(const Scene& scene, const MujocoSettings& settings, double
                     scene.plane_height, contact.friction, soft);
   }
   return fmt::format(
-      R"(<mujoco><size njmax="1600" nconmax="400"/>
+      R"(<mujoco><size njmax="{}" nconmax="{}"/>
 <option timestep="{}" gravity="{} {} {}" cone="{}" impratio="{}"/>
 <default><geom solref="{} 1" solimp="{} {} 0.001"/></default>
 <worldbody>
 {}</worldbody></mujoco>)",
-      dt, scene.gravity.x(), scene.gravity.y(), scene.gravity.z(),
-      settings.use_elliptic_cone ? "elliptic" : "pyramidal", settings.impratio, settings.time_constant,
-      settings.impedance_min, settings.impedance_max, bodies);
+      1600 + 32 * scene.bodies.size(), 400 + 8 * scene.bodies.size(), dt, scene.gravity.x(), scene.gravity.y(),
+      scene.gravity.z(), settings.use_elliptic_cone ? "elliptic" : "pyramidal", settings.impratio,
+      settings.time_constant, settings.impedance_min, settings.impedance_max, bodies);
 }
 
 class MujocoEngine final : public Engine {

@@ -1,4 +1,4 @@
-// Measure: the runs and figures of S1 to S6.
+// Measure: the runs and figures of S1 to S6 and of piles.
 #include "peers/measure.hpp"
 
 #include <algorithm>
@@ -307,6 +307,25 @@ std::vector<Result> measure_gap(Engine& engine) {
           {"s6c.passes_through", c.is_complete ? 1.0 : 0.0, "1"}};
 }
 
+/// The piles of `snug bench piles`, while they fall, land and settle. `name`: of the scene.
+std::vector<Result> measure_pile(Engine& engine, const std::string& name, const Scene& scene, int count) {
+  constexpr double kStep = 2e-3;                // s
+  constexpr int kSteps = 700, kLookEvery = 20;  // at depths, which take long
+  engine.build(scene, kStep);
+  const std::vector<bool> present(scene.bodies.size(), true);
+  Largest depth;
+  double spent = 0.0;
+  for (int k = 0; k < kSteps; k += kLookEvery) {
+    const double begin = cpu_seconds();
+    for (int i = 0; i < kLookEvery; ++i) engine.step();
+    spent += cpu_seconds() - begin;
+    depth.see(engine.has_failed() ? std::numeric_limits<double>::quiet_NaN()
+                                  : worst_depth(scene, poses_of(engine, scene), present));
+  }
+  return {{name + ".us_per_body_and_step", 1e6 * spent / (static_cast<double>(kSteps) * count), "us"},
+          {name + ".worst_penetration_mm", 1e3 * depth.value(), "mm"}};
+}
+
 }  // namespace
 
 std::vector<Result> measure(Engine& engine, const std::string& scene) {
@@ -316,6 +335,9 @@ std::vector<Result> measure(Engine& engine, const std::string& scene) {
   if (scene == "s4") return measure_bounce(engine);
   if (scene == "s5") return measure_swing(engine);
   if (scene == "s6") return measure_gap(engine);
+  if (scene == "pile100") return measure_pile(engine, scene, pile_scene(100, 5, 1), 100);
+  if (scene == "pile300") return measure_pile(engine, scene, pile_scene(300, 7, 2), 300);
+  if (scene == "pile1000") return measure_pile(engine, scene, pile_scene(1000, 11, 3), 1000);
   return {};
 }
 

@@ -14,7 +14,8 @@ struct Result {
   std::string unit;
 };
 
-/// scene: "s1" .. "s6"; anything else gives nothing. bench/README.md says what each figure means.
+/// scene: "s1" .. "s6", "pile100", "pile300", "pile1000"; anything else gives nothing. bench/README.md says what each
+/// figure means.
 [[nodiscard]] std::vector<Result> measure(Engine& engine, const std::string& scene);
 
 }  // namespace snug::peers

@@ -1,4 +1,4 @@
-// Scenes S1 to S6: sizes, masses, poses and motions.
+// Scenes S1 to S6 and piles: sizes, masses, poses and motions.
 #include "peers/scenes.hpp"
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "snug/core/rng.hpp"
+#include "snug/experiment/drawn_scenes.hpp"
 
 namespace snug::peers {
 
@@ -205,6 +206,22 @@ HeldScene gap_scene(GapVariant variant) {
   held.held = static_cast<int>(held.scene.bodies.size());
   held.scene.bodies.push_back(box);
   return held;
+}
+
+Scene pile_scene(int count, int side, unsigned seed) {
+  const model::Scenario scenario = experiment::drawn_pile({count, side, seed});
+  Scene scene{.name = "pile", .box_box = {0.4, 0.1}, .box_container = {0.4, 0.1}};
+  for (const model::Body& body : scenario.bodies) {
+    scene.bodies.push_back({.name = body.name,
+                            .half = std::get<geometry::Box>(body.shapes.front().shape).half,
+                            .mass = body.inertia.mass,
+                            .X_WB = body.X_WB});
+  }
+  const model::Container& tote = scenario.containers.front();
+  for (const model::PlacedShape& wall : model::make_walls(tote)) {
+    scene.bodies.push_back(fixed_box("wall", std::get<geometry::Box>(wall.shape).half, (tote.X_WT * wall.X_BG).p));
+  }
+  return scene;
 }
 
 }  // namespace snug::peers

@@ -1,4 +1,4 @@
-// Scenes S1 to S6: the work that every engine is given, as plain data that no engine had a say in.
+// Scenes S1 to S6 and piles: the work that every engine is given, as plain data that no engine had a say in.
 #pragma once
 
 #include <string>
@@ -81,6 +81,9 @@ enum class GapVariant { A, B, C };
 [[nodiscard]] HeldScene swing_scene();
 /// S6: one B4 pressed between two others.
 [[nodiscard]] HeldScene gap_scene(GapVariant variant);
+
+/// Boxes that fall into a tote in layers of side x side: experiment::drawn_pile, as `snug bench piles` has it.
+[[nodiscard]] Scene pile_scene(int count, int side, unsigned seed);
 
 /// Inside of the container, half sizes [m]; the floor's top is at z = 0.
 inline const Vector3 kContainerHalf{0.285, 0.185, 0.125};

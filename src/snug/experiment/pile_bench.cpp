@@ -11,8 +11,8 @@
 #include "snug/cell/scene.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/units.hpp"
+#include "snug/experiment/drawn_scenes.hpp"
 #include "snug/experiment/internal/cpu_time.hpp"
-#include "snug/experiment/internal/drawn_scenes.hpp"
 #include "snug/experiment/internal/scene_bench.hpp"
 
 namespace snug::experiment::internal {

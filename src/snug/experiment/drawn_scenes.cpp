@@ -1,5 +1,5 @@
 // Drawn scenes: piles of dropped boxes and random drops of all kinds of bodies, written as scenario files are.
-#include "snug/experiment/internal/drawn_scenes.hpp"
+#include "snug/experiment/drawn_scenes.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "snug/core/rng.hpp"
 
-namespace snug::experiment::internal {
+namespace snug::experiment {
 namespace {
 
 std::string head(const char* name, double time_step, double friction, double restitution) {
@@ -90,4 +90,4 @@ model::Scenario drawn_drop(const RandomDrop& drop) {
   return model::parse_scenario(text, fmt::format("random drop, seed {}", drop.seed));
 }
 
-}  // namespace snug::experiment::internal
+}  // namespace snug::experiment

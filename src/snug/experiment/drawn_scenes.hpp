@@ -5,7 +5,7 @@
 
 #include "snug/model/scenario.hpp"
 
-namespace snug::experiment::internal {
+namespace snug::experiment {
 
 /// Boxes of 9 to 16 cm and 300 kg/m^3 that fall in layers of side x side into a tote which they just fit into beside
 /// each other; friction 0.4, restitution 0.1, time step 2 ms, everything else by default.
@@ -24,4 +24,4 @@ struct RandomDrop {
 };
 [[nodiscard]] model::Scenario drawn_drop(const RandomDrop& drop);
 
-}  // namespace snug::experiment::internal
+}  // namespace snug::experiment
