@@ -111,7 +111,13 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["predicted_success"] = item.predicted_success;
     json["predicted"] = item.samples > 0 ? as_json(item.predicted) : Json();
     json["happened"] = as_json(item.happened);
-    json["hold_factor"] = std::isfinite(truth.hold_factor) ? Json(rounded(truth.hold_factor, 6)) : Json();
+    const simulated_plant::MotionTruth& motion = truth.motion;
+    const bool was_held = std::isfinite(motion.hold_factor);
+    json["hold_factor"] = was_held ? Json(rounded(motion.hold_factor, 6)) : Json();
+    json["swing_mm"] = was_held ? Json(1e3 * motion.swing) : Json();
+    json["swing_deg"] = was_held ? Json(motion.swing_angle / kDegree) : Json();
+    json["joint_speed_share"] = motion.joint_speed;
+    json["joint_acceleration_share"] = motion.joint_acceleration;
     json["sends"] = sends_as_json(item, truth);
   }
   if (!item.sends.empty() || !item.recoveries.empty()) json["recoveries"] = recoveries_as_json(item.recoveries);
@@ -185,10 +191,11 @@ std::string how_fast(const study::Trial& trial) {
 }
 
 std::string describe_hold(const study::Trial& trial) {
-  const auto worst = std::ranges::min_element(trial.items, {}, &study::TrueItem::hold_factor);
-  if (worst == trial.items.end() || !std::isfinite(worst->hold_factor)) return {};
+  const auto worst =
+      std::ranges::min_element(trial.items, {}, [](const study::TrueItem& one) { return one.motion.hold_factor; });
+  if (worst == trial.items.end() || !std::isfinite(worst->motion.hold_factor)) return {};
   return fmt::format("hold of the cup    {:.1f} times what it had to carry, at the worst instant ({})\n",
-                     worst->hold_factor, worst->id);
+                     worst->motion.hold_factor, worst->id);
 }
 
 /// "         tried  100.6, 238.7, 116.1 mm, +Y up, tilted: it would stick out", a line for each

@@ -1,4 +1,4 @@
-// JointPace: how fast the joints of the scenario's robot let the tool go, and gain speed, along a straight way.
+// JointPace: how fast the joints of the scenario's robot let the tool go, and gain speed, along a way.
 #include "snug/cell/joint_pace.hpp"
 
 #include <algorithm>
@@ -19,6 +19,8 @@ constexpr double kReserve = 0.95;
 /// Of the joints' accelerations; what is left is for the controller, which makes up for what it is late.
 constexpr double kOfSpeedingUp = 0.5, kOfBending = 0.3;
 
+constexpr double kUpright = 1.0 - 1e-6;  ///< cosine: a first axis that stands upright, or hangs
+
 /// rad (m), the short way round for joints that turn.
 double difference(const robot::Joint& joint, double from, double to) {
   const double turn = to - from;
@@ -27,19 +29,16 @@ double difference(const robot::Joint& joint, double from, double to) {
 
 }  // namespace
 
-void JointPace::limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates,
-                      std::span<double> accelerations) const noexcept {
-  const auto first = inverse_.nearest(X_WA, posture_);
+void JointPace::limit(const motion::Way& way, std::span<double> rates, std::span<double> accelerations) const noexcept {
+  const auto first = inverse_.nearest(way.start(), posture_);
   if (!first) return;
   robot::JointVector q = *first, slope_before;
-  const Vector3 turn_W = X_WA.R * log_rotation(X_WA.R.transpose() * X_WB.R);
   const auto lower = [](std::span<double> limits, std::size_t look, double limit) {
     for (std::size_t i = look * limits.size() / kLooks; i < (look + 1) * limits.size() / kLooks; ++i)
       limits[i] = std::min(limits[i], limit);
   };
   for (std::size_t look = 0; look < kLooks; ++look) {
-    const double share = static_cast<double>(look + 1) / kLooks;
-    const Pose X_WE{exp_rotation(share * turn_W) * X_WA.R, X_WA.p + share * (X_WB.p - X_WA.p)};
+    const Pose X_WE = way.at(static_cast<double>(look + 1) / kLooks);
     const std::optional<robot::JointVector> next = inverse_.refine(X_WE, q);
     if (!next) return;
     robot::JointVector slope(q.size());  // of each joint by the share of the way
@@ -62,6 +61,11 @@ void JointPace::limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rate
     slope_before = slope;
     q = *next;
   }
+}
+
+std::optional<Vector3> find_pan_axis(const model::Scenario& scenario) {
+  if (!scenario.robot || std::abs(scenario.robot->X_WB.R(2, 2)) < kUpright) return std::nullopt;
+  return scenario.robot->X_WB.p;
 }
 
 std::unique_ptr<const JointPace> make_joint_pace(const model::Scenario& scenario, double tempo) {

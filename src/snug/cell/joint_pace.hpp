@@ -1,7 +1,8 @@
-// JointPace: how fast the joints of the scenario's robot let the tool go, and gain speed, along a straight way.
+// JointPace: how fast the joints of the scenario's robot let the tool go, and gain speed, along a way.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -18,14 +19,16 @@ class JointPace final : public motion::PathLimits {
       : inverse_(arm), posture_(std::move(posture)), share_(share), acceleration_(acceleration) {}
   /// Along the branch of the inverse that begins nearest to the robot's posture. Parts that the arm does not reach are
   /// left as they are: whether it reaches them is not asked here.
-  void limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates,
-             std::span<double> accelerations) const noexcept override;
+  void limit(const motion::Way& way, std::span<double> rates, std::span<double> accelerations) const noexcept override;
 
  private:
   robot::InverseKinematics inverse_;
   robot::JointVector posture_;
   double share_, acceleration_;
 };
+
+/// m, in W: a point of the robot's first axis. None without a robot, and where it does not stand upright.
+[[nodiscard]] std::optional<Vector3> find_pan_axis(const model::Scenario& scenario);
 
 /// With the share of the scenario (velocity_fraction) and the tempo. None without a robot, where its file is not there,
 /// and for an arm whose inverse has no closed form: a search along every way would take too long. The controller of the

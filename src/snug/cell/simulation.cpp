@@ -13,6 +13,7 @@
 #include "snug/core/check.hpp"
 #include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/cup/phases.hpp"
 
 namespace snug::cell {
 namespace {
@@ -109,8 +110,10 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
   motion::ControllerSettings settings;
   settings.kind = options.controller;
   settings.fast.tempo = options.tempo;
-  if (options.controller == motion::ControllerKind::Fast) {
+  const bool is_fast = options.controller == motion::ControllerKind::Fast;
+  if (is_fast) {
     settings.fast.held.window = held_swing_window(scenario, sequence).value_or(settings.fast.held.window);
+    settings.fast.pan_axis = find_pan_axis(scenario);
   }
   settings.fast.sealed_pressure = kSealed * scenario.cup.vacuum.pressure_gauge_hold;
   settings.fast.released_pressure = kReleased * scenario.cup.vacuum.pressure_gauge_hold;
@@ -124,7 +127,9 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
                                {limits.precision, limits.max_acceleration, limits.max_speed, limits.max_turn_speed,
                                 limits.max_turn_acceleration}});
   }
-  return motion::prepare(std::move(program), std::move(settings));
+  motion::PreparedProgram plan = motion::prepare(std::move(program), std::move(settings));
+  if (is_fast) plan.held_windows = held_windows(scenario, sequence, plan.program);
+  return plan;
 }
 
 Simulation::Simulation(model::Scenario scenario, const std::string& sequence, const SimulationOptions& options)
@@ -158,7 +163,10 @@ motion::PreparedProgram Simulation::prepare(motion::Program program) const {
 /// What the controller is told at the start of the next tick.
 void Simulation::feel(const motion::PreparedProgram& plan, CellState& state, const CellWorkspace& work) const {
   if (plan.settings.kind != motion::ControllerKind::Fast) return;
-  state.controller.sensed = {state.gripper.cup.pressure_gauge, tool_of(state).X_WE.R * tool_load(state, work).force};
+  const double pressure = state.gripper.cup.pressure_gauge;
+  const Wrench F_E = tool_load(state, work);
+  state.controller.sensed = {pressure, tool_of(state).X_WE.R * F_E.force,
+                             cup::sensed_hold_factor(scenario_.cup, pressure, F_E)};
 }
 
 ArmReading Simulation::read_still(const CellState& state) const {

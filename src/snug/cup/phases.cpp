@@ -183,6 +183,14 @@ double find_hold_factor(const model::CupParams& params, double pressure_gauge, c
                    factor(slip, params.lip_friction)});
 }
 
+double sensed_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_E) {
+  if (pressure_gauge > kEstablishedVacuum * params.vacuum.pressure_gauge_hold) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const Vector3 p_ES(0.0, 0.0, params.hold_length);
+  return find_hold_factor(params, pressure_gauge, {-F_E.force, p_ES.cross(F_E.force) - F_E.torque});
+}
+
 physics::ElementResponse LipPush::evaluate(const physics::ElementQuery& query) const noexcept {
   physics::ElementResponse response;
   const Vector3 n = query.X_WB.R * n_P_;  // outward: toward the gripper

@@ -84,6 +84,10 @@ enum class HoldLoss { None, Tension, Shear, Peel, Bending };
 /// find_hold_loss begins to say no (the bend is not looked at), infinity where it never does.
 [[nodiscard]] double find_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_S);
 
+/// The same from what a robot senses: `F_E`, on the tool about Eo in E, from what it carries. Infinity until the vacuum
+/// is established. The lip is taken for where it is while nothing deforms the cup.
+[[nodiscard]] double sensed_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_E);
+
 /// The push of an open lip on a face: a unilateral spring along the face's normal, from E to the face.
 class LipPush final : public physics::ForceElement {
  public:

@@ -16,6 +16,8 @@ namespace {
 // m and, by the convergence angle, rad: joints that are behind by more have not arrived. Below every precision of the
 // scenarios.
 constexpr double kArrived = 0.002;
+/// The same, of a tool that is too late to be blended into the next way: it would cut the corner.
+constexpr double kLate = 0.02;
 /// Of the shorter of two motions: over at most so much of it they are blended.
 constexpr double kLargestBlend = 0.4;
 /// A way that rises or falls by less than this, and this share of its level length, is level.
@@ -91,6 +93,7 @@ bool feels_contact(const PreparedProgram& plan, const ControllerState& state) {
   if (!std::isfinite(limit)) return false;
   const double left = (state.paced.end().p - state.command.X_WE.p).norm();
   if (left > plan.settings.fast.feel_within) return false;
+  if (row_of(plan, state.row).io.vacuum && state.sensed.hold_factor < plan.settings.fast.felt_hold) return true;
   return -(state.sensed.force_W - state.force_before_W).dot(state.paced.direction_W()) > limit;
 }
 
@@ -113,11 +116,17 @@ double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   return std::min(largest, kLargestBlend * std::min(to, from));
 }
 
+Way way_to(const PreparedProgram& plan, const Pose& X_WE, int row) {
+  const Waypoint& waypoint = row_of(plan, row);
+  return is_contact_row(waypoint.name) ? Way(X_WE, waypoint.X_WE)
+                                       : Way(X_WE, waypoint.X_WE, plan.settings.fast.pan_axis);
+}
+
 void begin_motion(const PreparedProgram& plan, const Pose& X_WE, ControllerState& state) {
   state.phase = ControllerPhase::Moving;
   state.phase_ticks = 0;
   state.force_before_W = state.sensed.force_W;
-  state.paced = PacedSegment(X_WE, row_of(plan, state.row).X_WE, pace_of(plan, X_WE, state.row), plan.path_limits);
+  state.paced = PacedSegment(way_to(plan, X_WE, state.row), pace_of(plan, X_WE, state.row), plan.path_limits);
 }
 
 void depart(const PreparedProgram& plan, int row, ControllerState& state) {
@@ -165,6 +174,7 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
   const FastSettings& fast = plan.settings.fast;
   const Waypoint& waypoint = row_of(plan, row);
   Pace pace = waypoint.io.vacuum ? fast.held : fast.empty;
+  if (waypoint.io.vacuum && !plan.held_windows.empty()) pace.window = plan.held_windows[static_cast<std::size_t>(row)];
   if (is_contact_row(waypoint.name)) {
     const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
     pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
@@ -192,7 +202,9 @@ bool has_reached_fast(const PreparedProgram& plan, const ToolState& measured, co
     return error_to(plan, state.command.X_WE, state.row) <= precision;
   }
   const double blend = blend_at(plan, state);
-  if (blend > 0.0 && error_to(plan, state.command.X_WE, state.row) <= blend) return true;
+  const bool is_late =
+      convergence_error(measured.X_WE, state.command.X_WE, plan.settings.convergence_deg_per_metre) > kLate;
+  if (blend > 0.0 && !is_late && error_to(plan, state.command.X_WE, state.row) <= blend) return true;
   return feels_contact(plan, state);
 }
 
@@ -236,7 +248,7 @@ void check_fast(const FastSettings& settings, const std::string& where) {
     }
   }
   for (const double value : {settings.contact_window, settings.blend, settings.level_blend, settings.feel_within,
-                             settings.pick_force, settings.press_force, settings.push_force}) {
+                             settings.pick_force, settings.press_force, settings.push_force, settings.felt_hold}) {
     require("limits", value, is_positive(value), "a finite number above 0");
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include "snug/motion/paced_segment.hpp"
@@ -12,6 +13,8 @@ namespace snug::motion {
 struct Sensed {
   double pressure_gauge = 0.0;        ///< Pa, in the cup; vacuum is negative
   Vector3 force_W = Vector3::Zero();  ///< N, on the tool, from what it carries and touches
+  /// How many times what it has to the cup could hold; infinity: nothing is held, or not known.
+  double hold_factor = std::numeric_limits<double>::infinity();
   bool operator==(const Sensed&) const = default;
 };
 
@@ -24,6 +27,8 @@ struct FastSettings {
   Pace held = {2.0, 5.0, 2.5, 6.0, 0.25};
   /// A held box on its way in (Place). Other rows that touch something have the scenario's limits for their names.
   Pace insert = {0.6, 4.0, 1.5, 3.0, 0.10};
+  /// m, in W: a point of the robot's first, vertical axis. Ways that touch nothing go around it (Way). None: straight.
+  std::optional<Vector3> pan_axis;
   double contact_window = 0.10;  ///< s, of those others
   double blend = 0.05;        ///< m, and 1 m per `convergence_deg_per_metre`: so near to a row the next one may begin
   double level_blend = 0.15;  ///< m, the same where neither way goes up or down: nothing is met by a short cut
@@ -31,6 +36,7 @@ struct FastSettings {
   double pick_force = 30.0;   ///< N, against the motion: a pick is pressed
   double press_force = 40.0;  ///< N: a held box stands on something
   double push_force = 25.0;   ///< N: a held box leans on its neighbour (PlaceSlow)
+  double felt_hold = 3.0;     ///< Sensed::hold_factor below which a held box meets something, too
   double sealed_pressure = -std::numeric_limits<double>::infinity();   ///< Pa, gauge: the box may be lifted
   double released_pressure = std::numeric_limits<double>::infinity();  ///< Pa, gauge: the tool may leave the box
   bool operator==(const FastSettings&) const = default;

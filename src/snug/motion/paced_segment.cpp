@@ -1,52 +1,68 @@
-// PacedSegment: straight line and fixed-axis turn that start and end at rest, as fast as tool, held box and joints
-// allow.
+// PacedSegment: a motion along a way, from rest to rest, as fast as tool, held box and joints allow.
 #include "snug/motion/paced_segment.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-
-#include "snug/core/check.hpp"
 
 namespace snug::motion {
 namespace {
 
-constexpr double kNoMotion = 1e-9;  ///< m or rad: rounding of poses, not a motion
+/// On a bent way: of the largest acceleration, what may speed up, and what may bend. Together no more than all of it.
+constexpr double kOfSpeedingUp = 0.7, kOfBending = 0.3;
+
+/// What the tool's own limits leave at one point of the way.
+struct Most {
+  double rate = 0.0;          ///< 1/s
+  double acceleration = 0.0;  ///< 1/s^2
+};
+
+Most most_at(const Way& way, const Pace& pace, double share) {
+  constexpr double kFree = std::numeric_limits<double>::infinity();
+  const auto per = [](double limit, const Vector3& whole) { return whole.isZero() ? kFree : limit / whole.norm(); };
+  const auto [first, second] = way.slope(share);
+  Most most{std::min(per(pace.max_speed, first.linear), per(pace.max_turn_speed, first.angular)),
+            std::min(per(pace.max_acceleration, first.linear), per(pace.max_turn_acceleration, first.angular))};
+  if (way.is_straight()) return most;
+  most.acceleration *= kOfSpeedingUp;
+  const double bend =
+      kOfBending * std::min(per(pace.max_acceleration, second.linear), per(pace.max_turn_acceleration, second.angular));
+  most.rate = std::min(most.rate, std::sqrt(bend));
+  return most;
+}
 
 }  // namespace
 
-PacedSegment::PacedSegment(const Pose& X_WA, const Pose& X_WB, const Pace& pace, const PathLimits* others)
-    : X_WA_(X_WA), X_WB_(X_WB) {
-  SNUG_CHECK(X_WA.p.allFinite() && X_WA.R.allFinite() && X_WB.p.allFinite() && X_WB.R.allFinite(),
-             "poses of a motion must be finite");
-  line_W_ = X_WB.p - X_WA.p;
-  turn_W_ = X_WA.R * log_rotation(X_WA.R.transpose() * X_WB.R);
-  const double length = line_W_.norm(), angle = turn_W_.norm();
-  if (length < kNoMotion) line_W_.setZero();
-  if (angle < kNoMotion) turn_W_.setZero();
-  if (length < kNoMotion && angle < kNoMotion) return;
-  constexpr double kFree = std::numeric_limits<double>::infinity();
-  const auto per = [&](double limit, double whole) { return whole < kNoMotion ? kFree : limit / whole; };
+PacedSegment::PacedSegment(const Way& way, const Pace& pace, const PathLimits* others) : way_(way) {
+  if (!way.is_motion()) return;
   std::array<double, kPathParts> rates{}, accelerations{};
-  rates.fill(std::min(per(pace.max_speed, length), per(pace.max_turn_speed, angle)));
-  accelerations.fill(std::min(per(pace.max_acceleration, length), per(pace.max_turn_acceleration, angle)));
-  if (others != nullptr) others->limit(X_WA, X_WB, rates, accelerations);
+  Most before = most_at(way, pace, 0.0);
+  for (std::size_t i = 0; i < kPathParts; ++i) {
+    const Most after = most_at(way, pace, static_cast<double>(i + 1) / kPathParts);
+    rates[i] = std::min(before.rate, after.rate);
+    accelerations[i] = std::min(before.acceleration, after.acceleration);
+    before = after;
+  }
+  if (others != nullptr) others->limit(way, rates, accelerations);
   profile_ = PathProfile(rates, accelerations, pace.window);
 }
 
 PacedSegment::Increment PacedSegment::increment(double t) const noexcept {
   const PathProfile::Sample at = profile_.sample(t);
-  return {exp_rotation(at.share * turn_W_), at.share * line_W_, {at.rate * line_W_, at.rate * turn_W_}};
+  const Pose by = way_.increment(at.share);
+  const Twist slope = way_.slope(at.share).first;
+  return {by.R, by.p, {at.rate * slope.linear, at.rate * slope.angular}};
 }
 
 ToolState PacedSegment::sample(double t) const noexcept {
-  if (t >= duration()) return {X_WB_, {}};
+  if (t >= duration()) return {way_.end(), {}};
   const Increment at = increment(t);
-  return {{at.R_W * X_WA_.R, X_WA_.p + at.shift_W}, at.V_W};
+  return {{at.R_W * start().R, start().p + at.shift_W}, at.V_W};
 }
 
 Vector3 PacedSegment::direction_W() const noexcept {
-  const double length = line_W_.norm();
-  return length > 0.0 ? Vector3(line_W_ / length) : Vector3(Vector3::Zero());
+  const Vector3 line = end().p - start().p;
+  return way_.is_motion() && !line.isZero(1e-9) ? Vector3(line.normalized()) : Vector3(Vector3::Zero());
 }
 
 }  // namespace snug::motion

@@ -1,15 +1,15 @@
-// PacedSegment: straight line and fixed-axis turn that start and end at rest, as fast as tool, held box and joints
-// allow.
+// PacedSegment: a motion along a way, from rest to rest, as fast as tool, held box and joints allow.
 #pragma once
 
 #include <span>
 
 #include "snug/motion/path_profile.hpp"
 #include "snug/motion/tool_path.hpp"
+#include "snug/motion/way.hpp"
 
 namespace snug::motion {
 
-/// What else than the tool's own limits bounds the motion along a straight way: the joints.
+/// What else than the tool's own limits bounds the motion along a way: the joints.
 class PathLimits {
  public:
   PathLimits() = default;
@@ -17,8 +17,7 @@ class PathLimits {
   PathLimits& operator=(const PathLimits&) = delete;
   virtual ~PathLimits() = default;
   /// Lowers the largest share of the way per second, and per second squared, in each of as many equal parts.
-  virtual void limit(const Pose& X_WA, const Pose& X_WB, std::span<double> rates,
-                     std::span<double> accelerations) const noexcept = 0;
+  virtual void limit(const Way& way, std::span<double> rates, std::span<double> accelerations) const noexcept = 0;
 };
 
 /// Limits of one segment. SI units.
@@ -35,9 +34,8 @@ class PacedSegment {
  public:
   /// No motion, duration 0, at the identity.
   PacedSegment() = default;
-  /// Poses must be finite and limits positive (checked). Lengths below 1e-9 m and rad count as none. `others`: not
-  /// kept; none: nothing else limits.
-  PacedSegment(const Pose& X_WA, const Pose& X_WB, const Pace& pace, const PathLimits* others);
+  /// Limits must be positive (checked). `others`: not kept; none: nothing else limits.
+  PacedSegment(const Way& way, const Pace& pace, const PathLimits* others);
 
   [[nodiscard]] double duration() const noexcept { return profile_.duration(); }
   /// Exactly `end` and at rest from the duration on.
@@ -50,18 +48,15 @@ class PacedSegment {
     Twist V_W;
   };
   [[nodiscard]] Increment increment(double t) const noexcept;
-  [[nodiscard]] const Pose& start() const noexcept { return X_WA_; }
-  [[nodiscard]] const Pose& end() const noexcept { return X_WB_; }
-  [[nodiscard]] double length() const noexcept { return line_W_.norm(); }  ///< m
-  /// Unit, in W; zero without a translation.
+  [[nodiscard]] const Pose& start() const noexcept { return way_.start(); }
+  [[nodiscard]] const Pose& end() const noexcept { return way_.end(); }
+  /// Unit, in W, from start to end; zero without a translation.
   [[nodiscard]] Vector3 direction_W() const noexcept;
 
   bool operator==(const PacedSegment&) const = default;
 
  private:
-  Pose X_WA_, X_WB_;
-  Vector3 line_W_ = Vector3::Zero();  ///< m
-  Vector3 turn_W_ = Vector3::Zero();  ///< rad, rotation vector
+  Way way_;
   PathProfile profile_;
 };
 

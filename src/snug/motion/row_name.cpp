@@ -27,6 +27,12 @@ std::string row_name(std::string_view kind, std::string_view box, std::string_vi
   return std::string(kind) + "(" + std::string(box) + ")" + std::string(suffix);
 }
 
+std::string_view box_of(std::string_view row) noexcept {
+  const std::size_t begin = row.find('('), end = row.rfind(')');
+  if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) return {};
+  return row.substr(begin + 1, end - begin - 1);
+}
+
 std::size_t names_box(std::string_view row, std::string_view kind, std::string_view id) noexcept {
   if (!row.starts_with(kind)) return 0;
   const std::string_view rest = row.substr(kind.size());

@@ -12,6 +12,9 @@ namespace snug::motion {
 /// "PrePick(BOX027)_turn". A table of limits that names a box of the demonstrator ("PrePlace018") does not match it.
 [[nodiscard]] std::string row_name(std::string_view kind, std::string_view box, std::string_view suffix = {});
 
+/// The id of the box in a name of that form; empty for other names.
+[[nodiscard]] std::string_view box_of(std::string_view row) noexcept;
+
 /// How well the row's name fits the box `id` when it is a row of this kind; 0: it is not for that box. Of several boxes
 /// it is for the one that it fits best. After the kind stands the id in brackets, or bare, or, for ids of the
 /// demonstrator's form BOX027, its number ("PrePick027", "PrePick_027", "PrePickBox027"), which counts less than a

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "snug/motion/way.hpp"
+
 namespace snug::motion {
 namespace {
 
@@ -25,27 +27,22 @@ Matrix3 upright_tool(double yaw) {
   return exp_rotation(Vector3(0.0, 0.0, yaw)) * exp_rotation(Vector3(0.0, std::numbers::pi, 0.0));
 }
 
-double pan_between(const Vector3& p_WB, const Vector3& p_W_from, const Vector3& p_W_to) {
-  const Vector3 from = p_W_from - p_WB, to = p_W_to - p_WB;
-  return std::atan2(from.x() * to.y() - from.y() * to.x(), from.head<2>().dot(to.head<2>()));
-}
-
 std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypoint>& rows, double neutral_yaw,
-                                 bool on_the_way) {
+                                 bool on_the_way, const std::optional<Vector3>& p_WB) {
   std::vector<Waypoint> turned;
   const Waypoint* last = &before;
   for (const Waypoint& row : rows) {
     const std::optional<double> from = yaw_of(last->X_WE.R), to = yaw_of(row.X_WE.R);
     if (from && to) {
       const double turn = wrapped(*to - neutral_yaw) - wrapped(*from - neutral_yaw);
-      const int parts = static_cast<int>(std::ceil(std::abs(turn) / kLargestTurn));
+      const Way way(last->X_WE, on_the_way ? row.X_WE : last->X_WE, p_WB);
+      const int parts = static_cast<int>(std::ceil(std::abs(turn - way.pan()) / kLargestTurn));
       for (int i = 1; i < parts; ++i) {
+        const double share = static_cast<double>(i) / parts;
         Waypoint between = *last;
-        between.X_WE.R = exp_rotation(Vector3(0.0, 0.0, turn * i / parts)) * last->X_WE.R;
-        if (on_the_way) {
-          between.X_WE.p += (row.X_WE.p - last->X_WE.p) * i / parts;
-          between.io = row.io;
-        }
+        between.X_WE.R = exp_rotation(Vector3(0.0, 0.0, share * turn)) * last->X_WE.R;
+        between.X_WE.p = way.at(share).p;
+        if (on_the_way) between.io = row.io;
         between.name += "_turn";
         turned.push_back(between);
       }

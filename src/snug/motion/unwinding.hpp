@@ -15,16 +15,15 @@ namespace snug::motion {
 /// R_WE of a tool that points straight down: Rz(yaw) Ry(pi).
 [[nodiscard]] Matrix3 upright_tool(double yaw);
 
-/// rad, in (-pi, pi]: how far the first, vertical axis of a robot at `p_WB` turns on the way of the tool.
-[[nodiscard]] double pan_between(const Vector3& p_WB, const Vector3& p_W_from, const Vector3& p_W_to);
-
 /// Rows say where the tool shall be and not which way it turns: the shorter one. Where that would take it to the far
 /// side of `neutral_yaw`, or could because the turn is nearly half a turn, rows are put in between that turn it on the
 /// place over the neutral side, with the switches of the row before and its name followed by "_turn". So the yaw never
 /// leaves (neutral - pi, neutral + pi], however long the program. `before`: the row before the first of `rows`.
-/// `on_the_way`: they turn it while it travels, with the switches of the row that they lead to.
+/// `on_the_way`: they turn it while it travels, with the switches of the row that they lead to. Where ways go around
+/// the robot's first axis at `p_WB` (Way) it is the turn beyond the way's own that counts.
 [[nodiscard]] std::vector<Waypoint> with_turns(const Waypoint& before, const std::vector<Waypoint>& rows,
-                                               double neutral_yaw, bool on_the_way = false);
+                                               double neutral_yaw, bool on_the_way = false,
+                                               const std::optional<Vector3>& p_WB = std::nullopt);
 
 /// Straight ways of a tool that points down, longer than `least` [m] and nearer than that to the robot's first axis at
 /// `p_WB`, get a row in between that leads around it, `room` [m] away, at the height of the higher end. Its name is

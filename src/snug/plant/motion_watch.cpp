@@ -42,6 +42,9 @@ void MotionWatch::check(const Guards& guards, double pressure_needed, const Tick
     if (end.reason == EndReason::Completed) end = {reason, row, value, limit, ""};
   };
   if (guards.force && force > *guards.force) stop(EndReason::ForceGuard, force, *guards.force);
+  if (now.is_vacuum_on && now.hold_factor < guards.hold_factor) {
+    stop(EndReason::HoldGuard, now.hold_factor, guards.hold_factor);
+  }
   if (!now.is_vacuum_on) {
     vacuum_since_ = -1.0;
     was_sealed_ = false;

@@ -1,16 +1,19 @@
 // MotionWatch: what ends a motion before its last waypoint, for every plant whose robot moves tick by tick.
 #pragma once
 
+#include <limits>
+
 #include "snug/plant/plant.hpp"
 
 namespace snug::plant {
 
 /// What the robot's sensors read at the end of a tick.
 struct TickReading {
-  double time = 0.0;            ///< s
-  Wrench F_E;                   ///< Feedback::F_E
-  double pressure_gauge = 0.0;  ///< Pa, in the cup
-  bool is_vacuum_on = false;    ///< commanded
+  double time = 0.0;                                             ///< s
+  Wrench F_E;                                                    ///< Feedback::F_E
+  double pressure_gauge = 0.0;                                   ///< Pa, in the cup
+  bool is_vacuum_on = false;                                     ///< commanded
+  double hold_factor = std::numeric_limits<double>::infinity();  ///< cup::sensed_hold_factor
 };
 
 /// One motion under way: how it ends, and its peaks.

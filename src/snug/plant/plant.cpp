@@ -11,6 +11,8 @@ const char* name_of(EndReason reason) {
       return "completed";
     case EndReason::ForceGuard:
       return "force guard";
+    case EndReason::HoldGuard:
+      return "hold guard";
     case EndReason::NoSeal:
       return "no seal";
     case EndReason::VacuumLost:
@@ -32,6 +34,9 @@ std::string describe(const End& end, std::span<const motion::Waypoint> waypoints
   switch (end.reason) {
     case EndReason::ForceGuard:
       text += fmt::format(": {:.0f} N of {:.0f} N", end.value, end.limit);
+      break;
+    case EndReason::HoldGuard:
+      text += fmt::format(": the cup could hold {:.1f} times its load, {:.1f} times are needed", end.value, end.limit);
       break;
     case EndReason::NoSeal:
     case EndReason::VacuumLost:

@@ -18,6 +18,9 @@ struct Guards {
   std::optional<double> force;
   /// Ends the motion when a vacuum that is on is not built up, or breaks down.
   bool vacuum = true;
+  /// How many times what it has to the cup must be able to hold (TickReading::hold_factor): below, the tool stops where
+  /// it is. 0: not guarded.
+  double hold_factor = 0.0;
   bool operator==(const Guards&) const = default;
 };
 
@@ -32,6 +35,7 @@ struct Motion {
 enum class EndReason {
   Completed,       ///< the last waypoint was reached
   ForceGuard,      ///< Guards::force; `value` and `limit` in N
+  HoldGuard,       ///< Guards::hold_factor; `value` and `limit` are factors
   NoSeal,          ///< the vacuum did not build up; `value` and `limit` in Pa, gauge
   VacuumLost,      ///< it was there and broke down; the same units
   ProtectiveStop,  ///< the robot stopped itself: acknowledge() before it moves again; `where`: joint or sensor

@@ -12,6 +12,7 @@
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/click/served_cell.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/cup/phases.hpp"
 #include "snug/record/csv.hpp"
 #include "snug/robot/load_arm.hpp"
 
@@ -222,6 +223,7 @@ plant::TickReading RemotePlant::reading() const {
     now.pressure_gauge = pressure->scalar;
   }
   now.is_vacuum_on = program_.io.vacuum;
+  now.hold_factor = cup::sensed_hold_factor(scenario_.cup, now.pressure_gauge, now.F_E);
   return now;
 }
 
@@ -270,7 +272,7 @@ plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
   }
   state_.machine.tool = control::tool_at(model_, link_.measured());
   const plant::TickReading felt = reading();
-  program_.sensed = {felt.pressure_gauge, state_.machine.tool.X_WE.R * felt.F_E.force};
+  program_.sensed = {felt.pressure_gauge, state_.machine.tool.X_WE.R * felt.F_E.force, felt.hold_factor};
   const plant::EndReason reason = !failure_.empty() ? plant::EndReason::Fault
                                   : is_stopped_     ? plant::EndReason::ProtectiveStop
                                                     : plant::EndReason::Completed;

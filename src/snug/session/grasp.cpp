@@ -81,9 +81,13 @@ class GraspPlanner {
   }
   [[nodiscard]] bool is_first() const { return request_.location == Location::Aligner; }
 
+  /// Where the tool is.
+  [[nodiscard]] const motion::Waypoint& last() const {
+    return grasp_.program.waypoints.empty() ? request_.from : grasp_.program.waypoints.back();
+  }
+
   void execute(const std::vector<motion::Waypoint>& rows) {
-    const auto& done = grasp_.program.waypoints;
-    append(grasp_.program, drivable(request_.layout, done.empty() ? request_.from : done.back(), rows));
+    append(grasp_.program, drivable(request_.layout, last(), rows));
     merge(grasp_.episodes[0], nominal_.run(grasp_.program));
   }
 
@@ -98,6 +102,7 @@ class GraspPlanner {
       return false;
     }
     grasp_.X_PS = nominal_.state().gripper.cup.X_PS;
+    grasp_.X_EP = grasp_.program.waypoints.back().X_WE.inverse() * *nominal_.pose_of(request_.box.item);
     return true;
   }
 
@@ -110,7 +115,7 @@ class GraspPlanner {
   /// one that leaves the wrist less to do.
   void spare_wrist(const Matrix3& R_WP) {
     const CellLayout& layout = request_.layout;
-    if (!layout.spares_wrist || !layout.p_WB) return;
+    if (!layout.is_fast || !layout.p_WB) return;
     const double pan = motion::pan_between(*layout.p_WB, X_WP_.p, layout.X_WT.p);
     const auto turn_of_wrist = [&] { return std::abs(pan - turn_between(layout, {R_WP, X_WP_.p}, goal())); };
     const packing::Orientation asked = grasp_.held_as;
@@ -128,22 +133,26 @@ class GraspPlanner {
   /// By the side that looks along `face`, which is then turned up.
   void pick_side(const Vector3& face, bool again) {
     spare_wrist(motion::face_up(X_WP_.R, face));
-    const auto rows =
-        plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
+    auto rows = plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
     if (rows.empty()) {
       grasp_.problem = GraspProblem::SideTooLow;
       return;
     }
-    const auto is_out_of_reach = [&](const motion::Waypoint& row) {
-      return request_.reaches && !request_.reaches(row.X_WE);
-    };
-    if (std::ranges::any_of(rows, is_out_of_reach)) {
+    const auto reaches = [&](const motion::Way& way) { return !request_.reaches || request_.reaches(way); };
+    if (!std::ranges::all_of(rows, [&](const auto& row) { return reaches({row.X_WE, row.X_WE}); })) {
       grasp_.problem = GraspProblem::OutOfReach;
       return;
     }
+    const std::optional<Vector3>& p_WB = request_.layout.p_WB;
+    // A fast tool comes to the second row, level, without the upright one before.
+    if (request_.layout.is_fast && reaches({last().X_WE, rows[1].X_WE, p_WB})) rows.erase(rows.begin());
     execute(rows);
     if (!holds()) return;
-    execute({plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again)});
+    const motion::Waypoint up = plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again);
+    Pose X_WE_over = up.X_WE;
+    X_WE_over.p.head<2>() = request_.layout.X_WT.p.head<2>();
+    if (request_.layout.is_fast && reaches({last().X_WE, X_WE_over, p_WB})) return;  // on the way to its place
+    execute({up});
     (void)holds();
   }
 

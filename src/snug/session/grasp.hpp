@@ -9,6 +9,7 @@
 
 #include "snug/packing/item.hpp"
 #include "snug/session/item_plan.hpp"
+#include "snug/session/reach.hpp"
 #include "snug/session/rollout.hpp"
 
 namespace snug::session {
@@ -38,7 +39,7 @@ enum class GraspProblem {
 struct Grasp {
   packing::Orientation orientation;  ///< asked for
   /// As it hangs: the same space, but perhaps the other end up (the place of the centre of mass then the same), or
-  /// turned by half a turn (CellLayout::spares_wrist).
+  /// turned by half a turn (CellLayout::is_fast).
   packing::Orientation held_as;
   Reorientation reorientation = Reorientation::None;
   GraspProblem problem = GraspProblem::None;
@@ -46,6 +47,7 @@ struct Grasp {
   std::vector<std::size_t> looks;       ///< so many waypoints are done when the box is let go on the way: look there
   std::vector<Pose> seen;               ///< X_WP at each of them in the nominal rollout
   Pose X_PS;                            ///< lip on the box
+  Pose X_EP;                            ///< as the box hangs from the tool in the end, nominal
   std::vector<cell::CellState> states;  ///< rollout by rollout
   std::vector<Episode> episodes;        ///< rollout by rollout
   double success_rate = 0.0;            ///< share of the samples, by weight, in which it is held
@@ -63,7 +65,7 @@ struct GraspRequest {
   Location location = Location::Aligner;
   double packed_top = 0.0;  ///< m, z in T of the highest box in the container
   int threads = 1;
-  const std::function<bool(const Pose& X_WE)>& reaches;  ///< the tool's poses; empty: all
+  const ToolReach& reaches;
 };
 /// The first reorientation with which the box is held in every rollout, or the one that does so in most.
 [[nodiscard]] Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "snug/cell/joint_pace.hpp"
 #include "snug/cell/obstacles.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
@@ -12,6 +13,7 @@
 #include "snug/geometry/bounds.hpp"
 #include "snug/motion/row_name.hpp"
 #include "snug/motion/unwinding.hpp"
+#include "snug/motion/way.hpp"
 
 namespace snug::session {
 namespace {
@@ -23,6 +25,7 @@ constexpr double kEntryClearance = 0.01;   ///< m, where the box stops before it
 constexpr double kNearBase = 0.34;       ///< m
 constexpr double kBaseRoom = 0.42;       ///< m
 constexpr double kTurnClearance = 0.03;  ///< m, more, where a box turns in the air
+constexpr double kLeastOnWay = 0.03;     ///< m, over what is crossed, of a box that turns on its way
 constexpr double kLipClearance = 0.002;  ///< m
 constexpr double kSealRoom = 0.001;      ///< m, around the disc on which the vacuum acts
 constexpr double kFlipRoom = 0.16;       ///< m, from the middle of a lying box to the edges of its surface
@@ -76,6 +79,29 @@ std::optional<FlipPlace> find_flip_place(const std::vector<geometry::Aabb>& tops
   }
   return best;
 }
+
+/// How far below `bottom` [m, z in W] a held box comes on a fast way, and after which share of it.
+struct Dip {
+  double depth = 0.0;  ///< m, 0: it stays over it
+  double share = 0.0;
+};
+
+Dip find_dip(const CellLayout& layout, const Pose& X_WE_from, const Pose& X_WE_to, const Pose& X_EP,
+             const Vector3& size, double bottom) {
+  constexpr int kLooks = 24;
+  const motion::Way way(X_WE_from, X_WE_to, layout.p_WB);
+  Dip dip;
+  for (int i = 0; i <= kLooks; ++i) {
+    const double share = static_cast<double>(i) / kLooks;
+    const Pose X_WP = way.at(share) * X_EP;
+    const double depth = bottom - (X_WP.p.z() + motion::lowest_corner(X_WP.R, size));
+    if (depth > dip.depth) dip = {depth, share};
+  }
+  return dip;
+}
+
+constexpr int kRaises = 4;           ///< rounds in which an end of a way is raised until nothing is met on it
+constexpr double kLeastLever = 0.3;  ///< of a raised end, where the way is lowest
 
 double yaw_between(const Matrix3& R_from, const Matrix3& R_to) {
   const Matrix3 R = R_to * R_from.transpose();
@@ -138,7 +164,7 @@ CellLayout make_layout(const model::Scenario& scenario) {
   layout.rim = container->has_walls ? container->inner_size.z() : 0.0;
   layout.fixed_top = cell::highest_fixed_point(scenario);
   layout.flip_place = find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p);
-  if (scenario.robot) layout.p_WB = scenario.robot->X_WB.p;
+  layout.p_WB = cell::find_pan_axis(scenario);
   layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
   return layout;
 }
@@ -209,7 +235,7 @@ Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Mat
 
 double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP_next) {
   const double turn = yaw_between(X_WP.R, X_WP_next.R);
-  if (!layout.spares_wrist || !layout.p_WB) return turn;
+  if (!layout.is_fast || !layout.p_WB) return turn;
   const double pan = motion::pan_between(*layout.p_WB, X_WP.p, X_WP_next.p);
   const double other = turn - std::copysign(2.0 * std::numbers::pi, turn);
   return std::abs(other) <= kLargestTurn && std::abs(pan - other) < std::abs(pan - turn) ? other : turn;
@@ -237,7 +263,8 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
 std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& last,
                                        const std::vector<motion::Waypoint>& rows) {
   if (rows.empty()) return rows;
-  const std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw, layout.spares_wrist);
+  if (layout.is_fast) return motion::with_turns(last, rows, layout.neutral_yaw, true, layout.p_WB);
+  const std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw);
   return layout.p_WB ? motion::with_detours(last, turned, *layout.p_WB, kNearBase, kBaseRoom) : turned;
 }
 
@@ -271,7 +298,18 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   intent.length = again ? cup.free_length : cup::pick_length(cup);
   intent.lift = std::max(0.02, travel - (X_WP.p.z() - half_height));
   intent.approach_height = travel + half_height;
-  return motion::side_pick_rows(intent);
+  std::vector<motion::Waypoint> rows = motion::side_pick_rows(intent);
+  if (!layout.is_fast) return rows;
+  const Pose X_EP = rows[rows.size() - 2].X_WE.inverse() * X_WP;
+  Pose X_WP_over = X_WP_next;
+  X_WP_over.p.z() = travel - motion::lowest_corner(X_WP_next.R, box.size);
+  for (int i = 0; i < kRaises; ++i) {
+    Pose& X_WE_lifted = rows.back().X_WE;
+    const Dip dip = find_dip(layout, X_WE_lifted, X_WP_over * X_EP.inverse(), X_EP, box.size,
+                             travel - kTravelClearance + kLeastOnWay);
+    X_WE_lifted.p.z() += dip.depth / std::max(kLeastLever, 1.0 - dip.share);
+  }
+  return rows;
 }
 
 motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
@@ -371,6 +409,14 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
     entry.push = R_WT * request.insertion.push_T;
     entry.edge_height = layout.X_WT.p.z() + request.insertion.edge_height_T;
     intent.tilted = entry;
+  }
+  if (!layout.is_fast) return motion::place_rows(intent);
+  intent.entry_bottom = intent.X_WP.p.z() + motion::lowest_corner(intent.X_WP.R, intent.size);  // straight down
+  const double least = intent.travel_bottom - kTravelClearance + kLeastOnWay;
+  for (int i = 0; i < kRaises; ++i) {
+    const Pose X_WE_over = motion::place_rows(intent).front().X_WE;
+    const Dip dip = find_dip(layout, request.X_WE, X_WE_over, request.X_EP, intent.size, least);
+    intent.travel_bottom += dip.depth / std::max(kLeastLever, dip.share);
   }
   return motion::place_rows(intent);
 }

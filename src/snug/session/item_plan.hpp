@@ -24,10 +24,11 @@ struct CellLayout {
   double rim = 0.0;                     ///< m, z in T of the upper edges of its walls; 0 without walls
   double fixed_top = 0.0;               ///< m, z in W of the highest fixed thing that the tool passes
   std::optional<FlipPlace> flip_place;  ///< absent: nothing flat is large enough
-  std::optional<Vector3> p_WB;          ///< m, where the robot stands
+  std::optional<Vector3> p_WB;          ///< m, on the robot's first axis, where that is vertical
   double neutral_yaw = 0.0;             ///< rad, of the tool at its start: half a turn to either side of it is used
-  /// A held box turns the way round that leaves the wrist less to do, and while it travels: fast motions.
-  bool spares_wrist = false;
+  /// Motions are fast ones (motion::ControllerKind::Fast): tracked exactly, around the robot's first axis. A held box
+  /// turns the way round that leaves the wrist less to do, and while it travels.
+  bool is_fast = false;
 };
 /// Throws InputError for a scenario without aligner, tool or target container.
 [[nodiscard]] CellLayout make_layout(const model::Scenario& scenario);
@@ -80,7 +81,7 @@ enum class PickKind {
   FromAbove,  ///< of a box that was just let go, the tool still over it
 };
 /// rad, about the vertical, that a box is turned by on its way from X_WP to X_WP_next: the shorter way round, or, with
-/// `layout.spares_wrist`, the one that differs less from the turn of the robot's first axis.
+/// `layout.is_fast`, the one that differs less from the turn of the robot's first axis.
 [[nodiscard]] double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP_next);
 /// Rows that pick the box where it stands, so that it can be brought to X_WP_next next (of the place the direction
 /// from the robot counts). The turn between both is shared: at the pick the tool is turned from `layout.neutral_yaw` to
@@ -96,6 +97,7 @@ enum class PickKind {
 
 /// Rows that pick the box by the side that looks along `face` (unit, level, in W) and lift it as it stood; `again`: it
 /// was set down before. Empty where the cup would touch what the box stands on or reach too far over its upper edge.
+/// Fast: so high that it passes over everything on the way to X_WP_next, on which that side may turn up.
 [[nodiscard]] std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                            const PlannedBox& box, const Pose& X_WP, const Vector3& face,
                                                            const Pose& X_WP_next, double travel_bottom, bool again);
@@ -123,6 +125,8 @@ struct PlaceRequest {
   Pose X_TP;  ///< where it shall rest
   Insertion insertion;
   double packed_top = 0.0;  ///< m, z in T of the highest box in the container
+  Pose X_WE;                ///< from here
+  Pose X_EP;                ///< as the box hangs there
 };
 [[nodiscard]] std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
                                                        const PlaceRequest& request);

@@ -63,8 +63,8 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
   }
   sent_.name = "pack";
   const bool is_fast = options.simulation.controller == motion::ControllerKind::Fast;
-  layout_.spares_wrist = is_fast;
-  if (!is_fast) options_.limits.hold_factor = 0.0;
+  layout_.is_fast = is_fast;
+  if (!is_fast) options_.limits.hold_factor = options_.limits.hold_guard = 0.0;
 }
 
 packing::ContainerState Packer::container_state() const {
@@ -209,7 +209,7 @@ bool Packer::can_be_picked(int item) const {
   const PlannedBox planned = make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP,
                               travel_bottom(layout_, obstacle_top(item)), PickKind::FromAfar);
-  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_(row.X_WE); });
+  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_({row.X_WE, row.X_WE}); });
 }
 
 /// Percent in the end, on average, when this share of the worlds goes well and the others end here.

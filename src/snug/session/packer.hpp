@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "snug/session/reach.hpp"
 #include "snug/session/session.hpp"
 
 namespace snug::session {
@@ -114,7 +115,7 @@ class Packer {
   SessionOptions options_;
   plant::Plant& plant_;
   CellLayout layout_;
-  std::function<bool(const Pose& X_WE)> reaches_;
+  ToolReach reaches_;
   Belief belief_;
   std::vector<packing::Item> items_;
   std::vector<int> order_;  ///< items that were sent, in that order

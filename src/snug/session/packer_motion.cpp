@@ -28,6 +28,8 @@ Trouble trouble_of(plant::EndReason reason) {
       return Trouble::None;
     case plant::EndReason::ForceGuard:
       return Trouble::ForceGuard;
+    case plant::EndReason::HoldGuard:
+      return Trouble::HoldGuard;
     case plant::EndReason::NoSeal:
       return Trouble::NoSeal;
     case plant::EndReason::VacuumLost:
@@ -83,7 +85,8 @@ bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& rep
       belief_.expect_on_the_way(item, attempt.looked[stage]);
     }
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
-    submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)}, {options_.limits.force, true}, report);
+    submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)},
+           {options_.limits.force, true, options_.limits.hold_guard}, report);
     if (robot_.end.reason != plant::EndReason::Completed || is_last) return true;
     look(report, true);
     const std::optional<BelievedBox>& box = belief_.box(item);
@@ -196,7 +199,7 @@ Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& repo
 void Packer::resume(const std::string& id, ItemReport& report) {
   plant_.acknowledge();
   const std::vector<motion::Waypoint> rest(last_.begin() + std::max(0, robot_.end.waypoint), last_.end());
-  submit(id, rest, {options_.limits.force, true}, report);
+  submit(id, rest, {options_.limits.force, true, options_.limits.hold_guard}, report);
 }
 
 void Packer::press(int item, ItemReport& report) {

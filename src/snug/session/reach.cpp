@@ -13,10 +13,11 @@
 namespace snug::session {
 namespace {
 
+constexpr int kLooks = 16;  ///< along a way
+
 class Reach {
  public:
-  Reach(const model::Scenario& scenario, CellLayout layout, const model::Sequence& sequence,
-        std::function<bool(const Pose& X_WE)> reaches)
+  Reach(const model::Scenario& scenario, CellLayout layout, const model::Sequence& sequence, ToolReach reaches)
       : layout_(std::move(layout)), cup_(scenario.cup), reaches_(std::move(reaches)) {
     for (std::size_t i = 0; i < sequence.items.size(); ++i) {
       boxes_[sequence.items[i].parcel] = make_planned_box(scenario, sequence, static_cast<int>(i));
@@ -32,7 +33,7 @@ class Reach {
     Pose X_WE{motion::upright_tool(layout_.neutral_yaw), X_WP.p + X_WP.R * cup_offset(cup_, box, X_WP.R)};
     for (const double bottom : {X_WP.p.z() - 0.5 * height, travel_bottom(layout_, 0.0)}) {
       X_WE.p.z() = bottom + height + cup_.hold_length;
-      if (!reaches_(X_WE)) return false;
+      if (!reaches_({X_WE, X_WE})) return false;
     }
     return true;
   }
@@ -40,18 +41,28 @@ class Reach {
  private:
   CellLayout layout_;
   model::CupParams cup_;
-  std::function<bool(const Pose& X_WE)> reaches_;
+  ToolReach reaches_;
   std::map<std::string, PlannedBox> boxes_;
 };
 
 }  // namespace
 
-std::function<bool(const Pose&)> make_tool_reach(const model::Scenario& scenario) {
+ToolReach make_tool_reach(const model::Scenario& scenario) {
   std::error_code error;
   if (!scenario.robot || !std::filesystem::exists(robot::urdf_path(scenario), error)) return {};
   const auto inverse = std::make_shared<const robot::InverseKinematics>(robot::load_arm(scenario));
   const robot::JointVector posture = robot::joint_vector(scenario.robot->posture);
-  return [inverse, posture](const Pose& X_WE) { return inverse->nearest(X_WE, posture).has_value(); };
+  return [inverse, posture](const motion::Way& way) {
+    const auto first = inverse->nearest(way.start(), posture);
+    if (!first) return false;
+    robot::JointVector q = *first;
+    for (int look = 1; way.is_motion() && look <= kLooks; ++look) {
+      const auto next = inverse->refine(way.at(static_cast<double>(look) / kLooks), q);
+      if (!next) return false;
+      q = *next;
+    }
+    return true;
+  };
 }
 
 std::function<bool(const packing::Placement&)> make_reach(const model::Scenario& scenario, const CellLayout& layout,

@@ -3,13 +3,16 @@
 
 #include <functional>
 
+#include "snug/motion/way.hpp"
 #include "snug/session/item_plan.hpp"
 
 namespace snug::session {
 
-/// Says of a tool pose whether the scenario's robot has a branch of its inverse within joint limits there. Empty
-/// without a robot, and where its file is not there.
-[[nodiscard]] std::function<bool(const Pose& X_WE)> make_tool_reach(const model::Scenario& scenario);
+/// Whether the scenario's robot can follow a way of the tool: from the branch of its inverse, within joint limits, that
+/// is nearest to its posture at the start. Of a way to where it begins: whether it reaches that pose. Empty: all.
+using ToolReach = std::function<bool(const motion::Way&)>;
+/// Empty without a robot, and where its file is not there.
+[[nodiscard]] ToolReach make_tool_reach(const model::Scenario& scenario);
 
 /// Says of a placement whether the tool poses over it, where the box is let go and where it is carried in, have a
 /// branch of the arm's inverse within its joint limits. The tool is asked for at the layout's neutral yaw: it never is

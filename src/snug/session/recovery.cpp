@@ -24,6 +24,8 @@ const char* name_of(Trouble trouble) {
       return "vacuum lost";
     case Trouble::ForceGuard:
       return "force guard";
+    case Trouble::HoldGuard:
+      return "hold guard";
     case Trouble::ProtectiveStop:
       return "protective stop";
     case Trouble::Timeout:
@@ -90,6 +92,7 @@ Remedy choose_remedy(const Situation& at) {
       if (at.stops == 1 && at.is_held) return Remedy::Resume;
       return at.stops <= 3 ? Remedy::Release : Remedy::Stop;
     case Trouble::ForceGuard:
+    case Trouble::HoldGuard:
     case Trouble::Timeout:
       return at.is_held && at.can_set_down && at.tries < at.most_tries ? Remedy::SetDown : Remedy::Release;
     case Trouble::NoSeal:

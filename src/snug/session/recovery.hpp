@@ -11,6 +11,7 @@ enum class Trouble {
   NoSeal,          ///< the cup did not seal
   VacuumLost,      ///< the box fell from the cup
   ForceGuard,      ///< the tool met more force than it may
+  HoldGuard,       ///< the cup could hardly have held the box any more
   ProtectiveStop,  ///< the robot stopped itself
   Timeout,         ///< a waypoint was not reached
   OffPlace,        ///< it lies further than the limits from where it was planned

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "snug/core/parallel.hpp"
+#include "snug/motion/fast_settings.hpp"
 
 namespace snug::session {
 namespace {
@@ -32,8 +33,8 @@ std::string describe_outside(const cell::ContainerFit& fit, bool is_beside, doub
 
 }  // namespace
 
-Rehearsal::Rehearsal(Belief& belief, const CellLayout& layout, const std::function<bool(const Pose& X_WE)>& reaches,
-                     const PlaceLimits& limits, double least_rate, int threads, const RehearsalTask& task)
+Rehearsal::Rehearsal(Belief& belief, const CellLayout& layout, const ToolReach& reaches, const PlaceLimits& limits,
+                     double least_rate, int threads, const RehearsalTask& task)
     : belief_(belief),
       layout_(layout),
       reaches_(reaches),
@@ -95,6 +96,15 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
          fmt::format("another box would move {:.0f} mm", 1e3 * outcome.forces.displacement));
   }
   return outcome;
+}
+
+bool Rehearsal::can_follow(const motion::Waypoint& before, std::span<const motion::Waypoint> rows) const {
+  if (!layout_.is_fast || !reaches_) return true;
+  const Pose* X_WE = &before.X_WE;
+  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) {
+    const motion::Way way(*std::exchange(X_WE, &row.X_WE), row.X_WE, layout_.p_WB);
+    return motion::is_contact_row(row.name) || reaches_(way);
+  });
 }
 
 const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double packed_top) {
@@ -170,9 +180,15 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion&
   attempt.looks = grasp.looks;
   attempt.looked = grasp.seen;
   attempt.X_PS = grasp.X_PS;
-  const PlaceRequest request{box_, grasp.X_PS, attempt.planned.X_TP, insertion, packed_top};
-  append(attempt.program,
-         drivable(layout_, attempt.program.waypoints.back(), plan_place(belief_.nominal(), layout_, request)));
+  const motion::Waypoint& last = attempt.program.waypoints.back();
+  const PlaceRequest request{box_, grasp.X_PS, attempt.planned.X_TP, insertion, packed_top, last.X_WE, grasp.X_EP};
+  const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request));
+  if (!can_follow(last, rows)) {
+    attempt.failure = AttemptFailure::OutOfReach;
+    attempt.text = "the robot cannot follow the way to its place";
+    return attempt;
+  }
+  append(attempt.program, rows);
   attempt.ends.resize(rollouts_.size());
   const auto execute = [&](int index) {
     const auto i = static_cast<std::size_t>(index);

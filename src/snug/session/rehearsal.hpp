@@ -23,6 +23,7 @@ struct PlaceLimits {
   /// How many times its load the cup must be able to hold, all the way; of fast motions only. Plants differ from
   /// rehearsals: more than the 2 that is to be kept.
   double hold_factor = 2.2;
+  double hold_guard = 2.1;  ///< the same, as sensed in the plant: below, the motion ends
 };
 
 struct AttemptForces {
@@ -35,6 +36,7 @@ struct AttemptForces {
 enum class AttemptFailure {
   None,
   Grasp,         ///< see Attempt::grasp_problem
+  OutOfReach,    ///< the robot cannot follow the way to its place
   Rollout,       ///< it ended early: force, protective stop, arm contact
   HoldMargin,    ///< PlaceLimits::hold_factor
   Gone,          ///< the box left the cell
@@ -77,8 +79,8 @@ struct RehearsalTask {
 class Rehearsal {
  public:
   /// Takes all worlds up where they are believed to be.
-  Rehearsal(Belief& belief, const CellLayout& layout, const std::function<bool(const Pose& X_WE)>& reaches,
-            const PlaceLimits& limits, double least_rate, int threads, const RehearsalTask& task);
+  Rehearsal(Belief& belief, const CellLayout& layout, const ToolReach& reaches, const PlaceLimits& limits,
+            double least_rate, int threads, const RehearsalTask& task);
 
   [[nodiscard]] Attempt attempt(const packing::Candidate& candidate, const Insertion& insertion, double packed_top);
   [[nodiscard]] const PlannedBox& box() const { return box_; }
@@ -90,6 +92,8 @@ class Rehearsal {
     RolloutEnd end = RolloutEnd::Completed;
     AttemptForces forces;
   };
+  /// Of fast motions: every way to rows that touch nothing can be followed from where the one before ends.
+  [[nodiscard]] bool can_follow(const motion::Waypoint& before, std::span<const motion::Waypoint> rows) const;
   const Grasp& grasp_for(const packing::Placement& placement, double packed_top);
   [[nodiscard]] Outcome judge(const Rollout& rollout, const std::vector<std::optional<Pose>>& before,
                               const Pose& X_TP) const;
@@ -97,7 +101,7 @@ class Rehearsal {
 
   const Belief& belief_;
   const CellLayout& layout_;
-  const std::function<bool(const Pose& X_WE)>& reaches_;
+  const ToolReach& reaches_;
   PlaceLimits limits_;
   double least_rate_;
   int threads_;

@@ -11,6 +11,7 @@
 #include "snug/camera_perception/camera_perception.hpp"
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/cup/phases.hpp"
 
 namespace snug::simulated_plant {
 
@@ -61,6 +62,7 @@ bool SimulatedPlant::bring(const std::string& item) {
   was_brought_[static_cast<std::size_t>(index)] = true;
   simulation_.bring(index, state_);
   state_.gripper.least_hold_factor = std::numeric_limits<double>::infinity();
+  witness_.begin();
   current_ = index;
   pending_ = {};
   ++brought_count_;
@@ -124,8 +126,10 @@ void SimulatedPlant::read_sensors(const plant::MotionWatch& course, const plant:
 }
 
 plant::TickReading SimulatedPlant::reading() const {
-  return {simulation_.time(state_), simulation_.tool_load(state_, work_), state_.gripper.cup.pressure_gauge,
-          state_.controller.io.vacuum};
+  const Wrench F_E = simulation_.tool_load(state_, work_);
+  const double pressure = state_.gripper.cup.pressure_gauge;
+  return {simulation_.time(state_), F_E, pressure, state_.controller.io.vacuum,
+          cup::sensed_hold_factor(simulation_.scenario().cup, pressure, F_E)};
 }
 
 bool SimulatedPlant::advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
@@ -133,6 +137,8 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
   if (simulation_.is_at_end(plan, state_)) return false;
   const cell::CellTick tick = simulation_.advance(plan, state_, work_);
   objects_.watch(state_, work_);
+  const auto row = static_cast<std::size_t>(std::max(0, tick.row));
+  witness_.follow(simulation_, state_, work_, plan.program.waypoints[row], plan.settings.tick);
   course.follow(tick.row, simulation_.time(state_), state_.controller.phase == motion::ControllerPhase::Waiting);
   if (watcher_) watcher_(tick);
   inject(plan, course);
@@ -190,6 +196,7 @@ plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
     return refuse(error.what());
   }
   simulation_.begin_motion(state_);
+  witness_.stand();
   plant::MotionWatch course;
   course.begin(reading(), state_.gripper.cup.body >= 0);
   while (advance(motion, plan, course)) {

@@ -12,6 +12,7 @@
 #include "snug/plant/motion_watch.hpp"
 #include "snug/simulated_plant/faults.hpp"
 #include "snug/simulated_plant/foreign_objects.hpp"
+#include "snug/simulated_plant/motion_truth.hpp"
 
 namespace snug::simulated_plant {
 
@@ -52,9 +53,8 @@ class SimulatedPlant final : public plant::Plant {
   [[nodiscard]] const cell::CellState& state() const { return state_; }
   [[nodiscard]] const cell::CellWorkspace& work() const { return work_; }
   [[nodiscard]] std::vector<cell::BoxResult> boxes() const { return simulation_.boxes(state_); }
-  /// Of the item brought last: how many times what it did to the cup the vacuum could have carried, at the worst
-  /// instant.
-  [[nodiscard]] double least_hold_factor() const { return state_.gripper.least_hold_factor; }
+  /// Of the item brought last.
+  [[nodiscard]] const MotionTruth& motion_truth() const { return witness_.truth(); }
   /// Those that faults asked for.
   [[nodiscard]] const std::vector<ForeignObject>& objects() const { return objects_.objects(); }
   [[nodiscard]] const std::vector<Call>& calls() const { return calls_; }
@@ -99,6 +99,7 @@ class SimulatedPlant final : public plant::Plant {
   bool is_stopped_ = false;
   bool has_failed_ = false;
   std::vector<Call> calls_;
+  MotionWitness witness_;
   std::function<void(const cell::CellTick&)> watcher_;
 };
 

@@ -23,7 +23,7 @@ class Scorer {
     TrueItem item;
     item.id = report.id;
     item.was_sent = !report.sends.empty();
-    if (witness_.hold_factor) item.hold_factor = witness_.hold_factor();
+    if (witness_.motion) item.motion = witness_.motion();
     const TruePoses now = witness_.poses();
     if (item.was_sent) judge(report, now, item);
     for (std::size_t i = 0; i < report.sends.size(); ++i) {
@@ -117,7 +117,7 @@ Witness truth_of(const simulated_plant::SimulatedPlant& plant) {
   };
   truth.boxes = [&plant] { return plant.boxes(); };
   truth.hash = [&plant] { return plant.simulation().hash(plant.state()); };
-  truth.hold_factor = [&plant] { return plant.least_hold_factor(); };
+  truth.motion = [&plant] { return plant.motion_truth(); };
   return truth;
 }
 

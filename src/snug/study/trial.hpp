@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,10 +18,9 @@ struct TrueItem {
   bool is_as_planned = false;   ///< within the session's limits of its last plan, in the container, nothing else lost
   double position_error = 0.0;  ///< m, level
   double angle_error = 0.0;     ///< rad
-  /// cup::find_hold_factor at the worst instant of its way; infinity: never held, or not known.
-  double hold_factor = std::numeric_limits<double>::infinity();
-  double displacement = 0.0;    ///< m, the farthest that another box was moved
-  std::vector<bool> succeeded;  ///< of each motion that was sent: ended as planned and needed no remedy
+  simulated_plant::MotionTruth motion;  ///< means nothing of a plant elsewhere
+  double displacement = 0.0;            ///< m, the farthest that another box was moved
+  std::vector<bool> succeeded;          ///< of each motion that was sent: ended as planned and needed no remedy
 };
 
 struct Trial {

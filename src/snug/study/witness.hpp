@@ -18,8 +18,8 @@ struct Witness {
   std::function<TruePoses()> poses;
   std::function<Vector3(std::size_t item)> size_of;  ///< m, as it collides
   std::function<std::vector<cell::BoxResult>()> boxes;
-  std::function<double()> hold_factor;  ///< TrueItem::hold_factor of the item brought last; may be empty
-  std::function<std::uint64_t()> hash;  ///< of the plant's state; may be empty
+  std::function<simulated_plant::MotionTruth()> motion;  ///< of the item brought last; may be empty
+  std::function<std::uint64_t()> hash;                   ///< of the plant's state; may be empty
 };
 
 /// A session with any plant, scored by what the witness says: after each item and at the end. Throws InputError as

@@ -52,8 +52,8 @@ TEST(JointPace, JointsKeepTheirSpeedsAndAccelerations) {
   ASSERT_NE(pace, nullptr);
   const motion::Pace tool{2.0, 8.0, 2.5, 8.0, 0.1};
   Rng rng = Rng(1).split("ways");
-  int reached = 0, bound = 0;
-  for (int i = 0; i < 60; ++i) {
+  int reached = 0, bound = 0, around = 0;
+  for (int i = 0; i < 90; ++i) {
     SCOPED_TRACE(i);
     const auto vector = [&](double size) {
       return Vector3(rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size));
@@ -61,15 +61,24 @@ TEST(JointPace, JointsKeepTheirSpeedsAndAccelerations) {
     // From hanging straight down to lying nearly level, as for a pick from the side; near the base and far from it.
     const Matrix3 R_down = exp_rotation(Vector3(std::numbers::pi, 0.0, 0.0));
     const Pose X_WA{exp_rotation(vector(1.2)) * R_down, Vector3(-0.5, -0.5, 0.1) + vector(0.25)};
-    const Pose X_WB{exp_rotation(vector(0.3)) * X_WA.R, X_WA.p + vector(0.2)};
-    const JointPeaks paced = peaks_on({X_WA, X_WB, tool, pace.get()}, scenario);
+    Pose X_WB{exp_rotation(vector(0.3)) * X_WA.R, X_WA.p + vector(0.2)};
+    std::optional<Vector3> axis;
+    if (i >= 60) {  // long ways around the first axis
+      axis = scenario.robot->X_WB.p;
+      const Matrix3 R_pan = exp_rotation(Vector3(0.0, 0.0, rng.uniform(0.5, 1.8)));
+      X_WB = {exp_rotation(vector(0.3)) * R_pan * X_WA.R, *axis + R_pan * (X_WB.p - *axis)};
+    }
+    const motion::Way way(X_WA, X_WB, axis);
+    const JointPeaks paced = peaks_on({way, tool, pace.get()}, scenario);
     if (!paced.is_reached) continue;
     ++reached;
     EXPECT_LE(paced.speed, 1.0);
     EXPECT_LE(paced.acceleration, 1.0);
-    bound += peaks_on({X_WA, X_WB, tool, nullptr}, scenario).acceleration > 1.0 ? 1 : 0;
+    around += way.is_straight() ? 0 : 1;
+    bound += peaks_on({way, tool, nullptr}, scenario).acceleration > 1.0 ? 1 : 0;
   }
-  EXPECT_GT(reached, 20);
+  EXPECT_GT(reached, 30);
+  EXPECT_GT(around, 5);
   EXPECT_GT(bound, 5) << "ways on which the tool's own limits alone are too much for the joints";
 }
 

@@ -108,7 +108,7 @@ TEST(PathProfile, LeavesTheShareOfASwingThatItsWindowLeaves) {
 
 class HalfInTheMiddle final : public PathLimits {
  public:
-  void limit(const Pose&, const Pose&, std::span<double> rates, std::span<double>) const noexcept override {
+  void limit(const Way&, std::span<double> rates, std::span<double>) const noexcept override {
     for (std::size_t i = rates.size() / 3; i < 2 * rates.size() / 3; ++i) rates[i] = std::min(rates[i], 0.25);
   }
 };
@@ -123,7 +123,8 @@ TEST(PacedSegment, KeepsItsLimitsAndMeetsBothEnds) {
     };
     const Pose X_WA{exp_rotation(vector(2.0)), vector(1.0)};
     const Pose X_WB{exp_rotation(vector(1.5)) * X_WA.R, X_WA.p + vector(0.6)};
-    const PacedSegment segment(X_WA, X_WB, pace, nullptr);
+    const std::optional<Vector3> axis = i % 2 == 0 ? std::nullopt : std::optional<Vector3>(vector(0.3));
+    const PacedSegment segment(Way(X_WA, X_WB, axis), pace, nullptr);
     EXPECT_LT((segment.sample(0.0).X_WE.p - X_WA.p).norm(), 1e-12);
     EXPECT_EQ(segment.sample(segment.duration()).X_WE, X_WB);
     const double dt = 1e-3;
@@ -143,7 +144,7 @@ TEST(PacedSegment, HeedsWhatElseLimitsIt) {
   const Pose X_WB{Matrix3::Identity(), Vector3(1.0, 0.0, 0.0)};
   const Pace pace{2.0, 5.0, 2.0, 5.0, 0.1};
   const HalfInTheMiddle others;
-  const PacedSegment free(Pose{}, X_WB, pace, nullptr), limited(Pose{}, X_WB, pace, &others);
+  const PacedSegment free({Pose{}, X_WB}, pace, nullptr), limited({Pose{}, X_WB}, pace, &others);
   EXPECT_GT(limited.duration(), free.duration() + 0.5);
   for (double t = 0.0; t < limited.duration(); t += 1e-3) {
     const double x = limited.sample(t).X_WE.p.x();
@@ -156,7 +157,7 @@ TEST(PacedSegment, HeedsWhatElseLimitsIt) {
 
 TEST(PacedSegment, OfNoMotionIsAtItsEndAtOnce) {
   const Pose X_WA{exp_rotation(Vector3(0.1, 0.2, 0.3)), Vector3(1.0, 2.0, 3.0)};
-  const PacedSegment segment(X_WA, X_WA, Pace{}, nullptr);
+  const PacedSegment segment({X_WA, X_WA}, Pace{}, nullptr);
   EXPECT_EQ(segment.duration(), 0.0);
   EXPECT_EQ(segment.sample(0.0).X_WE, X_WA);
   EXPECT_EQ(segment.direction_W().norm(), 0.0);

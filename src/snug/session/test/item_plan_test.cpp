@@ -136,10 +136,10 @@ TEST(TurnBetween, GoesTheWayRoundOfTheRobotsFirstAxisWhereThatSparesTheWrist) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   for (const double pan : {-1.7, 0.0, 1.7}) {
     for (double turn = -3.1; turn < 3.1; turn += 0.2) {
-      layout.spares_wrist = false;
+      layout.is_fast = false;
       const Pose from = box_at(0.3, -0.4), to = box_at(0.3 + pan, -0.4 + turn);
       EXPECT_NEAR(turn_between(layout, from, to), turn, 1e-9) << "the shorter way";
-      layout.spares_wrist = true;
+      layout.is_fast = true;
       const double chosen = turn_between(layout, from, to);
       EXPECT_NEAR(std::remainder(chosen - turn, kTurn), 0.0, 1e-9);
       EXPECT_LE(std::abs(pan - chosen), std::abs(pan - turn) + 1e-9);
