@@ -19,7 +19,6 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/motion/program_tempo.hpp"
 #include "snug/packing/representatives.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/study/monte_carlo.hpp"
@@ -181,8 +180,7 @@ int run_pack(const PackOptions& options) {
   }
   const bool has_program = !result.program.waypoints.empty();
   if (files.program && has_program) {
-    const std::string tempo = options.tempo ? motion::format_tempo(*options.tempo) : std::string();
-    write_file(std::move(*files.program), tempo + motion::format_program(result.program));
+    write_file(std::move(*files.program), motion::format_program(result.program));
   }
   if (files.plan) write_file(std::move(*files.plan), format_plan(result));
   if (files.record && has_program) record(scenario, trial, *files.record);

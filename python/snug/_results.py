@@ -30,7 +30,8 @@ class Result(Dict[str, Any]):
 
 def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware", seed: Optional[int] = None,
          plant_seed: int = 1, decision_time: float = 0.5, samples: int = 8, threads: int = 0,
-         robot: Optional[str] = None, perception: str = "exact", monte_carlo: int = 0, record: PathLike = "",
+         robot: Optional[str] = None, perception: str = "exact", monte_carlo: int = 0, tempo: Optional[float] = None,
+         record: PathLike = "",
          progress: Optional[Callable[[int, int, int, float], None]] = None) -> Result:
     """Packs a sequence as `snug pack` does: decides, rehearses, sends motions to a simulated plant, looks, recovers.
 
@@ -47,6 +48,7 @@ def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware
         robot: name of the scenario's robot, "none": the tool moves by itself; None: the robot where its file is there.
         perception: "exact", "noisy", "dead-reckoning" or "camera" (the scenario's first).
         monte_carlo: repeats the finished program so many times, open loop, in cells drawn anew.
+        tempo: fraction of the speeds, 0.5 .. 1, of fast motions (`--tempo`); None: with the demonstrator's lag.
         record: HDF5 file for a recording of the plant's course, or "".
         progress: called as progress(item, items, packed, percent) after each item.
 
@@ -59,14 +61,14 @@ def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware
     name = agent if isinstance(agent, str) else type(agent).__name__
     answer = None if isinstance(agent, str) else answerer(agent)
     words, program = _core.pack(scenario, sequence, name, answer, seed, plant_seed, decision_time, samples,
-                                threads, robot, perception, monte_carlo, str(record), progress)
+                                threads, robot, perception, monte_carlo, tempo, str(record), progress)
     result = Result(words)
     result.program = program
     return result
 
 
 def simulate(scenario: _core.Scenario, program: Optional[_core.Program] = None, sequence: str = "", *,
-             corrections: str = "", robot: str = "", cup: str = "holding", controller: str = "faithful",
+             corrections: str = "", robot: str = "", cup: str = "holding", controller: Optional[str] = None,
              until: Optional[float] = None, record: PathLike = "") -> Result:
     """Runs a scenario, alone or with a program, as `snug simulate` does.
 
@@ -76,7 +78,7 @@ def simulate(scenario: _core.Scenario, program: Optional[_core.Program] = None, 
         corrections: layer of the scenario's site corrections, or "".
         robot: name of the scenario's robot; "": the tool moves by itself.
         cup: "holding" (the report's model) or "phases" (pressure builds up and decays, holds can fail).
-        controller: "faithful" (the demonstrator's lag) or "ideal".
+        controller: "faithful" (the demonstrator's lag), "ideal" or "fast"; None: as the program was packed.
         until: s; the program's end or the scenario's duration by default.
         record: HDF5 file, or "".
 
@@ -84,7 +86,8 @@ def simulate(scenario: _core.Scenario, program: Optional[_core.Program] = None, 
         Of a program boxes with what became of each; of a scene bodies with pose and speed; contacts, solver.
         `failure` is "" or why the run had to stop.
     """
-    return Result(_core.simulate(scenario, program, sequence, corrections, robot, cup, controller, until, str(record)))
+    return Result(_core.simulate(scenario, program, sequence, corrections, robot, cup, controller or "", until,
+                                 str(record)))
 
 
 class Recording(_core.Recording):

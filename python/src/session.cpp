@@ -48,6 +48,7 @@ struct PackWords {
   std::uint64_t plant_seed = 1;
   double decision_time = 0.5;
   int samples = 8, threads = 0, monte_carlo = 0;
+  std::optional<double> tempo;  ///< none: with the demonstrator's lag
   py::object answer = py::none(), progress = py::none();
 };
 
@@ -73,6 +74,12 @@ session::SessionOptions session_options(const model::Scenario& scenario, const P
   session.packing.threads = session.threads;
   session.samples = words.samples;
   session.simulation.robot = choose_robot(words, scenario);
+  if (words.tempo) {
+    if (!(*words.tempo >= 0.5 && *words.tempo <= 1.0))
+      throw InputError("argument", "tempo", std::to_string(*words.tempo), "0.5 .. 1, or None");
+    session.simulation.controller = motion::ControllerKind::Fast;
+    session.simulation.tempo = *words.tempo;
+  }
   return session;
 }
 
@@ -86,7 +93,7 @@ void save_recording(const model::Scenario& scenario, const study::Trial& trial, 
   const std::string& robot = trial.plant.simulation.robot;
   recorded.settings_json = nlohmann::json{
       {"cup", "phases"},
-      {"controller", "faithful"},
+      {"controller", motion::name_of(trial.plant.simulation.controller)},
       {"corrections", "none"},
       {"robot", robot.empty() ? "none" : robot},
       {"plant_seed", trial.plant_seed},
@@ -158,10 +165,14 @@ py::object simulate(const ScenarioHandle& scenario, const ProgramHandle& program
   run.corrections = corrections;
   run.simulation.robot = robot;
   if (cup != "holding" && cup != "phases") throw InputError("argument", "cup", "'" + cup + "'", "holding or phases");
-  if (controller != "faithful" && controller != "ideal")
-    throw InputError("argument", "controller", "'" + controller + "'", "faithful or ideal");
   run.simulation.cup = cup == "phases" ? cup::CupMode::Phases : cup::CupMode::Holding;
-  run.simulation.controller = controller == "ideal" ? motion::ControllerKind::Ideal : motion::ControllerKind::Faithful;
+  const std::optional<double> tempo = program ? (**program).tempo : std::nullopt;
+  if (!controller.empty()) {
+    run.simulation.controller = motion::controller_kind_of(controller, "argument");
+  } else if (tempo) {
+    run.simulation.controller = motion::ControllerKind::Fast;
+  }
+  run.simulation.tempo = tempo.value_or(1.0);
   if (until && !(*until > 0.0)) throw InputError("argument", "until", std::to_string(*until), "above 0 s");
   run.until = until;
   run.record_path = record;
@@ -261,14 +272,14 @@ void bind_session(py::module_& m) {
       [](const ScenarioHandle& scenario, const std::string& sequence, const std::string& agent,
          const py::object& answer, const std::optional<std::uint64_t>& seed, std::uint64_t plant_seed,
          double decision_time, int samples, int threads, const std::optional<std::string>& robot,
-         const std::string& perception, int monte_carlo, const std::filesystem::path& record,
-         const py::object& progress) {
+         const std::string& perception, int monte_carlo, const std::optional<double>& tempo,
+         const std::filesystem::path& record, const py::object& progress) {
         return pack(scenario, {sequence, agent, perception, robot, record, seed, plant_seed, decision_time, samples,
-                               threads, monte_carlo, answer, progress});
+                               threads, monte_carlo, tempo, answer, progress});
       },
       py::arg("scenario"), py::arg("sequence"), py::arg("agent"), py::arg("answer"), py::arg("seed"),
       py::arg("plant_seed"), py::arg("decision_time"), py::arg("samples"), py::arg("threads"), py::arg("robot"),
-      py::arg("perception"), py::arg("monte_carlo"), py::arg("record"), py::arg("progress"));
+      py::arg("perception"), py::arg("monte_carlo"), py::arg("tempo"), py::arg("record"), py::arg("progress"));
   m.def("simulate", &simulate, py::arg("scenario"), py::arg("program"), py::arg("sequence"), py::arg("corrections"),
         py::arg("robot"), py::arg("cup"), py::arg("controller"), py::arg("until"), py::arg("record"));
   py::class_<Recording>(m, "Recording")

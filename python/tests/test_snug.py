@@ -280,6 +280,19 @@ class TestPacking:
         assert packer.percent > 40
         assert len(packer.boxes()) >= 5
 
+    def test_a_tempo_moves_fast_and_the_program_remembers(self, demonstrator):
+        words = dict(agent="margin", samples=0, robot="none", decision_time=0.01, threads=1)
+        fast, lagged = snug.pack(demonstrator, "1", tempo=1, **words), snug.pack(demonstrator, "1", **words)
+        assert (fast.controller, fast.tempo) == ("fast", 1.0)
+        assert (lagged.controller, lagged.tempo) == ("faithful", None)
+        assert fast.boxes_per_hour > lagged.boxes_per_hour
+        assert fast.program.to_csv().startswith("# tempo: 1")
+        own, slow = (snug.simulate(demonstrator, fast.program, "1", cup="phases", controller=controller)["duration_s"]
+                     for controller in (None, "faithful"))
+        assert own < slow
+        with pytest.raises(snug.InputError, match="tempo"):
+            snug.pack(demonstrator, "1", tempo=0.4, **words)
+
     def test_packing_twice_is_the_same(self, demonstrator):
         words = dict(agent="margin", samples=0, robot="none", decision_time=0.01, threads=1)
         first, second = snug.pack(demonstrator, "1", **words), snug.pack(demonstrator, "1", **words)

@@ -2,18 +2,13 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "snug/model/scenario.hpp"
-#include "snug/motion/waypoint.hpp"
 
 namespace snug::cell {
 
 /// s, the period of the slowest swing of the sequence's boxes under the scenario's cup, whichever of their faces is
 /// up, in whole steps of 0.05 s: what is known of a cup is no better. At least 0.1, at most 0.6 s. None without boxes.
 [[nodiscard]] std::optional<double> held_swing_window(const model::Scenario& scenario, const model::Sequence& sequence);
-/// The same row by row of a program, of the box that the row is for (motion::box_of); of all where it names none.
-[[nodiscard]] std::vector<double> held_windows(const model::Scenario& scenario, const model::Sequence& sequence,
-                                               const motion::Program& program);
 
 }  // namespace snug::cell

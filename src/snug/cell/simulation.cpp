@@ -110,8 +110,7 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
   motion::ControllerSettings settings;
   settings.kind = options.controller;
   settings.fast.tempo = options.tempo;
-  const bool is_fast = options.controller == motion::ControllerKind::Fast;
-  if (is_fast) {
+  if (options.controller == motion::ControllerKind::Fast) {
     settings.fast.held.window = held_swing_window(scenario, sequence).value_or(settings.fast.held.window);
     settings.fast.pan_axis = find_pan_axis(scenario);
   }
@@ -127,9 +126,7 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
                                {limits.precision, limits.max_acceleration, limits.max_speed, limits.max_turn_speed,
                                 limits.max_turn_acceleration}});
   }
-  motion::PreparedProgram plan = motion::prepare(std::move(program), std::move(settings));
-  if (is_fast) plan.held_windows = held_windows(scenario, sequence, plan.program);
-  return plan;
+  return motion::prepare(std::move(program), std::move(settings));
 }
 
 Simulation::Simulation(model::Scenario scenario, const std::string& sequence, const SimulationOptions& options)

@@ -22,6 +22,12 @@ struct SimulationOptions {
   double tempo = 1.0;      ///< motion::FastSettings::tempo
 };
 
+/// How programs of our own are moved where no tempo is asked for: with the demonstrator's lag, the vacuum building up
+/// and decaying.
+[[nodiscard]] inline SimulationOptions own_motions() {
+  return {motion::ControllerKind::Faithful, cup::CupMode::Phases};
+}
+
 /// Everything of a cell that changes. A copy is a snapshot: going on from it gives the same bytes.
 struct CellState {
   physics::WorldState world;

@@ -11,7 +11,7 @@
 
 namespace snug::cup {
 
-double longest_swing(const model::CupParams& params, const SpatialInertia& box_S, double gravity) {
+Swing find_swing(const model::CupParams& params, const SpatialInertia& box_S, double gravity) {
   // About the centre of the cup, in S: the spring's ends meet there while nothing is deformed.
   const Vector3 r = box_S.com + Vector3(0.0, 0.0, params.centre_from_lip);
   Matrix6 M = Matrix6::Zero();
@@ -22,13 +22,17 @@ double longest_swing(const model::CupParams& params, const SpatialInertia& box_S
   Matrix6 K = as_matrix(params.stiffness);
   K(3, 3) += box_S.mass * gravity * r.z();
   K(4, 4) += box_S.mass * gravity * r.z();
-  if (!is_positive_definite(M) || !is_positive_definite(K)) return std::numeric_limits<double>::infinity();
-  // M x = w^-2 K x
-  return 2.0 * std::numbers::pi * std::sqrt(spectral_radius(M, K));
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  if (!is_positive_definite(M) || !is_positive_definite(K)) return {kNever, kNever};
+  // M x = w^-2 K x: the eigenvalues of L^-1 M L^-T with K = L L^T.
+  const Matrix6 to_unit = inverse(cholesky(K));
+  const Vector6 squares = symmetric_eigenvalues(to_unit * M * to_unit.transpose());
+  const auto period = [&](Eigen::Index i) { return 2.0 * std::numbers::pi * std::sqrt(squares[i]); };
+  return {period(5), period(4)};
 }
 
-double longest_swing(const model::CupParams& params, const SpatialInertia& box, const Vector3& size,
-                     const Vector3& up_P, double gravity) {
+Swing find_swing(const model::CupParams& params, const SpatialInertia& box, const Vector3& size, const Vector3& up_P,
+                 double gravity) {
   Matrix3 R_PS;
   R_PS.col(2) = -up_P;
   R_PS.col(0) = up_P.unitOrthogonal();
@@ -41,7 +45,7 @@ double longest_swing(const model::CupParams& params, const SpatialInertia& box, 
     p_PS[i] = std::clamp(box.com[i], -most, most);
   }
   const Matrix3 R_SP = R_PS.transpose();
-  return longest_swing(params, {box.mass, R_SP * (box.com - p_PS), R_SP * box.inertia * R_PS}, gravity);
+  return find_swing(params, {box.mass, R_SP * (box.com - p_PS), R_SP * box.inertia * R_PS}, gravity);
 }
 
 }  // namespace snug::cup

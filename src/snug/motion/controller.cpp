@@ -10,6 +10,7 @@
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/motion/fast_controller.hpp"
+#include "snug/motion/row_name.hpp"
 
 namespace snug::motion {
 namespace {
@@ -140,6 +141,9 @@ PreparedProgram prepare(Program program, ControllerSettings settings) {
                        "a finite pose");
     }
     plan.row_limits.push_back(find_limits(program, row, settings.limits));
+    const std::optional<Swing> swing = swing_of(program.waypoints[row].name);
+    plan.held_smoothing.push_back(swing ? Smoothing{swing->slow, 0.5 * swing->fast}
+                                        : Smoothing{settings.fast.held.window, settings.fast.held.echo});
   }
   plan.program = std::move(program);
   plan.settings = std::move(settings);

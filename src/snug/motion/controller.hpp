@@ -50,9 +50,8 @@ struct ControllerSettings {
 struct PreparedProgram {
   Program program;
   ControllerSettings settings;
-  std::vector<MotionLimits> row_limits;  ///< one per waypoint
-  /// s, Fast: one per waypoint, in place of `settings.fast.held.window`. Empty: that.
-  std::vector<double> held_windows;
+  std::vector<MotionLimits> row_limits;     ///< one per waypoint
+  std::vector<Smoothing> held_smoothing;    ///< Fast, one per waypoint: as its name says (swing_of), or the settings
   const PathLimits* path_limits = nullptr;  ///< Fast: what the joints allow; not owned; none: not limited by them
 };
 

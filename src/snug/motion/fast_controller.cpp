@@ -23,7 +23,8 @@ constexpr double kLargestBlend = 0.4;
 /// A way that rises or falls by less than this, and this share of its level length, is level.
 constexpr double kLevel = 0.01;  ///< m
 constexpr double kGentleSlope = 0.2;
-constexpr double kPlumb = 1e-4;  ///< m and rad
+constexpr double kPlumb = 1e-4;     ///< m and rad
+constexpr double kUpright = 0.966;  ///< cosine of 15 degrees
 /// Rows that are left on the way, the cup letting go as it moves (docs/packing-execution.md, pivot).
 constexpr std::string_view kOnTheFly = "TwistDrag";
 
@@ -44,7 +45,6 @@ bool is_insertion(const Waypoint& waypoint) {
   return waypoint.io.vacuum && waypoint.name.starts_with("Place") && !waypoint.name.starts_with("PlaceSlow");
 }
 
-/// Straight up or down: nothing of that swings.
 bool is_plumb(const Pose& X_WA, const Pose& X_WB) {
   return (X_WB.p - X_WA.p).head<2>().norm() < kPlumb && angle_between(X_WA.R, X_WB.R) < kPlumb;
 }
@@ -174,14 +174,21 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
   const FastSettings& fast = plan.settings.fast;
   const Waypoint& waypoint = row_of(plan, row);
   Pace pace = waypoint.io.vacuum ? fast.held : fast.empty;
-  if (waypoint.io.vacuum && !plan.held_windows.empty()) pace.window = plan.held_windows[static_cast<std::size_t>(row)];
+  if (waypoint.io.vacuum) {
+    const Smoothing& smoothing = plan.held_smoothing[static_cast<std::size_t>(row)];
+    pace.window = smoothing.window;
+    pace.echo = smoothing.echo;
+  }
   if (is_contact_row(waypoint.name)) {
     const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
     pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
             fast.contact_window};
   }
   if (is_insertion(waypoint)) pace = fast.insert;
-  if (waypoint.io.vacuum && is_plumb(X_WE, waypoint.X_WE)) pace.window = std::min(pace.window, fast.insert.window);
+  if (waypoint.io.vacuum && is_plumb(X_WE, waypoint.X_WE)) {  // swings only where the box is held by its side
+    if (std::abs(X_WE.R(2, 2)) > kUpright) pace.window = std::min(pace.window, fast.insert.window);
+    pace.echo = 0.0;
+  }
   pace.max_speed *= fast.tempo;
   pace.max_turn_speed *= fast.tempo;
   pace.max_acceleration *= fast.tempo * fast.tempo;

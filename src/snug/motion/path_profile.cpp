@@ -15,10 +15,11 @@ constexpr double kPart = 1.0 / kPathParts;
 }  // namespace
 
 PathProfile::PathProfile(std::span<const double, kPathParts> rates, std::span<const double, kPathParts> accelerations,
-                         double window)
-    : window_(window) {
-  SNUG_CHECK(std::ranges::all_of(accelerations, is_positive) && is_positive(window),
+                         const Smoothing& smoothing)
+    : smoothing_(smoothing) {
+  SNUG_CHECK(std::ranges::all_of(accelerations, is_positive) && is_positive(smoothing.window),
              "accelerations and window must be finite and positive");
+  SNUG_CHECK(std::isfinite(smoothing.echo) && smoothing.echo >= 0.0, "an echo comes later");
   SNUG_CHECK(std::ranges::all_of(rates, [](double rate) { return rate > 0.0; }), "speeds along a way must be positive");
   // Squares of the rates at the ends of the parts: below the limits of both neighbours, reachable from either side.
   std::array<double, kPathParts + 1> square{};
@@ -49,10 +50,21 @@ PathProfile::Raw PathProfile::raw(double t) const noexcept {
           area_[i] + since * (share + since * (0.5 * rate_[i] + acceleration * since / 6.0))};
 }
 
+PathProfile::Sample PathProfile::averaged(double t) const noexcept {
+  const double window = smoothing_.window;
+  const Raw now = raw(t), before = raw(t - window);
+  return {(now.area - before.area) / window, (now.share - before.share) / window};
+}
+
 PathProfile::Sample PathProfile::sample(double t) const noexcept {
   if (t >= duration()) return {1.0, 0.0};
-  const Raw now = raw(t), before = raw(t - window_);
-  return {std::clamp((now.area - before.area) / window_, 0.0, 1.0), (now.share - before.share) / window_};
+  Sample sample = averaged(t);
+  if (smoothing_.echo > 0.0) {
+    const Sample later = averaged(t - smoothing_.echo);
+    sample = {0.5 * (sample.share + later.share), 0.5 * (sample.rate + later.rate)};
+  }
+  sample.share = std::clamp(sample.share, 0.0, 1.0);
+  return sample;
 }
 
 }  // namespace snug::motion

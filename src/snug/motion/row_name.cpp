@@ -2,7 +2,12 @@
 // demonstrator's.
 #include "snug/motion/row_name.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
+
+#include "snug/core/check.hpp"
 
 namespace snug::motion {
 namespace {
@@ -21,16 +26,29 @@ std::size_t begins_with_word(std::string_view text, std::string_view word) noexc
   return text.size() == word.size() || text[word.size()] == '_' ? word.size() : 0;
 }
 
+bool is_period(double value) noexcept { return value >= 0.01 && value < 9.995; }
+
 }  // namespace
 
 std::string row_name(std::string_view kind, std::string_view box, std::string_view suffix) {
   return std::string(kind) + "(" + std::string(box) + ")" + std::string(suffix);
 }
 
-std::string_view box_of(std::string_view row) noexcept {
-  const std::size_t begin = row.find('('), end = row.rfind(')');
-  if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) return {};
-  return row.substr(begin + 1, end - begin - 1);
+std::string with_swing(const std::string& row, const Swing& swing) {
+  SNUG_CHECK(is_period(swing.slow) && is_period(swing.fast), "periods of a swing");
+  return fmt::format("{}~{:.2f}+{:.2f}", row, swing.slow, swing.fast);
+}
+
+std::optional<Swing> swing_of(std::string_view row) noexcept {
+  const std::size_t mark = row.rfind('~');
+  if (mark == std::string_view::npos) return std::nullopt;
+  const char* const end = row.data() + row.size();
+  Swing swing;
+  const auto slow = std::from_chars(row.data() + mark + 1, end, swing.slow);
+  if (slow.ec != std::errc() || slow.ptr == end || *slow.ptr != '+') return std::nullopt;
+  const auto fast = std::from_chars(slow.ptr + 1, end, swing.fast);
+  const bool is_whole = fast.ec == std::errc() && (fast.ptr == end || *fast.ptr == '_');
+  return is_whole && is_period(swing.slow) && is_period(swing.fast) ? std::optional<Swing>(swing) : std::nullopt;
 }
 
 std::size_t names_box(std::string_view row, std::string_view kind, std::string_view id) noexcept {

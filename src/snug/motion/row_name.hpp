@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,8 +13,17 @@ namespace snug::motion {
 /// "PrePick(BOX027)_turn". A table of limits that names a box of the demonstrator ("PrePlace018") does not match it.
 [[nodiscard]] std::string row_name(std::string_view kind, std::string_view box, std::string_view suffix = {});
 
-/// The id of the box in a name of that form; empty for other names.
-[[nodiscard]] std::string_view box_of(std::string_view row) noexcept;
+/// How a box swings that hangs from the cup: its two longest periods, s, 0.01 to 9.99.
+struct Swing {
+  double slow = 0.0;
+  double fast = 0.0;
+  bool operator==(const Swing&) const = default;
+};
+/// The name of a row on whose way such a box hangs: "PrePlace(BOX027)~0.42+0.31". Fast motions leave nothing of these
+/// swings: they are averaged over the slow one, and half of them comes half the fast one later.
+[[nodiscard]] std::string with_swing(const std::string& row, const Swing& swing);
+/// What with_swing has written; nothing for other names.
+[[nodiscard]] std::optional<Swing> swing_of(std::string_view row) noexcept;
 
 /// How well the row's name fits the box `id` when it is a row of this kind; 0: it is not for that box. Of several boxes
 /// it is for the one that it fits best. After the kind stands the id in brackets, or bare, or, for ids of the

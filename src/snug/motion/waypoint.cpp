@@ -13,6 +13,7 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/motion/program_tempo.hpp"
 
 namespace snug::motion {
 namespace {
@@ -129,6 +130,7 @@ std::string place_of(const Program& program, std::size_t row) {
 Program parse_program(std::string_view text, std::string_view name) {
   Program program{std::string(name), {}};
   check_utf8(text, name);
+  const std::string_view whole = text;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark that spreadsheets add
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
@@ -142,6 +144,7 @@ Program parse_program(std::string_view text, std::string_view name) {
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
   if (program.waypoints.empty()) throw InputError(std::string(name), "", "no rows", "at least one waypoint");
+  program.tempo = find_tempo(whole, name);
   return program;
 }
 
@@ -150,7 +153,7 @@ Program load_program(const std::filesystem::path& path) {
 }
 
 std::string format_program(const Program& program) {
-  std::string text;
+  std::string text = program.tempo ? format_tempo(*program.tempo) : std::string();
   for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
     check_writable(program, row);
     const Waypoint& w = program.waypoints[row];

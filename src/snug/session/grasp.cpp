@@ -87,7 +87,7 @@ class GraspPlanner {
   }
 
   void execute(const std::vector<motion::Waypoint>& rows) {
-    append(grasp_.program, drivable(request_.layout, last(), rows));
+    append(grasp_.program, drivable(request_.layout, last(), rows, grasp_.swing));
     merge(grasp_.episodes[0], nominal_.run(grasp_.program));
   }
 
@@ -106,7 +106,16 @@ class GraspPlanner {
     return true;
   }
 
+  /// It hangs, from now on, with the face up that looks along `face_W`.
+  void hang_by(const Vector3& face_W) {
+    int axis = 0;
+    const Vector3 face_P = X_WP_.R.transpose() * face_W;
+    face_P.cwiseAbs().maxCoeff(&axis);
+    grasp_.swing = swing_of(request_.scenario, request_.box, std::copysign(1.0, face_P[axis]) * Vector3::Unit(axis));
+  }
+
   bool pick_from_above(const Pose& X_WP_next, PickKind kind) {
+    hang_by(Vector3::UnitZ());
     execute(plan_pick(request_.scenario, request_.layout, request_.box, X_WP_, X_WP_next, travel_, kind));
     return holds();
   }
@@ -132,6 +141,7 @@ class GraspPlanner {
 
   /// By the side that looks along `face`, which is then turned up.
   void pick_side(const Vector3& face, bool again) {
+    hang_by(face);
     spare_wrist(motion::face_up(X_WP_.R, face));
     auto rows = plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
     if (rows.empty()) {

@@ -47,6 +47,7 @@ struct Grasp {
   std::vector<std::size_t> looks;       ///< so many waypoints are done when the box is let go on the way: look there
   std::vector<Pose> seen;               ///< X_WP at each of them in the nominal rollout
   Pose X_PS;                            ///< lip on the box
+  std::optional<motion::Swing> swing;   ///< of how it hangs
   Pose X_EP;                            ///< as the box hangs from the tool in the end, nominal
   std::vector<cell::CellState> states;  ///< rollout by rollout
   std::vector<Episode> episodes;        ///< rollout by rollout

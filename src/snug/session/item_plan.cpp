@@ -10,7 +10,9 @@
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/cup/statics.hpp"
+#include "snug/cup/swing.hpp"
 #include "snug/geometry/bounds.hpp"
+#include "snug/motion/fast_settings.hpp"
 #include "snug/motion/row_name.hpp"
 #include "snug/motion/unwinding.hpp"
 #include "snug/motion/way.hpp"
@@ -30,8 +32,9 @@ constexpr double kLipClearance = 0.002;  ///< m
 constexpr double kSealRoom = 0.001;      ///< m, around the disc on which the vacuum acts
 constexpr double kFlipRoom = 0.16;       ///< m, from the middle of a lying box to the edges of its surface
 constexpr double kFlipDrag = 0.08;       ///< m, more where it comes down, before it is dragged back
-constexpr double kLargestTurn = 1.5 * std::numbers::pi;  ///< rad, of a held box the longer way round
-constexpr double kLevel = 1e-3;                          ///< rad
+constexpr double kShortestSwing = 0.1, kLongestSwing = 0.6;  ///< s
+constexpr double kLargestTurn = 1.5 * std::numbers::pi;      ///< rad, of a held box the longer way round
+constexpr double kLevel = 1e-3;                              ///< rad
 constexpr double kPressDepth = 0.03;  ///< m, beyond where an undeformed cup touches the highest corner
 
 /// Bounds in W of the boxes that fixed bodies are made of, where one face lies level.
@@ -260,10 +263,22 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
   return motion::pick_rows(intent);
 }
 
+motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
+  const cup::Swing swing = cup::find_swing(scenario.cup, box.inertia, box.size, up_P, scenario.gravity.norm());
+  return {std::clamp(swing.slow, kShortestSwing, kLongestSwing), std::clamp(swing.fast, kShortestSwing, kLongestSwing)};
+}
+
 std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& last,
-                                       const std::vector<motion::Waypoint>& rows) {
+                                       const std::vector<motion::Waypoint>& rows,
+                                       const std::optional<motion::Swing>& swing) {
   if (rows.empty()) return rows;
-  if (layout.is_fast) return motion::with_turns(last, rows, layout.neutral_yaw, true, layout.p_WB);
+  if (layout.is_fast) {
+    std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw, true, layout.p_WB);
+    for (motion::Waypoint& row : turned) {
+      if (swing && row.io.vacuum && !motion::is_contact_row(row.name)) row.name = motion::with_swing(row.name, *swing);
+    }
+    return turned;
+  }
   const std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw);
   return layout.p_WB ? motion::with_detours(last, turned, *layout.p_WB, kNearBase, kBaseRoom) : turned;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "snug/motion/primitives.hpp"
+#include "snug/motion/row_name.hpp"
 #include "snug/motion/side_pick.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/packing/placement.hpp"
@@ -89,9 +90,13 @@ enum class PickKind {
 [[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                       const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next,
                                                       double travel_bottom, PickKind kind);
+/// Of the box that hangs from the face that looks along `up_P` (P axis); 0.1 to 0.6 s.
+[[nodiscard]] motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
 /// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.
+/// `swing`: of what hangs on the way: fast motions are told. None: not known, or nothing does.
 [[nodiscard]] std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& before,
-                                                     const std::vector<motion::Waypoint>& rows);
+                                                     const std::vector<motion::Waypoint>& rows,
+                                                     const std::optional<motion::Swing>& swing = std::nullopt);
 /// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.
 [[nodiscard]] Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction);
 

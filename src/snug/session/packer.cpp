@@ -64,6 +64,7 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
   sent_.name = "pack";
   const bool is_fast = options.simulation.controller == motion::ControllerKind::Fast;
   layout_.is_fast = is_fast;
+  if (is_fast) sent_.tempo = options.simulation.tempo;
   if (!is_fast) options_.limits.hold_factor = options_.limits.hold_guard = 0.0;
 }
 

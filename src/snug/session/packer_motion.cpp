@@ -228,7 +228,7 @@ void Packer::set_down(const Planned& planned, ItemReport& report) {
   const auto down = plan_set_down(belief_.nominal(), box, *layout_.flip_place, R_WP, planned.attempt.X_PS, travel);
   rows.insert(rows.end(), down.begin(), down.end());
   motion::Program program;
-  append(program, drivable(layout_, here, rows));
+  append(program, drivable(layout_, here, rows, planned.attempt.swing));
   submit(box.id, program.waypoints, {std::nullopt, true}, report);
 }
 

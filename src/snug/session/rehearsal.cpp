@@ -180,9 +180,10 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion&
   attempt.looks = grasp.looks;
   attempt.looked = grasp.seen;
   attempt.X_PS = grasp.X_PS;
+  attempt.swing = grasp.swing;
   const motion::Waypoint& last = attempt.program.waypoints.back();
   const PlaceRequest request{box_, grasp.X_PS, attempt.planned.X_TP, insertion, packed_top, last.X_WE, grasp.X_EP};
-  const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request));
+  const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
   if (!can_follow(last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;
     attempt.text = "the robot cannot follow the way to its place";

@@ -65,6 +65,7 @@ struct Attempt {
   std::vector<std::size_t> looks;                      ///< as Grasp::looks
   std::vector<Pose> looked;                            ///< as Grasp::seen
   Pose X_PS;                                           ///< lip on the held box, nominal
+  std::optional<motion::Swing> swing;                  ///< as Grasp::swing
   std::vector<std::vector<std::optional<Pose>>> ends;  ///< world by world, X_WP of all items when boxes rest
 };
 

@@ -9,7 +9,7 @@
 namespace snug::simulated_plant {
 namespace {
 
-constexpr double kStill = 0.002;  ///< m/s and rad/s: a tool that goes straight down
+constexpr double kStill = 0.003;  ///< m/s and rad/s: a tool that goes straight down
 
 }  // namespace
 
@@ -51,7 +51,6 @@ void MotionWitness::follow_swing(const cell::Simulation& simulation, const cell:
     R_EP_ = X_EP.R;
     low_ = high_ = X_EP.p;
     turn_low_ = turn_high_ = Vector3::Zero();
-    truth_.swing = truth_.swing_angle = 0.0;
   }
   has_touched_ = has_touched_ || std::ranges::any_of(work.physics.contacts(), [&](const physics::ContactReport& one) {
                    return one.a.index == body || one.b.index == body;
@@ -62,8 +61,8 @@ void MotionWitness::follow_swing(const cell::Simulation& simulation, const cell:
   high_ = high_.cwiseMax(X_EP.p);
   turn_low_ = turn_low_.cwiseMin(turn);
   turn_high_ = turn_high_.cwiseMax(turn);
-  truth_.swing = 0.5 * (high_ - low_).head<2>().norm();
-  truth_.swing_angle = 0.5 * (turn_high_ - turn_low_).norm();
+  truth_.swing = std::max(truth_.swing, 0.5 * (high_ - low_).head<2>().norm());
+  truth_.swing_angle = std::max(truth_.swing_angle, 0.5 * (turn_high_ - turn_low_).norm());
 }
 
 }  // namespace snug::simulated_plant

@@ -73,9 +73,9 @@ cell::RunResult record(const model::Scenario& scenario, const std::string& seque
   setup.file = recorded.file;
   setup.period = scenario.controller.tick;
   setup.program_name = "pack";
-  const bool is_fast = options.simulation.controller == motion::ControllerKind::Fast;
-  setup.program_text = (is_fast ? motion::format_tempo(options.simulation.tempo) : std::string()) +
-                       motion::format_program(program_of(calls));
+  motion::Program program = program_of(calls);
+  if (options.simulation.controller == motion::ControllerKind::Fast) program.tempo = options.simulation.tempo;
+  setup.program_text = motion::format_program(program);
   setup.sequence = sequence;
   setup.settings_json = recorded.settings_json;
   setup.version = recorded.version;

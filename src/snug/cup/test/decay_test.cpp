@@ -15,7 +15,7 @@ namespace {
 constexpr physics::BodyId kGripper{0}, kLoad{1};
 
 /// One load on a cup in a world with nothing to touch; the load's frame is the lip S.
-struct Swing {
+struct SwingScene {
   physics::WorldModel model;
   physics::WorldState state;
   SuctionCup cup;
@@ -38,8 +38,8 @@ struct SwingSetup {
   SpatialInertia inertia;
 };
 
-Swing make_swing(const SwingSetup& setup, double dt) {
-  Swing swing;
+SwingScene make_swing(const SwingSetup& setup, double dt) {
+  SwingScene swing;
   swing.X_WE = setup.X_WE;
   swing.cup = SuctionCup(setup.K, setup.D, setup.X_ES2, Pose{}, setup.X_SS1);
   physics::BodyModel gripper, load;
@@ -58,7 +58,7 @@ Swing make_swing(const SwingSetup& setup, double dt) {
   return swing;
 }
 
-void run(Swing& swing, physics::Workspace& work, int steps) {
+void run(SwingScene& swing, physics::Workspace& work, int steps) {
   const std::array<physics::ElementUse, 1> elements{{{&swing.cup, kGripper, Pose{}, kLoad}}};
   physics::WorldInput input;
   input.elements = elements;
@@ -89,7 +89,7 @@ struct Deviation {
 
 /// Largest distance from the reference trajectory, with this many steps for each of its samples.
 Deviation deviation_from(const nlohmann::json& c, int steps_per_sample) {
-  Swing swing = make_swing(setup_of(c), c.at("dt").get<double>() / steps_per_sample);
+  SwingScene swing = make_swing(setup_of(c), c.at("dt").get<double>() / steps_per_sample);
   // The step's own 1e-7 m/s would add up to more than what is measured here: 15000 steps of 0.1 ms.
   swing.model.settings.tolerance = 1e-11;
   physics::Workspace work(swing.model);
@@ -141,7 +141,7 @@ TEST(CupDecay, NeverGainsEnergyAtAnyStepUpTo20Milliseconds) {
   for (const double dt : {0.001, 0.004, 0.008, 0.012, 0.020}) {
     for (const nlohmann::json& c : vectors.at("cases")) {
       SCOPED_TRACE(std::to_string(dt) + " s, case " + c.at("id").dump());
-      Swing swing = make_swing(setup_of(c), dt);
+      SwingScene swing = make_swing(setup_of(c), dt);
       physics::Workspace work(swing.model);
       const double start = swing.energy();
       double before = start, largest_gain = 0.0;
@@ -171,7 +171,7 @@ TEST(CupDecay, ComesToRestWhereStaticsSays) {
     setup.X_ES = setup.X_ES2 * setup.X_SS1.inverse();
     setup.inertia = {c.at("mass").get<double>(), test::vector3(c.at("com_S")),
                      Matrix3(c.at("mass").get<double>() * Vector3(0.004, 0.005, 0.007).asDiagonal())};
-    Swing swing = make_swing(setup, 0.004);
+    SwingScene swing = make_swing(setup, 0.004);
     physics::Workspace work(swing.model);
     ASSERT_NO_FATAL_FAILURE(run(swing, work, 2500));
     // The vectors' own tolerances.

@@ -99,6 +99,34 @@ TEST(HoldFactor, OfNoLoadIsInfiniteAndOfNoVacuumZero) {
   EXPECT_EQ(find_hold_factor(params, 0.0, wrench({0.0, 0.0, -1.0})), 0.0);
 }
 
+TEST(HoldFactor, SensedAtTheToolIsThatOfTheLip) {
+  const model::CupParams params;
+  Rng rng = Rng(12).split("sensed");
+  const auto vector = [&](double size) {
+    return Vector3(rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size));
+  };
+  for (int i = 0; i < 200; ++i) {
+    const Wrench on_box = wrench(vector(40.0), vector(2.0));  // about the lip, in S = E shifted by the cup's length
+    const Vector3 p_ES(0.0, 0.0, params.hold_length);
+    const Wrench on_tool = wrench(-on_box.force, -on_box.torque - p_ES.cross(on_box.force));
+    // Inverse: the factor is infinite where the box is pressed on.
+    EXPECT_NEAR(1.0 / sensed_hold_factor(params, kPressure, on_tool), 1.0 / find_hold_factor(params, kPressure, on_box),
+                1e-12);
+  }
+  // 12 N sideways at the lip, 0.05 m below E: what the sensor reads as 12 N and 0.6 Nm is no torque at the lip.
+  EXPECT_NEAR(sensed_hold_factor(params, kPressure, wrench({12.0, 0.0, 0.0}, {0.0, 12.0 * params.hold_length, 0.0})),
+              params.lip_friction * suction(params) / 12.0, 1e-9);
+}
+
+TEST(HoldFactor, IsNotSensedBeforeTheVacuumIsEstablished) {
+  const model::CupParams params;
+  const Wrench load = wrench({30.0, 0.0, 0.0});
+  const double established = kEstablishedVacuum * params.vacuum.pressure_gauge_hold;
+  EXPECT_TRUE(std::isinf(sensed_hold_factor(params, established + 1.0, load)));
+  EXPECT_TRUE(std::isfinite(sensed_hold_factor(params, established - 1.0, load)));
+  EXPECT_TRUE(std::isinf(sensed_hold_factor(params, 0.0, load)));
+}
+
 TEST(HoldLoss, IsPeelWhereTheBendingMomentLiftsTheRim) {
   const model::CupParams params;
   const double limit = params.limits.peel_full * suction(params) * params.lip_radius;

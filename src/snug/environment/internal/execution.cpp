@@ -12,12 +12,10 @@ namespace {
 
 constexpr double kLongestPlacement = 300.0;  ///< s, simulated
 
-cell::SimulationOptions simulation_options() { return {motion::ControllerKind::Faithful, cup::CupMode::Phases, {}}; }
-
 class Execution final : public Happening {
  public:
   explicit Execution(const Episode& episode)
-      : simulation_(std::make_shared<const cell::Simulation>(episode.scenario, episode.sequence, simulation_options())),
+      : simulation_(std::make_shared<const cell::Simulation>(episode.scenario, episode.sequence, cell::own_motions())),
         settings_(episode.settings),
         container_(*model::find_container(simulation_->scenario(), simulation_->scenario().target)),
         state_(simulation_->make_state()),

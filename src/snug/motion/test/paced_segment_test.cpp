@@ -24,7 +24,7 @@ std::array<double, kPathParts> all(double rate) {
 
 TEST(PathProfile, WithoutSpeedLimitTakesTheTriangleAndTheWindow) {
   for (const double acceleration : {0.3, 4.0, 50.0}) {
-    const PathProfile profile(all(kInfinity), all(acceleration), 0.1);
+    const PathProfile profile(all(kInfinity), all(acceleration), {0.1, 0.0});
     EXPECT_NEAR(profile.duration(), 2.0 / std::sqrt(acceleration) + 0.1, 1e-12) << "2 sqrt(L / a), L = 1";
   }
 }
@@ -32,7 +32,7 @@ TEST(PathProfile, WithoutSpeedLimitTakesTheTriangleAndTheWindow) {
 TEST(PathProfile, OfAConstantLimitIsNearlyTheTrapezoid) {
   // The speed is reached at the end of a part: at most one part at either end takes up to twice as long.
   const double speed = 0.5, acceleration = 4.0, trapezoid = 1.0 / speed + speed / acceleration;
-  const double duration = PathProfile(all(speed), all(acceleration), 0.1).duration() - 0.1;
+  const double duration = PathProfile(all(speed), all(acceleration), {0.1, 0.0}).duration() - 0.1;
   EXPECT_GE(duration, trapezoid - 1e-12);
   EXPECT_LE(duration, trapezoid + 2.0 / (kPathParts * speed));
 }
@@ -41,7 +41,7 @@ TEST(PathProfile, SpeedsUpInEachPartAsFastAsThatPartAllows) {
   auto accelerations = all(4.0);
   for (std::size_t i = 0; i < accelerations.size() / 2; ++i) accelerations[i] = 1.0;
   // v^2 is 1 in the middle; then 1 + 8 x = 8 (1 / 2 - x) where it is largest: x = 6 / 32, v^2 = 2.5.
-  const PathProfile profile(all(kInfinity), accelerations, 0.1);
+  const PathProfile profile(all(kInfinity), accelerations, {0.1, 0.0});
   EXPECT_NEAR(profile.duration(), 1.0 + (2.0 * std::sqrt(2.5) - 1.0) / 4.0 + 0.1, 1e-12);
 }
 
@@ -52,7 +52,8 @@ TEST(PathProfile, KeepsSpeedAccelerationAndJerkAtEveryInstant) {
     auto rates = all(kInfinity);
     for (double& rate : rates) rate = rng.uniform(0.2, 2.0);
     const double acceleration = rng.uniform(0.5, 20.0), window = rng.uniform(0.05, 0.4);
-    const PathProfile profile(rates, all(acceleration), window);
+    const double echo = i % 2 == 0 ? 0.0 : rng.uniform(0.05, 0.3);
+    const PathProfile profile(rates, all(acceleration), {window, echo});
     const double dt = 1e-4;
     double last = 0.0, last_rate = 0.0, last_change = 0.0;
     for (double t = dt; t < profile.duration() + 0.01; t += dt) {
@@ -94,7 +95,7 @@ double share_left(double window, double period) {
 }
 
 TEST(PathProfile, LeavesTheShareOfASwingThatItsWindowLeaves) {
-  const PathProfile shaped(all(1.0), all(6.0), 0.25), hasty(all(1.0), all(6.0), 0.01);
+  const PathProfile shaped(all(1.0), all(6.0), {0.25, 0.0}), hasty(all(1.0), all(6.0), {0.01, 0.0});
   double largest = 0.0;
   for (double period = 0.10; period < 0.35; period += 0.005) {
     const double without = residual_swing(hasty, period) / share_left(0.01, period);
@@ -104,6 +105,19 @@ TEST(PathProfile, LeavesTheShareOfASwingThatItsWindowLeaves) {
   }
   EXPECT_GT(largest, 0.02) << "without the window it swings";
   for (const double period : {0.25, 0.125}) EXPECT_LT(residual_swing(shaped, period), 2e-4) << period;
+}
+
+TEST(PathProfile, WithAnEchoLeavesNothingOfASecondSwing) {
+  const double slow = 0.42, fast = 0.31;
+  const PathProfile once(all(1.0), all(6.0), {slow, 0.0}), twice(all(1.0), all(6.0), {slow, 0.5 * fast});
+  EXPECT_GT(residual_swing(once, fast), 0.005) << "without the echo it swings";
+  for (const double period : {slow, fast}) EXPECT_LT(residual_swing(twice, period), 2e-4) << period;
+  // An echo leaves |cos(pi e / T)| of any swing, 2e-4: as above.
+  for (double period = 0.2; period < 0.5; period += 0.02) {
+    const double left = std::abs(std::cos(std::numbers::pi * 0.5 * fast / period));
+    EXPECT_NEAR(residual_swing(twice, period), left * residual_swing(once, period), 2e-4) << period;
+  }
+  EXPECT_NEAR(twice.duration(), once.duration() + 0.5 * fast, 1e-12);
 }
 
 class HalfInTheMiddle final : public PathLimits {

@@ -57,6 +57,22 @@ TEST(RowName, WrittenBareByHandIsForTheLongestIdAndWholeIdsBeforeNumbers) {
   EXPECT_GT(names_box("PrePick027", "PrePick", "027"), names_box("PrePick027", "PrePick", "BOX027"));
 }
 
+TEST(RowName, SaysHowTheBoxOnTheWaySwings) {
+  const Swing swing{0.42, 0.31};
+  const std::string name = with_swing(row_name("PrePlace", "BOX027"), swing);
+  EXPECT_EQ(name, "PrePlace(BOX027)~0.42+0.31");
+  EXPECT_EQ(swing_of(name), swing);
+  EXPECT_EQ(swing_of(name + "_turn"), swing) << "rows in between are named after it";
+  EXPECT_GT(names_box(name, "PrePlace", "BOX027"), 0U);
+  EXPECT_EQ(with_swing("a", {0.1234, 1.0}), "a~0.12+1.00");
+  const Program read = parse_program(format_program({"p.csv", {{Pose{}, name, {}, 0}}}), "p.csv");
+  EXPECT_EQ(read.waypoints[0].name, name);
+  for (const char* other : {"PrePlace(BOX027)", "a~", "a~0.42", "a~0.42+", "a~0.42+x", "a~0.42+0.31x", "a~0+0.3",
+                            "a~-1+0.3", "a~0.4+10", "a~nan+inf", "(a~0.42+0.31)", "a~+0.4+0.3", ""}) {
+    EXPECT_EQ(swing_of(other), std::nullopt) << other;
+  }
+}
+
 TEST(RowName, OfOursDoesNotMatchLimitsThatNameABoxOfTheDemonstrator) {
   const std::vector<NamedLimits> table = demonstrator_limits();
   EXPECT_EQ(match_limits(row_name("PrePlace", "BOX018"), table)->prefix, "PrePlace");

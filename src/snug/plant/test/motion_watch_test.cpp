@@ -47,6 +47,30 @@ TEST(MotionWatch, ANewVacuumHasTimeAndALostOneHasNone) {
   EXPECT_EQ(off.end.reason, EndReason::Timeout) << "nothing else is guarded";
 }
 
+TEST(MotionWatch, EndsWhereTheCupHoldsTooLittleMoreThanItHasTo) {
+  const auto falling = [](bool is_vacuum_on) {
+    return [is_vacuum_on](double t) {
+      TickReading now = at(t, 0.0, -6.0e4, is_vacuum_on);
+      now.hold_factor = 10.0 / t;
+      return now;
+    };
+  };
+  MotionWatch guarded;
+  EXPECT_DOUBLE_EQ(time_of_end(guarded, {.force = {}, .hold_factor = 2.5}, falling(true)), 4.008)
+      << "the first tick beyond 4 s";
+  EXPECT_EQ(guarded.end.reason, EndReason::HoldGuard);
+  EXPECT_DOUBLE_EQ(guarded.end.value, 10.0 / 4.008);
+  EXPECT_EQ(guarded.end.limit, 2.5);
+  EXPECT_EQ(describe(guarded.end, {}), "hold guard: the cup could hold 2.5 times its load, 2.5 times are needed");
+  MotionWatch unguarded, let_go;
+  EXPECT_GT(time_of_end(unguarded, {}, falling(true)), 59.0);
+  EXPECT_GT(time_of_end(let_go, {.force = {}, .hold_factor = 2.5}, falling(false)), 59.0)
+      << "nothing is held with the vacuum off";
+  MotionWatch nothing;  // a plant that cannot tell: infinity
+  EXPECT_GT(time_of_end(nothing, {.force = {}, .hold_factor = 2.5}, [](double t) { return at(t, 0.0, -6.0e4, true); }),
+            59.0);
+}
+
 TEST(MotionWatch, AHeldBoxAtTheStartIsLostAtOnce) {
   MotionWatch watch;
   watch.begin(at(5.0, 0.0, -6.0e4, true), true);

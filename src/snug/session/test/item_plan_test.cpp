@@ -35,7 +35,7 @@ TEST(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
   motion::Waypoint from;
   from.X_WE = scenario.controller.X_WE_start;
   from.name = "home";
-  const std::function<bool(const Pose&)> everywhere;
+  const ToolReach everywhere;
   const auto& items = scenario.sequences[0].items;
   double rate = 0.0;
   int grasps = 0;
