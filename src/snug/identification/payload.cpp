@@ -3,8 +3,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "snug/core/check.hpp"
 #include "snug/cup/law.hpp"
@@ -18,6 +20,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr int kLawIterations = 6;       // each reduces the error by some 20 at 20 degrees of bending
 constexpr double kOverlap = 4.0 / 3.0;  // of variance: neighbouring windows share a sixth of their squares
+constexpr int kGyrationSteps = 4;
+constexpr double kFirstGyration = 3.0;  // of the deviation expected, before the centre of mass is known
 constexpr double kLever = 0.1;          // m, of pose noise on torques: a box's size
 
 using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
@@ -139,16 +143,32 @@ PayloadEstimate PayloadEstimator::estimate() const {
   PayloadEstimate result;
   result.windows = windows_;
   Eigen::MatrixXd information = information_;
-  // What is expected of inertia over mass, once the mass is known well enough to say what that means in kg m^2.
-  const double rough = std::max(numerics::solve_symmetric(information_, weighted_)(0, 0), 1e-3);
-  for (int i = 0; i < 6; ++i) {
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(kUnknowns);
-    row[4 + i] = 1.0;
-    if (i < 3) row[0] = -settings_.gyration_square;
-    const double deviation = (i < 3 ? 1.0 : 0.5) * settings_.gyration_square_prior * rough;
-    information += row * row.transpose() / (deviation * deviation);
+  Eigen::VectorXd x = numerics::solve_symmetric(information_, weighted_);
+  // What is expected of inertia over mass, once the mass is known well enough to say what that means in kg m^2. About
+  // the centre of mass, so it depends on that by squares: Gauss and Newton's steps, the first as if it were the lip.
+  for (int step = 0; step < kGyrationSteps; ++step) {
+    const double mass = std::max(x[0], 1e-3);
+    const Vector3 com = step == 0 ? Vector3::Zero() : Vector3(x.segment<3>(1) / mass);
+    const double widened = step == 0 ? kFirstGyration : 1.0;
+    information = information_;
+    for (int i = 0; i < 6; ++i) {
+      // Ixx Iyy Izz Ixy Ixz Iyz about the lip, less those of the mass in its centre, -m com^ com^.
+      constexpr std::array<std::pair<int, int>, 6> kAxes{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+      const auto [a, b] = kAxes[static_cast<std::size_t>(i)];
+      const bool is_moment = a == b;
+      const double of_point = (is_moment ? com.squaredNorm() : 0.0) - com[a] * com[b];  // m^2
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(kUnknowns);
+      row[4 + i] = 1.0;
+      row[0] = of_point - (is_moment ? settings_.gyration_square : 0.0);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double by = (is_moment ? 2.0 * com[axis] : 0.0) - (axis == a ? com[b] : 0.0) - (axis == b ? com[a] : 0.0);
+        row[1 + axis] = -by;
+      }
+      const double deviation = widened * (is_moment ? 1.0 : 0.5) * settings_.gyration_square_prior * mass;
+      information += row * row.transpose() / (deviation * deviation);
+    }
+    x = numerics::solve_symmetric(information, weighted_);
   }
-  const Eigen::VectorXd x = numerics::solve_symmetric(information, weighted_);
   const Eigen::MatrixXd all = numerics::invert_symmetric(information);
   const double mass = std::max(x[0], 1e-6);
   const Vector3 com = x.segment<3>(1) / mass;
