@@ -79,6 +79,9 @@ ordered_json as_json(const SceneFit& fit) {
     for (const auto& [name, share] : direction.shares) shares[name] = share;
     json["refused"].push_back({{"shares_of_bounds", shares}, {"error_in_bounds", number(direction.error)}});
   }
+  json["unpredictable"] = ordered_json::array();
+  for (const identification::Unpredictable& one : fit.unpredictable)
+    json["unpredictable"].push_back({{"recording", one.recording}, {"body", one.body}, {"from_s", one.from}});
   json["covariance"] = ordered_json::array();
   for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
     ordered_json row = ordered_json::array();
@@ -105,6 +108,9 @@ std::string as_text(const SceneFit& fit) {
   if (fit.held_back.recordings > 0) text += fmt::format("held back: {}\n", as_text(fit.held_back));
   if (std::isfinite(fit.held_back_error)) text += fmt::format("held-back error: {:.4f} mm\n", fit.held_back_error);
   text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task\n", fit.chi2_per_dof);
+  for (const identification::Unpredictable& one : fit.unpredictable)
+    text += fmt::format("left out: {} of {} from {:.2f} s on hangs on less than the parameters are known to\n",
+                        one.body, one.recording, one.from);
   if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
   for (const identification::Parameter& parameter : fit.parameters) {
     text += fmt::format("  {:<20} {:>12.6g} +- {:<9.2g} {}\n", parameter.name, parameter.value,

@@ -71,6 +71,28 @@ record::PoseSample mean_pose(std::span<const record::PoseSample> poses) {
   return Pose{poses.front().pose().R * exp_rotation(share * turn), share * p};
 }
 
+/// Where all means of a while are one pose but for their noise, that pose takes their place: a body that rests for two
+/// hundred seconds has no more to say than where.
+void merge_rest(const model::SceneTask& task, std::size_t together, RecordedBody& body) {
+  constexpr double kMost = 4.0;  // standard deviations, of the furthest of some 200 numbers
+  for (std::size_t first = 0; first + together <= body.poses.size(); first += together) {
+    const std::span<record::PoseSample> poses = std::span(body.poses).subspan(first, together);
+    const std::span<int> averaged = std::span(body.averaged).subspan(first, together);
+    const record::PoseSample mean = mean_pose(poses);
+    if (!record::is_tracked(mean)) continue;
+    const Pose X_WM = mean.pose();
+    const double share = kMost / std::sqrt(static_cast<double>(averaged.front()));
+    const bool is_at_rest = std::ranges::all_of(poses, [&](const record::PoseSample& pose) {
+      return (pose.p - X_WM.p).cwiseAbs().maxCoeff() <= share * task.position_noise &&
+             log_rotation(X_WM.R.transpose() * pose.pose().R).cwiseAbs().maxCoeff() <= share * task.rotation_noise;
+    });
+    if (!is_at_rest) continue;
+    std::ranges::fill(poses, record::lost_pose());
+    poses[together / 2] = mean;
+    averaged[together / 2] *= static_cast<int>(together);
+  }
+}
+
 }  // namespace
 
 std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const std::string& text,
@@ -117,6 +139,7 @@ std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, con
                                                const std::vector<record::ArchiveRecording>& recordings,
                                                const std::string& where) {
   constexpr double kMeanOver = 1.0 / 60.0;  // s: boxes move at some Hz
+  constexpr double kRestOver = 0.5;         // s
   const validation::SimulatedRun run = validation::make_run(simulated, "simulation");
   std::vector<RecordedMotion> motions;
   for (const record::ArchiveRecording& recording : recordings) {
@@ -131,12 +154,13 @@ std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, con
     const double period =
         (times.back() - times.front()) / static_cast<double>(std::max<std::size_t>(1, times.size() - 1));
     const auto each = static_cast<std::size_t>(std::clamp(std::round(kMeanOver / period), 1.0, 1e6));
-    motion.averaged = static_cast<int>(each);
-    motion.spread = period * std::sqrt((static_cast<double>(each * each) - 1.0) / 12.0);
+    motion.period = period;
+    const double half = 0.5 * period * static_cast<double>(each);
+    const auto at_rest = 2 * static_cast<std::size_t>(0.5 * kRestOver / (2.0 * half)) + 1;  // means, an odd number
     std::vector<std::size_t> firsts;  // of the samples of each mean
     for (std::size_t k = 0; k + each <= times.size(); k += each) {
       const double middle = 0.5 * (times[k] + times[k + each - 1]);
-      if (middle < motion.spread || middle > end - motion.spread) continue;
+      if (middle < half || middle > end - half) continue;
       firsts.push_back(k);
       motion.times.push_back(middle);
     }
@@ -148,6 +172,8 @@ std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, con
       body.body = object.body;
       const std::vector<record::PoseSample>& poses = measured.bodies[static_cast<std::size_t>(index)];
       for (const std::size_t first : firsts) body.poses.push_back(mean_pose(std::span(poses).subspan(first, each)));
+      body.averaged.assign(body.poses.size(), static_cast<int>(each));
+      merge_rest(task, at_rest, body);
     }
     if (motion.times.size() < 2)
       throw InputError(where, recording.name, "hardly any poses", "some of the time simulated");

@@ -18,18 +18,23 @@ struct RecordedBody {
   std::vector<record::PoseSample> poses;     ///< X_WB at each time; not a number where it was not seen
   std::vector<Twist> twists;                 ///< as long, or empty: not recorded
   std::optional<record::PoseSample> result;  ///< where it came to rest, when the recording says so
+  std::vector<int> averaged = {};            ///< samples that each pose is the mean of; empty: one each
   bool operator==(const RecordedBody&) const = default;
 };
 
 struct RecordedMotion {
   std::string name;                     ///< "train.csv, toss 12"
   std::vector<double> times;            ///< s, growing
-  int averaged = 1;                     ///< samples that each pose is the mean of
-  double spread = 0.0;                  ///< s, standard deviation of their times
+  double period = 0.0;                  ///< s, between the samples that poses are means of
   std::vector<RecordedBody> tracked;    ///< in the order of the task
   std::vector<RecordedBody> kinematic;  ///< in the order of the task
   bool operator==(const RecordedMotion&) const = default;
 };
+
+/// Samples that the pose at a time of the motion is the mean of.
+[[nodiscard]] inline int averaged_at(const RecordedBody& body, std::size_t k) {
+  return body.averaged.empty() ? 1 : body.averaged[k];
+}
 
 /// Reads the recordings of a task: tables (CSV) with its columns, one recording for each number in its recording
 /// column; of a program's run also archives (HDF5), whose clocks are found by simulating the scenario. Throws
@@ -40,8 +45,8 @@ struct RecordedMotion {
                                                         const std::string& name);
 
 /// What an archive recorded of the task's bodies, on the clock of the simulation of the task's scenario: one motion for
-/// each recording of a sequence, as means over about a sixtieth of a second. Throws InputError for a tracked body that
-/// was not recorded, and where no clock is found.
+/// each recording of a sequence, as means over about a sixtieth of a second, or half a second where the body rests.
+/// Throws InputError for a tracked body that was not recorded, and where no clock is found.
 [[nodiscard]] std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task,
                                                              const record::Recording& simulated,
                                                              const std::vector<record::ArchiveRecording>& recordings,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -20,10 +21,18 @@ namespace snug::identification {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kOwnStep = 0.01;  // of what is expected of an own unknown, for differences
-constexpr double kLost = 1.0;      // m and rad: what a recording without a simulation counts as
+constexpr std::size_t kKnownRuns = 64;  // that are kept, a few MB each
+constexpr double kOwnStep = 0.01;       // of what is expected of an own unknown, for differences
 
 }  // namespace
+
+struct SceneExperiment::KnownRun {
+  Eigen::VectorXd values;
+  internal::ProgramRun run;
+};
+
+SceneExperiment::SceneExperiment(SceneExperiment&&) noexcept = default;
+SceneExperiment::~SceneExperiment() = default;
 
 SceneExperiment::SceneExperiment(model::SceneTask task, std::vector<RecordedMotion> motions, int threads)
     : task_(std::move(task)),
@@ -41,6 +50,12 @@ SceneExperiment::SceneExperiment(model::SceneTask task, std::vector<RecordedMoti
     }
   }
   check_bodies();
+  for (const RecordedMotion& motion : motions_) {
+    samples_.push_back(internal::compared_samples(task_, motion));
+    if (samples_of(samples_.size() - 1) == 0)
+      throw InputError(task_.path.string(), motion.name, "no pose of a tracked object in the time simulated",
+                       "at least one that can be compared");
+  }
   (void)scenario_at(start());
   find_flights();
 }
@@ -103,27 +118,48 @@ void SceneExperiment::find_flights() {
 Eigen::VectorXd SceneExperiment::own_deviation() const { return internal::own_deviation(task_); }
 
 Eigen::Index SceneExperiment::samples_of(std::size_t motion) const {
-  return internal::count_residuals(task_, motions_[motion]);
+  const std::vector<BodyRows> rows = rows_of(motion);
+  return rows.back().first + rows.back().count;
+}
+
+double SceneExperiment::longest() const {
+  double most = 0.0;
+  for (const RecordedMotion& motion : motions_) {
+    const double start = task_.start.from == model::StartFrom::Scenario ? 0.0 : motion.times.front();
+    most = std::max(most, motion.times[internal::sample_count(task_, motion) - 1] - start);
+  }
+  return most;
+}
+
+std::vector<SceneExperiment::BodyRows> SceneExperiment::rows_of(std::size_t motion) const {
+  const int each = internal::numbers_of(task_);
+  std::vector<BodyRows> rows;
+  Eigen::Index first = 0;
+  for (const std::vector<std::size_t>& samples : samples_[motion]) {
+    const auto count = static_cast<Eigen::Index>(samples.size()) * each;
+    rows.push_back({std::exchange(first, first + count), count, each, &samples});
+  }
+  return rows;
 }
 
 numerics::BatchedProblem::Term SceneExperiment::term_of(std::size_t motion) const {
   const Eigen::VectorXd deviation = own_deviation();
-  const Eigen::Index samples = samples_of(motion);
-  const auto bodies = static_cast<Eigen::Index>(motions_[motion].tracked.size());
+  const std::vector<BodyRows> rows = rows_of(motion);
+  const Eigen::Index samples = rows.back().first + rows.back().count;
   numerics::BatchedProblem::Term term{
       samples + deviation.size(), Eigen::VectorXd::Zero(deviation.size()), kOwnStep * deviation, {}};
   for (const std::optional<std::size_t> body : internal::own_bodies(task_)) {
     const Eigen::Index prior = samples + static_cast<Eigen::Index>(term.own_rows.size());  // its row
-    const Eigen::Index count = body ? samples / bodies : samples;
-    const Eigen::Index first = body ? static_cast<Eigen::Index>(*body) * count : 0;
+    const Eigen::Index first = body ? rows[*body].first : 0, count = body ? rows[*body].count : samples;
     term.own_rows.push_back({{first, count}, {prior, 1}});
   }
   return term;
 }
 
 MotionError SceneExperiment::compare(const internal::SimulatedMotion& simulated, std::size_t motion,
-                                     const Eigen::VectorXd& own) const {
-  MotionError error = internal::compare(task_, motions_[motion], simulated, internal::OwnValues(task_, own));
+                                     const Eigen::VectorXd& own, double until) const {
+  MotionError error =
+      internal::compare(task_, motions_[motion], samples_[motion], simulated, internal::OwnValues(task_, own), until);
   const Eigen::VectorXd deviation = own_deviation();
   if (deviation.size() > 0 && error.failure.empty()) {
     const Eigen::VectorXd used = own.size() > 0 ? own : Eigen::VectorXd(Eigen::VectorXd::Zero(deviation.size()));
@@ -132,27 +168,75 @@ MotionError SceneExperiment::compare(const internal::SimulatedMotion& simulated,
   return error;
 }
 
-std::vector<MotionError> SceneExperiment::evaluate(std::span<const Eigen::VectorXd> points,
-                                                   std::span<const Job> jobs) const {
+std::vector<MotionError> SceneExperiment::evaluate(std::span<const Eigen::VectorXd> points, std::span<const Job> jobs,
+                                                   double until) const {
+  return task_.program ? evaluate_program(points, jobs, until) : evaluate_scenes(points, jobs, until);
+}
+
+std::optional<model::Scenario> SceneExperiment::find_scenario(const Eigen::VectorXd& values,
+                                                              std::string& failure) const {
+  try {
+    return scenario_at(values);
+  } catch (const InputError& error) {  // values that no scenario can have: a legitimate no of a search
+    failure = error.what();
+    return std::nullopt;
+  }
+}
+
+const internal::ProgramRun* SceneExperiment::find_run(const Eigen::VectorXd& point, double until) const {
+  for (const KnownRun& known : runs_)
+    if (known.values == point && known.run.until >= until) return &known.run;
+  return nullptr;
+}
+
+std::vector<MotionError> SceneExperiment::evaluate_program(std::span<const Eigen::VectorXd> points,
+                                                           std::span<const Job> jobs, double until) const {
+  std::vector<double> ends(points.size(), 0.0);
+  for (const Job& job : jobs)
+    ends[job.point] = std::max(
+        ends[job.point], internal::end_of(task_, motions_[job.motion], internal::OwnValues(task_, job.own), until));
+  // A little more than asked for, so that a start that is a little later needs no other run.
+  constexpr double kMore = 0.05;  // s
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (ends[i] > 0.0 && find_run(points[i], ends[i]) == nullptr) open.push_back(i);
+  std::vector<KnownRun> made(open.size());
+  parallel_for(static_cast<int>(open.size()), threads_, [&](int index, int) {
+    const std::size_t i = open[static_cast<std::size_t>(index)];
+    KnownRun& known = made[static_cast<std::size_t>(index)];
+    known.values = points[i];
+    std::string failure;
+    if (const std::optional<model::Scenario> scenario = find_scenario(points[i], failure))
+      known.run = internal::run_program(*scenario, task_, ends[i] + kMore);
+    else
+      known.run = {{}, std::numeric_limits<double>::infinity(), 0.0, failure};
+  });
+  for (KnownRun& known : made) {
+    std::erase_if(runs_, [&](const KnownRun& other) { return other.values == known.values; });
+    runs_.push_back(std::move(known));
+  }
+  std::vector<MotionError> errors(jobs.size());
+  parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
+    const auto j = static_cast<std::size_t>(index);
+    const Job& job = jobs[j];
+    const internal::OwnValues own(task_, job.own);
+    const internal::ProgramRun& run = *find_run(points[job.point], ends[job.point]);
+    errors[j] =
+        compare(internal::motion_of(run, motions_[job.motion], samples_[job.motion], own), job.motion, job.own, until);
+  });
+  // The latest are asked for again: a step of a search is where the next one starts.
+  const std::size_t most = std::max<std::size_t>(kKnownRuns, points.size());
+  if (runs_.size() > most) runs_.erase(runs_.begin(), runs_.end() - static_cast<std::ptrdiff_t>(most));
+  return errors;
+}
+
+std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen::VectorXd> points,
+                                                          std::span<const Job> jobs, double until) const {
   std::vector<std::optional<model::Scenario>> scenarios(points.size());
   std::vector<std::string> failures(points.size());
   parallel_for(static_cast<int>(points.size()), threads_, [&](int index, int) {
     const auto i = static_cast<std::size_t>(index);
-    try {
-      scenarios[i] = scenario_at(points[i]);
-    } catch (const InputError& error) {  // values that no scenario can have: a legitimate no of a search
-      failures[i] = error.what();
-    }
-  });
-  std::vector<internal::ProgramRun> runs(task_.program ? points.size() : 0);
-  std::vector<double> ends(runs.size(), 0.0);
-  for (const Job& job : jobs)
-    if (task_.program)
-      ends[job.point] =
-          std::max(ends[job.point], internal::end_of(task_, motions_[job.motion], internal::OwnValues(task_, job.own)));
-  parallel_for(static_cast<int>(runs.size()), threads_, [&](int index, int) {
-    const auto i = static_cast<std::size_t>(index);
-    if (scenarios[i] && ends[i] > 0.0) runs[i] = internal::run_program(*scenarios[i], task_, ends[i]);
+    scenarios[i] = find_scenario(points[i], failures[i]);
   });
   // What a recording has of its own moves bodies by their start and the delay only.
   std::map<std::pair<std::pair<std::size_t, std::size_t>, std::vector<double>>, std::size_t> known;
@@ -170,19 +254,16 @@ std::vector<MotionError> SceneExperiment::evaluate(std::span<const Eigen::Vector
   parallel_for(static_cast<int>(first.size()), threads_, [&](int index, int) {
     const auto i = static_cast<std::size_t>(index);
     const Job& job = jobs[first[i]];
-    const RecordedMotion& motion = motions_[job.motion];
-    const internal::OwnValues own(task_, job.own);
     if (!scenarios[job.point])
       simulated[i].failure = failures[job.point];
-    else if (task_.program)
-      simulated[i] = internal::motion_of(runs[job.point], task_, motion, own);
     else
-      simulated[i] = internal::simulate_scene(*scenarios[job.point], task_, motion, flights_[job.motion], own);
+      simulated[i] = internal::simulate_scene(*scenarios[job.point], task_, motions_[job.motion], flights_[job.motion],
+                                              internal::OwnValues(task_, job.own), until);
   });
   std::vector<MotionError> errors(jobs.size());
   parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
     const auto j = static_cast<std::size_t>(index);
-    errors[j] = compare(simulated[simulation_of[j]], jobs[j].motion, jobs[j].own);
+    errors[j] = compare(simulated[simulation_of[j]], jobs[j].motion, jobs[j].own, until);
   });
   return errors;
 }
@@ -192,11 +273,12 @@ std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& 
     throw InputError(task_.path.string(), "start", "no free flight", "from: free_flight, whose noise sets the floor");
   const model::Scenario scenario = scenario_at(values);
   const internal::OwnValues own(task_, {});
+  constexpr double kAll = std::numeric_limits<double>::infinity();
   std::vector<MotionError> errors(motions_.size());
   parallel_for(static_cast<int>(motions_.size()), threads_, [&](int index, int) {
     const auto m = static_cast<std::size_t>(index);
     RecordedMotion twin = motions_[m];
-    const internal::SimulatedMotion exact = internal::simulate_scene(scenario, task_, twin, flights_[m], own);
+    const internal::SimulatedMotion exact = internal::simulate_scene(scenario, task_, twin, flights_[m], own, kAll);
     RecordedMotion noisy = twin;
     Rng rng = Rng(seed).split("floor " + twin.name);
     for (std::size_t b = 0; b < twin.tracked.size() && exact.failure.empty(); ++b) {
@@ -217,9 +299,9 @@ std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& 
                     pose.p + internal::normal3(rng, flight.position_rms)};
       }
     }
-    internal::SimulatedMotion again = internal::simulate_scene(scenario, task_, noisy, flights_[m], own);
+    internal::SimulatedMotion again = internal::simulate_scene(scenario, task_, noisy, flights_[m], own, kAll);
     if (!exact.failure.empty()) again.failure = exact.failure;
-    errors[m] = internal::compare(task_, twin, again, own);
+    errors[m] = internal::compare(task_, twin, internal::compared_samples(task_, twin), again, own, kAll);
   });
   return errors;
 }
@@ -227,7 +309,7 @@ std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& 
 double SceneExperiment::cost_of(const MotionError& error) const {
   const double ratio = task_.rotation_position_ratio;
   const double use_position = task_.use_position ? 1.0 : 0.0, use_rotation = task_.use_rotation ? 1.0 : 0.0;
-  if (!error.failure.empty()) return 1e3 * kLost * (use_position + use_rotation * ratio);
+  if (!error.failure.empty()) return 1e3 * internal::kLost * (use_position + use_rotation * ratio);
   if (task_.loss == model::TaskLoss::Distance)
     return 1e3 * (use_position * error.position + use_rotation * ratio * error.rotation);
   return 1e3 * std::sqrt(use_position * error.position_square + use_rotation * ratio * ratio * error.rotation_square);
@@ -238,10 +320,10 @@ SceneError SceneExperiment::summarize(std::span<const MotionError> errors) const
   for (const MotionError& error : errors) {
     const bool has_failed = !error.failure.empty();
     sum.failed += has_failed ? 1 : 0;
-    sum.position_mm += 1e3 * (has_failed ? kLost : error.position);
-    sum.rotation_deg += kDegrees * (has_failed ? kLost : error.rotation);
-    sum.end_position_mm += 1e3 * (has_failed ? kLost : error.end_position);
-    sum.end_rotation_deg += kDegrees * (has_failed ? kLost : error.end_rotation);
+    sum.position_mm += 1e3 * (has_failed ? internal::kLost : error.position);
+    sum.rotation_deg += kDegrees * (has_failed ? internal::kLost : error.rotation);
+    sum.end_position_mm += 1e3 * (has_failed ? internal::kLost : error.end_position);
+    sum.end_rotation_deg += kDegrees * (has_failed ? internal::kLost : error.end_rotation);
     sum.right_orientation_percent += 100.0 * error.right;
     sum.cost += cost_of(error);
   }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,7 +17,8 @@ namespace snug::identification {
 
 namespace internal {
 struct SimulatedMotion;
-}
+struct ProgramRun;
+}  // namespace internal
 
 /// How far the simulation of one recording is from it.
 struct MotionError {
@@ -47,6 +50,8 @@ class SceneExperiment {
   /// Throws InputError when task, scenario and recordings do not fit: unknown bodies, paths that lead nowhere, values
   /// that the scenario cannot have.
   SceneExperiment(model::SceneTask task, std::vector<RecordedMotion> motions, int threads);
+  SceneExperiment(SceneExperiment&&) noexcept;
+  ~SceneExperiment();
 
   struct Job {
     std::size_t point = 0;     ///< of `points`
@@ -55,9 +60,10 @@ class SceneExperiment {
   };
   /// `points`: values of all parameters of the task, in its order. Each job is a simulation, but those of a point that
   /// differ in nothing that moves a body share one, and all of a program share one run. The result does not depend on
-  /// the number of threads. What cannot be simulated says so.
-  [[nodiscard]] std::vector<MotionError> evaluate(std::span<const Eigen::VectorXd> points,
-                                                  std::span<const Job> jobs) const;
+  /// the number of threads. What cannot be simulated says so. Samples after `until`, s on the recording's clock, count
+  /// nothing. The latest runs of programs are kept. One call at a time.
+  [[nodiscard]] std::vector<MotionError> evaluate(std::span<const Eigen::VectorXd> points, std::span<const Job> jobs,
+                                                  double until = std::numeric_limits<double>::infinity()) const;
   /// Errors that the noise of the start alone sets: each recording is replaced by its own simulation, the poses of its
   /// free flight get noise as large as those recorded are off theirs, and it is predicted again. Needs
   /// StartFrom::FreeFlight and at least four rows of flight; recordings with fewer count as failed.
@@ -71,6 +77,14 @@ class SceneExperiment {
   [[nodiscard]] Eigen::VectorXd own_deviation() const;  ///< expected of the own unknowns; empty when there are none
   /// Numbers measured in a recording: residuals less those of own unknowns against what is expected of them.
   [[nodiscard]] Eigen::Index samples_of(std::size_t motion) const;
+  [[nodiscard]] double longest() const;  ///< s, of what is simulated for a recording
+  /// Where the residuals of a tracked body stand: sample by sample, in order of time.
+  struct BodyRows {
+    Eigen::Index first = 0, count = 0;
+    int each = 6;                                       ///< rows of a sample
+    const std::vector<std::size_t>* samples = nullptr;  ///< of the recording; lives as long as the experiment
+  };
+  [[nodiscard]] std::vector<BodyRows> rows_of(std::size_t motion) const;
   /// A recording as a term of a sum of squares that is computed in batches; its own unknowns start at zero.
   [[nodiscard]] numerics::BatchedProblem::Term term_of(std::size_t motion) const;
 
@@ -80,8 +94,17 @@ class SceneExperiment {
   [[nodiscard]] SceneError summarize(std::span<const MotionError> errors) const;
 
  private:
+  /// A program's run, and of which point.
+  struct KnownRun;
+  [[nodiscard]] std::vector<MotionError> evaluate_program(std::span<const Eigen::VectorXd> points,
+                                                          std::span<const Job> jobs, double until) const;
+  [[nodiscard]] std::vector<MotionError> evaluate_scenes(std::span<const Eigen::VectorXd> points,
+                                                         std::span<const Job> jobs, double until) const;
+  /// None: these values are no scenario's.
+  [[nodiscard]] std::optional<model::Scenario> find_scenario(const Eigen::VectorXd& values, std::string& failure) const;
+  [[nodiscard]] const internal::ProgramRun* find_run(const Eigen::VectorXd& point, double until) const;
   [[nodiscard]] MotionError compare(const internal::SimulatedMotion& simulated, std::size_t motion,
-                                    const Eigen::VectorXd& own) const;
+                                    const Eigen::VectorXd& own, double until) const;
   void check_bodies() const;
   void find_flights();
 
@@ -91,6 +114,8 @@ class SceneExperiment {
   model::Scenario base_;
   std::vector<std::vector<double>> base_numbers_;  ///< of each parameter's paths, for scales and offsets
   std::vector<std::vector<std::size_t>> flights_;  ///< rows before the first touch, of each motion's bodies
+  std::vector<std::vector<std::vector<std::size_t>>> samples_;  ///< that are compared, of each motion's bodies
+  mutable std::vector<KnownRun> runs_;                          ///< the latest last
 };
 
 }  // namespace snug::identification

@@ -154,6 +154,7 @@ SceneFit identify_scene(const SceneExperiment& experiment, const SceneFitOptions
   fit.held_back = errors.held_back;
   fit.held_back_error = errors.held_back_error;
   fit.chi2_per_dof = errors.chi2_per_dof;
+  fit.unpredictable = search.unpredictable();
   fit.is_trusted = task.loss == model::TaskLoss::Distance || fit.chi2_per_dof <= kMisfit;
   fit.evaluations = search.evaluations();
   judge_all(search, sensed, fit);

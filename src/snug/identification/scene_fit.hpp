@@ -28,6 +28,13 @@ struct UnknownDirection {
   double error = 0.0;  ///< standard error along it, in spans of the bounds
 };
 
+/// From this time on a body's motion hangs on less than the parameters' errors (it tips one way or the other): it was
+/// not fitted, and does not count against the fit.
+struct Unpredictable {
+  std::string recording, body;
+  double from = 0.0;  ///< s, on the recording's clock
+};
+
 struct SceneFitProgress {
   int evaluations = 0;  ///< of the whole set
   double cost = 0.0;    ///< best so far
@@ -51,6 +58,7 @@ struct SceneFit {
       held_back;  ///< at the start and at the end; of the recordings fitted, and of those held back
   std::vector<Sensitivity> sensitivity;
   std::vector<UnknownDirection> unknown;
+  std::vector<Unpredictable> unpredictable;
   int evaluations = 0;
   bool is_trusted = true;  ///< false: the simulation misses the recordings by far more than noise
   std::string message;     ///< how the search ended

@@ -46,9 +46,10 @@ std::vector<std::vector<Eigen::Index>> unknowns_apart(const BatchedProblem::Term
 /// What the batch found at the unknowns of last time.
 struct Batch {
   const BatchedProblem& problem;
+  bool secants = false;
   BatchedDerivatives found;
-  std::vector<Eigen::MatrixXd> reduced;  ///< triangular factor of [J r] of each term, when there are derivatives
   bool has_jacobians = false;
+  BatchedDerivatives last;  ///< with derivatives
 };
 
 /// Rows that Ceres gets of a term: of many residuals only as many as have the same sum of squares and slopes.
@@ -57,10 +58,40 @@ Eigen::Index reduced_rows(const BatchedProblem& problem, std::size_t term) {
   return std::min(of.residuals, problem.start.size() + of.own.size() + 1);
 }
 
-Eigen::MatrixXd reduce(const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
-  Eigen::MatrixXd all(r.size(), J.cols() + 1);
-  all << J, r;
-  return all.rows() > all.cols() ? triangular_factor(all) : all;
+Eigen::MatrixXd triangle_of(const Eigen::MatrixXd& A) { return A.rows() > A.cols() ? triangular_factor(A) : A; }
+
+/// Triangular factor of [J r]. Rows that the same own unknowns change are reduced first, without the columns of the
+/// others, which are zero there.
+Eigen::MatrixXd reduce(const BatchedProblem::Term& term, const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
+  const Eigen::Index own = term.own.size(), shared = J.cols() - own;
+  std::vector<Eigen::Index> cuts{0, r.size()};
+  for (const std::vector<RowRun>& runs : term.own_rows)
+    for (const auto& [first, count] : runs) cuts.insert(cuts.end(), {first, first + count});
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  Eigen::MatrixXd all(0, J.cols() + 1);
+  for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
+    const Eigen::Index first = cuts[c], count = cuts[c + 1] - first;
+    std::vector<Eigen::Index> columns;
+    for (Eigen::Index j = 0; j < J.cols(); ++j) {
+      const bool is_zero = j >= shared && !term.own_rows.empty() &&
+                           !share_rows(term.own_rows[static_cast<std::size_t>(j - shared)], {{first, count}});
+      if (!is_zero) columns.push_back(j);
+    }
+    Eigen::MatrixXd part(count, static_cast<Eigen::Index>(columns.size()) + 1);
+    part << J.middleRows(first, count)(Eigen::all, columns), r.segment(first, count);
+    const Eigen::MatrixXd R = triangle_of(part);
+    columns.push_back(J.cols());
+    Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(R.rows(), all.cols());
+    wide(Eigen::all, columns) = R;
+    all.conservativeResize(all.rows() + R.rows(), Eigen::NoChange);
+    all.bottomRows(R.rows()) = wide;
+  }
+  const Eigen::MatrixXd R = triangle_of(all);
+  Eigen::MatrixXd whole =
+      Eigen::MatrixXd::Zero(std::min(r.size(), all.cols()), all.cols());  // as many rows as Ceres knows
+  whole.topRows(R.rows()) = R;
+  return whole;
 }
 
 std::vector<Eigen::VectorXd> evaluate_at(const BatchedProblem& problem, const Eigen::VectorXd& shared,
@@ -81,132 +112,29 @@ std::vector<Eigen::VectorXd> own_parts(const BatchedProblem& problem, const Eige
   return own;
 }
 
-/// Ceres asks for residuals and derivatives term by term; before it does, this computes all of them at once.
-class Prepare final : public ceres::EvaluationCallback {
- public:
-  Prepare(Batch& batch, const Eigen::VectorXd& unknowns) : batch_(batch), unknowns_(unknowns) {}
-  void PrepareForEvaluation(bool with_jacobians, bool is_new_point) override {
-    if (!is_new_point && (batch_.has_jacobians || !with_jacobians)) return;
-    const Eigen::VectorXd shared = unknowns_.head(batch_.problem.start.size());
-    const std::vector<Eigen::VectorXd> own = own_parts(batch_.problem, unknowns_);
-    if (with_jacobians)
-      batch_.found = differentiate(batch_.problem, shared, own);
-    else
-      batch_.found = {evaluate_at(batch_.problem, shared, own), {}};
-    batch_.has_jacobians = with_jacobians;
-    batch_.reduced.assign(batch_.found.residuals.size(), {});
-    for (std::size_t i = 0; with_jacobians && i < batch_.reduced.size(); ++i) {
-      const Eigen::VectorXd& r = batch_.found.residuals[i];
-      const Eigen::MatrixXd& J = batch_.found.jacobians[i];
-      if (r.size() == batch_.problem.terms[i].residuals && J.rows() == r.size() && J.allFinite() && r.allFinite())
-        batch_.reduced[i] = reduce(J, r);
+/// Slopes along the way from `before` become those that the residuals had on it (Broyden, 1965).
+void follow_secant(const BatchedProblem& problem, const BatchedDerivatives& before, BatchedDerivatives& found) {
+  const Eigen::Index n = found.shared.size();
+  const Eigen::VectorXd way = (found.shared - before.shared).cwiseQuotient(problem.step);
+  for (std::size_t i = 0; i < found.jacobians.size(); ++i) {
+    Eigen::MatrixXd& J = found.jacobians[i];
+    const Eigen::MatrixXd& J_before = before.jacobians[i];
+    if (J.rows() != J_before.rows() || J.cols() == 0) {
+      J.resize(0, 0);
+      continue;
     }
+    J.leftCols(n) = J_before.leftCols(n);
+    if (way.squaredNorm() == 0.0) continue;
+    Eigen::VectorXd missed = found.residuals[i] - before.residuals[i] - J.leftCols(n) * (found.shared - before.shared);
+    if (J.cols() > n)
+      missed -= 0.5 * (J.rightCols(J.cols() - n) + J_before.rightCols(J.cols() - n)) * (found.own[i] - before.own[i]);
+    J.leftCols(n) += missed * way.cwiseQuotient(problem.step).transpose() / way.squaredNorm();
   }
+}
 
- private:
-  Batch& batch_;
-  const Eigen::VectorXd& unknowns_;  ///< where Ceres keeps them
-};
-
-class BatchedTermCost final : public ceres::CostFunction {
- public:
-  BatchedTermCost(const Batch& batch, std::size_t term) : batch_(batch), term_(term) {
-    const BatchedProblem::Term& of = batch.problem.terms[term];
-    set_num_residuals(static_cast<int>(reduced_rows(batch.problem, term)));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(batch.problem.start.size()));
-    if (of.own.size() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.own.size()));
-  }
-
-  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
-    const Eigen::VectorXd& r = batch_.found.residuals[term_];
-    if (r.size() != batch_.problem.terms[term_].residuals || !r.allFinite()) return false;
-    Eigen::Map<Eigen::VectorXd> given(residuals, num_residuals());
-    if (jacobians == nullptr) {  // what counts is the sum of squares
-      given.setZero();
-      given[0] = r.norm();
-      return true;
-    }
-    const Eigen::MatrixXd& R = batch_.reduced[term_];
-    if (R.rows() != given.size()) return false;
-    given = R.col(R.cols() - 1);
-    const Eigen::Index n = batch_.problem.start.size(), own = R.cols() - 1 - n;
-    if (jacobians[0] != nullptr) Eigen::Map<RowMajor>(jacobians[0], R.rows(), n) = R.leftCols(n);
-    if (own > 0 && jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], R.rows(), own) = R.middleCols(n, own);
-    return true;
-  }
-
- private:
-  const Batch& batch_;
-  std::size_t term_;
-};
-
-/// The sum of squares around the start of a problem, along the axes of its inverse information.
-class RisingSquares {
- public:
-  explicit RisingSquares(const BatchedProblem& at) : at_(at) {
-    for (const BatchedProblem::Term& term : at.terms) own_.push_back(term.own);
-    found_ = differentiate(at, at.start, own_);
-    for (const Eigen::MatrixXd& J : found_.jacobians) {
-      const auto own = J.rightCols(std::max<Eigen::Index>(0, J.cols() - at.start.size()));
-      own_normal_.push_back(own.transpose() * own);
-    }
-    const auto steps = at.step.asDiagonal();
-    const Eigen::MatrixXd information = steps * shared_information(found_, at.start.size()) * steps;
-    const Eigenpairs axes = symmetric_eigenpairs(invert_symmetric(information));
-    directions_ = steps * axes.vectors;
-    deviation_ = axes.values.cwiseMax(0.0).cwiseSqrt();
-  }
-
-  [[nodiscard]] const Eigen::MatrixXd& directions() const { return directions_; }  ///< columns
-  [[nodiscard]] const Eigen::VectorXd& deviation() const { return deviation_; }    ///< along each of them
-
-  struct Rise {
-    double found = 0.0;   ///< of the sum of squares
-    double wanted = 0.0;  ///< deviations squared
-  };
-  /// At `count` deviations along each axis there and back: 2 k and 2 k + 1 are those of axis k.
-  [[nodiscard]] std::vector<Rise> rises(const Eigen::VectorXd& deviation, double count) const {
-    std::vector<Rise> result;
-    std::vector<BatchedProblem::Job> jobs;
-    for (Eigen::Index k = 0; k < deviation.size(); ++k) {
-      for (const double sign : {1.0, -1.0}) {
-        const Eigen::VectorXd way = sign * count * deviation[k] * directions_.col(k);
-        const Eigen::VectorXd there = (at_.start + way).cwiseMax(at_.lower).cwiseMin(at_.upper);
-        const double share = (there - at_.start).cwiseQuotient(at_.step).norm() / way.cwiseQuotient(at_.step).norm();
-        result.push_back({0.0, std::pow(count * share, 2)});
-        for (std::size_t i = 0; i < at_.terms.size(); ++i) jobs.push_back({i, there, own_[i]});
-      }
-    }
-    const std::vector<Eigen::VectorXd> residuals = at_.evaluate(jobs);
-    for (std::size_t j = 0; j < jobs.size(); ++j) {
-      const std::size_t i = jobs[j].term;
-      if (residuals[j].size() == found_.residuals[i].size())
-        result[j / at_.terms.size()].found += squares(i, residuals[j]) - squares(i, found_.residuals[i]);
-    }
-    return result;
-  }
-
- private:
-  /// Of the residuals of a term, less what its own unknowns can take of them.
-  [[nodiscard]] double squares(std::size_t term, const Eigen::VectorXd& r) const {
-    const Eigen::MatrixXd& normal = own_normal_[term];
-    if (normal.size() == 0) return r.squaredNorm();
-    const Eigen::VectorXd slope = found_.jacobians[term].rightCols(normal.cols()).transpose() * r;
-    return r.squaredNorm() - slope.dot(solve_symmetric(normal, slope).col(0));
-  }
-
-  const BatchedProblem& at_;
-  std::vector<Eigen::VectorXd> own_;
-  BatchedDerivatives found_;
-  std::vector<Eigen::MatrixXd> own_normal_;  ///< J^T J of each term's own unknowns
-  Eigen::MatrixXd directions_;
-  Eigen::VectorXd deviation_;
-};
-
-}  // namespace
-
-BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
-                                 const std::vector<Eigen::VectorXd>& own) {
+/// `before`: shared unknowns are not moved, their columns follow from those there.
+BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen::VectorXd& shared,
+                                      const std::vector<Eigen::VectorXd>& own, const BatchedDerivatives* before) {
   const Eigen::Index n = shared.size();
   for (const BatchedProblem::Term& term : problem.terms)
     SNUG_CHECK(term.own_rows.empty() || term.own_rows.size() == static_cast<std::size_t>(term.own.size()),
@@ -222,7 +150,7 @@ BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::Vec
   for (std::size_t i = 0; i < problem.terms.size(); ++i) jobs.push_back({i, shared, own[i]});
   const Eigen::VectorXd up = (shared + problem.step).cwiseMin(problem.upper);
   const Eigen::VectorXd down = (shared - problem.step).cwiseMax(problem.lower);
-  for (Eigen::Index j = 0; j < n; ++j) {
+  for (Eigen::Index j = 0; j < n && before == nullptr; ++j) {
     for (std::size_t i = 0; i < problem.terms.size(); ++i) {
       BatchedProblem::Job plus{i, shared, own[i]}, minus = plus;
       plus.shared[j] = up[j], minus.shared[j] = down[j];
@@ -248,6 +176,8 @@ BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::Vec
   std::vector<Eigen::VectorXd> values = problem.evaluate(jobs);
   SNUG_CHECK(values.size() == jobs.size(), "each job of a batch has residuals");
   BatchedDerivatives found;
+  found.shared = shared;
+  found.own = own;
   for (std::size_t i = 0; i < problem.terms.size(); ++i)
     found.jacobians.push_back(Eigen::MatrixXd::Zero(values[i].size(), n + own[i].size()));
   for (const Column& column : columns) {
@@ -262,16 +192,148 @@ BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::Vec
   }
   values.resize(problem.terms.size());
   found.residuals = std::move(values);
+  if (before != nullptr) follow_secant(problem, *before, found);
+  found.reduced.resize(problem.terms.size());
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
+    const Eigen::VectorXd& r = found.residuals[i];
+    const Eigen::MatrixXd& J = found.jacobians[i];
+    if (r.size() == problem.terms[i].residuals && J.rows() == r.size() && J.allFinite() && r.allFinite())
+      found.reduced[i] = reduce(problem.terms[i], J, r);
+  }
   return found;
+}
+
+/// Ceres asks for residuals and derivatives term by term; before it does, this computes all of them at once.
+class Prepare final : public ceres::EvaluationCallback {
+ public:
+  Prepare(Batch& batch, const Eigen::VectorXd& unknowns) : batch_(batch), unknowns_(unknowns) {}
+  void PrepareForEvaluation(bool with_jacobians, bool is_new_point) override {
+    if (!is_new_point && (batch_.has_jacobians || !with_jacobians)) return;
+    const Eigen::VectorXd shared = unknowns_.head(batch_.problem.start.size());
+    const std::vector<Eigen::VectorXd> own = own_parts(batch_.problem, unknowns_);
+    if (with_jacobians) {
+      const bool has_last = batch_.secants && !batch_.last.jacobians.empty();
+      batch_.found = differentiate_from(batch_.problem, shared, own, has_last ? &batch_.last : nullptr);
+      if (batch_.secants) batch_.last = batch_.found;
+    } else {
+      batch_.found = {};
+      batch_.found.residuals = evaluate_at(batch_.problem, shared, own);
+    }
+    batch_.has_jacobians = with_jacobians;
+  }
+
+ private:
+  Batch& batch_;
+  const Eigen::VectorXd& unknowns_;  ///< where Ceres keeps them
+};
+
+class BatchedTermCost final : public ceres::CostFunction {
+ public:
+  BatchedTermCost(const Batch& batch, std::size_t term) : batch_(batch), term_(term) {
+    const BatchedProblem::Term& of = batch.problem.terms[term];
+    set_num_residuals(static_cast<int>(reduced_rows(batch.problem, term)));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(batch.problem.start.size()));
+    if (of.own.size() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.own.size()));
+  }
+
+  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+    const Eigen::VectorXd& r = batch_.found.residuals[term_];
+    if (r.size() != batch_.problem.terms[term_].residuals || !r.allFinite()) return false;
+    Eigen::Map<Eigen::VectorXd> given(residuals, num_residuals());
+    if (jacobians == nullptr) {  // what counts is the sum of squares
+      given.setZero();
+      given[0] = r.norm();
+      return true;
+    }
+    const Eigen::MatrixXd& R = batch_.found.reduced[term_];
+    if (R.rows() != given.size()) return false;
+    given = R.col(R.cols() - 1);
+    const Eigen::Index n = batch_.problem.start.size(), own = R.cols() - 1 - n;
+    if (jacobians[0] != nullptr) Eigen::Map<RowMajor>(jacobians[0], R.rows(), n) = R.leftCols(n);
+    if (own > 0 && jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], R.rows(), own) = R.middleCols(n, own);
+    return true;
+  }
+
+ private:
+  const Batch& batch_;
+  std::size_t term_;
+};
+
+/// The sum of squares around the start of a problem, along the axes of its inverse information.
+class RisingSquares {
+ public:
+  RisingSquares(const BatchedProblem& at, const BatchedDerivatives& found) : at_(at), found_(found) {
+    for (const Eigen::MatrixXd& J : found_.jacobians) {
+      const auto own = J.rightCols(std::max<Eigen::Index>(0, J.cols() - at.start.size()));
+      own_normal_.push_back(own.transpose() * own);
+    }
+    const auto steps = at.step.asDiagonal();
+    const Eigen::MatrixXd information = steps * shared_information(found_, at.start.size()) * steps;
+    const Eigenpairs axes = symmetric_eigenpairs(invert_symmetric(information));
+    directions_ = steps * axes.vectors;
+    deviation_ = axes.values.cwiseMax(0.0).cwiseSqrt();
+  }
+
+  [[nodiscard]] const Eigen::MatrixXd& directions() const { return directions_; }  ///< columns
+  [[nodiscard]] const Eigen::VectorXd& deviation() const { return deviation_; }    ///< along each of them
+
+  struct Rise {
+    double found = 0.0;   ///< of the sum of squares
+    double square = 0.0;  ///< of the way, in deviations
+  };
+  /// At these lengths along the axes, there and back: 2 k and 2 k + 1 are those of axis k.
+  [[nodiscard]] std::vector<Rise> rises(const Eigen::VectorXd& length) const {
+    std::vector<Rise> result;
+    std::vector<BatchedProblem::Job> jobs;
+    for (Eigen::Index k = 0; k < length.size(); ++k) {
+      for (const double sign : {1.0, -1.0}) {
+        const Eigen::VectorXd way = sign * length[k] * directions_.col(k);
+        const Eigen::VectorXd there = (at_.start + way).cwiseMax(at_.lower).cwiseMin(at_.upper);
+        const double share = (there - at_.start).cwiseQuotient(at_.step).norm() / way.cwiseQuotient(at_.step).norm();
+        result.push_back({0.0, std::pow(length[k] / deviation_[k] * share, 2)});
+        for (std::size_t i = 0; i < at_.terms.size(); ++i) jobs.push_back({i, there, found_.own[i]});
+      }
+    }
+    const std::vector<Eigen::VectorXd> residuals = at_.evaluate(jobs);
+    for (std::size_t j = 0; j < jobs.size(); ++j) {
+      const std::size_t i = jobs[j].term;
+      if (residuals[j].size() == found_.residuals[i].size())
+        result[j / at_.terms.size()].found += squares(i, residuals[j]) - squares(i, found_.residuals[i]);
+    }
+    return result;
+  }
+
+ private:
+  /// Of the residuals of a term, less what its own unknowns can take of them.
+  [[nodiscard]] double squares(std::size_t term, const Eigen::VectorXd& r) const {
+    const Eigen::MatrixXd& normal = own_normal_[term];
+    if (normal.size() == 0) return r.squaredNorm();
+    const Eigen::VectorXd slope = found_.jacobians[term].rightCols(normal.cols()).transpose() * r;
+    return r.squaredNorm() - slope.dot(solve_symmetric(normal, slope).col(0));
+  }
+
+  const BatchedProblem& at_;
+  const BatchedDerivatives& found_;
+  std::vector<Eigen::MatrixXd> own_normal_;  ///< J^T J of each term's own unknowns
+  Eigen::MatrixXd directions_;
+  Eigen::VectorXd deviation_;
+};
+
+}  // namespace
+
+BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
+                                 const std::vector<Eigen::VectorXd>& own) {
+  return differentiate_from(problem, shared, own, nullptr);
 }
 
 Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
-  for (const Eigen::MatrixXd& J : at.jacobians) {
-    if (J.cols() < n) continue;
-    Eigen::MatrixXd shared = J.leftCols(n);
-    if (J.cols() > n) {
-      const Eigen::MatrixXd own = J.rightCols(J.cols() - n);
+  for (const Eigen::MatrixXd& R : at.reduced) {
+    if (R.cols() <= n) continue;
+    Eigen::MatrixXd shared = R.leftCols(n);
+    const Eigen::Index count = R.cols() - 1 - n;
+    if (count > 0) {
+      const Eigen::MatrixXd own = R.middleCols(n, count);
       shared -= own * solve_by_qr(own, shared);
     }
     information += shared.transpose() * shared;
@@ -279,38 +341,37 @@ Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n)
   return information;
 }
 
-Eigen::MatrixXd squares_covariance(const BatchedProblem& at) {
-  // At two and at four deviations along each axis the sum of squares has to have risen by their square; where it rises
-  // by less than half of that the axis is lengthened until it does. What it strays from its parabola it strays at its
-  // minimum, too: a point as good by chance may be the root of that many deviations away.
-  constexpr int kRounds = 3;
-  constexpr double kMost = 4.0;  // of a round
-  const RisingSquares squares(at);
-  Eigen::VectorXd deviation = squares.deviation();
-  double roughness = 0.0;
-  for (int round = 0; round <= kRounds; ++round) {
-    Eigen::VectorXd factors = Eigen::VectorXd::Ones(deviation.size());
+Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found) {
+  // At two deviations along each axis the sum of squares has to have risen by four. Where it rises by less than half of
+  // that the axis is longer. What it strays from its parabola (root mean square q over axes and sides; of a cliff a
+  // hundred) it strays at its minimum, too: a point as good by chance may be sqrt(q) deviations away. Then it is looked
+  // at from there.
+  constexpr int kRounds = 4;
+  constexpr double kMost = 4.0;     // times as far as in the round before
+  constexpr double kCliff = 100.0;  // ten deviations: no chance makes such a point as good
+  const RisingSquares squares(at, found);
+  const Eigen::VectorXd first = squares.deviation();
+  Eigen::VectorXd length = first, share = Eigen::VectorXd::Ones(first.size()), deviation = first;
+  for (int round = 0; round < kRounds && first.size() > 0; ++round) {
+    const std::vector<RisingSquares::Rise> rises = squares.rises(2.0 * length);
     double strayed = 0.0;
-    for (const double count : {2.0, 4.0}) {
-      const std::vector<RisingSquares::Rise> rises = squares.rises(deviation, count);
-      for (Eigen::Index k = 0; k < deviation.size(); ++k) {
-        const auto &there = rises[2 * static_cast<std::size_t>(k)], &back = rises[2 * static_cast<std::size_t>(k) + 1];
-        const double found = there.found + back.found, wanted = there.wanted + back.wanted;
-        if (found < 0.5 * wanted)
-          factors[k] = std::max(factors[k], std::min(kMost, std::sqrt(wanted / std::max(found, 1e-3 * wanted))));
-        if (count == 2.0) strayed += std::pow(there.found - there.wanted, 2) + std::pow(back.found - back.wanted, 2);
-      }
+    for (Eigen::Index k = 0; k < first.size(); ++k) {
+      const auto &there = rises[2 * static_cast<std::size_t>(k)], &back = rises[2 * static_cast<std::size_t>(k) + 1];
+      const double of_parabola = (there.found + back.found) / std::max(there.square + back.square, 1e-12);
+      share[k] = of_parabola < 0.5 ? std::max(of_parabola, share[k] / (kMost * kMost)) : 1.0;
+      for (const RisingSquares::Rise& rise : {there, back})
+        strayed += std::pow(std::min(std::abs(rise.found - share[k] * rise.square), kCliff), 2);
     }
-    roughness = std::sqrt(strayed / static_cast<double>(2 * std::max<Eigen::Index>(1, deviation.size())));
-    if (factors.maxCoeff() <= 1.0 || round == kRounds) break;
-    deviation = deviation.cwiseProduct(factors);
+    const double q = std::sqrt(strayed / static_cast<double>(2 * first.size()));
+    deviation = first.cwiseProduct(((1.0 + q) * share.cwiseInverse()).cwiseSqrt());
+    if ((deviation.array() <= 2.0 * length.array()).all()) break;
+    length = deviation.cwiseMin(kMost * length);
   }
-  const Eigen::VectorXd variance = (1.0 + roughness) * deviation.cwiseAbs2();
-  return squares.directions() * variance.asDiagonal() * squares.directions().transpose();
+  return squares.directions() * deviation.cwiseAbs2().asDiagonal() * squares.directions().transpose();
 }
 
 BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& options) {
-  Batch batch{given, {}, {}, false};
+  Batch batch{given, options.secants, {}, false, {}};
   // In one run of memory, as Ceres sorts unknowns by their addresses.
   Eigen::Index count = given.start.size();
   for (const BatchedProblem::Term& term : given.terms) count += term.own.size();
@@ -357,9 +418,10 @@ BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& o
   result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   result.message = summary.message;
   if (!summary.IsSolutionUsable()) return result;
-  const BatchedDerivatives at = differentiate(given, result.x, result.own);
-  for (const Eigen::VectorXd& r : at.residuals) result.cost += r.squaredNorm();
-  result.information = shared_information(at, given.start.size());
+  const bool has_last = options.secants && !batch.last.jacobians.empty();
+  result.at = differentiate_from(given, result.x, result.own, has_last ? &batch.last : nullptr);
+  for (const Eigen::VectorXd& r : result.at.residuals) result.cost += r.squaredNorm();
+  result.information = shared_information(result.at, given.start.size());
   return result;
 }
 

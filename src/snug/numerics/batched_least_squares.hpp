@@ -32,7 +32,20 @@ struct BatchedProblem {
 struct BatchedOptions {
   double tolerance = 1e-8;  ///< relative, of cost and unknowns: differences know no more
   int max_iterations = 30;
+  /// Derivatives by the shared unknowns are computed at the start alone, then follow what residuals do from step to
+  /// step (Broyden): for simulations that take long.
+  bool secants = false;
   double loss_scale = 0.0;  ///< residuals of a term whose norm is larger weigh less and less; 0: plain squares
+};
+
+/// Derivatives of all terms at a point, by differences: [shared, own] columns; empty where a simulation failed. Steps
+/// that would leave the bounds go to the bound only.
+struct BatchedDerivatives {
+  std::vector<Eigen::VectorXd> residuals;
+  std::vector<Eigen::MatrixXd> jacobians;
+  Eigen::VectorXd shared;                ///< where
+  std::vector<Eigen::VectorXd> own;      ///< of each term
+  std::vector<Eigen::MatrixXd> reduced;  ///< triangular factor of [J r], with the same sums of squares and products
 };
 
 struct BatchedResult {
@@ -40,6 +53,7 @@ struct BatchedResult {
   std::vector<Eigen::VectorXd> own;
   double cost = 0.0;            ///< sum of squares
   Eigen::MatrixXd information;  ///< of the shared unknowns, own ones eliminated (LeastSquaresResult)
+  BatchedDerivatives at;        ///< there
   bool has_converged = false;
   int iterations = 0;
   std::string message;
@@ -48,19 +62,13 @@ struct BatchedResult {
 /// Levenberg-Marquardt within bounds (Ceres), one thread of its own: the same residuals give the same bytes.
 [[nodiscard]] BatchedResult solve_batched(const BatchedProblem& problem, const BatchedOptions& options = {});
 
-/// Derivatives of all terms at a point, by differences: [shared, own] columns; empty where a simulation failed. Steps
-/// that would leave the bounds go to the bound only.
-struct BatchedDerivatives {
-  std::vector<Eigen::VectorXd> residuals;
-  std::vector<Eigen::MatrixXd> jacobians;
-};
 [[nodiscard]] BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
                                                const std::vector<Eigen::VectorXd>& own);
 /// J^T J of the shared unknowns with those of each term eliminated.
 [[nodiscard]] Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index shared);
 /// Of the shared unknowns at the start of a problem, which is a minimum, residuals in units of their noise: the inverse
 /// of shared_information, larger where the sum of squares rises by less than that says or strays from a parabola, as it
-/// does where residuals jump. Own unknowns follow by their slopes.
-[[nodiscard]] Eigen::MatrixXd squares_covariance(const BatchedProblem& at);
+/// does where residuals jump. Own unknowns follow by their slopes. `found`: derivatives at the start.
+[[nodiscard]] Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found);
 
 }  // namespace snug::numerics

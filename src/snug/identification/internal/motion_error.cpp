@@ -2,61 +2,54 @@
 #include "snug/identification/internal/motion_error.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "snug/record/archive.hpp"
 
 namespace snug::identification::internal {
-namespace {
-
-/// Samples of a recording that count: the first is where the simulation starts from.
-std::size_t first_sample(const model::SceneTask& task, const RecordedMotion& motion) {
-  if (task.only_final_state) return motion.times.size() - 1;
-  return task.start.from == model::StartFrom::Scenario ? 0 : 1;
-}
 
 int numbers_of(const model::SceneTask& task) { return (task.use_position ? 3 : 0) + (task.use_rotation ? 3 : 0); }
 
-}  // namespace
-
-Eigen::Index count_residuals(const model::SceneTask& task, const RecordedMotion& motion) {
-  const std::size_t samples = (sample_count(task, motion) - first_sample_of(task, motion)) * motion.tracked.size();
-  return static_cast<Eigen::Index>(samples) * numbers_of(task);
-}
-
-std::size_t first_sample_of(const model::SceneTask& task, const RecordedMotion& motion) {
-  return std::min(first_sample(task, motion), sample_count(task, motion) - 1);
-}
-
-MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, const SimulatedMotion& simulated,
-                    const OwnValues& own) {
+MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, const ComparedSamples& samples,
+                    const SimulatedMotion& simulated, const OwnValues& own, double until) {
   MotionError error;
   error.failure = simulated.failure;
   if (!error.failure.empty()) return error;
-  const std::size_t begin = first_sample_of(task, motion), end = sample_count(task, motion);
   const int numbers = numbers_of(task);
-  error.residuals = Eigen::VectorXd::Zero(count_residuals(task, motion) + own_deviation(task).size());
-  const double position_noise = task.position_noise / std::sqrt(static_cast<double>(motion.averaged));
-  const double rotation_noise = position_noise / task.rotation_position_ratio;
+  std::size_t all = 0;
+  for (const std::vector<std::size_t>& of_body : samples) all += of_body.size();
+  error.residuals = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(all) * numbers + own_deviation(task).size());
   Eigen::Index at = 0;
   double count = 0.0;
   for (std::size_t b = 0; b < motion.tracked.size(); ++b) {
     const RecordedBody& body = motion.tracked[b];
     Vector3 shift = Vector3::Zero(), turn = Vector3::Zero();
-    for (std::size_t k = begin; k < end; ++k, at += numbers) {
+    for (const std::size_t k : samples[b]) {
+      const Eigen::Index row = std::exchange(at, at + numbers);
+      if (motion.times[k] > until) continue;
       const bool is_result = task.only_final_state && body.result;
       const record::PoseSample& recorded = is_result ? *body.result : body.poses[k];
       const record::PoseSample& predicted = simulated.bodies[b][k];
-      if (!record::is_tracked(recorded) || !record::is_tracked(predicted)) continue;
-      const Pose X = predicted.pose() * own.X_BM[b], M = recorded.pose();
-      shift = X.p + own.bias - M.p;
-      turn = log_rotation(M.R.transpose() * X.R);
-      if (task.use_position) error.residuals.segment<3>(at) = shift / position_noise;
-      if (task.use_rotation) error.residuals.segment<3>(at + (task.use_position ? 3 : 0)) = turn / rotation_noise;
-      error.position += shift.norm();
-      error.rotation += turn.norm();
-      error.position_square += shift.squaredNorm();
-      error.rotation_square += turn.squaredNorm();
-      count += 1.0;
+      const bool has_ended = motion.times[k] > simulated.end;
+      if (!record::is_tracked(predicted) && !has_ended) continue;
+      const double weight = is_result ? 1.0 : averaged_at(body, k);
+      const double position_noise = task.position_noise / std::sqrt(weight);
+      if (has_ended) {
+        shift = turn = Vector3::Constant(kLost / std::sqrt(3.0));
+      } else {
+        const Pose X = predicted.pose() * own.X_BM[b], M = recorded.pose();
+        shift = X.p + own.bias - M.p;
+        turn = log_rotation(M.R.transpose() * X.R);
+      }
+      if (task.use_position) error.residuals.segment<3>(row) = shift / position_noise;
+      if (task.use_rotation)
+        error.residuals.segment<3>(row + (task.use_position ? 3 : 0)) =
+            turn * (task.rotation_position_ratio / position_noise);
+      error.position += weight * shift.norm();
+      error.rotation += weight * turn.norm();
+      error.position_square += weight * shift.squaredNorm();
+      error.rotation_square += weight * turn.squaredNorm();
+      count += weight;
     }
     const double share = 1.0 / static_cast<double>(motion.tracked.size());
     error.end_position += share * shift.norm();

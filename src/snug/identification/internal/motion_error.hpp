@@ -6,10 +6,15 @@
 
 namespace snug::identification::internal {
 
-/// Numbers that a recording measures: three for a position, three for a rotation, of each sample that counts.
-[[nodiscard]] Eigen::Index count_residuals(const model::SceneTask& task, const RecordedMotion& motion);
-/// Residuals have room for the own unknowns at their end. A sample that was not seen counts nothing.
+/// m and rad: what a sample without a simulation counts as.
+inline constexpr double kLost = 1.0;
+
+/// Numbers that a sample measures: three for a position, three for a rotation, as far as they are used.
+[[nodiscard]] int numbers_of(const model::SceneTask& task);
+/// Residuals stand body by body in order of time, and have room for the own unknowns at their end. Samples after
+/// `until`, s on the recording's clock, and those that the simulation does not have count nothing.
 [[nodiscard]] MotionError compare(const model::SceneTask& task, const RecordedMotion& motion,
-                                  const SimulatedMotion& simulated, const OwnValues& own);
+                                  const ComparedSamples& samples, const SimulatedMotion& simulated,
+                                  const OwnValues& own, double until);
 
 }  // namespace snug::identification::internal

@@ -1,29 +1,58 @@
 // ProgramRun: the boxes of a program's run, as its frames have them.
 #include "snug/identification/internal/program_motion.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "snug/cell/run.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/archive.hpp"
+#include "snug/validation/simulated_run.hpp"
 
 namespace snug::identification::internal {
+namespace {
 
-CapturedRun capture_program(const model::Scenario& scenario, const model::TaskProgram& program,
-                            std::optional<double> until) {
-  cell::RunCapture capture;
+constexpr double kTail = 0.1;  // s, of simulation after what is compared
+
+cell::RunResult run_observed(const model::Scenario& scenario, const model::TaskProgram& program,
+                             std::optional<double> until, cell::RunObserver& observer) {
   cell::RunOptions options;
   options.program = motion::load_program(program.file);
   options.sequence = program.sequence;
   options.corrections = program.corrections;
   options.until = until;
-  options.observer = &capture;
+  options.observer = &observer;
   if (program.with_phases) options.simulation.cup = cup::CupMode::Phases;
-  const cell::RunResult result = cell::run(scenario, options);
-  return {std::move(capture.recording), result.failure};
+  return cell::run(scenario, options);
 }
 
-namespace {
+/// Keeps of a run where its tracked bodies are.
+class PoseCapture final : public cell::RunObserver {
+ public:
+  explicit PoseCapture(const model::SceneTask& task) : task_(task), tracks(task.tracked.size()) {}
+  void begin(const record::RecordingHeader& header) override {
+    for (const model::RecordedObject& object : task_.tracked) bodies_.push_back(record::find_body(header, object.body));
+  }
+  bool add(const record::Frame& frame) override {
+    end = frame.time;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (bodies_[b] < 0) continue;
+      const record::BodySample& body = frame.bodies[static_cast<std::size_t>(bodies_[b])];
+      tracks[b].add(frame.time, body.present ? body.X_WB : record::lost_pose());
+    }
+    return true;
+  }
+  void add(const record::Event& /*event*/) override {}
 
-constexpr double kGap = 0.1;  // s, between frames that are one motion
+ private:
+  const model::SceneTask& task_;
+  std::vector<int> bodies_;  ///< of the header
+
+ public:
+  std::vector<Track> tracks;
+  double end = -1.0;  ///< s, of the last frame
+};
 
 record::PoseSample midway(const record::PoseSample& a, const record::PoseSample& b) {
   if (!record::is_tracked(a) || !record::is_tracked(b)) return record::lost_pose();
@@ -31,38 +60,63 @@ record::PoseSample midway(const record::PoseSample& a, const record::PoseSample&
   return Pose{R * exp_rotation(0.5 * log_rotation(R.transpose() * b.pose().R)), 0.5 * (a.p + b.p)};
 }
 
+bool is_same(const record::PoseSample& a, const record::PoseSample& b) {
+  return a == b || (!record::is_tracked(a) && !record::is_tracked(b));
+}
+
 }  // namespace
 
+CapturedRun capture_program(const model::Scenario& scenario, const model::TaskProgram& program,
+                            std::optional<double> until) {
+  cell::RunCapture capture;
+  const cell::RunResult result = run_observed(scenario, program, until, capture);
+  return {std::move(capture.recording), result.failure};
+}
+
+void Track::add(double time, const record::PoseSample& pose) {
+  const std::size_t count = poses.size();
+  if (count >= 2 && is_same(poses[count - 1], pose) && is_same(poses[count - 2], pose)) {
+    times.back() = time;
+    return;
+  }
+  times.push_back(time);
+  poses.push_back(pose);
+}
+
 ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& task, double until) {
-  const CapturedRun captured = capture_program(scenario, *task.program, until);
+  PoseCapture capture(task);
+  const cell::RunResult result = run_observed(scenario, *task.program, until, capture);
   ProgramRun run;
-  if (captured.recording.frames.size() >= 2)
-    run.seen = validation::make_run(captured.recording, "simulation");
-  else
-    run.failure = captured.failure.empty() ? "the run ended before its first frame" : captured.failure;
+  run.tracks = std::move(capture.tracks);
+  run.until = until;
+  run.end = result.failure.empty() ? std::numeric_limits<double>::infinity() : capture.end;
+  if (capture.end <= 0.0)
+    run.failure = result.failure.empty() ? "the run ended before its first frame" : result.failure;
   return run;
 }
 
-double end_of(const model::SceneTask& task, const RecordedMotion& motion, const OwnValues& own) {
-  return motion.times[sample_count(task, motion) - 1] - own.delay + kGap;
+double end_of(const model::SceneTask& task, const RecordedMotion& motion, const OwnValues& own, double until) {
+  return std::min(motion.times[sample_count(task, motion) - 1], until) - own.delay + kTail;
 }
 
-SimulatedMotion motion_of(const ProgramRun& run, const model::SceneTask& task, const RecordedMotion& motion,
+SimulatedMotion motion_of(const ProgramRun& run, const RecordedMotion& motion, const ComparedSamples& samples,
                           const OwnValues& own) {
   SimulatedMotion simulated;
   simulated.failure = run.failure;
+  simulated.end = run.end + own.delay;
   if (!run.failure.empty()) return simulated;
-  const std::size_t count = sample_count(task, motion);
-  for (const RecordedBody& body : motion.tracked) {
-    const int index = record::find_body(run.seen.header, body.body);
+  for (std::size_t b = 0; b < motion.tracked.size(); ++b) {
     std::vector<record::PoseSample>& poses = simulated.bodies.emplace_back(motion.times.size(), record::lost_pose());
-    if (index < 0) continue;
-    validation::PoseCursor cursor(run.seen.times, run.seen.bodies[static_cast<std::size_t>(index)]);
-    for (std::size_t k = 0; k < count; ++k) {
+    const Track& track = run.tracks[b];
+    validation::PoseCursor cursor(track.times, track.poses);
+    const auto at = [&](double time) { return cursor.at(time, std::numeric_limits<double>::infinity()); };
+    for (const std::size_t k : samples[b]) {
       // The mean of what is curved, too: two instants as far from the middle as those averaged are in the mean.
+      const double count = averaged_at(motion.tracked[b], k);
+      const double spread = motion.period * std::sqrt((count * count - 1.0) / 12.0);
       const double middle = motion.times[k] - own.delay;
-      poses[k] = cursor.at(middle - motion.spread, kGap);
-      if (motion.spread > 0.0) poses[k] = midway(poses[k], cursor.at(middle + motion.spread, kGap));
+      poses[k] = at(middle - spread);
+      if (spread > 0.0) poses[k] = midway(poses[k], at(middle + spread));
     }
   }
   return simulated;

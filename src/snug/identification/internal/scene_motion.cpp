@@ -104,6 +104,21 @@ std::size_t sample_count(const model::SceneTask& task, const RecordedMotion& mot
   return std::max<std::size_t>(1, static_cast<std::size_t>(end - motion.times.begin()));
 }
 
+ComparedSamples compared_samples(const model::SceneTask& task, const RecordedMotion& motion) {
+  const std::size_t end = sample_count(task, motion);
+  // Unless the scenario says where bodies start, the first sample does.
+  std::size_t begin = task.start.from == model::StartFrom::Scenario ? 0 : 1;
+  if (task.only_final_state) begin = motion.times.size() - 1;
+  begin = std::min(begin, end - 1);
+  ComparedSamples samples;
+  for (const RecordedBody& body : motion.tracked) {
+    std::vector<std::size_t>& own = samples.emplace_back();
+    for (std::size_t k = begin; k < end; ++k)
+      if (record::is_tracked(body.poses[k]) || (task.only_final_state && body.result)) own.push_back(k);
+  }
+  return samples;
+}
+
 std::size_t count_flight_rows(const model::Scenario& scenario, const RecordedBody& recorded,
                               const model::StartSettings& start) {
   const model::Body& body = *model::find_body(scenario, recorded.body);
@@ -127,7 +142,7 @@ std::size_t count_flight_rows(const model::Scenario& scenario, const RecordedBod
 }
 
 SimulatedMotion simulate_scene(const model::Scenario& given, const model::SceneTask& task, const RecordedMotion& motion,
-                               const std::vector<std::size_t>& flights, const OwnValues& own) {
+                               const std::vector<std::size_t>& flights, const OwnValues& own, double until) {
   model::Scenario driven;
   const bool is_driven = !motion.kinematic.empty();
   if (is_driven) {
@@ -157,7 +172,7 @@ SimulatedMotion simulate_scene(const model::Scenario& given, const model::SceneT
   look(now);
   before = now;
   double time = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < count && motion.times[k] <= until; ++k) {
     // What stood in the recording then happened a delay earlier.
     const bool is_end = has_result && k + 1 == count && task.simulation_time.has_value();
     const double wanted = is_end ? *task.simulation_time : motion.times[k] - origin - own.delay;

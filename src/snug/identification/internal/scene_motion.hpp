@@ -1,6 +1,7 @@
 // simulate_scene: where tracked bodies would have been at the times of a recording.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,21 +30,24 @@ struct OwnValues {
 struct SimulatedMotion {
   /// X_WB by tracked body at each time of the recording; not a number where the simulation does not reach.
   std::vector<std::vector<record::PoseSample>> bodies;
+  double end = std::numeric_limits<double>::infinity();  ///< s, on the recording's clock: it broke off there
   std::string failure;
 };
 
 /// Samples of a recording that lie within the simulation's time; at least one.
 [[nodiscard]] std::size_t sample_count(const model::SceneTask& task, const RecordedMotion& motion);
-/// The first of them that is compared.
-[[nodiscard]] std::size_t first_sample_of(const model::SceneTask& task, const RecordedMotion& motion);
+/// Of each tracked body the samples that are compared, as indices into the motion's times.
+using ComparedSamples = std::vector<std::vector<std::size_t>>;
+[[nodiscard]] ComparedSamples compared_samples(const model::SceneTask& task, const RecordedMotion& motion);
 
 /// Rows of a body before it may touch another one, as the scenario has their shapes; at most those asked for.
 [[nodiscard]] std::size_t count_flight_rows(const model::Scenario& scenario, const RecordedBody& body,
                                             const model::StartSettings& start);
 
-/// `flights`: rows of free flight of each tracked body, with StartFrom::FreeFlight.
+/// `flights`: rows of free flight of each tracked body, with StartFrom::FreeFlight. `until`: s, on the recording's
+/// clock: what comes later is not simulated.
 [[nodiscard]] SimulatedMotion simulate_scene(const model::Scenario& scenario, const model::SceneTask& task,
                                              const RecordedMotion& motion, const std::vector<std::size_t>& flights,
-                                             const OwnValues& own);
+                                             const OwnValues& own, double until);
 
 }  // namespace snug::identification::internal

@@ -2,6 +2,7 @@
 #include "snug/identification/internal/scene_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -17,6 +18,18 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kRescuePoints = 20;       // scattered for each free parameter when a fit fails
 constexpr double kFirstSubplex = 0.05;  // of the span
+constexpr double kAlways = std::numeric_limits<double>::infinity();
+constexpr std::array kHorizons = {0.125, 0.25, 0.5, 0.75};  // of a recording, fitted before all of it
+constexpr int kRounds = 4;                                  // over all of it, at most
+constexpr double kSettled = 1.0, kSettledLast = 0.1;        // of a sum of squares, where a search ends
+constexpr double kStepDeviations = 3.0;                     // of differences, in standard errors
+constexpr double kLeastStep = 1e-3;                         // of the step that a task names
+constexpr double kMostStep = 0.05;                          // of the span
+constexpr double kMoreRows = 1.02;                          // of those of the last round, for another one
+constexpr double kLarger = 6.0;                             // steps, where what they do is rough
+constexpr double kLongSimulation = 1000.0;                  // s, for one difference of each parameter: then secants
+constexpr int kSecantSteps = 10;                            // of a search with secants, a simulation each
+constexpr double kGoodEnough = 1.2;                         // misfit, for no other start to be tried
 
 std::string identity_of(const SceneExperiment& experiment) {
   const model::SceneTask& task = experiment.task();
@@ -101,6 +114,12 @@ SceneSearch::SceneSearch(const SceneExperiment& experiment, const SceneFitOption
                 !experiment.task().only_final_state;
   for (std::size_t m = 0; m < count; ++m)
     (each > 0 && count >= each && m % each == each - 1 ? held_ : fitted_).push_back(m);
+  std::vector<double> ends;
+  for (const std::size_t m : fitted_) {
+    const std::vector<double>& times = experiment.motions()[m].times;
+    ends.push_back(holds_ends_ ? times.back() - (times.back() - times.front()) / static_cast<double>(each) : kAlways);
+  }
+  fitted_rows_ = rows_until(experiment, fitted_, ends);
   restrict_to(std::vector<std::size_t>(free_));
 }
 
@@ -128,43 +147,51 @@ Eigen::VectorXd SceneSearch::free_of(const Eigen::VectorXd& values) const {
   return result;
 }
 
-Eigen::Index SceneSearch::held_rows(std::size_t motion) const {
-  if (!holds_ends_) return 0;
-  return experiment_.samples_of(motion) / experiment_.task().search.held_back;
+SceneSearch::Fitted SceneSearch::unfitted(const Eigen::VectorXd& start) const {
+  Fitted at;
+  at.x = start;
+  at.step = step_;
+  for (const std::size_t m : fitted_) at.own.push_back(experiment_.term_of(m).own);
+  at.rows = at.straight = fitted_rows_;
+  return at;
 }
 
-numerics::BatchedProblem SceneSearch::problem() const {
+numerics::BatchedProblem SceneSearch::problem(const Fitted& at, double until, const Eigen::VectorXd& prior) const {
   numerics::BatchedProblem problem;
-  problem.start = free_of(best_);
-  problem.lower = lower_, problem.upper = upper_, problem.step = step_;
-  for (const std::size_t m : fitted_) problem.terms.push_back(experiment_.term_of(m));
-  problem.evaluate = [this](const std::vector<numerics::BatchedProblem::Job>& batch) {
+  problem.start = at.x;
+  problem.lower = lower_, problem.upper = upper_, problem.step = at.step;
+  for (std::size_t i = 0; i < fitted_.size(); ++i) {
+    problem.terms.push_back(experiment_.term_of(fitted_[i]));
+    problem.terms.back().own = at.own[i];
+  }
+  if (prior.size() > 0) problem.terms.push_back({prior.size(), {}, {}, {}});
+  problem.evaluate = [this, until, prior, rows = at.rows,
+                      start = at.x](const std::vector<numerics::BatchedProblem::Job>& batch) {
     std::vector<Eigen::VectorXd> points;
     std::vector<SceneExperiment::Job> jobs;
     for (const numerics::BatchedProblem::Job& job : batch) {
+      if (job.term >= fitted_.size()) continue;
       // Jobs of one point stand near each other.
       const Eigen::VectorXd values = full(job.shared);
-      std::size_t at = points.size();
+      std::size_t place = points.size();
       for (std::size_t back = 1; back <= std::min<std::size_t>(3, points.size()); ++back)
-        if (points[points.size() - back] == values) at = points.size() - back;
-      if (at == points.size() && !points.empty() && points.front() == values) at = 0;
-      if (at == points.size()) points.push_back(values);
-      jobs.push_back({at, fitted_[job.term], job.own});
+        if (points[points.size() - back] == values) place = points.size() - back;
+      if (place == points.size() && !points.empty() && points.front() == values) place = 0;
+      if (place == points.size()) points.push_back(values);
+      jobs.push_back({place, fitted_[job.term], job.own});
     }
     evaluations_ += static_cast<int>(points.size());
     if (options_.progress) options_.progress({evaluations_, best_cost_, "least squares"});
+    std::vector<MotionError> errors = experiment_.evaluate(points, jobs, until);
     std::vector<Eigen::VectorXd> residuals;
-    std::vector<MotionError> errors = experiment_.evaluate(points, jobs);
-    for (std::size_t k = 0; k < errors.size(); ++k) {
-      const std::size_t m = jobs[k].motion;
-      Eigen::VectorXd& r = errors[k].residuals;
-      // The rows of one body grow with time; with several bodies each would have to be cut. Time first, then bodies.
-      const Eigen::Index held = held_rows(m),
-                         bodies = static_cast<Eigen::Index>(experiment_.motions()[m].tracked.size());
-      if (held > 0 && r.size() > 0) {
-        const Eigen::Index rows = experiment_.samples_of(m) / bodies, cut = held / bodies;
-        for (Eigen::Index b = 0; b < bodies; ++b) r.segment((b + 1) * rows - cut, cut).setZero();
+    std::size_t next = 0;
+    for (const numerics::BatchedProblem::Job& job : batch) {
+      if (job.term >= fitted_.size()) {
+        residuals.emplace_back((job.shared - start).cwiseQuotient(prior));
+        continue;
       }
+      Eigen::VectorXd& r = errors[next++].residuals;
+      keep_rows(experiment_, fitted_[job.term], rows[job.term], r);
       residuals.push_back(std::move(r));
     }
     return residuals;
@@ -172,31 +199,110 @@ numerics::BatchedProblem SceneSearch::problem() const {
   return problem;
 }
 
+Neighbourhood SceneSearch::look_around(const Fitted& at, double until) const {
+  Neighbourhood found;
+  const auto n = static_cast<std::size_t>(at.x.size());
+  found.span.resize(at.x.size());
+  found.up.resize(n), found.down.resize(n), found.is_between.resize(n);
+  std::vector<std::size_t> all(n);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  look(at, until, all, found);
+  return found;
+}
+
+void SceneSearch::look(const Fitted& at, double until, const std::vector<std::size_t>& along,
+                       Neighbourhood& found) const {
+  std::vector<Eigen::VectorXd> points{full(at.x)};
+  for (const std::size_t k : along) {
+    const auto j = static_cast<Eigen::Index>(k);
+    const double up = std::min(at.x[j] + at.step[j], upper_[j]), down = std::max(at.x[j] - at.step[j], lower_[j]);
+    found.span[j] = up - down;
+    found.is_between[k] = up > at.x[j] && down < at.x[j];
+    for (const double value : {up, down}) {
+      Eigen::VectorXd x = at.x;
+      x[j] = value;
+      points.push_back(full(x));
+    }
+  }
+  std::vector<SceneExperiment::Job> jobs;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({p, fitted_[i], at.own[i]});
+  evaluations_ += static_cast<int>(points.size());
+  if (options_.progress) options_.progress({evaluations_, best_cost_, "least squares"});
+  std::vector<MotionError> errors = experiment_.evaluate(points, jobs, until);
+  const auto take = [&](std::size_t point) {
+    std::vector<Eigen::VectorXd> residuals;
+    for (std::size_t i = 0; i < fitted_.size(); ++i)
+      residuals.push_back(std::move(errors[point * fitted_.size() + i].residuals));
+    return residuals;
+  };
+  found.middle = take(0);
+  for (std::size_t k = 0; k < along.size(); ++k) {
+    found.up[along[k]] = take(1 + 2 * k);
+    found.down[along[k]] = take(2 + 2 * k);
+  }
+}
+
+SceneSearch::Straight SceneSearch::find_straight_rows(double until, const RowCounts& within, bool may_widen,
+                                                      Fitted& at) const {
+  Straight found{look_around(at, until), within};
+  if (std::ranges::any_of(found.around.middle, [](const Eigen::VectorXd& r) { return r.size() == 0; })) return found;
+  std::vector<bool> is_bent;
+  found.rows = find_straight(experiment_, fitted_, found.around, within, is_bent);
+  if (!may_widen) return found;
+  // What is rough from near may be straight at large.
+  Fitted wider = at;
+  std::vector<std::size_t> along;
+  for (std::size_t k = 0; k < is_bent.size(); ++k) {
+    const auto j = static_cast<Eigen::Index>(k);
+    const double most = kMostStep * (upper_[j] - lower_[j]);
+    if (!is_bent[k] || at.step[j] >= most) continue;
+    wider.step[j] = std::min(kLarger * at.step[j], most);
+    along.push_back(k);
+  }
+  if (along.empty()) return found;
+  Neighbourhood wide = found.around;
+  look(wider, until, along, wide);
+  const RowCounts rows = find_straight(experiment_, fitted_, wide, within, is_bent);
+  if (total(rows) <= total(found.rows)) return found;
+  at.step = wider.step;
+  return {std::move(wide), rows};
+}
+
 SceneSearch::Derivatives SceneSearch::differentiate() const {
-  const numerics::BatchedProblem at = problem();
-  std::vector<Eigen::VectorXd> own;
-  for (const numerics::BatchedProblem::Term& term : at.terms) own.push_back(term.own);
-  const numerics::BatchedDerivatives found = numerics::differentiate(at, at.start, own);
-  const auto n = at.start.size();
+  Fitted start = unfitted(free_of(best_));
+  start.rows = find_straight_rows(kAlways, fitted_rows_, false, start).rows;
+  const numerics::BatchedDerivatives found = numerics::differentiate(problem(start, kAlways, {}), start.x, start.own);
+  const Eigen::Index n = start.x.size();
   Derivatives result{numerics::shared_information(found, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   const model::SceneTask& task = experiment_.task();
-  const int positions = task.use_position ? 3 : 0, each = positions + (task.use_rotation ? 3 : 0);
+  const int positions = task.use_position ? 3 : 0;
   double samples = 0.0;
   for (std::size_t i = 0; i < found.jacobians.size(); ++i) {
     const Eigen::MatrixXd& J = found.jacobians[i];
     if (J.cols() < n) continue;
-    const Eigen::Index rows = experiment_.samples_of(fitted_[i]);
-    const double averaged = experiment_.motions()[fitted_[i]].averaged;
-    for (Eigen::Index row = 0; row < rows; ++row) {
-      Eigen::VectorXd& sum = row % each < positions ? result.position_rms : result.rotation_rms;
-      sum += J.row(row).head(n).transpose().cwiseAbs2() / averaged;
+    const std::vector<SceneExperiment::BodyRows> bodies = experiment_.rows_of(fitted_[i]);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      for (Eigen::Index row = 0; row < start.rows[i][b]; ++row) {
+        Eigen::VectorXd& sum = row % bodies[b].each < positions ? result.position_rms : result.rotation_rms;
+        sum += J.row(bodies[b].first + row).head(n).transpose().cwiseAbs2();
+      }
+      samples += count_samples(fitted_[i], b, 0, start.rows[i][b]);
     }
-    samples += static_cast<double>(rows) / each;
   }
   const double rotation_noise = task.position_noise / task.rotation_position_ratio;
   result.position_rms = task.position_noise * (result.position_rms / std::max(1.0, samples)).cwiseSqrt();
   result.rotation_rms = rotation_noise * (result.rotation_rms / std::max(1.0, samples)).cwiseSqrt();
   return result;
+}
+
+double SceneSearch::count_samples(std::size_t motion, std::size_t body, Eigen::Index begin, Eigen::Index end) const {
+  const SceneExperiment::BodyRows rows = experiment_.rows_of(motion)[body];
+  double count = 0.0;
+  for (Eigen::Index row = begin; row < end; row += rows.each)
+    count += averaged_at(experiment_.motions()[motion].tracked[body],
+                         (*rows.samples)[static_cast<std::size_t>(row / rows.each)]);
+  return count;
 }
 
 void SceneSearch::take(const Eigen::VectorXd& free_values, double cost, const char* phase) {
@@ -274,68 +380,132 @@ std::string SceneSearch::search_distance() {
   return message;
 }
 
-double SceneSearch::least_squares_from(const Eigen::VectorXd& start, std::string& message) {
-  numerics::BatchedProblem from = problem();
-  from.start = start;
+bool SceneSearch::solve_stage(double horizon, bool is_last, Eigen::MatrixXd& covariance, Fitted& at) const {
+  std::vector<double> ends;
+  for (const std::size_t m : fitted_) {
+    const std::vector<double>& times = experiment_.motions()[m].times;
+    ends.push_back(is_last ? kAlways : times.front() + horizon * (times.back() - times.front()));
+  }
+  const double until = *std::max_element(ends.begin(), ends.end());
+  const auto [around, straight] =
+      find_straight_rows(until, fewer(fitted_rows_, rows_until(experiment_, fitted_, ends)), true, at);
+  at.straight = straight;
+  if (std::ranges::any_of(around.middle, [](const Eigen::VectorXd& r) { return r.size() == 0; })) return false;
+  // What nothing is known of yet may be far off and still come near.
+  at.rows =
+      covariance.size() > 0 ? fewer(at.straight, find_followed(experiment_, fitted_, around, covariance)) : at.straight;
+  const Eigen::VectorXd prior = is_last ? Eigen::VectorXd() : Eigen::VectorXd(0.5 * (upper_ - lower_));
   numerics::BatchedOptions options;
   const auto each = static_cast<int>(2 * free_.size() + 1);
   options.max_iterations = std::max(1, experiment_.task().search.local / each);
+  options.tolerance = (is_last ? kSettledLast : kSettled) / std::max(1.0, total(at.rows));
+  options.secants = each * std::min(until, experiment_.longest()) > kLongSimulation;
+  if (options.secants) options.max_iterations = std::max(options.max_iterations, kSecantSteps);
+  const numerics::BatchedProblem from = problem(at, until, prior);
   const numerics::BatchedResult found = numerics::solve_batched(from, options);
-  if (found.information.size() == 0) {
-    message = "no simulation from there: " + found.message;
-    return std::numeric_limits<double>::infinity();
+  at.message = found.message;
+  if (found.information.size() == 0) return false;
+  at.x = found.x;
+  at.own.assign(found.own.begin(), found.own.begin() + static_cast<std::ptrdiff_t>(fitted_.size()));
+  at.derivatives = found.at;
+  const double misfit = std::max(1.0, found.cost / std::max(1.0, total(at.rows)));
+  const auto scale = step_.asDiagonal();  // units differ by orders
+  covariance = misfit * (scale * numerics::invert_symmetric(scale * found.information * scale) * scale);
+  const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  at.step = (kStepDeviations * deviation)
+                .cwiseMax(kLeastStep * step_)
+                .cwiseMin(step_.cwiseMax(kMostStep * (upper_ - lower_)));
+  at.is_solved = true;
+  return true;
+}
+
+SceneSearch::Fitted SceneSearch::least_squares_from(const Eigen::VectorXd& start) const {
+  Fitted at = unfitted(start);
+  Eigen::MatrixXd covariance;
+  if (!experiment_.task().only_final_state) {
+    for (const double horizon : kHorizons)
+      if (!solve_stage(horizon, false, covariance, at)) return at;
   }
-  // best_ is compared by squares here, not by the mean cost of points scattered before.
-  const double least = found.cost;
-  if (least < best_cost_) {
-    best_ = full(found.x);
-    best_cost_ = least;
-    message = found.message;
+  // More rows count as parameters come nearer, and steps are as small as what they are known to.
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = total(at.rows);
+    if (!solve_stage(1.0, true, covariance, at)) return at;
+    if (round > 0 && total(at.rows) <= kMoreRows * before) break;
   }
-  return least;
+  const auto [around, straight] = find_straight_rows(kAlways, fitted_rows_, false, at);
+  at.straight = excused(experiment_, fitted_, around, fewer(at.rows, straight), fitted_rows_);
+  return at;
+}
+
+double SceneSearch::bounded_misfit(const Fitted& at) const {
+  constexpr double kMost = 100.0;  // of a number: what is farther off is off
+  std::vector<SceneExperiment::Job> jobs;
+  for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], at.own[i]});
+  const std::vector<Eigen::VectorXd> points{full(at.x)};
+  std::vector<MotionError> errors = experiment_.evaluate(points, jobs);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fitted_.size(); ++i) {
+    if (!errors[i].failure.empty()) return std::numeric_limits<double>::infinity();
+    keep_rows(experiment_, fitted_[i], at.straight[i], errors[i].residuals);
+    sum += errors[i].residuals.cwiseAbs2().cwiseMin(kMost).sum();
+  }
+  return sum / std::max(1.0, total(at.straight));
 }
 
 std::string SceneSearch::search_squares(double rescue) {
   const model::SearchSettings& settings = experiment_.task().search;
   const Eigen::VectorXd start = free_of(best_);
-  double freedom = -static_cast<double>(free_.size());
-  for (const std::size_t m : fitted_) freedom += static_cast<double>(experiment_.samples_of(m) - held_rows(m));
-  freedom = std::max(1.0, freedom);
+  double least = std::numeric_limits<double>::infinity();
   std::string message;
-  best_cost_ = std::numeric_limits<double>::infinity();
-  (void)least_squares_from(start, message);
+  const auto go_from = [&](const Eigen::VectorXd& from) {
+    Fitted found = least_squares_from(from);
+    const double misfit = found.is_solved ? bounded_misfit(found) : std::numeric_limits<double>::infinity();
+    if (message.empty()) message = found.is_solved ? found.message : "no simulation from there: " + found.message;
+    if (!(misfit < least)) return;
+    least = misfit;
+    best_ = full(found.x);
+    message = found.message;
+    result_ = std::move(found);
+  };
+  go_from(start);
   int points = settings.scatter;
-  if (points == 0 && best_cost_ / freedom > rescue) points = kRescuePoints * static_cast<int>(free_.size());
+  if (points == 0 && least > rescue) points = kRescuePoints * static_cast<int>(free_.size());
   if (points == 0) return message;
   const Eigen::VectorXd after_first = best_;
-  const double first_cost = best_cost_;
   // The three best of the points scattered are starts of their own.
   const std::vector<Eigen::VectorXd> tried = scattered(points);
+  best_cost_ = std::numeric_limits<double>::infinity();
   const std::vector<double> found = costs(tried, "scatter");
   std::vector<std::size_t> order(tried.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return found[a] < found[b]; });
   best_ = after_first;
-  best_cost_ = first_cost;
-  for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && best_cost_ / freedom > 1.2; ++k)
-    (void)least_squares_from(tried[order[k]], message);
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && least > kGoodEnough; ++k)
+    go_from(tried[order[k]]);
   return message;
 }
 
 double SceneSearch::chi2_per_dof(const std::vector<MotionError>& errors) const {
-  double sum = 0.0, freedom = -static_cast<double>(free_.size());
-  const Eigen::Index own = experiment_.own_deviation().size();
-  for (std::size_t k = 0; k < fitted_.size(); ++k) {
-    const std::size_t m = fitted_[k];
-    if (!errors[m].failure.empty()) return std::numeric_limits<double>::infinity();
-    sum += errors[m].residuals.squaredNorm();
-    freedom += static_cast<double>(errors[m].residuals.size() - own);
+  const RowCounts& rows = result_ ? result_->straight : fitted_rows_;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fitted_.size(); ++i) {
+    const MotionError& error = errors[fitted_[i]];
+    if (!error.failure.empty()) return std::numeric_limits<double>::infinity();
+    Eigen::VectorXd r = error.residuals;
+    keep_rows(experiment_, fitted_[i], rows[i], r);
+    sum += r.squaredNorm();
   }
-  return sum / std::max(1.0, freedom);
+  return sum / std::max(1.0, total(rows) - static_cast<double>(free_.size()));
 }
 
 SplitErrors SceneSearch::errors_at(const Eigen::VectorXd& values) const {
-  const std::vector<MotionError> errors = evaluate_all(experiment_, values);
+  std::vector<MotionError> errors = evaluate_all(experiment_, values);
+  if (result_ && values == best_) {  // what they have of their own was fitted to the rows that can be predicted
+    std::vector<SceneExperiment::Job> jobs;
+    for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], result_->own[i]});
+    std::vector<MotionError> fitted = experiment_.evaluate(std::vector<Eigen::VectorXd>{values}, jobs);
+    for (std::size_t i = 0; i < fitted_.size(); ++i) errors[fitted_[i]] = std::move(fitted[i]);
+  }
   const auto pick = [&](const std::vector<std::size_t>& list) {
     std::vector<MotionError> some;
     for (const std::size_t m : list) some.push_back(errors[m]);
@@ -349,20 +519,34 @@ SplitErrors SceneSearch::errors_at(const Eigen::VectorXd& values) const {
     split.held_back_error = split.held_back.cost;
   } else if (holds_ends_) {
     double sum = 0.0, samples = 0.0;
-    const model::SceneTask& task = experiment_.task();
-    const int each = (task.use_position ? 3 : 0) + (task.use_rotation ? 3 : 0);
-    for (const std::size_t m : fitted_) {
-      const auto bodies = static_cast<Eigen::Index>(experiment_.motions()[m].tracked.size());
-      const Eigen::Index rows = experiment_.samples_of(m) / bodies, cut = held_rows(m) / bodies;
-      if (errors[m].residuals.size() < rows * bodies) continue;
-      for (Eigen::Index b = 0; b < bodies; ++b)
-        sum += errors[m].residuals.segment((b + 1) * rows - cut, cut).squaredNorm() / experiment_.motions()[m].averaged;
-      samples += static_cast<double>(cut * bodies) / each;
+    for (std::size_t i = 0; i < fitted_.size(); ++i) {
+      const Eigen::VectorXd& r = errors[fitted_[i]].residuals;
+      const std::vector<SceneExperiment::BodyRows> bodies = experiment_.rows_of(fitted_[i]);
+      for (std::size_t b = 0; b < bodies.size() && r.size() > 0; ++b) {
+        const Eigen::Index begin = fitted_rows_[i][b], count = bodies[b].count - begin;
+        sum += r.segment(bodies[b].first + begin, count).squaredNorm();
+        samples += count_samples(fitted_[i], b, begin, bodies[b].count);
+      }
     }
-    split.held_back_error = 1e3 * task.position_noise * std::sqrt(sum / std::max(1.0, samples));
+    split.held_back_error = 1e3 * experiment_.task().position_noise * std::sqrt(sum / std::max(1.0, samples));
   }
   split.chi2_per_dof = chi2_per_dof(errors);
   return split;
+}
+
+std::vector<Unpredictable> SceneSearch::unpredictable() const {
+  std::vector<Unpredictable> list;
+  for (std::size_t i = 0; result_ && i < fitted_.size(); ++i) {
+    const RecordedMotion& motion = experiment_.motions()[fitted_[i]];
+    const std::vector<SceneExperiment::BodyRows> bodies = experiment_.rows_of(fitted_[i]);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Eigen::Index used = result_->straight[i][b];
+      if (used < fitted_rows_[i][b])
+        list.push_back({motion.name, motion.tracked[b].body,
+                        motion.times[(*bodies[b].samples)[static_cast<std::size_t>(used / bodies[b].each)]]});
+    }
+  }
+  return list;
 }
 
 Eigen::MatrixXd SceneSearch::covariance() {
@@ -370,8 +554,12 @@ Eigen::MatrixXd SceneSearch::covariance() {
   if (experiment_.task().loss == model::TaskLoss::Distance) {
     of_free = distance_covariance();
   } else {
-    const double chi2 = chi2_per_dof(evaluate_all(experiment_, best_));
-    of_free = numerics::squares_covariance(problem()) * std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
+    const Fitted at = result_ ? *result_ : unfitted(free_of(best_));
+    const double chi2 = errors_at(best_).chi2_per_dof;
+    const numerics::BatchedProblem there = problem(at, kAlways, {});
+    of_free =
+        numerics::squares_covariance(there, result_ ? at.derivatives : numerics::differentiate(there, at.x, at.own)) *
+        std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
   }
   const auto all = static_cast<Eigen::Index>(experiment_.task().parameters.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);

@@ -1,9 +1,11 @@
 // SceneSearch: the searches of identify_scene, with what they have found so far.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "snug/identification/internal/followed_rows.hpp"
 #include "snug/identification/internal/search_log.hpp"
 #include "snug/identification/scene_fit.hpp"
 #include "snug/numerics/batched_least_squares.hpp"
@@ -48,30 +50,59 @@ class SceneSearch {
   /// the curvature of the mean.
   [[nodiscard]] Eigen::MatrixXd covariance();
   [[nodiscard]] SplitErrors errors_at(const Eigen::VectorXd& values) const;
+  [[nodiscard]] std::vector<Unpredictable> unpredictable() const;
 
  private:
+  /// What least squares are at: parameters, what recordings have of their own, how well they are known.
+  struct Fitted {
+    Eigen::VectorXd x, step;
+    std::vector<Eigen::VectorXd> own;
+    RowCounts rows;      ///< that are fitted
+    RowCounts straight;  ///< that can be predicted
+    numerics::BatchedDerivatives derivatives;
+    std::string message;
+    bool is_solved = false;
+  };
+
   [[nodiscard]] Eigen::VectorXd full(const Eigen::VectorXd& free_values) const;
   [[nodiscard]] Eigen::VectorXd free_of(const Eigen::VectorXd& values) const;
-  [[nodiscard]] numerics::BatchedProblem problem() const;
+  /// Around a point, of the rows named; `prior`: standard deviations of the parameters about it, or empty.
+  [[nodiscard]] numerics::BatchedProblem problem(const Fitted& at, double until, const Eigen::VectorXd& prior) const;
+  [[nodiscard]] Fitted unfitted(const Eigen::VectorXd& start) const;
   /// Mean cost over the recordings fitted, of each point; known ones come from the log.
   std::vector<double> costs(const std::vector<Eigen::VectorXd>& points, const char* phase);
   double cost(const Eigen::VectorXd& point, const char* phase);
   /// Latin hypercube over the bounds.
   [[nodiscard]] std::vector<Eigen::VectorXd> scattered(int count) const;
   void take(const Eigen::VectorXd& free_values, double cost, const char* phase);
-  double least_squares_from(const Eigen::VectorXd& start, std::string& message);
+  /// Recording by recording as far as simulation follows, over longer and longer parts of the time.
+  [[nodiscard]] Fitted least_squares_from(const Eigen::VectorXd& start) const;
+  bool solve_stage(double horizon, bool is_last, Eigen::MatrixXd& covariance, Fitted& at) const;
+  [[nodiscard]] Neighbourhood look_around(const Fitted& at, double until) const;
+  /// Along some of the parameters.
+  void look(const Fitted& at, double until, const std::vector<std::size_t>& along, Neighbourhood& found) const;
+  struct Straight {
+    Neighbourhood around;
+    RowCounts rows;  ///< that can be predicted
+  };
+  /// `may_widen`: at.step becomes larger where small steps show only roughness.
+  [[nodiscard]] Straight find_straight_rows(double until, const RowCounts& within, bool may_widen, Fitted& at) const;
   [[nodiscard]] Eigen::MatrixXd distance_covariance();
   /// Shifts of the free parameters at which the mean cost has risen by more than its roughness.
   [[nodiscard]] Eigen::VectorXd curvature_steps(const Eigen::VectorXd& middle);
   [[nodiscard]] double chi2_per_dof(const std::vector<MotionError>& errors) const;
-  /// Rows of a recording's residuals that are not fitted but predicted, where no whole recordings are held back.
-  [[nodiscard]] Eigen::Index held_rows(std::size_t motion) const;
+  /// Of the rows that can be predicted, each bounded: what starts are compared by.
+  [[nodiscard]] double bounded_misfit(const Fitted& at) const;
+  /// Samples that rows of a body are the means of.
+  [[nodiscard]] double count_samples(std::size_t motion, std::size_t body, Eigen::Index begin, Eigen::Index end) const;
 
   const SceneExperiment& experiment_;
   const SceneFitOptions& options_;
   std::vector<std::size_t> free_;
   std::vector<std::size_t> fitted_, held_;  ///< recordings
   bool holds_ends_ = false;                 ///< the end of each recording is held back instead
+  RowCounts fitted_rows_;                   ///< before what is held back
+  std::optional<Fitted> result_;            ///< of least squares, the best
   Eigen::VectorXd best_, lower_, upper_, step_;
   double best_cost_;
   mutable int evaluations_ = 0;

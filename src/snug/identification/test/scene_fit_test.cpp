@@ -11,6 +11,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/identification/free_flight.hpp"
+#include "snug/identification/internal/followed_rows.hpp"
 #include "snug/identification/internal/motion_error.hpp"
 #include "snug/identification/internal/program_motion.hpp"
 #include "snug/model/number_edit.hpp"
@@ -276,15 +277,11 @@ TEST(ProgramMotion, OfAnAcceleratedBodyIsTheMeanWhereARecordingHasMeans) {
     return Pose{exp_rotation(Vector3(0.0, 0.0, 3.0 * t * t)), Vector3(2.0 * t * t, 0.1 * t, 0.0)};
   };
   internal::ProgramRun run;
-  run.seen.header.bodies.emplace_back().name = "parcel";
-  run.seen.bodies.resize(1);
-  for (int i = 0; i <= 4000; ++i) {
-    run.seen.times.push_back(1e-4 * i);
-    run.seen.bodies[0].emplace_back(at(1e-4 * i));
-  }
+  run.tracks.resize(1);
+  for (int i = 0; i <= 4000; ++i) run.tracks[0].add(1e-4 * i, at(1e-4 * i));
+  run.until = run.end = 0.4;
   RecordedMotion motion;
-  motion.averaged = 6;
-  motion.spread = kPeriod * std::sqrt(35.0 / 12.0);
+  motion.period = kPeriod;
   motion.tracked.push_back({"parcel", {}, {}, {}});
   for (const double middle : {0.1, 0.3}) {
     Vector3 p = Vector3::Zero(), turn = Vector3::Zero();
@@ -294,6 +291,7 @@ TEST(ProgramMotion, OfAnAcceleratedBodyIsTheMeanWhereARecordingHasMeans) {
     }
     motion.times.push_back(middle);
     motion.tracked[0].poses.emplace_back(Pose{exp_rotation(turn), p});
+    motion.tracked[0].averaged.push_back(6);
   }
   model::SceneTask task;
   task.start.from = model::StartFrom::Scenario;
@@ -301,15 +299,48 @@ TEST(ProgramMotion, OfAnAcceleratedBodyIsTheMeanWhereARecordingHasMeans) {
   task.position_noise = 1e-4;
   task.rotation_position_ratio = 0.1;
   const internal::OwnValues own(task, {});
-  internal::SimulatedMotion simulated = internal::motion_of(run, task, motion, own);
+  const internal::ComparedSamples samples = internal::compared_samples(task, motion);
+  internal::SimulatedMotion simulated = internal::motion_of(run, motion, samples, own);
+  const auto error = [&] { return internal::compare(task, motion, samples, simulated, own, 1.0); };
   // Between samples at 10 kHz the line is 4 m/s^2 dt^2 / 8 = 5 nm off; what stands in the middle alone is 45 um off.
-  EXPECT_LT(internal::compare(task, motion, simulated, own).position, 1e-8);
-  EXPECT_LT(internal::compare(task, motion, simulated, own).rotation, 2e-8);
+  EXPECT_LT(error().position, 1e-8);
+  EXPECT_LT(error().rotation, 2e-8);
   EXPECT_NEAR((at(0.1).p - motion.tracked[0].poses[0].p).norm(), 4.5e-5, 1e-6);
   // A mean of six is known sqrt(6) times as well as a sample.
   const record::PoseSample& first = simulated.bodies[0][0];
   simulated.bodies[0][0] = Pose{first.pose().R, first.p + Vector3(1e-4, 0.0, 0.0)};
-  EXPECT_NEAR(internal::compare(task, motion, simulated, own).residuals[0], std::sqrt(6.0), 1e-3);
+  EXPECT_NEAR(error().residuals[0], std::sqrt(6.0), 1e-3);
+}
+
+TEST(ProgramMotion, OfABodyAtRestKeepsTheFirstAndTheLastPose) {
+  internal::Track track;
+  for (int i = 0; i <= 10; ++i) track.add(0.1 * i, Pose{Matrix3::Identity(), Vector3(i < 3 ? 0.1 * i : 0.2, 0.0, 0.0)});
+  ASSERT_EQ(track.times.size(), 4U);
+  EXPECT_EQ(track.times[2], 0.2);
+  EXPECT_EQ(track.times[3], 1.0);
+  EXPECT_EQ(track.poses[2], track.poses[3]);
+}
+
+TEST_F(SceneFitTest, RowsEndWhereWhatOppositeStepsDoIsNoLongerOpposite) {
+  const SceneExperiment experiment(task(kTwo), {record({}, 5)}, 1);
+  const Eigen::Index samples = experiment.samples_of(0), good = 300;
+  internal::Neighbourhood around;
+  around.middle = {Eigen::VectorXd::Zero(samples)};
+  around.is_between = {true, true};
+  around.up.assign(2, {Eigen::VectorXd::Ones(samples)});
+  around.down.assign(2, {-Eigen::VectorXd::Ones(samples)});
+  // The second parameter tips the box the same way whether it grows or shrinks.
+  for (auto* side : {&around.up, &around.down}) (*side)[1][0].tail(samples - good).setConstant(1000.0);
+  const internal::RowCounts all = {{samples}};
+  std::vector<bool> is_bent;
+  const internal::RowCounts straight = internal::find_straight(experiment, {0}, around, all, is_bent);
+  EXPECT_EQ(straight, internal::RowCounts{{good}});
+  EXPECT_EQ(is_bent, (std::vector<bool>{false, true}));
+  EXPECT_EQ(internal::excused(experiment, {0}, around, straight, all), straight);
+  // Where the recording is ten times further off than steps move the box, they are no excuse.
+  for (auto* all_of : {&around.up[0], &around.up[1], &around.down[0], &around.down[1], &around.middle})
+    (*all_of)[0].tail(samples - good).array() += 1e4;
+  EXPECT_EQ(internal::excused(experiment, {0}, around, straight, all), all);
 }
 
 TEST(FreeFlight, IsFoundFromPosesOfATumblingBody) {

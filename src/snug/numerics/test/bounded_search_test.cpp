@@ -78,6 +78,27 @@ TEST(BatchedLeastSquares, FindsSharedAndOwnUnknowns) {
   EXPECT_LT(found.information(0, 0), alone(0, 0));
 }
 
+TEST(BatchedLeastSquares, SecantsFindTheSameWithFewerSimulations) {
+  std::size_t count = 0;
+  const auto solve = [&](bool secants) {
+    BatchedProblem problem = decays(two(2.0, 1.3));
+    problem.start = two(1.9, 1.2);  // near: what secants are for
+    const auto evaluate = problem.evaluate;
+    problem.evaluate = [&count, evaluate](const std::vector<BatchedProblem::Job>& jobs) {
+      count += jobs.size();
+      return evaluate(jobs);
+    };
+    count = 0;
+    BatchedOptions options;
+    options.secants = secants;
+    return solve_batched(problem, options).x;
+  };
+  EXPECT_LT((solve(false) - two(2.0, 1.3)).norm(), 1e-6);
+  const std::size_t with_differences = count;
+  EXPECT_LT((solve(true) - two(2.0, 1.3)).norm(), 1e-6);
+  EXPECT_LT(count, with_differences);
+}
+
 TEST(BatchedLeastSquares, EndsAtABoundWhenTheLeastIsBeyond) {
   BatchedProblem problem = decays(two(2.0, 1.3));
   problem.upper = two(5.0, 1.0);
@@ -100,9 +121,9 @@ TEST(BatchedLeastSquares, TheCovarianceOfLinearResidualsIsTheInverseOfTheirInfor
       residuals.emplace_back(30.0 * (A * (job.shared - problem.start)).array() + 5.0 * job.own[0]);
     return residuals;
   };
-  const Eigen::MatrixXd C = squares_covariance(problem);
   const std::vector<VectorXd> own(3, VectorXd::Zero(1));
-  const Eigen::MatrixXd information = shared_information(differentiate(problem, problem.start, own), 2);
+  const BatchedDerivatives at = differentiate(problem, problem.start, own);
+  const Eigen::MatrixXd C = squares_covariance(problem, at), information = shared_information(at, 2);
   EXPECT_LT((C * information - Eigen::MatrixXd::Identity(2, 2)).norm(), 1e-6);
 }
 
@@ -156,8 +177,9 @@ TEST(BatchedLeastSquares, TheCovarianceIsThatOfTheWayAtLargeWhereResidualsJump) 
     }
     return residuals;
   };
-  EXPECT_NEAR(shared_information(differentiate(problem, problem.start, {VectorXd()}), 1)(0, 0), 100.0, 1e-6);
-  EXPECT_NEAR(std::sqrt(squares_covariance(problem)(0, 0)), 1.0, 0.1);
+  const BatchedDerivatives at = differentiate(problem, problem.start, {VectorXd()});
+  EXPECT_NEAR(shared_information(at, 1)(0, 0), 100.0, 1e-6);
+  EXPECT_NEAR(std::sqrt(squares_covariance(problem, at)(0, 0)), 1.0, 0.1);
 }
 
 }  // namespace
