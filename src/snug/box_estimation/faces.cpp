@@ -3,9 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "snug/box_estimation/internal/features.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::box_estimation::internal {
 namespace {
@@ -171,8 +170,7 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
     const FaceFrame& f = frames[i];
     // Tilts of what is only a strip are not told by it: 0.2 mm over its width is what a small prior says.
     Matrix3 G = sums[i].G;
-    const Eigen::SelfAdjointEigenSolver<Matrix3> spread(G / sums[i].count);
-    if (!(spread.eigenvalues()(0) > 1e-8)) continue;
+    if (!(symmetric_eigenpairs(G / sums[i].count).values(0) > 1e-8)) continue;
     FaceFeature feature;
     feature.box = surface.body - prediction.first_box;
     feature.face = surface.face;

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-
 #include "snug/geometry/bounds.hpp"
 #include "snug/geometry/manifold.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::box_estimation::internal {
 namespace {
@@ -46,10 +45,10 @@ struct Patch {
 bool fit_plane(int count, const Vector3& sum, const Matrix3& squares, double noise, Vector3& n, Vector3& mean) {
   mean = sum / count;
   const Matrix3 spread = squares / count - mean * mean.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(spread);
-  n = solver.eigenvectors().col(0);
+  const Eigenpairs3 axes = symmetric_eigenpairs(spread);
+  n = axes.vectors.col(0);
   if (n.dot(mean) > 0.0) n = -n;
-  return solver.eigenvalues()(0) < noise * noise && solver.eigenvalues()(1) > 4.0 * solver.eigenvalues()(0);
+  return axes.values(0) < noise * noise && axes.values(1) > 4.0 * axes.values(0);
 }
 
 class Patches {

@@ -102,8 +102,9 @@ Matrix12 improve(const std::vector<Pair>& pairs, double position_noise, double a
       };
       J.col(k) = (at(1.0) - at(-1.0)) / (2.0 * kStep);
     }
-    H += J.transpose() * weights.asDiagonal() * J;
-    g += J.transpose() * weights.asDiagonal() * residual(pair, X_WC, X_EB);
+    const Eigen::MatrixXd weighted = J.array().colwise() * weights.array();
+    H += numerics::transposed_product(weighted, J);
+    g += numerics::transposed_product(weighted, residual(pair, X_WC, X_EB));
   }
   const Vector12 step = -numerics::solve_symmetric(H, g);
   X_WC = moved(X_WC, step.head<6>());

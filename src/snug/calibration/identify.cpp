@@ -129,7 +129,7 @@ numerics::LeastSquaresResult fit(const Model& model, const Eigen::VectorXd& star
     terms.push_back(
         {6, {}, [&, row](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
            if (last.at.size() != x.size() || last.at != x)
-             last = {x, w.asDiagonal() * model.errors(x), Eigen::MatrixXd()};
+             last = {x, w.cwiseProduct(model.errors(x)), Eigen::MatrixXd()};
            if (J != nullptr && last.jacobian.size() == 0) last.jacobian = w.asDiagonal() * model.jacobian(x);
            r = last.residual.segment<6>(row);
            if (J != nullptr) *J = last.jacobian.middleRows<6>(row);
@@ -234,9 +234,9 @@ IdentifiedArm identify_arm(const robot::ArmModel& nominal, const PosePairs& pair
   result.iterations = first.iterations + second.iterations;
   const Eigen::VectorXd after = model.errors(second.x);
   const Eigen::MatrixXd J = w.asDiagonal() * model.jacobian(second.x);
-  const Eigen::VectorXd weighted = w.asDiagonal() * after;
+  const Eigen::VectorXd weighted = w.cwiseProduct(after);
   const double variance = weighted.squaredNorm() / static_cast<double>(after.size() - count);
-  const Eigen::MatrixXd normal = J.transpose() * J;
+  const Eigen::MatrixXd normal = numerics::transposed_product(J, J);
   result.covariance = variance * numerics::invert_symmetric(normal);
   result.position_noise *= std::sqrt(variance);
   result.angle_noise *= std::sqrt(variance);

@@ -181,7 +181,7 @@ class Check {
   void look_at_joints(const robot::JointVector& q, const robot::Jacobian& J_WE, const Vector6& V_WE,
                       double singularity) {
     const model::RobotParams& params = simulation_.arm()->controller().settings().params;
-    Matrix6 M = J_WE * J_WE.transpose();
+    Matrix6 M = robot::gram(J_WE);
     if (singularity < kSingular) M.diagonal().array() += 1e-4;
     const robot::JointVector qd = J_WE.transpose() * snug::solve(M, V_WE);
     for (int j = 0; j < arm().joint_count(); ++j) {

@@ -1,8 +1,9 @@
 // solve_pose: joints that put the tool where it is wanted, nearest to where they are.
 #include "snug/control/pose_solver.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::control {
 namespace {
@@ -32,9 +33,9 @@ PoseSolution solve_pose(const robot::ArmModel& arm, const Pose& X_WE, const robo
   double damping = 1.0;
   for (solution.steps = 0; solution.steps < most_steps && error.norm() > kGoal; ++solution.steps) {
     const robot::Jacobian J = robot::tool_jacobian(arm, at);
-    Matrix6 M = J * J.transpose();
+    Matrix6 M = robot::gram(J);
     M.diagonal().array() += damping * kDamping * error.squaredNorm() + kLeastDamping;
-    robot::JointVector step = J.transpose() * M.ldlt().solve(error);
+    robot::JointVector step = J.transpose() * solve_symmetric(M, error);
     const double largest = step.lpNorm<Eigen::Infinity>();
     if (largest > kLargestStep) step *= kLargestStep / largest;
     const robot::JointVector tried = solution.q + step;

@@ -1,7 +1,6 @@
 // BoxAxes: separations along face normals and edge cross products, after Gottschalk's OBB test, with unit axes.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 #include "snug/geometry/internal/box_axes.hpp"
@@ -11,8 +10,6 @@
 namespace snug::geometry::internal {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Separation along the unit direction n_A: what lies between the two support planes.
 double separation_along(const BoxPair& pair, const Vector3& n_A) noexcept {

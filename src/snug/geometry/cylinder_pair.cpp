@@ -8,18 +8,17 @@
 // Two rims that cross leave two angles: Newton's method on the sphere.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "snug/geometry/internal/clip.hpp"
 #include "snug/geometry/internal/cylinder_pair.hpp"
 #include "snug/geometry/internal/segment.hpp"
+#include "snug/geometry/internal/tolerances.hpp"
 
 namespace snug::geometry::internal {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Directions nearer than this [m, or sine of an angle] to none at all are none.
 constexpr double kNoDirection = 1e-9;
 /// Below this sine of the tilt the deepest point of an end is rounding: the prism then keeps still in the cylinder.

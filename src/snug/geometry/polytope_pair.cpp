@@ -1,18 +1,16 @@
 // PolytopePair: the same steps as BoxBox, written for any number of faces.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "snug/geometry/internal/clip.hpp"
 #include "snug/geometry/internal/closest.hpp"
 #include "snug/geometry/internal/polytope_pair.hpp"
 #include "snug/geometry/internal/segment.hpp"
+#include "snug/geometry/internal/tolerances.hpp"
 
 namespace snug::geometry::internal {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct PolytopeAxis {
   Axis axis;

@@ -96,8 +96,7 @@ Solution solve(const Problem& problem, const std::vector<std::size_t>& which, co
       numerics::solve_least_squares(terms, start.cwiseQuotient(scale), {.tolerance = 1e-8, .max_iterations = 50});
   solution.failure = found.has_converged ? "" : found.message;
   solution.theta = scale.cwiseProduct(found.x);
-  const Eigen::VectorXd inverse = scale.cwiseInverse();
-  solution.information = inverse.asDiagonal() * found.information * inverse.asDiagonal();
+  solution.information = numerics::scaled(found.information, scale.cwiseInverse());
   solution.own = found.own;
   solution.chi2 = found.cost;
   solution.degrees_of_freedom -= 1 + static_cast<int>(scale.size());

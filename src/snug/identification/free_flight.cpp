@@ -65,7 +65,8 @@ FlightStart fit_free_flight(std::span<const double> times, std::span<const recor
                                     : turn_freely(times, start.X_WB.R, w + unit, inertia.inertia, inverse);
       J.col(j) = (r - misfit(poses, moved)) / kShift;
     }
-    const Vector6 change = numerics::solve_symmetric(J.transpose() * J, J.transpose() * r);
+    const Vector6 change =
+        numerics::solve_symmetric(numerics::transposed_product(J, J), numerics::transposed_product(J, r));
     start.X_WB.R = orthonormalized(exp_rotation(change.head<3>()) * start.X_WB.R);
     w += change.tail<3>();
     if (change.norm() < 1e-10) break;

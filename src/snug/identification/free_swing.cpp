@@ -1,7 +1,6 @@
 // FreeSwing: rigid-body dynamics at S1, and their variational equations.
 #include "snug/identification/free_swing.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -99,7 +98,7 @@ std::vector<SwingSample> simulate_swing(const FreeSwing& swing, const Pose& X_ES
                                         const std::vector<double>& times, const SwingDirections& directions) {
   const Dynamics dynamics(swing, directions);
   const double longest = kStepTimesRate / std::max(1e-3, dynamics.fastest_rate());
-  const Matrix6 to_S = cup::wrench_transform(swing.frames.X_SS1).transpose().inverse();  // twist of S1 to that of S
+  const Matrix6 to_S = inverse(cup::wrench_transform(swing.frames.X_SS1).transpose());  // twist of S1 to that of S
   const Pose X_S1S = swing.frames.X_SS1.inverse();
   const Pose H = swing.frames.X_ES2.inverse() * X_ES * swing.frames.X_SS1;
   State state{H.R, H.p, twist_S1, Columns::Zero(12, directions.count())};

@@ -134,8 +134,12 @@ void PayloadEstimator::balance() {
       ((std::pow(noise.torque, 2) + kLever * kLever * turning + std::pow(mass * g.norm() * noise.position, 2)) *
            of_wrench +
        2.0 / 3.0 * lever_square * std::pow(noise.force, 2) + kLever * kLever * shake * of_pose);
-  information_ += force.transpose() * force / force_variance + torque.transpose() * torque / torque_variance;
-  weighted_ += force.transpose() * force_sum / force_variance + torque.transpose() * torque_sum / torque_variance;
+  const auto add_rows = [&](const Eigen::MatrixXd& rows, const Eigen::VectorXd& sum, double variance) {
+    information_ += numerics::transposed_product(rows, rows) / variance;
+    weighted_ += numerics::transposed_product(rows, sum) / variance;
+  };
+  add_rows(force, force_sum, force_variance);
+  add_rows(torque, torque_sum, torque_variance);
   ++windows_;
 }
 
@@ -165,7 +169,7 @@ PayloadEstimate PayloadEstimator::estimate() const {
         row[1 + axis] = -by;
       }
       const double deviation = widened * (is_moment ? 1.0 : 0.5) * settings_.gyration_square_prior * mass;
-      information += row * row.transpose() / (deviation * deviation);
+      information += numerics::product(row, row.transpose()) / (deviation * deviation);
     }
     x = numerics::solve_symmetric(information, weighted_);
   }
@@ -187,7 +191,7 @@ PayloadEstimate PayloadEstimator::estimate() const {
     const Matrix3 unit = skew(Vector3(Vector3::Unit(i)));
     J.block<6, 1>(4, 1 + i) = six(unit * skew(com) + skew(com) * unit);
   }
-  result.covariance = J * all.topLeftCorner(10, 10) * J.transpose();
+  result.covariance = numerics::congruence(J, all.topLeftCorner(10, 10));
   return result;
 }
 

@@ -49,8 +49,7 @@ Sensed sense(const SceneSearch& search) {
     const model::TaskParameter& parameter = parameters[free[static_cast<std::size_t>(j)]];
     span[j] = parameter.high - parameter.low;
   }
-  const Eigen::MatrixXd scaled = span.asDiagonal() * at.information * span.asDiagonal();
-  const numerics::Eigenpairs eigen = numerics::symmetric_eigenpairs(scaled);
+  const numerics::Eigenpairs eigen = numerics::symmetric_eigenpairs(numerics::scaled(at.information, span));
   const double least = 1.0 / (kUnknownError * kUnknownError);
   Sensed sensed;
   std::vector<bool> is_unknown(free.size(), false);
@@ -67,11 +66,8 @@ Sensed sense(const SceneSearch& search) {
     }
     sensed.unknown.push_back(std::move(direction));
   }
-  const Eigen::MatrixXd inverse =
-      span.asDiagonal() *
-      (eigen.vectors * eigen.values.unaryExpr([](double v) { return v > 1e-12 ? 1.0 / v : 1e24; }).asDiagonal() *
-       eigen.vectors.transpose()) *
-      span.asDiagonal();
+  const Eigen::VectorXd variance = eigen.values.unaryExpr([](double v) { return v > 1e-12 ? 1.0 / v : 1e24; });
+  const Eigen::MatrixXd inverse = numerics::scaled(numerics::congruence(eigen.vectors, variance.asDiagonal()), span);
   for (Eigen::Index j = 0; j < n; ++j) {
     const std::size_t index = free[static_cast<std::size_t>(j)];
     Sensitivity row;

@@ -19,6 +19,12 @@ using internal::Balance;
 using internal::Form;
 using internal::LinearEstimate;
 using internal::NoiseAtS1;
+using numerics::congruence;
+using numerics::invert_symmetric;
+using numerics::product;
+using numerics::scaled;
+using numerics::solve_symmetric;
+using numerics::transposed_product;
 
 constexpr std::size_t kFewest = 4;        // poses; 24 numbers against 5 or 21
 constexpr std::size_t kForSymmetry = 10;  // poses; fewer leave the test of 16 conditions without power
@@ -80,8 +86,8 @@ Start fit_by_compliance(const Setup& setup, const std::vector<double>& weight) {
   check_definite(setup, C);
   const Matrix6 K = inverse(C);
   const Eigen::MatrixXd J = setup.form.inverse_jacobian(K);
-  Start start{{K, J * found.covariance * J.transpose()}, {}};
-  start.unknown = setup.form.scale_in(setup.prior).cwiseInverse().asDiagonal() * J * found.unknown;
+  Start start{{K, congruence(J, found.covariance)}, {}};
+  start.unknown = product(setup.form.scale_in(setup.prior).cwiseInverse().asDiagonal(), product(J, found.unknown));
   start.unknown.colwise().normalize();
   return start;
 }
@@ -90,9 +96,11 @@ Start fit_by_compliance(const Setup& setup, const std::vector<double>& weight) {
 void widen(const Setup& setup, const Start& start, Estimate& estimate) {
   if (start.unknown.cols() == 0) return;
   const Eigen::VectorXd scale = setup.form.scale_in(setup.prior);
-  const Eigen::MatrixXd U = start.unknown * numerics::pseudo_inverse(start.unknown);  // projects on them
-  const Eigen::MatrixXd P = scale.asDiagonal() * U * scale.cwiseInverse().asDiagonal();
-  estimate.covariance += P * start.estimate.covariance * P.transpose();
+  const Eigen::Index n = scale.size();
+  const Eigen::MatrixXd U =
+      product(start.unknown, numerics::solve_by_qr(start.unknown, Eigen::MatrixXd::Identity(n, n)));
+  const Eigen::MatrixXd in_units = scaled(start.estimate.covariance, scale.cwiseInverse());
+  estimate.covariance += scaled(congruence(U, in_units), scale);  // U projects on them
 }
 
 /// Information that keeps the unknown directions where they are, in units of the prior.
@@ -105,8 +113,8 @@ Estimate fit_by_wrench(const Setup& setup, const std::vector<double>& weight, co
   const Eigen::VectorXd kept = form.numbers_of(start.estimate.K).cwiseQuotient(scale);
   const Matrix6 W = inverse(setup.noise.wrench);
   // Everything in units of the prior.
-  Eigen::MatrixXd N = kKept * (start.unknown * start.unknown.transpose());
-  Eigen::VectorXd b = N * kept;
+  Eigen::MatrixXd N = kKept * product(start.unknown, start.unknown.transpose());
+  Eigen::VectorXd b = product(N, kept);
   N.diagonal().array() += 1.0 / (internal::kPriorWidth * internal::kPriorWidth);
   b += form.numbers_of(setup.prior).cwiseQuotient(scale) / (internal::kPriorWidth * internal::kPriorWidth);
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(form.size(), form.size());
@@ -116,19 +124,19 @@ Estimate fit_by_wrench(const Setup& setup, const std::vector<double>& weight, co
     Eigen::Matrix<double, 6, Eigen::Dynamic> A(6, form.size());
     for (Eigen::Index j = 0; j < form.size(); ++j)
       A.col(j) = scale[j] * cup::spring_wrench(balance.H, form.numbers[static_cast<std::size_t>(j)].basis);
-    N.noalias() += A.transpose() * (W * A);
-    b.noalias() += A.transpose() * (W * balance.wanted(balance.H));
+    N += transposed_product(A, product(W, A));
+    b += transposed_product(A, W * balance.wanted(balance.H));
     // The noise of the residual, with the compliance fit's K: its size is all that is asked for.
     const Matrix6 T = cup::spring_tangent(balance.H, start.estimate.K) - balance.wanted_tangent(balance.H);
     Matrix6 covariance = T * setup.noise.pose * T.transpose();
     if (!balance.is_gravity) covariance += setup.noise.wrench;
-    const Eigen::Matrix<double, 6, Eigen::Dynamic> WA = W * A;
-    scatter.noalias() += WA.transpose() * (covariance * WA);
+    const Eigen::MatrixXd WA = product(W, A);
+    scatter += transposed_product(WA, product(covariance, WA));
   }
-  Estimate estimate{form.matrix(scale.cwiseProduct(numerics::solve_symmetric(N, b))), {}};
+  const Eigen::VectorXd solved = solve_symmetric(N, b);
+  Estimate estimate{form.matrix(scale.cwiseProduct(solved)), {}};
   check_definite(setup, estimate.K);
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * numerics::invert_symmetric(N);
-  estimate.covariance = inverse * scatter * inverse.transpose();
+  estimate.covariance = scaled(congruence(invert_symmetric(N), scatter), scale);
   widen(setup, start, estimate);
   return estimate;
 }
@@ -150,7 +158,7 @@ Estimate fit_by_likelihood(const Setup& setup, const std::vector<double>& weight
                        const internal::Misfit misfit = internal::compute_misfit(
                            setup.balances[i], K, setup.noise, setup.poses.frames, J != nullptr ? &form : nullptr);
                        r = misfit.residual;
-                       if (J != nullptr) *J = misfit.jacobian * scale.asDiagonal();
+                       if (J != nullptr) *J = product(misfit.jacobian, scale.asDiagonal());
                      }});
   }
   terms.push_back({form.size(),
@@ -164,7 +172,7 @@ Estimate fit_by_likelihood(const Setup& setup, const std::vector<double>& weight
         {from.unknown.cols(),
          {},
          [&from, &start](const Eigen::VectorXd& x, const Eigen::VectorXd&, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-           r = std::sqrt(kKept) * (from.unknown.transpose() * (x - start));
+           r = std::sqrt(kKept) * transposed_product(from.unknown, x - start);
            if (J != nullptr) *J = std::sqrt(kKept) * from.unknown.transpose();
          }});
   const numerics::LeastSquaresResult found =
@@ -174,7 +182,7 @@ Estimate fit_by_likelihood(const Setup& setup, const std::vector<double>& weight
                      "poses of one cup with their wrenches, or the method compliance");
   Estimate estimate{form.matrix(scale.cwiseProduct(found.x)), {}};
   check_definite(setup, estimate.K);
-  estimate.covariance = scale.asDiagonal() * numerics::invert(found.information) * scale.asDiagonal();
+  estimate.covariance = scaled(numerics::invert(found.information), scale);
   widen(setup, from, estimate);
   return estimate;
 }
@@ -234,19 +242,18 @@ SymmetryTest test_symmetry(const Setup& setup, const std::vector<double>& weight
   const Eigen::VectorXd scale = full.scale_in(inverse(setup.prior));
   const Eigen::MatrixXd rows = conditions.rows;
   // Each condition in units of its own size.
-  const Eigen::VectorXd size = (rows.cwiseAbs() * scale).cwiseInverse();
-  const Eigen::VectorXd missed = size.asDiagonal() * (rows * found.theta);
-  const Eigen::MatrixXd covariance =
-      inflation * (size.asDiagonal() * rows * found.covariance * rows.transpose() * size.asDiagonal());
+  const Eigen::VectorXd size = product(rows.cwiseAbs(), scale).cwiseInverse();
+  const Eigen::VectorXd sums = product(rows, found.theta), missed = size.cwiseProduct(sums);
+  const Eigen::MatrixXd covariance = inflation * scaled(congruence(rows, found.covariance), size);
   SymmetryTest test;
-  test.statistic = missed.dot(numerics::solve_symmetric(covariance, missed).col(0));
+  test.statistic = missed.dot(solve_symmetric(covariance, missed).col(0));
   test.p_value = chi_square_tail(test.statistic, static_cast<int>(rows.rows()));
   test.is_supported = test.p_value >= 0.01;
   // Told in stiffnesses, for people.
   const Matrix6 K = inverse(full.matrix(found.theta));
-  const Eigen::MatrixXd J = rows * full.inverse_jacobian(K);
-  const Eigen::VectorXd value = rows * full.numbers_of(K);
-  const Eigen::VectorXd error = (inflation * (J * found.covariance * J.transpose())).diagonal().cwiseSqrt();
+  const Eigen::MatrixXd J = product(rows, full.inverse_jacobian(K));
+  const Eigen::VectorXd value = product(rows, full.numbers_of(K));
+  const Eigen::VectorXd error = (inflation * congruence(J, found.covariance)).diagonal().cwiseSqrt();
   Eigen::Index worst = 0;
   value.cwiseAbs().cwiseQuotient(error).maxCoeff(&worst);
   char text[120];

@@ -2,13 +2,12 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/model/internal/mass_properties.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
 #include "snug/model/internal/side_file.hpp"
 #include "snug/model/mesh_file.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::model::internal {
 namespace {
@@ -182,7 +181,7 @@ Matrix3 read_inertia(const Value& value) {
   for (std::size_t i = 0; i < parts.size(); ++i) e[i] = parts[i].number(i < 3 ? Range::Positive : Range::Any);
   Matrix3 inertia;
   inertia << e[0], e[3], e[4], e[3], e[1], e[5], e[4], e[5], e[2];
-  const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const Vector3 moments = symmetric_eigenpairs(inertia).values;
   const std::string got =
       "principal moments " + to_text(moments(0)) + ", " + to_text(moments(1)) + ", " + to_text(moments(2));
   // Eigenvalues ascend. A flat plate meets the triangle inequality with equality; 1e-6 leaves room for its rounding.

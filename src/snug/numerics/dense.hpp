@@ -1,9 +1,17 @@
-// Decompositions of matrices of any size: compiled once for all who need them.
+// Products and decompositions of matrices of any size: compiled once for all who need them.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace snug::numerics {
+
+[[nodiscard]] Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// A^T B
+[[nodiscard]] Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// A M A^T
+[[nodiscard]] Eigen::MatrixXd congruence(const Eigen::MatrixXd& A, const Eigen::MatrixXd& M);
+/// D M D, where D has d on its diagonal.
+[[nodiscard]] Eigen::MatrixXd scaled(const Eigen::MatrixXd& M, const Eigen::VectorXd& d);
 
 /// X of A X = B by LDL^T, where A, n x n, is symmetric and positive or negative semidefinite. B: n x m.
 [[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
@@ -15,8 +23,6 @@ namespace snug::numerics {
 [[nodiscard]] Eigen::MatrixXd solve_by_qr(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 /// R, k x k, of A = Q R. A: n x k, n >= k. Sums of squares of A's columns and their products are those of R's.
 [[nodiscard]] Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& A);
-/// Moore and Penrose's, by a complete orthogonal decomposition.
-[[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 
 /// Values ascend; vectors are columns.
 struct Eigenpairs {

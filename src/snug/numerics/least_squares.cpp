@@ -56,9 +56,9 @@ void weigh(const std::vector<LeastSquaresTerm>& terms, LeastSquaresResult& resul
     if (own > 0) {
       // What the own unknowns can explain is taken out of the shared columns.
       const Eigen::MatrixXd of_own = J.rightCols(own);
-      shared -= of_own * solve_by_qr(of_own, shared);
+      shared -= product(of_own, solve_by_qr(of_own, shared));
     }
-    result.information += shared.transpose() * shared;
+    result.information += transposed_product(shared, shared);
   }
 }
 

@@ -6,10 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include "snug/core/rng.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::robot {
 namespace {
@@ -36,17 +34,15 @@ Vector6 pose_error(const Pose& X_WE, const Pose& X_WT) noexcept {
 
 /// min |J dq - error|^2 + damping^2 |dq|^2
 JointVector damped_step(const Jacobian& J, const Vector6& error, double damping) noexcept {
-  Matrix6 gram = J * J.transpose();
-  gram.diagonal().array() += damping * damping;
-  const Vector6 y = gram.ldlt().solve(error);
+  Matrix6 M = gram(J);
+  M.diagonal().array() += damping * damping;
+  const Vector6 y = solve_symmetric(M, error);
   return J.transpose() * y;
 }
 
 JointVector newton_step(const Jacobian& J, const Vector6& error) noexcept {
   if (J.cols() != 6) return damped_step(J, error, 1e-9);
-  const Matrix6 square = J;
-  const Eigen::PartialPivLU<Matrix6> lu(square);
-  JointVector step = lu.solve(error);
+  JointVector step = solve(Matrix6(J), error);
   // Near a singularity the plain step leaves the neighbourhood in which the linear model holds.
   if (!(step.cwiseAbs().maxCoeff() < 0.3)) step = damped_step(J, error, 0.02);
   return step;

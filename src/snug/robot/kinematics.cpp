@@ -102,12 +102,13 @@ Twist segment_twist(const ArmModel& arm, const ArmPose& at, const JointVector& q
   return twist_from(point_jacobian(arm, at, segment, p) * qd);
 }
 
+Matrix6 gram(const Jacobian& J) noexcept { return J * J.transpose(); }
+
 double singularity_measure(const Jacobian& J_WE, double length) noexcept {
   // The smallest singular value from J J^T, which has 6 - n eigenvalues of zero more where n < 6 joints move the tool.
   Jacobian scaled = J_WE;
   scaled.topRows<3>() /= length;
-  const Matrix6 gram = scaled * scaled.transpose();
-  return std::sqrt(std::max(0.0, symmetric_eigenvalues(gram)(6 - std::min<Eigen::Index>(6, J_WE.cols()))));
+  return std::sqrt(std::max(0.0, symmetric_eigenvalues(gram(scaled))(6 - std::min<Eigen::Index>(6, J_WE.cols()))));
 }
 
 }  // namespace snug::robot

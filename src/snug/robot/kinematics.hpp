@@ -39,6 +39,8 @@ struct ArmPose {
 /// Twist of a segment, V_WS_W, linear part at the segment's origin.
 [[nodiscard]] Twist segment_twist(const ArmModel& arm, const ArmPose& at, const JointVector& qd, int segment) noexcept;
 
+/// J J^T
+[[nodiscard]] Matrix6 gram(const Jacobian& J) noexcept;
 /// How far from singular: smallest singular value of J_WE with its linear part divided by `length` [m] (a typical
 /// reach, so that rows compare), 1/s per rad/s. 0 at a singularity.
 [[nodiscard]] double singularity_measure(const Jacobian& J_WE, double length = 0.5) noexcept;

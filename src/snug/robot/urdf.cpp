@@ -8,14 +8,13 @@
 #include <map>
 #include <sstream>
 
-#include <Eigen/Eigenvalues>
-
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/robot/internal/inertia.hpp"
 #include "snug/robot/internal/urdf.hpp"
 #include "snug/robot/load_arm.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::robot {
 namespace internal {
@@ -149,7 +148,7 @@ SpatialInertia read_inertial(const Element& link) {
   const double xy = tensor.number_or("ixy", 0.0), xz = tensor.number_or("ixz", 0.0), yz = tensor.number_or("iyz", 0.0);
   Matrix3 M_I;
   M_I << tensor.number("ixx"), xy, xz, xy, tensor.number("iyy"), yz, xz, yz, tensor.number("izz");
-  const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(M_I, Eigen::EigenvaluesOnly).eigenvalues();
+  const Vector3 moments = symmetric_eigenpairs(M_I).values;
   // The triangle inequality holds for any mass distribution; published tensors are rounded to about 1e-5 kg m^2.
   if (moments(0) < 0.0 || moments(0) + moments(1) < moments(2) * (1.0 - 1e-2) - 2e-5)
     tensor.fail("an inertia that no distribution of mass has",

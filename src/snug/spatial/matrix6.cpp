@@ -1,4 +1,4 @@
-// Linear algebra of 6 x 6 matrices and of rotations: Eigen's eigenvalues alone, unrolled for six, take a quarter of a
+// Linear algebra of small matrices and of rotations: Eigen's eigenvalues alone, unrolled for six, take a quarter of a
 // minute to compile.
 #include "snug/spatial/matrix6.hpp"
 
@@ -26,6 +26,13 @@ bool is_positive_definite(const Matrix6& M) noexcept { return Eigen::LLT<Matrix6
 Matrix6 inverse(const Matrix6& M) noexcept { return M.inverse(); }
 
 Vector6 solve(const Matrix6& M, const Vector6& b) noexcept { return M.partialPivLu().solve(b); }
+
+Vector6 solve_symmetric(const Matrix6& M, const Vector6& b) noexcept { return M.ldlt().solve(b); }
+
+Eigenpairs3 symmetric_eigenpairs(const Matrix3& M) noexcept {
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(M);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
 
 Quaternion rotation_between(const Vector3& from, const Vector3& to) noexcept {
   const Vector3 a = from.normalized(), b = to.normalized();

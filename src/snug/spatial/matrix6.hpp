@@ -1,4 +1,5 @@
-// Linear algebra of 6 x 6 matrices and of rotations whose templates are large: compiled once for all who need it.
+// Linear algebra of 3 x 3 and 6 x 6 matrices and of rotations whose templates are large: compiled once for all who need
+// it.
 #pragma once
 
 #include "snug/spatial/pose.hpp"
@@ -17,6 +18,16 @@ namespace snug {
 [[nodiscard]] Matrix6 inverse(const Matrix6& M) noexcept;
 /// x of M x = b, as `inverse`.
 [[nodiscard]] Vector6 solve(const Matrix6& M, const Vector6& b) noexcept;
+/// x of M x = b by LDL^T, of M, symmetric and semidefinite: its lower half is read.
+[[nodiscard]] Vector6 solve_symmetric(const Matrix6& M, const Vector6& b) noexcept;
+
+/// Values ascend; vectors are columns of length one.
+struct Eigenpairs3 {
+  Vector3 values;
+  Matrix3 vectors;
+};
+/// Of M, symmetric: its lower half is read.
+[[nodiscard]] Eigenpairs3 symmetric_eigenpairs(const Matrix3& M) noexcept;
 
 /// The smallest rotation that turns the direction of `from` to that of `to`; any of them where they are opposite.
 [[nodiscard]] Quaternion rotation_between(const Vector3& from, const Vector3& to) noexcept;

@@ -1,8 +1,11 @@
 // Tolerances of the narrow phase, in one place: each bounds an error that README.md states.
 #pragma once
 
+#include <limits>
+
 namespace snug::geometry::internal {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// The reported depth may exceed the least one by this [m] plus kBiasRelative of it, to keep face contacts faces (half
 /// of it, from scratch) and to keep the axis of the last call (all of it). The same bounds a reported distance, without
 /// the relative part.

@@ -13,6 +13,14 @@
 namespace snug::identification::internal {
 namespace {
 
+using numerics::congruence;
+using numerics::generalized_eigenpairs;
+using numerics::invert_symmetric;
+using numerics::product;
+using numerics::scaled;
+using numerics::solve_symmetric;
+using numerics::transposed_product;
+
 /// A direction is known when its sum exceeds the noise's own by this much, and by this much over the root of the number
 /// of poses: the noise's sum scatters by sqrt(2 / poses), five times that is no chance.
 constexpr double kLeastSignal = 1.0;
@@ -65,8 +73,8 @@ LinearEstimate fit_compliance(const std::vector<CompliancePose>& poses, const st
     const Wide A = columns(form, pose.g);
     const Wide WA = W * A;
     count += 1.0;
-    N.noalias() += weight[i] * (A.transpose() * WA);
-    b.noalias() += weight[i] * (WA.transpose() * pose.e);
+    N += weight[i] * transposed_product(A, WA);
+    b += weight[i] * transposed_product(WA, pose.e);
     const Matrix6 by_pose = pose.g_by_pose * noise.pose;
     cov_gg += weight[i] *
               (by_pose * pose.g_by_pose.transpose() + pose.g_by_wrench * noise.wrench * pose.g_by_wrench.transpose());
@@ -87,22 +95,23 @@ LinearEstimate fit_compliance(const std::vector<CompliancePose>& poses, const st
   const Matrix6 C_prior = inverse(prior);
   const Eigen::VectorXd width = kPriorWidth * form.scale_in(C_prior);
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
-  const Eigen::MatrixXd whole = width.asDiagonal() * N * width.asDiagonal();
-  const Eigen::MatrixXd chance = width.asDiagonal() * of_noise * width.asDiagonal();
+  const Eigen::MatrixXd whole = scaled(N, width);
+  const Eigen::MatrixXd chance = scaled(of_noise, width);
   // Where the sums hold no more than noise puts there, taking out its mean leaves chance: those directions are unknown.
-  const numerics::Eigenpairs ratio = numerics::generalized_eigenpairs(whole + one, chance + one);
-  const Eigen::MatrixXd& V = ratio.vectors;         // V^T (chance + 1) V = 1
-  const Eigen::MatrixXd back = (chance + one) * V;  // V^-T
+  const numerics::Eigenpairs ratio = generalized_eigenpairs(whole + one, chance + one);
+  const Eigen::MatrixXd& V = ratio.vectors;               // V^T (chance + 1) V = 1
+  const Eigen::MatrixXd back = product(chance + one, V);  // V^-T
   const double least = std::max(kLeastSignal, kChanceSignal / std::sqrt(count));
   Eigen::VectorXd signal = (ratio.values.array() - 1.0).matrix();
   Eigen::VectorXd is_known = (signal.array() > least).cast<double>();
   signal = signal.cwiseProduct(is_known);
-  const Eigen::MatrixXd information = back * signal.asDiagonal() * back.transpose() + one;
-  const Eigen::VectorXd known_b = back * is_known.cwiseProduct(V.transpose() * (width.asDiagonal() * b));
+  const Eigen::MatrixXd information = congruence(back, signal.asDiagonal()) + one;
+  const Eigen::VectorXd in_V = transposed_product(V, width.cwiseProduct(b));
+  const Eigen::VectorXd known_b = product(back, is_known.cwiseProduct(in_V));
 
   LinearEstimate estimate;
-  estimate.theta = width.asDiagonal() *
-                   numerics::solve_symmetric(information, known_b + form.numbers_of(C_prior).cwiseQuotient(width));
+  const Eigen::VectorXd all_b = known_b + form.numbers_of(C_prior).cwiseQuotient(width);
+  estimate.theta = width.cwiseProduct(Eigen::VectorXd(solve_symmetric(information, all_b)));
   const Matrix6 C = form.matrix(estimate.theta);
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
   double size = 0.0;  // of the residuals against W
@@ -115,16 +124,14 @@ LinearEstimate fit_compliance(const std::vector<CompliancePose>& poses, const st
         by_pose * noise.pose * by_pose.transpose() + by_wrench * noise.wrench * by_wrench.transpose();
     const Wide WA = W * columns(form, pose.g);
     size += W.cwiseProduct(covariance).sum() / (6.0 * count);
-    scatter.noalias() += weight[i] * weight[i] * (WA.transpose() * (covariance * WA));
+    scatter += weight[i] * weight[i] * transposed_product(WA, product(covariance, WA));
   }
   // The regressors' noise meets that of the residuals: second order, but all there is when signals are small.
-  scatter = width.asDiagonal() * (scatter + size * of_noise) * width.asDiagonal();
-  const Eigen::MatrixXd known = back * is_known.asDiagonal() * V.transpose();
-  scatter = known * scatter * known.transpose() + one;
-  const Eigen::MatrixXd gain = width.asDiagonal() * numerics::invert_symmetric(information);
-  estimate.covariance = gain * scatter * gain.transpose();
+  const Eigen::MatrixXd known = product(back, product(is_known.asDiagonal(), V.transpose()));
+  scatter = congruence(known, scaled(scatter + size * of_noise, width)) + one;
+  estimate.covariance = scaled(congruence(invert_symmetric(information), scatter), width);
   const auto unknown = static_cast<Eigen::Index>(std::lround(static_cast<double>(n) - is_known.sum()));
-  estimate.unknown = width.asDiagonal() * V.leftCols(unknown);  // eigenvalues grow
+  estimate.unknown = product(width.asDiagonal(), V.leftCols(unknown));  // eigenvalues grow
   return estimate;
 }
 
@@ -142,14 +149,13 @@ std::vector<std::size_t> find_odd_poses(const std::vector<CompliancePose>& poses
   std::vector<double> weight(poses.size(), 1.0), sizes(poses.size());
   for (int step = 0; step < kRobustSteps; ++step) {
     Eigen::MatrixXd N = width.cwiseAbs2().cwiseInverse().asDiagonal();
-    Eigen::VectorXd sum = N * form.numbers_of(inverse(prior));
+    Eigen::VectorXd sum = product(N, form.numbers_of(inverse(prior)));
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      N.noalias() += weight[i] * (A[i].transpose() * A[i]);
-      sum.noalias() += weight[i] * (A[i].transpose() * b[i]);
+      N += weight[i] * transposed_product(A[i], A[i]);
+      sum += weight[i] * transposed_product(A[i], b[i]);
     }
-    const Eigen::VectorXd theta =
-        width.asDiagonal() *
-        numerics::solve_symmetric(width.asDiagonal() * N * width.asDiagonal(), width.asDiagonal() * sum);
+    const Eigen::VectorXd solved = solve_symmetric(scaled(N, width), width.cwiseProduct(sum));
+    const Eigen::VectorXd theta = width.cwiseProduct(solved);
     for (std::size_t i = 0; i < poses.size(); ++i) sizes[i] = (A[i] * theta - b[i]).norm();
     const double limit = kForgiving * std::max(1e-9, numerics::median_deviation(sizes, 6));
     for (std::size_t i = 0; i < poses.size(); ++i) weight[i] = 1.0 / (1.0 + std::pow(sizes[i] / limit, 2));

@@ -1,11 +1,11 @@
 // ReleaseModel: residuals of a swing and their derivatives.
 #include "snug/identification/internal/release_model.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "snug/cup/law.hpp"
 #include "snug/identification/internal/stiffness_form.hpp"
+#include "snug/spatial/matrix6.hpp"
 
 namespace snug::identification::internal {
 Matrix6 sum_of(const std::vector<Matrix6>& bases, const Eigen::VectorXd& theta, Eigen::Index first) {
@@ -50,7 +50,7 @@ ReleaseModel::ReleaseModel(const Release& release, const Unknowns& unknowns, con
   directions_.stiffness = unknowns.stiffness;
   directions_.by_start = true;
   directions_.by_velocity = is_moving;
-  to_S_ = cup::wrench_transform(release.frames.X_SS1).transpose().inverse();
+  to_S_ = inverse(cup::wrench_transform(release.frames.X_SS1).transpose());
   const MeasurementNoise least;
   position_ = std::max(release.noise.position, 1e-6 * least.position);
   rotation_ = std::max(release.noise.rotation, 1e-6 * least.rotation);

@@ -81,9 +81,9 @@ std::vector<MotionError> evaluate_all(const SceneExperiment& experiment, const E
       tried.push_back({m, {}, own[m]});
       const Eigen::MatrixXd& J = at.jacobians[m];
       if (J.cols() == 0) continue;
-      Eigen::MatrixXd normal = J.transpose() * J;
+      Eigen::MatrixXd normal = numerics::transposed_product(J, J);
       normal.diagonal() *= 1.0 + damping[m];
-      tried[m].own -= numerics::solve_symmetric(normal, J.transpose() * at.residuals[m]).col(0);
+      tried[m].own -= numerics::solve_symmetric(normal, numerics::transposed_product(J, at.residuals[m])).col(0);
     }
     std::vector<MotionError> then = errors_of(tried);
     is_settled = true;
@@ -643,13 +643,14 @@ Eigen::MatrixXd SceneSearch::distance_covariance() {
     }
   }
   slopes.rowwise() -= slopes.colwise().mean().eval();
-  const Eigen::MatrixXd S = slopes.transpose() * slopes / std::max(1.0, static_cast<double>(count - 1));
+  const Eigen::MatrixXd S =
+      numerics::transposed_product(slopes, slopes) / std::max(1.0, static_cast<double>(count - 1));
   // A direction with less than a tenth of the curvature of the axes is not seen above the roughness: it gets that much.
   const numerics::Eigenpairs eigen = numerics::symmetric_eigenpairs(H);
   const double least = std::max(0.1 * H.diagonal().cwiseMax(0.0).mean(), 1e-12);
   const Eigen::VectorXd inverse = eigen.values.unaryExpr([least](double v) { return 1.0 / std::max(v, least); });
-  const Eigen::MatrixXd H_inverse = h.asDiagonal() * (eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose());
-  return H_inverse * S * H_inverse.transpose() / static_cast<double>(count);
+  const Eigen::MatrixXd H_inverse = numerics::congruence(eigen.vectors, inverse.asDiagonal());
+  return numerics::scaled(numerics::congruence(H_inverse, S), h) / static_cast<double>(count);
 }
 
 }  // namespace snug::identification::internal

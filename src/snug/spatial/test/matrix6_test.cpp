@@ -1,4 +1,4 @@
-// Matrices of 6 x 6 and rotations against their definitions, singular and opposite cases among them.
+// Small matrices and rotations against their definitions, singular and opposite cases among them.
 #include "snug/spatial/matrix6.hpp"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,21 @@ TEST(Matrix6, InversesAndSolutionsAreWhatTheySay) {
     const double size = inverse(M).norm() * M.norm();
     EXPECT_LT((M * inverse(M) - Matrix6::Identity()).norm(), 1e-13 * size);
     EXPECT_LT((M * solve(M, b) - b).norm(), 1e-13 * size);
+    const Matrix6 S = M * M.transpose();
+    EXPECT_LT((S * solve_symmetric(S, b) - b).norm(), 1e-13 * size * size);
   }
   EXPECT_FALSE(inverse(Matrix6::Zero()).allFinite());
+}
+
+TEST(Matrix3, EigenpairsAscendAndAreWhatTheySay) {
+  Rng rng(2);
+  for (int i = 0; i < 100; ++i) {
+    const Matrix3 half = Matrix3::NullaryExpr([&] { return rng.normal(); }), M = half + half.transpose();
+    const Eigenpairs3 found = symmetric_eigenpairs(M);
+    EXPECT_LT((M * found.vectors - found.vectors * found.values.asDiagonal()).norm(), 1e-13 * M.norm());
+    EXPECT_LT((found.vectors.transpose() * found.vectors - Matrix3::Identity()).norm(), 1e-13);
+    EXPECT_TRUE(found.values[0] <= found.values[1] && found.values[1] <= found.values[2]);
+  }
 }
 
 TEST(Matrix6, KnowsWhatIsPositiveDefinite) {
