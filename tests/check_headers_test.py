@@ -7,6 +7,9 @@ import unittest
 from pathlib import Path
 
 TOOL = Path(__file__).resolve().parent.parent / "tools" / "check_headers.py"
+sys.path.insert(0, str(TOOL.parent))
+from check_headers import chains  # noqa: E402
+
 POSE = "#pragma once\n#include <vector>\nstruct Pose {\n  std::vector<double> numbers;\n};\n"
 
 
@@ -32,6 +35,25 @@ class CheckHeaders(unittest.TestCase):
         self.assertIn("snug/arm/arm.hpp does not compile alone", output)
         self.assertIn("snug/arm/joints.hpp does not compile alone", output)
         self.assertIn("1 of 3 headers compile alone", output)
+
+    def test_header_that_others_include_is_named_and_they_too(self):
+        status, output = self.run_on({"arm/part.hpp": "using Parts = std::vector<double>;\n",
+                                      "arm/arm.hpp": '#include "snug/arm/part.hpp"\nstruct Arm {\n  Parts parts;\n};\n',
+                                      "arm/cell.hpp": '#include <vector>\n#include "snug/arm/arm.hpp"\nstruct Cell {\n  Arm arm;\n};\n'})
+        self.assertEqual(status, 1)
+        for name in ("part", "arm"):
+            self.assertIn(f"snug/arm/{name}.hpp does not compile alone", output)
+        self.assertIn("1 of 3 headers compile alone", output)
+
+    def test_chains_hold_every_header_once_after_one_that_it_includes(self):
+        includes = {"a": set(), "b": {"a"}, "c": {"a", "b"}, "d": {"a"}, "e": {"a", "d"}, "f": set()}
+        found = chains(includes)
+        self.assertEqual(sorted(name for chain in found for name in chain), sorted(includes))
+        self.assertEqual(len(found), 3)  # b and d include each other in neither direction, f stands alone
+        for chain in found:
+            for name, user in zip(chain, chain[1:]):
+                self.assertIn(name, includes[user])
+        self.assertEqual(sorted(chains({"a": {"b"}, "b": {"a"}})), [["a"], ["b"]])
 
     def test_no_headers(self):
         status, output = self.run_on({})

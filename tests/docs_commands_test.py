@@ -5,6 +5,7 @@ A command that takes long is let run for LONG seconds: it has then read its inpu
 Commands that are no tests of the program (make, cmake, git, apt, downloads) are left out.
 """
 import os
+import random
 import re
 import shlex
 import shutil
@@ -116,6 +117,8 @@ class Commands(unittest.TestCase):
             self.serve(line, folder, environment)
             return
         is_long = LONG_COMMANDS.search(line) is not None
+        if is_long:  # on one core: reading takes no more, and what it would compute until it is ended is thrown away
+            line = f"taskset --cpu-list {random.choice(sorted(os.sched_getaffinity(0)))} {line}"
         with subprocess.Popen(line, shell=True, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                               start_new_session=True) as process:
             try:
