@@ -19,6 +19,9 @@ namespace {
 using namespace internal;
 
 constexpr double kFarthest = 1000.0;  ///< m: beyond it, a length is taken for millimetres
+/// Bytes that the numbers of a dataset may take: counts in a damaged file may be anything. Archives of others are
+/// deflated.
+constexpr double kLargestExpansion = 16.0, kSmallest = 32e6;
 
 herr_t keep_name(hid_t, const char* name, const H5L_info_t*, void* out) {
   static_cast<std::vector<std::string>*>(out)->emplace_back(name);
@@ -161,11 +164,19 @@ struct ArchiveReader::Impl {
       fail(index, part, dims_text(dims), wanted + (is_reversed ? ": the order of dimensions is reversed" : ""));
     }
     require_number_type(index, dataset, part);
+    require_room(index, part, dims);
     std::size_t size = 1;
     for (const hsize_t n : dims) size *= n;
     std::vector<double> values(size);
     if (size > 0) check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), part);
     return values;
+  }
+
+  void require_room(std::size_t index, const std::string& part, const Dims& dims) const {
+    double bytes = sizeof(double);
+    for (const hsize_t n : dims) bytes *= static_cast<double>(n);
+    if (bytes > kLargestExpansion * static_cast<double>(std::filesystem::file_size(path)) + kSmallest)
+      fail(index, part, dims_text(dims), "no more values than a file of this size can hold");
   }
 
   void require_number_type(std::size_t index, const Handle& dataset, const std::string& part) const {
@@ -232,6 +243,7 @@ struct ArchiveReader::Impl {
     Table table;
     bool has_time = false;
     const int members = H5Tget_nmembers(type.get());
+    require_room(index, part, {dims[0], static_cast<hsize_t>(std::max(0, members))});
     for (int member = 0; member < members; ++member) {
       char* text = H5Tget_member_name(type.get(), static_cast<unsigned>(member));
       const std::string name = text == nullptr ? "" : text;

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 
+#include <array>
 #include <fstream>
 #include <functional>
 
@@ -243,7 +247,32 @@ TEST(ArchiveReader, RefusesTruncatedFilesAtAnyLength) {
   }
 }
 
+TEST(ArchiveReader, RefusesCountsThatTheFileCannotHold) {
+  const ScratchFolder folder;
+  save_archive(folder / "a.h5", {{example()}});
+  const std::string path = std::string(kForce) + "time";
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  H5Ldelete(file, path.c_str(), H5P_DEFAULT);
+  const std::array<hsize_t, 2> dims{1, hsize_t{1} << 40U}, chunk{1, 1024};
+  const hid_t space = H5Screate_simple(2, dims.data(), nullptr), layout = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(layout, 2, chunk.data());
+  H5Dclose(H5Dcreate2(file, path.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, layout, H5P_DEFAULT));
+  H5Pclose(layout);
+  H5Sclose(space);
+  H5Fclose(file);
+  try {
+    (void)load_archive(folder / "a.h5");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(error.key.find("ft_data/datalog/time"), std::string::npos);
+    EXPECT_EQ(error.got, "1x1099511627776");
+  }
+}
+
 TEST(ArchiveReader, SurvivesChangedBytes) {
+#ifdef __SANITIZE_ADDRESS__
+  const __lsan::ScopedDisabler of_the_library;  // HDF5 1.10 leaks what it made of a damaged object before it gave up
+#endif
   const ScratchFolder folder;
   save_archive(folder / "a.h5", {{example(4)}});  // few samples: most bytes are structure
   const std::string bytes = bytes_of(folder / "a.h5");
