@@ -10,7 +10,7 @@ SOURCES = $(shell find src apps bench tests examples python -name '*.hpp' -o -na
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)
 
-.PHONY: help setup setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python package check \
+.PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python package check \
   format-check clang fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
 
 help: ## list the verbs
@@ -18,22 +18,24 @@ help: ## list the verbs
 
 setup: ## install the Debian and npm packages that are missing (root or sudo)
 	@scripts/install-deps.sh && scripts/install-viewer.sh
+setup-test:
+	@scripts/install-deps.sh && scripts/install-viewer.sh --background
 setup-program:
-	@scripts/install-deps.sh program && scripts/install-viewer.sh
+	@scripts/install-deps.sh program && scripts/install-viewer.sh --background
 setup-python:
-	@scripts/install-deps.sh python && scripts/install-viewer.sh
+	@scripts/install-deps.sh python && scripts/install-viewer.sh --background
 setup-lint:
-	@scripts/install-deps.sh test lint && scripts/install-viewer.sh
+	@scripts/install-deps.sh test lint && scripts/install-viewer.sh --background
 setup-peers:
-	@scripts/install-deps.sh peers && scripts/install-viewer.sh
+	@scripts/install-deps.sh peers && scripts/install-viewer.sh --background
 setup-package:
-	@scripts/install-deps.sh package && scripts/install-viewer.sh
+	@scripts/install-deps.sh package && scripts/install-viewer.sh --background
 
 setup-docs:
 	@scripts/install-deps.sh docs
 
 setup-fuzz:
-	@scripts/install-deps.sh test fuzz && scripts/install-viewer.sh
+	@scripts/install-deps.sh test fuzz && scripts/install-viewer.sh --background
 
 build: setup-program ## build the program as build/snug
 	@$(call configure-build,release,--log-level=WARNING)
@@ -41,7 +43,7 @@ build: setup-program ## build the program as build/snug
 demo: build ## pack the five sequences of the report as they come, and write a report of each
 	@scripts/demo.sh
 
-test: setup ## build and run every test; MODULE=cup for one module's
+test: setup-test ## build and run every test; MODULE=cup for one module's
 	@scripts/test.sh $(MODULE)
 
 acceptance: build ## run the demonstrator's own programs in FOLDER, print README's table of them
@@ -69,13 +71,13 @@ fix: setup-lint ## format every source, apply the safe clang-tidy fixes
 	@clang-format -i $(SOURCES)
 	@$(call configure-build,dev,-DSNUG_WERROR=OFF) && run-clang-tidy -quiet -fix -format -p build-dev -checks='-*,modernize-use-override,modernize-use-nullptr,modernize-use-using,readability-redundant-*,performance-move-const-arg'
 
-san: setup ## tests under the address and undefined-behaviour sanitizers
+san: setup-test ## tests under the address and undefined-behaviour sanitizers
 	@$(call configure-build,asan) && $(call run-tests,asan)
 
-san-fast: setup ## those of the modules that read files and move bodies
+san-fast: setup-test ## those of the modules that read files and move bodies
 	@$(call configure-build,sanitize) && $(call run-tests,sanitize) --output-junit test-results.xml
 
-tsan: setup ## tests under the thread sanitizer
+tsan: setup-test ## tests under the thread sanitizer
 	@$(call configure-build,tsan) && $(call run-tests,tsan)
 
 fuzz: setup-fuzz ## attack every reader with libFuzzer for an hour; TIME=600 (seconds in all), READER=urdf for one
@@ -84,7 +86,7 @@ fuzz: setup-fuzz ## attack every reader with libFuzzer for an hour; TIME=600 (se
 tidy: setup-lint ## clang-tidy over everything
 	@$(call configure-build,tidy)
 
-cover: setup ## which lines the tests reach, by module
+cover: setup-test ## which lines the tests reach, by module
 	@$(call configure-build,coverage) && $(call run-tests,coverage) && python3 tools/coverage.py build-coverage
 
 bench: build ## how fast and how accurate the physics is, beside its targets

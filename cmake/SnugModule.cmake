@@ -1,5 +1,7 @@
-# snug_module(name [COLD] [ALONE] HEADERS ... SOURCES ... DEPENDS modules... LINK libraries... TESTS files... SLOW_TESTS files...)
+# snug_module(name [COLD] [ALONE] HEADERS ... SOURCES ... COLD_SOURCES ... DEPENDS modules... LINK libraries... TESTS files...
+#   SLOW_TESTS files...)
 #
+# COLD says it of all sources, COLD_SOURCES of some: no run spends its time in them (see snug_compile_options).
 # Makes the static library snug::<name> from the folder it is called in and builds the module's tests. DEPENDS lists the modules
 # it may include; tools/check_modules.py holds it to that.
 # Tests are no part of the target `all`: `make test` builds the target `tests`, `make test MODULE=<name>` `<name>_tests`.
@@ -67,20 +69,38 @@ function(snug_precompile set)
   target_precompile_headers(snug_precompiled_${set} PRIVATE ${ARG_HEADERS})
 endfunction()
 
-# The compiler demands the same options for a set and for its users (-Wpedantic, too, hides a feature of the language).
+# The compiler demands the same options and definitions for a set and for its users (-Wpedantic, too, hides a feature of the
+# language).
 function(snug_use_precompiled target set)
   if(TARGET snug_precompiled_${set})
     target_precompile_headers(${target} REUSE_FROM snug_precompiled_${set})
+    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:snug_precompiled_${set},COMPILE_DEFINITIONS>)
   endif()
 endfunction()
 
 snug_find_dependency(Eigen3::Eigen find_package REQUIRED)
 set(SNUG_LIBRARY_HEADERS
     <snug/spatial/pose.hpp> <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU>
-    <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <memory> <numbers> <optional> <span>
-    <string> <string_view> <utility> <variant> <vector>)
-snug_precompile(library LIBRARY LINK Eigen3::Eigen HEADERS ${SNUG_LIBRARY_HEADERS})
-snug_precompile(cold_library LIBRARY COLD LINK Eigen3::Eigen HEADERS ${SNUG_LIBRARY_HEADERS})
+    <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <mutex> <numbers>
+    <optional> <set> <span> <sstream> <string> <string_view> <thread> <utility> <variant> <vector>)
+set(SNUG_LIBRARY_LINK Eigen3::Eigen)
+set(SNUG_COLD_HEADERS <fstream>)
+set(SNUG_COLD_LINK)
+if(SNUG_FAST_BUILD)
+  # A project of few modules may have neither. JSON costs half a second where it is not used: cold code nearly always uses it.
+  snug_find_dependency(fmt::fmt find_package QUIET)
+  snug_find_dependency(nlohmann_json::nlohmann_json find_package QUIET)
+  if(TARGET fmt::fmt)
+    list(APPEND SNUG_LIBRARY_HEADERS <fmt/format.h>)
+    list(APPEND SNUG_LIBRARY_LINK fmt::fmt)
+  endif()
+  if(TARGET nlohmann_json::nlohmann_json)
+    list(APPEND SNUG_COLD_HEADERS <nlohmann/json.hpp>)
+    list(APPEND SNUG_COLD_LINK nlohmann_json::nlohmann_json)
+  endif()
+endif()
+snug_precompile(library LIBRARY LINK ${SNUG_LIBRARY_LINK} HEADERS ${SNUG_LIBRARY_HEADERS})
+snug_precompile(cold_library LIBRARY COLD LINK ${SNUG_LIBRARY_LINK} ${SNUG_COLD_LINK} HEADERS ${SNUG_LIBRARY_HEADERS} ${SNUG_COLD_HEADERS})
 
 if(SNUG_TESTS)
   add_custom_target(snug_tests)  # what `make test` builds
@@ -118,8 +138,21 @@ function(snug_add_module name)
   add_subdirectory(${PROJECT_SOURCE_DIR}/src/snug/${name} ${PROJECT_BINARY_DIR}/src/snug/${name})
 endfunction()
 
+# snug_compile_library(target [COLD] [ALONE]): ALONE where names of a library's files collide: each is compiled by itself.
+function(snug_compile_library target)
+  snug_compile_options(${target} LIBRARY ${ARGN})
+  if("COLD" IN_LIST ARGN)
+    snug_use_precompiled(${target} cold_library)
+  else()
+    snug_use_precompiled(${target} library)
+  endif()
+  if(SNUG_FAST_BUILD AND NOT "ALONE" IN_LIST ARGN)  # two fifths less work
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  endif()
+endfunction()
+
 function(snug_module name)
-  cmake_parse_arguments(ARG "ALONE;COLD" "" "HEADERS;SOURCES;DEPENDS;LINK;TESTS;SLOW_TESTS" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE;COLD" "" "HEADERS;SOURCES;COLD_SOURCES;DEPENDS;LINK;TESTS;SLOW_TESTS" ${ARGN})
   set(needs)
   foreach(module IN LISTS ARG_DEPENDS)
     snug_add_module(${module})
@@ -140,15 +173,21 @@ function(snug_module name)
   target_compile_features(snug_${name} PUBLIC cxx_std_20)
   list(TRANSFORM ARG_DEPENDS PREPEND snug::)
   target_link_libraries(snug_${name} PUBLIC ${ARG_DEPENDS} Eigen3::Eigen PRIVATE ${ARG_LINK})
-  if(ARG_COLD)
-    snug_compile_options(snug_${name} LIBRARY COLD)
-    snug_use_precompiled(snug_${name} cold_library)
+  set(manner)
+  foreach(word IN ITEMS ALONE COLD)
+    if(ARG_${word})
+      list(APPEND manner ${word})
+    endif()
+  endforeach()
+  snug_compile_library(snug_${name} ${manner})
+  if(ARG_COLD_SOURCES AND SNUG_FAST_BUILD)
+    add_library(snug_${name}_cold OBJECT ${ARG_COLD_SOURCES})
+    target_include_directories(snug_${name}_cold PRIVATE ${PROJECT_SOURCE_DIR}/src)
+    target_link_libraries(snug_${name}_cold PRIVATE ${ARG_DEPENDS} Eigen3::Eigen ${ARG_LINK})
+    snug_compile_library(snug_${name}_cold COLD)
+    target_sources(snug_${name} PRIVATE $<TARGET_OBJECTS:snug_${name}_cold>)
   else()
-    snug_compile_options(snug_${name} LIBRARY)
-    snug_use_precompiled(snug_${name} library)
-  endif()
-  if(SNUG_FAST_BUILD AND NOT ARG_ALONE)  # two fifths less work; ALONE: names of their files collide
-    set_target_properties(snug_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    target_sources(snug_${name} PRIVATE ${ARG_COLD_SOURCES})
   endif()
   if(SNUG_TESTS)
     add_custom_target(${name}_tests)  # what `make test MODULE=<name>` builds

@@ -1,7 +1,7 @@
 # snug_embed_viewer(target source): builds the page of viewer/ into the build folder and has `source` of `target` embed it.
 #
-# npm only runs the build here; its packages are fetched by the set-up step (`make setup`), never while configuring or
-# building. With SNUG_VIEWER off the program is built without the page and says so when it is needed.
+# npm only runs the build here; its packages are fetched by the set-up step (`make setup`), never by configuring or
+# building: at most these wait for it. With SNUG_VIEWER off the program is built without the page and says so when it is needed.
 option(SNUG_VIEWER "Build the viewer's page into the program; needs node 18 and the packages of viewer/" ON)
 
 # snug_viewer_page(): target snug_viewer_page, which builds the page; SNUG_VIEWER_PAGE in the caller is its file.
@@ -14,16 +14,17 @@ function(snug_viewer_page)
   endif()
   find_program(SNUG_NPM npm)
   mark_as_advanced(SNUG_NPM)
-  if(NOT SNUG_NPM OR NOT EXISTS ${viewer}/node_modules)
+  # No packages yet is fine while they are being fetched.
+  execute_process(COMMAND flock -n -s ${viewer}/package-lock.json true RESULT_VARIABLE is_being_fetched)
+  if(NOT SNUG_NPM OR (NOT is_being_fetched AND NOT EXISTS ${viewer}/node_modules))
     message(FATAL_ERROR "The viewer cannot be built: npm or viewer/node_modules is missing. Run `make setup`, "
                         "or configure with -DSNUG_VIEWER=OFF for a program without reports.")
   endif()
   file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${viewer}/src/*)
   file(GLOB settings CONFIGURE_DEPENDS ${viewer}/*.json ${viewer}/*.html ${viewer}/*.ts ${viewer}/*.mjs)
   add_custom_command(OUTPUT ${page}
-    COMMAND ${CMAKE_COMMAND} -E env SNUG_VIEWER_OUT=${PROJECT_BINARY_DIR}/viewer ${SNUG_NPM} run --silent build
+    COMMAND ${PROJECT_SOURCE_DIR}/scripts/build-viewer.sh ${PROJECT_BINARY_DIR}/viewer
     DEPENDS ${inputs} ${settings}
-    WORKING_DIRECTORY ${viewer}
     COMMENT "Building the viewer's page"
     VERBATIM)
   add_custom_target(snug_viewer_page DEPENDS ${page})
