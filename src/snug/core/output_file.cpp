@@ -26,6 +26,7 @@ namespace snug {
 namespace {
 
 constexpr const char* kDraftSuffix = ".snug-part";
+constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP};
 
 /// Paths of drafts for the handler of signals, which may neither lock nor allocate. Beyond so many at a time (no verb
 /// has them) a draft may be left behind.
@@ -69,6 +70,23 @@ void remove_drafts(int signal) {
   ::raise(signal);  // SA_RESETHAND: now it ends the program
 }
 
+/// Holds back the signals that remove drafts: a draft that exists is registered, or is about to be when they come.
+class SignalsHeld {
+ public:
+  SignalsHeld() {
+    sigset_t held;
+    ::sigemptyset(&held);
+    for (const int signal : kEnding) ::sigaddset(&held, signal);
+    ::pthread_sigmask(SIG_BLOCK, &held, &before_);
+  }
+  ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsHeld(const SignalsHeld&) = delete;
+  SignalsHeld& operator=(const SignalsHeld&) = delete;
+
+ private:
+  sigset_t before_ = {};
+};
+
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw InputError(path.string(), "", why, "a file that can be written");
 }
@@ -106,11 +124,13 @@ Descriptor create_draft(const std::filesystem::path& path, const std::filesystem
 /// The draft's name and its open, locked file; removed with the object unless it was moved to its place.
 class Draft {
  public:
-  Draft(const std::filesystem::path& path, std::filesystem::path location)
-      : location_(std::move(location)), descriptor_(create_draft(path, location_)) {
+  Draft(const std::filesystem::path& path, std::filesystem::path location) : location_(std::move(location)) {
+    const SignalsHeld held;
+    descriptor_ = create_draft(path, location_);
     registration_.set(location_.string());
   }
   ~Draft() {
+    const SignalsHeld held;
     registration_.reset();
     if (!is_moved_ && names_file(location_, descriptor_.get())) ::unlink(location_.c_str());
   }
@@ -123,6 +143,7 @@ class Draft {
       errno = ESTALE;  // removed, or replaced where the file system knows no locks
       return false;
     }
+    const SignalsHeld held;
     registration_.reset();
     if (::rename(location_.c_str(), place.c_str()) != 0) return false;
     location_ = place;
@@ -230,7 +251,7 @@ void OutputFile::publish() {
 }
 
 void remove_drafts_when_interrupted() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : kEnding) {
     struct sigaction before = {}, action = {};
     if (::sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) continue;  // nohup, background jobs
     action.sa_handler = remove_drafts;

@@ -274,6 +274,28 @@ TEST(OutputFile, RemovesDraftsWhenTheProgramIsInterrupted) {
   EXPECT_EQ(WEXITSTATUS(status), 7) << "a program that was started to ignore the signal does";
 }
 
+TEST(OutputFile, RemovesDraftsWheneverTheInterruptComes) {
+  const ScratchFolder folder;
+  for (int round = 0; round < 60; ++round) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      remove_drafts_when_interrupted();
+      for (int i = 0;; ++i) {
+        OutputFile file(folder / "a");
+        if (i % 2 == 0) file.publish();
+      }
+    }
+    while (!fs::exists(folder / "a")) ::usleep(100);
+    ::usleep(static_cast<useconds_t>(37 * round));
+    ::kill(child, SIGTERM);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+    ASSERT_EQ(folder.names(), Names{"a"}) << "round " << round;
+    fs::remove(folder / "a");
+  }
+}
+
 TEST(OutputFile, SaysSoWhenItsDraftOrFolderIsGone) {
   const ScratchFolder folder;
   fs::create_directory(folder / "sub");
