@@ -76,8 +76,11 @@ class RunChecks(unittest.TestCase):
             Machine().check([Check("tests", "1", results=str(results))])
             self.assertFalse(results.exists())
 
-    def test_all_fit_on_an_idle_machine(self):
-        self.assertLess(sum(check.minutes for check in run_checks.CHECKS), run_checks.MINUTES)
+    def test_each_that_may_be_left_out_fits_behind_the_others_on_an_idle_machine(self):
+        always = sum(check.minutes for check in run_checks.CHECKS if not check.may_be_left_out)
+        for check in run_checks.CHECKS:
+            if check.may_be_left_out:
+                self.assertLess(always + check.minutes, run_checks.MINUTES, check.name)
 
 
 if __name__ == "__main__":
