@@ -143,7 +143,7 @@ PreparedProgram prepare(Program program, ControllerSettings settings) {
     plan.row_limits.push_back(find_limits(program, row, settings.limits));
     const std::optional<Swing> swing = swing_of(program.waypoints[row].name);
     plan.held_smoothing.push_back(swing ? Smoothing{swing->slow, 0.5 * swing->fast}
-                                        : Smoothing{settings.fast.held.window, settings.fast.held.echo});
+                                        : Smoothing{settings.fast.held.window, settings.fast.held.shaper_delay});
   }
   plan.program = std::move(program);
   plan.settings = std::move(settings);

@@ -177,7 +177,7 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
   if (waypoint.io.vacuum) {
     const Smoothing& smoothing = plan.held_smoothing[static_cast<std::size_t>(row)];
     pace.window = smoothing.window;
-    pace.echo = smoothing.echo;
+    pace.shaper_delay = smoothing.shaper_delay;
   }
   if (is_contact_row(waypoint.name)) {
     const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
@@ -187,7 +187,7 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
   if (is_insertion(waypoint)) pace = fast.insert;
   if (waypoint.io.vacuum && is_plumb(X_WE, waypoint.X_WE)) {  // swings only where the box is held by its side
     if (std::abs(X_WE.R(2, 2)) > kUpright) pace.window = std::min(pace.window, fast.insert.window);
-    pace.echo = 0.0;
+    pace.shaper_delay = 0.0;
   }
   pace.max_speed *= fast.tempo;
   pace.max_turn_speed *= fast.tempo;

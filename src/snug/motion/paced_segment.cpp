@@ -44,7 +44,7 @@ PacedSegment::PacedSegment(const Way& way, const Pace& pace, const PathLimits* o
     before = after;
   }
   if (others != nullptr) others->limit(way, rates, accelerations);
-  profile_ = PathProfile(rates, accelerations, {pace.window, pace.echo});
+  profile_ = PathProfile(rates, accelerations, {pace.window, pace.shaper_delay});
 }
 
 PacedSegment::Increment PacedSegment::increment(double t) const noexcept {

@@ -27,7 +27,7 @@ struct Pace {
   double max_turn_speed = 2.5;         ///< rad/s
   double max_turn_acceleration = 5.0;  ///< rad/s^2
   double window = 0.1;                 ///< s, over which the motion is averaged (Smoothing)
-  double echo = 0.0;                   ///< s, by which half of it comes later (Smoothing)
+  double shaper_delay = 0.0;           ///< s, by which half of it comes later (Smoothing)
   bool operator==(const Pace&) const = default;
 };
 

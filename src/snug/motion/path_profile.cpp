@@ -19,7 +19,8 @@ PathProfile::PathProfile(std::span<const double, kPathParts> rates, std::span<co
     : smoothing_(smoothing) {
   SNUG_CHECK(std::ranges::all_of(accelerations, is_positive) && is_positive(smoothing.window),
              "accelerations and window must be finite and positive");
-  SNUG_CHECK(std::isfinite(smoothing.echo) && smoothing.echo >= 0.0, "an echo comes later");
+  SNUG_CHECK(std::isfinite(smoothing.shaper_delay) && smoothing.shaper_delay >= 0.0,
+             "the second half of a motion comes later");
   SNUG_CHECK(std::ranges::all_of(rates, [](double rate) { return rate > 0.0; }), "speeds along a way must be positive");
   // Squares of the rates at the ends of the parts: below the limits of both neighbours, reachable from either side.
   std::array<double, kPathParts + 1> square{};
@@ -59,8 +60,8 @@ PathProfile::Sample PathProfile::averaged(double t) const noexcept {
 PathProfile::Sample PathProfile::sample(double t) const noexcept {
   if (t >= duration()) return {1.0, 0.0};
   Sample sample = averaged(t);
-  if (smoothing_.echo > 0.0) {
-    const Sample later = averaged(t - smoothing_.echo);
+  if (smoothing_.shaper_delay > 0.0) {
+    const Sample later = averaged(t - smoothing_.shaper_delay);
     sample = {0.5 * (sample.share + later.share), 0.5 * (sample.rate + later.rate)};
   }
   sample.share = std::clamp(sample.share, 0.0, 1.0);

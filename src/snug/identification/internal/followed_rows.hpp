@@ -16,7 +16,7 @@ using RowCounts = std::vector<std::vector<Eigen::Index>>;
                                    const std::vector<double>& until);
 [[nodiscard]] RowCounts fewer(const RowCounts& a, const RowCounts& b);
 [[nodiscard]] double total(const RowCounts& rows);
-/// Zero in the residuals of the recording that is `index` in the list of `rows`, but for its own unknowns' rows.
+/// Sets the residuals of a recording to zero beyond the first `rows` of each of its bodies, so that they do not count.
 void keep_rows(const SceneExperiment& experiment, std::size_t motion, const std::vector<Eigen::Index>& rows,
                Eigen::VectorXd& residuals);
 

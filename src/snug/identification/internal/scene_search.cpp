@@ -1,8 +1,7 @@
-// SceneSearch: on the mean cost without derivatives, on residuals with differences.
+// SceneSearch: the mean cost of points, searches of it without derivatives, errors and covariance at what was found.
 #include "snug/identification/internal/scene_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -16,20 +15,7 @@ namespace snug::identification::internal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kRescuePoints = 20;       // scattered for each free parameter when a fit fails
 constexpr double kFirstSubplex = 0.05;  // of the span
-constexpr double kAlways = std::numeric_limits<double>::infinity();
-constexpr std::array kHorizons = {0.125, 0.25, 0.5, 0.75};  // of a recording, fitted before all of it
-constexpr int kRounds = 4;                                  // over all of it, at most
-constexpr double kSettled = 1.0, kSettledLast = 0.1;        // of a sum of squares, where a search ends
-constexpr double kStepDeviations = 3.0;                     // of differences, in standard errors
-constexpr double kLeastStep = 1e-3;                         // of the step that a task names
-constexpr double kMostStep = 0.05;                          // of the span
-constexpr double kMoreRows = 1.02;                          // of those of the last round, for another one
-constexpr double kLarger = 6.0;                             // steps, where what they do is rough
-constexpr double kLongSimulation = 1000.0;                  // s, for one difference of each parameter: then secants
-constexpr int kSecantSteps = 10;                            // of a search with secants, a simulation each
-constexpr double kGoodEnough = 1.2;                         // misfit, for no other start to be tried
 
 std::string identity_of(const SceneExperiment& experiment) {
   const model::SceneTask& task = experiment.task();
@@ -147,155 +133,6 @@ Eigen::VectorXd SceneSearch::free_of(const Eigen::VectorXd& values) const {
   return result;
 }
 
-SceneSearch::Fitted SceneSearch::unfitted(const Eigen::VectorXd& start) const {
-  Fitted at;
-  at.x = start;
-  at.step = step_;
-  for (const std::size_t m : fitted_) at.own.push_back(experiment_.term_of(m).own);
-  at.rows = at.straight = fitted_rows_;
-  return at;
-}
-
-numerics::BatchedProblem SceneSearch::problem(const Fitted& at, double until, const Eigen::VectorXd& prior) const {
-  numerics::BatchedProblem problem;
-  problem.start = at.x;
-  problem.lower = lower_, problem.upper = upper_, problem.step = at.step;
-  for (std::size_t i = 0; i < fitted_.size(); ++i) {
-    problem.terms.push_back(experiment_.term_of(fitted_[i]));
-    problem.terms.back().own = at.own[i];
-  }
-  if (prior.size() > 0) problem.terms.push_back({prior.size(), {}, {}, {}});
-  problem.evaluate = [this, until, prior, rows = at.rows,
-                      start = at.x](const std::vector<numerics::BatchedProblem::Job>& batch) {
-    std::vector<Eigen::VectorXd> points;
-    std::vector<SceneExperiment::Job> jobs;
-    for (const numerics::BatchedProblem::Job& job : batch) {
-      if (job.term >= fitted_.size()) continue;
-      // Jobs of one point stand near each other.
-      const Eigen::VectorXd values = full(job.shared);
-      std::size_t place = points.size();
-      for (std::size_t back = 1; back <= std::min<std::size_t>(3, points.size()); ++back)
-        if (points[points.size() - back] == values) place = points.size() - back;
-      if (place == points.size() && !points.empty() && points.front() == values) place = 0;
-      if (place == points.size()) points.push_back(values);
-      jobs.push_back({place, fitted_[job.term], job.own});
-    }
-    evaluations_ += static_cast<int>(points.size());
-    if (options_.progress) options_.progress({evaluations_, best_cost_, "least squares"});
-    std::vector<MotionError> errors = experiment_.evaluate(points, jobs, until);
-    std::vector<Eigen::VectorXd> residuals;
-    std::size_t next = 0;
-    for (const numerics::BatchedProblem::Job& job : batch) {
-      if (job.term >= fitted_.size()) {
-        residuals.emplace_back((job.shared - start).cwiseQuotient(prior));
-        continue;
-      }
-      Eigen::VectorXd& r = errors[next++].residuals;
-      keep_rows(experiment_, fitted_[job.term], rows[job.term], r);
-      residuals.push_back(std::move(r));
-    }
-    return residuals;
-  };
-  return problem;
-}
-
-Neighbourhood SceneSearch::look_around(const Fitted& at, double until) const {
-  Neighbourhood found;
-  const auto n = static_cast<std::size_t>(at.x.size());
-  found.span.resize(at.x.size());
-  found.up.resize(n), found.down.resize(n), found.is_between.resize(n);
-  std::vector<std::size_t> all(n);
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  look(at, until, all, found);
-  return found;
-}
-
-void SceneSearch::look(const Fitted& at, double until, const std::vector<std::size_t>& along,
-                       Neighbourhood& found) const {
-  std::vector<Eigen::VectorXd> points{full(at.x)};
-  for (const std::size_t k : along) {
-    const auto j = static_cast<Eigen::Index>(k);
-    const double up = std::min(at.x[j] + at.step[j], upper_[j]), down = std::max(at.x[j] - at.step[j], lower_[j]);
-    found.span[j] = up - down;
-    found.is_between[k] = up > at.x[j] && down < at.x[j];
-    for (const double value : {up, down}) {
-      Eigen::VectorXd x = at.x;
-      x[j] = value;
-      points.push_back(full(x));
-    }
-  }
-  std::vector<SceneExperiment::Job> jobs;
-  for (std::size_t p = 0; p < points.size(); ++p)
-    for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({p, fitted_[i], at.own[i]});
-  evaluations_ += static_cast<int>(points.size());
-  if (options_.progress) options_.progress({evaluations_, best_cost_, "least squares"});
-  std::vector<MotionError> errors = experiment_.evaluate(points, jobs, until);
-  const auto take = [&](std::size_t point) {
-    std::vector<Eigen::VectorXd> residuals;
-    for (std::size_t i = 0; i < fitted_.size(); ++i)
-      residuals.push_back(std::move(errors[point * fitted_.size() + i].residuals));
-    return residuals;
-  };
-  found.middle = take(0);
-  for (std::size_t k = 0; k < along.size(); ++k) {
-    found.up[along[k]] = take(1 + 2 * k);
-    found.down[along[k]] = take(2 + 2 * k);
-  }
-}
-
-SceneSearch::Straight SceneSearch::find_straight_rows(double until, const RowCounts& within, bool may_widen,
-                                                      Fitted& at) const {
-  Straight found{look_around(at, until), within};
-  if (std::ranges::any_of(found.around.middle, [](const Eigen::VectorXd& r) { return r.size() == 0; })) return found;
-  std::vector<bool> is_bent;
-  found.rows = find_straight(experiment_, fitted_, found.around, within, is_bent);
-  if (!may_widen) return found;
-  // What is rough from near may be straight at large.
-  Fitted wider = at;
-  std::vector<std::size_t> along;
-  for (std::size_t k = 0; k < is_bent.size(); ++k) {
-    const auto j = static_cast<Eigen::Index>(k);
-    const double most = kMostStep * (upper_[j] - lower_[j]);
-    if (!is_bent[k] || at.step[j] >= most) continue;
-    wider.step[j] = std::min(kLarger * at.step[j], most);
-    along.push_back(k);
-  }
-  if (along.empty()) return found;
-  Neighbourhood wide = found.around;
-  look(wider, until, along, wide);
-  const RowCounts rows = find_straight(experiment_, fitted_, wide, within, is_bent);
-  if (total(rows) <= total(found.rows)) return found;
-  at.step = wider.step;
-  return {std::move(wide), rows};
-}
-
-SceneSearch::Derivatives SceneSearch::differentiate() const {
-  Fitted start = unfitted(free_of(best_));
-  start.rows = find_straight_rows(kAlways, fitted_rows_, false, start).rows;
-  const numerics::BatchedDerivatives found = numerics::differentiate(problem(start, kAlways, {}), start.x, start.own);
-  const Eigen::Index n = start.x.size();
-  Derivatives result{numerics::shared_information(found, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-  const model::SceneTask& task = experiment_.task();
-  const int positions = task.use_position ? 3 : 0;
-  double samples = 0.0;
-  for (std::size_t i = 0; i < found.jacobians.size(); ++i) {
-    const Eigen::MatrixXd& J = found.jacobians[i];
-    if (J.cols() < n) continue;
-    const std::vector<SceneExperiment::BodyRows> bodies = experiment_.rows_of(fitted_[i]);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      for (Eigen::Index row = 0; row < start.rows[i][b]; ++row) {
-        Eigen::VectorXd& sum = row % bodies[b].each < positions ? result.position_rms : result.rotation_rms;
-        sum += J.row(bodies[b].first + row).head(n).transpose().cwiseAbs2();
-      }
-      samples += count_samples(fitted_[i], b, 0, start.rows[i][b]);
-    }
-  }
-  const double rotation_noise = task.position_noise / task.rotation_position_ratio;
-  result.position_rms = task.position_noise * (result.position_rms / std::max(1.0, samples)).cwiseSqrt();
-  result.rotation_rms = rotation_noise * (result.rotation_rms / std::max(1.0, samples)).cwiseSqrt();
-  return result;
-}
-
 double SceneSearch::count_samples(std::size_t motion, std::size_t body, Eigen::Index begin, Eigen::Index end) const {
   const SceneExperiment::BodyRows rows = experiment_.rows_of(motion)[body];
   double count = 0.0;
@@ -377,111 +214,6 @@ std::string SceneSearch::search_distance() {
     const numerics::SearchResult found = numerics::minimize_bounded(local, free_of(best_), lower_, upper_, search);
     message = (settings.global > 0 ? message + "; local: " : "local: ") + found.message;
   }
-  return message;
-}
-
-bool SceneSearch::solve_stage(double horizon, bool is_last, Eigen::MatrixXd& covariance, Fitted& at) const {
-  std::vector<double> ends;
-  for (const std::size_t m : fitted_) {
-    const std::vector<double>& times = experiment_.motions()[m].times;
-    ends.push_back(is_last ? kAlways : times.front() + horizon * (times.back() - times.front()));
-  }
-  const double until = *std::max_element(ends.begin(), ends.end());
-  const auto [around, straight] =
-      find_straight_rows(until, fewer(fitted_rows_, rows_until(experiment_, fitted_, ends)), true, at);
-  at.straight = straight;
-  if (std::ranges::any_of(around.middle, [](const Eigen::VectorXd& r) { return r.size() == 0; })) return false;
-  // What nothing is known of yet may be far off and still come near.
-  at.rows =
-      covariance.size() > 0 ? fewer(at.straight, find_followed(experiment_, fitted_, around, covariance)) : at.straight;
-  const Eigen::VectorXd prior = is_last ? Eigen::VectorXd() : Eigen::VectorXd(0.5 * (upper_ - lower_));
-  numerics::BatchedOptions options;
-  const auto each = static_cast<int>(2 * free_.size() + 1);
-  options.max_iterations = std::max(1, experiment_.task().search.local / each);
-  options.tolerance = (is_last ? kSettledLast : kSettled) / std::max(1.0, total(at.rows));
-  options.secants = each * std::min(until, experiment_.longest()) > kLongSimulation;
-  if (options.secants) options.max_iterations = std::max(options.max_iterations, kSecantSteps);
-  const numerics::BatchedProblem from = problem(at, until, prior);
-  const numerics::BatchedResult found = numerics::solve_batched(from, options);
-  at.message = found.message;
-  if (found.information.size() == 0) return false;
-  at.x = found.x;
-  at.own.assign(found.own.begin(), found.own.begin() + static_cast<std::ptrdiff_t>(fitted_.size()));
-  at.derivatives = found.at;
-  const double misfit = std::max(1.0, found.cost / std::max(1.0, total(at.rows)));
-  const auto scale = step_.asDiagonal();  // units differ by orders
-  covariance = misfit * (scale * numerics::invert_symmetric(scale * found.information * scale) * scale);
-  const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  at.step = (kStepDeviations * deviation)
-                .cwiseMax(kLeastStep * step_)
-                .cwiseMin(step_.cwiseMax(kMostStep * (upper_ - lower_)));
-  at.is_solved = true;
-  return true;
-}
-
-SceneSearch::Fitted SceneSearch::least_squares_from(const Eigen::VectorXd& start) const {
-  Fitted at = unfitted(start);
-  Eigen::MatrixXd covariance;
-  if (!experiment_.task().only_final_state) {
-    for (const double horizon : kHorizons)
-      if (!solve_stage(horizon, false, covariance, at)) return at;
-  }
-  // More rows count as parameters come nearer, and steps are as small as what they are known to.
-  for (int round = 0; round < kRounds; ++round) {
-    const double before = total(at.rows);
-    if (!solve_stage(1.0, true, covariance, at)) return at;
-    if (round > 0 && total(at.rows) <= kMoreRows * before) break;
-  }
-  const auto [around, straight] = find_straight_rows(kAlways, fitted_rows_, false, at);
-  at.straight = excused(experiment_, fitted_, around, fewer(at.rows, straight), fitted_rows_);
-  return at;
-}
-
-double SceneSearch::bounded_misfit(const Fitted& at) const {
-  constexpr double kMost = 100.0;  // of a number: what is farther off is off
-  std::vector<SceneExperiment::Job> jobs;
-  for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], at.own[i]});
-  const std::vector<Eigen::VectorXd> points{full(at.x)};
-  std::vector<MotionError> errors = experiment_.evaluate(points, jobs);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < fitted_.size(); ++i) {
-    if (!errors[i].failure.empty()) return std::numeric_limits<double>::infinity();
-    keep_rows(experiment_, fitted_[i], at.straight[i], errors[i].residuals);
-    sum += errors[i].residuals.cwiseAbs2().cwiseMin(kMost).sum();
-  }
-  return sum / std::max(1.0, total(at.straight));
-}
-
-std::string SceneSearch::search_squares(double rescue) {
-  const model::SearchSettings& settings = experiment_.task().search;
-  const Eigen::VectorXd start = free_of(best_);
-  double least = std::numeric_limits<double>::infinity();
-  std::string message;
-  const auto go_from = [&](const Eigen::VectorXd& from) {
-    Fitted found = least_squares_from(from);
-    const double misfit = found.is_solved ? bounded_misfit(found) : std::numeric_limits<double>::infinity();
-    if (message.empty()) message = found.is_solved ? found.message : "no simulation from there: " + found.message;
-    if (!(misfit < least)) return;
-    least = misfit;
-    best_ = full(found.x);
-    message = found.message;
-    result_ = std::move(found);
-  };
-  go_from(start);
-  int points = settings.scatter;
-  if (points == 0 && least > rescue) points = kRescuePoints * static_cast<int>(free_.size());
-  if (points == 0) return message;
-  const Eigen::VectorXd after_first = best_;
-  // The three best of the points scattered are starts of their own.
-  const std::vector<Eigen::VectorXd> tried = scattered(points);
-  best_cost_ = std::numeric_limits<double>::infinity();
-  const std::vector<double> found = costs(tried, "scatter");
-  std::vector<std::size_t> order(tried.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return found[a] < found[b]; });
-  best_ = after_first;
-  for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && least > kGoodEnough; ++k)
-    go_from(tried[order[k]]);
   return message;
 }
 

@@ -1,6 +1,7 @@
 // SceneSearch: the searches of identify_scene, with what they have found so far.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "snug/numerics/batched_least_squares.hpp"
 
 namespace snug::identification::internal {
+
+inline constexpr double kAlways = std::numeric_limits<double>::infinity();  ///< s, the end of no recording
 
 struct SplitErrors {
   SceneError fitted, held_back;

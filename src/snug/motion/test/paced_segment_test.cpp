@@ -52,8 +52,8 @@ TEST(PathProfile, KeepsSpeedAccelerationAndJerkAtEveryInstant) {
     auto rates = all(kInfinity);
     for (double& rate : rates) rate = rng.uniform(0.2, 2.0);
     const double acceleration = rng.uniform(0.5, 20.0), window = rng.uniform(0.05, 0.4);
-    const double echo = i % 2 == 0 ? 0.0 : rng.uniform(0.05, 0.3);
-    const PathProfile profile(rates, all(acceleration), {window, echo});
+    const double delay = i % 2 == 0 ? 0.0 : rng.uniform(0.05, 0.3);
+    const PathProfile profile(rates, all(acceleration), {window, delay});
     const double dt = 1e-4;
     double last = 0.0, last_rate = 0.0, last_change = 0.0;
     for (double t = dt; t < profile.duration() + 0.01; t += dt) {
@@ -107,12 +107,12 @@ TEST(PathProfile, LeavesTheShareOfASwingThatItsWindowLeaves) {
   for (const double period : {0.25, 0.125}) EXPECT_LT(residual_swing(shaped, period), 2e-4) << period;
 }
 
-TEST(PathProfile, WithAnEchoLeavesNothingOfASecondSwing) {
+TEST(PathProfile, WithAShaperLeavesNothingOfASecondSwing) {
   const double slow = 0.42, fast = 0.31;
   const PathProfile once(all(1.0), all(6.0), {slow, 0.0}), twice(all(1.0), all(6.0), {slow, 0.5 * fast});
-  EXPECT_GT(residual_swing(once, fast), 0.005) << "without the echo it swings";
+  EXPECT_GT(residual_swing(once, fast), 0.005) << "without the shaper it swings";
   for (const double period : {slow, fast}) EXPECT_LT(residual_swing(twice, period), 2e-4) << period;
-  // An echo leaves |cos(pi e / T)| of any swing, 2e-4: as above.
+  // A shaper leaves |cos(pi delay / T)| of any swing, 2e-4: as above.
   for (double period = 0.2; period < 0.5; period += 0.02) {
     const double left = std::abs(std::cos(std::numbers::pi * 0.5 * fast / period));
     EXPECT_NEAR(residual_swing(twice, period), left * residual_swing(once, period), 2e-4) << period;

@@ -114,8 +114,8 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
     ++result.iterations;
     result.residual = change;
     if (change <= residuals.wanted) {
-      // A contact satisfies its law right after its visit, but for the normal velocity that its own friction brings in;
-      // later visits moved it by at most the sum of their changes.
+      // Right after its visit a contact misses its law by about its own change (a sliding one, visited once: by what
+      // friction changes in the normal velocity); later visits moved it by at most the sum of their changes.
       result.residual = change * static_cast<double>(end - first + 1);
       if (result.residual <= residuals.wanted) return result;
       result.residual = worst_residual(first, end, u);
