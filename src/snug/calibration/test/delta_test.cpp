@@ -8,6 +8,7 @@
 #include "snug/calibration/test/nominal.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/robot/kinematics.hpp"
 
@@ -137,12 +138,12 @@ TEST(CalibrationYaml, WrittenInEitherReadingReadsBack) {
     joint.X_SJ.p += 0.001 * Vector3(rng.normal(), rng.normal(), rng.normal());
     joint.X_SJ.R = joint.X_SJ.R * exp_rotation(0.01 * Vector3(rng.normal(), rng.normal(), rng.normal()));
   }
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_calibration_test.yaml";
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "arm.yaml";
   for (const AngleReading reading : {AngleReading::Urdf, AngleReading::EulerXyz}) {
     write_file(path, format_calibration_yaml(arm, reading));
     EXPECT_LT(largest_frame_shift(load_calibration_yaml(path, reading, nominal()), arm).position, 1e-12);
   }
-  std::filesystem::remove(path);
 }
 
 void expect_refused(const std::string& text, const std::string& part) {

@@ -7,6 +7,7 @@
 
 #include "snug/camera/render.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 namespace snug::camera {
 namespace {
@@ -28,12 +29,6 @@ RenderedFrame small_shot() {
 
 class FrameFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("snug-frame-test-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   fs::path write(const std::string& name, const std::string& bytes) {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
@@ -46,7 +41,7 @@ class FrameFile : public ::testing::Test {
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
     }
   }
-  fs::path folder_;
+  snug::test::ScratchFolder folder_;
 };
 
 TEST_F(FrameFile, PngKeepsDepthToATwentiethOfAMillimetreAndTheCamera) {

@@ -14,6 +14,7 @@
 #include "snug/cell/task.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 #include "snug/record/reader.hpp"
 
 namespace snug::cell {
@@ -126,10 +127,10 @@ TEST(Recording, OfTwoSecondsHasAFrameForEveryTickAndWhatRan) {
   RunOptions options = demo_options();
   options.until = 2.0;
   options.version = "test";
-  options.record_path = std::filesystem::temp_directory_path() / "snug_cell_test_run.h5";
+  const snug::test::ScratchFolder folder;
+  options.record_path = folder / "run.h5";
   const RunResult result = run(demonstrator(), options);
   const record::Recording recording = record::load_recording(options.record_path);
-  std::filesystem::remove(options.record_path);
   EXPECT_EQ(recording.header.scenario_text, demonstrator().source_text);
   EXPECT_EQ(recording.header.program_text, options.program_text);
   EXPECT_EQ(recording.header.sequence, "1");
@@ -146,11 +147,11 @@ TEST(Recording, OfTwoSecondsHasAFrameForEveryTickAndWhatRan) {
 TEST(Recording, HoldsTheContactsOfWhatSleepsUntilItWakes) {
   RunOptions options;
   options.until = 4.0;
-  options.record_path = std::filesystem::temp_directory_path() / "snug_cell_test_sleep.h5";
+  const snug::test::ScratchFolder folder;
+  options.record_path = folder / "run.h5";
   const model::Scenario scenario = model::load_scenario(kSource / "scenarios/stack.yaml");
   (void)run(scenario, options);
   const record::Recording recording = record::load_recording(options.record_path);
-  std::filesystem::remove(options.record_path);
   double weight = 0.0;
   for (const record::BodyInfo& body : recording.header.bodies) {
     if (body.kind == record::BodyKind::Dynamic) weight += 9.81 * body.mass;

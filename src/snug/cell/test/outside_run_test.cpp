@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "snug/cell/test/demonstrator.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 #include "snug/record/reader.hpp"
 #include "snug/record/writer.hpp"
 
@@ -117,7 +118,8 @@ TEST(OutsideRun, StopsWhenAJointUnderTorqueIsTooFast) {
 
 TEST(OutsideRun, LeavesARecordingLikeAnyOther) {
   const Simulation& simulation = cell_with_robot();
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_outside_run.h5";
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "run.h5";
   OutputFile file = record::reserve_recording(path.string());
   OutsideRunOptions options;
   options.record_file = &file;
@@ -128,7 +130,6 @@ TEST(OutsideRun, LeavesARecordingLikeAnyOther) {
   for (int i = 0; i < 50; ++i) (void)run.advance(command_of(DriveKind::Speed, speeds));
   (void)run.finish("the controller left");
   const record::Recording recording = record::load_recording(path);
-  std::filesystem::remove(path);
   EXPECT_EQ(recording.frames.size(), 50u);
   EXPECT_EQ(recording.header.joints.size(), 6u);
   EXPECT_EQ(recording.frames.back().joints[5].velocity, 0.2);

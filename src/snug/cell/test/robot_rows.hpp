@@ -12,6 +12,7 @@
 
 #include "snug/cell/run.hpp"
 #include "snug/cell/test/demonstrator.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 namespace snug::cell::test {
 
@@ -87,10 +88,11 @@ inline std::string spherical_wrist() {
 
 /// The demonstrator's cell with that arm, which points away from everything.
 struct BallWrist {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_ball_wrist.urdf";
+  snug::test::ScratchFolder folder;
   model::Scenario scenario = demonstrator();
 
   BallWrist() {
+    const std::filesystem::path path = folder / "wrist.urdf";
     std::ofstream(path) << spherical_wrist();
     model::RobotParams robot;
     robot.name = "ur10";
@@ -100,7 +102,6 @@ struct BallWrist {
     robot.self_collision.clear();
     scenario.robot = robot;
   }
-  ~BallWrist() { std::filesystem::remove(path); }
 };
 
 /// The tool turned about the middle of that wrist, which stays: pitch and yaw from where it points along the forearm.

@@ -10,6 +10,7 @@
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cell/test/robot_rows.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 #include "snug/record/reader.hpp"
 
 namespace snug::cell {
@@ -24,11 +25,11 @@ using test::turned_tool;
 using test::wrist_into_the_wall;
 
 TEST(Robot, ReadsTheWeightOfTheGripperWhenNothingIsHeld) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_robot_weight.h5";
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "run.h5";
   const RunResult result = simulate(demonstrator(), {row_at(home().p + Vector3(0.02, 0.0, 0.0))}, path);
   EXPECT_FALSE(result.stop) << result.failure;
   const record::Recording recording = record::load_recording(path);
-  std::filesystem::remove(path);
   ASSERT_EQ(recording.header.joints.size(), 6u);
   const record::Frame& last = recording.frames.back();
   // 1 kg of gripper and cup; the tool moves by a few micrometres per second squared at most by then.
@@ -43,7 +44,8 @@ TEST(Robot, ReadsTheWeightOfTheGripperWhenNothingIsHeld) {
 }
 
 TEST(Robot, AddsNoiseBiasAndDriftOfTheSensorFromTheSeed) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_robot_noise.h5";
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "run.h5";
   model::Scenario scenario = demonstrator();
   scenario.robot->sensor.force_noise = 0.5;
   scenario.robot->sensor.force_bias = Vector3(2.0, 0.0, 0.0);
@@ -51,7 +53,6 @@ TEST(Robot, AddsNoiseBiasAndDriftOfTheSensorFromTheSeed) {
   const auto record = [&] {
     (void)simulate(scenario, {row_at(home().p + Vector3(0.05, 0.0, 0.0))}, path);
     record::Recording recording = record::load_recording(path);
-    std::filesystem::remove(path);
     return recording;
   };
   const record::Recording first = record(), second = record();
@@ -100,7 +101,8 @@ const record::Event* find_event(const std::vector<record::Event>& events, const 
 }
 
 TEST(Robot, RecordsWhatALinkTouchesWithTheForceOfTheRecordedContacts) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_robot_touch.h5";
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "run.h5";
   model::Scenario scenario = demonstrator();
   scenario.robot->protective_stop = {100.0, 1e6, 1e6, 100.0};  // nothing stops it
   std::vector<motion::Waypoint> rows = wrist_into_the_wall();
@@ -119,7 +121,6 @@ TEST(Robot, RecordsWhatALinkTouchesWithTheForceOfTheRecordedContacts) {
   }
   // The strongest contact of a link with the container in the recording: 32-bit numbers, one point a shape.
   const record::Recording recording = record::load_recording(path);
-  std::filesystem::remove(path);
   double recorded = 0.0;
   for (const record::Frame& frame : recording.frames) {
     for (const record::ContactSample& contact : frame.contacts) {

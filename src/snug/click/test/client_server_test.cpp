@@ -10,6 +10,7 @@
 #include "snug/click/program_client.hpp"
 #include "snug/click/server.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 namespace snug::click {
 namespace {
@@ -155,11 +156,11 @@ TEST(Server, RefusesAddressesThatAreNoneOrNotForEverybody) {
                                "tcp://*:5555", "tcp://0.0.0.0:5555", "ipc://", "ipc:///no/such/folder/socket"}) {
     EXPECT_THROW(Served({}, endpoint), InputError) << endpoint;
   }
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "snug_click_file";
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path file = folder / "file";
   std::ofstream(file) << "precious";
   EXPECT_THROW(Served({}, "ipc://" + file.string()), InputError);
   EXPECT_TRUE(std::filesystem::exists(file)) << "ZeroMQ would have removed it";
-  std::filesystem::remove(file);
   Served served;
   EXPECT_THROW(Served({}, served.endpoint()), InputError) << "another server is there";
 }

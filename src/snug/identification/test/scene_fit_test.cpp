@@ -1,5 +1,6 @@
 // Tests of scene identification: planted numbers come back, what recordings do not tell is refused by name.
 #include "snug/identification/scene_fit.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,13 +45,7 @@ bodies:
 
 class SceneFitTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("snug-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "scene.yaml") << kThrown;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { std::ofstream(folder_ / "scene.yaml") << kThrown; }
 
   [[nodiscard]] model::SceneTask task(const std::string& more) const {
     return model::parse_scene_task(
@@ -86,7 +81,7 @@ class SceneFitTest : public ::testing::Test {
     return motion;
   }
 
-  std::filesystem::path folder_;
+  snug::test::ScratchFolder folder_;
 };
 
 constexpr const char* kTwo = R"(search: {local: 100, held_back: 5}

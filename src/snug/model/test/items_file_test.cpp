@@ -1,5 +1,6 @@
 // Items files: orders as CSV and JSON, more boxes and sequences as YAML, and what is wrong with broken ones.
 #include "snug/model/items_file.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -105,7 +106,8 @@ TEST(AddOrders, MakesParcelsAndOneSequenceForEachOrder) {
 }
 
 TEST(AddItems, ReadsMoreBoxesAndSequencesAsInAScenario) {
-  const auto path = std::filesystem::temp_directory_path() / "snug_items_file_test.yaml";
+  const snug::test::ScratchFolder folder;
+  const auto path = folder / "items.yaml";
   std::ofstream(path) << "parcels:\n  - {id: BOX900, type: B1, material: box, upright_only: true, max_load: 2.5}\n"
                          "sequences:\n  - name: mine\n    items: [{parcel: BOX900, up: Z}, {parcel: BOX013, up: X}]\n";
   Scenario scenario = demonstrator();

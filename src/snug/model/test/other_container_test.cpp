@@ -1,5 +1,6 @@
 // Another container, more boxes: what the scenario is then, and that its text says the same.
 #include "snug/model/other_container.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -112,14 +113,14 @@ TEST(ItemsText, HoldsTheBoxesOfOrders) {
 }
 
 TEST(ItemsText, HoldsWhatAnItemsFileHasAndGoesWithAnotherContainer) {
-  const auto path = std::filesystem::temp_directory_path() / "snug_items_text_test.yaml";
+  const snug::test::ScratchFolder folder;
+  const auto path = folder / "items.yaml";
   std::ofstream(path) << "parcel_types:\n  - {name: tall, size: [0.1, 0.1, 0.25], mass: 0.5}\n"
                          "parcels:\n  - {id: T1, type: tall, material: box, com: [0, 0, -0.02]}\n"
                          "sequences:\n  - {name: mixed, task_stiffness: 12, items: [{parcel: T1, up: -Z, yaw_deg: 90}, "
                          "{parcel: BOX013, up: X}]}\n";
   Scenario scenario = with_container(demonstrator(), "400x300x200");
   add_items(scenario, path);
-  std::filesystem::remove(path);
   EXPECT_EQ(scenario, from_text(scenario));
   ASSERT_NE(find_sequence(from_text(scenario), "mixed"), nullptr);
   EXPECT_EQ(scenario.source_text.find("# changed: --container 400x300x200\n# changed: --items "), 0U);

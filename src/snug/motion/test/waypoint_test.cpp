@@ -1,5 +1,6 @@
 // Tests of reading and writing programs.
 #include "snug/motion/waypoint.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -169,9 +170,7 @@ TEST(Program, RefusesToWriteWhatCouldNotBeRead) {
 }
 
 TEST(Program, IsWrittenWholeAndLeavesNothingBeside) {
-  const auto folder = std::filesystem::temp_directory_path() / "snug_motion_waypoint_test";
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
+  const snug::test::ScratchFolder folder;
   const auto path = folder / "program.csv";
   std::ofstream(path) << "old";
   const Program program = parse_program(kRow, path.string());
@@ -179,11 +178,10 @@ TEST(Program, IsWrittenWholeAndLeavesNothingBeside) {
   const Program again = load_program(path);
   ASSERT_EQ(again.waypoints.size(), 1u);
   EXPECT_LT(largest_difference(again.waypoints[0].X_WE, program.waypoints[0].X_WE), 1e-14);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()), 1);
+  EXPECT_EQ(folder.names(), std::set<std::string>{"program.csv"});
   EXPECT_THROW(write_program(program, folder / "missing" / "program.csv"), InputError);
   EXPECT_THROW((void)load_program(folder / "missing.csv"), InputError);
-  EXPECT_THROW((void)load_program(folder), InputError);
-  std::filesystem::remove_all(folder);
+  EXPECT_THROW((void)load_program(folder.path()), InputError);
 }
 
 TEST(Program, ReadsEveryFileOfTheDemonstrator) {

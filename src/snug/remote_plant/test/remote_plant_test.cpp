@@ -1,5 +1,6 @@
 // RemotePlant: the contract of plants through a socket, and what is said where there is no such plant.
 #include "snug/remote_plant/remote_plant.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -167,7 +168,8 @@ TEST(RemotePlant, WhatIsNoSuchPlantIsRefused) {
        {"", "click://", "click://host", "click://:5555", "tcp://127.0.0.1:5555", "click+ipc://"}) {
     EXPECT_NE(message(address, scenario()).find("click://HOST:PORT"), std::string::npos) << address;
   }
-  const std::string nobody = "click+ipc://" + (std::filesystem::temp_directory_path() / "nobody_is_there").string();
+  const snug::test::ScratchFolder folder;
+  const std::string nobody = "click+ipc://" + (folder / "nobody_is_there").string();
   EXPECT_NE(message(nobody, scenario()).find("nobody answers"), std::string::npos);
   Served served(drawn());
   model::Scenario more = scenario();

@@ -9,6 +9,7 @@
 
 #include "shipped_arm.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 #include "snug/robot/kinematics.hpp"
 
 namespace snug::robot {
@@ -140,7 +141,7 @@ TEST(Urdf, RefusesWhatItCannotUseWithLineAndElement) {
 }
 
 TEST(Urdf, MakesHullsOfMeshesBesideIt) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "snug_urdf_test";
+  const snug::test::ScratchFolder folder;
   std::filesystem::create_directories(folder / "arm_description" / "meshes");
   {  // a ball of 2000 points: more corners than a hull may have
     std::ofstream obj(folder / "arm_description" / "meshes" / "ball.obj");
@@ -164,7 +165,6 @@ TEST(Urdf, MakesHullsOfMeshesBesideIt) {
     EXPECT_GT(hull.vertices.size(), 30u);
     for (const Vector3& v : hull.vertices) EXPECT_NEAR(v.norm(), 0.1, 1e-5);
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Urdf, TakesAnEffortOfZeroAsUnknownAndSaysWhere) {
@@ -172,10 +172,10 @@ TEST(Urdf, TakesAnEffortOfZeroAsUnknownAndSaysWhere) {
   const ArmModel arm = parse_urdf(text, "arm.urdf");
   EXPECT_EQ(arm.joints[0].max_effort, 10.0);
   EXPECT_EQ(arm.joints[1].max_effort, std::numeric_limits<double>::infinity());
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "snug_effort.urdf";
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "effort.urdf";
   std::ofstream(path) << text;
   const std::vector<std::string> warnings = find_unknown_efforts(path);
-  std::filesystem::remove(path);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(warnings[0].starts_with(path.string() + ":10: joint 'slide'")) << warnings[0];
   EXPECT_TRUE(find_unknown_efforts(SNUG_SOURCE_DIR "/scenarios/robots/ur10.urdf").empty());

@@ -1,6 +1,7 @@
 // Visuals: shapes, materials and meshes of a URDF as they are drawn; what cannot be drawn is left out and fails
 // nothing.
 #include "snug/robot/visuals.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -66,8 +67,7 @@ TEST(Visuals, LeaveOutWhatCannotBeDrawn) {
 }
 
 TEST(Visuals, ReadEachMeshFileOnceAndNoneBeyondTheLimit) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "snug_visuals_test";
-  std::filesystem::create_directories(folder);
+  const snug::test::ScratchFolder folder;
   std::ofstream(folder / "t.stl") << kTriangle;
   const std::string mesh = "<visual><geometry><mesh filename='t.stl'/></geometry></visual>";
   std::ofstream(folder / "r.urdf") << robot_drawn_with(
@@ -78,7 +78,6 @@ TEST(Visuals, ReadEachMeshFileOnceAndNoneBeyondTheLimit) {
   EXPECT_EQ(files[0].bytes, kTriangle);
   EXPECT_TRUE(read_visual_meshes(folder / "r.urdf", 10).empty());
   EXPECT_THROW((void)read_visual_meshes(folder / "absent.urdf", 1000), InputError);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

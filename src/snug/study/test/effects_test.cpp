@@ -22,9 +22,9 @@ void fill(const Study& study, const Folder& folder, Model model) {
 }
 
 TEST(Effects, AnAdditiveModelHasItsSharesAndNoInteraction) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(4, 20, 50);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   // x: 0 .. 3 evenly has variance 5/4; w: 0 or 2 evenly has variance 1.
   fill(study, folder, [](double x, bool is_left, std::uint64_t) { return x + (is_left ? 0.0 : 2.0); });
   const auto effects = find_effects(study, folder);
@@ -41,9 +41,9 @@ TEST(Effects, AnAdditiveModelHasItsSharesAndNoInteraction) {
 }
 
 TEST(Effects, APureInteractionIsNoMainEffect) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(2, 50, 50);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   fill(study, folder, [](double x, bool is_left, std::uint64_t) { return (x > 0.5) == is_left ? 1.0 : -1.0; });
   const auto effects = find_effects(study, folder);
   EXPECT_NEAR(effects[0].main[0].share, 0.0, 0.02);
@@ -53,9 +53,9 @@ TEST(Effects, APureInteractionIsNoMainEffect) {
 TEST(Effects, ChanceAloneHasNoShareOnAverage) {
   double sum = 0.0, pair = 0.0;
   for (int round = 0; round < 40; ++round) {
-    const test::Scratch scratch;
+    const test::ScratchFolder scratch;
     const Study study = test::grid(6, 10, 200);
-    const Folder folder(study, scratch.path / "f", true);
+    const Folder folder(study, scratch / "f", true);
     Rng rng = Rng(static_cast<std::uint64_t>(round)).split("noise");
     fill(study, folder, [&](double, bool, std::uint64_t) { return rng.normal(); });
     const auto effects = find_effects(study, folder);
@@ -68,11 +68,11 @@ TEST(Effects, ChanceAloneHasNoShareOnAverage) {
 }
 
 TEST(Effects, RangesOfAFactorHaveAsManyRowsEach) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = parse_study(
       "verb: fake\ndesign: sobol\nrows: 60\nfactors: [{option: --x, from: 0, to: 1}, {option: --w, values: [left]}]\n",
       "s.yaml");
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   fill(study, folder, [](double x, bool, std::uint64_t) { return x; });
   const auto effects = find_effects(study, folder);
   ASSERT_EQ(effects[0].main[0].levels.size(), kMostLevels);
@@ -80,9 +80,9 @@ TEST(Effects, RangesOfAFactorHaveAsManyRowsEach) {
 }
 
 TEST(Page, EscapesWhatTheStudySays) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   Study study = test::grid(2, 2, 50);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   fill(study, folder, [](double x, bool, std::uint64_t) { return x; });
   study.name = "<script>alert(1)</script>";
   const std::string page = make_page(study, status_of(study, folder), find_effects(study, folder));
@@ -92,9 +92,9 @@ TEST(Page, EscapesWhatTheStudySays) {
 }
 
 TEST(Page, SaysSoWhenThereIsNothing) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(2, 2, 50);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   const std::string page = make_page(study, status_of(study, folder), find_effects(study, folder));
   EXPECT_NE(page.find("0 of 8 rows"), std::string::npos);
 }

@@ -22,16 +22,16 @@ std::string merged(const Study& study, const Folder& folder, const std::filesyst
 std::size_t count_lines(const std::string& text) { return static_cast<std::size_t>(std::ranges::count(text, '\n')); }
 
 TEST(RunStudy, DoesEveryRowOnceAndMergesTheSameBytesAtAnyNumberOfProcesses) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(7, 3, 5);
   std::string first;
   for (const int processes : {1, 2, 7}) {
-    const Folder folder(study, scratch.path / std::to_string(processes), true);
+    const Folder folder(study, scratch / std::to_string(processes), true);
     RunSettings settings;
     settings.processes = processes;
     EXPECT_EQ(run_study(study, folder, test::fake, settings).done, 42U);
     EXPECT_EQ(run_study(study, folder, test::fake, settings).done, 0U) << "what is done is not done again";
-    const std::string text = merged(study, folder, scratch.path / "merged.csv");
+    const std::string text = merged(study, folder, scratch / "merged.csv");
     EXPECT_EQ(count_lines(text), 43U);
     if (first.empty()) first = text;
     EXPECT_EQ(text, first);
@@ -41,9 +41,9 @@ TEST(RunStudy, DoesEveryRowOnceAndMergesTheSameBytesAtAnyNumberOfProcesses) {
 }
 
 TEST(RunStudy, GoesOnAfterAKillAnywhere) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(10, 2, 8);
-  const Folder whole(study, scratch.path / "whole", true), killed(study, scratch.path / "killed", true);
+  const Folder whole(study, scratch / "whole", true), killed(study, scratch / "killed", true);
   (void)run_study(study, whole, test::fake, {});
   // Killed after some time, again and again; rows take a while so that kills fall into them.
   const Verb slow = [](const std::vector<std::string>& words) {
@@ -64,13 +64,13 @@ TEST(RunStudy, GoesOnAfterAKillAnywhere) {
     ::waitpid(child, nullptr, 0);
   }
   EXPECT_GT(kills, 1);
-  EXPECT_EQ(merged(study, killed, scratch.path / "a.csv"), merged(study, whole, scratch.path / "b.csv"));
+  EXPECT_EQ(merged(study, killed, scratch / "a.csv"), merged(study, whole, scratch / "b.csv"));
 }
 
 TEST(RunStudy, FailuresAreResultsAndSayWhy) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(5, 1, 100, "time_limit: 0.5\n");
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   const Verb verb = [](const std::vector<std::string>& words) {
     const int x = std::stoi(words[2]);
     if (x == 1) throw std::runtime_error("no such luck");
@@ -97,10 +97,10 @@ TEST(RunStudy, FailuresAreResultsAndSayWhy) {
 }
 
 TEST(RunStudy, ARowWhoseProcessIsKilledIsTriedAgainAndNeverAResult) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(3, 1, 100);
-  const Folder folder(study, scratch.path / "f", true);
-  const std::filesystem::path mark = scratch.path / "mark";
+  const Folder folder(study, scratch / "f", true);
+  const std::filesystem::path mark = scratch / "mark";
   const Verb once = [&](const std::vector<std::string>& words) {
     if (words[2] == "1" && !std::filesystem::exists(mark)) {
       std::ofstream(mark) << "seen";
@@ -117,8 +117,8 @@ TEST(RunStudy, ARowWhoseProcessIsKilledIsTriedAgainAndNeverAResult) {
 }
 
 TEST(RunStudy, ARowWhoseProcessSomebodyEndsIsTriedAgainToo) {
-  const test::Scratch scratch;
-  const std::filesystem::path mark = scratch.path / "mark";
+  const test::ScratchFolder scratch;
+  const std::filesystem::path mark = scratch / "mark";
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
     std::filesystem::remove(mark);
     const Verb once = [&](const std::vector<std::string>& words) {
@@ -135,7 +135,7 @@ TEST(RunStudy, ARowWhoseProcessSomebodyEndsIsTriedAgainToo) {
 }
 
 TEST(RunStudy, TellsEveryRowInItsOrderHoweverLongEachTakes) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(6, 1, 4);
   const Verb late = [](const std::vector<std::string>& words) {
     ::usleep(static_cast<useconds_t>(words[4] == "left" ? 30000 : 1000));
@@ -157,7 +157,7 @@ TEST(RunStudy, TellsEveryRowInItsOrderHoweverLongEachTakes) {
   EXPECT_EQ(told, expected);
   EXPECT_EQ(said[6], "of 3\n");
   const std::vector<RowResult> without = results;
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   RunSettings some;
   some.first_chunk = some.last_chunk = 1;
   (void)run_study(study, folder, late, some);
@@ -171,9 +171,9 @@ TEST(RunStudy, TellsEveryRowInItsOrderHoweverLongEachTakes) {
 }
 
 TEST(RunStudy, EndsInOrderWhenItIsStopped) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(20, 1, 100);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   const Verb slow = [](const std::vector<std::string>& words) {
     ::usleep(words[2] == "0" ? 1000 : 10'000'000);
     return test::fake(words);
@@ -191,9 +191,9 @@ TEST(RunStudy, EndsInOrderWhenItIsStopped) {
 }
 
 TEST(RunStudy, WhatARowSaysWhenItIsStoppedIsToldAndNotKept) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(1, 1, 100);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   const Verb orderly = [](const std::vector<std::string>& words) {
     sigset_t set;
     sigemptyset(&set);
@@ -216,9 +216,9 @@ TEST(RunStudy, WhatARowSaysWhenItIsStoppedIsToldAndNotKept) {
 }
 
 TEST(RunStudy, AFirstRowThatCannotBeUsedEndsItWithTheReason) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(3, 1, 2);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   const Verb verb = [](const std::vector<std::string>&) {
     std::fprintf(stderr, "snug: error: command line: --y: no such option\n");
     return 2;
@@ -233,9 +233,9 @@ TEST(RunStudy, AFirstRowThatCannotBeUsedEndsItWithTheReason) {
 }
 
 TEST(RunStudy, OnlyTheChunksAskedFor) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(5, 1, 2);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   RunSettings settings;
   settings.first_chunk = 1;
   settings.last_chunk = 3;
@@ -251,9 +251,9 @@ TEST(RunStudy, OnlyTheChunksAskedFor) {
 }
 
 TEST(Slurm, TheScriptDoesEachRangeInATaskOfItsOwn) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(5, 1, 2, "slurm: {partition: long, time: '2:00:00'}\n");
-  const Folder folder(study, scratch.path / "it's here", true);
+  const Folder folder(study, scratch / "it's here", true);
   const std::string script = array_script(study, folder, plan_array(study, folder), "/opt/snug", "study.yaml");
   EXPECT_NE(script.find("#SBATCH --array=0-4\n"), std::string::npos);
   EXPECT_NE(script.find("#SBATCH --partition=long\n"), std::string::npos);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -10,24 +9,12 @@
 #include <sstream>
 #include <string>
 
+#include "snug/core/test/scratch_folder.hpp"
 #include "snug/study/run.hpp"
 
 namespace snug::study::test {
 
-class Scratch {
- public:
-  Scratch() {
-    std::string name = std::filesystem::temp_directory_path() / "snug-study-XXXXXX";
-    path = ::mkdtemp(name.data());
-  }
-  ~Scratch() {
-    std::error_code error;
-    std::filesystem::remove_all(path, error);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  std::filesystem::path path;
-};
+using snug::test::ScratchFolder;
 
 inline std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -69,20 +69,20 @@ TEST(Table, KeepsTheOutputsThatAreNamedAlsoThoseInLists) {
 }
 
 TEST(Folder, IsOfOneStudyAsItWasBegun) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(2, 1, 3), changed = test::grid(2, 1, 2);
-  EXPECT_THROW(Folder(study, scratch.path / "f", false), InputError);
-  EXPECT_NO_THROW(Folder(study, scratch.path / "f", true));
-  EXPECT_NO_THROW(Folder(study, scratch.path / "f", false));
-  EXPECT_THROW(Folder(changed, scratch.path / "f", true), InputError);
-  std::ofstream(scratch.path / "something") << "else";
-  EXPECT_THROW(Folder(study, scratch.path, true), InputError);
+  EXPECT_THROW(Folder(study, scratch / "f", false), InputError);
+  EXPECT_NO_THROW(Folder(study, scratch / "f", true));
+  EXPECT_NO_THROW(Folder(study, scratch / "f", false));
+  EXPECT_THROW(Folder(changed, scratch / "f", true), InputError);
+  std::ofstream(scratch / "something") << "else";
+  EXPECT_THROW(Folder(study, scratch.path(), true), InputError);
 }
 
 TEST(Folder, ReadsWhatIsWholeAndRefusesARowThatWasDoneTwiceDifferently) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(2, 1, 2);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   RowResult result = example();
   result.row = 2;
   std::ofstream(folder.table(1)) << "rubbish\n"
@@ -103,9 +103,9 @@ TEST(Folder, ReadsWhatIsWholeAndRefusesARowThatWasDoneTwiceDifferently) {
 }
 
 TEST(Folder, SurvivesRandomBytesInItsTables) {
-  const test::Scratch scratch;
+  const test::ScratchFolder scratch;
   const Study study = test::grid(3, 1, 6);
-  const Folder folder(study, scratch.path / "f", true);
+  const Folder folder(study, scratch / "f", true);
   Rng rng = Rng(11).split("bytes");
   for (int round = 0; round < 200; ++round) {
     std::string bytes;
