@@ -66,7 +66,7 @@ struct Arm {
   }
 };
 
-Array as_array(const robot::JointVector& q) { return Array(static_cast<py::ssize_t>(q.size()), q.data()); }
+Array joints_as_array(const robot::JointVector& q) { return Array(static_cast<py::ssize_t>(q.size()), q.data()); }
 
 }  // namespace
 
@@ -115,7 +115,7 @@ void bind_tools(py::module_& m) {
           [](const Arm& a, const Array& pose, const Array& near) -> py::object {
             const auto q = a.inverse.nearest(as_pose(pose, "pose"), a.joints_of(near, "near"));
             if (!q) return py::none();
-            return as_array(*q);
+            return joints_as_array(*q);
           },
           py::arg("pose"), py::arg("near"))
       .def(
@@ -123,7 +123,7 @@ void bind_tools(py::module_& m) {
           [](const Arm& a, const Array& pose, const Array& near) {
             const robot::IkBranches found = a.inverse.branches(as_pose(pose, "pose"), a.joints_of(near, "near"));
             py::list list;
-            for (int i = 0; i < found.count; ++i) list.append(as_array(found.q[static_cast<std::size_t>(i)]));
+            for (int i = 0; i < found.count; ++i) list.append(joints_as_array(found.q[static_cast<std::size_t>(i)]));
             return list;
           },
           py::arg("pose"), py::arg("near"));
