@@ -72,6 +72,7 @@ packing::FutureModel own_future(const SourcedScenario& loaded, const std::string
     packing::FutureModel part = packing::make_future_model(loaded.scenario, parcels);
     std::ranges::move(part.kinds, std::back_inserter(future.kinds));
     std::ranges::move(part.weights, std::back_inserter(future.weights));
+    future.comes_once = part.comes_once;
   }
   return future;
 }

@@ -38,6 +38,10 @@ void check(const PackingSettings& s) {
 
 std::vector<std::string> agent_names() { return {"margin", "contact-aware", "manual", "offline"}; }
 
+Expected<Decision, NoPlace> Agent::decide_pressed(const ContainerState& /*state*/, const Item& /*item*/) {
+  return tl::unexpected(NoPlace::NoSpace);
+}
+
 std::unique_ptr<Agent> make_agent(std::string_view name, AgentInput input) {
   check(input.settings);
   if (input.future.kinds.size() != input.future.weights.size()) {

@@ -20,10 +20,13 @@ namespace snug::packing {
 struct FutureModel {
   std::vector<Item> kinds;
   std::vector<double> weights;  ///< > 0, as many as kinds
+  /// Each kind is one box, which comes once at most: what has come does not come again.
+  bool comes_once = false;
   bool operator==(const FutureModel&) const = default;
 };
 
-/// Every parcel of the scenario, equally likely: types as frequent as the scenario has them, sizes as measured.
+/// Every parcel of the scenario, equally likely and once at most, as in any sequence: types as frequent as the scenario
+/// has them, sizes as measured.
 [[nodiscard]] FutureModel make_future_model(const model::Scenario& scenario);
 /// The same of some of its parcels.
 [[nodiscard]] FutureModel make_future_model(const model::Scenario& scenario, std::span<const model::Parcel> parcels);
@@ -31,6 +34,7 @@ struct FutureModel {
 struct Decision {
   std::vector<Candidate> candidates;  ///< best first, never empty
   std::int64_t roll_outs = 0;
+  bool is_pressed = false;  ///< planned with PackingSettings::last_interference
   bool operator==(const Decision&) const = default;
 };
 
@@ -40,6 +44,8 @@ class Agent {
   virtual ~Agent() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
   [[nodiscard]] virtual Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) = 0;
+  /// Other places, planned with `last_interference`, where none of decide() can be had; for most agents there are none.
+  [[nodiscard]] virtual Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item);
 };
 
 /// Sends a line of JSON to whoever decides elsewhere and returns his answer, a line of JSON.

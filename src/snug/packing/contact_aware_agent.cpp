@@ -1,6 +1,8 @@
 // Agent contact-aware: no look-ahead, no clearance, flips; candidates race each other in roll-outs over possible
 // futures.
 #include <algorithm>
+#include <string_view>
+#include <unordered_set>
 
 #include "snug/core/hash.hpp"
 #include "snug/packing/internal/agents.hpp"
@@ -20,19 +22,26 @@ std::vector<Piece> pieces_of(const Planning& planning, const FutureModel& future
   return pieces;
 }
 
-Prospect make_prospect(const Planning& planning, const FutureModel& future, std::vector<Piece> pieces,
-                       const ContainerState& state, const Item& item) {
+Prospect make_prospect(const FutureModel& future, std::vector<Piece> pieces, const ContainerState& state,
+                       const Item& item) {
   Prospect prospect;
   prospect.kinds = std::move(pieces);
   prospect.weights = future.weights;
-  if (!planning.settings.without_replacement) return prospect;
-  for (const Item& kind : future.kinds) {
-    const auto seen = [&](const Item& other) { return other.id == kind.id; };
-    const bool is_gone = seen(item) || std::any_of(state.boxes.begin(), state.boxes.end(),
-                                                   [&](const PlacedBox& box) { return seen(box.item); });
-    prospect.counts.push_back(is_gone ? 0 : 1);
+  prospect.comes_once = future.comes_once;
+  if (!future.comes_once) return prospect;
+  std::unordered_set<std::string_view> seen{item.id};
+  seen.insert(state.skipped.begin(), state.skipped.end());
+  for (const PlacedBox& box : state.boxes) seen.insert(box.item.id);
+  for (std::size_t i = 0; i < future.kinds.size(); ++i) {
+    if (seen.contains(future.kinds[i].id)) prospect.weights[i] = 0.0;
   }
   return prospect;
+}
+
+double largest_volume(const Prospect& prospect) {
+  double largest = 0.0;
+  for (const Piece& kind : prospect.kinds) largest = std::max(largest, kind.volume);
+  return largest;
 }
 
 class ContactAwareAgent : public Agent {
@@ -41,16 +50,24 @@ class ContactAwareAgent : public Agent {
   std::string_view name() const override { return "contact-aware"; }
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
-    PackingSettings settings = input_.settings;
-    const Planning usual = plan_for_contact(state, settings);
-    settings.planned_interference = settings.last_interference;
-    const Planning pressed = plan_for_contact(state, settings);
-    const Expected<Decision, NoPlace> decision = decide(state, item, usual);
+    Expected<Decision, NoPlace> decision = decide(state, item, plan_for_contact(state, input_.settings));
     const bool is_full =
         !decision && (decision.error() == NoPlace::NoSpace || decision.error() == NoPlace::NoStablePlace);
-    if (!is_full || pressed.planned_interference <= usual.planned_interference) return decision;
-    const Expected<Decision, NoPlace> at_last = decide(state, item, pressed);
-    return at_last ? at_last : decision;
+    if (!is_full) return decision;
+    Expected<Decision, NoPlace> pressed = decide_pressed(state, item);
+    return pressed ? pressed : decision;
+  }
+
+  Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item) override {
+    PackingSettings settings = input_.settings;
+    settings.planned_interference = settings.last_interference;
+    const Planning planning = plan_for_contact(state, settings);
+    if (planning.planned_interference <= plan_for_contact(state, input_.settings).planned_interference) {
+      return tl::unexpected(NoPlace::NoSpace);
+    }
+    Expected<Decision, NoPlace> decision = decide(state, item, planning);
+    if (decision) decision->is_pressed = true;
+    return decision;
   }
 
  private:
@@ -100,9 +117,11 @@ class ContactAwareAgent : public Agent {
     settings.seed = input_.settings.seed + 1000003U * state.boxes.size();
     settings.threads = input_.settings.threads;
     settings.effort = work_for(input_.settings.decision_time);
-    const Prospect prospect = make_prospect(planning, input_.future, pieces(planning), state, item);
-    const std::vector<Standing> order =
-        race(entrants, policy, prospect, std::max(0.0, room - filled), settings, &decision.roll_outs);
+    settings.skips = state.skips_left;
+    const Prospect prospect = make_prospect(input_.future, pieces(planning), state, item);
+    double volume = std::max(0.0, room - filled);
+    for (int i = 0; i < settings.skips; ++i) volume += largest_volume(prospect);
+    const std::vector<Standing> order = race(entrants, policy, prospect, volume, settings, &decision.roll_outs);
     for (const Standing& standing : order) {
       if (static_cast<int>(decision.candidates.size()) >= input_.settings.max_candidates) break;
       Candidate candidate = candidates[static_cast<std::size_t>(standing.entrant)];

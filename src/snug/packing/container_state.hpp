@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "snug/model/scenario.hpp"
@@ -31,6 +32,8 @@ struct ContainerState {
   /// What is there and is none of the boxes: nothing is put where it is, under it or on it, within 12 mm beside it or
   /// within 5 mm over it.
   std::vector<Extent> obstacles = {};
+  std::vector<std::string> skipped = {};  ///< ids of items that came before and are not there
+  int skips_left = 0;                     ///< items without a place that may be skipped before packing ends
   bool operator==(const ContainerState&) const = default;
 };
 

@@ -13,6 +13,7 @@ FutureModel make_future_model(const model::Scenario& scenario, std::span<const m
     future.kinds.push_back(make_item(scenario, item));
     future.weights.push_back(1.0);
   }
+  future.comes_once = true;
   return future;
 }
 

@@ -22,9 +22,8 @@ struct PackingSettings {
   double level_slack = 0.003;  ///< m, tops that differ by less carry a box together
   /// Smallest standing breadth / height; slimmer boxes tumble. 0: no limit.
   double min_slenderness = 0.25;
-  double max_item_mass = 8.0;        ///< kg, payload of the robot less its tool
-  double min_pick_face = 0.05;       ///< m, shorter side of the upper face at least: the lip may overhang a little
-  bool without_replacement = false;  ///< roll-outs draw from the boxes of the scenario not seen yet
+  double max_item_mass = 8.0;   ///< kg, payload of the robot less its tool
+  double min_pick_face = 0.05;  ///< m, shorter side of the upper face at least: the lip may overhang a little
 
   template <class Archive>
   void fields(Archive& a) {
@@ -42,7 +41,6 @@ struct PackingSettings {
     a("min_slenderness", min_slenderness);
     a("max_item_mass", max_item_mass);
     a("min_pick_face", min_pick_face);
-    a("without_replacement", without_replacement);
   }
   bool operator==(const PackingSettings&) const = default;
 };

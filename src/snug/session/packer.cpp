@@ -55,6 +55,7 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
       reaches_(make_tool_reach(scenario)),
       belief_(scenario, sequence, settings_of(options)),
       items_(packing::make_items(belief_.nominal(), belief_.sequence())),
+      skips_left_(options.skips),
       robot_(plant.read()) {
   const Matrix3 R_AW = scenario.aligner->X_WA.R.transpose();
   for (std::size_t i = 0; i < items_.size(); ++i) {
@@ -80,6 +81,8 @@ packing::ContainerState Packer::container_state() const {
     state.boxes.push_back({items_[static_cast<std::size_t>(item)], X_TP});
   }
   state.obstacles = obstacle_extents();
+  state.skipped = skipped_;
+  state.skips_left = std::max(0, skips_left_);
   return state;
 }
 
@@ -271,7 +274,7 @@ std::optional<Packer::Planned> Packer::plan(int item, const Decide& decide, Item
   const Matrix3 R = location == Location::Aligner ? scenario_.aligner->X_WA.R : layout_.X_WT.R;
   one.arrival = packing::nearest_orientation(R.transpose() * belief_.box(item)->X_WP.R);
   auto start = std::chrono::steady_clock::now();
-  const auto decision = decide(state, one);
+  const auto decision = decide(state, one, false);
   report.decision_seconds += seconds_since(start);
   if (!decision) {
     report.reason = packing::describe(decision.error());
@@ -282,6 +285,14 @@ std::optional<Packer::Planned> Packer::plan(int item, const Decide& decide, Item
   report.reason.clear();
   std::optional<Attempt> best = best_attempt(item, location, decision->candidates, report);
   report.rehearsal_seconds += seconds_since(start);
+  if (!best && !decision->is_pressed) {
+    start = std::chrono::steady_clock::now();
+    const auto pressed = decide(state, one, true);
+    report.decision_seconds += seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    if (pressed) best = best_attempt(item, location, pressed->candidates, report);
+    report.rehearsal_seconds += seconds_since(start);
+  }
   if (!best) {
     report.end = ItemEnd::NoPlace;
     if (report.reason.empty()) report.reason = "no place where it would come to rest as planned";

@@ -13,9 +13,9 @@
 
 namespace snug::session {
 
-/// What decides where an item goes: the agent, or a plan that was made before.
+/// What decides where an item goes: the agent, or a plan that was made before. `pressed`: Agent::decide_pressed.
 using Decide = std::function<Expected<packing::Decision, packing::NoPlace>(const packing::ContainerState& state,
-                                                                           const packing::Item& item)>;
+                                                                           const packing::Item& item, bool pressed)>;
 
 /// A box that was packed before and was taken out and packed once more.
 struct Repacked {
@@ -47,6 +47,8 @@ class Packer {
   /// Since the last call.
   [[nodiscard]] std::vector<Repacked> take_repacked() { return std::exchange(repacked_, {}); }
 
+  /// Items without a place that may still be skipped; below 0: more had none.
+  [[nodiscard]] int skips_left() const { return skips_left_; }
   /// Set when nothing more can be done.
   [[nodiscard]] std::optional<StopReason> stop_reason() const { return stop_reason_; }
   [[nodiscard]] const motion::Program& sent() const { return sent_; }
@@ -118,8 +120,10 @@ class Packer {
   ToolReach reaches_;
   Belief belief_;
   std::vector<packing::Item> items_;
-  std::vector<int> order_;  ///< items that were sent, in that order
-  std::set<int> left_out_;  ///< of them, those that stick out and that nothing more is done about
+  std::vector<int> order_;            ///< items that were sent, in that order
+  std::vector<std::string> skipped_;  ///< items that came and are not packed
+  int skips_left_;                    ///< below 0: more items had no place than may be skipped
+  std::set<int> left_out_;            ///< of them, those that stick out and that nothing more is done about
   std::vector<Repacked> repacked_;
   int let_go_ = -1;  ///< item that fell, or was let go, before its motion ended: to be found at the next look
   plant::Feedback robot_;

@@ -380,6 +380,8 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
   const bool is_waiting =
       report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless || report.end == ItemEnd::NotHeld;
   if (is_waiting || is_refused || report.end == ItemEnd::Gone) belief_.forget(item);  // the next arrival takes it away
+  if (!report.is_packed()) skipped_.push_back(report.id);
+  if (report.end == ItemEnd::NoPlace) --skips_left_;
   report.done = robot_.time;
   return report;
 }

@@ -48,14 +48,14 @@ class Session {
     input.is_reachable = make_reach(scenario_, packer_.layout(), packer_.belief().sequence());
     const std::unique_ptr<packing::Agent> agent = packing::make_agent(options_.agent, std::move(input));
     if (plans_on_paper(options_)) return execute(plan_on_paper(*agent));
-    int skipped = 0;
     const int count = static_cast<int>(packer_.items().size());
     for (int i = 0; i < count && !is_over(); ++i) {
-      ItemReport report =
-          packer_.bring_in(i, [&](const auto& state, const packing::Item& item) { return agent->decide(state, item); });
+      ItemReport report = packer_.bring_in(i, [&](const auto& state, const packing::Item& item, bool pressed) {
+        return pressed ? agent->decide_pressed(state, item) : agent->decide(state, item);
+      });
       const bool has_no_place = report.end == ItemEnd::NoPlace;
       if (has_no_place && !result_.percent_before_skips) result_.percent_before_skips = result_.planned_percent;
-      if (has_no_place && skipped++ >= options_.skips) {
+      if (packer_.skips_left() < 0) {
         stop(StopReason::NoPlace, fmt::format("{}: {}", report.id, report.reason));
       }
       finish_item(std::move(report), i + 1, count);
@@ -73,7 +73,9 @@ class Session {
         throw InputError("plan", "item", placement.item, "an item of sequence " + result_.sequence);
       }
       if (is_over()) break;
-      const auto decide = [&](const auto&, const packing::Item&) -> Expected<packing::Decision, packing::NoPlace> {
+      const auto decide = [&](const auto&, const packing::Item&,
+                              bool pressed) -> Expected<packing::Decision, packing::NoPlace> {
+        if (pressed) return tl::unexpected(packing::NoPlace::NoSpace);
         packing::Decision decision;
         packing::Candidate candidate;
         candidate.placement = placement;

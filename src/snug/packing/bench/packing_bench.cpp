@@ -19,6 +19,8 @@ struct Options {
   int random = 0;
   double noise = 0.0;
   int seeds = 1;
+  int first = 1;
+  int skips = 0;
   PackingSettings settings;
 };
 
@@ -33,6 +35,7 @@ struct Outcome {
 Outcome pack(const model::Scenario& scenario, const std::vector<Item>& items, const Options& options) {
   const auto agent = make_agent(options.agent, {options.settings, make_future_model(scenario), items, {}});
   ContainerState state = make_container_state(*model::find_container(scenario, scenario.target));
+  state.skips_left = options.skips;
   Rng rng = Rng(options.settings.seed).split("noise");
   Outcome outcome;
   for (const Item& item : items) {
@@ -41,7 +44,11 @@ Outcome pack(const model::Scenario& scenario, const std::vector<Item>& items, co
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     outcome.seconds += took;
     outcome.slowest = std::max(outcome.slowest, took);
-    if (!decision) break;
+    if (!decision) {
+      if (state.skips_left-- <= 0) break;
+      state.skipped.push_back(item.id);
+      continue;
+    }
     const bool anew = !decision->candidates.front().rearranged.empty();
     outcome.rearranged += anew ? 1 : 0;
     state = with_candidate(state, item, decision->candidates.front());
@@ -82,7 +89,9 @@ int main(int argc, char** argv) {
     if (key == "--time") o.settings.decision_time = std::atof(value);
     if (key == "--threads") o.settings.threads = std::atoi(value);
     if (key == "--planned-interference") o.settings.planned_interference = std::atof(value);
-    if (key == "--without") o.settings.without_replacement = std::atoi(value) != 0;
+    if (key == "--first") o.first = std::atoi(value);
+    if (key == "--skips") o.skips = std::atoi(value);
+    if (key == "--last-interference") o.settings.last_interference = std::atof(value);
   }
   const model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
   for (int s = 0; s < o.seeds; ++s, ++o.settings.seed) {
@@ -91,7 +100,7 @@ int main(int argc, char** argv) {
     const int runs = o.random > 0 ? o.random : static_cast<int>(scenario.sequences.size());
     for (int i = 0; i < runs; ++i) {
       const std::vector<Item> items = o.random > 0
-                                          ? random_sequence(scenario, i + 1)
+                                          ? random_sequence(scenario, i + o.first)
                                           : make_items(scenario, scenario.sequences[static_cast<std::size_t>(i)]);
       const Outcome r = pack(scenario, items, o);
       std::printf("%d/%.1f ", r.boxes, r.percent);

@@ -31,6 +31,7 @@ struct Heat {
   const Policy& policy;
   const Prospect& prospect;
   int threads;
+  int skips;
   std::vector<RollOutWork> work;
 
   void run(std::vector<Standing>& field, const std::vector<Future>& futures) {
@@ -41,7 +42,7 @@ struct Heat {
       const Standing& standing = field[static_cast<std::size_t>(job / per)];
       volume[static_cast<std::size_t>(job)] =
           roll_out(entrants[static_cast<std::size_t>(standing.entrant)], policy, prospect,
-                   futures[static_cast<std::size_t>(job % per)], work[static_cast<std::size_t>(thread)]);
+                   futures[static_cast<std::size_t>(job % per)], skips, work[static_cast<std::size_t>(thread)]);
     });
     for (std::size_t i = 0; i < field.size(); ++i) {
       double sum = field[i].mean * field[i].roll_outs;
@@ -62,12 +63,10 @@ struct Heat {
 Future draw_future(const Prospect& prospect, double volume, Rng& rng) {
   Future future;
   std::vector<double> weights = prospect.weights;
-  std::vector<int> left = prospect.counts;
   while (volume > 0.0 && future.size() < 1000) {
-    for (std::size_t i = 0; i < left.size(); ++i) weights[i] = left[i];
     const int kind = draw(weights, rng);
     if (kind < 0) break;
-    if (!left.empty()) --left[static_cast<std::size_t>(kind)];
+    if (prospect.comes_once) weights[static_cast<std::size_t>(kind)] = 0.0;
     future.push_back(kind);
     volume -= prospect.kinds[static_cast<std::size_t>(kind)].volume;
   }
@@ -88,13 +87,16 @@ bool choose(const Layout& layout, const Policy& policy, const Piece& piece, Roll
   return found;
 }
 
-double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future,
+double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future, int skips,
                 RollOutWork& work) {
   double volume = 0.0;
   CandidatePose pose;
   for (const int kind : future) {
     const Piece& piece = prospect.kinds[static_cast<std::size_t>(kind)];
-    if (!choose(layout, policy, piece, work, pose)) break;
+    if (!choose(layout, policy, piece, work, pose)) {
+      if (--skips < 0) break;
+      continue;
+    }
     layout.add(Layout::block_at(piece, pose));
     volume += piece.volume;
   }
@@ -106,7 +108,8 @@ std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& po
   std::vector<Standing> field(entrants.size());
   for (std::size_t i = 0; i < field.size(); ++i) field[i].entrant = static_cast<int>(i);
   const int threads = std::max(1, settings.threads);
-  Heat heat{entrants, policy, prospect, threads, std::vector<RollOutWork>(static_cast<std::size_t>(threads))};
+  Heat heat{entrants, policy,         prospect,
+            threads,  settings.skips, std::vector<RollOutWork>(static_cast<std::size_t>(threads))};
   Rng rng = Rng(settings.seed).split("futures");
   std::size_t left = field.size();
   int rounds = 1;

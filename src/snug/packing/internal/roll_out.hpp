@@ -11,11 +11,11 @@
 
 namespace snug::packing::internal {
 
-/// What may come.
+/// What may come: a kind with weight 0 does not.
 struct Prospect {
   std::vector<Piece> kinds;
   std::vector<double> weights;
-  std::vector<int> counts;  ///< of each kind that are left, when they are drawn without replacement; else empty
+  bool comes_once = false;  ///< a kind that was drawn is not drawn again
 };
 
 using Future = std::vector<int>;  ///< indices of kinds, in the order in which they come
@@ -33,15 +33,16 @@ struct RollOutWork {
 [[nodiscard]] bool choose(const Layout& layout, const Policy& policy, const Piece& piece, RollOutWork& work,
                           CandidatePose& best);
 
-/// Volume in m^3 that gets in before the first item that does not fit.
+/// Volume in m^3 that gets in before more items than `skips` did not fit.
 [[nodiscard]] double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, const Future& future,
-                              RollOutWork& work);
+                              int skips, RollOutWork& work);
 
 struct RaceSettings {
   std::uint64_t seed = 1;
   int threads = 1;
   std::int64_t effort = 0;  ///< places to be looked at, about
   int first_futures = 8;    ///< of every entrant, whatever the effort
+  int skips = 0;            ///< items that may be skipped in a roll-out before it ends
 };
 
 struct Standing {

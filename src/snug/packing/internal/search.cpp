@@ -86,7 +86,7 @@ class Beam {
       child.volume = -1.0;
       for (int t = 0; t < settings_.trials; ++t) {
         const int trial = t == 0 ? 0 : 1 + (c * 7 + index * 3 + t) % 63;
-        const double volume = roll_out(layout, policies_[static_cast<std::size_t>(trial)], prospect_, rest,
+        const double volume = roll_out(layout, policies_[static_cast<std::size_t>(trial)], prospect_, rest, 0,
                                        work_[static_cast<std::size_t>(thread)]);
         child.mean += volume / settings_.trials;
         if (volume <= child.volume) continue;

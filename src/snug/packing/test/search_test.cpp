@@ -75,17 +75,36 @@ TEST(Search, PacksAsManyAsTryingEverythingOnTinyLines) {
 
 TEST(Search, EmptyLineNeedsNoPlan) { EXPECT_TRUE(plan_in_order(Layout(tiny_rules()), plain_policy(), {}, {}).empty()); }
 
-TEST(RollOut, FutureWithoutReplacementUsesEachKindAsOftenAsItIsThere) {
+TEST(RollOut, FutureOfBoxesThatComeOnceHasEachThatIsLeftOnce) {
   Prospect prospect;
   Rng pieces(1);
-  for (int i = 0; i < 3; ++i) prospect.kinds.push_back(tiny_piece(pieces));
-  prospect.weights = {1.0, 1.0, 1.0};
-  prospect.counts = {2, 0, 1};
+  for (int i = 0; i < 4; ++i) prospect.kinds.push_back(tiny_piece(pieces));
+  prospect.weights = {1.0, 0.0, 2.0, 1.0};
+  prospect.comes_once = true;
   Rng rng(4);
   Future future = draw_future(prospect, 1e9, rng);
   std::sort(future.begin(), future.end());
-  EXPECT_EQ(future, (Future{0, 0, 2}));
+  EXPECT_EQ(future, (Future{0, 2, 3}));
   EXPECT_TRUE(draw_future(Prospect{}, 1.0, rng).empty());
+}
+
+TEST(RollOut, GoesOnAfterPiecesWithoutAPlaceAsOftenAsMayBeSkipped) {
+  const Rules rules = tiny_rules();
+  const auto cube = [](int size) {
+    Piece piece;
+    piece.orientations.push_back({size, size, size, 0, 0, 0});
+    piece.volume = 1e-3 * size;
+    return piece;
+  };
+  Prospect prospect;
+  prospect.kinds = {cube(10 * rules.size_x), cube(kCell)};
+  const double small = prospect.kinds[1].volume;
+  const Future future{1, 0, 1, 0, 1, 1};
+  RollOutWork work;
+  const auto filled = [&](int skips) { return roll_out(Layout(rules), plain_policy(), prospect, future, skips, work); };
+  EXPECT_DOUBLE_EQ(filled(0), small);
+  EXPECT_DOUBLE_EQ(filled(1), 2.0 * small);
+  EXPECT_DOUBLE_EQ(filled(2), 4.0 * small);
 }
 
 TEST(Race, LeavesTheSameOrderAtAnyNumberOfThreads) {
