@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "snug/core/parallel.hpp"
-#include "snug/motion/side_pick.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/skills/side_pick.hpp"
 
 namespace snug::session {
 namespace {
@@ -56,12 +56,12 @@ class GraspPlanner {
   }
 
   /// False when this way of turning does not apply.
-  bool make(Reorientation reorientation) {
+  bool make(skills::Reorientation reorientation) {
     grasp_.reorientation = reorientation;
-    const bool applies = reorientation == Reorientation::None        ? pick()
-                         : reorientation == Reorientation::SideGrasp ? pick_side_where_it_stands()
-                         : reorientation == Reorientation::Regrasp   ? regrasp()
-                                                                     : pivot();
+    const bool applies = reorientation == skills::Reorientation::None        ? pick()
+                         : reorientation == skills::Reorientation::SideGrasp ? pick_side_where_it_stands()
+                         : reorientation == skills::Reorientation::Regrasp   ? regrasp()
+                                                                             : pivot();
     if (!applies) return false;
     if (is_fine() && !grasp_.episodes[0].is_complete()) grasp_.problem = GraspProblem::Rollout;
     if (is_fine()) run_samples();
@@ -114,7 +114,7 @@ class GraspPlanner {
     grasp_.swing = swing_of(request_.scenario, request_.box, std::copysign(1.0, face_P[axis]) * Vector3::Unit(axis));
   }
 
-  bool pick_from_above(const Pose& X_WP_next, PickKind kind) {
+  bool pick_from_above(const Pose& X_WP_next, skills::PickKind kind) {
     hang_by(Vector3::UnitZ());
     execute(plan_pick(request_.scenario, request_.layout, request_.box, X_WP_, X_WP_next, travel_, kind));
     return holds();
@@ -123,7 +123,7 @@ class GraspPlanner {
   /// The box held like R_WP is brought to its place next: of the two orientations that take the same space there the
   /// one that leaves the wrist less to do.
   void spare_wrist(const Matrix3& R_WP) {
-    const CellLayout& layout = request_.layout;
+    const skills::CellLayout& layout = request_.layout;
     if (!layout.is_fast || !layout.p_WB) return;
     const double pan = motion::pan_between(*layout.p_WB, X_WP_.p, layout.X_WT.p);
     const auto turn_of_wrist = [&] { return std::abs(pan - turn_between(layout, {R_WP, X_WP_.p}, goal())); };
@@ -135,14 +135,14 @@ class GraspPlanner {
 
   bool pick() {
     spare_wrist(X_WP_.R);
-    (void)pick_from_above(goal(), is_first() ? PickKind::First : PickKind::FromAfar);
+    (void)pick_from_above(goal(), is_first() ? skills::PickKind::First : skills::PickKind::FromAfar);
     return true;
   }
 
   /// By the side that looks along `face`, which is then turned up.
   void pick_side(const Vector3& face, bool again) {
     hang_by(face);
-    spare_wrist(motion::face_up(X_WP_.R, face));
+    spare_wrist(skills::face_up(X_WP_.R, face));
     auto rows = plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
     if (rows.empty()) {
       grasp_.problem = GraspProblem::SideTooLow;
@@ -197,9 +197,10 @@ class GraspPlanner {
 
   bool regrasp() {
     if (!request_.layout.flip_place) return false;
-    const FlipPlace& place = *request_.layout.flip_place;
-    const Matrix3 R_WP = orientation_before_flip(X_WP_.R, up_axis(grasp_.orientation), -place.direction);
-    if (!pick_from_above({R_WP, place.p_WF}, is_first() ? PickKind::First : PickKind::FromAfar)) return true;
+    const skills::FlipPlace& place = *request_.layout.flip_place;
+    const Matrix3 R_WP = skills::orientation_before_flip(X_WP_.R, up_axis(grasp_.orientation), -place.direction);
+    if (!pick_from_above({R_WP, place.p_WF}, is_first() ? skills::PickKind::First : skills::PickKind::FromAfar))
+      return true;
     execute(plan_set_down(request_.scenario, request_.box, place, R_WP, grasp_.X_PS, travel_));
     look();
     if (is_fine()) pick_side(-place.direction, true);
@@ -219,11 +220,11 @@ class GraspPlanner {
       }
       const bool is_done = stands();
       if (is_done) spare_wrist(X_WP_.R);
-      const FlipPlace& place = *request_.layout.flip_place;
+      const skills::FlipPlace& place = *request_.layout.flip_place;
       const Pose X_next =
-          is_done ? goal() : Pose{orientation_before_flip(X_WP_.R, next_up, place.direction), place.p_WF};
-      const PickKind first = is_first() ? PickKind::First : PickKind::FromAfar;
-      if (!pick_from_above(X_next, round > 0 ? PickKind::FromAbove : first) || is_done) break;
+          is_done ? goal() : Pose{skills::orientation_before_flip(X_WP_.R, next_up, place.direction), place.p_WF};
+      const skills::PickKind first = is_first() ? skills::PickKind::First : skills::PickKind::FromAfar;
+      if (!pick_from_above(X_next, round > 0 ? skills::PickKind::FromAbove : first) || is_done) break;
       if (round >= 2) {
         grasp_.problem = GraspProblem::DoesNotStand;
         break;
@@ -236,8 +237,8 @@ class GraspPlanner {
   /// One quarter turn over an edge, let go.
   void turn_over(const Vector3& up_P) {
     execute(plan_flip(request_.scenario, request_.box, *request_.layout.flip_place,
-                      orientation_before_flip(X_WP_.R, up_P, request_.layout.flip_place->direction), grasp_.X_PS,
-                      travel_));
+                      skills::orientation_before_flip(X_WP_.R, up_P, request_.layout.flip_place->direction),
+                      grasp_.X_PS, travel_));
     look();
   }
 
@@ -308,15 +309,16 @@ bool is_upright(const Matrix3& R_WP) { return R_WP.row(2).cwiseAbs().maxCoeff() 
 
 Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation) {
   const GraspPlanner first(request, orientation);
-  std::vector<Reorientation> ways{Reorientation::SideGrasp, Reorientation::Regrasp, Reorientation::Pivot};
-  if (first.stands()) ways = {Reorientation::None};
-  if (first.is_upside_down()) ways = {Reorientation::Pivot};
+  std::vector<skills::Reorientation> ways{skills::Reorientation::SideGrasp, skills::Reorientation::Regrasp,
+                                          skills::Reorientation::Pivot};
+  if (first.stands()) ways = {skills::Reorientation::None};
+  if (first.is_upside_down()) ways = {skills::Reorientation::Pivot};
   Grasp best;
   best.orientation = orientation;
   best.problem = GraspProblem::NoSurface;
   best.episodes.resize(request.rollouts.size());
   bool is_first = true;
-  for (const Reorientation way : ways) {
+  for (const skills::Reorientation way : ways) {
     GraspPlanner planner(request, orientation);
     if (!planner.make(way)) continue;
     Grasp grasp = planner.take();

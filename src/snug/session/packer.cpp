@@ -7,11 +7,12 @@
 #include <utility>
 
 #include "snug/cell/drawn_scenario.hpp"
+#include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/stopwatch.hpp"
-#include "snug/motion/primitives.hpp"
 #include "snug/session/reach.hpp"
-#include "snug/session/surroundings.hpp"
+#include "snug/skills/primitives.hpp"
+#include "snug/skills/surroundings.hpp"
 
 namespace snug::session {
 namespace {
@@ -27,7 +28,7 @@ constexpr double kPriorRate = 0.97;
 constexpr double kPriorCount = 4.0;
 
 const model::Scenario& checked(const model::Scenario& scenario, const std::string& sequence) {
-  (void)make_layout(scenario);  // says what is missing
+  (void)skills::make_layout(scenario, cell::find_pan_axis(scenario));  // says what is missing
   if (model::find_sequence(scenario, sequence) == nullptr) {
     throw InputError(scenario.source_name, "--sequence", "'" + sequence + "'", "a sequence of the scenario");
   }
@@ -51,7 +52,7 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
     : scenario_(checked(scenario, sequence)),
       options_(options),
       plant_(plant),
-      layout_(make_layout(scenario)),
+      layout_(skills::make_layout(scenario, cell::find_pan_axis(scenario))),
       reaches_(make_tool_reach(scenario)),
       belief_(scenario, sequence, settings_of(options)),
       items_(packing::make_items(belief_.nominal(), belief_.sequence())),
@@ -114,7 +115,7 @@ double Packer::obstacle_top(int item) const {
 }
 
 cell::ContainerFit Packer::fit_of(int item, const Pose& X_WP) const {
-  const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const Vector3 inner = model::find_container(scenario_, scenario_.target)->inner_size;
   return cell::fit_in(inner, box.size, layout_.X_WT.inverse() * X_WP);
 }
@@ -195,9 +196,9 @@ Location Packer::locate(int item) const {
     return Location::Container;
   }
   if (layout_.flip_place) {
-    const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+    const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
     const Vector3 off = X_WP.p - layout_.flip_place->p_WF;
-    const double bottom = off.z() + motion::lowest_corner(X_WP.R, box.size);
+    const double bottom = off.z() + skills::lowest_corner(X_WP.R, box.size);
     if (off.head<2>().norm() < kOnBench && std::abs(bottom) < kOnSurface) return Location::Bench;
   }
   return Location::Elsewhere;
@@ -207,9 +208,9 @@ bool Packer::can_be_picked(int item) const {
   const std::optional<BelievedBox>& box = belief_.box(item);
   if (!box || !is_upright(box->X_WP.R) || is_under_obstacle(item)) return false;
   if (!reaches_) return true;
-  const PlannedBox planned = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const skills::PlannedBox planned = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP,
-                              travel_bottom(layout_, obstacle_top(item)), PickKind::FromAfar);
+                              travel_bottom(layout_, obstacle_top(item)), skills::PickKind::FromAfar);
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_({row.X_WE, row.X_WE}); });
 }
 
@@ -239,8 +240,8 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
   for (const packing::Candidate& candidate : candidates) {
     if (best && best_utility >= utility_of(candidate, 1.0)) break;
     const packing::Candidate placed =
-        measured(state, candidate, items_[static_cast<std::size_t>(item)].size, clearance);
-    for (const Insertion& insertion : choose_insertions(placed, rehearsal.box().size)) {
+        skills::measured(state, candidate, items_[static_cast<std::size_t>(item)].size, clearance);
+    for (const skills::Insertion& insertion : skills::choose_insertions(placed, rehearsal.box().size)) {
       if (is_enough(best, report.attempts - before)) break;
       Attempt attempt = rehearsal.attempt(placed, insertion, top);
       report.attempts += attempt.was_rehearsed ? 1 : 0;
@@ -297,7 +298,7 @@ std::optional<Packer::Planned> Packer::plan(int item, const Decide& decide, Item
   report.predicted_success =
       (best->success_rate * best->samples + kPriorRate * kPriorCount) / (best->samples + kPriorCount);
   report.predicted = best->predicted;
-  return Planned{std::move(*best), make_planned_box(belief_.nominal(), belief_.sequence(), item)};
+  return Planned{std::move(*best), skills::make_planned_box(belief_.nominal(), belief_.sequence(), item)};
 }
 
 }  // namespace snug::session

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <utility>
 
-#include "snug/motion/primitives.hpp"
 #include "snug/motion/row_name.hpp"
 #include "snug/plant/motion_watch.hpp"
 #include "snug/session/packer.hpp"
-#include "snug/session/surroundings.hpp"
+#include "snug/skills/primitives.hpp"
+#include "snug/skills/surroundings.hpp"
 
 namespace snug::session {
 namespace {
@@ -203,7 +203,7 @@ void Packer::resume(const std::string& id, ItemReport& report) {
 }
 
 void Packer::press(int item, ItemReport& report) {
-  const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const double travel = travel_bottom(layout_, obstacle_top(-1));
   submit(box.id, plan_press(belief_.nominal(), layout_, box, belief_.box(item)->X_WP, travel),
          {options_.press_force, false}, report);
@@ -214,7 +214,7 @@ void Packer::press(int item, ItemReport& report) {
 void Packer::set_down(const Planned& planned, ItemReport& report) {
   belief_.doubt_prediction();
   let_go_ = planned.box.item;
-  const PlannedBox& box = planned.box;
+  const skills::PlannedBox& box = planned.box;
   const Matrix3 R_WP = layout_.X_WT.R * planned.attempt.planned.X_TP.R;
   const double travel = travel_bottom(layout_, obstacle_top(-1));
   motion::Waypoint here;
@@ -222,7 +222,7 @@ void Packer::set_down(const Planned& planned, ItemReport& report) {
   here.io.vacuum = true;
   here.name = motion::row_name("PostPick", box.id, "_up");
   motion::Waypoint up = here;
-  const double hanging = -2.0 * motion::lowest_corner(R_WP, box.size) + scenario_.cup.hold_length;
+  const double hanging = -2.0 * skills::lowest_corner(R_WP, box.size) + scenario_.cup.hold_length;
   up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + hanging);
   std::vector<motion::Waypoint> rows{up};
   const auto down = plan_set_down(belief_.nominal(), box, *layout_.flip_place, R_WP, planned.attempt.X_PS, travel);

@@ -33,8 +33,8 @@ std::string describe_outside(const cell::ContainerFit& fit, bool is_beside, doub
 
 }  // namespace
 
-Rehearsal::Rehearsal(Belief& belief, const CellLayout& layout, const ToolReach& reaches, const PlaceLimits& limits,
-                     double least_rate, int threads, const RehearsalTask& task)
+Rehearsal::Rehearsal(Belief& belief, const skills::CellLayout& layout, const ToolReach& reaches,
+                     const PlaceLimits& limits, double least_rate, int threads, const RehearsalTask& task)
     : belief_(belief),
       layout_(layout),
       reaches_(reaches),
@@ -42,7 +42,7 @@ Rehearsal::Rehearsal(Belief& belief, const CellLayout& layout, const ToolReach& 
       least_rate_(least_rate),
       threads_(threads),
       task_(task),
-      box_(make_planned_box(belief.nominal(), belief.sequence(), task.item)),
+      box_(skills::make_planned_box(belief.nominal(), belief.sequence(), task.item)),
       rollouts_(belief.take_up(task.robot)) {
   for (const auto& rollout : rollouts_) {
     states_.push_back(rollout->state());
@@ -159,7 +159,7 @@ void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Att
   }
 }
 
-Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion& insertion, double packed_top) {
+Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::Insertion& insertion, double packed_top) {
   Attempt attempt;
   attempt.planned = candidate.placement;
   attempt.skill = insertion.skill;
@@ -182,7 +182,8 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion&
   attempt.X_PS = grasp.X_PS;
   attempt.swing = grasp.swing;
   const motion::Waypoint& last = attempt.program.waypoints.back();
-  const PlaceRequest request{box_, grasp.X_PS, attempt.planned.X_TP, insertion, packed_top, last.X_WE, grasp.X_EP};
+  const skills::PlaceRequest request{box_,      grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
+                                     last.X_WE, grasp.X_EP};
   const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
   if (!can_follow(last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;

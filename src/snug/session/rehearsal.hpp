@@ -56,8 +56,8 @@ struct Attempt {
   bool was_stopped = false;                       ///< by a protective stop of the robot, in the nominal world
   double success_rate = 0.0;                      ///< of the samples, by weight
   int samples = 0;                                ///< that were rehearsed
-  Reorientation reorientation = Reorientation::None;
-  InsertionSkill skill = InsertionSkill::TopDown;
+  skills::Reorientation reorientation = skills::Reorientation::None;
+  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
   packing::Placement planned;
   AttemptForces predicted;  ///< largest of the samples
   AttemptForces nominal;
@@ -80,11 +80,12 @@ struct RehearsalTask {
 class Rehearsal {
  public:
   /// Takes all worlds up where they are believed to be.
-  Rehearsal(Belief& belief, const CellLayout& layout, const ToolReach& reaches, const PlaceLimits& limits,
+  Rehearsal(Belief& belief, const skills::CellLayout& layout, const ToolReach& reaches, const PlaceLimits& limits,
             double least_rate, int threads, const RehearsalTask& task);
 
-  [[nodiscard]] Attempt attempt(const packing::Candidate& candidate, const Insertion& insertion, double packed_top);
-  [[nodiscard]] const PlannedBox& box() const { return box_; }
+  [[nodiscard]] Attempt attempt(const packing::Candidate& candidate, const skills::Insertion& insertion,
+                                double packed_top);
+  [[nodiscard]] const skills::PlannedBox& box() const { return box_; }
 
  private:
   struct Outcome {
@@ -101,13 +102,13 @@ class Rehearsal {
   void rehearse_samples(const std::function<Outcome(int)>& execute, Attempt& attempt) const;
 
   const Belief& belief_;
-  const CellLayout& layout_;
+  const skills::CellLayout& layout_;
   const ToolReach& reaches_;
   PlaceLimits limits_;
   double least_rate_;
   int threads_;
   RehearsalTask task_;
-  PlannedBox box_;
+  skills::PlannedBox box_;
   std::span<const std::unique_ptr<Rollout>> rollouts_;
   std::vector<cell::CellState> states_;  ///< of the rollouts, where they were taken up
   std::vector<std::vector<std::optional<Pose>>> before_;

@@ -66,7 +66,7 @@ struct Send {
 /// A way to bring an item to a place that was rehearsed and did not go well in every rollout.
 struct FailedAttempt {
   packing::Placement planned;
-  InsertionSkill skill = InsertionSkill::TopDown;
+  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
   bool succeeded = false;     ///< in the nominal world; then `success_rate` of the samples is below 1
   double success_rate = 0.0;  ///< of the samples, by weight
   std::string reason;         ///< for people: of the nominal world, else of the first sample that failed
@@ -78,8 +78,8 @@ struct ItemReport {
   std::string reason;  ///< for people, where it is not placed
   packing::Placement planned;
   std::optional<Pose> X_TP;  ///< where it was seen (or is believed to be) in the end
-  Reorientation reorientation = Reorientation::None;
-  InsertionSkill skill = InsertionSkill::TopDown;
+  skills::Reorientation reorientation = skills::Reorientation::None;
+  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
   int flips = 0;
   int attempts = 0;                            ///< that were rehearsed for this item
   std::vector<FailedAttempt> failed_attempts;  ///< of these, in their order

@@ -61,7 +61,7 @@ class Scorer {
     int count = 0;
     for (const session::ItemReport& item : trial.session.items) {
       const bool is_plain = item.end == session::ItemEnd::Placed && item.sends.size() == 1 && item.recoveries.empty();
-      if (!is_plain || item.reorientation != session::Reorientation::None) continue;
+      if (!is_plain || item.reorientation != skills::Reorientation::None) continue;
       seconds += item.seconds.total();
       ++count;
     }

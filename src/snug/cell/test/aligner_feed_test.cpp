@@ -13,8 +13,7 @@
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/motion/row_name.hpp"
-#include "snug/motion/side_pick.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
 
 namespace snug::cell {
 namespace {
@@ -116,14 +115,13 @@ TEST(PoseAtAligner, TurnsEachBoxAsThePicksOfTheRealProgramsSay) {
   EXPECT_EQ(checked, 37);
 }
 
-/// Where the tool touches a side of the box, pressed as packed programs press there.
+/// A tool that comes from 8 degrees above level and touches the middle of a side of the box, pressed as packed programs
+/// press there.
 Pose side_pick_of(const Pose& X_WP, const Vector3& size, const Vector3& face) {
-  motion::SidePickIntent intent;
-  intent.X_WP = X_WP;
-  intent.size = size;
-  intent.face = face;
-  intent.length = cup::pick_length(demonstrator().cup);
-  return motion::side_pick_rows(intent)[3].X_WE;
+  const Vector3 level_axis = Vector3::UnitZ().cross(face);
+  const Matrix3 R_WE = exp_rotation((0.5 * std::numbers::pi - 0.14) * level_axis) * motion::upright_tool(0.0);
+  const Vector3 touched = X_WP.p + 0.5 * (X_WP.R.transpose() * face).cwiseAbs().dot(size) * face;
+  return {R_WE, touched - cup::pick_length(demonstrator().cup) * R_WE.col(2)};
 }
 
 TEST(PoseAtAligner, IsTheSameForPicksFromAboveAndByASideHoweverNearlySquareTheBoxIs) {

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "snug/cell/task.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 
@@ -11,10 +10,7 @@ namespace snug::cell {
 namespace {
 
 motion::Program demo_program(std::size_t rows = 16) {
-  const auto file = kSource / "scenarios/demo-placements.yaml";
-  const auto program = make_program(demonstrator(), "1", model::load_placements(file, demonstrator()), file.string());
-  EXPECT_TRUE(program.has_value());
-  motion::Program first_rows = *program;
+  motion::Program first_rows = motion::load_program(kSource / "src/snug/cell/test/demo_program.csv");
   first_rows.waypoints.resize(rows);
   return first_rows;
 }

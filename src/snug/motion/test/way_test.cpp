@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "snug/core/rng.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
 
 namespace snug::motion {
 namespace {
@@ -89,6 +89,17 @@ TEST(Way, ToWhereTheToolIsIsNone) {
   Pose nearby = X_WE;
   nearby.p.x() += 1e-8;
   EXPECT_TRUE(Way(X_WE, nearby, kAxis).is_motion());
+}
+
+TEST(PanBetween, IsTheTurnOfAVerticalAxis) {
+  const Vector3 p_WB(1.0, 2.0, 0.3);
+  for (const double from : {-3.0, -0.5, 2.9}) {
+    for (const double turn : {-3.0, -1.0, 0.0, 0.7, 3.1}) {
+      const Vector3 p_from = p_WB + 0.4 * Vector3(std::cos(from), std::sin(from), 2.0);
+      const Vector3 p_to = p_WB + 0.9 * Vector3(std::cos(from + turn), std::sin(from + turn), -1.0);
+      EXPECT_NEAR(pan_between(p_WB, p_from, p_to), turn, 1e-12);
+    }
+  }
 }
 
 }  // namespace

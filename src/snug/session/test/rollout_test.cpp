@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "snug/cell/joint_pace.hpp"
 #include "snug/model/test/shortened.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/session/rollout.hpp"
@@ -27,7 +28,7 @@ packing::Placement placement_of(const model::Scenario& scenario, const Vector3& 
 
 TEST(Reach, IsInTheContainerAndNotFarBehindIt) {
   const model::Scenario scenario = shortened(1);
-  const CellLayout layout = make_layout(scenario);
+  const skills::CellLayout layout = skills::make_layout(scenario, cell::find_pan_axis(scenario));
   const auto can = make_reach(scenario, layout, scenario.sequences.front());
   ASSERT_TRUE(can);
   for (const double x : {-0.12, 0.0, 0.12}) {
@@ -40,9 +41,11 @@ TEST(Reach, IsInTheContainerAndNotFarBehindIt) {
 TEST(Reach, IsNotAskedWithoutARobot) {
   model::Scenario scenario = shortened(1);
   scenario.robot->urdf = "nowhere.urdf";
-  EXPECT_FALSE(make_reach(scenario, make_layout(scenario), scenario.sequences.front()));
+  EXPECT_FALSE(
+      make_reach(scenario, skills::make_layout(scenario, cell::find_pan_axis(scenario)), scenario.sequences.front()));
   scenario.robot.reset();
-  EXPECT_FALSE(make_reach(scenario, make_layout(scenario), scenario.sequences.front()));
+  EXPECT_FALSE(
+      make_reach(scenario, skills::make_layout(scenario, cell::find_pan_axis(scenario)), scenario.sequences.front()));
 }
 
 /// From the start to and fro over the container, and down to the bench.

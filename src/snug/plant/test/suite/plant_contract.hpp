@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
 #include "snug/plant/plant.hpp"
 
 namespace snug::plant {

@@ -4,11 +4,11 @@
 #include "snug/packing/container_state.hpp"
 #include "snug/packing/placement.hpp"
 
-namespace snug::session {
+namespace snug::skills {
 
 /// The candidate with side_gap and side_height measured in `state`, and z on what carries it there. `size`: of the box,
 /// and `shrink` is taken from every size: boxes collide as if they were smaller by it.
 [[nodiscard]] packing::Candidate measured(const packing::ContainerState& state, packing::Candidate candidate,
                                           const Vector3& size, double shrink);
 
-}  // namespace snug::session
+}  // namespace snug::skills

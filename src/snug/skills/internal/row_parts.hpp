@@ -4,10 +4,10 @@
 #include "snug/motion/waypoint.hpp"
 #include "snug/spatial/pose.hpp"
 
-namespace snug::motion::internal {
+namespace snug::skills::internal {
 
-inline constexpr IO kHold{.vacuum = true};
-inline constexpr IO kRelease{.blow_off = true};
+inline constexpr motion::IO kHold{.vacuum = true};
+inline constexpr motion::IO kRelease{.blow_off = true};
 
 /// The pose with its origin at height z [m].
 [[nodiscard]] inline Pose at_height(Pose X, double z) {
@@ -15,4 +15,4 @@ inline constexpr IO kRelease{.blow_off = true};
   return X;
 }
 
-}  // namespace snug::motion::internal
+}  // namespace snug::skills::internal

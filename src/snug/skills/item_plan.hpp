@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "snug/motion/primitives.hpp"
 #include "snug/motion/row_name.hpp"
-#include "snug/motion/side_pick.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/packing/placement.hpp"
+#include "snug/skills/primitives.hpp"
+#include "snug/skills/side_pick.hpp"
 
-namespace snug::session {
+namespace snug::skills {
 
 /// The flat surface on which boxes are flipped.
 struct FlipPlace {
@@ -31,8 +31,8 @@ struct CellLayout {
   /// turns the way round that leaves the wrist less to do, and while it travels.
   bool is_fast = false;
 };
-/// Throws InputError for a scenario without aligner, tool or target container.
-[[nodiscard]] CellLayout make_layout(const model::Scenario& scenario);
+/// `p_WB`: CellLayout::p_WB. Throws InputError for a scenario without aligner, tool or target container.
+[[nodiscard]] CellLayout make_layout(const model::Scenario& scenario, const std::optional<Vector3>& p_WB);
 
 /// How another face of a box is brought up.
 enum class Reorientation {
@@ -122,7 +122,7 @@ enum class PickKind {
                                                       double travel_bottom);
 
 /// Tool over a box that hangs still from the cup where `X_PS` is the lip on it.
-[[nodiscard]] motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS);
+[[nodiscard]] ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS);
 
 struct PlaceRequest {
   PlannedBox box;
@@ -139,4 +139,4 @@ struct PlaceRequest {
 /// z in W below which nothing passes that crosses the cell: over fixed things, rim and packed boxes.
 [[nodiscard]] double travel_bottom(const CellLayout& layout, double packed_top);
 
-}  // namespace snug::session
+}  // namespace snug::skills

@@ -9,7 +9,7 @@
 #include "snug/core/expected.hpp"
 #include "snug/motion/waypoint.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 
 /// One box as it stands at the aligner.
 struct PickSpec {
@@ -54,8 +54,8 @@ struct NoProgramReason {
 /// Rows PrePick, Box, PostPick (vacuum on), PrePlace, [PrePlace_2,] Place, Place (vacuum off, blow-off on), PostPlace
 /// for each placement in order, then home; named as row_name says. Picks and places are vertical;
 /// crossings are above the rim, `obstacle_top`, the boxes placed before and the box to be picked.
-[[nodiscard]] Expected<Program, NoProgramReason> program_from_placements(std::span<const PickSpec> picks,
-                                                                         std::span<const Placement> placements,
-                                                                         const PlacementSettings& settings);
+[[nodiscard]] Expected<motion::Program, NoProgramReason> program_from_placements(std::span<const PickSpec> picks,
+                                                                                 std::span<const Placement> placements,
+                                                                                 const PlacementSettings& settings);
 
-}  // namespace snug::motion
+}  // namespace snug::skills

@@ -1,4 +1,4 @@
-// Motion primitives: pick, flip and place as waypoints with switches, from what shall happen to the box.
+// Primitives: pick, flip and place as waypoints with switches, from what shall happen to the box.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@
 
 #include "snug/motion/waypoint.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 
 /// The pose of the tool with which the box, hanging still from the cup, stands as asked (the cup's sag made up for).
 using ToolFor = std::function<Pose(const Pose& X_WP)>;
@@ -25,7 +25,7 @@ struct PickIntent {
   double lift_height = 0.3;                ///< m, z of E in W, after
   bool again = false;                      ///< the box was set down before: names PreRePick, RePick, PostRePick
 };
-[[nodiscard]] std::vector<Waypoint> pick_rows(const PickIntent& intent);
+[[nodiscard]] std::vector<motion::Waypoint> pick_rows(const PickIntent& intent);
 
 /// Where on the upper face the cup should press, in P from the middle of that face: over the centre of mass, as far as
 /// a disc of `lip_radius` stays on the face.
@@ -50,7 +50,7 @@ struct FlipIntent {
   Pose X_PE;                    ///< tool on the box, the cup not deformed
   ToolFor tool_for;
 };
-[[nodiscard]] std::vector<Waypoint> flip_rows(const FlipIntent& intent);
+[[nodiscard]] std::vector<motion::Waypoint> flip_rows(const FlipIntent& intent);
 /// R_WP of the box that lies after this flip.
 [[nodiscard]] Matrix3 flipped(const Matrix3& R_WP, const Vector3& direction);
 
@@ -79,9 +79,9 @@ struct PlaceIntent {
   bool gentle = false;  ///< slow rows (PlaceSlow) instead of quick ones
 };
 /// Rows PrePlace, PrePlace_2, Place ..., Place with vacuum off and blow-off on, PostPlace straight up.
-[[nodiscard]] std::vector<Waypoint> place_rows(const PlaceIntent& intent);
+[[nodiscard]] std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent);
 
 /// z of the lowest corner of a box relative to its middle (negative).
 [[nodiscard]] double lowest_corner(const Matrix3& R_WP, const Vector3& size);
 
-}  // namespace snug::motion
+}  // namespace snug::skills

@@ -1,5 +1,5 @@
 // program_from_placements: plain pick-and-place waypoints for boxes that need no flip.
-#include "snug/motion/placements.hpp"
+#include "snug/skills/placements.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <numbers>
 #include <utility>
 
-#include "snug/motion/internal/row_parts.hpp"
 #include "snug/motion/row_name.hpp"
+#include "snug/skills/internal/row_parts.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 namespace {
 
 using Refusal = Unexpected<NoProgramReason>;
@@ -101,14 +101,14 @@ class Writer {
     rim_ = settings.X_WT.p.z() + settings.rim_height * settings.X_WT.R(2, 2);
   }
 
-  Program write() {
+  motion::Program write() {
     for (std::size_t i = 0; i < moves_.size(); ++i) {
       write_pick(moves_[i]);
       write_place(moves_[i]);
       stack_top_ = std::max(stack_top_, moves_[i].place_bottom + moves_[i].height);
       const double next_top = i + 1 < moves_.size() ? moves_[i + 1].pick_top : kNothing;
       const double z = std::max(empty_height(next_top), moves_[i].X_WE_place.p.z());
-      add(at_height(moves_[i].X_WE_place, z), row_name("PostPlace", moves_[i].box), {});
+      add(at_height(moves_[i].X_WE_place, z), motion::row_name("PostPlace", moves_[i].box), {});
     }
     add(settings_.X_WE_home, "home", {});
     return std::move(program_);
@@ -117,7 +117,7 @@ class Writer {
  private:
   static constexpr double kNothing = -1.0e9;  // m, lower than anything
 
-  void add(const Pose& X_WE, std::string name, const IO& io) {
+  void add(const Pose& X_WE, std::string name, const motion::IO& io) {
     program_.waypoints.push_back({X_WE, std::move(name), io, 0});
   }
 
@@ -136,27 +136,27 @@ class Writer {
   }
 
   void write_pick(const Move& move) {
-    add(at_height(move.X_WE_pick, empty_height(move.pick_top)), row_name("PrePick", move.box), {});
-    add(move.X_WE_pick, row_name("Box", move.box), {});
-    add(at_height(move.X_WE_pick, loaded_height(move)), row_name("PostPick", move.box), kHold);
+    add(at_height(move.X_WE_pick, empty_height(move.pick_top)), motion::row_name("PrePick", move.box), {});
+    add(move.X_WE_pick, motion::row_name("Box", move.box), {});
+    add(at_height(move.X_WE_pick, loaded_height(move)), motion::row_name("PostPick", move.box), kHold);
   }
 
   void write_place(const Move& move) {
     const double travel = loaded_height(move);
-    add(at_height(move.X_WE_place, travel), row_name("PrePlace", move.box), kHold);
+    add(at_height(move.X_WE_place, travel), motion::row_name("PrePlace", move.box), kHold);
     if (settings_.entry_clearance) {
       const double entry = packed_top() + *settings_.entry_clearance + move.height + settings_.hold_length;
       if (entry < travel - kSameHeight && entry > move.X_WE_place.p.z() + kSameHeight) {
-        add(at_height(move.X_WE_place, entry), row_name("PrePlace", move.box, "_2"), kHold);
+        add(at_height(move.X_WE_place, entry), motion::row_name("PrePlace", move.box, "_2"), kHold);
       }
     }
-    add(move.X_WE_place, row_name("Place", move.box), kHold);
-    add(move.X_WE_place, row_name("Place", move.box), kRelease);
+    add(move.X_WE_place, motion::row_name("Place", move.box), kHold);
+    add(move.X_WE_place, motion::row_name("Place", move.box), kRelease);
   }
 
   const PlacementSettings& settings_;
   std::vector<Move> moves_;
-  Program program_{"placements", {}};
+  motion::Program program_{"placements", {}};
   double rim_ = 0.0;
   double stack_top_ = kNothing;
 };
@@ -181,9 +181,9 @@ const char* describe(NoProgram reason) {
   return "unknown reason";
 }
 
-Expected<Program, NoProgramReason> program_from_placements(std::span<const PickSpec> picks,
-                                                           std::span<const Placement> placements,
-                                                           const PlacementSettings& settings) {
+Expected<motion::Program, NoProgramReason> program_from_placements(std::span<const PickSpec> picks,
+                                                                   std::span<const Placement> placements,
+                                                                   const PlacementSettings& settings) {
   if (!is_finite(settings)) return refuse(NoProgram::BadNumber, "settings", "every number must be finite");
   std::vector<Move> moves;
   for (std::size_t i = 0; i < placements.size(); ++i) {
@@ -199,4 +199,4 @@ Expected<Program, NoProgramReason> program_from_placements(std::span<const PickS
   return Writer(settings, std::move(moves)).write();
 }
 
-}  // namespace snug::motion
+}  // namespace snug::skills

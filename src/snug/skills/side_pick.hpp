@@ -2,9 +2,9 @@
 // flipped.
 #pragma once
 
-#include "snug/motion/primitives.hpp"
+#include "snug/skills/primitives.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 
 /// A standing box, picked by a side face with the tool nearly level.
 struct SidePickIntent {
@@ -23,7 +23,7 @@ struct SidePickIntent {
 };
 /// Rows PrePick (high and upright, high and level, low before the face), Box, PostPick with vacuum: the box as it
 /// stood, lifted. With `again`: PreRePick, RePick, PostRePick.
-[[nodiscard]] std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent);
+[[nodiscard]] std::vector<motion::Waypoint> side_pick_rows(const SidePickIntent& intent);
 /// R_WE of a tool that points at `face`, and comes from above by `incline`; upright again it has `tool_yaw`.
 [[nodiscard]] Matrix3 side_pick_rotation(const Vector3& face, double tool_yaw, double incline);
 /// R_WP of the box when the face is up and the tool vertical.
@@ -39,6 +39,6 @@ struct SetDownIntent {
   ToolFor tool_for;
 };
 /// Rows PreTwist, Twist, Twist with vacuum off and blow-off on, PreTwist straight up.
-[[nodiscard]] std::vector<Waypoint> set_down_rows(const SetDownIntent& intent);
+[[nodiscard]] std::vector<motion::Waypoint> set_down_rows(const SetDownIntent& intent);
 
-}  // namespace snug::motion
+}  // namespace snug::skills

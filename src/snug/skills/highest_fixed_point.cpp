@@ -1,12 +1,12 @@
 // Obstacles: how high the fixed things of a cell reach, which a tool passes over on its way.
-#include "snug/cell/obstacles.hpp"
+#include "snug/skills/highest_fixed_point.hpp"
 
 #include <algorithm>
 
 #include "snug/core/check.hpp"
 #include "snug/geometry/bounds.hpp"
 
-namespace snug::cell {
+namespace snug::skills {
 namespace {
 
 void raise(double& top, const std::vector<model::PlacedShape>& shapes, const Pose& X_WB) {
@@ -31,4 +31,4 @@ double highest_fixed_point(const model::Scenario& scenario) {
   return top;
 }
 
-}  // namespace snug::cell
+}  // namespace snug::skills

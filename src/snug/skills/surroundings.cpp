@@ -1,9 +1,9 @@
 // Surroundings: what a box meets around the place it shall have: support, neighbours, walls.
-#include "snug/session/surroundings.hpp"
+#include "snug/skills/surroundings.hpp"
 
 #include <algorithm>
 
-namespace snug::session {
+namespace snug::skills {
 namespace {
 
 constexpr double kGraze = 0.004;        ///< m, boxes that overlap by less in plan view neither carry nor stand beside
@@ -72,4 +72,4 @@ packing::Candidate measured(const packing::ContainerState& state, packing::Candi
   return candidate;
 }
 
-}  // namespace snug::session
+}  // namespace snug::skills

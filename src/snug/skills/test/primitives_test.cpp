@@ -1,14 +1,17 @@
-// Motion primitives: rows, switches and poses against what they promise.
-#include "snug/motion/primitives.hpp"
+// Primitives: rows, switches and poses against what they promise.
+#include "snug/skills/primitives.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "snug/motion/test/demonstrator.hpp"
+#include "snug/motion/tool_yaw.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 namespace {
+
+using motion::kRounding;
 
 using std::numbers::pi;
 
@@ -106,4 +109,4 @@ TEST(PlaceRows, EnterASlotOneSideFirstAndEndLevel) {
 }
 
 }  // namespace
-}  // namespace snug::motion
+}  // namespace snug::skills

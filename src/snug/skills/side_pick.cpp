@@ -1,16 +1,16 @@
 // Side pick and set down as waypoints with switches.
-#include "snug/motion/side_pick.hpp"
+#include "snug/skills/side_pick.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "snug/core/check.hpp"
-#include "snug/motion/internal/row_parts.hpp"
 #include "snug/motion/row_name.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/skills/internal/row_parts.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 namespace {
 
 using internal::kHold;
@@ -27,7 +27,7 @@ Vector3 nearest_normal(const Matrix3& R_WP, const Vector3& direction, int* axis)
 
 Matrix3 side_pick_rotation(const Vector3& face, double tool_yaw, double incline) {
   const Vector3 axis = (-Vector3::UnitZ()).cross(-face).normalized();  // takes down to the way in
-  return exp_rotation((0.5 * std::numbers::pi - incline) * axis) * upright_tool(tool_yaw);
+  return exp_rotation((0.5 * std::numbers::pi - incline) * axis) * motion::upright_tool(tool_yaw);
 }
 
 Matrix3 face_up(const Matrix3& R_WP, const Vector3& face) {
@@ -35,7 +35,7 @@ Matrix3 face_up(const Matrix3& R_WP, const Vector3& face) {
   return exp_rotation(0.5 * std::numbers::pi * axis) * R_WP;
 }
 
-std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent) {
+std::vector<motion::Waypoint> side_pick_rows(const SidePickIntent& intent) {
   SNUG_CHECK(std::abs(intent.face.z()) < 1e-9, "a side looks level");
   int axis = 0;
   const Vector3 normal = nearest_normal(intent.X_WP.R, intent.face, &axis);
@@ -48,8 +48,10 @@ std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent) {
   Pose X_WE_lifted = X_WE_pick;
   X_WE_lifted.p.z() += intent.lift;
   const std::string pick = intent.again ? "RePick" : "Pick";
-  const auto name = [&](const std::string& kind, const char* suffix) { return row_name(kind, intent.box, suffix); };
-  const Pose X_WE_upright{upright_tool(intent.tool_yaw), X_WE_high.p};
+  const auto name = [&](const std::string& kind, const char* suffix) {
+    return motion::row_name(kind, intent.box, suffix);
+  };
+  const Pose X_WE_upright{motion::upright_tool(intent.tool_yaw), X_WE_high.p};
   return {{X_WE_upright, name("Pre" + pick, ""), {}, 0},
           {X_WE_high, name("Pre" + pick, "_level"), {}, 0},
           {X_WE_before, name("Pre" + pick, "_side"), {}, 0},
@@ -57,7 +59,7 @@ std::vector<Waypoint> side_pick_rows(const SidePickIntent& intent) {
           {X_WE_lifted, name("Post" + pick, ""), kHold, 0}};
 }
 
-std::vector<Waypoint> set_down_rows(const SetDownIntent& intent) {
+std::vector<motion::Waypoint> set_down_rows(const SetDownIntent& intent) {
   const double height = -lowest_corner(intent.X_WP.R, intent.size);
   const double rest = intent.X_WP.p.z() - height;
   const auto tool = [&](double bottom) {
@@ -68,7 +70,7 @@ std::vector<Waypoint> set_down_rows(const SetDownIntent& intent) {
   const Pose X_WE_high = tool(intent.travel_bottom), X_WE_down = tool(rest - intent.press);
   Pose X_WE_back = X_WE_down;
   X_WE_back.p.z() = X_WE_high.p.z() + 0.03;
-  const auto name = [&](const char* kind, const char* suffix) { return row_name(kind, intent.box, suffix); };
+  const auto name = [&](const char* kind, const char* suffix) { return motion::row_name(kind, intent.box, suffix); };
   return {{X_WE_high, name("PreTwist", ""), kHold, 0},
           {tool(rest + 0.01), name("PreTwist", "_low"), kHold, 0},
           {X_WE_down, name("Twist", ""), kHold, 0},
@@ -76,4 +78,4 @@ std::vector<Waypoint> set_down_rows(const SetDownIntent& intent) {
           {X_WE_back, name("PreTwist", "_back"), {}, 0}};
 }
 
-}  // namespace snug::motion
+}  // namespace snug::skills

@@ -1,12 +1,10 @@
 // ItemPlan: from a box and the place it shall have to the rows that bring it there.
-#include "snug/session/item_plan.hpp"
+#include "snug/skills/item_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "snug/cell/joint_pace.hpp"
-#include "snug/cell/obstacles.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/cup/statics.hpp"
@@ -14,10 +12,12 @@
 #include "snug/geometry/bounds.hpp"
 #include "snug/motion/fast_settings.hpp"
 #include "snug/motion/row_name.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
 #include "snug/motion/way.hpp"
+#include "snug/skills/highest_fixed_point.hpp"
+#include "snug/skills/unwinding.hpp"
 
-namespace snug::session {
+namespace snug::skills {
 namespace {
 
 constexpr double kTravelClearance = 0.06;  ///< m, more than the precision of rows that are passed on the fly
@@ -97,7 +97,7 @@ Dip find_dip(const CellLayout& layout, const Pose& X_WE_from, const Pose& X_WE_t
   for (int i = 0; i <= kLooks; ++i) {
     const double share = static_cast<double>(i) / kLooks;
     const Pose X_WP = way.at(share) * X_EP;
-    const double depth = bottom - (X_WP.p.z() + motion::lowest_corner(X_WP.R, size));
+    const double depth = bottom - (X_WP.p.z() + lowest_corner(X_WP.R, size));
     if (depth > dip.depth) dip = {depth, share};
   }
   return dip;
@@ -157,7 +157,7 @@ const char* name_of(Reorientation reorientation) {
   return "";
 }
 
-CellLayout make_layout(const model::Scenario& scenario) {
+CellLayout make_layout(const model::Scenario& scenario, const std::optional<Vector3>& p_WB) {
   const model::Container* container = model::find_container(scenario, scenario.target);
   if (!scenario.aligner || !scenario.tool || container == nullptr) {
     throw InputError(scenario.source_name, "", "", "a cell with an aligner, a tool and a target container");
@@ -165,9 +165,9 @@ CellLayout make_layout(const model::Scenario& scenario) {
   CellLayout layout;
   layout.X_WT = container->X_WT;
   layout.rim = container->has_walls ? container->inner_size.z() : 0.0;
-  layout.fixed_top = cell::highest_fixed_point(scenario);
+  layout.fixed_top = highest_fixed_point(scenario);
   layout.flip_place = find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p);
-  layout.p_WB = cell::find_pan_axis(scenario);
+  layout.p_WB = p_WB;
   layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
   return layout;
 }
@@ -201,7 +201,7 @@ std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, co
   std::vector<Insertion> insertions{base};
   if (tight_axis >= 0) {
     const AxisView v = view(candidate, tight_axis);
-    const double bottom = candidate.placement.X_TP.p.z() + motion::lowest_corner(candidate.placement.X_TP.R, size);
+    const double bottom = candidate.placement.X_TP.p.z() + lowest_corner(candidate.placement.X_TP.R, size);
     Insertion tilted = base;
     tilted.skill = InsertionSkill::Tilted;
     tilted.edge_height_T = bottom + std::min(v.low_top, v.high_top);
@@ -233,7 +233,7 @@ PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequen
 }
 
 Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Matrix3& R_WP) {
-  return motion::choose_cup_offset(R_WP, box.size, box.inertia.com, 0.5 * cup.effective_diameter + kSealRoom);
+  return choose_cup_offset(R_WP, box.size, box.inertia.com, 0.5 * cup.effective_diameter + kSealRoom);
 }
 
 double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP_next) {
@@ -247,7 +247,7 @@ double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP
 std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                         const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next, double travel,
                                         PickKind kind) {
-  motion::PickIntent intent;
+  PickIntent intent;
   intent.box = box.id;
   intent.X_WP = X_WP;
   intent.size = box.size;
@@ -255,12 +255,12 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
   intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, X_WP, X_WP_next);
   intent.length = cup::pick_length(scenario.cup);
   intent.again = kind != PickKind::First;
-  const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);
+  const double height = -2.0 * lowest_corner(X_WP.R, box.size);
   const double top = X_WP.p.z() + 0.5 * height;
   intent.approach_height = scenario.cup.free_length +
                            (kind == PickKind::FromAbove ? top + 0.03 : std::max(travel + 0.02, top + kTravelClearance));
   intent.lift_height = travel + height + scenario.cup.hold_length;
-  return motion::pick_rows(intent);
+  return pick_rows(intent);
 }
 
 motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
@@ -273,14 +273,14 @@ std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::W
                                        const std::optional<motion::Swing>& swing) {
   if (rows.empty()) return rows;
   if (layout.is_fast) {
-    std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw, true, layout.p_WB);
+    std::vector<motion::Waypoint> turned = with_turns(last, rows, layout.neutral_yaw, true, layout.p_WB);
     for (motion::Waypoint& row : turned) {
       if (swing && row.io.vacuum && !motion::is_contact_row(row.name)) row.name = motion::with_swing(row.name, *swing);
     }
     return turned;
   }
-  const std::vector<motion::Waypoint> turned = motion::with_turns(last, rows, layout.neutral_yaw);
-  return layout.p_WB ? motion::with_detours(last, turned, *layout.p_WB, kNearBase, kBaseRoom) : turned;
+  const std::vector<motion::Waypoint> turned = with_turns(last, rows, layout.neutral_yaw);
+  return layout.p_WB ? with_detours(last, turned, *layout.p_WB, kNearBase, kBaseRoom) : turned;
 }
 
 Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction) {
@@ -293,16 +293,16 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
                                              const PlannedBox& box, const Pose& X_WP, const Vector3& face,
                                              const Pose& X_WP_next, double travel, bool again) {
   const model::CupParams& cup = scenario.cup;
-  motion::SidePickIntent intent;
+  SidePickIntent intent;
   intent.box = box.id;
   intent.X_WP = X_WP;
   intent.size = box.size;
   intent.face = face;
   intent.again = again;
-  const Matrix3 R_WP_up = motion::face_up(X_WP.R, face);
+  const Matrix3 R_WP_up = face_up(X_WP.R, face);
   intent.cup_offset_P = cup_offset(cup, box, R_WP_up);
   // The lip stays off what the box stands on; where the side is too low for that it reaches over its upper edge.
-  const double half_height = -motion::lowest_corner(X_WP.R, box.size);
+  const double half_height = -lowest_corner(X_WP.R, box.size);
   const double low = cup.lip_radius + kLipClearance - half_height;
   const double offset = (X_WP.R * intent.cup_offset_P).z();
   if (offset < low) intent.cup_offset_P += (low - offset) * X_WP.R.transpose() * Vector3::UnitZ();
@@ -313,11 +313,11 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   intent.length = again ? cup.free_length : cup::pick_length(cup);
   intent.lift = std::max(0.02, travel - (X_WP.p.z() - half_height));
   intent.approach_height = travel + half_height;
-  std::vector<motion::Waypoint> rows = motion::side_pick_rows(intent);
+  std::vector<motion::Waypoint> rows = side_pick_rows(intent);
   if (!layout.is_fast) return rows;
   const Pose X_EP = rows[rows.size() - 2].X_WE.inverse() * X_WP;
   Pose X_WP_over = X_WP_next;
-  X_WP_over.p.z() = travel - motion::lowest_corner(X_WP_next.R, box.size);
+  X_WP_over.p.z() = travel - lowest_corner(X_WP_next.R, box.size);
   for (int i = 0; i < kRaises; ++i) {
     Pose& X_WE_lifted = rows.back().X_WE;
     const Dip dip = find_dip(layout, X_WE_lifted, X_WP_over * X_EP.inverse(), X_EP, box.size,
@@ -329,9 +329,9 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
 
 motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
                               const Pose& X_PS, const Vector3& face, double travel, bool again) {
-  const Matrix3 R_WP = motion::face_up(X_WP.R, face);
+  const Matrix3 R_WP = face_up(X_WP.R, face);
   Pose X_WP_up{R_WP, X_WP.p};
-  X_WP_up.p.z() = travel + kTurnClearance - motion::lowest_corner(R_WP, box.size);
+  X_WP_up.p.z() = travel + kTurnClearance - lowest_corner(R_WP, box.size);
   motion::Waypoint row;
   row.X_WE = make_tool_for(scenario, box, X_PS)(X_WP_up);
   row.name = motion::row_name(again ? "PostRePick" : "PostPick", box.id, "_up");
@@ -341,7 +341,7 @@ motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox&
 
 std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const CellLayout& layout,
                                          const PlannedBox& box, const Pose& X_WP, double travel) {
-  const double top = X_WP.p.z() - motion::lowest_corner(X_WP.R, box.size);
+  const double top = X_WP.p.z() - lowest_corner(X_WP.R, box.size);
   const double free = scenario.cup.free_length;
   std::vector<motion::Waypoint> rows(3);
   for (motion::Waypoint& row : rows) row.X_WE = {motion::upright_tool(layout.neutral_yaw), X_WP.p};
@@ -356,18 +356,18 @@ std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const 
 std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, const PlannedBox& box,
                                             const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
                                             double travel) {
-  motion::SetDownIntent intent;
+  SetDownIntent intent;
   intent.box = box.id;
   intent.size = box.size;
-  intent.X_WP = {R_WP, place.p_WF - motion::lowest_corner(R_WP, box.size) * Vector3::UnitZ()};
+  intent.X_WP = {R_WP, place.p_WF - lowest_corner(R_WP, box.size) * Vector3::UnitZ()};
   intent.travel_bottom = travel;
   intent.tool_for = make_tool_for(scenario, box, X_PS);
-  return motion::set_down_rows(intent);
+  return set_down_rows(intent);
 }
 
 std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box, const FlipPlace& place,
                                         const Matrix3& R_WP, const Pose& X_PS, double travel) {
-  motion::FlipIntent intent;
+  FlipIntent intent;
   intent.box = box.id;
   intent.size = box.size;
   intent.p_WF = place.p_WF;
@@ -376,10 +376,10 @@ std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const P
   intent.travel_bottom = travel;
   intent.tool_for = make_tool_for(scenario, box, X_PS);
   intent.X_PE = X_PS * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -scenario.cup.hold_length)};
-  return motion::flip_rows(intent);
+  return flip_rows(intent);
 }
 
-motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS) {
+ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS) {
   const model::CupParams& params = scenario.cup;
   cup::HeldLoad load;
   load.mass = box.inertia.mass;
@@ -406,7 +406,7 @@ motion::ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox&
 std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
                                          const PlaceRequest& request) {
   const Matrix3& R_WT = layout.X_WT.R;
-  motion::PlaceIntent intent;
+  PlaceIntent intent;
   intent.box = request.box.id;
   intent.X_WP = layout.X_WT * request.X_TP;
   intent.size = request.box.size;
@@ -419,21 +419,21 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
   intent.gentle = request.insertion.gentle;
   intent.press = 0.005;
   if (request.insertion.skill == InsertionSkill::Tilted) {
-    motion::TiltedEntry entry;
+    TiltedEntry entry;
     entry.low_side = R_WT * request.insertion.low_side_T;
     entry.push = R_WT * request.insertion.push_T;
     entry.edge_height = layout.X_WT.p.z() + request.insertion.edge_height_T;
     intent.tilted = entry;
   }
-  if (!layout.is_fast) return motion::place_rows(intent);
-  intent.entry_bottom = intent.X_WP.p.z() + motion::lowest_corner(intent.X_WP.R, intent.size);  // straight down
+  if (!layout.is_fast) return place_rows(intent);
+  intent.entry_bottom = intent.X_WP.p.z() + lowest_corner(intent.X_WP.R, intent.size);  // straight down
   const double least = intent.travel_bottom - kTravelClearance + kLeastOnWay;
   for (int i = 0; i < kRaises; ++i) {
-    const Pose X_WE_over = motion::place_rows(intent).front().X_WE;
+    const Pose X_WE_over = place_rows(intent).front().X_WE;
     const Dip dip = find_dip(layout, request.X_WE, X_WE_over, request.X_EP, intent.size, least);
     intent.travel_bottom += dip.depth / std::max(kLeastLever, dip.share);
   }
-  return motion::place_rows(intent);
+  return place_rows(intent);
 }
 
-}  // namespace snug::session
+}  // namespace snug::skills

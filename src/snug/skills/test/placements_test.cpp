@@ -1,5 +1,5 @@
 // Tests of programs made from placements.
-#include "snug/motion/placements.hpp"
+#include "snug/skills/placements.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,10 @@
 
 #include "snug/motion/test/demonstrator.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 namespace {
+
+using motion::kRounding;
 
 using std::numbers::pi;
 constexpr double kRimW = -0.03;
@@ -56,10 +58,10 @@ Job two_boxes() {
   return job;
 }
 
-Program program_of(const Job& job) {
+motion::Program program_of(const Job& job) {
   const auto program = program_from_placements(job.picks, job.placements, job.settings);
   EXPECT_TRUE(program.has_value()) << (program ? "" : program.error().text);
-  return program.value_or(Program{});
+  return program.value_or(motion::Program{});
 }
 
 NoProgram refusal_of(const Job& job) {
@@ -71,7 +73,7 @@ NoProgram refusal_of(const Job& job) {
 }
 
 TEST(Placements, GiveTheRowsAndSwitchesOfAPickAndPlace) {
-  const Program program = program_of(two_boxes());
+  const motion::Program program = program_of(two_boxes());
   const std::vector<std::string> names = {"PrePick(BOX027)",
                                           "Box(BOX027)",
                                           "PostPick(BOX027)",
@@ -94,7 +96,8 @@ TEST(Placements, GiveTheRowsAndSwitchesOfAPickAndPlace) {
   ASSERT_EQ(program.waypoints.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(program.waypoints[i].name, names[i]);
-    EXPECT_EQ(program.waypoints[i].io, (IO{.vacuum = vacuum[i] == '1', .blow_off = blow[i] == '1'})) << names[i];
+    EXPECT_EQ(program.waypoints[i].io, (motion::IO{.vacuum = vacuum[i] == '1', .blow_off = blow[i] == '1'}))
+        << names[i];
   }
   EXPECT_EQ(program.waypoints.back().X_WE, two_boxes().settings.X_WE_home);
 }
@@ -105,7 +108,7 @@ TEST(Placements, PutTheRigidlyHeldBoxWhereItShallRest) {
   job.picks[1].tool_yaw = -2.0;
   job.picks[1].cup_offset = Vector3(0.03, -0.04, 0.0);
   job.settings.release_gap = 0.002;
-  const Program program = program_of(job);
+  const motion::Program program = program_of(job);
   for (std::size_t b = 0; b < 2; ++b) {
     SCOPED_TRACE(b);
     const Pose& X_WE_pick = program.waypoints[8 * b + 1].X_WE;
@@ -128,7 +131,7 @@ TEST(Placements, PutTheRigidlyHeldBoxWhereItShallRest) {
 }
 
 TEST(Placements, GoStraightDownAndUp) {
-  const Program program = program_of(two_boxes());
+  const motion::Program program = program_of(two_boxes());
   for (const auto& [first, last] :
        std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {3, 7}, {8, 10}, {11, 15}}) {
     for (std::size_t i = first; i <= last; ++i) {
@@ -141,7 +144,7 @@ TEST(Placements, GoStraightDownAndUp) {
 TEST(Placements, CrossAboveRimObstacleAndPackedBoxes) {
   Job job = two_boxes();
   job.settings.entry_clearance = std::nullopt;
-  const Program program = program_of(job);
+  const motion::Program program = program_of(job);
   ASSERT_EQ(program.waypoints.size(), 15u);
   const double clearance = job.settings.travel_clearance;
   double highest = std::max(kRimW, job.settings.obstacle_top);
@@ -161,7 +164,7 @@ TEST(Placements, CrossAboveRimObstacleAndPackedBoxes) {
 
 TEST(Placements, StopAboveTheNeighboursBeforeGoingDownBetweenThem) {
   const Job job = two_boxes();
-  const Program program = program_of(job);
+  const motion::Program program = program_of(job);
   const double bottom = program.waypoints[4].X_WE.p.z() - job.settings.hold_length - job.picks[0].size.z();
   EXPECT_NEAR(bottom, kRimW + *job.settings.entry_clearance, 1e-14);
 }
@@ -173,7 +176,7 @@ TEST(Placements, TurnABoxThatLiesOnItsSideAboutTheVerticalOnly) {
   job.picks[0].X_WP.p.z() = -0.105 + 0.5 * job.picks[0].size.y();
   job.placements[0].X_TP.R = exp_rotation(Vector3(0.0, 0.0, -2.0)) * R_side;
   job.placements[0].X_TP.p.z() = 0.5 * job.picks[0].size.y();
-  const Program program = program_of(job);
+  const motion::Program program = program_of(job);
   EXPECT_NEAR(program.waypoints[1].X_WE.p.z(), -0.105 + job.picks[0].size.y() + job.settings.pick_length, 1e-14);
   EXPECT_LT((program.waypoints[5].X_WE.R.col(2) + Vector3::UnitZ()).norm(), 1e-14);
 }
@@ -217,19 +220,19 @@ TEST(Placements, AreRefusedWithTheReason) {
 TEST(Placements, OfNothingSendTheToolHome) {
   Job job = two_boxes();
   job.placements.clear();
-  const Program program = program_of(job);
+  const motion::Program program = program_of(job);
   ASSERT_EQ(program.waypoints.size(), 1u);
   EXPECT_EQ(program.waypoints[0].name, "home");
 }
 
 TEST(Placements, GiveAProgramThatReadsBackAndRuns) {
-  const Program program = program_of(two_boxes());
-  const Program again = parse_program(format_program(program), "placements.csv");
+  const motion::Program program = program_of(two_boxes());
+  const motion::Program again = motion::parse_program(motion::format_program(program), "placements.csv");
   ASSERT_EQ(again.waypoints.size(), program.waypoints.size());
-  for (const ControllerKind kind : {ControllerKind::Faithful, ControllerKind::Ideal}) {
-    ControllerSettings settings = demonstrator_settings(1);
+  for (const motion::ControllerKind kind : {motion::ControllerKind::Faithful, motion::ControllerKind::Ideal}) {
+    motion::ControllerSettings settings = motion::demonstrator_settings(1);
     settings.kind = kind;
-    const double duration = compute_duration(prepare(again, settings), program.waypoints.back().X_WE);
+    const double duration = motion::compute_duration(motion::prepare(again, settings), program.waypoints.back().X_WE);
     EXPECT_GT(duration, 10.0);
     EXPECT_LT(duration, 60.0);
   }
@@ -238,14 +241,14 @@ TEST(Placements, GiveAProgramThatReadsBackAndRuns) {
 TEST(Placements, AreEnteredByTheFaithfulToolFarWithinTheGapsBetweenBoxes) {
   // What the stop PrePlace(...)_2 is for: boxes are packed with 1 mm between them.
   const Job job = two_boxes();
-  const Program program = program_of(job);
-  const PreparedProgram plan = prepare(program, demonstrator_settings(1));
-  ControllerState state = make_controller_state(program.waypoints.back().X_WE);
-  ToolState measured = state.command;
+  const motion::Program program = program_of(job);
+  const motion::PreparedProgram plan = motion::prepare(program, motion::demonstrator_settings(1));
+  motion::ControllerState state = motion::make_controller_state(program.waypoints.back().X_WE);
+  motion::ToolState measured = state.command;
   const Pose& X_WE_place = program.waypoints[5].X_WE;
   double worst = 0.0;
   while (state.row < 6) {
-    measured = tick(plan, measured, state).tool;
+    measured = motion::tick(plan, measured, state).tool;
     const double bottom = measured.X_WE.p.z() - job.settings.hold_length - job.picks[0].size.z();
     if (state.row >= 4 && bottom < kRimW) worst = std::max(worst, (measured.X_WE.p - X_WE_place.p).head<2>().norm());
   }
@@ -257,4 +260,4 @@ TEST(Placements, AreEnteredByTheFaithfulToolFarWithinTheGapsBetweenBoxes) {
 }
 
 }  // namespace
-}  // namespace snug::motion
+}  // namespace snug::skills

@@ -1,11 +1,11 @@
 // Task: placements into waypoints: plain pick-and-place in the cell of a scenario.
-#include "snug/cell/task.hpp"
+#include "snug/session/task.hpp"
 
 #include "snug/cell/aligner_feed.hpp"
-#include "snug/cell/obstacles.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/skills/highest_fixed_point.hpp"
 
-namespace snug::cell {
+namespace snug::session {
 namespace {
 
 const model::Item& item_of(const model::Sequence& sequence, const model::PlacementEntry& placement,
@@ -19,7 +19,7 @@ const model::Item& item_of(const model::Sequence& sequence, const model::Placeme
 
 }  // namespace
 
-Expected<motion::Program, motion::NoProgramReason> make_program(const model::Scenario& scenario,
+Expected<motion::Program, skills::NoProgramReason> make_program(const model::Scenario& scenario,
                                                                 const std::string& sequence_name,
                                                                 const std::vector<model::PlacementEntry>& placements,
                                                                 const std::string& placements_name) {
@@ -31,24 +31,24 @@ Expected<motion::Program, motion::NoProgramReason> make_program(const model::Sce
   if (!scenario.aligner || container == nullptr) {
     throw InputError(scenario.source_name, "", "", "a cell with an aligner and a target container");
   }
-  std::vector<motion::PickSpec> picks;
-  std::vector<motion::Placement> wanted;
+  std::vector<skills::PickSpec> picks;
+  std::vector<skills::Placement> wanted;
   for (const model::PlacementEntry& placement : placements) {
-    motion::PickSpec pick;
+    skills::PickSpec pick;
     pick.box = placement.parcel;
-    pick.X_WP = pose_at_aligner(scenario, item_of(*sequence, placement, placements_name), std::nullopt);
+    pick.X_WP = cell::pose_at_aligner(scenario, item_of(*sequence, placement, placements_name), std::nullopt);
     pick.size = model::collision_size(scenario, *model::find_parcel(scenario, placement.parcel));
     picks.push_back(pick);
     wanted.push_back({placement.parcel, placement.X_TP});
   }
-  motion::PlacementSettings settings;
+  skills::PlacementSettings settings;
   settings.X_WT = container->X_WT;
   settings.rim_height = container->has_walls ? container->inner_size.z() : 0.0;
-  settings.obstacle_top = highest_fixed_point(scenario);
+  settings.obstacle_top = skills::highest_fixed_point(scenario);
   settings.pick_length = scenario.cup.hold_length;
   settings.hold_length = scenario.cup.hold_length;
   settings.X_WE_home = scenario.controller.X_WE_start;
-  return motion::program_from_placements(picks, wanted, settings);
+  return skills::program_from_placements(picks, wanted, settings);
 }
 
-}  // namespace snug::cell
+}  // namespace snug::session

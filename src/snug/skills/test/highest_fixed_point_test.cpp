@@ -1,15 +1,14 @@
-// Obstacles: every kind of fixed thing counts, as high as it reaches, and programs pass over it.
-#include "snug/cell/obstacles.hpp"
+// Highest fixed point: every kind of fixed thing counts, as high as it reaches.
+#include "snug/skills/highest_fixed_point.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "snug/cell/task.hpp"
-#include "snug/cell/test/demonstrator.hpp"
 #include "snug/geometry/convex_hull.hpp"
+#include "snug/skills/test/demonstrator.hpp"
 
-namespace snug::cell {
+namespace snug::skills {
 namespace {
 
 constexpr double kTop = 0.4;  ///< m, z in W
@@ -58,20 +57,5 @@ TEST(HighestFixedPoint, CountsTheAlignersPlatesAndOtherContainersButNotTheTarget
   EXPECT_NEAR(highest_fixed_point(scenario), 0.0, 1e-12);
 }
 
-TEST(MakeProgram, CrossesTheCellOverAHull) {
-  const auto file = kSource / "scenarios/demo-placements.yaml";
-  const auto highest_carry = [&](const model::Scenario& scenario) {
-    const auto program = make_program(scenario, "1", model::load_placements(file, scenario), file.string());
-    EXPECT_TRUE(program.has_value());
-    double lowest = 10.0;
-    for (const motion::Waypoint& row : program->waypoints) {
-      if (row.name.starts_with("PostPick")) lowest = std::min(lowest, row.X_WE.p.z());
-    }
-    return lowest;
-  };
-  const model::Scenario blocked = with_body(pyramid(), Pose{Matrix3::Identity(), Vector3(0.0, -0.4, 0.1)});
-  EXPECT_NEAR(highest_carry(blocked) - highest_carry(demonstrator()), kTop, 1e-9);
-}
-
 }  // namespace
-}  // namespace snug::cell
+}  // namespace snug::skills

@@ -1,5 +1,5 @@
 // Side pick and set down: rows, switches and poses against what they promise.
-#include "snug/motion/side_pick.hpp"
+#include "snug/skills/side_pick.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,13 @@
 
 #include "snug/core/rng.hpp"
 #include "snug/motion/test/demonstrator.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/skills/unwinding.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 namespace {
+
+using motion::kRounding;
 
 using std::numbers::pi;
 
@@ -25,8 +28,8 @@ TEST(SidePickRotation, PointsAtTheFaceAndIsUprightAgainWhenTheFaceIsUp) {
     EXPECT_NEAR(R_WE(2, 2), -std::sin(incline), kRounding) << "it comes from above";
     // The turn that brings the face up brings the tool, pressed squarely, upright to the yaw asked for.
     const Matrix3 R_WE_up = face_up(side_pick_rotation(face, yaw, 0.0), face);
-    ASSERT_TRUE(yaw_of(R_WE_up));
-    EXPECT_NEAR(std::remainder(*yaw_of(R_WE_up) - yaw, 2.0 * pi), 0.0, 1e-9);
+    ASSERT_TRUE(motion::yaw_of(R_WE_up));
+    EXPECT_NEAR(std::remainder(*motion::yaw_of(R_WE_up) - yaw, 2.0 * pi), 0.0, 1e-9);
     EXPECT_NEAR((face_up(Matrix3::Identity(), face) * face).z(), 1.0, kRounding);
   }
 }
@@ -50,8 +53,8 @@ TEST(SidePickRows, ComeLowBeforeTheFaceTouchItAndLiftTheBoxAsItStood) {
   EXPECT_TRUE((rows[4].X_WE.p - rows[3].X_WE.p).isApprox(Vector3(0.0, 0.0, intent.lift), kRounding));
   EXPECT_EQ(rows[4].X_WE.R, rows[3].X_WE.R);
   // Only the first row is upright, so that yaw and tilt are turned one after the other.
-  EXPECT_TRUE(yaw_of(rows[0].X_WE.R));
-  EXPECT_FALSE(yaw_of(rows[1].X_WE.R));
+  EXPECT_TRUE(motion::yaw_of(rows[0].X_WE.R));
+  EXPECT_FALSE(motion::yaw_of(rows[1].X_WE.R));
   EXPECT_EQ(rows[0].X_WE.p, rows[1].X_WE.p);
   intent.again = true;
   const auto again = side_pick_rows(intent);
@@ -91,4 +94,4 @@ TEST(SetDownRows, PutTheBoxOnTheSurfaceAndLetGo) {
 }
 
 }  // namespace
-}  // namespace snug::motion
+}  // namespace snug::skills

@@ -1,5 +1,5 @@
-// Motion primitives: pick, flip and place as waypoints with switches, from what shall happen to the box.
-#include "snug/motion/primitives.hpp"
+// Primitives: pick, flip and place as waypoints with switches, from what shall happen to the box.
+#include "snug/skills/primitives.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "snug/core/check.hpp"
-#include "snug/motion/internal/row_parts.hpp"
 #include "snug/motion/row_name.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/skills/internal/row_parts.hpp"
 
-namespace snug::motion {
+namespace snug::skills {
 namespace {
 
 using internal::at_height;
@@ -37,14 +37,14 @@ Pose shifted(Pose X, const Vector3& by) {
 class Rows {
  public:
   explicit Rows(std::string box) : box_(std::move(box)) {}
-  void add(const char* name, const Pose& X_WE, const IO& io, const char* suffix = "") {
-    rows_.push_back({X_WE, row_name(name, box_, suffix), io, 0});
+  void add(const char* name, const Pose& X_WE, const motion::IO& io, const char* suffix = "") {
+    rows_.push_back({X_WE, motion::row_name(name, box_, suffix), io, 0});
   }
-  std::vector<Waypoint> take() { return std::move(rows_); }
+  std::vector<motion::Waypoint> take() { return std::move(rows_); }
 
  private:
   std::string box_;
-  std::vector<Waypoint> rows_;
+  std::vector<motion::Waypoint> rows_;
 };
 
 /// The box of `intent`, tilted so that its low side leads, with its lowest corner at height `z`, shifted by `by`.
@@ -88,11 +88,11 @@ Vector3 choose_cup_offset(const Matrix3& R_WP, const Vector3& size, const Vector
   return offset;
 }
 
-std::vector<Waypoint> pick_rows(const PickIntent& intent) {
+std::vector<motion::Waypoint> pick_rows(const PickIntent& intent) {
   const int up = vertical_axis_of(intent.X_WP.R);
   const double sign = intent.X_WP.R(2, up) > 0.0 ? 1.0 : -1.0;
   const Vector3 touched = intent.X_WP * (intent.cup_offset_P + 0.5 * sign * intent.size[up] * Vector3::Unit(up));
-  const Pose X_WE_pick{upright_tool(intent.tool_yaw), touched + Vector3(0.0, 0.0, intent.length)};
+  const Pose X_WE_pick{motion::upright_tool(intent.tool_yaw), touched + Vector3(0.0, 0.0, intent.length)};
   Rows rows(intent.box);
   rows.add(intent.again ? "PreRePick" : "PrePick", at_height(X_WE_pick, intent.approach_height), {});
   rows.add(intent.again ? "RePick" : "Box", X_WE_pick, {});
@@ -104,7 +104,7 @@ Matrix3 flipped(const Matrix3& R_WP, const Vector3& direction) {
   return turn(-Vector3::UnitZ().cross(direction), kQuarterTurn) * R_WP;
 }
 
-std::vector<Waypoint> flip_rows(const FlipIntent& intent) {
+std::vector<motion::Waypoint> flip_rows(const FlipIntent& intent) {
   SNUG_CHECK(std::abs(intent.direction.z()) < 1e-9, "a flip goes about a level edge");
   const Vector3 axis = -Vector3::UnitZ().cross(intent.direction);  // turns down toward `direction`
   const Vector3 half = 0.5 * (intent.R_WP.cwiseAbs() * intent.size);
@@ -137,7 +137,7 @@ std::vector<Waypoint> flip_rows(const FlipIntent& intent) {
   return rows.take();
 }
 
-std::vector<Waypoint> place_rows(const PlaceIntent& intent) {
+std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent) {
   const char* place = intent.gentle ? "PlaceSlow" : "Place";
   const double height = -lowest_corner(intent.X_WP.R, intent.size);
   const double rest = intent.X_WP.p.z() - height;  // z of the lower face
@@ -167,4 +167,4 @@ std::vector<Waypoint> place_rows(const PlaceIntent& intent) {
   return rows.take();
 }
 
-}  // namespace snug::motion
+}  // namespace snug::skills
