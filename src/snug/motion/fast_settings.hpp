@@ -3,7 +3,6 @@
 
 #include <limits>
 #include <optional>
-#include <string_view>
 
 #include "snug/motion/paced_segment.hpp"
 
@@ -41,8 +40,5 @@ struct FastSettings {
   double released_pressure = std::numeric_limits<double>::infinity();  ///< Pa, gauge: the tool may leave the box
   bool operator==(const FastSettings&) const = default;
 };
-
-/// Whether a waypoint of this name is brought about in contact: picks, places, twists. The others touch nothing.
-[[nodiscard]] bool is_contact_row(std::string_view name) noexcept;
 
 }  // namespace snug::motion

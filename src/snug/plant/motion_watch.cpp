@@ -66,7 +66,7 @@ bool is_settling(double start, double now, double speed, double at_least) {
 const char* find_refusal(const Motion& motion) {
   if (motion.waypoints.empty()) return "no waypoints";
   const bool is_finite = std::ranges::all_of(motion.waypoints, [](const motion::Waypoint& waypoint) {
-    return waypoint.X_WE.p.allFinite() && waypoint.X_WE.R.allFinite();
+    return waypoint.p_WE.allFinite() && waypoint.rotation_WE.allFinite();
   });
   return is_finite ? "" : "a pose that is not finite";
 }

@@ -102,7 +102,7 @@ class GraspPlanner {
       return false;
     }
     grasp_.X_PS = nominal_.state().gripper.cup.X_PS;
-    grasp_.X_EP = grasp_.program.waypoints.back().X_WE.inverse() * *nominal_.pose_of(request_.box.item);
+    grasp_.X_EP = grasp_.program.waypoints.back().X_WE().inverse() * *nominal_.pose_of(request_.box.item);
     return true;
   }
 
@@ -149,19 +149,19 @@ class GraspPlanner {
       return;
     }
     const auto reaches = [&](const motion::Way& way) { return !request_.reaches || request_.reaches(way); };
-    if (!std::ranges::all_of(rows, [&](const auto& row) { return reaches({row.X_WE, row.X_WE}); })) {
+    if (!std::ranges::all_of(rows, [&](const auto& row) { return reaches({row.X_WE(), row.X_WE()}); })) {
       grasp_.problem = GraspProblem::OutOfReach;
       return;
     }
     const std::optional<Vector3>& p_WB = request_.layout.p_WB;
     // A fast tool comes to the second row, level, without the upright one before.
-    if (request_.layout.is_fast && reaches({last().X_WE, rows[1].X_WE, p_WB})) rows.erase(rows.begin());
+    if (request_.layout.is_fast && reaches({last().X_WE(), rows[1].X_WE(), p_WB})) rows.erase(rows.begin());
     execute(rows);
     if (!holds()) return;
     const motion::Waypoint up = plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again);
-    Pose X_WE_over = up.X_WE;
+    Pose X_WE_over = up.X_WE();
     X_WE_over.p.head<2>() = request_.layout.X_WT.p.head<2>();
-    if (request_.layout.is_fast && reaches({last().X_WE, X_WE_over, p_WB})) return;  // on the way to its place
+    if (request_.layout.is_fast && reaches({last().X_WE(), X_WE_over, p_WB})) return;  // on the way to its place
     execute({up});
     (void)holds();
   }

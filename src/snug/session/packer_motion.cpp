@@ -6,7 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "snug/motion/row_name.hpp"
 #include "snug/plant/motion_watch.hpp"
 #include "snug/session/packer.hpp"
 #include "snug/skills/primitives.hpp"
@@ -14,6 +13,8 @@
 
 namespace snug::session {
 namespace {
+
+using motion::MotionClass;
 
 constexpr double kLiesTurned = 0.25 * std::numbers::pi;  ///< rad, from what was planned
 constexpr double kAsRehearsed = 0.004;       ///< m, from where the nominal rollout let the box go on the way
@@ -144,14 +145,10 @@ void Packer::retreat(const std::string& id, ItemReport& report) {
   belief_.doubt_prediction();
   if (is_holding() || robot_.end.reason == plant::EndReason::VacuumLost) let_go_ = index_of(id);
   const double travel = travel_bottom(layout_, obstacle_top(-1));
-  motion::Waypoint up;
-  up.X_WE = robot_.X_WE;
-  up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + scenario_.cup.free_length + 0.02);
-  up.name = motion::row_name("PostPlace", id, "_retreat");
-  motion::Waypoint let_go = up;
-  let_go.X_WE.p.z() = robot_.X_WE.p.z();
-  let_go.io.blow_off = true;
-  let_go.name = motion::row_name("Place", id, "_release");
+  motion::Waypoint up = motion::make_waypoint(MotionClass::PostPlace, id, robot_.X_WE, {}, "_retreat");
+  up.p_WE.z() = std::max(up.p_WE.z(), travel + scenario_.cup.free_length + 0.02);
+  const motion::Waypoint let_go =
+      motion::make_waypoint(MotionClass::Place, id, robot_.X_WE, {.blow_off = true}, "_release");
   plant_.acknowledge();
   submit(id, {let_go, up}, {std::nullopt, false}, report);
 }
@@ -217,13 +214,11 @@ void Packer::set_down(const Planned& planned, ItemReport& report) {
   const skills::PlannedBox& box = planned.box;
   const Matrix3 R_WP = layout_.X_WT.R * planned.attempt.planned.X_TP.R;
   const double travel = travel_bottom(layout_, obstacle_top(-1));
-  motion::Waypoint here;
-  here.X_WE = robot_.X_WE;
-  here.io.vacuum = true;
-  here.name = motion::row_name("PostPick", box.id, "_up");
+  const motion::Waypoint here =
+      motion::make_waypoint(MotionClass::PostPick, box.id, robot_.X_WE, {.vacuum = true}, "_up");
   motion::Waypoint up = here;
   const double hanging = -2.0 * skills::lowest_corner(R_WP, box.size) + scenario_.cup.hold_length;
-  up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + hanging);
+  up.p_WE.z() = std::max(up.p_WE.z(), travel + hanging);
   std::vector<motion::Waypoint> rows{up};
   const auto down = plan_set_down(belief_.nominal(), box, *layout_.flip_place, R_WP, planned.attempt.X_PS, travel);
   rows.insert(rows.end(), down.begin(), down.end());
@@ -385,12 +380,8 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
 }
 
 void Packer::move_home(ItemReport& report) {
-  motion::Waypoint home;
-  home.X_WE = scenario_.controller.X_WE_start;
-  home.name = "home";
-  motion::Waypoint from;
-  from.X_WE = robot_.X_WE;
-  from.name = "home";
+  const motion::Waypoint home = motion::make_waypoint(MotionClass::Home, {}, scenario_.controller.X_WE_start);
+  const motion::Waypoint from = motion::make_waypoint(MotionClass::Home, {}, robot_.X_WE);
   motion::Program rows;
   append(rows, drivable(layout_, from, {home}));
   submit("", rows.waypoints, {std::nullopt, false}, report);

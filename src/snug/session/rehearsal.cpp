@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "snug/core/parallel.hpp"
-#include "snug/motion/fast_settings.hpp"
 
 namespace snug::session {
 namespace {
@@ -100,10 +99,10 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
 
 bool Rehearsal::can_follow(const motion::Waypoint& before, std::span<const motion::Waypoint> rows) const {
   if (!layout_.is_fast || !reaches_) return true;
-  const Pose* X_WE = &before.X_WE;
+  Pose X_WE = before.X_WE();
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) {
-    const motion::Way way(*std::exchange(X_WE, &row.X_WE), row.X_WE, layout_.p_WB);
-    return motion::is_contact_row(row.name) || reaches_(way);
+    const Pose X_WE_before = std::exchange(X_WE, row.X_WE());
+    return motion::is_contact(row.motion_class) || reaches_({X_WE_before, X_WE, layout_.p_WB});
   });
 }
 
@@ -111,10 +110,7 @@ const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double pa
   for (const Grasp& known : grasps_) {
     if (known.orientation == placement.orientation) return known;
   }
-  motion::Waypoint from;
-  from.X_WE = task_.robot.X_WE;
-  from.io = task_.robot.io;
-  from.name = "home";
+  const motion::Waypoint from = motion::make_waypoint(motion::MotionClass::Home, {}, task_.robot.X_WE, task_.robot.io);
   grasps_.push_back(plan_grasp({belief_.nominal(), layout_, rollouts_, states_, belief_.weights(), from, box_,
                                 task_.X_WP, task_.location, packed_top, threads_, reaches_},
                                placement.orientation));
@@ -182,8 +178,8 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   attempt.X_PS = grasp.X_PS;
   attempt.swing = grasp.swing;
   const motion::Waypoint& last = attempt.program.waypoints.back();
-  const skills::PlaceRequest request{box_,      grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
-                                     last.X_WE, grasp.X_EP};
+  const skills::PlaceRequest request{box_,        grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
+                                     last.X_WE(), grasp.X_EP};
   const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
   if (!can_follow(last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;

@@ -10,15 +10,16 @@
 #include "snug/cup/statics.hpp"
 #include "snug/cup/swing.hpp"
 #include "snug/geometry/bounds.hpp"
-#include "snug/motion/fast_settings.hpp"
-#include "snug/motion/row_name.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/motion/way.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/skills/highest_fixed_point.hpp"
 #include "snug/skills/unwinding.hpp"
 
 namespace snug::skills {
 namespace {
+
+using motion::MotionClass;
 
 constexpr double kTravelClearance = 0.06;  ///< m, more than the precision of rows that are passed on the fly
 constexpr double kEntryClearance = 0.01;   ///< m, where the box stops before it goes in
@@ -275,7 +276,7 @@ std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::W
   if (layout.is_fast) {
     std::vector<motion::Waypoint> turned = with_turns(last, rows, layout.neutral_yaw, true, layout.p_WB);
     for (motion::Waypoint& row : turned) {
-      if (swing && row.io.vacuum && !motion::is_contact_row(row.name)) row.name = motion::with_swing(row.name, *swing);
+      if (swing && row.io.vacuum && !motion::is_contact(row.motion_class)) row.swing = motion::as_named(*swing);
     }
     return turned;
   }
@@ -315,15 +316,17 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   intent.approach_height = travel + half_height;
   std::vector<motion::Waypoint> rows = side_pick_rows(intent);
   if (!layout.is_fast) return rows;
-  const Pose X_EP = rows[rows.size() - 2].X_WE.inverse() * X_WP;
+  SidePickPoses poses = side_pick_poses(intent);
+  const Pose X_EP = poses.X_WE_pick.inverse() * X_WP;
   Pose X_WP_over = X_WP_next;
   X_WP_over.p.z() = travel - lowest_corner(X_WP_next.R, box.size);
   for (int i = 0; i < kRaises; ++i) {
-    Pose& X_WE_lifted = rows.back().X_WE;
+    Pose& X_WE_lifted = poses.X_WE_lifted;
     const Dip dip = find_dip(layout, X_WE_lifted, X_WP_over * X_EP.inverse(), X_EP, box.size,
                              travel - kTravelClearance + kLeastOnWay);
     X_WE_lifted.p.z() += dip.depth / std::max(kLeastLever, 1.0 - dip.share);
   }
+  rows.back().p_WE = poses.X_WE_lifted.p;
   return rows;
 }
 
@@ -332,25 +335,22 @@ motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox&
   const Matrix3 R_WP = face_up(X_WP.R, face);
   Pose X_WP_up{R_WP, X_WP.p};
   X_WP_up.p.z() = travel + kTurnClearance - lowest_corner(R_WP, box.size);
-  motion::Waypoint row;
-  row.X_WE = make_tool_for(scenario, box, X_PS)(X_WP_up);
-  row.name = motion::row_name(again ? "PostRePick" : "PostPick", box.id, "_up");
-  row.io.vacuum = true;
-  return row;
+  return motion::make_waypoint(again ? MotionClass::PostRePick : MotionClass::PostPick, box.id,
+                               make_tool_for(scenario, box, X_PS)(X_WP_up), {.vacuum = true}, "_up");
 }
 
 std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const CellLayout& layout,
                                          const PlannedBox& box, const Pose& X_WP, double travel) {
   const double top = X_WP.p.z() - lowest_corner(X_WP.R, box.size);
   const double free = scenario.cup.free_length;
-  std::vector<motion::Waypoint> rows(3);
-  for (motion::Waypoint& row : rows) row.X_WE = {motion::upright_tool(layout.neutral_yaw), X_WP.p};
-  rows[0].X_WE.p.z() = rows[2].X_WE.p.z() = std::max(travel, top) + free + 0.02;
-  rows[1].X_WE.p.z() = top + free - kPressDepth;
-  rows[0].name = motion::row_name("PrePlace", box.id, "_press");
-  rows[1].name = motion::row_name("PlaceSlow", box.id, "_press");
-  rows[2].name = motion::row_name("PostPlace", box.id, "_press");
-  return rows;
+  Pose X_WE{motion::upright_tool(layout.neutral_yaw), X_WP.p};
+  const auto row_at = [&](MotionClass motion_class, double z) {
+    X_WE.p.z() = z;
+    return motion::make_waypoint(motion_class, box.id, X_WE, {}, "_press");
+  };
+  const double over = std::max(travel, top) + free + 0.02;
+  return {row_at(MotionClass::PrePlace, over), row_at(MotionClass::PlaceSlow, top + free - kPressDepth),
+          row_at(MotionClass::PostPlace, over)};
 }
 
 std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, const PlannedBox& box,
@@ -429,7 +429,7 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
   intent.entry_bottom = intent.X_WP.p.z() + lowest_corner(intent.X_WP.R, intent.size);  // straight down
   const double least = intent.travel_bottom - kTravelClearance + kLeastOnWay;
   for (int i = 0; i < kRaises; ++i) {
-    const Pose X_WE_over = place_rows(intent).front().X_WE;
+    const Pose X_WE_over = tool_over_place(intent);
     const Dip dip = find_dip(layout, request.X_WE, X_WE_over, request.X_EP, intent.size, least);
     intent.travel_bottom += dip.depth / std::max(kLeastLever, dip.share);
   }

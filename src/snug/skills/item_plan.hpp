@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "snug/motion/row_name.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/packing/placement.hpp"
 #include "snug/skills/primitives.hpp"

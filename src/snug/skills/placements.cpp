@@ -8,8 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "snug/motion/row_name.hpp"
-#include "snug/skills/internal/row_parts.hpp"
+#include "snug/skills/primitives.hpp"
 
 namespace snug::skills {
 namespace {
@@ -21,14 +20,15 @@ constexpr double kUprightTolerance = 1e-3;
 // m; stops nearer to each other than this are one.
 constexpr double kSameHeight = 1e-3;
 
-/// One box of the plan with everything in W.
+/// One box of the plan.
 struct Move {
-  std::string box;
+  PickIntent pick;    ///< heights are set when it is known what is passed over
+  PlaceIntent place;  ///< the same
   Pose X_WE_pick;
   Pose X_WE_place;
-  double pick_top = 0.0;      ///< z of the top face at the aligner
-  double height = 0.0;        ///< of the standing box
-  double place_bottom = 0.0;  ///< z of the bottom face at rest
+  double pick_top = 0.0;      ///< m, z in W of the top face at the aligner
+  double height = 0.0;        ///< m, of the standing box
+  double place_bottom = 0.0;  ///< m, z in W of the bottom face at rest
 };
 
 Refusal refuse(NoProgram reason, const std::string& box, const std::string& detail = {}) {
@@ -74,26 +74,35 @@ bool is_finite(const PlacementSettings& s) {
 
 Move plan_move(const PickSpec& pick, const Pose& X_WP_place, const PlacementSettings& settings) {
   Move move;
-  move.box = pick.box;
   move.height = standing_height(pick.X_WP, pick.size);
   move.pick_top = pick.X_WP.p.z() + 0.5 * move.height;
   move.place_bottom = X_WP_place.p.z() - 0.5 * move.height;
 
-  const Vector3 pressed = pick.X_WP * pick.cup_offset;
-  const double yaw = pick.tool_yaw.value_or(settings.tool_yaw);
-  const Pose X_WE_touch{exp_rotation(Vector3(0.0, 0.0, yaw)) * exp_rotation(Vector3(0.0, std::numbers::pi, 0.0)),
-                        Vector3(pressed.x(), pressed.y(), move.pick_top)};
-  const Pose X_PE_touch = pick.X_WP.inverse() * X_WE_touch;
-  move.X_WE_pick = X_WE_touch;
-  move.X_WE_pick.p.z() += settings.pick_length;
-  move.X_WE_place = X_WP_place * X_PE_touch;
-  move.X_WE_place.p.z() += settings.hold_length + settings.release_gap;
+  const Vector3 up_P = up_in_box(pick.X_WP);
+  move.pick.box = pick.box;
+  move.pick.X_WP = pick.X_WP;
+  move.pick.size = pick.size;
+  move.pick.cup_offset_P = pick.cup_offset - pick.cup_offset.dot(up_P) * up_P;
+  move.pick.tool_yaw = pick.tool_yaw.value_or(settings.tool_yaw);
+  move.pick.length = settings.pick_length;
+  move.X_WE_pick = tool_on_face(move.pick);
+
+  PickIntent touch = move.pick;
+  touch.length = 0.0;
+  move.place.box = pick.box;
+  move.place.X_WP = X_WP_place;
+  move.place.size = pick.size;
+  move.place.press = 0.0;
+  // Rigidly held: the sag of the cup is not made up for.
+  move.place.tool_for = [X_PE = pick.X_WP.inverse() * tool_on_face(touch),
+                         lift = settings.hold_length + settings.release_gap](const Pose& X_WP) {
+    Pose X_WE = X_WP * X_PE;
+    X_WE.p.z() += lift;
+    return X_WE;
+  };
+  move.X_WE_place = move.place.tool_for(X_WP_place);
   return move;
 }
-
-using internal::at_height;
-using internal::kHold;
-using internal::kRelease;
 
 class Writer {
  public:
@@ -103,22 +112,26 @@ class Writer {
 
   motion::Program write() {
     for (std::size_t i = 0; i < moves_.size(); ++i) {
-      write_pick(moves_[i]);
-      write_place(moves_[i]);
-      stack_top_ = std::max(stack_top_, moves_[i].place_bottom + moves_[i].height);
+      Move& move = moves_[i];
+      move.pick.approach_height = empty_height(move.pick_top);
+      move.pick.lift_height = loaded_height(move);
+      add(pick_rows(move.pick));
+      ToolHeights heights{move.pick.lift_height, entry_height(move), 0.0};
+      stack_top_ = std::max(stack_top_, move.place_bottom + move.height);
       const double next_top = i + 1 < moves_.size() ? moves_[i + 1].pick_top : kNothing;
-      const double z = std::max(empty_height(next_top), moves_[i].X_WE_place.p.z());
-      add(at_height(moves_[i].X_WE_place, z), motion::row_name("PostPlace", moves_[i].box), {});
+      heights.leave = std::max(empty_height(next_top), move.X_WE_place.p.z());
+      move.place.tool_heights = heights;
+      add(place_rows(move.place));
     }
-    add(settings_.X_WE_home, "home", {});
+    add({motion::make_waypoint(motion::MotionClass::Home, {}, settings_.X_WE_home)});
     return std::move(program_);
   }
 
  private:
   static constexpr double kNothing = -1.0e9;  // m, lower than anything
 
-  void add(const Pose& X_WE, std::string name, const motion::IO& io) {
-    program_.waypoints.push_back({X_WE, std::move(name), io, 0});
+  void add(const std::vector<motion::Waypoint>& rows) {
+    program_.waypoints.insert(program_.waypoints.end(), rows.begin(), rows.end());
   }
 
   double packed_top() const { return std::max(rim_, stack_top_); }
@@ -135,23 +148,12 @@ class Writer {
     return std::max({over_obstacles, move.X_WE_pick.p.z() + settings_.travel_clearance, move.X_WE_place.p.z()});
   }
 
-  void write_pick(const Move& move) {
-    add(at_height(move.X_WE_pick, empty_height(move.pick_top)), motion::row_name("PrePick", move.box), {});
-    add(move.X_WE_pick, motion::row_name("Box", move.box), {});
-    add(at_height(move.X_WE_pick, loaded_height(move)), motion::row_name("PostPick", move.box), kHold);
-  }
-
-  void write_place(const Move& move) {
-    const double travel = loaded_height(move);
-    add(at_height(move.X_WE_place, travel), motion::row_name("PrePlace", move.box), kHold);
-    if (settings_.entry_clearance) {
-      const double entry = packed_top() + *settings_.entry_clearance + move.height + settings_.hold_length;
-      if (entry < travel - kSameHeight && entry > move.X_WE_place.p.z() + kSameHeight) {
-        add(at_height(move.X_WE_place, entry), motion::row_name("PrePlace", move.box, "_2"), kHold);
-      }
-    }
-    add(move.X_WE_place, motion::row_name("Place", move.box), kHold);
-    add(move.X_WE_place, motion::row_name("Place", move.box), kRelease);
+  /// Just over rim and packed boxes, where that is between crossing and place.
+  std::optional<double> entry_height(const Move& move) const {
+    if (!settings_.entry_clearance) return std::nullopt;
+    const double entry = packed_top() + *settings_.entry_clearance + move.height + settings_.hold_length;
+    const bool is_between = entry < loaded_height(move) - kSameHeight && entry > move.X_WE_place.p.z() + kSameHeight;
+    return is_between ? std::optional<double>(entry) : std::nullopt;
   }
 
   const PlacementSettings& settings_;

@@ -52,7 +52,7 @@ struct NoProgramReason {
 };
 
 /// Rows PrePick, Box, PostPick (vacuum on), PrePlace, [PrePlace_2,] Place, Place (vacuum off, blow-off on), PostPlace
-/// for each placement in order, then home; named as row_name says. Picks and places are vertical;
+/// for each placement in order, then home. Picks and places are vertical;
 /// crossings are above the rim, `obstacle_top`, the boxes placed before and the box to be picked.
 [[nodiscard]] Expected<motion::Program, NoProgramReason> program_from_placements(std::span<const PickSpec> picks,
                                                                                  std::span<const Placement> placements,

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "snug/core/check.hpp"
-#include "snug/motion/row_name.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/skills/internal/row_parts.hpp"
 
@@ -17,6 +16,7 @@ namespace {
 using internal::at_height;
 using internal::kHold;
 using internal::kRelease;
+using motion::MotionClass;
 
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
 
@@ -37,8 +37,8 @@ Pose shifted(Pose X, const Vector3& by) {
 class Rows {
  public:
   explicit Rows(std::string box) : box_(std::move(box)) {}
-  void add(const char* name, const Pose& X_WE, const motion::IO& io, const char* suffix = "") {
-    rows_.push_back({X_WE, motion::row_name(name, box_, suffix), io, 0});
+  void add(motion::MotionClass motion_class, const Pose& X_WE, const motion::IO& io, const char* variant = "") {
+    rows_.push_back(motion::make_waypoint(motion_class, box_, X_WE, io, variant));
   }
   std::vector<motion::Waypoint> take() { return std::move(rows_); }
 
@@ -62,14 +62,27 @@ Pose tilted_pose(const PlaceIntent& intent, const TiltedEntry& entry, double z, 
 }
 
 void add_tilted_entry(const PlaceIntent& intent, const TiltedEntry& entry, Rows& rows) {
-  const char* place = intent.gentle ? "PlaceSlow" : "Place";
+  const MotionClass place = intent.gentle ? MotionClass::PlaceSlow : MotionClass::Place;
   const double height = -lowest_corner(intent.X_WP.R, intent.size);
   const double low = entry.edge_height - entry.depth;
   const auto tool = [&](const Pose& X_WP) { return intent.tool_for(X_WP); };
-  rows.add("PrePlace", tool(tilted_pose(intent, entry, entry.edge_height + 0.012, intent.come_from)), kHold, "_2");
+  rows.add(MotionClass::PrePlace, tool(tilted_pose(intent, entry, entry.edge_height + 0.012, intent.come_from)), kHold,
+           "_2");
   rows.add(place, tool(tilted_pose(intent, entry, entry.edge_height + 0.006, entry.push)), kHold, "_tilted");
   rows.add(place, tool(tilted_pose(intent, entry, low, entry.push)), kHold, "_in");
   rows.add(place, tool(shifted(at_height(intent.X_WP, low + height), entry.push)), kHold, "_level");
+}
+
+/// Where the box stops before it goes down.
+std::optional<Pose> tool_at_entry(const PlaceIntent& intent) {
+  if (intent.tool_heights) {
+    if (!intent.tool_heights->entry) return std::nullopt;
+    return at_height(intent.tool_for(intent.X_WP), *intent.tool_heights->entry);
+  }
+  const double height = -lowest_corner(intent.X_WP.R, intent.size);
+  const double rest = intent.X_WP.p.z() - height;  // z of the lower face
+  if (intent.entry_bottom <= rest + 0.01) return std::nullopt;
+  return intent.tool_for(shifted(at_height(intent.X_WP, intent.entry_bottom + height), intent.come_from));
 }
 
 }  // namespace
@@ -88,15 +101,21 @@ Vector3 choose_cup_offset(const Matrix3& R_WP, const Vector3& size, const Vector
   return offset;
 }
 
-std::vector<motion::Waypoint> pick_rows(const PickIntent& intent) {
+Pose tool_on_face(const PickIntent& intent) {
   const int up = vertical_axis_of(intent.X_WP.R);
   const double sign = intent.X_WP.R(2, up) > 0.0 ? 1.0 : -1.0;
   const Vector3 touched = intent.X_WP * (intent.cup_offset_P + 0.5 * sign * intent.size[up] * Vector3::Unit(up));
-  const Pose X_WE_pick{motion::upright_tool(intent.tool_yaw), touched + Vector3(0.0, 0.0, intent.length)};
+  return {motion::upright_tool(intent.tool_yaw), touched + Vector3(0.0, 0.0, intent.length)};
+}
+
+std::vector<motion::Waypoint> pick_rows(const PickIntent& intent) {
+  const Pose X_WE_pick = tool_on_face(intent);
   Rows rows(intent.box);
-  rows.add(intent.again ? "PreRePick" : "PrePick", at_height(X_WE_pick, intent.approach_height), {});
-  rows.add(intent.again ? "RePick" : "Box", X_WE_pick, {});
-  rows.add(intent.again ? "PostRePick" : "PostPick", at_height(X_WE_pick, intent.lift_height), kHold);
+  rows.add(intent.again ? MotionClass::PreRePick : MotionClass::PrePick, at_height(X_WE_pick, intent.approach_height),
+           {});
+  rows.add(intent.again ? MotionClass::RePick : MotionClass::Pick, X_WE_pick, {});
+  rows.add(intent.again ? MotionClass::PostRePick : MotionClass::PostPick, at_height(X_WE_pick, intent.lift_height),
+           kHold);
   return rows.take();
 }
 
@@ -119,26 +138,35 @@ std::vector<motion::Waypoint> flip_rows(const FlipIntent& intent) {
   };
   Rows rows(intent.box);
   const double above = intent.travel_bottom - intent.p_WF.z();
-  rows.add("PreTwist", tool(0.0, above), kHold);
-  rows.add("PreTwist", tool(0.6 * intent.tilt, 0.03), kHold, "_2");
-  rows.add("Twist", tool(intent.tilt - 0.15, -intent.press), kHold);
+  rows.add(MotionClass::PreTwist, tool(0.0, above), kHold);
+  rows.add(MotionClass::PreTwist, tool(0.6 * intent.tilt, 0.03), kHold, "_2");
+  rows.add(MotionClass::Twist, tool(intent.tilt - 0.15, -intent.press), kHold);
   // From here on the surface carries the box: the cup is commanded without sag, so that it neither lifts the box nor
   // turns it when it lets go.
   const Matrix3 R_end = turn(axis, intent.tilt);
   const Pose X_WE_end =
       Pose{R_end * intent.R_WP, p_WEdge + Vector3(0.0, 0.0, -intent.press) - R_end * edge} * intent.X_PE;
-  rows.add("Twist", X_WE_end, kHold);
+  rows.add(MotionClass::Twist, X_WE_end, kHold);
   const Pose X_WE_back = shifted(X_WE_end, -intent.drag * intent.direction);
-  rows.add("TwistDrag", X_WE_back, kHold);
-  rows.add("TwistDrag", X_WE_back, kRelease);
+  rows.add(MotionClass::TwistDrag, X_WE_back, kHold);
+  rows.add(MotionClass::TwistDrag, X_WE_back, kRelease);
   // Up and upright again before the cup comes over the box.
   const double over = intent.p_WF.z() + 2.0 * along + (intent.X_PE.p.norm() - half.z()) + 0.06;
-  rows.add("PreTwist", {intent.R_WP * intent.X_PE.R, Vector3(X_WE_back.p.x(), X_WE_back.p.y(), over)}, {}, "_back");
+  rows.add(MotionClass::PreTwist, {intent.R_WP * intent.X_PE.R, Vector3(X_WE_back.p.x(), X_WE_back.p.y(), over)}, {},
+           "_back");
   return rows.take();
 }
 
+Pose tool_over_place(const PlaceIntent& intent) {
+  const double height = -lowest_corner(intent.X_WP.R, intent.size);
+  const double rest = intent.X_WP.p.z() - height;  // z of the lower face
+  if (intent.tool_heights) return at_height(intent.tool_for(intent.X_WP), intent.tool_heights->travel);
+  const double bottom = std::max(intent.travel_bottom, rest + 0.02);
+  return intent.tool_for(shifted(at_height(intent.X_WP, bottom + height), intent.come_from));
+}
+
 std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent) {
-  const char* place = intent.gentle ? "PlaceSlow" : "Place";
+  const MotionClass place = intent.gentle ? MotionClass::PlaceSlow : MotionClass::Place;
   const double height = -lowest_corner(intent.X_WP.R, intent.size);
   const double rest = intent.X_WP.p.z() - height;  // z of the lower face
   const auto tool = [&](double bottom, const Vector3& by) {
@@ -146,24 +174,25 @@ std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent) {
   };
   Rows rows(intent.box);
   const Vector3& from = intent.come_from;
-  rows.add("PrePlace", tool(std::max(intent.travel_bottom, rest + 0.02), from), kHold);
+  rows.add(MotionClass::PrePlace, tool_over_place(intent), kHold);
   Vector3 last = Vector3::Zero();
   if (intent.tilted) {
     add_tilted_entry(intent, *intent.tilted, rows);
     last = intent.tilted->push;
   } else {
-    if (intent.entry_bottom > rest + 0.01) rows.add("PrePlace", tool(intent.entry_bottom, from), kHold, "_2");
+    if (const auto X_WE_entry = tool_at_entry(intent)) rows.add(MotionClass::PrePlace, *X_WE_entry, kHold, "_2");
     const bool slides = !(intent.overtravel.isZero() && from.isZero());
     if (slides) {
       rows.add(place, tool(rest + intent.slide_gap, from), kHold, "_down");
-      rows.add("PlaceSlow", tool(rest + intent.slide_gap, intent.overtravel), kHold, "_push");
+      rows.add(MotionClass::PlaceSlow, tool(rest + intent.slide_gap, intent.overtravel), kHold, "_push");
     }
     last = intent.overtravel;
   }
   const Pose X_WE_end = tool(rest - intent.press, 0.5 * last);
   rows.add(place, X_WE_end, kHold);
   rows.add(place, X_WE_end, kRelease);
-  rows.add("PostPlace", at_height(X_WE_end, std::max(intent.travel_bottom, X_WE_end.p.z()) + 0.08), {});
+  const double over = std::max(intent.travel_bottom, X_WE_end.p.z()) + 0.08;
+  rows.add(MotionClass::PostPlace, at_height(X_WE_end, intent.tool_heights ? intent.tool_heights->leave : over), {});
   return rows.take();
 }
 

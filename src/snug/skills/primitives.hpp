@@ -15,7 +15,7 @@ using ToolFor = std::function<Pose(const Pose& X_WP)>;
 
 /// Box as it stands, tool above it. Rows approach, press, lift with vacuum.
 struct PickIntent {
-  std::string box;                         ///< id, in the rows' names (row_name.hpp)
+  std::string box;                         ///< id
   Pose X_WP;                               ///< of the standing box; may be turned and tilted a little
   Vector3 size = Vector3::Constant(0.1);   ///< m, along Px, Py, Pz
   Vector3 cup_offset_P = Vector3::Zero();  ///< m, in P, from the middle of the upper face to where the cup presses
@@ -26,6 +26,9 @@ struct PickIntent {
   bool again = false;                      ///< the box was set down before: names PreRePick, RePick, PostRePick
 };
 [[nodiscard]] std::vector<motion::Waypoint> pick_rows(const PickIntent& intent);
+
+/// The tool on the box, pressed.
+[[nodiscard]] Pose tool_on_face(const PickIntent& intent);
 
 /// Where on the upper face the cup should press, in P from the middle of that face: over the centre of mass, as far as
 /// a disc of `lip_radius` stays on the face.
@@ -63,6 +66,13 @@ struct TiltedEntry {
   double depth = 0.015;                 ///< m, how deep the low side goes in before the box is levelled
 };
 
+/// m, z of E over a place.
+struct ToolHeights {
+  double travel = 0.3;          ///< where it crosses over things
+  std::optional<double> entry;  ///< where it stops before it goes down; none: nowhere
+  double leave = 0.3;           ///< after
+};
+
 /// A box that hangs from the cup comes to rest in the container.
 struct PlaceIntent {
   std::string box;
@@ -76,10 +86,15 @@ struct PlaceIntent {
   double slide_gap = 0.003;              ///< m, above its support while it slides
   double press = 0.004;                  ///< m, commanded below its support before it is let go
   std::optional<TiltedEntry> tilted;
+  /// Given in the place of travel_bottom and entry_bottom, and of where the tool leaves to.
+  std::optional<ToolHeights> tool_heights;
   bool gentle = false;  ///< slow rows (PlaceSlow) instead of quick ones
 };
 /// Rows PrePlace, PrePlace_2, Place ..., Place with vacuum off and blow-off on, PostPlace straight up.
 [[nodiscard]] std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent);
+
+/// The tool at the first of these rows.
+[[nodiscard]] Pose tool_over_place(const PlaceIntent& intent);
 
 /// z of the lowest corner of a box relative to its middle (negative).
 [[nodiscard]] double lowest_corner(const Matrix3& R_WP, const Vector3& size);

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "snug/core/check.hpp"
-#include "snug/motion/row_name.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/skills/internal/row_parts.hpp"
 
@@ -15,6 +14,7 @@ namespace {
 
 using internal::kHold;
 using internal::kRelease;
+using motion::MotionClass;
 
 /// The axis of the box that is nearest to `direction`, with its sign, in W.
 Vector3 nearest_normal(const Matrix3& R_WP, const Vector3& direction, int* axis) {
@@ -35,28 +35,32 @@ Matrix3 face_up(const Matrix3& R_WP, const Vector3& face) {
   return exp_rotation(0.5 * std::numbers::pi * axis) * R_WP;
 }
 
-std::vector<motion::Waypoint> side_pick_rows(const SidePickIntent& intent) {
+SidePickPoses side_pick_poses(const SidePickIntent& intent) {
   SNUG_CHECK(std::abs(intent.face.z()) < 1e-9, "a side looks level");
   int axis = 0;
   const Vector3 normal = nearest_normal(intent.X_WP.R, intent.face, &axis);
   const Matrix3 R_WE = side_pick_rotation(normal, intent.tool_yaw, intent.incline);
   const Vector3 touched = intent.X_WP * intent.cup_offset_P + 0.5 * intent.size[axis] * normal;
-  const Pose X_WE_pick{R_WE, touched - intent.length * R_WE.col(2)};
-  const Pose X_WE_before{R_WE, X_WE_pick.p + intent.stand_off * normal};
-  Pose X_WE_high = X_WE_before;
-  X_WE_high.p.z() = std::max(intent.approach_height, X_WE_before.p.z() + 0.01);
-  Pose X_WE_lifted = X_WE_pick;
-  X_WE_lifted.p.z() += intent.lift;
-  const std::string pick = intent.again ? "RePick" : "Pick";
-  const auto name = [&](const std::string& kind, const char* suffix) {
-    return motion::row_name(kind, intent.box, suffix);
+  SidePickPoses poses;
+  poses.X_WE_pick = {R_WE, touched - intent.length * R_WE.col(2)};
+  poses.X_WE_before = {R_WE, poses.X_WE_pick.p + intent.stand_off * normal};
+  poses.X_WE_high = poses.X_WE_before;
+  poses.X_WE_high.p.z() = std::max(intent.approach_height, poses.X_WE_before.p.z() + 0.01);
+  poses.X_WE_lifted = poses.X_WE_pick;
+  poses.X_WE_lifted.p.z() += intent.lift;
+  return poses;
+}
+
+std::vector<motion::Waypoint> side_pick_rows(const SidePickIntent& intent) {
+  const SidePickPoses poses = side_pick_poses(intent);
+  const MotionClass before = intent.again ? MotionClass::PreRePick : MotionClass::PrePick;
+  const auto row = [&](MotionClass motion_class, const Pose& X_WE, const motion::IO& io, const char* variant = "") {
+    return motion::make_waypoint(motion_class, intent.box, X_WE, io, variant);
   };
-  const Pose X_WE_upright{motion::upright_tool(intent.tool_yaw), X_WE_high.p};
-  return {{X_WE_upright, name("Pre" + pick, ""), {}, 0},
-          {X_WE_high, name("Pre" + pick, "_level"), {}, 0},
-          {X_WE_before, name("Pre" + pick, "_side"), {}, 0},
-          {X_WE_pick, name(intent.again ? "RePick" : "Box", ""), {}, 0},
-          {X_WE_lifted, name("Post" + pick, ""), kHold, 0}};
+  return {row(before, {motion::upright_tool(intent.tool_yaw), poses.X_WE_high.p}, {}),
+          row(before, poses.X_WE_high, {}, "_level"), row(before, poses.X_WE_before, {}, "_side"),
+          row(intent.again ? MotionClass::RePick : MotionClass::Pick, poses.X_WE_pick, {}),
+          row(intent.again ? MotionClass::PostRePick : MotionClass::PostPick, poses.X_WE_lifted, kHold)};
 }
 
 std::vector<motion::Waypoint> set_down_rows(const SetDownIntent& intent) {
@@ -70,12 +74,12 @@ std::vector<motion::Waypoint> set_down_rows(const SetDownIntent& intent) {
   const Pose X_WE_high = tool(intent.travel_bottom), X_WE_down = tool(rest - intent.press);
   Pose X_WE_back = X_WE_down;
   X_WE_back.p.z() = X_WE_high.p.z() + 0.03;
-  const auto name = [&](const char* kind, const char* suffix) { return motion::row_name(kind, intent.box, suffix); };
-  return {{X_WE_high, name("PreTwist", ""), kHold, 0},
-          {tool(rest + 0.01), name("PreTwist", "_low"), kHold, 0},
-          {X_WE_down, name("Twist", ""), kHold, 0},
-          {X_WE_down, name("Twist", ""), kRelease, 0},
-          {X_WE_back, name("PreTwist", "_back"), {}, 0}};
+  const auto row = [&](MotionClass motion_class, const Pose& X_WE, const motion::IO& io, const char* variant = "") {
+    return motion::make_waypoint(motion_class, intent.box, X_WE, io, variant);
+  };
+  return {row(MotionClass::PreTwist, X_WE_high, kHold), row(MotionClass::PreTwist, tool(rest + 0.01), kHold, "_low"),
+          row(MotionClass::Twist, X_WE_down, kHold), row(MotionClass::Twist, X_WE_down, kRelease),
+          row(MotionClass::PreTwist, X_WE_back, {}, "_back")};
 }
 
 }  // namespace snug::skills

@@ -8,7 +8,7 @@ namespace snug::skills {
 
 /// A standing box, picked by a side face with the tool nearly level.
 struct SidePickIntent {
-  std::string box;                         ///< id, in the rows' names (row_name.hpp)
+  std::string box;                         ///< id
   Pose X_WP;                               ///< of the standing box; may be turned a little
   Vector3 size = Vector3::Constant(0.1);   ///< m
   Vector3 face = Vector3::UnitX();         ///< unit, level: about the outward normal of the side that is picked
@@ -24,6 +24,14 @@ struct SidePickIntent {
 /// Rows PrePick (high and upright, high and level, low before the face), Box, PostPick with vacuum: the box as it
 /// stood, lifted. With `again`: PreRePick, RePick, PostRePick.
 [[nodiscard]] std::vector<motion::Waypoint> side_pick_rows(const SidePickIntent& intent);
+/// The tool at these rows.
+struct SidePickPoses {
+  Pose X_WE_high;    ///< level, before it comes low
+  Pose X_WE_before;  ///< low, before the face
+  Pose X_WE_pick;
+  Pose X_WE_lifted;
+};
+[[nodiscard]] SidePickPoses side_pick_poses(const SidePickIntent& intent);
 /// R_WE of a tool that points at `face`, and comes from above by `incline`; upright again it has `tool_yaw`.
 [[nodiscard]] Matrix3 side_pick_rotation(const Vector3& face, double tool_yaw, double incline);
 /// R_WP of the box when the face is up and the tool vertical.

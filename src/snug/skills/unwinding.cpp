@@ -22,24 +22,26 @@ std::vector<motion::Waypoint> with_turns(const motion::Waypoint& before, const s
                                          double neutral_yaw, bool on_the_way, const std::optional<Vector3>& p_WB) {
   std::vector<motion::Waypoint> turned;
   const motion::Waypoint* last = &before;
+  Pose X_WE_last = before.X_WE();
   for (const motion::Waypoint& row : rows) {
-    const std::optional<double> from = motion::yaw_of(last->X_WE.R), to = motion::yaw_of(row.X_WE.R);
+    const Pose X_WE = row.X_WE();
+    const std::optional<double> from = motion::yaw_of(X_WE_last.R), to = motion::yaw_of(X_WE.R);
     if (from && to) {
       const double turn = wrapped(*to - neutral_yaw) - wrapped(*from - neutral_yaw);
-      const motion::Way way(last->X_WE, on_the_way ? row.X_WE : last->X_WE, p_WB);
+      const motion::Way way(X_WE_last, on_the_way ? X_WE : X_WE_last, p_WB);
       const int parts = static_cast<int>(std::ceil(std::abs(turn - way.pan()) / kSureTurn));
       for (int i = 1; i < parts; ++i) {
         const double share = static_cast<double>(i) / parts;
         motion::Waypoint between = *last;
-        between.X_WE.R = exp_rotation(Vector3(0.0, 0.0, share * turn)) * last->X_WE.R;
-        between.X_WE.p = way.at(share).p;
+        between.set_pose({exp_rotation(Vector3(0.0, 0.0, share * turn)) * X_WE_last.R, way.at(share).p});
         if (on_the_way) between.io = row.io;
-        between.name += "_turn";
+        between.variant += "_turn";
         turned.push_back(between);
       }
     }
     turned.push_back(row);
     last = &row;
+    X_WE_last = X_WE;
   }
   return turned;
 }
@@ -48,23 +50,28 @@ std::vector<motion::Waypoint> with_detours(const motion::Waypoint& before, const
                                            const Vector3& p_WB, double least, double room) {
   std::vector<motion::Waypoint> led;
   const motion::Waypoint* last = &before;
+  Pose X_WE_last = before.X_WE();
   for (const motion::Waypoint& row : rows) {
-    const Vector3 from = last->X_WE.p, way = row.X_WE.p - from;
+    const Pose X_WE = row.X_WE();
+    const Vector3 from = X_WE_last.p, way = X_WE.p - from;
     const double length = way.head<2>().norm();
     const double share = length > 0.0 ? way.head<2>().dot((p_WB - from).head<2>()) / (length * length) : 0.0;
     const Vector3 off = from + share * way - p_WB;
     const double distance = off.head<2>().norm();
-    const bool points_down = motion::yaw_of(last->X_WE.R) && motion::yaw_of(row.X_WE.R);
+    const bool points_down = motion::yaw_of(X_WE_last.R) && motion::yaw_of(X_WE.R);
     if (points_down && length > least && share > 0.0 && share < 1.0 && distance < least && distance > 1e-6) {
+      Pose X_WE_between;
+      X_WE_between.p.head<2>() = p_WB.head<2>() + (room / distance) * off.head<2>();
+      X_WE_between.p.z() = std::max(from.z(), X_WE.p.z());
+      X_WE_between.R = exp_rotation(share * log_rotation(X_WE.R * X_WE_last.R.transpose())) * X_WE_last.R;
       motion::Waypoint between = *last;
-      between.X_WE.p.head<2>() = p_WB.head<2>() + (room / distance) * off.head<2>();
-      between.X_WE.p.z() = std::max(from.z(), row.X_WE.p.z());
-      between.X_WE.R = exp_rotation(share * log_rotation(row.X_WE.R * last->X_WE.R.transpose())) * last->X_WE.R;
-      between.name += "_around";
+      between.set_pose(X_WE_between);
+      between.variant += "_around";
       led.push_back(between);
     }
     led.push_back(row);
     last = &row;
+    X_WE_last = X_WE;
   }
   return led;
 }

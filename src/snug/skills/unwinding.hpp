@@ -10,8 +10,8 @@ namespace snug::skills {
 
 /// Rows say where the tool shall be and not which way it turns: the shorter one. Where that would take it to the far
 /// side of `neutral_yaw`, or could because the turn is nearly half a turn, rows are put in between that turn it on the
-/// place over the neutral side, with the switches of the row before and its name followed by "_turn". So the yaw never
-/// leaves (neutral - pi, neutral + pi], however long the program. `before`: the row before the first of `rows`.
+/// place over the neutral side, with the switches of the row before and its variant followed by "_turn". So the yaw
+/// never leaves (neutral - pi, neutral + pi], however long the program. `before`: the row before the first of `rows`.
 /// `on_the_way`: they turn it while it travels, with the switches of the row that they lead to. Where ways go around
 /// the robot's first axis at `p_WB` (motion::Way) it is the turn beyond the way's own that counts.
 [[nodiscard]] std::vector<motion::Waypoint> with_turns(const motion::Waypoint& before,

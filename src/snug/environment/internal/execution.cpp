@@ -94,7 +94,7 @@ class Execution final : public Happening {
     const auto rows = skills::program_from_placements({&pick, 1}, {&placement, 1}, plan_);
     if (!rows) return std::nullopt;
     for (const motion::Waypoint& row : rows->waypoints) {
-      if (row.name != "home") program_.waypoints.push_back(motion::as_written(row));
+      if (row.motion_class != motion::MotionClass::Home) program_.waypoints.push_back(motion::rounded(row));
     }
     return placement.X_TP;
   }

@@ -15,8 +15,8 @@ TEST(ProgramTempo, ReadsBackAndLeavesTheRowsAlone) {
   for (const double tempo : {0.5, 0.1, 1.0, 0.77}) {
     const std::string text = format_tempo(tempo) + kTempoRow;
     EXPECT_EQ(find_tempo(text, "p.csv"), tempo);
-    EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().X_WE,
-              parse_program(kTempoRow, "p.csv").waypoints.front().X_WE);
+    EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().X_WE(),
+              parse_program(kTempoRow, "p.csv").waypoints.front().X_WE());
     EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().line, 2);
   }
 }

@@ -30,9 +30,7 @@ TEST(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
     weights.push_back(1.0);
   }
   for (const auto& rollout : rollouts) states.push_back(rollout->state());
-  motion::Waypoint from;
-  from.X_WE = scenario.controller.X_WE_start;
-  from.name = "home";
+  const motion::Waypoint from = motion::make_waypoint(motion::MotionClass::Home, {}, scenario.controller.X_WE_start);
   const ToolReach everywhere;
   const auto& items = scenario.sequences[0].items;
   double rate = 0.0;

@@ -47,14 +47,14 @@ class ScriptedPlant final : public plant::Plant {
       ends.pop_front();
     }
     for (const motion::Waypoint& row : motion.waypoints) {
-      if (row.name.ends_with("_press") && row.name.starts_with("PlaceSlow")) pressed.push_back(motion.item);
+      if (row.variant == "_press" && row.motion_class == motion::MotionClass::PlaceSlow) pressed.push_back(motion.item);
     }
     if (motion.item.empty()) ++home_count;
     const motion::Waypoint& last = end == EndReason::Completed ? motion.waypoints.back() : *held;
-    if (holds) X_WE_let_go = last.X_WE;
+    if (holds) X_WE_let_go = last.X_WE();
     now_.time += 1.0;
     now_.end = {end, 0, 0.0, 0.0, ""};
-    now_.X_WE = last.X_WE;
+    now_.X_WE = last.X_WE();
     now_.io = last.io;
     now_.pressure_gauge = last.io.vacuum && end != EndReason::NoSeal && end != EndReason::VacuumLost ? -6.0e4 : 0.0;
     if (holds && happens) happens(++motions_);

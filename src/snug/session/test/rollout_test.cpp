@@ -53,10 +53,8 @@ motion::Program to_and_fro() {
   motion::Program program{"test", {}};
   const Pose X_WE = shortened(1).controller.X_WE_start;
   for (int i = 0; i < 6; ++i) {
-    motion::Waypoint row;
-    row.X_WE = X_WE;
-    row.X_WE.p += Vector3(0.1 * (i % 3), 0.3 * (i % 2), 0.1 * (i % 2));
-    row.name = "home";
+    motion::Waypoint row = motion::make_waypoint(motion::MotionClass::Home, {}, X_WE);
+    row.p_WE += Vector3(0.1 * (i % 3), 0.3 * (i % 2), 0.1 * (i % 2));
     program.waypoints.push_back(row);
   }
   return program;
@@ -100,10 +98,9 @@ model::Scenario with_post(model::Scenario scenario) {
 TEST(Rollout, FailsWhereALinkOfTheArmTouchesSomething) {
   const model::Scenario scenario = with_post(shortened(1));
   Rollout rollout(scenario, "1", moved_by("ur10"));
-  motion::Waypoint row;
-  row.X_WE = rollout.simulation().scenario().controller.X_WE_start;
-  row.X_WE.p.x() += 0.05;
-  row.name = "home";
+  motion::Waypoint row =
+      motion::make_waypoint(motion::MotionClass::Home, {}, rollout.simulation().scenario().controller.X_WE_start);
+  row.p_WE.x() += 0.05;
   const cell::CellState start = rollout.state();
   const Episode episode = rollout.run({"test", {row}});
   EXPECT_EQ(episode.end, RolloutEnd::ArmContact);

@@ -58,7 +58,7 @@ TEST(MakeProgram, CrossesTheCellOverAHull) {
     EXPECT_TRUE(program.has_value());
     double lowest = 10.0;
     for (const motion::Waypoint& row : program->waypoints) {
-      if (row.name.starts_with("PostPick")) lowest = std::min(lowest, row.X_WE.p.z());
+      if (row.motion_class == motion::MotionClass::PostPick) lowest = std::min(lowest, row.p_WE.z());
     }
     return lowest;
   };
