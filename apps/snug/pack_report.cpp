@@ -226,7 +226,7 @@ std::string format_pack_head(const std::string& sequence, const session::Session
       "box          x_T     y_T     z_T  up                                  predicted     mm    deg     pred.  happ.  "
       "   "
       "mm      s      s  times  cycle travel  carry regrasp insert  push  wait\n",
-      sequence, session.agent, session.packing.seed, address.empty() ? fmt::format("seed {}", plant.seed) : address,
+      sequence, session.agent, session.decision.seed, address.empty() ? fmt::format("seed {}", plant.seed) : address,
       perception::name_of(plant.perception), robot.empty() ? "none" : robot, session.samples);
 }
 

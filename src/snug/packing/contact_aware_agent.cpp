@@ -97,9 +97,9 @@ class ContactAwareAgent : public Agent {
     const double room = planning.inner_size.prod();
     const double filled = 0.01 * filling_percent(state) * room + item.size.prod();
     RaceSettings settings;
-    settings.seed = input_.settings.seed + 1000003U * state.boxes.size();
-    settings.threads = input_.settings.threads;
-    settings.effort = work_for(input_.settings.decision_time);
+    settings.seed = input_.run.seed + 1000003U * state.boxes.size();
+    settings.threads = input_.run.threads;
+    settings.effort = work_for(input_.run.time);
     const Prospect prospect = make_prospect(planning, input_.future, pieces(planning), state, item);
     const std::vector<Standing> order =
         race(entrants, policy, prospect, std::max(0.0, room - filled), settings, &decision.roll_outs);

@@ -12,8 +12,6 @@
 namespace snug::session {
 namespace {
 
-constexpr double kUpright = 0.26;  ///< rad, a box may lie this far from level to be picked again
-
 Vector3 up_axis(const packing::Orientation& orientation) {
   return orientation.up_sign * Vector3::Unit(static_cast<int>(orientation.up));
 }
@@ -68,12 +66,13 @@ class GraspPlanner {
     return true;
   }
   [[nodiscard]] Grasp take() { return std::move(grasp_); }
-  [[nodiscard]] bool stands() const { return (X_WP_.R * up_axis(grasp_.orientation)).z() > std::cos(kUpright); }
+  [[nodiscard]] bool stands() const { return (X_WP_.R * up_axis(grasp_.orientation)).z() > std::cos(max_lean()); }
   [[nodiscard]] bool is_upside_down() const {
-    return (X_WP_.R * up_axis(grasp_.orientation)).z() < -std::cos(kUpright);
+    return (X_WP_.R * up_axis(grasp_.orientation)).z() < -std::cos(max_lean());
   }
 
  private:
+  [[nodiscard]] double max_lean() const { return request_.scenario.skills.pick.max_lean; }
   [[nodiscard]] bool is_fine() const { return grasp_.problem == GraspProblem::None; }
   /// As it shall stand, in the middle of the container.
   [[nodiscard]] Pose goal() const {
@@ -124,8 +123,8 @@ class GraspPlanner {
   /// one that leaves the wrist less to do.
   void spare_wrist(const Matrix3& R_WP) {
     const skills::CellLayout& layout = request_.layout;
-    if (!layout.is_fast || !layout.p_WB) return;
-    const double pan = motion::pan_between(*layout.p_WB, X_WP_.p, layout.X_WT.p);
+    if (!layout.is_fast || !layout.pan_axis) return;
+    const double pan = motion::pan_between(layout.pan_axis->p_WB, X_WP_.p, layout.X_WT.p);
     const auto turn_of_wrist = [&] { return std::abs(pan - turn_between(layout, {R_WP, X_WP_.p}, goal())); };
     const packing::Orientation asked = grasp_.held_as;
     const double as_asked = turn_of_wrist();
@@ -153,15 +152,15 @@ class GraspPlanner {
       grasp_.problem = GraspProblem::OutOfReach;
       return;
     }
-    const std::optional<Vector3>& p_WB = request_.layout.p_WB;
+    const std::optional<motion::PanAxis>& pan_axis = request_.layout.pan_axis;
     // A fast tool comes to the second row, level, without the upright one before.
-    if (request_.layout.is_fast && reaches({last().X_WE(), rows[1].X_WE(), p_WB})) rows.erase(rows.begin());
+    if (request_.layout.is_fast && reaches({last().X_WE(), rows[1].X_WE(), pan_axis})) rows.erase(rows.begin());
     execute(rows);
     if (!holds()) return;
     const motion::Waypoint up = plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again);
     Pose X_WE_over = up.X_WE();
     X_WE_over.p.head<2>() = request_.layout.X_WT.p.head<2>();
-    if (request_.layout.is_fast && reaches({last().X_WE(), X_WE_over, p_WB})) return;  // on the way to its place
+    if (request_.layout.is_fast && reaches({last().X_WE(), X_WE_over, pan_axis})) return;  // on the way to its place
     execute({up});
     (void)holds();
   }
@@ -179,7 +178,7 @@ class GraspPlanner {
   bool pick_side_where_it_stands() {
     for (const Vector3& face : open_faces()) {
       const double along = (X_WP_.R.transpose() * face).dot(up_axis(grasp_.orientation));
-      if (std::abs(along) < std::cos(kUpright)) continue;
+      if (std::abs(along) < std::cos(max_lean())) continue;
       if (along < 0.0) grasp_.held_as = mirrored(grasp_.orientation, request_.box.inertia.com);
       pick_side(face, !is_first());
       return true;
@@ -192,7 +191,7 @@ class GraspPlanner {
     if (const std::optional<Pose> seen = nominal_.pose_of(request_.box.item)) X_WP_ = *seen;
     grasp_.looks.push_back(grasp_.program.waypoints.size());
     grasp_.seen.push_back(X_WP_);
-    if (!is_upright(X_WP_.R)) grasp_.problem = GraspProblem::DoesNotStand;
+    if (!is_upright(X_WP_.R, max_lean())) grasp_.problem = GraspProblem::DoesNotStand;
   }
 
   bool regrasp() {
@@ -255,7 +254,7 @@ class GraspPlanner {
       grasp_.states.push_back(rollout.state());
       if (i == 0) continue;
       const std::optional<Pose> X_WP = rollout.pose_of(request_.box.item);
-      const bool is_good = rollout.is_held(request_.box.item) && X_WP && angle_between(X_WP->R, R_WP) < kUpright;
+      const bool is_good = rollout.is_held(request_.box.item) && X_WP && angle_between(X_WP->R, R_WP) < max_lean();
       all += request_.weights[i];
       if (is_good) good += request_.weights[i];
     }
@@ -305,7 +304,7 @@ const char* describe(GraspProblem problem) {
   return "";
 }
 
-bool is_upright(const Matrix3& R_WP) { return R_WP.row(2).cwiseAbs().maxCoeff() > std::cos(kUpright); }
+bool is_upright(const Matrix3& R_WP, double max_lean) { return R_WP.row(2).cwiseAbs().maxCoeff() > std::cos(max_lean); }
 
 Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation) {
   const GraspPlanner first(request, orientation);

@@ -71,7 +71,7 @@ struct GraspRequest {
 /// The first reorientation with which the box is held in every rollout, or the one that does so in most.
 [[nodiscard]] Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation);
 
-/// Standing on one of its faces, so that it can be picked from above.
-[[nodiscard]] bool is_upright(const Matrix3& R_WP);
+/// Standing on one of its faces, or leaning by at most `max_lean` [rad], so that it can be picked from above.
+[[nodiscard]] bool is_upright(const Matrix3& R_WP, double max_lean);
 
 }  // namespace snug::session

@@ -13,9 +13,6 @@
 namespace snug::session {
 namespace {
 
-constexpr double kRestAtEnd = 0.4;  ///< s, after the last waypoint, before the result is looked at
-constexpr int kFirstSamples = 3;    ///< rehearsed before the others: where most of these fail the others are not asked
-
 /// Along the floor.
 double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
 
@@ -33,12 +30,11 @@ std::string describe_outside(const cell::ContainerFit& fit, bool is_beside, doub
 }  // namespace
 
 Rehearsal::Rehearsal(Belief& belief, const skills::CellLayout& layout, const ToolReach& reaches,
-                     const PlaceLimits& limits, double least_rate, int threads, const RehearsalTask& task)
+                     const model::PlaceLimits& limits, int threads, const RehearsalTask& task)
     : belief_(belief),
       layout_(layout),
       reaches_(reaches),
       limits_(limits),
-      least_rate_(least_rate),
       threads_(threads),
       task_(task),
       box_(skills::make_planned_box(belief.nominal(), belief.sequence(), task.item)),
@@ -102,7 +98,7 @@ bool Rehearsal::can_follow(const motion::Waypoint& before, std::span<const motio
   Pose X_WE = before.X_WE();
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) {
     const Pose X_WE_before = std::exchange(X_WE, row.X_WE());
-    return motion::is_contact(row.motion_class) || reaches_({X_WE_before, X_WE, layout_.p_WB});
+    return motion::is_contact(row.motion_class) || reaches_({X_WE_before, X_WE, layout_.pan_axis});
   });
 }
 
@@ -119,6 +115,7 @@ const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double pa
 
 /// All samples, or the first alone where most of these fail: the rate of such an attempt is below what is ever sent.
 void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Attempt& attempt) const {
+  const model::RehearsalSettings& settings = belief_.nominal().rehearsal;
   const int all = static_cast<int>(rollouts_.size()) - 1;
   std::vector<Outcome> outcomes(static_cast<std::size_t>(all));
   const auto rehearse = [&](int first, int last) {
@@ -136,10 +133,10 @@ void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Att
     }
     attempt.success_rate = weight > 0.0 ? good / weight : 1.0;
   };
-  const int first = std::min(all, kFirstSamples);
+  const int first = std::min(all, settings.first_samples);
   rehearse(0, first);
   count();
-  if (attempt.success_rate >= 0.5 * least_rate_ && first < all) {
+  if (attempt.success_rate >= 0.5 * settings.least_rate && first < all) {
     rehearse(first, all);
     count();
   }
@@ -194,7 +191,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
     rollout.restore(grasp.states[i]);
     Episode episode = grasp.episodes[i];
     merge(episode, rollout.run(attempt.program, {limits_.force, false}));
-    if (episode.is_complete()) merge(episode, rollout.settle(attempt.program, kRestAtEnd));
+    if (episode.is_complete()) merge(episode, rollout.settle(attempt.program, belief_.nominal().rehearsal.rest));
     Outcome outcome = judge(rollout, before_[i], attempt.planned.X_TP);
     outcome.end = episode.end;
     outcome.forces.force = episode.peak_force;

@@ -39,9 +39,9 @@ class Session {
 
   SessionResult pack() {
     packing::AgentInput input;
-    input.settings = options_.packing;
-    // Plans that are made on paper first have no other place to try.
-    if (!plans_on_paper(options_)) input.settings.last_interference = options_.last_interference;
+    input.settings = scenario_.packing;
+    input.run = options_.decision;
+    input.run.tries_places = !plans_on_paper(options_);  // plans made on paper first have no other place to try
     input.future = options_.future ? *options_.future : packing::make_future_model(scenario_);
     input.sequence = packer_.items();
     input.ask = options_.ask;
@@ -55,7 +55,7 @@ class Session {
           packer_.bring_in(i, [&](const auto& state, const packing::Item& item) { return agent->decide(state, item); });
       const bool has_no_place = report.end == ItemEnd::NoPlace;
       if (has_no_place && !result_.percent_before_skips) result_.percent_before_skips = result_.planned_percent;
-      if (has_no_place && skipped++ >= options_.skips) {
+      if (has_no_place && skipped++ >= options_.skips.value_or(scenario_.recovery.skips)) {
         stop(StopReason::NoPlace, fmt::format("{}: {}", report.id, report.reason));
       }
       finish_item(std::move(report), i + 1, count);

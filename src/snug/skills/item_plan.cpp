@@ -21,22 +21,7 @@ namespace {
 
 using motion::MotionClass;
 
-constexpr double kTravelClearance = 0.06;  ///< m, more than the precision of rows that are passed on the fly
-constexpr double kEntryClearance = 0.01;   ///< m, where the box stops before it goes in
-// The gripper of the demonstrator comes within 0.1 m of the upper arm when the tool is 0.25 m from the first axis, and
-// the arm begins to give way 0.1 m before.
-constexpr double kNearBase = 0.34;       ///< m
-constexpr double kBaseRoom = 0.42;       ///< m
-constexpr double kTurnClearance = 0.03;  ///< m, more, where a box turns in the air
-constexpr double kLeastOnWay = 0.03;     ///< m, over what is crossed, of a box that turns on its way
-constexpr double kLipClearance = 0.002;  ///< m
-constexpr double kSealRoom = 0.001;      ///< m, around the disc on which the vacuum acts
-constexpr double kFlipRoom = 0.16;       ///< m, from the middle of a lying box to the edges of its surface
-constexpr double kFlipDrag = 0.08;       ///< m, more where it comes down, before it is dragged back
-constexpr double kShortestSwing = 0.1, kLongestSwing = 0.6;  ///< s
-constexpr double kLargestTurn = 1.5 * std::numbers::pi;      ///< rad, of a held box the longer way round
-constexpr double kLevel = 1e-3;                              ///< rad
-constexpr double kPressDepth = 0.03;  ///< m, beyond where an undeformed cup touches the highest corner
+constexpr double kLevel = 1e-3;  ///< rad
 
 /// Bounds in W of the boxes that fixed bodies are made of, where one face lies level.
 std::vector<geometry::Aabb> flat_tops(const model::Scenario& scenario) {
@@ -63,14 +48,16 @@ Vector3 main_direction(const Vector3& from, const Vector3& to) {
 
 /// The highest surface that is large enough, near the way from aligner to container.
 std::optional<FlipPlace> find_flip_place(const std::vector<geometry::Aabb>& tops, const Vector3& from,
-                                         const Vector3& to) {
+                                         const Vector3& to, const model::PivotParams& params) {
   const Vector3 middle = 0.5 * (from + to), direction = main_direction(from, to);
   std::optional<FlipPlace> best;
   double best_distance = 0.0;
   for (const geometry::Aabb& top : tops) {
     // A flipped box is let go further on in `direction` and dragged back to its place: room on that side only.
-    const Vector3 low = top.lower + Vector3::Constant(kFlipRoom) + kFlipDrag * (-direction).cwiseMax(0.0);
-    const Vector3 high = top.upper - Vector3::Constant(kFlipRoom) - kFlipDrag * direction.cwiseMax(0.0);
+    const Vector3 low =
+        top.lower + Vector3::Constant(params.surface_room) + params.surface_drag * (-direction).cwiseMax(0.0);
+    const Vector3 high =
+        top.upper - Vector3::Constant(params.surface_room) - params.surface_drag * direction.cwiseMax(0.0);
     if (low.x() > high.x() || low.y() > high.y()) continue;
     const Vector3 nearest(std::clamp(middle.x(), low.x(), high.x()), std::clamp(middle.y(), low.y(), high.y()),
                           top.upper.z());
@@ -93,7 +80,7 @@ struct Dip {
 Dip find_dip(const CellLayout& layout, const Pose& X_WE_from, const Pose& X_WE_to, const Pose& X_EP,
              const Vector3& size, double bottom) {
   constexpr int kLooks = 24;
-  const motion::Way way(X_WE_from, X_WE_to, layout.p_WB);
+  const motion::Way way(X_WE_from, X_WE_to, layout.pan_axis);
   Dip dip;
   for (int i = 0; i <= kLooks; ++i) {
     const double share = static_cast<double>(i) / kLooks;
@@ -112,17 +99,16 @@ double yaw_between(const Matrix3& R_from, const Matrix3& R_to) {
   return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
 }
 
-/// Length beside the box that is free of neighbours is at least this where it can come down and slide.
-constexpr double kSlideRoom = 0.008;       ///< m
-constexpr double kTight = 0.007;           ///< m, a neighbour nearer than this is met on the way down
-constexpr double kOvertravel = 0.005;      ///< m
-constexpr double kLeastNeighbour = 0.012;  ///< m, lower things beside the box do not guide it
-
+/// What is beside a place along one axis of the container.
 struct AxisView {
   double low = 1.0, high = 1.0;          ///< m, gaps
   double low_top = 0.0, high_top = 0.0;  ///< m, of the neighbours over the lower face
-  [[nodiscard]] bool low_near() const { return low < kTight && low_top > kLeastNeighbour; }
-  [[nodiscard]] bool high_near() const { return high < kTight && high_top > kLeastNeighbour; }
+  [[nodiscard]] bool low_near(const model::InsertionParams& params) const {
+    return low < params.near && low_top > params.least_neighbour;
+  }
+  [[nodiscard]] bool high_near(const model::InsertionParams& params) const {
+    return high < params.near && high_top > params.least_neighbour;
+  }
 };
 
 AxisView view(const packing::Candidate& candidate, int axis) {
@@ -158,7 +144,7 @@ const char* name_of(Reorientation reorientation) {
   return "";
 }
 
-CellLayout make_layout(const model::Scenario& scenario, const std::optional<Vector3>& p_WB) {
+CellLayout make_layout(const model::Scenario& scenario, const std::optional<motion::PanAxis>& pan_axis) {
   const model::Container* container = model::find_container(scenario, scenario.target);
   if (!scenario.aligner || !scenario.tool || container == nullptr) {
     throw InputError(scenario.source_name, "", "", "a cell with an aligner, a tool and a target container");
@@ -167,34 +153,37 @@ CellLayout make_layout(const model::Scenario& scenario, const std::optional<Vect
   layout.X_WT = container->X_WT;
   layout.rim = container->has_walls ? container->inner_size.z() : 0.0;
   layout.fixed_top = highest_fixed_point(scenario);
-  layout.flip_place = find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p);
-  layout.p_WB = p_WB;
+  layout.flip_place =
+      find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p, scenario.skills.pivot);
+  layout.pan_axis = pan_axis;
+  layout.travel = scenario.skills.travel;
   layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
   return layout;
 }
 
 double travel_bottom(const CellLayout& layout, double packed_top) {
   const double rim = layout.X_WT.p.z() + std::max(layout.rim, packed_top);
-  return std::max(rim, layout.fixed_top) + kTravelClearance;
+  return std::max(rim, layout.fixed_top) + layout.travel.clearance;
 }
 
-std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size) {
+std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
+                                         const model::InsertionParams& params) {
   Insertion base;
   int tight_axis = -1;
   bool slides = false;
   for (int axis = 0; axis < 2; ++axis) {
     const AxisView v = view(candidate, axis);
-    if (v.low_near() && v.high_near()) {
+    if (v.low_near(params) && v.high_near(params)) {
       if (tight_axis < 0 || view(candidate, tight_axis).low + view(candidate, tight_axis).high > v.low + v.high) {
         tight_axis = axis;
       }
-    } else if (v.low_near() && v.high > kSlideRoom) {
-      base.come_from_T[axis] = std::min(0.010, v.high - 0.003);
-      base.overtravel_T[axis] = -kOvertravel;
+    } else if (v.low_near(params) && v.high > params.slide_room) {
+      base.come_from_T[axis] = std::min(params.slide_start, v.high - params.slide_margin);
+      base.overtravel_T[axis] = -params.overtravel;
       slides = true;
-    } else if (v.high_near() && v.low > kSlideRoom) {
-      base.come_from_T[axis] = -std::min(0.010, v.low - 0.003);
-      base.overtravel_T[axis] = kOvertravel;
+    } else if (v.high_near(params) && v.low > params.slide_room) {
+      base.come_from_T[axis] = -std::min(params.slide_start, v.low - params.slide_margin);
+      base.overtravel_T[axis] = params.overtravel;
       slides = true;
     }
   }
@@ -209,10 +198,10 @@ std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, co
     const double low_side = v.low_top > v.high_top ? 1.0 : -1.0;
     tilted.low_side_T[tight_axis] = low_side;
     // A taller neighbour is what the box is pushed against; among equals the side that goes in first.
-    const double taller = std::abs(v.low_top - v.high_top) > 0.03 ? -low_side : low_side;
+    const double taller = std::abs(v.low_top - v.high_top) > params.tilted.taller ? -low_side : low_side;
     tilted.push_T = base.overtravel_T;
-    tilted.push_T[tight_axis] = taller * 0.004;
-    tilted.come_from_T[tight_axis] = -taller * 0.004;
+    tilted.push_T[tight_axis] = taller * params.tilted.push;
+    tilted.come_from_T[tight_axis] = -taller * params.tilted.push;
     insertions.push_back(tilted);
     tilted.low_side_T = -tilted.low_side_T;
     tilted.push_T[tight_axis] = -tilted.push_T[tight_axis];
@@ -220,7 +209,7 @@ std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, co
     insertions.push_back(tilted);
   } else if (slides) {
     Insertion gentle = base;
-    gentle.overtravel_T *= 0.4;
+    gentle.overtravel_T *= params.gentle;
     gentle.gentle = true;
     insertions.push_back(gentle);
   }
@@ -233,40 +222,45 @@ PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequen
   return {item, id, model::collision_size(scenario, parcel), parcel.inertia};
 }
 
-Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Matrix3& R_WP) {
-  return choose_cup_offset(R_WP, box.size, box.inertia.com, 0.5 * cup.effective_diameter + kSealRoom);
+Vector3 cup_offset(const model::CupParams& cup, double seal_margin, const PlannedBox& box, const Matrix3& R_WP) {
+  return choose_cup_offset(R_WP, box.size, box.inertia.com, 0.5 * cup.effective_diameter + seal_margin);
 }
 
 double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP_next) {
   const double turn = yaw_between(X_WP.R, X_WP_next.R);
-  if (!layout.is_fast || !layout.p_WB) return turn;
-  const double pan = motion::pan_between(*layout.p_WB, X_WP.p, X_WP_next.p);
+  if (!layout.is_fast || !layout.pan_axis) return turn;
+  const double pan = motion::pan_between(layout.pan_axis->p_WB, X_WP.p, X_WP_next.p);
   const double other = turn - std::copysign(2.0 * std::numbers::pi, turn);
-  return std::abs(other) <= kLargestTurn && std::abs(pan - other) < std::abs(pan - turn) ? other : turn;
+  return std::abs(other) <= layout.travel.longest_turn && std::abs(pan - other) < std::abs(pan - turn) ? other : turn;
 }
 
 std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                         const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next, double travel,
                                         PickKind kind) {
+  const model::PickParams& params = scenario.skills.pick;
   PickIntent intent;
   intent.box = box.id;
   intent.X_WP = X_WP;
   intent.size = box.size;
-  intent.cup_offset_P = cup_offset(scenario.cup, box, X_WP.R);
+  intent.cup_offset_P = cup_offset(scenario.cup, params.seal_margin, box, X_WP.R);
   intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, X_WP, X_WP_next);
   intent.length = cup::pick_length(scenario.cup);
   intent.again = kind != PickKind::First;
   const double height = -2.0 * lowest_corner(X_WP.R, box.size);
   const double top = X_WP.p.z() + 0.5 * height;
-  intent.approach_height = scenario.cup.free_length +
-                           (kind == PickKind::FromAbove ? top + 0.03 : std::max(travel + 0.02, top + kTravelClearance));
+  intent.approach_height =
+      scenario.cup.free_length + (kind == PickKind::FromAbove
+                                      ? top + params.above_box
+                                      : std::max(travel + params.above_travel, top + layout.travel.clearance));
   intent.lift_height = travel + height + scenario.cup.hold_length;
   return pick_rows(intent);
 }
 
 motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
+  const model::TravelParams& travel = scenario.skills.travel;
   const cup::Swing swing = cup::find_swing(scenario.cup, box.inertia, box.size, up_P, scenario.gravity.norm());
-  return {std::clamp(swing.slow, kShortestSwing, kLongestSwing), std::clamp(swing.fast, kShortestSwing, kLongestSwing)};
+  return {std::clamp(swing.slow, travel.shortest_swing, travel.longest_swing),
+          std::clamp(swing.fast, travel.shortest_swing, travel.longest_swing)};
 }
 
 std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& last,
@@ -274,14 +268,16 @@ std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::W
                                        const std::optional<motion::Swing>& swing) {
   if (rows.empty()) return rows;
   if (layout.is_fast) {
-    std::vector<motion::Waypoint> turned = with_turns(last, rows, layout.neutral_yaw, true, layout.p_WB);
+    std::vector<motion::Waypoint> turned =
+        with_turns(last, rows, {layout.neutral_yaw, layout.travel.sure_turn, true, layout.pan_axis});
     for (motion::Waypoint& row : turned) {
       if (swing && row.io.vacuum && !motion::is_contact(row.motion_class)) row.swing = motion::as_named(*swing);
     }
     return turned;
   }
-  const std::vector<motion::Waypoint> turned = with_turns(last, rows, layout.neutral_yaw);
-  return layout.p_WB ? with_detours(last, turned, *layout.p_WB, kNearBase, kBaseRoom) : turned;
+  const std::vector<motion::Waypoint> turned = with_turns(last, rows, {layout.neutral_yaw, layout.travel.sure_turn});
+  if (!layout.pan_axis) return turned;
+  return with_detours(last, turned, layout.pan_axis->p_WB, layout.travel.near_base, layout.travel.base_radius);
 }
 
 Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction) {
@@ -294,25 +290,27 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
                                              const PlannedBox& box, const Pose& X_WP, const Vector3& face,
                                              const Pose& X_WP_next, double travel, bool again) {
   const model::CupParams& cup = scenario.cup;
+  const model::SideGraspParams& params = scenario.skills.side_grasp;
   SidePickIntent intent;
+  intent.params = params;
   intent.box = box.id;
   intent.X_WP = X_WP;
   intent.size = box.size;
   intent.face = face;
   intent.again = again;
   const Matrix3 R_WP_up = face_up(X_WP.R, face);
-  intent.cup_offset_P = cup_offset(cup, box, R_WP_up);
+  intent.cup_offset_P = cup_offset(cup, scenario.skills.pick.seal_margin, box, R_WP_up);
   // The lip stays off what the box stands on; where the side is too low for that it reaches over its upper edge.
   const double half_height = -lowest_corner(X_WP.R, box.size);
-  const double low = cup.lip_radius + kLipClearance - half_height;
+  const double low = cup.lip_radius + params.lip_clearance - half_height;
   const double offset = (X_WP.R * intent.cup_offset_P).z();
   if (offset < low) intent.cup_offset_P += (low - offset) * X_WP.R.transpose() * Vector3::UnitZ();
-  if (low + cup.lip_radius - half_height > cup.seal.max_overhang - kLipClearance) return {};
+  if (low + cup.lip_radius - half_height > cup.seal.max_overhang - params.lip_clearance) return {};
   intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, {R_WP_up, X_WP.p}, X_WP_next);
   // At the aligner the plates hold the box against the cup. Elsewhere the lip just touches, and pulls the box to
   // itself.
   intent.length = again ? cup.free_length : cup::pick_length(cup);
-  intent.lift = std::max(0.02, travel - (X_WP.p.z() - half_height));
+  intent.lift = std::max(params.least_lift, travel - (X_WP.p.z() - half_height));
   intent.approach_height = travel + half_height;
   std::vector<motion::Waypoint> rows = side_pick_rows(intent);
   if (!layout.is_fast) return rows;
@@ -323,7 +321,7 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   for (int i = 0; i < kRaises; ++i) {
     Pose& X_WE_lifted = poses.X_WE_lifted;
     const Dip dip = find_dip(layout, X_WE_lifted, X_WP_over * X_EP.inverse(), X_EP, box.size,
-                             travel - kTravelClearance + kLeastOnWay);
+                             travel - layout.travel.clearance + layout.travel.turning_clearance);
     X_WE_lifted.p.z() += dip.depth / std::max(kLeastLever, 1.0 - dip.share);
   }
   rows.back().p_WE = poses.X_WE_lifted.p;
@@ -334,7 +332,7 @@ motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox&
                               const Pose& X_PS, const Vector3& face, double travel, bool again) {
   const Matrix3 R_WP = face_up(X_WP.R, face);
   Pose X_WP_up{R_WP, X_WP.p};
-  X_WP_up.p.z() = travel + kTurnClearance - lowest_corner(R_WP, box.size);
+  X_WP_up.p.z() = travel + scenario.skills.side_grasp.turn_clearance - lowest_corner(R_WP, box.size);
   return motion::make_waypoint(again ? MotionClass::PostRePick : MotionClass::PostPick, box.id,
                                make_tool_for(scenario, box, X_PS)(X_WP_up), {.vacuum = true}, "_up");
 }
@@ -348,8 +346,9 @@ std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const 
     X_WE.p.z() = z;
     return motion::make_waypoint(motion_class, box.id, X_WE, {}, "_press");
   };
-  const double over = std::max(travel, top) + free + 0.02;
-  return {row_at(MotionClass::PrePlace, over), row_at(MotionClass::PlaceSlow, top + free - kPressDepth),
+  const model::PressParams& params = scenario.skills.press;
+  const double over = std::max(travel, top) + free + params.stand_off;
+  return {row_at(MotionClass::PrePlace, over), row_at(MotionClass::PlaceSlow, top + free - params.depth),
           row_at(MotionClass::PostPlace, over)};
 }
 
@@ -357,6 +356,7 @@ std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, con
                                             const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
                                             double travel) {
   SetDownIntent intent;
+  intent.params = scenario.skills.set_down;
   intent.box = box.id;
   intent.size = box.size;
   intent.X_WP = {R_WP, place.p_WF - lowest_corner(R_WP, box.size) * Vector3::UnitZ()};
@@ -368,6 +368,7 @@ std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, con
 std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box, const FlipPlace& place,
                                         const Matrix3& R_WP, const Pose& X_PS, double travel) {
   FlipIntent intent;
+  intent.params = scenario.skills.pivot;
   intent.box = box.id;
   intent.size = box.size;
   intent.p_WF = place.p_WF;
@@ -407,17 +408,17 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
                                          const PlaceRequest& request) {
   const Matrix3& R_WT = layout.X_WT.R;
   PlaceIntent intent;
+  intent.params = scenario.skills.insertion;
   intent.box = request.box.id;
   intent.X_WP = layout.X_WT * request.X_TP;
   intent.size = request.box.size;
   intent.tool_for = make_tool_for(scenario, request.box, request.X_PS);
   intent.travel_bottom = travel_bottom(layout, request.packed_top);
   const double rim = std::max(layout.rim, request.packed_top);
-  intent.entry_bottom = layout.X_WT.p.z() + rim + kEntryClearance;
+  intent.entry_bottom = layout.X_WT.p.z() + rim + intent.params.entry_clearance;
   intent.come_from = R_WT * request.insertion.come_from_T;
   intent.overtravel = R_WT * request.insertion.overtravel_T;
   intent.gentle = request.insertion.gentle;
-  intent.press = 0.005;
   if (request.insertion.skill == InsertionSkill::Tilted) {
     TiltedEntry entry;
     entry.low_side = R_WT * request.insertion.low_side_T;
@@ -427,7 +428,7 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
   }
   if (!layout.is_fast) return place_rows(intent);
   intent.entry_bottom = intent.X_WP.p.z() + lowest_corner(intent.X_WP.R, intent.size);  // straight down
-  const double least = intent.travel_bottom - kTravelClearance + kLeastOnWay;
+  const double least = intent.travel_bottom - layout.travel.clearance + layout.travel.turning_clearance;
   for (int i = 0; i < kRaises; ++i) {
     const Pose X_WE_over = tool_over_place(intent);
     const Dip dip = find_dip(layout, request.X_WE, X_WE_over, request.X_EP, intent.size, least);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/motion/way.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/packing/placement.hpp"
 #include "snug/skills/primitives.hpp"
@@ -20,18 +21,19 @@ struct FlipPlace {
 
 /// What the plans of all items have in common.
 struct CellLayout {
-  Pose X_WT;                            ///< target container
-  double rim = 0.0;                     ///< m, z in T of the upper edges of its walls; 0 without walls
-  double fixed_top = 0.0;               ///< m, z in W of the highest fixed thing that the tool passes
-  std::optional<FlipPlace> flip_place;  ///< absent: nothing flat is large enough
-  std::optional<Vector3> p_WB;          ///< m, on the robot's first axis, where that is vertical
-  double neutral_yaw = 0.0;             ///< rad, of the tool at its start: half a turn to either side of it is used
+  Pose X_WT;                                ///< target container
+  double rim = 0.0;                         ///< m, z in T of the upper edges of its walls; 0 without walls
+  double fixed_top = 0.0;                   ///< m, z in W of the highest fixed thing that the tool passes
+  std::optional<FlipPlace> flip_place;      ///< absent: nothing flat is large enough
+  std::optional<motion::PanAxis> pan_axis;  ///< of the robot, where that is vertical
+  double neutral_yaw = 0.0;                 ///< rad, of the tool at its start: half a turn to either side of it is used
   /// Motions are fast ones (motion::ControllerKind::Fast): tracked exactly, around the robot's first axis. A held box
   /// turns the way round that leaves the wrist less to do, and while it travels.
   bool is_fast = false;
+  model::TravelParams travel;
 };
-/// `p_WB`: CellLayout::p_WB. Throws InputError for a scenario without aligner, tool or target container.
-[[nodiscard]] CellLayout make_layout(const model::Scenario& scenario, const std::optional<Vector3>& p_WB);
+/// Throws InputError for a scenario without aligner, tool or target container.
+[[nodiscard]] CellLayout make_layout(const model::Scenario& scenario, const std::optional<motion::PanAxis>& pan_axis);
 
 /// How another face of a box is brought up.
 enum class Reorientation {
@@ -61,7 +63,8 @@ struct Insertion {
   bool gentle = false;
 };
 /// Insertions worth trying for a candidate, the most promising first; never empty.
-[[nodiscard]] std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size);
+[[nodiscard]] std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
+                                                       const model::InsertionParams& params);
 
 /// A box of the plan: as the scenario has it.
 struct PlannedBox {
@@ -72,7 +75,8 @@ struct PlannedBox {
 };
 [[nodiscard]] PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item);
 /// m, in P, from the middle of the upper face to where the cup presses: as near the centre of mass as it seals.
-[[nodiscard]] Vector3 cup_offset(const model::CupParams& cup, const PlannedBox& box, const Matrix3& R_WP);
+[[nodiscard]] Vector3 cup_offset(const model::CupParams& cup, double seal_margin, const PlannedBox& box,
+                                 const Matrix3& R_WP);
 
 /// Where a pick from above begins.
 enum class PickKind {
@@ -89,7 +93,7 @@ enum class PickKind {
 [[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                       const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next,
                                                       double travel_bottom, PickKind kind);
-/// Of the box that hangs from the face that looks along `up_P` (P axis); 0.1 to 0.6 s.
+/// Of the box that hangs from the face that looks along `up_P` (P axis), within TravelParams.
 [[nodiscard]] motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
 /// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.
 /// `swing`: of what hangs on the way: fast motions are told. None: not known, or nothing does.

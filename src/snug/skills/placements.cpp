@@ -92,7 +92,7 @@ Move plan_move(const PickSpec& pick, const Pose& X_WP_place, const PlacementSett
   move.place.box = pick.box;
   move.place.X_WP = X_WP_place;
   move.place.size = pick.size;
-  move.place.press = 0.0;
+  move.place.params.press = 0.0;
   // Rigidly held: the sag of the cup is not made up for.
   move.place.tool_for = [X_PE = pick.X_WP.inverse() * tool_on_face(touch),
                          lift = settings.hold_length + settings.release_gap](const Pose& X_WP) {

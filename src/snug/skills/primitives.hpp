@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/model/skill_params.hpp"
 #include "snug/motion/waypoint.hpp"
 
 namespace snug::skills {
@@ -43,15 +44,10 @@ struct FlipIntent {
   Vector3 size = Vector3::Constant(0.1);  ///< m
   Vector3 p_WF = Vector3::Zero();         ///< m, on the surface: under the middle of the box when it lies
   Vector3 direction = Vector3::UnitX();   ///< unit, level: where the tool points at the end
-  double tilt = 1.5708;                   ///< rad, of the box before it is let go: a little less than a quarter turn
-  /// m, how far the tool is sent back along the surface with the box; it is let go on the way, where the precision of
-  /// TwistDrag is reached, at a speed that takes most of the push away that the cup gives when it lengthens.
-  double drag = 0.32;
-  double dragged = 0.12;        ///< m, of that before the box is let go
-  double press = 0.003;         ///< m, the edge is commanded below the surface
-  double travel_bottom = 0.08;  ///< m, z in W of the lower edge on the way in
-  Pose X_PE;                    ///< tool on the box, the cup not deformed
+  double travel_bottom = 0.08;            ///< m, z in W of the lower edge on the way in
+  Pose X_PE;                              ///< tool on the box, the cup not deformed
   ToolFor tool_for;
+  model::PivotParams params;
 };
 [[nodiscard]] std::vector<motion::Waypoint> flip_rows(const FlipIntent& intent);
 /// R_WP of the box that lies after this flip.
@@ -61,9 +57,7 @@ struct FlipIntent {
 struct TiltedEntry {
   Vector3 low_side = Vector3::UnitX();  ///< unit, level: the side that goes in first
   Vector3 push = Vector3::Zero();       ///< m, level: how far the box is pushed beyond its place while it is levelled
-  double angle = 0.17;                  ///< rad
   double edge_height = 0.0;             ///< m, z in W of the upper edge of the slot
-  double depth = 0.015;                 ///< m, how deep the low side goes in before the box is levelled
 };
 
 /// m, z of E over a place.
@@ -83,8 +77,7 @@ struct PlaceIntent {
   double entry_bottom = 0.0;             ///< m, z of the lower face where it stops before it goes down
   Vector3 come_from = Vector3::Zero();   ///< m, level: shift of the box on its way down, away from its neighbours
   Vector3 overtravel = Vector3::Zero();  ///< m, level: how far it is pushed beyond its place, against neighbours
-  double slide_gap = 0.003;              ///< m, above its support while it slides
-  double press = 0.004;                  ///< m, commanded below its support before it is let go
+  model::InsertionParams params;
   std::optional<TiltedEntry> tilted;
   /// Given in the place of travel_bottom and entry_bottom, and of where the tool leaves to.
   std::optional<ToolHeights> tool_heights;

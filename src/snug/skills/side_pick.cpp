@@ -39,13 +39,13 @@ SidePickPoses side_pick_poses(const SidePickIntent& intent) {
   SNUG_CHECK(std::abs(intent.face.z()) < 1e-9, "a side looks level");
   int axis = 0;
   const Vector3 normal = nearest_normal(intent.X_WP.R, intent.face, &axis);
-  const Matrix3 R_WE = side_pick_rotation(normal, intent.tool_yaw, intent.incline);
+  const Matrix3 R_WE = side_pick_rotation(normal, intent.tool_yaw, intent.params.incline);
   const Vector3 touched = intent.X_WP * intent.cup_offset_P + 0.5 * intent.size[axis] * normal;
   SidePickPoses poses;
   poses.X_WE_pick = {R_WE, touched - intent.length * R_WE.col(2)};
-  poses.X_WE_before = {R_WE, poses.X_WE_pick.p + intent.stand_off * normal};
+  poses.X_WE_before = {R_WE, poses.X_WE_pick.p + intent.params.stand_off * normal};
   poses.X_WE_high = poses.X_WE_before;
-  poses.X_WE_high.p.z() = std::max(intent.approach_height, poses.X_WE_before.p.z() + 0.01);
+  poses.X_WE_high.p.z() = std::max(intent.approach_height, poses.X_WE_before.p.z() + intent.params.above_stand_off);
   poses.X_WE_lifted = poses.X_WE_pick;
   poses.X_WE_lifted.p.z() += intent.lift;
   return poses;
@@ -71,13 +71,14 @@ std::vector<motion::Waypoint> set_down_rows(const SetDownIntent& intent) {
     X_WP.p.z() = bottom + height;
     return intent.tool_for(X_WP);
   };
-  const Pose X_WE_high = tool(intent.travel_bottom), X_WE_down = tool(rest - intent.press);
+  const Pose X_WE_high = tool(intent.travel_bottom), X_WE_down = tool(rest - intent.params.press);
   Pose X_WE_back = X_WE_down;
-  X_WE_back.p.z() = X_WE_high.p.z() + 0.03;
+  X_WE_back.p.z() = X_WE_high.p.z() + intent.params.retreat;
   const auto row = [&](MotionClass motion_class, const Pose& X_WE, const motion::IO& io, const char* variant = "") {
     return motion::make_waypoint(motion_class, intent.box, X_WE, io, variant);
   };
-  return {row(MotionClass::PreTwist, X_WE_high, kHold), row(MotionClass::PreTwist, tool(rest + 0.01), kHold, "_low"),
+  return {row(MotionClass::PreTwist, X_WE_high, kHold),
+          row(MotionClass::PreTwist, tool(rest + intent.params.slow_height), kHold, "_low"),
           row(MotionClass::Twist, X_WE_down, kHold), row(MotionClass::Twist, X_WE_down, kRelease),
           row(MotionClass::PreTwist, X_WE_back, {}, "_back")};
 }

@@ -14,12 +14,11 @@ struct SidePickIntent {
   Vector3 face = Vector3::UnitX();         ///< unit, level: about the outward normal of the side that is picked
   Vector3 cup_offset_P = Vector3::Zero();  ///< m, in P, from the middle of that face to where the cup presses
   double tool_yaw = 0.0;                   ///< rad, of the tool when it has turned the face up: R_WE = Rz(yaw) Ry(pi)
-  double incline = 0.14;                   ///< rad, the tool comes from this far above level: room for the arm
   double length = 0.072;                   ///< m, from E to the face when the vacuum comes on
-  double stand_off = 0.06;                 ///< m, before the face
   double approach_height = 0.2;            ///< m, z of E in W, before
   double lift = 0.2;                       ///< m, the box is lifted by this, still as it stood
   bool again = false;                      ///< as of PickIntent
+  model::SideGraspParams params;
 };
 /// Rows PrePick (high and upright, high and level, low before the face), Box, PostPick with vacuum: the box as it
 /// stood, lifted. With `again`: PreRePick, RePick, PostRePick.
@@ -43,8 +42,8 @@ struct SetDownIntent {
   Pose X_WP;  ///< standing there
   Vector3 size = Vector3::Constant(0.1);
   double travel_bottom = 0.08;  ///< m, z in W of the lower face on the way in
-  double press = 0.003;         ///< m
   ToolFor tool_for;
+  model::SetDownParams params;
 };
 /// Rows PreTwist, Twist, Twist with vacuum off and blow-off on, PreTwist straight up.
 [[nodiscard]] std::vector<motion::Waypoint> set_down_rows(const SetDownIntent& intent);

@@ -6,9 +6,7 @@
 namespace snug::skills {
 namespace {
 
-constexpr double kGraze = 0.004;        ///< m, boxes that overlap by less in plan view neither carry nor stand beside
 constexpr double kNothingBeside = 1.0;  ///< m, side gap of a box at the edge of a pallet
-constexpr double kOverlap = 0.010;      ///< m, a neighbour's side may be believed this far inside the box
 
 packing::Extent extent_of(const packing::PlacedBox& box, double shrink) {
   packing::Extent extent = packing::bounding_extent(box);
@@ -17,23 +15,25 @@ packing::Extent extent_of(const packing::PlacedBox& box, double shrink) {
   return extent;
 }
 
-bool overlap(const packing::Extent& a, const packing::Extent& b, int axis) {
-  return std::min(a.high[axis], b.high[axis]) - std::max(a.low[axis], b.low[axis]) > kGraze;
+bool overlap(const packing::Extent& a, const packing::Extent& b, int axis, double graze) {
+  return std::min(a.high[axis], b.high[axis]) - std::max(a.low[axis], b.low[axis]) > graze;
 }
 
-void add_neighbour(const packing::Extent& other, const packing::Extent& box, packing::Candidate& candidate) {
+void add_neighbour(const packing::Extent& other, const packing::Extent& box, const model::InsertionParams& params,
+                   packing::Candidate& candidate) {
+  const double graze = params.graze;
   for (int axis = 0; axis < 2; ++axis) {
-    if (!overlap(other, box, 1 - axis) || other.high.z() - box.low.z() < kGraze || other.low.z() > box.high.z()) {
+    if (!overlap(other, box, 1 - axis, graze) || other.high.z() - box.low.z() < graze || other.low.z() > box.high.z()) {
       continue;
     }
     const auto low = static_cast<std::size_t>(2 * axis), high = low + 1;
     const double height = other.high.z() - box.low.z();
     const double gap_low = box.low[axis] - other.high[axis], gap_high = other.low[axis] - box.high[axis];
     const auto note = [&](std::size_t side, double gap) {
-      if (gap < -kOverlap) return;
-      if (gap < candidate.side_gap[side] - kGraze) {
+      if (gap < -params.inside) return;
+      if (gap < candidate.side_gap[side] - graze) {
         candidate.side_height[side] = height;
-      } else if (gap < candidate.side_gap[side] + kGraze) {
+      } else if (gap < candidate.side_gap[side] + graze) {
         candidate.side_height[side] = std::max(candidate.side_height[side], height);
       }
       candidate.side_gap[side] = std::min(candidate.side_gap[side], gap);
@@ -46,7 +46,7 @@ void add_neighbour(const packing::Extent& other, const packing::Extent& box, pac
 }  // namespace
 
 packing::Candidate measured(const packing::ContainerState& state, packing::Candidate candidate, const Vector3& size,
-                            double shrink) {
+                            double shrink, const model::InsertionParams& params) {
   Pose& X_TP = candidate.placement.X_TP;
   const Vector3 half = 0.5 * (X_TP.R.cwiseAbs() * (size - Vector3::Constant(shrink)));
   packing::Extent box{X_TP.p - half, X_TP.p + half};
@@ -54,7 +54,8 @@ packing::Candidate measured(const packing::ContainerState& state, packing::Candi
   for (const packing::PlacedBox& other : state.boxes) {
     const packing::Extent extent = extent_of(other, shrink);
     const bool is_below = extent.high.z() < X_TP.p.z();
-    if (is_below && overlap(extent, box, 0) && overlap(extent, box, 1)) support = std::max(support, extent.high.z());
+    if (is_below && overlap(extent, box, 0, params.graze) && overlap(extent, box, 1, params.graze))
+      support = std::max(support, extent.high.z());
   }
   X_TP.p.z() = support + half.z();
   box = {X_TP.p - half, X_TP.p + half};
@@ -67,8 +68,8 @@ packing::Candidate measured(const packing::ContainerState& state, packing::Candi
     candidate.side_gap[low] = candidate.side_gap[high] = kNothingBeside;
     candidate.side_height[low] = candidate.side_height[high] = 0.0;
   }
-  for (const packing::PlacedBox& other : state.boxes) add_neighbour(extent_of(other, shrink), box, candidate);
-  for (const packing::Extent& obstacle : state.obstacles) add_neighbour(obstacle, box, candidate);
+  for (const packing::PlacedBox& other : state.boxes) add_neighbour(extent_of(other, shrink), box, params, candidate);
+  for (const packing::Extent& obstacle : state.obstacles) add_neighbour(obstacle, box, params, candidate);
   return candidate;
 }
 

@@ -6,20 +6,18 @@
 #include <numbers>
 
 #include "snug/motion/tool_yaw.hpp"
-#include "snug/motion/way.hpp"
 
 namespace snug::skills {
 namespace {
-
-/// rad: a row may be left up to 25 degrees before it is reached (precision 0.05 m), so turns up to this are sure.
-constexpr double kSureTurn = 145.0 * std::numbers::pi / 180.0;
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
 }  // namespace
 
 std::vector<motion::Waypoint> with_turns(const motion::Waypoint& before, const std::vector<motion::Waypoint>& rows,
-                                         double neutral_yaw, bool on_the_way, const std::optional<Vector3>& p_WB) {
+                                         const Unwinding& unwinding) {
+  const double neutral_yaw = unwinding.neutral_yaw;
+  const bool on_the_way = unwinding.on_the_way;
   std::vector<motion::Waypoint> turned;
   const motion::Waypoint* last = &before;
   Pose X_WE_last = before.X_WE();
@@ -28,8 +26,8 @@ std::vector<motion::Waypoint> with_turns(const motion::Waypoint& before, const s
     const std::optional<double> from = motion::yaw_of(X_WE_last.R), to = motion::yaw_of(X_WE.R);
     if (from && to) {
       const double turn = wrapped(*to - neutral_yaw) - wrapped(*from - neutral_yaw);
-      const motion::Way way(X_WE_last, on_the_way ? X_WE : X_WE_last, p_WB);
-      const int parts = static_cast<int>(std::ceil(std::abs(turn - way.pan()) / kSureTurn));
+      const motion::Way way(X_WE_last, on_the_way ? X_WE : X_WE_last, unwinding.pan_axis);
+      const int parts = static_cast<int>(std::ceil(std::abs(turn - way.pan()) / unwinding.sure_turn));
       for (int i = 1; i < parts; ++i) {
         const double share = static_cast<double>(i) / parts;
         motion::Waypoint between = *last;

@@ -99,8 +99,10 @@ SessionOptions quick_options() {
   return options;
 }
 
-SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick_options()) {
+SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick_options(),
+                   const model::RehearsalSettings& rehearsal = {}) {
   model::Scenario scenario = two_boxes();
+  scenario.rehearsal = rehearsal;
   scenario.sequences.front().items.resize(static_cast<std::size_t>(items));
   return session::pack(scenario, "1", options, plant);
 }
@@ -136,9 +138,9 @@ TEST(Packer, DoesNotKnowWhereABoxIsThatFellOrWasLetGoEarlyAndIsNotSeen) {
 TEST(Packer, RehearsesAnewWhatWasPickedInVain) {
   ScriptedPlant plant;
   plant.ends = {EndReason::NoSeal};
-  SessionOptions options = quick_options();
-  options.max_attempts = options.most_attempts = 1;  // used up by the first motion
-  const SessionResult result = pack(plant, 1, options);
+  model::RehearsalSettings rehearsal;
+  rehearsal.max_attempts = rehearsal.most_attempts = 1;  // used up by the first motion
+  const SessionResult result = pack(plant, 1, quick_options(), rehearsal);
   EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
   EXPECT_EQ(result.items[0].sends.size(), 2U);
   EXPECT_EQ(result.items[0].attempts, 2);

@@ -45,7 +45,7 @@ TEST(Measured, SeesAnObstacleBesideAndIsNotPushedAgainstIt) {
   EXPECT_NEAR(seen.side_gap[0], 0.0115, 1e-12);
   EXPECT_NEAR(seen.side_height[0], 0.09, 1e-12);
   EXPECT_NEAR(seen.placement.X_TP.p.z(), 0.05, 1e-12) << "it carries nothing";
-  for (const Insertion& one : choose_insertions(seen, size)) EXPECT_GE(one.overtravel_T.x(), 0.0);
+  for (const Insertion& one : choose_insertions(seen, size, {})) EXPECT_GE(one.overtravel_T.x(), 0.0);
 }
 
 TEST(Measured, SeesNothingBesideTheEdgeOfAPallet) {
@@ -62,7 +62,7 @@ TEST(Measured, SeesNothingBesideTheEdgeOfAPallet) {
   packing::Candidate corner;
   corner.placement.X_TP.p = Vector3(-0.135, -0.235, 0.05);
   const Vector3 size = Vector3::Constant(0.1);
-  const auto insertions = choose_insertions(measured(empty, corner, size, 0.0), size);
+  const auto insertions = choose_insertions(measured(empty, corner, size, 0.0), size, {});
   ASSERT_EQ(insertions.size(), 1U);
   EXPECT_EQ(insertions[0].skill, InsertionSkill::TopDown);
 }
@@ -75,9 +75,9 @@ TEST(Layout, HasNoRimWhereThereAreNoWalls) {
 
 TEST(TurnBetween, GoesTheWayRoundOfTheRobotsFirstAxisWhereThatSparesTheWrist) {
   CellLayout layout;
-  layout.p_WB = Vector3(0.2, -0.1, 0.0);
+  layout.pan_axis = motion::PanAxis{Vector3(0.2, -0.1, 0.0)};
   const auto box_at = [&](double direction, double yaw) {
-    const Vector3 p_WP = *layout.p_WB + Vector3(std::cos(direction), std::sin(direction), 0.3);
+    const Vector3 p_WP = layout.pan_axis->p_WB + Vector3(std::cos(direction), std::sin(direction), 0.3);
     return Pose{exp_rotation(Vector3(0.0, 0.0, yaw)), p_WP};
   };
   constexpr double kTurn = 2.0 * std::numbers::pi;

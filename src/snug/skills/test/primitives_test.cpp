@@ -50,8 +50,8 @@ TEST(FlipRows, EndFlatOnTheSideThatFacedAway) {
   FlipIntent intent;
   intent.size = Vector3(0.2, 0.12, 0.1);
   intent.p_WF = Vector3(0.3, 0.1, 0.02);
-  intent.press = 0.0;
-  intent.tilt = 0.5 * pi;
+  intent.params.press = 0.0;
+  intent.params.tilt = 0.5 * pi;
   intent.X_PE = {exp_rotation(Vector3(0.0, pi, 0.0)), Vector3(0.0, 0.0, 0.1)};
   intent.tool_for = rigid(intent.size);
   const auto rows = flip_rows(intent);
@@ -61,7 +61,7 @@ TEST(FlipRows, EndFlatOnTheSideThatFacedAway) {
   const Pose X_WP = rows[3].X_WE() * intent.X_PE.inverse();
   EXPECT_TRUE(X_WP.R.isApprox(flipped(Matrix3::Identity(), Vector3::UnitX()), 1e-9));
   EXPECT_NEAR(X_WP.p.z() + lowest_corner(X_WP.R, intent.size), intent.p_WF.z(), 1e-9);
-  EXPECT_NEAR(X_WP.p.x(), intent.p_WF.x() + intent.dragged, 1e-9);
+  EXPECT_NEAR(X_WP.p.x(), intent.p_WF.x() + intent.params.dragged, 1e-9);
   // Before, no corner is under the surface.
   for (int i = 0; i < 2; ++i) {
     const Pose X = rows[static_cast<std::size_t>(i)].X_WE() * intent.X_PE.inverse();
@@ -86,7 +86,7 @@ TEST(PlaceRows, SlideAgainstNeighboursFromTheFreeSide) {
   EXPECT_NEAR(rows[0].X_WE().p.x(), 0.51, kRounding);
   EXPECT_NEAR(rows[2].X_WE().p.x(), 0.51, kRounding);
   EXPECT_NEAR(rows[3].X_WE().p.x(), 0.495, kRounding);
-  EXPECT_NEAR(rows[2].X_WE().p.z(), 0.1 + intent.slide_gap + 0.05, kRounding);
+  EXPECT_NEAR(rows[2].X_WE().p.z(), 0.1 + intent.params.slide_gap + 0.05, kRounding);
   EXPECT_TRUE(rows[4].io.vacuum);
   EXPECT_TRUE(rows[5].io.blow_off);
   EXPECT_GE(rows[6].X_WE().p.z(), intent.travel_bottom);
@@ -97,7 +97,7 @@ TEST(PlaceRows, EnterASlotOneSideFirstAndEndLevel) {
   intent.X_WP = {Matrix3::Identity(), Vector3(0.5, 0.0, 0.05)};
   intent.tool_for = rigid(intent.size);
   intent.travel_bottom = 0.4;
-  intent.tilted = TiltedEntry{Vector3::UnitX(), Vector3(-0.004, 0.0, 0.0), 0.17, 0.1, 0.015};
+  intent.tilted = TiltedEntry{Vector3::UnitX(), Vector3(-0.004, 0.0, 0.0), 0.1};
   const auto rows = place_rows(intent);
   ASSERT_EQ(rows.size(), 8u);
   const Pose X_PE = rigid(intent.size)(Pose{});

@@ -50,7 +50,7 @@ TEST(SidePickRows, ComeLowBeforeTheFaceTouchItAndLiftTheBoxAsItStood) {
   EXPECT_TRUE(rows[4].io.vacuum);
   const Vector3 touched = rows[3].X_WE().p + intent.length * rows[3].X_WE().R.col(2);
   EXPECT_TRUE(touched.isApprox(Vector3(0.3, 0.04, 0.05), kRounding));
-  EXPECT_TRUE((rows[2].X_WE().p - rows[3].X_WE().p).isApprox(Vector3(0.0, -intent.stand_off, 0.0), kRounding));
+  EXPECT_TRUE((rows[2].X_WE().p - rows[3].X_WE().p).isApprox(Vector3(0.0, -intent.params.stand_off, 0.0), kRounding));
   EXPECT_TRUE((rows[4].X_WE().p - rows[3].X_WE().p).isApprox(Vector3(0.0, 0.0, intent.lift), kRounding));
   EXPECT_EQ(rows[4].X_WE().R, rows[3].X_WE().R);
   // Only the first row is upright, so that yaw and tilt are turned one after the other.
@@ -86,7 +86,7 @@ TEST(SetDownRows, PutTheBoxOnTheSurfaceAndLetGo) {
   const auto rows = set_down_rows(intent);
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_NEAR(rows[0].X_WE().p.z(), intent.travel_bottom + 0.05 + 0.1, kRounding);
-  EXPECT_NEAR(rows[2].X_WE().p.z(), 0.15 - intent.press, kRounding);
+  EXPECT_NEAR(rows[2].X_WE().p.z(), 0.15 - intent.params.press, kRounding);
   EXPECT_TRUE(rows[2].io.vacuum);
   EXPECT_FALSE(rows[3].io.vacuum);
   EXPECT_TRUE(rows[3].io.blow_off);

@@ -31,7 +31,7 @@ double turn_between(const motion::Waypoint& from, const motion::Waypoint& to) {
 }
 
 TEST(WithTurns, AddsNothingToTurnsThatAreSure) {
-  const auto rows = with_turns(row_at(-1.2), {row_at(1.2), row_at(-0.5), row_at(-0.5, pi / 2), row_at(1.5)}, 0.0);
+  const auto rows = with_turns(row_at(-1.2), {row_at(1.2), row_at(-0.5), row_at(-0.5, pi / 2), row_at(1.5)}, {0.0});
   EXPECT_EQ(rows.size(), 4u);
 }
 
@@ -39,7 +39,7 @@ TEST(WithTurns, TurnsOnTheSpotOverTheNeutralSideWhenTheTurnIsHalfATurn) {
   motion::Waypoint before = row_at(-0.5 * pi);
   before.io.vacuum = true;
   for (const double off : {-0.02, 0.0, 0.02}) {
-    const auto rows = with_turns(before, {row_at(0.5 * pi + off)}, 0.0);
+    const auto rows = with_turns(before, {row_at(0.5 * pi + off)}, {0.0});
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(motion::name_of(rows[0]), "Row_turn");
     EXPECT_TRUE(rows[0].io.vacuum);
@@ -48,7 +48,7 @@ TEST(WithTurns, TurnsOnTheSpotOverTheNeutralSideWhenTheTurnIsHalfATurn) {
     EXPECT_NEAR(turn_between(before, rows[0]) + turn_between(rows[0], rows[1]), pi + off, 1e-12);
   }
   // With another neutral the other way.
-  const auto other = with_turns(row_at(0.5 * pi), {row_at(-0.5 * pi)}, pi);
+  const auto other = with_turns(row_at(0.5 * pi), {row_at(-0.5 * pi)}, {pi});
   ASSERT_EQ(other.size(), 2u);
   EXPECT_NEAR(std::abs(*motion::yaw_of(other[0].X_WE().R)), pi, 1e-12);
 }
@@ -58,7 +58,7 @@ TEST(WithTurns, TurnsOnTheWayWhereThatIsWanted) {
   motion::Waypoint goal = row_at(0.6 * pi);
   goal.p_WE += Vector3(1.0, -0.4, 0.2);
   goal.io.vacuum = true;
-  const auto rows = with_turns(before, {goal}, 0.0, true);
+  const auto rows = with_turns(before, {goal}, {.neutral_yaw = 0.0, .on_the_way = true});
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_TRUE(rows[0].io.vacuum) << "it is already on the way to the row";
   EXPECT_TRUE(rows[0].X_WE().p.isApprox(before.X_WE().p + Vector3(0.5, -0.2, 0.1)));
@@ -73,7 +73,7 @@ TEST(WithTurns, KeepsTheToolUnwoundOverAnyProgram) {
     double accumulated = 0.0;
     for (int i = 0; i < 500; ++i) {
       const double yaw = neutral + rng.uniform(-0.99 * pi, 0.99 * pi);
-      for (const motion::Waypoint& row : with_turns(before, {row_at(yaw, rng.uniform(-0.1, 0.1))}, neutral)) {
+      for (const motion::Waypoint& row : with_turns(before, {row_at(yaw, rng.uniform(-0.1, 0.1))}, {neutral})) {
         const double turn = turn_between(before, row);
         EXPECT_LT(std::abs(turn), 155.0 * pi / 180.0);
         accumulated += turn;
