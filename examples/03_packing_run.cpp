@@ -2,9 +2,9 @@
 #include <cstdio>
 
 #include "snug/cell/run.hpp"
-#include "snug/cell/task.hpp"
 #include "snug/model/placements.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/session/task.hpp"
 
 using namespace snug;
 
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   }
   const model::Scenario scenario = model::load_scenario(argv[1]);
   const auto placements = model::load_placements(argv[2], scenario);
-  const auto program = cell::make_program(scenario, "1", placements, argv[2]);
+  const auto program = session::make_program(scenario, "1", placements, argv[2]);
   if (!program) {
     std::printf("no program: %s\n", program.error().text.c_str());
     return 1;

@@ -28,7 +28,7 @@ OrderedJson common_words(const PackOptions& pack, std::uint64_t seed) {
   for (const std::string& change : pack.plant_set) words.emplace_back("--plant-set", change);
   add("--perception", pack.perception, usual.perception);
   add("--samples", pack.samples, usual.samples);
-  add("--skips", pack.skips, usual.skips);
+  if (pack.skips) words.emplace_back("--skips", std::to_string(*pack.skips));
   add("--decision-time", pack.decision_time, usual.decision_time);
   add("--future", pack.future, usual.future);
   add("--fault", pack.fault, usual.fault);

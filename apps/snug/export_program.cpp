@@ -18,6 +18,7 @@
 #include "snug/core/write_file.hpp"
 #include "snug/motion/fast_controller.hpp"
 #include "snug/motion/fitted_limits.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "version.hpp"
 
 namespace snug::app {
@@ -88,8 +89,8 @@ struct LoadedProgram {
     const Pose& X_WE_start = simulation.scenario().controller.X_WE_start;
     if (is_fast()) {
       for (std::size_t i = 0; i < exact.row_limits.size(); ++i) {
-        if (trial) exact.program.waypoints[i].X_WE = trial->ended[i];
-        const Pose& X_WE = i > 0 ? exact.program.waypoints[i - 1].X_WE : X_WE_start;
+        if (trial) exact.X_WE[i] = trial->ended[i];
+        const Pose& X_WE = i > 0 ? exact.X_WE[i - 1] : X_WE_start;
         const motion::Pace pace = motion::pace_of(exact, X_WE, static_cast<int>(i));
         exact.row_limits[i] = {exact.row_limits[i].precision, pace.max_acceleration, pace.max_speed,
                                pace.max_turn_speed, pace.max_turn_acceleration};
@@ -101,7 +102,7 @@ struct LoadedProgram {
   }
 
  private:
-  /// What the cup holds on the way to each row, as far as the names of the rows tell; says what they do not tell.
+  /// What the cup holds on the way to each row, as far as they tell; says what they do not tell.
   [[nodiscard]] std::vector<std::optional<control::CarriedLoad>> find_loads() const {
     std::vector<std::optional<control::CarriedLoad>> loads;
     cell::HeldBoxes boxes(simulation.scenario(), simulation.sequence());
@@ -109,7 +110,7 @@ struct LoadedProgram {
     bool was_unknown = false;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       boxes.depart(plan.program, static_cast<int>(i),
-                   i > 0 ? rows[i - 1].X_WE : simulation.scenario().controller.X_WE_start);
+                   i > 0 ? plan.X_WE[i - 1] : simulation.scenario().controller.X_WE_start);
       loads.emplace_back();
       if (const std::optional<cell::HeldBox>& held = boxes.held()) {
         const std::string& id = simulation.sequence().items[static_cast<std::size_t>(held->item)].parcel;
@@ -120,7 +121,7 @@ struct LoadedProgram {
         std::fprintf(
             stderr,
             "snug: warning: row %zu (%s): no box of sequence %s is known to be held: payload of the gripper alone\n",
-            i + 1, rows[i].name.c_str(), simulation.sequence().name.c_str());
+            i + 1, motion::name_of(rows[i]).c_str(), simulation.sequence().name.c_str());
       }
       was_unknown = boxes.is_unknown();
     }
@@ -172,7 +173,7 @@ int write_run(const ExportOptions& options, OutputFile output, Format format) {
   if (!run.is_complete) {
     const auto row = static_cast<std::size_t>(std::max(0, run.stuck_row));
     std::fprintf(stderr, "snug: the robot does not reach row %zu (%s): snug check says why\n", row + 1,
-                 program.plan.program.waypoints[row].name.c_str());
+                 motion::name_of(program.plan.program.waypoints[row]).c_str());
     return kRunFailed;
   }
   if (!program.is_fast() && !is_exportable(program, program.plan)) return kRunFailed;

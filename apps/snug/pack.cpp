@@ -109,11 +109,11 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
   session::SessionOptions session;
   session.agent = options.agent;
   if (is_python_agent(options.agent)) session.ask = start_python_agent(options.agent);
-  session.packing.seed = options.seed.value_or(loaded.scenario.seed);
+  session.decision.seed = options.seed.value_or(loaded.scenario.seed);
   if (options.future == "own") session.future = own_future(loaded, sequence);
-  session.packing.decision_time = options.decision_time;
+  session.decision.time = options.decision_time;
   session.threads = options.threads.value_or(core_count());
-  session.packing.threads = session.threads;
+  session.decision.threads = session.threads;
   session.samples = options.samples;
   session.skips = options.skips;
   session.simulation.robot = choose_robot(options, loaded.scenario);
@@ -174,7 +174,7 @@ int run_pack(const PackOptions& options) {
   if (options.monte_carlo) {
     study::MonteCarloOptions monte_carlo;
     monte_carlo.count = *options.monte_carlo;
-    monte_carlo.seed = session.packing.seed;
+    monte_carlo.seed = session.decision.seed;
     monte_carlo.threads = session.threads;
     monte_carlo.simulation = session.simulation;
     repeated = study::repeat(scenario, options.sequence, result.program, result.plan, monte_carlo);

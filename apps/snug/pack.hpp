@@ -22,10 +22,10 @@ struct PackOptions {
   std::string plant = "simulated";           ///< or where one is served: click://HOST:PORT, click+ipc://PATH
   double patience = 10.0;                    ///< s, for its answers
   std::uint64_t plant_seed = 1;
-  double decision_time = packing::PackingSettings{}.decision_time;  ///< s
-  std::optional<int> threads;                                       ///< absent: all cores
+  double decision_time = packing::DecisionRun{}.time;  ///< s
+  std::optional<int> threads;                          ///< absent: all cores
   int samples = session::SessionOptions{}.samples;
-  int skips = session::SessionOptions{}.skips;
+  std::optional<int> skips;
   std::optional<double> tempo;  ///< absent: with the demonstrator's lag
   std::string future = "own";
   std::string perception = "exact";

@@ -83,10 +83,11 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
       ->check(whole(0, 64))
       ->type_name("N")
       ->capture_default_str();
-  verb.add_option("--skips", options.skips, "items without a place that are skipped before the session ends")
+  verb.add_option("--skips", options.skips,
+                  "items without a place that are skipped before the session ends (default: the scenario's "
+                  "recovery.skips)")
       ->check(whole(0, 1000))
-      ->type_name("N")
-      ->capture_default_str();
+      ->type_name("N");
   verb.add_option("--future", options.future,
                   "what an item is expected to be followed by: boxes of the files that the sequence's come from (own), "
                   "or all boxes of the scenario and of --items")

@@ -79,7 +79,7 @@ Json attempts_as_json(const std::vector<session::FailedAttempt>& attempts) {
   Json list = Json::array();
   for (const session::FailedAttempt& one : attempts) {
     list.push_back({{"planned", as_json(one.planned)},
-                    {"insertion", session::name_of(one.skill)},
+                    {"insertion", skills::name_of(one.skill)},
                     {"succeeded", one.succeeded},
                     {"samples_succeeded", one.success_rate},
                     {"reason", one.reason}});
@@ -100,9 +100,9 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
   if (!item.sends.empty()) {
     json["planned"] = as_json(item.planned);
     json["believed"] = item.X_TP ? position_as_json(item.X_TP->p) : Json();
-    json["insertion"] = session::name_of(item.skill);
+    json["insertion"] = skills::name_of(item.skill);
     json["flips"] = item.flips;
-    json["reorientation"] = session::name_of(item.reorientation);
+    json["reorientation"] = skills::name_of(item.reorientation);
     json["as_planned"] = truth.is_as_planned;
     json["position_error_mm"] = 1e3 * truth.position_error;
     json["angle_error_deg"] = truth.angle_error / kDegree;
@@ -208,7 +208,7 @@ std::string describe(const std::vector<session::FailedAttempt>& attempts) {
     text += fmt::format("         tried {:7.1f} {:7.1f} {:7.1f} mm, {}{} up, {}{}: {}\n", p.x(), p.y(), p.z(),
                         one.planned.orientation.up_sign > 0 ? '+' : '-',
                         static_cast<char>('X' + static_cast<int>(one.planned.orientation.up)),
-                        session::name_of(one.skill), rate, one.reason);
+                        skills::name_of(one.skill), rate, one.reason);
   }
   return text;
 }
@@ -226,7 +226,7 @@ std::string format_pack_head(const std::string& sequence, const session::Session
       "box          x_T     y_T     z_T  up                                  predicted     mm    deg     pred.  happ.  "
       "   "
       "mm      s      s  times  cycle travel  carry regrasp insert  push  wait\n",
-      sequence, session.agent, session.packing.seed, address.empty() ? fmt::format("seed {}", plant.seed) : address,
+      sequence, session.agent, session.decision.seed, address.empty() ? fmt::format("seed {}", plant.seed) : address,
       perception::name_of(plant.perception), robot.empty() ? "none" : robot, session.samples);
 }
 
@@ -242,8 +242,8 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
         "{:<8} {:7.1f} {:7.1f} {:7.1f}  {}{}  {:<11} {:<17} {:>9}  {:6.1f} {:6.1f}    {:>6} {:6.0f} {:6.1f} "
         "{:6.2f} {:6.2f} {:6}  {:5.1f} {:6.1f} {:6.1f} {:7.1f} {:6.1f} {:5.1f} {:5.1f}{}\n",
         item.id, p.x(), p.y(), p.z(), item.planned.orientation.up_sign > 0 ? '+' : '-',
-        static_cast<char>('X' + static_cast<int>(item.planned.orientation.up)), session::name_of(item.reorientation),
-        session::name_of(item.skill),
+        static_cast<char>('X' + static_cast<int>(item.planned.orientation.up)), skills::name_of(item.reorientation),
+        skills::name_of(item.skill),
         item.samples > 0 ? fmt::format("{:.0f} %", 100.0 * item.predicted_success) : std::string("-"),
         1e3 * truth.position_error, truth.angle_error / kDegree,
         item.samples > 0 ? fmt::format("{:.0f}", item.predicted.force) : std::string("-"), item.happened.force,

@@ -4,10 +4,10 @@
 #include <cstdio>
 
 #include "shipped.hpp"
-#include "snug/cell/task.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/motion/waypoint.hpp"
+#include "snug/session/task.hpp"
 
 namespace snug::app {
 
@@ -18,7 +18,7 @@ int run_program(const ProgramOptions& options) {
   add_file(inputs, "the placements", options.placements);
   std::optional<OutputFile> output = reserve(inputs, options.output);
   const auto placements = model::load_placements(find_shipped(options.placements), scenario);
-  const auto program = cell::make_program(scenario, *options.sequence, placements, options.placements);
+  const auto program = session::make_program(scenario, *options.sequence, placements, options.placements);
   if (!program) {
     std::fprintf(stderr, "snug: no program: %s\n", program.error().text.c_str());
     return kRunFailed;

@@ -1,4 +1,4 @@
-// program_fit: the picks that the names of a program's rows tell of, beside the items of a sequence.
+// program_fit: the picks that a program's waypoints tell of, beside the items of a sequence.
 #include "program_fit.hpp"
 
 #include <fmt/format.h>
@@ -7,17 +7,18 @@
 #include <cstdio>
 #include <vector>
 
-#include "snug/motion/row_name.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::app {
 namespace {
 
-/// The parcel of the scenario that a row that picks at the aligner names, or nothing.
-std::string picked_parcel(const model::Scenario& scenario, const std::string& row) {
+/// The parcel of the scenario that a waypoint picks at the aligner, or nothing.
+std::string picked_parcel(const model::Scenario& scenario, const motion::Waypoint& waypoint) {
   std::string best;
+  if (waypoint.motion_class != motion::MotionClass::Pick) return best;
   std::size_t most = 0;
   for (const model::Parcel& parcel : scenario.parcels) {
-    const std::size_t fit = motion::names_box(row, "Box", parcel.id);
+    const std::size_t fit = motion::fit_of(waypoint, parcel.id);
     if (fit > most) {
       most = fit;
       best = parcel.id;
@@ -30,7 +31,7 @@ std::string picked_parcel(const model::Scenario& scenario, const std::string& ro
 std::vector<std::string> picks_of(const model::Scenario& scenario, const motion::Program& program) {
   std::vector<std::string> picks;
   for (const motion::Waypoint& waypoint : program.waypoints) {
-    const std::string parcel = picked_parcel(scenario, waypoint.name);
+    const std::string parcel = picked_parcel(scenario, waypoint);
     if (!parcel.empty() && std::ranges::find(picks, parcel) == picks.end()) picks.push_back(parcel);
   }
   return picks;
@@ -39,9 +40,8 @@ std::vector<std::string> picks_of(const model::Scenario& scenario, const motion:
 }  // namespace
 
 bool is_own_program(const motion::Program& program) {
-  return std::ranges::any_of(program.waypoints, [](const motion::Waypoint& row) {
-    return row.name.ends_with(')') || row.name.find(")_") != std::string::npos;
-  });
+  return std::ranges::any_of(program.waypoints,
+                             [](const motion::Waypoint& row) { return row.item_is_id && !row.item.empty(); });
 }
 
 void warn_misfit(const model::Scenario& scenario, const std::string& sequence_name, const motion::Program& program) {

@@ -43,8 +43,9 @@ class Packer {
       : scenario_(scenario) {
     (void)container_of(**scenario_, state_);
     packing::AgentInput input;
-    input.settings.seed = seed;
-    input.settings.decision_time = decision_time;
+    input.settings = (**scenario_).packing;
+    input.run.seed = seed;
+    input.run.time = decision_time;
     input.future = packing::make_future_model(**scenario_);
     if (!sequence.empty()) input.sequence = items_of(**scenario_, sequence);
     agent_ = packing::make_agent(agent, std::move(input));
@@ -93,7 +94,7 @@ void bind_packing(py::module_& m) {
   py::class_<Packer>(m, "Packer")
       .def(py::init<const ScenarioHandle&, const std::string&, const std::string&, std::uint64_t, double>(),
            py::arg("scenario"), py::arg("agent") = "contact-aware", py::kw_only(), py::arg("sequence") = "",
-           py::arg("seed") = 1, py::arg("decision_time") = packing::PackingSettings{}.decision_time)
+           py::arg("seed") = 1, py::arg("decision_time") = packing::DecisionRun{}.time)
       .def("decide", &Packer::decide, py::arg("parcel"))
       .def("place", &Packer::place, py::arg("parcel"), py::arg("candidate") = 0)
       .def_property_readonly("percent", [](const Packer& p) { return packing::filling_percent(p.state()); })

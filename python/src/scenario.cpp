@@ -4,7 +4,7 @@
 #include "snug/model/items_file.hpp"
 #include "snug/model/other_container.hpp"
 #include "snug/model/scenario_edit.hpp"
-#include "snug/motion/waypoint.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::python {
 namespace {
@@ -30,8 +30,8 @@ py::dict as_dict(const model::Parcel& parcel) {
 
 py::dict as_dict(const motion::Waypoint& row) {
   py::dict dict;
-  dict["name"] = row.name;
-  dict["pose"] = as_array(row.X_WE);
+  dict["name"] = motion::name_of(row);
+  dict["pose"] = as_array(row.X_WE());
   dict["vacuum"] = row.io.vacuum;
   dict["blow_off"] = row.io.blow_off;
   return dict;

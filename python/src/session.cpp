@@ -68,10 +68,10 @@ session::SessionOptions session_options(const model::Scenario& scenario, const P
   session::SessionOptions session;
   session.agent = words.agent;
   session.ask = ask_of(words.answer);
-  session.packing.seed = words.seed.value_or(scenario.seed);
-  session.packing.decision_time = words.decision_time;
+  session.decision.seed = words.seed.value_or(scenario.seed);
+  session.decision.time = words.decision_time;
   session.threads = words.threads > 0 ? words.threads : core_count();
-  session.packing.threads = session.threads;
+  session.decision.threads = session.threads;
   session.samples = words.samples;
   session.simulation.robot = choose_robot(words, scenario);
   if (words.tempo) {
@@ -109,7 +109,7 @@ study::MonteCarloResult repeated(const model::Scenario& scenario, const study::T
   if (count == 0) return {};
   study::MonteCarloOptions options;
   options.count = count;
-  options.seed = session.packing.seed;
+  options.seed = session.decision.seed;
   options.threads = session.threads;
   options.simulation = session.simulation;
   return study::repeat(scenario, trial.session.sequence, trial.session.program, trial.session.plan, options);

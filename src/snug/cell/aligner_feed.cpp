@@ -7,7 +7,7 @@
 
 #include "snug/core/check.hpp"
 #include "snug/cup/pick_length.hpp"
-#include "snug/motion/row_name.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::cell {
 namespace {
@@ -85,18 +85,18 @@ Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item, c
 std::optional<Pose> next_pick(const motion::Program& program, int row) {
   const auto& rows = program.waypoints;
   for (auto i = static_cast<std::size_t>(row) + 1; i < rows.size(); ++i) {
-    if (rows[i].io.vacuum) return rows[i - 1].X_WE;
+    if (rows[i].io.vacuum) return rows[i - 1].X_WE();
   }
   return std::nullopt;
 }
 
-int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view kind) {
+int find_item(const model::Sequence& sequence, const motion::Waypoint& waypoint) {
   int best = -1;
   std::size_t most = 0;
   for (std::size_t i = 0; i < sequence.items.size(); ++i) {
-    const std::size_t named = motion::names_box(waypoint_name, kind, sequence.items[i].parcel);
-    if (named <= most) continue;
-    most = named;
+    const std::size_t fit = motion::fit_of(waypoint, sequence.items[i].parcel);
+    if (fit <= most) continue;
+    most = fit;
     best = static_cast<int>(i);
   }
   return best;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string_view>
 
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
@@ -25,8 +24,8 @@ namespace snug::cell {
 /// The waypoint of the pick that a departure toward `row` leads to: where the cup is when the vacuum comes on next.
 [[nodiscard]] std::optional<Pose> next_pick(const motion::Program& program, int row);
 
-/// Index of the item that a row of this kind ("PrePick") is for, by its name as `motion::names_box` reads it, or -1.
-[[nodiscard]] int find_item(const model::Sequence& sequence, std::string_view waypoint_name, std::string_view kind);
+/// Index of the item that the waypoint is for (motion::fit_of), or -1.
+[[nodiscard]] int find_item(const model::Sequence& sequence, const motion::Waypoint& waypoint);
 
 /// The axis of a box that is nearest to vertical, 0 .. 2.
 [[nodiscard]] int vertical_axis(const Matrix3& R_WP);

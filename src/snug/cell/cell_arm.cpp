@@ -11,6 +11,7 @@
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/geometry/manifold.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/robot/load_arm.hpp"
 
 namespace snug::cell {
@@ -295,7 +296,7 @@ std::optional<ProtectiveStop> CellArm::find_stop(const ArmState& state, const Ar
   const auto stop = [&](std::string what, std::string where, double value, double limit, const char* unit) {
     if (found || !(value > limit)) return;
     found = ProtectiveStop{std::move(what), std::move(where), value, limit, unit, 0.0, task.row, "", "", ""};
-    if (task.waypoint != nullptr) found->waypoint = task.waypoint->name;
+    if (task.waypoint != nullptr) found->waypoint = motion::name_of(*task.waypoint);
   };
   const control::JointState& joints = state.machine.joints;
   for (Eigen::Index j = 0; j < joints.q.size(); ++j) {
@@ -314,7 +315,7 @@ std::optional<ProtectiveStop> CellArm::find_stop(const ArmState& state, const Ar
   stop("sensor torque", sensor, sensor_torque, params_.protective_stop.sensor_torque, "Nm");
   stop("tracking error", "the joints", yielded, params_.protective_stop.tracking_error, "rad");
   if (task.is_stuck && task.waypoint != nullptr) {
-    stop("stuck", task.waypoint->name, (task.waypoint->X_WE.p - state.machine.tool.X_WE.p).norm(), -1.0, "m");
+    stop("stuck", motion::name_of(*task.waypoint), (task.waypoint->p_WE - state.machine.tool.X_WE.p).norm(), -1.0, "m");
   }
   return found;
 }

@@ -7,7 +7,7 @@
 
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/core/check.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
 
 namespace snug::cell {
 namespace {

@@ -1,4 +1,4 @@
-// HeldBoxes: which box hangs in the cup while a program runs, and how, as far as the names of its rows tell.
+// HeldBoxes: which box hangs in the cup while a program runs, and how, as far as its waypoints tell.
 #include "snug/cell/held_boxes.hpp"
 
 #include "snug/cell/aligner_feed.hpp"
@@ -42,7 +42,8 @@ void HeldBoxes::depart(const motion::Program& program, int row, const Pose& X_WE
     return;
   }
   if (row == 0) return;
-  const int item = find_item(*sequence_, program.waypoints[static_cast<std::size_t>(row) - 1].name, "Box");
+  const motion::Waypoint& pick = program.waypoints[static_cast<std::size_t>(row) - 1];
+  const int item = pick.motion_class == motion::MotionClass::Pick ? find_item(*sequence_, pick) : -1;
   Pose X_WP;
   if (item >= 0) {
     const model::Item& fed = sequence_->items[static_cast<std::size_t>(item)];

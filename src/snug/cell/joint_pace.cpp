@@ -63,9 +63,10 @@ void JointPace::limit(const motion::Way& way, std::span<double> rates, std::span
   }
 }
 
-std::optional<Vector3> find_pan_axis(const model::Scenario& scenario) {
+std::optional<motion::PanAxis> find_pan_axis(const model::Scenario& scenario) {
   if (!scenario.robot || std::abs(scenario.robot->X_WB.R(2, 2)) < kUpright) return std::nullopt;
-  return scenario.robot->X_WB.p;
+  const model::TravelParams& travel = scenario.skills.travel;
+  return motion::PanAxis{scenario.robot->X_WB.p, travel.least_pan, travel.least_radius};
 }
 
 std::unique_ptr<const JointPace> make_joint_pace(const model::Scenario& scenario, double tempo) {

@@ -27,8 +27,8 @@ class JointPace final : public motion::PathLimits {
   double share_, acceleration_;
 };
 
-/// m, in W: a point of the robot's first axis. None without a robot, and where it does not stand upright.
-[[nodiscard]] std::optional<Vector3> find_pan_axis(const model::Scenario& scenario);
+/// The robot's first axis. None without a robot, and where it does not stand upright.
+[[nodiscard]] std::optional<motion::PanAxis> find_pan_axis(const model::Scenario& scenario);
 
 /// With the share of the scenario (velocity_fraction) and the tempo. None without a robot, where its file is not there,
 /// and for an arm whose inverse has no closed form: a search along every way would take too long. The controller of the

@@ -13,6 +13,7 @@
 #include "snug/cell/simulation.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/geometry/manifold.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/spatial/matrix6.hpp"
 
 namespace snug::cell {
@@ -145,13 +146,14 @@ class Check {
   }
   [[nodiscard]] CheckFinding make(CheckKind kind, const std::string& what, double margin, const char* unit,
                                   bool is_error, double allowance) const {
-    return {kind,      is_error, row_, plan_.program.waypoints[static_cast<std::size_t>(row_)].name, what, margin,
-            allowance, unit,     time_};
+    return {kind, is_error, row_,      motion::name_of(plan_.program.waypoints[static_cast<std::size_t>(row_)]),
+            what, margin,   allowance, unit,
+            time_};
   }
 
   /// The row was not reached.
   void miss(const control::MachineTick& tick, const Pose& X_WE) {
-    const Pose& goal = plan_.program.waypoints[static_cast<std::size_t>(tick.program.row)].X_WE;
+    const Pose& goal = plan_.X_WE[static_cast<std::size_t>(tick.program.row)];
     std::string what = "tool";
     for (int i = 0; i < tick.joints.active_count; ++i) {
       what += (i == 0 ? ": " : ", ") + controller().describe(tick.joints.active[static_cast<std::size_t>(i)]);

@@ -10,9 +10,9 @@ namespace {
 
 /// The row and the next are one pose: the second only switches, while the tool may still be moving.
 bool is_left_moving(const motion::PreparedProgram& plan, int row) {
-  const auto& rows = plan.program.waypoints;
   const auto next = static_cast<std::size_t>(row) + 1;
-  return next < rows.size() && rows[next].X_WE == rows[next - 1].X_WE && rows[next].name.starts_with("TwistDrag");
+  return next < plan.X_WE.size() && plan.X_WE[next] == plan.X_WE[next - 1] &&
+         plan.program.waypoints[next].motion_class == motion::MotionClass::TwistDrag;
 }
 
 /// Of the states of the machine that every arm of a cell has.
@@ -47,7 +47,7 @@ CellTick advance(const Simulation& simulation, const motion::PreparedProgram& pl
 
 MotionTrial try_motion(const Simulation& simulation, const motion::PreparedProgram& plan) {
   MotionTrial trial;
-  for (const motion::Waypoint& row : plan.program.waypoints) trial.ended.push_back(row.X_WE);
+  trial.ended = plan.X_WE;
   CellState state = simulation.make_state();
   CellWorkspace work = simulation.make_workspace();
   bool has_ended = false;

@@ -14,6 +14,7 @@
 #include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/phases.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::cell {
 namespace {
@@ -177,8 +178,8 @@ ArmReading Simulation::read_still(const CellState& state) const {
 
 /// A box appears when the program starts toward it; one that was left there is taken away.
 void Simulation::depart(const motion::PreparedProgram& plan, int row, CellState& state) const {
-  const std::string& name = plan.program.waypoints[static_cast<std::size_t>(row)].name;
-  const int item = find_item(sequence_, name, "PrePick");
+  const motion::Waypoint& waypoint = plan.program.waypoints[static_cast<std::size_t>(row)];
+  const int item = waypoint.motion_class == motion::MotionClass::PrePick ? find_item(sequence_, waypoint) : -1;
   if (item < 0) return;
   const std::optional<Pose> X_WE_pick = next_pick(plan.program, row);
   (void)feed(item, choose_quarter(scenario_, sequence_.items[static_cast<std::size_t>(item)], X_WE_pick), state);
@@ -222,7 +223,7 @@ CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& sta
   tick.command = {out.io.vacuum, out.io.blow_off};
   const motion::Waypoint& waypoint = plan.program.waypoints[static_cast<std::size_t>(std::max(0, out.row))];
   if (!arm_) {
-    advance_tool(waypoint.name, start, out.tool, state, work, tick);
+    advance_tool(waypoint, start, out.tool, state, work, tick);
     feel(plan, state, work);
     return tick;
   }
@@ -251,15 +252,16 @@ CellTick Simulation::advance(const OutsideCommand& command, CellState& state, Ce
   return tick;
 }
 
-void Simulation::advance_tool(const std::string& waypoint, const motion::ToolState& start, const motion::ToolState& end,
-                              CellState& state, CellWorkspace& work, CellTick& tick) const {
+void Simulation::advance_tool(const motion::Waypoint& waypoint, const motion::ToolState& start,
+                              const motion::ToolState& end, CellState& state, CellWorkspace& work,
+                              CellTick& tick) const {
   for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
     const motion::ToolState next =
         k + 1 == substeps_ ? end
                            : motion::interpolate(start, end, scenario_.controller.tick,
                                                  static_cast<double>(k + 1) / static_cast<double>(substeps_));
     work.targets.assign(1, {world_.tool, next.X_WE});
-    advance_step(waypoint, tick.tool, state, work, tick);
+    advance_step(&waypoint, tick.tool, state, work, tick);
     tick.tool = next;
   }
 }
@@ -268,7 +270,6 @@ void Simulation::advance_tool(const std::string& waypoint, const motion::ToolSta
 /// tool and links.
 void Simulation::advance_arm(const ArmTask& task, const control::JointMotion& start, const control::JointWay& way,
                              CellState& state, CellWorkspace& work, CellTick& tick) const {
-  const std::string waypoint = task.waypoint != nullptr ? task.waypoint->name : "";
   control::JointMotion& end = state.arm->machine.joints;
   TorqueSteps torque(*arm_, task.outside, start, scenario_.controller.tick / substeps_);
   ArmLoads loads;
@@ -284,7 +285,7 @@ void Simulation::advance_arm(const ArmTask& task, const control::JointMotion& st
     if (is_last) end = now;
     const robot::ArmPose at = robot::forward(arm_->model(), now.q);
     arm_->aim(world_, at, work.targets);
-    advance_step(waypoint, tick.tool, state, work, tick);
+    advance_step(task.waypoint, tick.tool, state, work, tick);
     const robot::JointVector before = torque.any() ? arm_->torques_of(at, loads) : robot::JointVector();
     arm_->add_loads(world_, state.world, work.physics, state.gripper, at, loads);
     if (torque.any()) state.arm->outside.torques_felt = arm_->torques_of(at, loads) - before;
@@ -335,13 +336,14 @@ void Simulation::end_touches(CellState& state) const {
   state.arm->touches.clear();
 }
 
-void Simulation::advance_step(const std::string& waypoint, const motion::ToolState& tool, CellState& state,
+void Simulation::advance_step(const motion::Waypoint* waypoint, const motion::ToolState& tool, CellState& state,
                               CellWorkspace& work, CellTick& tick) const {
   work.events.clear();
   gripper_.prepare(state.world, tool.X_WE, tool.V_WE, tick.command, world_.model.settings.dt, state.gripper,
                    work.gripper, work.events);
   for (const GripperEvent& event : work.events) {
-    state.event_log.add(event, time(state), world_, state.world, tool.X_WE, waypoint);
+    state.event_log.add(event, time(state), world_, state.world, tool.X_WE,
+                        waypoint != nullptr ? motion::name_of(*waypoint) : "");
     if (state.waiting_item >= 0 && event.kind == GripperEvent::Kind::Seal &&
         event.body == world_.parcels[static_cast<std::size_t>(state.waiting_item)].index) {
       state.waiting_item = -1;

@@ -155,9 +155,9 @@ class Simulation {
   void place(physics::BodyId body, const Pose& X_WB, CellState& state) const;
   [[nodiscard]] motion::ToolState tool_of(const CellState& state) const;
   /// work.targets: where tool and links are at the end of the step. `waypoint`: aimed at, for events.
-  void advance_step(const std::string& waypoint, const motion::ToolState& tool, CellState& state, CellWorkspace& work,
-                    CellTick& tick) const;
-  void advance_tool(const std::string& waypoint, const motion::ToolState& start, const motion::ToolState& end,
+  void advance_step(const motion::Waypoint* waypoint, const motion::ToolState& tool, CellState& state,
+                    CellWorkspace& work, CellTick& tick) const;
+  void advance_tool(const motion::Waypoint& waypoint, const motion::ToolState& start, const motion::ToolState& end,
                     CellState& state, CellWorkspace& work, CellTick& tick) const;
   void note_touch(const ArmTouch& touch, bool has_ended, CellState& state) const;
   void advance_arm(const ArmTask& task, const control::JointMotion& start, const control::JointWay& way,

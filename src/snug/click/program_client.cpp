@@ -11,6 +11,7 @@
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/click/joint_link.hpp"
 #include "snug/click/served_cell.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/record/csv.hpp"
 
 namespace snug::click {
@@ -62,7 +63,7 @@ class ProgramClient {
       result_.row = std::max(0, tick.program.row);
       if (tick.outcome == "Stuck") {
         const motion::Waypoint& row = plan_.program.waypoints[static_cast<std::size_t>(result_.row)];
-        const std::string text = fmt::format("stuck toward {} (row {})", row.name, result_.row + 1);
+        const std::string text = fmt::format("stuck toward {} (row {})", motion::name_of(row), result_.row + 1);
         client_.report_error(text);
         return text;
       }
@@ -100,9 +101,9 @@ class ProgramClient {
       }
     }
     if (out.departed < 0 || boxes_.empty()) return;
-    const auto& rows = plan_.program.waypoints;
-    const auto row = static_cast<std::size_t>(out.departed);
-    const int item = cell::find_item(*settings_.sequence, rows[row].name, "PrePick");
+    const motion::Waypoint& row = plan_.program.waypoints[static_cast<std::size_t>(out.departed)];
+    if (row.motion_class != motion::MotionClass::PrePick) return;
+    const int item = cell::find_item(*settings_.sequence, row);
     if (item < 0 || boxes_[static_cast<std::size_t>(item)].empty()) return;
     const std::string& box = boxes_[static_cast<std::size_t>(item)];
     if (is_present(box)) return;

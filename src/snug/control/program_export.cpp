@@ -14,6 +14,7 @@
 #include "snug/core/csv_cell.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/robot/dynamics.hpp"
 #include "snug/robot/ur_inverse.hpp"
 
@@ -91,7 +92,7 @@ std::vector<ScriptRow> plan_rows(const motion::PreparedProgram& plan, const Pose
   for (std::size_t i = 0; i < plan.program.waypoints.size(); ++i) {
     const motion::Waypoint& waypoint = plan.program.waypoints[i];
     const motion::MotionLimits& limits = plan.row_limits[i];
-    const motion::LspbSegment segment(X_WE, waypoint.X_WE, limits);
+    const motion::LspbSegment segment(X_WE, plan.X_WE[i], limits);
     ScriptRow row;
     row.row = i;
     row.before = io;
@@ -102,7 +103,7 @@ std::vector<ScriptRow> plan_rows(const motion::PreparedProgram& plan, const Pose
       const motion::LspbProfile fastest =
           motion::plan_fastest_profile(row.length, limits.max_speed, limits.max_acceleration);
       row.turn_decides = segment.duration() > fastest.duration * (1.0 + 1e-9);
-      X_WE = waypoint.X_WE;
+      X_WE = plan.X_WE[i];
     }
     if (row.moves || i == 0 || waypoint.io != io) rows.push_back(row);
     io = waypoint.io;
@@ -209,7 +210,7 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
     const motion::Waypoint& waypoint = waypoints[row.row];
     const motion::MotionLimits& limits = plan.row_limits[row.row];
     const bool is_first = row.row == 0;
-    body += fmt::format("  # {} {}\n", row.row + 1, waypoint.name);
+    body += fmt::format("  # {} {}\n", row.row + 1, motion::name_of(waypoint));
     const auto output = [&](int number, bool before, bool value) {
       if (is_first || before != value)
         body += fmt::format("  set_standard_digital_out({}, {})\n", number, script_word(value));
@@ -217,8 +218,8 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
     output(options.vacuum_output, row.before.vacuum, waypoint.io.vacuum);
     output(options.blow_off_output, row.before.blow_off, waypoint.io.blow_off);
     if (waypoint.io.vacuum != row.before.vacuum) {
-      body +=
-          fmt::format("  snug_wait_for_vacuum({}, \"{}\")\n", script_word(waypoint.io.vacuum), quotable(waypoint.name));
+      body += fmt::format("  snug_wait_for_vacuum({}, \"{}\")\n", script_word(waypoint.io.vacuum),
+                          quotable(motion::name_of(waypoint)));
       body += "  " + payload(program, program.loads[row.row]);
       script.nominal_duration += plan.settings.vacuum_wait;
     } else if (waits(row.before, waypoint.io) && plan.settings.vacuum_wait > 0.0) {  // a puff: nothing to sense
@@ -226,10 +227,10 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
       script.nominal_duration += plan.settings.vacuum_wait;
     }
     if (!row.moves) continue;
-    body +=
-        fmt::format("  movel({}, a={:.5f}, v={:.5f}{}{})\n", ur_pose(X_BaseW * waypoint.X_WE), limits.max_acceleration,
-                    limits.max_speed, row.turn_decides ? fmt::format(", t={:.3f}", row.duration) : "",
-                    row.blend > 0.0 ? fmt::format(", r={:.4f}", row.blend) : "");
+    body += fmt::format("  movel({}, a={:.5f}, v={:.5f}{}{})\n", ur_pose(X_BaseW * plan.X_WE[row.row]),
+                        limits.max_acceleration, limits.max_speed,
+                        row.turn_decides ? fmt::format(", t={:.3f}", row.duration) : "",
+                        row.blend > 0.0 ? fmt::format(", r={:.4f}", row.blend) : "");
     script.nominal_duration += row.duration;
     ++script.moves;
   }
@@ -294,9 +295,10 @@ std::string format_ros_trajectory(const JointRun& run, const RobotProgram& progr
     const bool is_same = i > 0 && sample.io.vacuum == run.samples[i - 1].io.vacuum &&
                          sample.io.blow_off == run.samples[i - 1].io.blow_off;
     if (is_same || sample.row < 0) continue;
-    text += fmt::format("  - {{time_from_start: {}, vacuum: {}, blow_off: {}, row: {}, waypoint: \"{}\"}}\n",
-                        time_from_start(sample.time), sample.io.vacuum, sample.io.blow_off, sample.row + 1,
-                        quotable(program.plan.program.waypoints[static_cast<std::size_t>(sample.row)].name));
+    text +=
+        fmt::format("  - {{time_from_start: {}, vacuum: {}, blow_off: {}, row: {}, waypoint: \"{}\"}}\n",
+                    time_from_start(sample.time), sample.io.vacuum, sample.io.blow_off, sample.row + 1,
+                    quotable(motion::name_of(program.plan.program.waypoints[static_cast<std::size_t>(sample.row)])));
   }
   return text;
 }

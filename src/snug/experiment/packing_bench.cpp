@@ -13,7 +13,8 @@ namespace {
 /// Percent of the container that is filled when an item has no place, or all have one.
 double plan_sequence(const model::Scenario& scenario, const model::Sequence& sequence, std::vector<double>& seconds) {
   packing::AgentInput input;
-  input.settings.seed = scenario.seed;
+  input.settings = scenario.packing;
+  input.run.seed = scenario.seed;
   input.future = packing::make_future_model(scenario);
   const std::unique_ptr<packing::Agent> agent = packing::make_agent("contact-aware", std::move(input));
   packing::ContainerState state = packing::make_container_state(*model::find_container(scenario, scenario.target));

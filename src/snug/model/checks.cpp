@@ -182,7 +182,8 @@ void ScenarioReader::read() {
                              "parcel_types",  "parcels",     "containers", "target",     "bodies",
                              "aligner",       "tool",        "cup",        "controller", "sequences",
                              "springs",       "drops",       "robot",      "wrenches",   "record_period",
-                             "initial_state", "uncertainty", "cameras"});
+                             "initial_state", "uncertainty", "cameras",    "skills",     "packing",
+                             "place_limits",  "rehearsal",   "belief",     "recovery",   "motion_guards"});
   const auto each = [&map](const char* key, auto&& read_one) {
     if (const auto values = map.find(key))
       for (const Value& value : values->list()) read_one(value);
@@ -203,6 +204,7 @@ void ScenarioReader::read() {
   if (const auto robot = map.find("robot")) read_robot(*robot);
   each("sequences", [this](const Value& value) { read_sequence(value); });
   if (const auto uncertainty = map.find("uncertainty")) read_uncertainty(*uncertainty);
+  read_session_settings(map);
   each("springs", [this](const Value& value) { read_spring(value); });
   each("wrenches", [this](const Value& value) { read_wrench(value); });
   if (const auto drops = map.find("drops")) read_drops(*drops);

@@ -11,6 +11,12 @@ enum class Range {
   Fraction,     ///< 0 .. 1
 };
 
+/// Both ends included; checked when it is loaded and never again.
+struct Within {
+  double low = 0.0;
+  double high = 0.0;
+};
+
 /// Marks an angle that is written in degrees (its key ends in `_deg`) and stored in radians.
 struct Degrees {
   double& radians;

@@ -15,6 +15,8 @@
 #include "snug/model/material.hpp"
 #include "snug/model/parcel.hpp"
 #include "snug/model/robot_params.hpp"
+#include "snug/model/session_settings.hpp"
+#include "snug/model/skill_params.hpp"
 #include "snug/model/uncertainty.hpp"
 
 namespace snug::model {
@@ -118,6 +120,13 @@ struct Scenario {
   std::vector<CameraParams> cameras;
   std::vector<Sequence> sequences;
   Uncertainty uncertainty;  ///< of all of the above
+  SkillParams skills;
+  PackingSettings packing;
+  PlaceLimits place_limits;
+  RehearsalSettings rehearsal;
+  BeliefParams belief;
+  RecoverySettings recovery;
+  MotionGuards motion_guards;
   std::vector<Spring> springs;
   std::vector<AppliedWrench> wrenches;
   std::optional<Drops> drops;

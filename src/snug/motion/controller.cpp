@@ -10,7 +10,7 @@
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/motion/fast_controller.hpp"
-#include "snug/motion/row_name.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::motion {
 namespace {
@@ -26,7 +26,7 @@ void begin_motion(const PreparedProgram& plan, ControllerState& state) {
   const std::size_t row = static_cast<std::size_t>(state.row);
   state.phase = ControllerPhase::Moving;
   state.phase_ticks = 0;
-  state.segment = LspbSegment(state.X_WE_departure, plan.program.waypoints[row].X_WE, plan.row_limits[row]);
+  state.segment = LspbSegment(state.X_WE_departure, plan.X_WE[row], plan.row_limits[row]);
   if (plan.settings.kind == ControllerKind::Faithful && plan.settings.sampled_coast) {
     state.segment = state.segment.with_sampled_coast(plan.settings.tick);
   }
@@ -53,7 +53,7 @@ bool has_reached_row(const PreparedProgram& plan, const ToolState& measured, con
   if (plan.settings.kind == ControllerKind::Ideal) {
     return static_cast<double>(state.phase_ticks) * plan.settings.tick >= state.segment.duration();
   }
-  return convergence_error(measured.X_WE, plan.program.waypoints[row].X_WE, plan.settings.convergence_deg_per_metre) <=
+  return convergence_error(measured.X_WE, plan.X_WE[row], plan.settings.convergence_deg_per_metre) <=
          plan.row_limits[row].precision;
 }
 
@@ -75,7 +75,7 @@ void advance_program(const PreparedProgram& plan, const ToolState& measured, Con
     } else {
       state.phase = ControllerPhase::Finished;
       state.phase_ticks = 0;
-      state.X_WE_reference = plan.program.waypoints.back().X_WE;
+      state.X_WE_reference = plan.X_WE.back();
       output.finished_now = true;
     }
   }
@@ -135,13 +135,13 @@ PreparedProgram prepare(Program program, ControllerSettings settings) {
 
   PreparedProgram plan;
   for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
-    const Pose& X_WE = program.waypoints[row].X_WE;
-    if (!X_WE.p.allFinite() || !X_WE.R.allFinite()) {
-      throw InputError(place_of(program, row), program.waypoints[row].name, "a pose that is not finite",
-                       "a finite pose");
+    const Waypoint& waypoint = program.waypoints[row];
+    if (!waypoint.p_WE.allFinite() || !waypoint.rotation_WE.allFinite()) {
+      throw InputError(place_of(program, row), name_of(waypoint), "a pose that is not finite", "a finite pose");
     }
     plan.row_limits.push_back(find_limits(program, row, settings.limits));
-    const std::optional<Swing> swing = swing_of(program.waypoints[row].name);
+    plan.X_WE.push_back(waypoint.X_WE());
+    const std::optional<Swing>& swing = waypoint.swing;
     plan.held_smoothing.push_back(swing ? Smoothing{swing->slow, 0.5 * swing->fast}
                                         : Smoothing{settings.fast.held.window, settings.fast.held.shaper_delay});
   }

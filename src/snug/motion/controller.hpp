@@ -51,7 +51,8 @@ struct PreparedProgram {
   Program program;
   ControllerSettings settings;
   std::vector<MotionLimits> row_limits;     ///< one per waypoint
-  std::vector<Smoothing> held_smoothing;    ///< Fast, one per waypoint: as its name says (swing_of), or the settings
+  std::vector<Pose> X_WE;                   ///< one per waypoint
+  std::vector<Smoothing> held_smoothing;    ///< Fast, one per waypoint: as its swing says, or the settings
   const PathLimits* path_limits = nullptr;  ///< Fast: what the joints allow; not owned; none: not limited by them
 };
 

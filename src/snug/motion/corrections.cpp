@@ -3,14 +3,17 @@
 
 #include <algorithm>
 
+#include "snug/motion/waypoint_name.hpp"
+
 namespace snug::motion {
 
 Program apply_corrections(Program program, std::span<const Correction> corrections) {
   for (Waypoint& waypoint : program.waypoints) {
+    const std::string name = name_of(waypoint);
     for (const Correction& correction : corrections) {
-      const bool matches = std::ranges::any_of(
-          correction.prefixes, [&](const std::string& prefix) { return waypoint.name.starts_with(prefix); });
-      if (matches) waypoint.X_WE.p += correction.offset;
+      const bool matches =
+          std::ranges::any_of(correction.prefixes, [&](const std::string& prefix) { return name.starts_with(prefix); });
+      if (matches) waypoint.p_WE += correction.offset;
     }
   }
   return program;

@@ -25,16 +25,18 @@ constexpr double kLevel = 0.01;  ///< m
 constexpr double kGentleSlope = 0.2;
 constexpr double kPlumb = 1e-4;     ///< m and rad
 constexpr double kUpright = 0.966;  ///< cosine of 15 degrees
-/// Rows that are left on the way, the cup letting go as it moves (docs/packing-execution.md, pivot).
-constexpr std::string_view kOnTheFly = "TwistDrag";
 
 const Waypoint& row_of(const PreparedProgram& plan, int row) {
   return plan.program.waypoints[static_cast<std::size_t>(row)];
 }
 
+const Pose& pose_of(const PreparedProgram& plan, int row) { return plan.X_WE[static_cast<std::size_t>(row)]; }
+
+bool is_contact_row(const PreparedProgram& plan, int row) { return is_contact(row_of(plan, row).motion_class); }
+
 /// This row asks for no motion from the one before: it only switches.
 bool only_switches(const PreparedProgram& plan, int row) {
-  return row > 0 && row_of(plan, row).X_WE == row_of(plan, row - 1).X_WE;
+  return row > 0 && pose_of(plan, row) == pose_of(plan, row - 1);
 }
 
 bool has_next(const PreparedProgram& plan, int row) {
@@ -42,7 +44,7 @@ bool has_next(const PreparedProgram& plan, int row) {
 }
 
 bool is_insertion(const Waypoint& waypoint) {
-  return waypoint.io.vacuum && waypoint.name.starts_with("Place") && !waypoint.name.starts_with("PlaceSlow");
+  return waypoint.io.vacuum && waypoint.motion_class == MotionClass::Place;
 }
 
 bool is_plumb(const Pose& X_WA, const Pose& X_WB) {
@@ -72,20 +74,20 @@ ToolState reference_at(const PreparedProgram& plan, const ControllerState& state
 }
 
 double error_to(const PreparedProgram& plan, const Pose& X_WE, int row) {
-  return convergence_error(X_WE, row_of(plan, row).X_WE, plan.settings.convergence_deg_per_metre);
+  return convergence_error(X_WE, pose_of(plan, row), plan.settings.convergence_deg_per_metre);
 }
 
 /// N, that a held box, or the cup, may feel against the motion to this row; infinite where nothing is meant to be felt.
 double force_limit(const PreparedProgram& plan, int row) {
   const FastSettings& fast = plan.settings.fast;
   const Waypoint& waypoint = row_of(plan, row);
-  const std::string_view name = waypoint.name;
+  const MotionClass motion_class = waypoint.motion_class;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
   if (!waypoint.io.vacuum) {
-    return name.starts_with("Box") || name.starts_with("RePick") ? fast.pick_force
-                                                                 : std::numeric_limits<double>::infinity();
+    return motion_class == MotionClass::Pick || motion_class == MotionClass::RePick ? fast.pick_force : kNone;
   }
-  if (name.starts_with("PlaceSlow")) return fast.push_force;
-  return is_contact_row(name) ? fast.press_force : std::numeric_limits<double>::infinity();
+  if (motion_class == MotionClass::PlaceSlow) return fast.push_force;
+  return is_contact(motion_class) ? fast.press_force : kNone;
 }
 
 bool feels_contact(const PreparedProgram& plan, const ControllerState& state) {
@@ -105,21 +107,20 @@ bool goes_level(const Vector3& from, const Vector3& to) {
 /// m, from a row where the next one may begin; 0: the tool stops there.
 double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   if (!has_next(plan, state.row)) return 0.0;
-  const Waypoint &row = row_of(plan, state.row), &next = row_of(plan, state.row + 1);
-  if (row.io != next.io || is_contact_row(row.name)) return 0.0;
+  if (row_of(plan, state.row).io != row_of(plan, state.row + 1).io || is_contact_row(plan, state.row)) return 0.0;
+  const Pose &row = pose_of(plan, state.row), &next = pose_of(plan, state.row + 1);
   const double degrees = plan.settings.convergence_deg_per_metre;
-  const double to = convergence_error(state.paced.start(), row.X_WE, degrees);
-  const double from = convergence_error(row.X_WE, next.X_WE, degrees);
-  const bool is_level = goes_level(state.paced.start().p, row.X_WE.p) && goes_level(row.X_WE.p, next.X_WE.p) &&
-                        !is_contact_row(next.name);
+  const double to = convergence_error(state.paced.start(), row, degrees);
+  const double from = convergence_error(row, next, degrees);
+  const bool is_level =
+      goes_level(state.paced.start().p, row.p) && goes_level(row.p, next.p) && !is_contact_row(plan, state.row + 1);
   const double largest = is_level ? plan.settings.fast.level_blend : plan.settings.fast.blend;
   return std::min(largest, kLargestBlend * std::min(to, from));
 }
 
 Way way_to(const PreparedProgram& plan, const Pose& X_WE, int row) {
-  const Waypoint& waypoint = row_of(plan, row);
-  return is_contact_row(waypoint.name) ? Way(X_WE, waypoint.X_WE)
-                                       : Way(X_WE, waypoint.X_WE, plan.settings.fast.pan_axis);
+  const Pose& goal = pose_of(plan, row);
+  return is_contact_row(plan, row) ? Way(X_WE, goal) : Way(X_WE, goal, plan.settings.fast.pan_axis);
 }
 
 void begin_motion(const PreparedProgram& plan, const Pose& X_WE, ControllerState& state) {
@@ -165,11 +166,6 @@ bool has_waited(const PreparedProgram& plan, const ControllerState& state) {
 
 }  // namespace
 
-bool is_contact_row(std::string_view name) noexcept {
-  return name.starts_with("Box") || name.starts_with("RePick") || name.starts_with("Place") ||
-         name.starts_with("Twist");
-}
-
 Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
   const FastSettings& fast = plan.settings.fast;
   const Waypoint& waypoint = row_of(plan, row);
@@ -179,13 +175,13 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
     pace.window = smoothing.window;
     pace.shaper_delay = smoothing.shaper_delay;
   }
-  if (is_contact_row(waypoint.name)) {
+  if (is_contact(waypoint.motion_class)) {
     const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
     pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
             fast.contact_window};
   }
   if (is_insertion(waypoint)) pace = fast.insert;
-  if (waypoint.io.vacuum && is_plumb(X_WE, waypoint.X_WE)) {  // swings only where the box is held by its side
+  if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {  // swings only where the box is held by its side
     if (std::abs(X_WE.R(2, 2)) > kUpright) pace.window = std::min(pace.window, fast.insert.window);
     pace.shaper_delay = 0.0;
   }
@@ -202,8 +198,9 @@ bool has_reached_fast(const PreparedProgram& plan, const ToolState& measured, co
     return convergence_error(measured.X_WE, state.command.X_WE, plan.settings.convergence_deg_per_metre) <= kArrived;
   }
   if (has_tail(plan, state)) return false;
-  const bool is_left_moving = row_of(plan, state.row).name.starts_with(kOnTheFly) && has_next(plan, state.row) &&
-                              only_switches(plan, state.row + 1);
+  // Left on the way, the cup letting go as it moves (docs/packing-execution.md, pivot).
+  const bool is_left_moving = row_of(plan, state.row).motion_class == MotionClass::TwistDrag &&
+                              has_next(plan, state.row) && only_switches(plan, state.row + 1);
   if (is_left_moving) {
     const double precision = plan.row_limits[static_cast<std::size_t>(state.row)].precision;
     return error_to(plan, state.command.X_WE, state.row) <= precision;

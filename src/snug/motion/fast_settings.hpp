@@ -3,7 +3,6 @@
 
 #include <limits>
 #include <optional>
-#include <string_view>
 
 #include "snug/motion/paced_segment.hpp"
 
@@ -27,8 +26,8 @@ struct FastSettings {
   Pace held = {2.0, 5.0, 2.5, 6.0, 0.25};
   /// A held box on its way in (Place). Other rows that touch something have the scenario's limits for their names.
   Pace insert = {0.6, 4.0, 1.5, 3.0, 0.10};
-  /// m, in W: a point of the robot's first, vertical axis. Ways that touch nothing go around it (Way). None: straight.
-  std::optional<Vector3> pan_axis;
+  /// Ways that touch nothing go around it (Way). None: straight.
+  std::optional<PanAxis> pan_axis;
   double contact_window = 0.10;  ///< s, of those others
   double blend = 0.05;        ///< m, and 1 m per `convergence_deg_per_metre`: so near to a row the next one may begin
   double level_blend = 0.15;  ///< m, the same where neither way goes up or down: nothing is met by a short cut
@@ -41,8 +40,5 @@ struct FastSettings {
   double released_pressure = std::numeric_limits<double>::infinity();  ///< Pa, gauge: the tool may leave the box
   bool operator==(const FastSettings&) const = default;
 };
-
-/// Whether a waypoint of this name is brought about in contact: picks, places, twists. The others touch nothing.
-[[nodiscard]] bool is_contact_row(std::string_view name) noexcept;
 
 }  // namespace snug::motion

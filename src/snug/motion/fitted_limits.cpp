@@ -55,7 +55,7 @@ std::vector<MotionLimits> fit_limits(const PreparedProgram& plan, const Pose& X_
   std::vector<MotionLimits> fitted = plan.row_limits;
   Pose X_WE = X_WE_start;
   for (std::size_t i = 0; i < fitted.size(); ++i) {
-    const Pose& goal = plan.program.waypoints[i].X_WE;
+    const Pose& goal = plan.X_WE[i];
     const LspbSegment segment(X_WE, goal, fitted[i]);
     const RowMotion& row = simulated[i];
     MotionLimits& limits = fitted[i];

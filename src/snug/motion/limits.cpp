@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "snug/core/input_error.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::motion {
 namespace {
@@ -27,7 +28,7 @@ const NamedLimits* match_limits(std::string_view name, std::span<const NamedLimi
 }
 
 const MotionLimits& find_limits(const Program& program, std::size_t row, std::span<const NamedLimits> table) {
-  const std::string& name = program.waypoints[row].name;
+  const std::string name = name_of(program.waypoints[row]);
   if (const NamedLimits* entry = match_limits(name, table)) return entry->limits;
   std::vector<std::string> prefixes;
   std::string known;

@@ -2,6 +2,7 @@
 // evenly.
 #include "snug/motion/way.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "snug/core/check.hpp"
@@ -9,26 +10,24 @@
 namespace snug::motion {
 namespace {
 
-constexpr double kNoMotion = 1e-9;     ///< m or rad: rounding of poses, not a motion
-constexpr double kLeastPan = 0.2;      ///< rad: a shorter way is hardly bent
-constexpr double kLeastRadius = 0.20;  ///< m: nearer to its axis the arm does not reach with the tool down
+constexpr double kNoMotion = 1e-9;  ///< m or rad: rounding of poses, not a motion
 
 Matrix3 about_vertical(double angle) { return exp_rotation(Vector3(0.0, 0.0, angle)); }
 
 }  // namespace
 
-Way::Way(const Pose& X_WA, const Pose& X_WB, const std::optional<Vector3>& p_WB)
+Way::Way(const Pose& X_WA, const Pose& X_WB, const std::optional<PanAxis>& pan_axis)
     : X_WA_(X_WA), X_WB_(X_WB), line_W_(X_WB.p - X_WA.p) {
   SNUG_CHECK(X_WA.p.allFinite() && X_WA.R.allFinite() && X_WB.p.allFinite() && X_WB.R.allFinite(),
              "poses of a motion must be finite");
   if (line_W_.norm() < kNoMotion) line_W_.setZero();
-  if (p_WB) {
-    const Vector3 from = X_WA.p - *p_WB, to = X_WB.p - *p_WB;
+  if (pan_axis) {
+    const Vector3 from = X_WA.p - pan_axis->p_WB, to = X_WB.p - pan_axis->p_WB;
     const double radius = from.head<2>().norm(), radius_end = to.head<2>().norm();
-    const double pan = pan_between(*p_WB, X_WA.p, X_WB.p);
-    if (radius >= kLeastRadius && radius_end >= kLeastRadius && std::abs(pan) >= kLeastPan) {
+    const double pan = pan_between(pan_axis->p_WB, X_WA.p, X_WB.p);
+    if (std::min(radius, radius_end) >= pan_axis->least_radius && std::abs(pan) >= pan_axis->least_pan) {
       pan_ = pan;
-      p_WB_ = *p_WB;
+      p_WB_ = pan_axis->p_WB;
       radius_ = radius;
       radius_gain_ = radius_end - radius;
       azimuth_ = std::atan2(from.y(), from.x());

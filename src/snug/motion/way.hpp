@@ -8,6 +8,14 @@
 
 namespace snug::motion {
 
+/// A robot's first axis, where that is vertical.
+struct PanAxis {
+  Vector3 p_WB = Vector3::Zero();  ///< m, on it
+  double least_pan = 0.2;          ///< rad, a way that turns it less goes straight
+  double least_radius = 0.20;      ///< m, as one that begins or ends nearer to it
+  bool operator==(const PanAxis&) const = default;
+};
+
 /// Share 0: at the first pose, 1: at the second.
 class Way {
  public:
@@ -15,10 +23,10 @@ class Way {
   Way() = default;
   /// A straight line and a turn about a fixed axis, the shorter way round. Finite poses (checked).
   Way(const Pose& X_WA, const Pose& X_WB) : Way(X_WA, X_WB, std::nullopt) {}
-  /// `p_WB`: a point of the robot's first axis, which is vertical. Where the way turns it by 0.2 rad or more, and both
-  /// ends are 0.2 m away from it or more, radius, height and angle about the axis change evenly along the way, and the
-  /// turn beyond that angle is about an axis that is carried along. Else, and without a robot: straight.
-  Way(const Pose& X_WA, const Pose& X_WB, const std::optional<Vector3>& p_WB);
+  /// Where the way turns the axis far enough, and both ends are far enough away from it, radius, height and angle about
+  /// the axis change evenly along the way, and the turn beyond that angle is about an axis that is carried along. Else,
+  /// and without an axis: straight.
+  Way(const Pose& X_WA, const Pose& X_WB, const std::optional<PanAxis>& pan_axis);
 
   [[nodiscard]] Pose at(double share) const noexcept;
   /// Derivatives by the share: of where E is, and of how it is turned (in W).

@@ -14,6 +14,7 @@
 #include "snug/core/text.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/motion/program_tempo.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::motion {
 namespace {
@@ -56,10 +57,10 @@ bool parse_switch(const Field& field) {
   field.fail("0 or 1");
 }
 
-std::string parse_name(const Field& field) {
+std::string_view read_name(const Field& field) {
   if (field.text.empty()) field.fail("the waypoint's name");
   if (!is_printable(field.text)) field.fail("a name without control characters");
-  return std::string(field.text);
+  return field.text;
 }
 
 std::vector<std::string_view> split(std::string_view text) {
@@ -84,13 +85,12 @@ Waypoint parse_row(std::string_view text, std::string_view file, int line) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (std::abs(number[i]) > kLargestPosition) field(i).fail("metres, at most 100");
   }
-  const Vector3 rotation(number[3], number[4], number[5]);
   for (std::size_t i = 3; i < 6; ++i) {
     if (std::abs(number[i]) > kLargestRotation) field(i).fail("radians, at most 100");
   }
-  Waypoint waypoint;
-  waypoint.X_WE = {exp_rotation(rotation), Vector3(number[0], number[1], number[2])};
-  waypoint.name = parse_name(field(6));
+  Waypoint waypoint = parse_waypoint_name(read_name(field(6)));
+  waypoint.p_WE = {number[0], number[1], number[2]};
+  waypoint.rotation_WE = {number[3], number[4], number[5]};
   waypoint.io = {parse_switch(field(7)),  parse_switch(field(8)),  parse_switch(field(9)),
                  parse_switch(field(10)), parse_switch(field(11)), parse_switch(field(12))};
   waypoint.line = line;
@@ -101,26 +101,44 @@ constexpr double kGrid = 0x1p-40;  ///< rad, far above the rounding of log_rotat
 
 Vector3 on_grid(const Vector3& r) { return (r / kGrid).array().round().matrix() * kGrid; }
 
-/// Logarithm and exponential together do not give a matrix back to the last bit. Where a vector on the grid does, it is
-/// that one.
-Vector3 rotation_vector(const Matrix3& R) {
-  const Vector3 r = log_rotation(R), rounded = on_grid(r);
-  return exp_rotation(rounded) == R ? rounded : r;
-}
-
 void check_writable(const Program& program, std::size_t row) {
   const Waypoint& waypoint = program.waypoints[row];
-  const std::string& name = waypoint.name;
+  const std::string name = name_of(waypoint);
   if (name.empty() || name != trim(name) || name.find(',') != std::string::npos || !is_printable(name)) {
     throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name),
                      "a name without commas, control characters and blanks at its ends");
   }
-  if (!waypoint.X_WE.p.allFinite() || !waypoint.X_WE.R.allFinite()) {
+  if (!waypoint.p_WE.allFinite() || !waypoint.rotation_WE.allFinite()) {
     throw InputError(place_of(program, row), name, "a pose that is not finite", "a finite pose");
   }
 }
 
 }  // namespace
+
+void Waypoint::set_pose(const Pose& X_WE) {
+  p_WE = X_WE.p;
+  rotation_WE = log_rotation(X_WE.R);
+  // Logarithm and exponential together do not give a vector back to the last bit. Where one on the grid gives this
+  // matrix, it is that one.
+  const Vector3 rounded = on_grid(rotation_WE);
+  if (exp_rotation(rounded) == X_WE.R) rotation_WE = rounded;
+}
+
+Waypoint rounded(Waypoint waypoint) {
+  waypoint.rotation_WE = on_grid(waypoint.rotation_WE);
+  return waypoint;
+}
+
+Waypoint make_waypoint(MotionClass motion_class, std::string_view item, const Pose& X_WE, const IO& io,
+                       std::string_view variant) {
+  Waypoint waypoint;
+  waypoint.set_pose(X_WE);
+  waypoint.motion_class = motion_class;
+  waypoint.item = item;
+  waypoint.variant = variant;
+  waypoint.io = io;
+  return waypoint;
+}
 
 std::string place_of(const Program& program, std::size_t row) {
   const int line = program.waypoints[row].line;
@@ -157,25 +175,12 @@ std::string format_program(const Program& program) {
   for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
     check_writable(program, row);
     const Waypoint& w = program.waypoints[row];
-    const Vector3 r = rotation_vector(w.X_WE.R);
-    const Vector3& p = w.X_WE.p;
+    const Vector3 &p = w.p_WE, &r = w.rotation_WE;
     text += fmt::format("{}, {}, {}, {}, {}, {},{},{:d},{:d},{:d},{:d},{:d},{:d}\n", p.x(), p.y(), p.z(), r.x(), r.y(),
-                        r.z(), w.name, w.io.vacuum, w.io.blow_off, w.io.conveyor_cw, w.io.conveyor_ccw, w.io.optitrack,
-                        w.io.reserved);
+                        r.z(), name_of(w), w.io.vacuum, w.io.blow_off, w.io.conveyor_cw, w.io.conveyor_ccw,
+                        w.io.optitrack, w.io.reserved);
   }
   return text;
-}
-
-Waypoint as_written(const Waypoint& row) {
-  constexpr int kNudges = 16;
-  Waypoint written = row;
-  const Vector3 r = log_rotation(row.X_WE.R);
-  // Within rounding of half a turn a rotation vector may come back with the other sign: then a little less of a turn.
-  for (int nudge = 0; nudge < kNudges; ++nudge) {
-    written.X_WE.R = exp_rotation(on_grid((1.0 - kGrid * nudge) * r));
-    if (exp_rotation(rotation_vector(written.X_WE.R)) == written.X_WE.R) break;
-  }
-  return written;
 }
 
 void write_program(const Program& program, const std::filesystem::path& path) {

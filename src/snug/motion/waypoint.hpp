@@ -22,13 +22,60 @@ struct IO {
   bool operator==(const IO&) const = default;
 };
 
+/// What the tool does at a waypoint. In files the name of a waypoint begins with its class (waypoint_name.hpp).
+enum class MotionClass {
+  Other,       ///< names that begin with none of these words
+  Home,        ///< `home`: where the tool waits
+  PrePick,     ///< above, or before, a box where it arrives
+  Pick,        ///< `Box`: onto that box
+  PostPick,    ///< up with it
+  PreRePick,   ///< as of a pick, of a box that was set down on the way
+  RePick,      ///< onto it
+  PostRePick,  ///< up with it
+  PreTwist,    ///< to and from a flat surface where boxes are turned
+  Twist,       ///< onto it, turned over an edge
+  TwistDrag,   ///< let go on the way
+  PrePlace,    ///< over the place
+  Place,       ///< down to it
+  PlaceSlow,   ///< pushed, slowly
+  PostPlace,   ///< up, the box let go
+};
+/// The word that names of this class begin with; empty for Other.
+[[nodiscard]] std::string_view name_of(MotionClass motion_class) noexcept;
+/// Whether a waypoint of this class is brought about in contact: picks, places, twists. The others touch nothing.
+[[nodiscard]] bool is_contact(MotionClass motion_class) noexcept;
+
+/// How a box swings that hangs from the cup: its two longest periods, s, 0.01 to 9.99. A file keeps hundredths.
+struct Swing {
+  double slow = 0.0;
+  double fast = 0.0;
+  bool operator==(const Swing&) const = default;
+};
+
 struct Waypoint {
-  Pose X_WE;         ///< tool frame E (gripper end, z toward the package), m
-  std::string name;  ///< its beginning chooses the limits (find_limits)
+  Vector3 p_WE = Vector3::Zero();         ///< m, tool frame E (gripper end, z toward the package)
+  Vector3 rotation_WE = Vector3::Zero();  ///< rad, rotation vector, as a file keeps it
+  MotionClass motion_class = MotionClass::Other;
+  std::string item;        ///< id of the box that it is for; empty: for none
+  bool item_is_id = true;  ///< false: as a file of the demonstrator has it, such as 027: fit_of (waypoint_name.hpp)
+  std::string variant;     ///< what tells it from others of its class and item, such as _2; of Other the whole name
+  /// Of the box that hangs on the way to it. Fast motions leave nothing of these swings: they are averaged over the
+  /// slow one, and half of them comes half the fast one later.
+  std::optional<Swing> swing;
   IO io;
   int line = 0;  ///< in the file it was read from, from 1; 0: made by the program itself
+
+  [[nodiscard]] Pose X_WE() const { return {exp_rotation(rotation_WE), p_WE}; }
+  /// Rotation vector of length in [0, pi]; X_WE() then has it to the accuracy of the logarithm.
+  void set_pose(const Pose& X_WE);
   bool operator==(const Waypoint&) const = default;
 };
+
+[[nodiscard]] Waypoint make_waypoint(MotionClass motion_class, std::string_view item, const Pose& X_WE,
+                                     const IO& io = {}, std::string_view variant = {});
+
+/// Its rotation vector in steps of 2^-40 rad: without digits that rounding alone has made.
+[[nodiscard]] Waypoint rounded(Waypoint waypoint);
 
 struct Program {
   std::string name;  ///< file or label, for messages
@@ -49,14 +96,11 @@ struct Program {
 /// The same from text; `name` stands for the file in messages.
 [[nodiscard]] Program parse_program(std::string_view text, std::string_view name);
 
-/// The CSV text: rotation vectors canonical (length in [0, pi]), numbers in the shortest form that reads back exactly.
+/// The CSV text: rotation vectors as the waypoints have them, numbers in the shortest form that reads back exactly, so
+/// that what is read is what was written, to the last bit.
 /// Throws InputError for a name that the format cannot carry (empty, with a comma, a control character or blank ends)
 /// and for a pose that is not finite.
 [[nodiscard]] std::string format_program(const Program& program);
-/// The row, turned by less than 5e-11 rad, so that it reads back from a file exactly as it is: what is done with a
-/// program before it is written is then what the written one does. Numbers always read back, but the matrix of a
-/// rotation vector need not have that rotation vector.
-[[nodiscard]] Waypoint as_written(const Waypoint& row);
 /// Writes beside `path`, then renames, so that a file of that name is always whole. Throws InputError if it cannot.
 void write_program(const Program& program, const std::filesystem::path& path);
 

@@ -11,11 +11,10 @@ namespace snug::packing {
 
 namespace {
 
-void check(const PackingSettings& s) {
+void check(const PackingSettings& s, const DecisionRun& run) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
-  require_number(within(s.decision_time, 0.0, 3600.0), "packing settings", "decision_time", s.decision_time,
-                 "0 .. 3600 s");
-  require_number(within(s.threads, 1, 256), "packing settings", "threads", s.threads, "1 .. 256");
+  require_number(within(run.time, 0.0, 3600.0), "packing settings", "decision_time", run.time, "0 .. 3600 s");
+  require_number(within(run.threads, 1, 256), "packing settings", "threads", run.threads, "1 .. 256");
   require_number(within(s.max_candidates, 1, 1000), "packing settings", "max_candidates", s.max_candidates,
                  "1 .. 1000");
   require_number(within(s.max_flips, 0, 2), "packing settings", "max_flips", s.max_flips, "0, 1 or 2");
@@ -43,7 +42,9 @@ Expected<Decision, NoPlace> Agent::decide_pressed(const ContainerState& /*state*
 }
 
 std::unique_ptr<Agent> make_agent(std::string_view name, AgentInput input) {
-  check(input.settings);
+  check(input.settings, input.run);
+  // Places in which a box presses deeper are for those who try them before they count.
+  if (!input.run.tries_places) input.settings.last_interference = 0.0;
   if (input.future.kinds.size() != input.future.weights.size()) {
     throw InputError("future model", "weights", std::to_string(input.future.weights.size()), "as many as kinds");
   }

@@ -57,6 +57,7 @@ struct AgentInput {
   std::vector<Item> sequence;                          ///< offline alone reads it
   std::function<bool(const Placement&)> is_reachable;  ///< absent: everywhere
   Ask ask = {};  ///< decides instead of a built-in agent (remote_agent.hpp); absent: the agent of that name does
+  DecisionRun run = {};
 };
 
 /// Names that make_agent knows.

@@ -59,6 +59,7 @@ class ContactAwareAgent : public Agent {
   }
 
   Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item) override {
+    if (!input_.run.tries_places) return tl::unexpected(NoPlace::NoSpace);
     PackingSettings settings = input_.settings;
     settings.planned_interference = settings.last_interference;
     const Planning planning = plan_for_contact(state, settings);
@@ -114,9 +115,9 @@ class ContactAwareAgent : public Agent {
     const double room = planning.inner_size.prod();
     const double filled = 0.01 * filling_percent(state) * room + item.size.prod();
     RaceSettings settings;
-    settings.seed = input_.settings.seed + 1000003U * state.boxes.size();
-    settings.threads = input_.settings.threads;
-    settings.effort = work_for(input_.settings.decision_time);
+    settings.seed = input_.run.seed + 1000003U * state.boxes.size();
+    settings.threads = input_.run.threads;
+    settings.effort = work_for(input_.run.time);
     settings.skips = state.skips_left;
     const Prospect prospect = make_prospect(input_.future, pieces(planning), state, item);
     double volume = std::max(0.0, room - filled);

@@ -35,7 +35,7 @@ class ManualAgent : public Agent {
  private:
   /// Large ones first, more or less: the volumes are shaken the more the later the order.
   [[nodiscard]] std::vector<Item> sorted(std::vector<Item> items, int order) const {
-    Rng rng = Rng(input_.settings.seed + static_cast<std::uint64_t>(order)).split("order");
+    Rng rng = Rng(input_.run.seed + static_cast<std::uint64_t>(order)).split("order");
     std::vector<std::pair<double, Item>> keyed;
     for (Item& item : items) {
       // Boxes that stand on others come after those that must stay free only when they have to: those are put last.
@@ -61,9 +61,9 @@ class ManualAgent : public Agent {
     emptied.boxes.clear();
     const Layout empty = to_layout(planning, make_rules(planning, items), emptied);
     SearchSettings settings;
-    settings.seed = input_.settings.seed;
-    settings.threads = input_.settings.threads;
-    settings.effort = work_for(input_.settings.decision_time) / 4;
+    settings.seed = input_.run.seed;
+    settings.threads = input_.run.threads;
+    settings.effort = work_for(input_.run.time) / 4;
     settings.accept = [&](const Layout& on, int index, const CandidatePose& pose) {
       const auto i = static_cast<std::size_t>(index);
       return place_item(planning, on, items[i], choices[i], pose, input_.is_reachable).has_value();

@@ -62,9 +62,9 @@ class OfflineAgent : public Agent {
       choices.push_back(std::move(choice));
     }
     SearchSettings settings;
-    settings.seed = input_.settings.seed;
-    settings.threads = input_.settings.threads;
-    settings.effort = work_for(input_.settings.decision_time) * static_cast<std::int64_t>(pieces.size());
+    settings.seed = input_.run.seed;
+    settings.threads = input_.run.threads;
+    settings.effort = work_for(input_.run.time) * static_cast<std::int64_t>(pieces.size());
     settings.accept = [&](const Layout& on, int index, const CandidatePose& pose) {
       const auto i = static_cast<std::size_t>(index);
       return place_item(planning, on, rest[i], choices[i], pose, input_.is_reachable).has_value();

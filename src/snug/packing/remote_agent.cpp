@@ -118,8 +118,8 @@ class RemoteAgent final : public Agent {
     }
     (void)ask({{"ask", "begin"},
                {"settings",
-                {{"seed", s.seed},
-                 {"decision_time", s.decision_time},
+                {{"seed", input_.run.seed},
+                 {"decision_time", input_.run.time},
                  {"max_flips", s.max_flips},
                  {"planned_interference", s.planned_interference},
                  {"min_support", s.min_support},

@@ -4,15 +4,6 @@
 #include <algorithm>
 
 namespace snug::plant {
-namespace {
-
-constexpr double kSealPatience = 0.45;  ///< s, with the vacuum on
-constexpr double kStill = 0.003;        ///< m/s, a tool that is slower stands
-constexpr double kLongestSettle = 2.0;  ///< s
-constexpr double kPatience = 60.0;      ///< s, for one waypoint
-
-}  // namespace
-
 void MotionWatch::begin(const TickReading& start, bool is_held) {
   row_since_ = last_ = start.time;
   if (!start.is_vacuum_on) return;
@@ -53,20 +44,22 @@ void MotionWatch::check(const Guards& guards, double pressure_needed, const Tick
   }
   if (now.is_vacuum_on && pressure <= pressure_needed) was_sealed_ = true;
   if (guards.vacuum && now.is_vacuum_on && pressure > pressure_needed &&
-      (was_sealed_ || now.time - vacuum_since_ > kSealPatience)) {
+      (was_sealed_ || now.time - vacuum_since_ > settings.seal_patience)) {
     stop(was_sealed_ ? EndReason::VacuumLost : EndReason::NoSeal, pressure, pressure_needed);
   }
-  if (now.time - row_since_ > kPatience) stop(EndReason::Timeout, now.time - row_since_, kPatience);
+  if (now.time - row_since_ > settings.waypoint_patience)
+    stop(EndReason::Timeout, now.time - row_since_, settings.waypoint_patience);
 }
 
-bool is_settling(double start, double now, double speed, double at_least) {
-  return now < start + kLongestSettle && (now <= start + at_least || speed >= kStill);
+bool is_settling(const model::MotionGuards& settings, bool is_lagged, double start, double now, double speed) {
+  const double at_least = is_lagged ? settings.lagged_settle : settings.exact_settle;
+  return now < start + settings.longest_settle && (now <= start + at_least || speed >= settings.still_speed);
 }
 
 const char* find_refusal(const Motion& motion) {
   if (motion.waypoints.empty()) return "no waypoints";
   const bool is_finite = std::ranges::all_of(motion.waypoints, [](const motion::Waypoint& waypoint) {
-    return waypoint.X_WE.p.allFinite() && waypoint.X_WE.R.allFinite();
+    return waypoint.p_WE.allFinite() && waypoint.rotation_WE.allFinite();
   });
   return is_finite ? "" : "a pose that is not finite";
 }

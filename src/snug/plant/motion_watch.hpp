@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "snug/model/session_settings.hpp"
 #include "snug/plant/plant.hpp"
 
 namespace snug::plant {
@@ -18,6 +19,7 @@ struct TickReading {
 
 /// One motion under way: how it ends, and its peaks.
 struct MotionWatch {
+  model::MotionGuards settings;
   End end;
   int row = -1;  ///< of the motion, aimed at
   double peak_force = 0.0, peak_torque = 0.0;
@@ -39,16 +41,10 @@ struct MotionWatch {
   bool was_sealed_ = false;     ///< since then
 };
 
-/// Share of the vacuum's set point that counts as a seal.
-inline constexpr double kNeededVacuum = 0.3;
-
-/// s, after a motion, at least: of a tool that comes in with a lag, and of one that stands when it arrives, so that
-/// boxes have rested since it left them.
-inline constexpr double kLaggedSettle = 0.3, kExactSettle = 0.1;
-
 /// Whether a motion that came to its end at `start` s goes on at `now` so that the tool, at `speed` m/s, comes to stand
-/// and boxes come to rest.
-[[nodiscard]] bool is_settling(double start, double now, double speed, double at_least = kLaggedSettle);
+/// and boxes come to rest. `is_lagged`: the tool comes in with a lag.
+[[nodiscard]] bool is_settling(const model::MotionGuards& settings, bool is_lagged, double start, double now,
+                               double speed);
 
 /// Why the motion cannot begin: no waypoints, a pose that is not finite; empty when it can.
 [[nodiscard]] const char* find_refusal(const Motion& motion);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "snug/motion/waypoint_name.hpp"
+
 namespace snug::plant {
 
 const char* name_of(EndReason reason) {
@@ -50,7 +52,7 @@ std::string describe(const End& end, std::span<const motion::Waypoint> waypoints
   }
   if (!end.where.empty()) text += ": " + end.where;
   if (end.reason != EndReason::Completed && end.waypoint >= 0 && end.waypoint < static_cast<int>(waypoints.size())) {
-    text += " toward " + waypoints[static_cast<std::size_t>(end.waypoint)].name;
+    text += " toward " + motion::name_of(waypoints[static_cast<std::size_t>(end.waypoint)]);
   }
   return text;
 }

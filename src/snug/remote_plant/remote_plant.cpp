@@ -284,7 +284,8 @@ bool RemotePlant::advance(const plant::Motion& motion, const motion::PreparedPro
   if (motion::will_finish(plan, program_.command, program_)) return false;
   const plant::End end = step(plan);
   course.follow(end.waypoint, link_.last().time, program_.phase == motion::ControllerPhase::Waiting);
-  course.check(motion.guards, plant::kNeededVacuum * scenario_.cup.vacuum.pressure_gauge_hold, reading());
+  course.check(motion.guards, scenario_.motion_guards.needed_vacuum * scenario_.cup.vacuum.pressure_gauge_hold,
+               reading());
   if (end.reason != plant::EndReason::Completed) course.end = end;
   return course.end.reason == plant::EndReason::Completed;
 }
@@ -293,8 +294,8 @@ bool RemotePlant::advance(const plant::Motion& motion, const motion::PreparedPro
 void RemotePlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
   const double start = link_.last().time;
   const bool is_fast = options_.motions.controller == motion::ControllerKind::Fast;
-  const double at_least = is_fast ? plant::kExactSettle : plant::kLaggedSettle;
-  while (plant::is_settling(start, link_.last().time, state_.machine.tool.V_WE.linear.norm(), at_least)) {
+  while (plant::is_settling(scenario_.motion_guards, !is_fast, start, link_.last().time,
+                            state_.machine.tool.V_WE.linear.norm())) {
     if (step(plan).reason != plant::EndReason::Completed) break;
   }
   course.rest(link_.last().time);
@@ -341,6 +342,7 @@ plant::Feedback RemotePlant::submit(const plant::Motion& motion) {
   }
   begin_motion();
   plant::MotionWatch course;
+  course.settings = scenario_.motion_guards;
   course.begin(reading(), is_active(link_.last_of_robot(), click::kHoldingSensor));
   while (advance(motion, plan, course)) {
   }

@@ -8,7 +8,7 @@
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/model/reported_agent.hpp"
 #include "snug/model/scenario.hpp"
-#include "snug/motion/waypoint.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/replay/internal/recorded_scenario.hpp"
 #include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/limits.hpp"
@@ -178,7 +178,7 @@ Json program_as_json(const record::RecordingHeader& header) {
   try {
     if (!header.program_text.empty()) {
       const motion::Program program = motion::parse_program(header.program_text, header.program_name);
-      for (const motion::Waypoint& waypoint : program.waypoints) names.push_back(waypoint.name);
+      for (const motion::Waypoint& waypoint : program.waypoints) names.push_back(motion::name_of(waypoint));
     }
   } catch (const InputError&) {  // of another version of the format: the rows then have numbers only
   }

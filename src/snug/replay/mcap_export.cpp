@@ -7,7 +7,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/model/scenario.hpp"
-#include "snug/motion/waypoint.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/replay/internal/mcap_scene.hpp"
 #include "snug/replay/internal/recorded_scenario.hpp"
@@ -45,7 +45,7 @@ std::vector<std::string> row_names(const record::RecordingHeader& header) {
   try {
     if (header.program_text.empty()) return names;
     for (const auto& waypoint : motion::parse_program(header.program_text, header.program_name).waypoints) {
-      names.push_back(waypoint.name);
+      names.push_back(motion::name_of(waypoint));
     }
   } catch (const InputError&) {  // of another version of the format: the rows then have numbers only
     names.clear();

@@ -12,15 +12,7 @@
 namespace snug::session {
 namespace {
 
-/// s, boxes of other sizes and stiffnesses come to rest after they were put where they were seen.
-constexpr double kRest = 0.3;
-/// m, what a good world may be off: contact on rough cardboard is not repeatable to less.
-constexpr double kModelError = 0.004;
-/// Of the mean, below which no world's weight falls: one surprise does not make a world impossible.
-constexpr double kLeastWeight = 0.25;
-constexpr double kUnseenPosition = 0.005;  ///< m, standard deviation of what was not seen
-constexpr double kUnseenRotation = 0.02;   ///< rad
-constexpr double kSameBody = 0.0015;       ///< m, obstacles' bodies that differ by less stay as they are
+constexpr double kSameBody = 0.0015;  ///< m, obstacles' bodies that differ by less stay as they are
 
 model::Scenario coarse(model::Scenario scenario, int factor) {
   const double step = factor * scenario.time_step, ticks = scenario.controller.tick / step;
@@ -28,10 +20,10 @@ model::Scenario coarse(model::Scenario scenario, int factor) {
   return scenario;
 }
 
-Matrix6 unseen_covariance() {
+Matrix6 unseen_covariance(const model::BeliefParams& params) {
   Matrix6 covariance = Matrix6::Zero();
-  covariance.diagonal() << Vector3::Constant(kUnseenPosition * kUnseenPosition),
-      Vector3::Constant(kUnseenRotation * kUnseenRotation);
+  covariance.diagonal() << Vector3::Constant(params.unseen_position * params.unseen_position),
+      Vector3::Constant(params.unseen_rotation * params.unseen_rotation);
   return covariance;
 }
 
@@ -71,12 +63,12 @@ Belief::Belief(const model::Scenario& scenario, const std::string& sequence, con
       rng_(Rng(settings.seed).split("belief")) {
   const Rng rng(settings.seed);
   const model::Scenario nominal = cell::with_fixed_arrivals(scenario, sequence);
-  worlds_.push_back({coarse(nominal, settings.coarse_steps), {}, {}});
+  worlds_.push_back({coarse(nominal, scenario.rehearsal.coarse_steps), {}, {}});
   sequence_ = *model::find_sequence(worlds_[0].scenario, sequence);
   for (int i = 0; i < settings.samples; ++i) {
     const Rng own = rng.split("sample " + std::to_string(i));
-    World& world =
-        worlds_.emplace_back(World{coarse(cell::draw_scenario(nominal, sequence, own), settings.coarse_steps), {}, {}});
+    World& world = worlds_.emplace_back(
+        World{coarse(cell::draw_scenario(nominal, sequence, own), scenario.rehearsal.coarse_steps), {}, {}});
     Rng sensors = own.split("sensors");
     for (double& normal : world.common) normal = sensors.normal();
   }
@@ -107,7 +99,7 @@ void Belief::arrives(int item) {
     const model::Sequence& sequence = *model::find_sequence(world.scenario, sequence_name_);
     world.poses[i] = cell::arrival_pose(world.scenario, sequence.items[i]);
   }
-  boxes_[i] = BelievedBox{*worlds_[0].poses[i], unseen_covariance(), false};
+  boxes_[i] = BelievedBox{*worlds_[0].poses[i], unseen_covariance(nominal().belief), false};
 }
 
 void Belief::forget(int item) {
@@ -147,7 +139,7 @@ void Belief::see(const perception::Observation& observation) {
     if (item < 0 || !boxes_[static_cast<std::size_t>(item)]) continue;
     const auto i = static_cast<std::size_t>(item);
     boxes_[i]->was_seen = false;
-    boxes_[i]->covariance = unseen_covariance();
+    boxes_[i]->covariance = unseen_covariance(nominal().belief);
     if (!is_prediction_new_ || !is_prediction_sound_) continue;
     if (worlds_[0].predicted[i]) boxes_[i]->X_WP = *worlds_[0].predicted[i];
     for (World& world : worlds_) {
@@ -217,7 +209,9 @@ void Belief::expect_on_the_way(int item, const Pose& X_WP) {
 void Belief::weigh(int item) {
   const auto i = static_cast<std::size_t>(item);
   if (!boxes_[i] || !boxes_[i]->was_seen || worlds_.size() < 2) return;
-  const double variance = kModelError * kModelError + boxes_[i]->covariance.topLeftCorner<3, 3>().trace() / 3.0;
+  const model::BeliefParams& params = nominal().belief;
+  const double variance =
+      params.model_error * params.model_error + boxes_[i]->covariance.topLeftCorner<3, 3>().trace() / 3.0;
   double sum = 0.0;
   for (std::size_t w = 1; w < worlds_.size(); ++w) {
     const std::optional<Pose>& predicted = worlds_[w].predicted[i];
@@ -228,7 +222,7 @@ void Belief::weigh(int item) {
   const double count = static_cast<double>(worlds_.size() - 1);
   for (std::size_t w = 1; w < worlds_.size(); ++w) {
     const double share = sum > 0.0 ? weights_[w] * count / sum : 1.0;
-    weights_[w] = kLeastWeight + (1.0 - kLeastWeight) * share;
+    weights_[w] = params.least_weight + (1.0 - params.least_weight) * share;
   }
 }
 
@@ -252,7 +246,7 @@ const std::vector<std::unique_ptr<Rollout>>& Belief::take_up(const plant::Feedba
       rollouts_[w] = std::make_unique<Rollout>(world.scenario, sequence_name_, options);
       world.is_stale = false;
     }
-    rollouts_[w]->take_up(anchor(world, robot), kRest);
+    rollouts_[w]->take_up(anchor(world, robot), nominal().belief.rest);
   });
   return rollouts_;
 }

@@ -18,9 +18,7 @@ namespace snug::session {
 struct BeliefSettings {
   int samples = 8;
   std::uint64_t seed = 1;
-  int threads = 1;  ///< results do not depend on it
-  /// The physics steps of rollouts are so many times as long as the scenario's, where the controller's tick allows it.
-  int coarse_steps = 2;
+  int threads = 1;                     ///< results do not depend on it
   cell::SimulationOptions simulation;  ///< of the nominal world; sampled ones move the tool without joints
 };
 

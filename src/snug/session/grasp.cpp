@@ -6,13 +6,11 @@
 #include <utility>
 
 #include "snug/core/parallel.hpp"
-#include "snug/motion/side_pick.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/skills/side_pick.hpp"
 
 namespace snug::session {
 namespace {
-
-constexpr double kUpright = 0.26;  ///< rad, a box may lie this far from level to be picked again
 
 Vector3 up_axis(const packing::Orientation& orientation) {
   return orientation.up_sign * Vector3::Unit(static_cast<int>(orientation.up));
@@ -56,24 +54,25 @@ class GraspPlanner {
   }
 
   /// False when this way of turning does not apply.
-  bool make(Reorientation reorientation) {
+  bool make(skills::Reorientation reorientation) {
     grasp_.reorientation = reorientation;
-    const bool applies = reorientation == Reorientation::None        ? pick()
-                         : reorientation == Reorientation::SideGrasp ? pick_side_where_it_stands()
-                         : reorientation == Reorientation::Regrasp   ? regrasp()
-                                                                     : pivot();
+    const bool applies = reorientation == skills::Reorientation::None        ? pick()
+                         : reorientation == skills::Reorientation::SideGrasp ? pick_side_where_it_stands()
+                         : reorientation == skills::Reorientation::Regrasp   ? regrasp()
+                                                                             : pivot();
     if (!applies) return false;
     if (is_fine() && !grasp_.episodes[0].is_complete()) grasp_.problem = GraspProblem::Rollout;
     if (is_fine()) run_samples();
     return true;
   }
   [[nodiscard]] Grasp take() { return std::move(grasp_); }
-  [[nodiscard]] bool stands() const { return (X_WP_.R * up_axis(grasp_.orientation)).z() > std::cos(kUpright); }
+  [[nodiscard]] bool stands() const { return (X_WP_.R * up_axis(grasp_.orientation)).z() > std::cos(max_lean()); }
   [[nodiscard]] bool is_upside_down() const {
-    return (X_WP_.R * up_axis(grasp_.orientation)).z() < -std::cos(kUpright);
+    return (X_WP_.R * up_axis(grasp_.orientation)).z() < -std::cos(max_lean());
   }
 
  private:
+  [[nodiscard]] double max_lean() const { return request_.scenario.skills.pick.max_lean; }
   [[nodiscard]] bool is_fine() const { return grasp_.problem == GraspProblem::None; }
   /// As it shall stand, in the middle of the container.
   [[nodiscard]] Pose goal() const {
@@ -102,7 +101,7 @@ class GraspPlanner {
       return false;
     }
     grasp_.X_PS = nominal_.state().gripper.cup.X_PS;
-    grasp_.X_EP = grasp_.program.waypoints.back().X_WE.inverse() * *nominal_.pose_of(request_.box.item);
+    grasp_.X_EP = grasp_.program.waypoints.back().X_WE().inverse() * *nominal_.pose_of(request_.box.item);
     return true;
   }
 
@@ -114,7 +113,7 @@ class GraspPlanner {
     grasp_.swing = swing_of(request_.scenario, request_.box, std::copysign(1.0, face_P[axis]) * Vector3::Unit(axis));
   }
 
-  bool pick_from_above(const Pose& X_WP_next, PickKind kind) {
+  bool pick_from_above(const Pose& X_WP_next, skills::PickKind kind) {
     hang_by(Vector3::UnitZ());
     execute(plan_pick(request_.scenario, request_.layout, request_.box, X_WP_, X_WP_next, travel_, kind));
     return holds();
@@ -123,9 +122,9 @@ class GraspPlanner {
   /// The box held like R_WP is brought to its place next: of the two orientations that take the same space there the
   /// one that leaves the wrist less to do.
   void spare_wrist(const Matrix3& R_WP) {
-    const CellLayout& layout = request_.layout;
-    if (!layout.is_fast || !layout.p_WB) return;
-    const double pan = motion::pan_between(*layout.p_WB, X_WP_.p, layout.X_WT.p);
+    const skills::CellLayout& layout = request_.layout;
+    if (!layout.is_fast || !layout.pan_axis) return;
+    const double pan = motion::pan_between(layout.pan_axis->p_WB, X_WP_.p, layout.X_WT.p);
     const auto turn_of_wrist = [&] { return std::abs(pan - turn_between(layout, {R_WP, X_WP_.p}, goal())); };
     const packing::Orientation asked = grasp_.held_as;
     const double as_asked = turn_of_wrist();
@@ -135,33 +134,33 @@ class GraspPlanner {
 
   bool pick() {
     spare_wrist(X_WP_.R);
-    (void)pick_from_above(goal(), is_first() ? PickKind::First : PickKind::FromAfar);
+    (void)pick_from_above(goal(), is_first() ? skills::PickKind::First : skills::PickKind::FromAfar);
     return true;
   }
 
   /// By the side that looks along `face`, which is then turned up.
   void pick_side(const Vector3& face, bool again) {
     hang_by(face);
-    spare_wrist(motion::face_up(X_WP_.R, face));
+    spare_wrist(skills::face_up(X_WP_.R, face));
     auto rows = plan_side_pick(request_.scenario, request_.layout, request_.box, X_WP_, face, goal(), travel_, again);
     if (rows.empty()) {
       grasp_.problem = GraspProblem::SideTooLow;
       return;
     }
     const auto reaches = [&](const motion::Way& way) { return !request_.reaches || request_.reaches(way); };
-    if (!std::ranges::all_of(rows, [&](const auto& row) { return reaches({row.X_WE, row.X_WE}); })) {
+    if (!std::ranges::all_of(rows, [&](const auto& row) { return reaches({row.X_WE(), row.X_WE()}); })) {
       grasp_.problem = GraspProblem::OutOfReach;
       return;
     }
-    const std::optional<Vector3>& p_WB = request_.layout.p_WB;
+    const std::optional<motion::PanAxis>& pan_axis = request_.layout.pan_axis;
     // A fast tool comes to the second row, level, without the upright one before.
-    if (request_.layout.is_fast && reaches({last().X_WE, rows[1].X_WE, p_WB})) rows.erase(rows.begin());
+    if (request_.layout.is_fast && reaches({last().X_WE(), rows[1].X_WE(), pan_axis})) rows.erase(rows.begin());
     execute(rows);
     if (!holds()) return;
     const motion::Waypoint up = plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again);
-    Pose X_WE_over = up.X_WE;
+    Pose X_WE_over = up.X_WE();
     X_WE_over.p.head<2>() = request_.layout.X_WT.p.head<2>();
-    if (request_.layout.is_fast && reaches({last().X_WE, X_WE_over, p_WB})) return;  // on the way to its place
+    if (request_.layout.is_fast && reaches({last().X_WE(), X_WE_over, pan_axis})) return;  // on the way to its place
     execute({up});
     (void)holds();
   }
@@ -179,7 +178,7 @@ class GraspPlanner {
   bool pick_side_where_it_stands() {
     for (const Vector3& face : open_faces()) {
       const double along = (X_WP_.R.transpose() * face).dot(up_axis(grasp_.orientation));
-      if (std::abs(along) < std::cos(kUpright)) continue;
+      if (std::abs(along) < std::cos(max_lean())) continue;
       if (along < 0.0) grasp_.held_as = mirrored(grasp_.orientation, request_.box.inertia.com);
       pick_side(face, !is_first());
       return true;
@@ -192,14 +191,15 @@ class GraspPlanner {
     if (const std::optional<Pose> seen = nominal_.pose_of(request_.box.item)) X_WP_ = *seen;
     grasp_.looks.push_back(grasp_.program.waypoints.size());
     grasp_.seen.push_back(X_WP_);
-    if (!is_upright(X_WP_.R)) grasp_.problem = GraspProblem::DoesNotStand;
+    if (!is_upright(X_WP_.R, max_lean())) grasp_.problem = GraspProblem::DoesNotStand;
   }
 
   bool regrasp() {
     if (!request_.layout.flip_place) return false;
-    const FlipPlace& place = *request_.layout.flip_place;
-    const Matrix3 R_WP = orientation_before_flip(X_WP_.R, up_axis(grasp_.orientation), -place.direction);
-    if (!pick_from_above({R_WP, place.p_WF}, is_first() ? PickKind::First : PickKind::FromAfar)) return true;
+    const skills::FlipPlace& place = *request_.layout.flip_place;
+    const Matrix3 R_WP = skills::orientation_before_flip(X_WP_.R, up_axis(grasp_.orientation), -place.direction);
+    if (!pick_from_above({R_WP, place.p_WF}, is_first() ? skills::PickKind::First : skills::PickKind::FromAfar))
+      return true;
     execute(plan_set_down(request_.scenario, request_.box, place, R_WP, grasp_.X_PS, travel_));
     look();
     if (is_fine()) pick_side(-place.direction, true);
@@ -219,11 +219,11 @@ class GraspPlanner {
       }
       const bool is_done = stands();
       if (is_done) spare_wrist(X_WP_.R);
-      const FlipPlace& place = *request_.layout.flip_place;
+      const skills::FlipPlace& place = *request_.layout.flip_place;
       const Pose X_next =
-          is_done ? goal() : Pose{orientation_before_flip(X_WP_.R, next_up, place.direction), place.p_WF};
-      const PickKind first = is_first() ? PickKind::First : PickKind::FromAfar;
-      if (!pick_from_above(X_next, round > 0 ? PickKind::FromAbove : first) || is_done) break;
+          is_done ? goal() : Pose{skills::orientation_before_flip(X_WP_.R, next_up, place.direction), place.p_WF};
+      const skills::PickKind first = is_first() ? skills::PickKind::First : skills::PickKind::FromAfar;
+      if (!pick_from_above(X_next, round > 0 ? skills::PickKind::FromAbove : first) || is_done) break;
       if (round >= 2) {
         grasp_.problem = GraspProblem::DoesNotStand;
         break;
@@ -236,8 +236,8 @@ class GraspPlanner {
   /// One quarter turn over an edge, let go.
   void turn_over(const Vector3& up_P) {
     execute(plan_flip(request_.scenario, request_.box, *request_.layout.flip_place,
-                      orientation_before_flip(X_WP_.R, up_P, request_.layout.flip_place->direction), grasp_.X_PS,
-                      travel_));
+                      skills::orientation_before_flip(X_WP_.R, up_P, request_.layout.flip_place->direction),
+                      grasp_.X_PS, travel_));
     look();
   }
 
@@ -254,7 +254,7 @@ class GraspPlanner {
       grasp_.states.push_back(rollout.state());
       if (i == 0) continue;
       const std::optional<Pose> X_WP = rollout.pose_of(request_.box.item);
-      const bool is_good = rollout.is_held(request_.box.item) && X_WP && angle_between(X_WP->R, R_WP) < kUpright;
+      const bool is_good = rollout.is_held(request_.box.item) && X_WP && angle_between(X_WP->R, R_WP) < max_lean();
       all += request_.weights[i];
       if (is_good) good += request_.weights[i];
     }
@@ -304,19 +304,20 @@ const char* describe(GraspProblem problem) {
   return "";
 }
 
-bool is_upright(const Matrix3& R_WP) { return R_WP.row(2).cwiseAbs().maxCoeff() > std::cos(kUpright); }
+bool is_upright(const Matrix3& R_WP, double max_lean) { return R_WP.row(2).cwiseAbs().maxCoeff() > std::cos(max_lean); }
 
 Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation) {
   const GraspPlanner first(request, orientation);
-  std::vector<Reorientation> ways{Reorientation::SideGrasp, Reorientation::Regrasp, Reorientation::Pivot};
-  if (first.stands()) ways = {Reorientation::None};
-  if (first.is_upside_down()) ways = {Reorientation::Pivot};
+  std::vector<skills::Reorientation> ways{skills::Reorientation::SideGrasp, skills::Reorientation::Regrasp,
+                                          skills::Reorientation::Pivot};
+  if (first.stands()) ways = {skills::Reorientation::None};
+  if (first.is_upside_down()) ways = {skills::Reorientation::Pivot};
   Grasp best;
   best.orientation = orientation;
   best.problem = GraspProblem::NoSurface;
   best.episodes.resize(request.rollouts.size());
   bool is_first = true;
-  for (const Reorientation way : ways) {
+  for (const skills::Reorientation way : ways) {
     GraspPlanner planner(request, orientation);
     if (!planner.make(way)) continue;
     Grasp grasp = planner.take();

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "snug/packing/item.hpp"
-#include "snug/session/item_plan.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/session/rollout.hpp"
+#include "snug/skills/item_plan.hpp"
 
 namespace snug::session {
 
@@ -39,9 +39,9 @@ enum class GraspProblem {
 struct Grasp {
   packing::Orientation orientation;  ///< asked for
   /// As it hangs: the same space, but perhaps the other end up (the place of the centre of mass then the same), or
-  /// turned by half a turn (CellLayout::is_fast).
+  /// turned by half a turn (skills::CellLayout::is_fast).
   packing::Orientation held_as;
-  Reorientation reorientation = Reorientation::None;
+  skills::Reorientation reorientation = skills::Reorientation::None;
   GraspProblem problem = GraspProblem::None;
   motion::Program program;
   std::vector<std::size_t> looks;       ///< so many waypoints are done when the box is let go on the way: look there
@@ -56,12 +56,12 @@ struct Grasp {
 
 struct GraspRequest {
   const model::Scenario& scenario;  ///< nominal
-  const CellLayout& layout;
+  const skills::CellLayout& layout;
   std::span<const std::unique_ptr<Rollout>> rollouts;  ///< the first is the nominal one
   std::span<const cell::CellState> states;             ///< rollout by rollout: from here
   std::span<const double> weights;                     ///< rollout by rollout; the first is not used
   motion::Waypoint from;                               ///< where the tool is
-  const PlannedBox& box;
+  const skills::PlannedBox& box;
   Pose X_WP;  ///< where it is believed to stand
   Location location = Location::Aligner;
   double packed_top = 0.0;  ///< m, z in T of the highest box in the container
@@ -71,7 +71,7 @@ struct GraspRequest {
 /// The first reorientation with which the box is held in every rollout, or the one that does so in most.
 [[nodiscard]] Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation);
 
-/// Standing on one of its faces, so that it can be picked from above.
-[[nodiscard]] bool is_upright(const Matrix3& R_WP);
+/// Standing on one of its faces, or leaning by at most `max_lean` [rad], so that it can be picked from above.
+[[nodiscard]] bool is_upright(const Matrix3& R_WP, double max_lean);
 
 }  // namespace snug::session

@@ -2,18 +2,26 @@
 #include "snug/session/item_seconds.hpp"
 
 #include <algorithm>
-#include <string_view>
 
 namespace snug::session {
 namespace {
 
 double& part_of(const motion::Waypoint& waypoint, ItemSeconds& seconds) {
-  const std::string_view name = waypoint.name;
-  for (const char* prefix : {"Twist", "PreTwist", "RePick", "PreRePick", "PostRePick"}) {
-    if (name.starts_with(prefix)) return seconds.regrasp;
+  switch (waypoint.motion_class) {
+    case motion::MotionClass::PreTwist:
+    case motion::MotionClass::Twist:
+    case motion::MotionClass::TwistDrag:
+    case motion::MotionClass::PreRePick:
+    case motion::MotionClass::RePick:
+    case motion::MotionClass::PostRePick:
+      return seconds.regrasp;
+    case motion::MotionClass::PlaceSlow:
+      return seconds.push;
+    case motion::MotionClass::Place:
+      return seconds.insert;
+    default:
+      break;
   }
-  if (name.starts_with("PlaceSlow")) return seconds.push;
-  if (name.starts_with("Place")) return seconds.insert;
   return waypoint.io.vacuum ? seconds.carry : seconds.travel;
 }
 

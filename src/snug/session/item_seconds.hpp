@@ -21,7 +21,7 @@ struct ItemSeconds {
   bool operator==(const ItemSeconds&) const = default;
 };
 
-/// Of one motion, by the names of its waypoints. `times`: at most one for each waypoint.
+/// Of one motion, by the classes of its waypoints. `times`: at most one for each waypoint.
 [[nodiscard]] ItemSeconds split_seconds(std::span<const motion::Waypoint> waypoints,
                                         std::span<const plant::WaypointTime> times);
 

@@ -7,27 +7,18 @@
 #include <utility>
 
 #include "snug/cell/drawn_scenario.hpp"
+#include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/stopwatch.hpp"
-#include "snug/motion/primitives.hpp"
 #include "snug/session/reach.hpp"
-#include "snug/session/surroundings.hpp"
+#include "snug/skills/primitives.hpp"
+#include "snug/skills/surroundings.hpp"
 
 namespace snug::session {
 namespace {
 
-constexpr double kAtAligner = 0.05;   ///< m, from where it was seen to arrive, level: still against the plates
-constexpr double kOnBench = 0.20;     ///< m, level, from the middle of the surface where boxes are turned
-constexpr double kOnSurface = 0.03;   ///< m, of its lower face over that surface
-constexpr double kLiesOn = 0.005;     ///< m, an obstacle that shares less with a box in plan view is beside it
-constexpr double kFootprint = 0.030;  ///< m, a middle so far beyond the walls still is the container's affair
-/// Success expected of a motion before anything is rehearsed, and of how many rollouts that is worth. From sessions in
-/// plants 101 and up.
-constexpr double kPriorRate = 0.97;
-constexpr double kPriorCount = 4.0;
-
 const model::Scenario& checked(const model::Scenario& scenario, const std::string& sequence) {
-  (void)make_layout(scenario);  // says what is missing
+  (void)skills::make_layout(scenario, cell::find_pan_axis(scenario));  // says what is missing
   if (model::find_sequence(scenario, sequence) == nullptr) {
     throw InputError(scenario.source_name, "--sequence", "'" + sequence + "'", "a sequence of the scenario");
   }
@@ -37,9 +28,8 @@ const model::Scenario& checked(const model::Scenario& scenario, const std::strin
 BeliefSettings settings_of(const SessionOptions& options) {
   BeliefSettings settings;
   settings.samples = options.samples;
-  settings.seed = options.packing.seed;
+  settings.seed = options.decision.seed;
   settings.threads = options.threads;
-  settings.coarse_steps = options.coarse_steps;
   settings.simulation = options.simulation;
   return settings;
 }
@@ -50,12 +40,13 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
                plant::Plant& plant)
     : scenario_(checked(scenario, sequence)),
       options_(options),
+      limits_(scenario.place_limits),
       plant_(plant),
-      layout_(make_layout(scenario)),
+      layout_(skills::make_layout(scenario, cell::find_pan_axis(scenario))),
       reaches_(make_tool_reach(scenario)),
       belief_(scenario, sequence, settings_of(options)),
       items_(packing::make_items(belief_.nominal(), belief_.sequence())),
-      skips_left_(options.skips),
+      skips_left_(options.skips.value_or(scenario.recovery.skips)),
       robot_(plant.read()) {
   const Matrix3 R_AW = scenario.aligner->X_WA.R.transpose();
   for (std::size_t i = 0; i < items_.size(); ++i) {
@@ -66,13 +57,13 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
   const bool is_fast = options.simulation.controller == motion::ControllerKind::Fast;
   layout_.is_fast = is_fast;
   if (is_fast) sent_.tempo = options.simulation.tempo;
-  if (!is_fast) options_.limits.hold_factor = options_.limits.hold_guard = 0.0;
+  if (!is_fast) limits_.hold_factor = limits_.hold_guard = 0.0;
 }
 
 packing::ContainerState Packer::container_state() const {
   packing::ContainerState state = packing::make_container_state(*model::find_container(scenario_, scenario_.target));
   const Pose X_TW = layout_.X_WT.inverse();
-  const Vector3 half = 0.5 * state.inner_size + Vector3::Constant(kFootprint);
+  const Vector3 half = 0.5 * state.inner_size + Vector3::Constant(scenario_.recovery.footprint);
   for (const int item : order_) {
     const std::optional<BelievedBox>& box = belief_.box(item);
     if (!box) continue;
@@ -100,7 +91,7 @@ bool Packer::is_under_obstacle(int item) const {
       {items_[static_cast<std::size_t>(item)], layout_.X_WT.inverse() * belief_.box(item)->X_WP});
   return std::ranges::any_of(obstacle_extents(), [&](const packing::Extent& one) {
     const Vector3 shared = box.high.cwiseMin(one.high) - box.low.cwiseMax(one.low);
-    return shared.head<2>().minCoeff() > kLiesOn && one.high.z() > box.high.z();
+    return shared.head<2>().minCoeff() > scenario_.recovery.under_obstacle && one.high.z() > box.high.z();
   });
 }
 
@@ -117,7 +108,7 @@ double Packer::obstacle_top(int item) const {
 }
 
 cell::ContainerFit Packer::fit_of(int item, const Pose& X_WP) const {
-  const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const Vector3 inner = model::find_container(scenario_, scenario_.target)->inner_size;
   return cell::fit_in(inner, box.size, layout_.X_WT.inverse() * X_WP);
 }
@@ -145,7 +136,7 @@ perception::Observation Packer::take_picture(std::span<const perception::Expecta
     at.trouble = is_blocked ? Trouble::ViewBlocked : Trouble::BadPicture;
     at.is_held = stays || is_holding();
     ++at.pictures;
-    const Remedy remedy = choose_remedy(at);
+    const Remedy remedy = choose_remedy(at, scenario_.recovery);
     report.recoveries.push_back({robot_.time, report.id, at.trouble, remedy, {}});
     if (remedy == Remedy::Stop) stop_reason_ = StopReason::ViewBlocked;
     if (remedy == Remedy::Stop || remedy == Remedy::Believe) break;
@@ -191,29 +182,32 @@ void Packer::look(ItemReport& report, bool stays) {
 Location Packer::locate(int item) const {
   const Pose& X_WP = belief_.box(item)->X_WP;
   const Pose arrival = cell::arrival_pose(belief_.nominal(), belief_.sequence().items[static_cast<std::size_t>(item)]);
-  if ((X_WP.p - arrival.p).norm() < kAtAligner && is_upright(X_WP.R)) return Location::Aligner;
+  if ((X_WP.p - arrival.p).norm() < scenario_.recovery.at_aligner && is_upright(X_WP.R, scenario_.skills.pick.max_lean))
+    return Location::Aligner;
   const Vector3 p_TP = layout_.X_WT.inverse() * X_WP.p;
   const Vector3 half = 0.5 * model::find_container(scenario_, scenario_.target)->inner_size;
-  if (std::abs(p_TP.x()) < half.x() + kFootprint && std::abs(p_TP.y()) < half.y() + kFootprint) {
+  if (std::abs(p_TP.x()) < half.x() + scenario_.recovery.footprint &&
+      std::abs(p_TP.y()) < half.y() + scenario_.recovery.footprint) {
     return Location::Container;
   }
   if (layout_.flip_place) {
-    const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+    const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
     const Vector3 off = X_WP.p - layout_.flip_place->p_WF;
-    const double bottom = off.z() + motion::lowest_corner(X_WP.R, box.size);
-    if (off.head<2>().norm() < kOnBench && std::abs(bottom) < kOnSurface) return Location::Bench;
+    const double bottom = off.z() + skills::lowest_corner(X_WP.R, box.size);
+    if (off.head<2>().norm() < scenario_.recovery.on_bench && std::abs(bottom) < scenario_.recovery.on_surface)
+      return Location::Bench;
   }
   return Location::Elsewhere;
 }
 
 bool Packer::can_be_picked(int item) const {
   const std::optional<BelievedBox>& box = belief_.box(item);
-  if (!box || !is_upright(box->X_WP.R) || is_under_obstacle(item)) return false;
+  if (!box || !is_upright(box->X_WP.R, scenario_.skills.pick.max_lean) || is_under_obstacle(item)) return false;
   if (!reaches_) return true;
-  const PlannedBox planned = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const skills::PlannedBox planned = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP,
-                              travel_bottom(layout_, obstacle_top(item)), PickKind::FromAfar);
-  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_({row.X_WE, row.X_WE}); });
+                              travel_bottom(layout_, obstacle_top(item)), skills::PickKind::FromAfar);
+  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_({row.X_WE(), row.X_WE()}); });
 }
 
 /// Percent in the end, on average, when this share of the worlds goes well and the others end here.
@@ -223,9 +217,10 @@ double Packer::utility_of(const packing::Candidate& candidate, double rate) cons
 }
 
 bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
+  const model::RehearsalSettings& settings = scenario_.rehearsal;
   const double rate = best ? best->success_rate : -1.0;
-  return rate >= options_.accepted_rate || attempts >= options_.most_attempts ||
-         (attempts >= options_.max_attempts && rate >= options_.good_rate);
+  return rate >= settings.accepted_rate || attempts >= settings.most_attempts ||
+         (attempts >= settings.max_attempts && rate >= settings.good_rate);
 }
 
 std::optional<Attempt> Packer::best_attempt(int item, Location location,
@@ -233,7 +228,7 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
   packing::ContainerState state = container_state();
   std::erase_if(state.boxes, [&](const packing::PlacedBox& box) { return box.item.id == report.id; });
   const double top = obstacle_top(item);
-  Rehearsal rehearsal(belief_, layout_, reaches_, options_.limits, options_.least_rate, options_.threads,
+  Rehearsal rehearsal(belief_, layout_, reaches_, limits_, options_.threads,
                       {item, belief_.box(item)->X_WP, location, robot_});
   std::optional<Attempt> best;
   double best_utility = 0.0;
@@ -241,9 +236,10 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
   const int before = report.attempts;  // when it was planned before
   for (const packing::Candidate& candidate : candidates) {
     if (best && best_utility >= utility_of(candidate, 1.0)) break;
-    const packing::Candidate placed =
-        measured(state, candidate, items_[static_cast<std::size_t>(item)].size, clearance);
-    for (const Insertion& insertion : choose_insertions(placed, rehearsal.box().size)) {
+    const packing::Candidate placed = skills::measured(state, candidate, items_[static_cast<std::size_t>(item)].size,
+                                                       clearance, scenario_.skills.insertion);
+    for (const skills::Insertion& insertion :
+         skills::choose_insertions(placed, rehearsal.box().size, scenario_.skills.insertion)) {
       if (is_enough(best, report.attempts - before)) break;
       Attempt attempt = rehearsal.attempt(placed, insertion, top);
       report.attempts += attempt.was_rehearsed ? 1 : 0;
@@ -262,7 +258,7 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
     }
     if (is_enough(best, report.attempts - before)) break;
   }
-  if (best && best->success_rate < options_.least_rate) best.reset();
+  if (best && best->success_rate < scenario_.rehearsal.least_rate) best.reset();
   return best;
 }
 
@@ -306,9 +302,10 @@ std::optional<Packer::Planned> Packer::plan(int item, const Decide& decide, Item
   report.samples = best->samples;
   report.success_rate = best->success_rate;
   report.predicted_success =
-      (best->success_rate * best->samples + kPriorRate * kPriorCount) / (best->samples + kPriorCount);
+      (best->success_rate * best->samples + scenario_.rehearsal.prior_rate * scenario_.rehearsal.prior_count) /
+      (best->samples + scenario_.rehearsal.prior_count);
   report.predicted = best->predicted;
-  return Planned{std::move(*best), make_planned_box(belief_.nominal(), belief_.sequence(), item)};
+  return Planned{std::move(*best), skills::make_planned_box(belief_.nominal(), belief_.sequence(), item)};
 }
 
 }  // namespace snug::session

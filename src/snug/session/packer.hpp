@@ -30,7 +30,7 @@ class Packer {
          plant::Plant& plant);
 
   [[nodiscard]] const std::vector<packing::Item>& items() const { return items_; }
-  [[nodiscard]] const CellLayout& layout() const { return layout_; }
+  [[nodiscard]] const skills::CellLayout& layout() const { return layout_; }
   [[nodiscard]] const Belief& belief() const { return belief_; }
   /// What is believed to be in the container.
   [[nodiscard]] packing::ContainerState container_state() const;
@@ -57,7 +57,7 @@ class Packer {
  private:
   struct Planned {
     Attempt attempt;
-    PlannedBox box;
+    skills::PlannedBox box;
   };
   [[nodiscard]] int index_of(const std::string& id) const;
   /// `stays`: the tool does not leave for a picture that something blocks.
@@ -115,8 +115,9 @@ class Packer {
 
   model::Scenario scenario_;
   SessionOptions options_;
+  model::PlaceLimits limits_;  ///< of the motions that are done: fast or not
   plant::Plant& plant_;
-  CellLayout layout_;
+  skills::CellLayout layout_;
   ToolReach reaches_;
   Belief belief_;
   std::vector<packing::Item> items_;

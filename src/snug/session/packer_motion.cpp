@@ -6,21 +6,15 @@
 #include <numbers>
 #include <utility>
 
-#include "snug/motion/primitives.hpp"
-#include "snug/motion/row_name.hpp"
 #include "snug/plant/motion_watch.hpp"
 #include "snug/session/packer.hpp"
-#include "snug/session/surroundings.hpp"
+#include "snug/skills/primitives.hpp"
+#include "snug/skills/surroundings.hpp"
 
 namespace snug::session {
 namespace {
 
-constexpr double kLiesTurned = 0.25 * std::numbers::pi;  ///< rad, from what was planned
-constexpr double kAsRehearsed = 0.004;       ///< m, from where the nominal rollout let the box go on the way
-constexpr double kTurnedAsRehearsed = 0.05;  ///< rad
-/// m: edges that differ by more are another item's. Tapes and damp make 2 mm of the demonstrator's.
-constexpr double kWrongSize = 0.010;
-constexpr int kMostRounds = 12;  ///< of remedies for one motion
+using motion::MotionClass;
 
 Trouble trouble_of(plant::EndReason reason) {
   switch (reason) {
@@ -85,15 +79,15 @@ bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& rep
       belief_.expect_on_the_way(item, attempt.looked[stage]);
     }
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
-    submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)},
-           {options_.limits.force, true, options_.limits.hold_guard}, report);
+    submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)}, {limits_.force, true, limits_.hold_guard},
+           report);
     if (robot_.end.reason != plant::EndReason::Completed || is_last) return true;
     look(report, true);
     const std::optional<BelievedBox>& box = belief_.box(item);
     const Pose& rehearsed = attempt.looked[stage];
     if (box && box->was_seen &&
-        ((box->X_WP.p - rehearsed.p).norm() > kAsRehearsed + slack_of(*box) ||
-         angle_between(box->X_WP.R, rehearsed.R) > kTurnedAsRehearsed)) {
+        ((box->X_WP.p - rehearsed.p).norm() > scenario_.recovery.as_rehearsed + slack_of(*box) ||
+         angle_between(box->X_WP.R, rehearsed.R) > scenario_.recovery.turned_as_rehearsed)) {
       return false;
     }
     begin = end;
@@ -128,30 +122,27 @@ Trouble Packer::assess(int item, const packing::Placement& planned, const std::v
   }
   report.happened.displacement = std::max(0.0, moved);
   if (locate(item) != Location::Container) return Trouble::OffPlace;  // nothing there is to be pressed on
-  if (tilt_of(X_TP) > options_.limits.tilt) return Trouble::Leaning;
+  if (tilt_of(X_TP) > limits_.tilt) return Trouble::Leaning;
   if (who_sticks_out(item) >= 0) return Trouble::SticksOut;
-  if (report.position_error > options_.limits.position || report.angle_error > options_.limits.tilt) {
+  if (report.position_error > limits_.position || report.angle_error > limits_.tilt) {
     return Trouble::OffPlace;
   }
-  return moved > options_.limits.displacement ? Trouble::NeighbourMoved : Trouble::None;
+  return moved > limits_.displacement ? Trouble::NeighbourMoved : Trouble::None;
 }
 
 bool Packer::is_holding() const {
-  return robot_.io.vacuum && robot_.pressure_gauge < plant::kNeededVacuum * scenario_.cup.vacuum.pressure_gauge_hold;
+  return robot_.io.vacuum &&
+         robot_.pressure_gauge < scenario_.motion_guards.needed_vacuum * scenario_.cup.vacuum.pressure_gauge_hold;
 }
 
 void Packer::retreat(const std::string& id, ItemReport& report) {
   belief_.doubt_prediction();
   if (is_holding() || robot_.end.reason == plant::EndReason::VacuumLost) let_go_ = index_of(id);
   const double travel = travel_bottom(layout_, obstacle_top(-1));
-  motion::Waypoint up;
-  up.X_WE = robot_.X_WE;
-  up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + scenario_.cup.free_length + 0.02);
-  up.name = motion::row_name("PostPlace", id, "_retreat");
-  motion::Waypoint let_go = up;
-  let_go.X_WE.p.z() = robot_.X_WE.p.z();
-  let_go.io.blow_off = true;
-  let_go.name = motion::row_name("Place", id, "_release");
+  motion::Waypoint up = motion::make_waypoint(MotionClass::PostPlace, id, robot_.X_WE, {}, "_retreat");
+  up.p_WE.z() = std::max(up.p_WE.z(), travel + scenario_.cup.free_length + scenario_.skills.travel.retreat);
+  const motion::Waypoint let_go =
+      motion::make_waypoint(MotionClass::Place, id, robot_.X_WE, {.blow_off = true}, "_release");
   plant_.acknowledge();
   submit(id, {let_go, up}, {std::nullopt, false}, report);
 }
@@ -186,12 +177,11 @@ Trouble Packer::find_trouble(int item, const packing::Placement& planned,
 Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& report) const {
   Situation at;
   at.trouble = trouble;
-  at.most_tries = options_.most_tries;
   at.tries = static_cast<int>(report.sends.size());
   at.is_held = is_holding();
   at.can_set_down = layout_.flip_place.has_value();
   at.fits = belief_.box(item) && fit_of(item, belief_.box(item)->X_WP).is_in && who_sticks_out(item) < 0;
-  at.lies_turned = report.angle_error > kLiesTurned;
+  at.lies_turned = report.angle_error > scenario_.recovery.lies_turned;
   at.can_be_picked = can_be_picked(item);
   return at;
 }
@@ -199,14 +189,14 @@ Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& repo
 void Packer::resume(const std::string& id, ItemReport& report) {
   plant_.acknowledge();
   const std::vector<motion::Waypoint> rest(last_.begin() + std::max(0, robot_.end.waypoint), last_.end());
-  submit(id, rest, {options_.limits.force, true, options_.limits.hold_guard}, report);
+  submit(id, rest, {limits_.force, true, limits_.hold_guard}, report);
 }
 
 void Packer::press(int item, ItemReport& report) {
-  const PlannedBox box = make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const double travel = travel_bottom(layout_, obstacle_top(-1));
   submit(box.id, plan_press(belief_.nominal(), layout_, box, belief_.box(item)->X_WP, travel),
-         {options_.press_force, false}, report);
+         {scenario_.skills.press.force, false}, report);
   // The force that ends a press is what was asked for.
   if (robot_.end.reason == plant::EndReason::ForceGuard) retreat(box.id, report);
 }
@@ -214,16 +204,14 @@ void Packer::press(int item, ItemReport& report) {
 void Packer::set_down(const Planned& planned, ItemReport& report) {
   belief_.doubt_prediction();
   let_go_ = planned.box.item;
-  const PlannedBox& box = planned.box;
+  const skills::PlannedBox& box = planned.box;
   const Matrix3 R_WP = layout_.X_WT.R * planned.attempt.planned.X_TP.R;
   const double travel = travel_bottom(layout_, obstacle_top(-1));
-  motion::Waypoint here;
-  here.X_WE = robot_.X_WE;
-  here.io.vacuum = true;
-  here.name = motion::row_name("PostPick", box.id, "_up");
+  const motion::Waypoint here =
+      motion::make_waypoint(MotionClass::PostPick, box.id, robot_.X_WE, {.vacuum = true}, "_up");
   motion::Waypoint up = here;
-  const double hanging = -2.0 * motion::lowest_corner(R_WP, box.size) + scenario_.cup.hold_length;
-  up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + hanging);
+  const double hanging = -2.0 * skills::lowest_corner(R_WP, box.size) + scenario_.cup.hold_length;
+  up.p_WE.z() = std::max(up.p_WE.z(), travel + hanging);
   std::vector<motion::Waypoint> rows{up};
   const auto down = plan_set_down(belief_.nominal(), box, *layout_.flip_place, R_WP, planned.attempt.X_PS, travel);
   rows.insert(rows.end(), down.begin(), down.end());
@@ -258,7 +246,7 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
   bool was_pressed = false;
   const packing::Placement goal = planned.attempt.planned;
   Trouble trouble = find_trouble(item, goal, before, report);
-  for (int round = 0; round < kMostRounds && trouble != Trouble::None; ++round) {
+  for (int round = 0; round < scenario_.recovery.most_rounds && trouble != Trouble::None; ++round) {
     if (report.sends.back().trouble == Trouble::None) report.sends.back().trouble = trouble;
     // It may be another box that sticks out: then that is pressed, or taken out and packed anew.
     const int culprit = trouble == Trouble::SticksOut ? who_sticks_out(item) : item;
@@ -266,7 +254,7 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
     Situation at = situation_of(culprit, trouble, report);
     at.stops = stops;
     at.was_pressed = was_pressed || (belief_.box(culprit) && is_under_obstacle(culprit));
-    const Remedy remedy = choose_remedy(at);
+    const Remedy remedy = choose_remedy(at, scenario_.recovery);
     const bool is_of_motion = trouble_of(robot_.end.reason) == trouble;
     std::string detail = is_of_motion ? plant::describe(robot_.end, last_) : std::string();
     if (culprit != item) detail = items_[static_cast<std::size_t>(culprit)].id;
@@ -341,9 +329,9 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
   if (stop_reason_) {
     report.end = ItemEnd::NotHeld;
     report.reason = name_of(*stop_reason_);
-  } else if (!is_gone(report.id) && size_off(item) > kWrongSize) {
+  } else if (!is_gone(report.id) && size_off(item) > scenario_.recovery.wrong_size) {
     report.recoveries.push_back({robot_.time, report.id, Trouble::WrongItem,
-                                 choose_remedy({.trouble = Trouble::WrongItem}),
+                                 choose_remedy({.trouble = Trouble::WrongItem}, scenario_.recovery),
                                  fmt::format("edges differ by up to {:.0f} mm", 1e3 * size_off(item))});
     report.end = ItemEnd::WrongItem;
     report.reason = report.recoveries.back().detail;
@@ -368,7 +356,7 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
     is_whole = send(planned->attempt, report.id, report);
     report.sends.back().end = robot_.end;
     if (!is_whole) {  // planned anew from where the box stands: the loop closed, nothing went wrong
-      again = report.attempts < 3 * options_.most_attempts;
+      again = report.attempts < 3 * scenario_.rehearsal.most_attempts;
       if (again) continue;
       report.reason = "it does not come to stand as it was rehearsed";
       leave(item, report);
@@ -387,12 +375,8 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
 }
 
 void Packer::move_home(ItemReport& report) {
-  motion::Waypoint home;
-  home.X_WE = scenario_.controller.X_WE_start;
-  home.name = "home";
-  motion::Waypoint from;
-  from.X_WE = robot_.X_WE;
-  from.name = "home";
+  const motion::Waypoint home = motion::make_waypoint(MotionClass::Home, {}, scenario_.controller.X_WE_start);
+  const motion::Waypoint from = motion::make_waypoint(MotionClass::Home, {}, robot_.X_WE);
   motion::Program rows;
   append(rows, drivable(layout_, from, {home}));
   submit("", rows.waypoints, {std::nullopt, false}, report);

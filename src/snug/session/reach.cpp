@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
 #include "snug/robot/inverse.hpp"
 #include "snug/robot/load_arm.hpp"
 
@@ -17,20 +17,23 @@ constexpr int kLooks = 16;  ///< along a way
 
 class Reach {
  public:
-  Reach(const model::Scenario& scenario, CellLayout layout, const model::Sequence& sequence, ToolReach reaches)
-      : layout_(std::move(layout)), cup_(scenario.cup), reaches_(std::move(reaches)) {
+  Reach(const model::Scenario& scenario, skills::CellLayout layout, const model::Sequence& sequence, ToolReach reaches)
+      : layout_(std::move(layout)),
+        cup_(scenario.cup),
+        seal_margin_(scenario.skills.pick.seal_margin),
+        reaches_(std::move(reaches)) {
     for (std::size_t i = 0; i < sequence.items.size(); ++i) {
-      boxes_[sequence.items[i].parcel] = make_planned_box(scenario, sequence, static_cast<int>(i));
+      boxes_[sequence.items[i].parcel] = skills::make_planned_box(scenario, sequence, static_cast<int>(i));
     }
   }
 
   [[nodiscard]] bool can(const packing::Placement& placement) const {
     const auto found = boxes_.find(placement.item);
     if (found == boxes_.end()) return true;
-    const PlannedBox& box = found->second;
+    const skills::PlannedBox& box = found->second;
     const Pose X_WP = layout_.X_WT * placement.X_TP;
-    const double height = -2.0 * motion::lowest_corner(X_WP.R, box.size);
-    Pose X_WE{motion::upright_tool(layout_.neutral_yaw), X_WP.p + X_WP.R * cup_offset(cup_, box, X_WP.R)};
+    const double height = -2.0 * skills::lowest_corner(X_WP.R, box.size);
+    Pose X_WE{motion::upright_tool(layout_.neutral_yaw), X_WP.p + X_WP.R * cup_offset(cup_, seal_margin_, box, X_WP.R)};
     for (const double bottom : {X_WP.p.z() - 0.5 * height, travel_bottom(layout_, 0.0)}) {
       X_WE.p.z() = bottom + height + cup_.hold_length;
       if (!reaches_({X_WE, X_WE})) return false;
@@ -39,10 +42,11 @@ class Reach {
   }
 
  private:
-  CellLayout layout_;
+  skills::CellLayout layout_;
   model::CupParams cup_;
+  double seal_margin_;
   ToolReach reaches_;
-  std::map<std::string, PlannedBox> boxes_;
+  std::map<std::string, skills::PlannedBox> boxes_;
 };
 
 }  // namespace
@@ -65,7 +69,8 @@ ToolReach make_tool_reach(const model::Scenario& scenario) {
   };
 }
 
-std::function<bool(const packing::Placement&)> make_reach(const model::Scenario& scenario, const CellLayout& layout,
+std::function<bool(const packing::Placement&)> make_reach(const model::Scenario& scenario,
+                                                          const skills::CellLayout& layout,
                                                           const model::Sequence& sequence) {
   auto reaches = make_tool_reach(scenario);
   if (!reaches) return {};

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "snug/motion/way.hpp"
-#include "snug/session/item_plan.hpp"
+#include "snug/skills/item_plan.hpp"
 
 namespace snug::session {
 
@@ -20,7 +20,7 @@ using ToolReach = std::function<bool(const motion::Way&)>;
 /// are not looked at: the simulated arm and `snug check` do that. Empty without a robot, and where its file is not
 /// there.
 [[nodiscard]] std::function<bool(const packing::Placement&)> make_reach(const model::Scenario& scenario,
-                                                                        const CellLayout& layout,
+                                                                        const skills::CellLayout& layout,
                                                                         const model::Sequence& sequence);
 
 }  // namespace snug::session

@@ -4,10 +4,8 @@
 namespace snug::session {
 namespace {
 
-constexpr int kMostPictures = 3;  ///< that tell nothing, one after the other
-
-Remedy where_it_lies(const Situation& at) {
-  const bool may_pick = at.can_be_picked && at.tries < at.most_tries;
+Remedy where_it_lies(const Situation& at, const model::RecoverySettings& settings) {
+  const bool may_pick = at.can_be_picked && at.tries < settings.most_tries;
   if (at.fits) return at.lies_turned && may_pick ? Remedy::PickAgain : Remedy::Accept;
   return may_pick ? Remedy::PickAgain : Remedy::Skip;
 }
@@ -82,7 +80,7 @@ const char* name_of(Remedy remedy) {
   return "";
 }
 
-Remedy choose_remedy(const Situation& at) {
+Remedy choose_remedy(const Situation& at, const model::RecoverySettings& settings) {
   switch (at.trouble) {
     case Trouble::None:
       return Remedy::None;
@@ -90,28 +88,28 @@ Remedy choose_remedy(const Situation& at) {
       return Remedy::Stop;
     case Trouble::ProtectiveStop:
       if (at.stops == 1 && at.is_held) return Remedy::Resume;
-      return at.stops <= 3 ? Remedy::Release : Remedy::Stop;
+      return at.stops <= settings.most_stops ? Remedy::Release : Remedy::Stop;
     case Trouble::ForceGuard:
     case Trouble::HoldGuard:
     case Trouble::Timeout:
-      return at.is_held && at.can_set_down && at.tries < at.most_tries ? Remedy::SetDown : Remedy::Release;
+      return at.is_held && at.can_set_down && at.tries < settings.most_tries ? Remedy::SetDown : Remedy::Release;
     case Trouble::NoSeal:
     case Trouble::VacuumLost:
     case Trouble::OffPlace:
-      return where_it_lies(at);
+      return where_it_lies(at, settings);
     case Trouble::Leaning:
     case Trouble::SticksOut:
       if (!at.was_pressed) return Remedy::PressLevel;
-      return where_it_lies(at);
+      return where_it_lies(at, settings);
     case Trouble::NeighbourMoved:
       return Remedy::Accept;
     case Trouble::Gone:
     case Trouble::WrongItem:
       return Remedy::Skip;
     case Trouble::BadPicture:
-      return at.pictures < kMostPictures ? Remedy::LookAgain : Remedy::Believe;
+      return at.pictures < settings.most_pictures ? Remedy::LookAgain : Remedy::Believe;
     case Trouble::ViewBlocked:
-      if (at.pictures >= kMostPictures) return Remedy::Stop;
+      if (at.pictures >= settings.most_pictures) return Remedy::Stop;
       return at.is_held ? Remedy::LookAgain : Remedy::MoveAway;
   }
   return Remedy::Stop;

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "snug/model/session_settings.hpp"
+
 namespace snug::session {
 
 /// What went wrong, as far as the session can tell from the robot's sensors and from a look.
@@ -46,7 +48,6 @@ enum class Remedy {
 struct Situation {
   Trouble trouble = Trouble::None;
   int tries = 0;               ///< motions that were sent for this item before, this one included
-  int most_tries = 4;          ///< of them
   int stops = 0;               ///< protective stops of this item, this one included
   bool is_held = false;        ///< the vacuum says that something hangs from the cup
   bool can_set_down = false;   ///< there is a bench to put it on
@@ -56,7 +57,7 @@ struct Situation {
   bool was_pressed = false;    ///< since it was let go
   int pictures = 0;            ///< that told nothing, one after the other, this one included
 };
-[[nodiscard]] Remedy choose_remedy(const Situation& situation);
+[[nodiscard]] Remedy choose_remedy(const Situation& situation, const model::RecoverySettings& settings);
 
 /// One that was taken: for the result and the list of events.
 struct Recovery {

@@ -9,13 +9,9 @@
 #include <utility>
 
 #include "snug/core/parallel.hpp"
-#include "snug/motion/fast_settings.hpp"
 
 namespace snug::session {
 namespace {
-
-constexpr double kRestAtEnd = 0.4;  ///< s, after the last waypoint, before the result is looked at
-constexpr int kFirstSamples = 3;    ///< rehearsed before the others: where most of these fail the others are not asked
 
 /// Along the floor.
 double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
@@ -33,16 +29,15 @@ std::string describe_outside(const cell::ContainerFit& fit, bool is_beside, doub
 
 }  // namespace
 
-Rehearsal::Rehearsal(Belief& belief, const CellLayout& layout, const ToolReach& reaches, const PlaceLimits& limits,
-                     double least_rate, int threads, const RehearsalTask& task)
+Rehearsal::Rehearsal(Belief& belief, const skills::CellLayout& layout, const ToolReach& reaches,
+                     const model::PlaceLimits& limits, int threads, const RehearsalTask& task)
     : belief_(belief),
       layout_(layout),
       reaches_(reaches),
       limits_(limits),
-      least_rate_(least_rate),
       threads_(threads),
       task_(task),
-      box_(make_planned_box(belief.nominal(), belief.sequence(), task.item)),
+      box_(skills::make_planned_box(belief.nominal(), belief.sequence(), task.item)),
       rollouts_(belief.take_up(task.robot)) {
   for (const auto& rollout : rollouts_) {
     states_.push_back(rollout->state());
@@ -100,10 +95,10 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
 
 bool Rehearsal::can_follow(const motion::Waypoint& before, std::span<const motion::Waypoint> rows) const {
   if (!layout_.is_fast || !reaches_) return true;
-  const Pose* X_WE = &before.X_WE;
+  Pose X_WE = before.X_WE();
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) {
-    const motion::Way way(*std::exchange(X_WE, &row.X_WE), row.X_WE, layout_.p_WB);
-    return motion::is_contact_row(row.name) || reaches_(way);
+    const Pose X_WE_before = std::exchange(X_WE, row.X_WE());
+    return motion::is_contact(row.motion_class) || reaches_({X_WE_before, X_WE, layout_.pan_axis});
   });
 }
 
@@ -111,10 +106,7 @@ const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double pa
   for (const Grasp& known : grasps_) {
     if (known.orientation == placement.orientation) return known;
   }
-  motion::Waypoint from;
-  from.X_WE = task_.robot.X_WE;
-  from.io = task_.robot.io;
-  from.name = "home";
+  const motion::Waypoint from = motion::make_waypoint(motion::MotionClass::Home, {}, task_.robot.X_WE, task_.robot.io);
   grasps_.push_back(plan_grasp({belief_.nominal(), layout_, rollouts_, states_, belief_.weights(), from, box_,
                                 task_.X_WP, task_.location, packed_top, threads_, reaches_},
                                placement.orientation));
@@ -123,6 +115,7 @@ const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double pa
 
 /// All samples, or the first alone where most of these fail: the rate of such an attempt is below what is ever sent.
 void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Attempt& attempt) const {
+  const model::RehearsalSettings& settings = belief_.nominal().rehearsal;
   const int all = static_cast<int>(rollouts_.size()) - 1;
   std::vector<Outcome> outcomes(static_cast<std::size_t>(all));
   const auto rehearse = [&](int first, int last) {
@@ -140,10 +133,10 @@ void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Att
     }
     attempt.success_rate = weight > 0.0 ? good / weight : 1.0;
   };
-  const int first = std::min(all, kFirstSamples);
+  const int first = std::min(all, settings.first_samples);
   rehearse(0, first);
   count();
-  if (attempt.success_rate >= 0.5 * least_rate_ && first < all) {
+  if (attempt.success_rate >= 0.5 * settings.least_rate && first < all) {
     rehearse(first, all);
     count();
   }
@@ -159,7 +152,7 @@ void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Att
   }
 }
 
-Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion& insertion, double packed_top) {
+Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::Insertion& insertion, double packed_top) {
   Attempt attempt;
   attempt.planned = candidate.placement;
   attempt.skill = insertion.skill;
@@ -182,7 +175,8 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion&
   attempt.X_PS = grasp.X_PS;
   attempt.swing = grasp.swing;
   const motion::Waypoint& last = attempt.program.waypoints.back();
-  const PlaceRequest request{box_, grasp.X_PS, attempt.planned.X_TP, insertion, packed_top, last.X_WE, grasp.X_EP};
+  const skills::PlaceRequest request{box_,        grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
+                                     last.X_WE(), grasp.X_EP};
   const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
   if (!can_follow(last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;
@@ -197,7 +191,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const Insertion&
     rollout.restore(grasp.states[i]);
     Episode episode = grasp.episodes[i];
     merge(episode, rollout.run(attempt.program, {limits_.force, false}));
-    if (episode.is_complete()) merge(episode, rollout.settle(attempt.program, kRestAtEnd));
+    if (episode.is_complete()) merge(episode, rollout.settle(attempt.program, belief_.nominal().rehearsal.rest));
     Outcome outcome = judge(rollout, before_[i], attempt.planned.X_TP);
     outcome.end = episode.end;
     outcome.forces.force = episode.peak_force;

@@ -14,18 +14,6 @@
 
 namespace snug::session {
 
-/// When an item counts as placed.
-struct PlaceLimits {
-  double position = 0.020;                       ///< m, level distance from where it was planned
-  double tilt = 6.0 * std::numbers::pi / 180.0;  ///< rad, from how it was planned
-  double displacement = 0.020;                   ///< m, of a box that was there before
-  double force = 150.0;                          ///< N, of the cup on the box: an attempt is given up
-  /// How many times its load the cup must be able to hold, all the way; of fast motions only. Plants differ from
-  /// rehearsals: more than the 2 that is to be kept.
-  double hold_factor = 2.2;
-  double hold_guard = 2.1;  ///< the same, as sensed in the plant: below, the motion ends
-};
-
 struct AttemptForces {
   double force = 0.0;         ///< N
   double torque = 0.0;        ///< Nm
@@ -56,8 +44,8 @@ struct Attempt {
   bool was_stopped = false;                       ///< by a protective stop of the robot, in the nominal world
   double success_rate = 0.0;                      ///< of the samples, by weight
   int samples = 0;                                ///< that were rehearsed
-  Reorientation reorientation = Reorientation::None;
-  InsertionSkill skill = InsertionSkill::TopDown;
+  skills::Reorientation reorientation = skills::Reorientation::None;
+  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
   packing::Placement planned;
   AttemptForces predicted;  ///< largest of the samples
   AttemptForces nominal;
@@ -80,11 +68,12 @@ struct RehearsalTask {
 class Rehearsal {
  public:
   /// Takes all worlds up where they are believed to be.
-  Rehearsal(Belief& belief, const CellLayout& layout, const ToolReach& reaches, const PlaceLimits& limits,
-            double least_rate, int threads, const RehearsalTask& task);
+  Rehearsal(Belief& belief, const skills::CellLayout& layout, const ToolReach& reaches,
+            const model::PlaceLimits& limits, int threads, const RehearsalTask& task);
 
-  [[nodiscard]] Attempt attempt(const packing::Candidate& candidate, const Insertion& insertion, double packed_top);
-  [[nodiscard]] const PlannedBox& box() const { return box_; }
+  [[nodiscard]] Attempt attempt(const packing::Candidate& candidate, const skills::Insertion& insertion,
+                                double packed_top);
+  [[nodiscard]] const skills::PlannedBox& box() const { return box_; }
 
  private:
   struct Outcome {
@@ -101,13 +90,12 @@ class Rehearsal {
   void rehearse_samples(const std::function<Outcome(int)>& execute, Attempt& attempt) const;
 
   const Belief& belief_;
-  const CellLayout& layout_;
+  const skills::CellLayout& layout_;
   const ToolReach& reaches_;
-  PlaceLimits limits_;
-  double least_rate_;
+  model::PlaceLimits limits_;
   int threads_;
   RehearsalTask task_;
-  PlannedBox box_;
+  skills::PlannedBox box_;
   std::span<const std::unique_ptr<Rollout>> rollouts_;
   std::vector<cell::CellState> states_;  ///< of the rollouts, where they were taken up
   std::vector<std::vector<std::optional<Pose>>> before_;

@@ -23,7 +23,7 @@ void merge(Episode& into, const Episode& episode) {
 }
 
 void append(motion::Program& program, const std::vector<motion::Waypoint>& waypoints) {
-  for (const motion::Waypoint& waypoint : waypoints) program.waypoints.push_back(motion::as_written(waypoint));
+  for (const motion::Waypoint& waypoint : waypoints) program.waypoints.push_back(motion::rounded(waypoint));
 }
 
 Rollout::Rollout(const model::Scenario& scenario, const std::string& sequence, const cell::SimulationOptions& options)
@@ -68,8 +68,11 @@ Episode Rollout::run(const motion::Program& program, const EpisodeLimits& limits
 }
 
 Episode Rollout::settle(const motion::Program& program, double seconds) {
+  return settle(simulation_->prepare(program), seconds);
+}
+
+Episode Rollout::settle(const motion::PreparedProgram& plan, double seconds) {
   Episode episode;
-  const motion::PreparedProgram plan = simulation_->prepare(program);
   const double start = time();
   while (time() < start + seconds && advance(plan, episode)) {
   }
@@ -79,10 +82,11 @@ Episode Rollout::settle(const motion::Program& program, double seconds) {
 
 void Rollout::take_up(const cell::CellAnchor& anchor, double seconds) {
   state_ = simulation_->take_up(anchor);
-  motion::Waypoint still;
-  still.X_WE = state_.controller.command.X_WE;
-  still.name = "home";
-  (void)settle({"still", {still}}, seconds);
+  const Pose& X_WE = state_.controller.command.X_WE;
+  motion::PreparedProgram still =
+      simulation_->prepare({"still", {motion::make_waypoint(motion::MotionClass::Home, {}, X_WE)}});
+  still.X_WE.front() = X_WE;  // without the rounding of a file: the tool stays where it is
+  (void)settle(still, seconds);
   simulation_->stand(state_);
 }
 

@@ -40,7 +40,7 @@ struct EpisodeLimits {
 
 /// The larger peaks, both durations, the first failure.
 void merge(Episode& into, const Episode& episode);
-/// Appends waypoints as they read back from a file: a program that was written runs like the one that was planned.
+/// Appends waypoints, rounded.
 void append(motion::Program& program, const std::vector<motion::Waypoint>& waypoints);
 
 class Rollout {
@@ -66,6 +66,7 @@ class Rollout {
   [[nodiscard]] bool is_held(int item) const;
 
  private:
+  Episode settle(const motion::PreparedProgram& plan, double seconds);
   bool advance(const motion::PreparedProgram& plan, Episode& episode);
 
   std::unique_ptr<cell::Simulation> simulation_;

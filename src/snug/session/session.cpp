@@ -39,9 +39,9 @@ class Session {
 
   SessionResult pack() {
     packing::AgentInput input;
-    input.settings = options_.packing;
-    // Plans that are made on paper first have no other place to try.
-    if (!plans_on_paper(options_)) input.settings.last_interference = options_.last_interference;
+    input.settings = scenario_.packing;
+    input.run = options_.decision;
+    input.run.tries_places = !plans_on_paper(options_);  // plans made on paper first have no other place to try
     input.future = options_.future ? *options_.future : packing::make_future_model(scenario_);
     input.sequence = packer_.items();
     input.ask = options_.ask;

@@ -15,27 +15,16 @@
 
 namespace snug::session {
 
+/// What the caller of a run decides. By what rules is the scenario's.
 struct SessionOptions {
   std::string agent = "contact-aware";
   packing::Ask ask = {};  ///< decides in its place, if set (packing/remote_agent.hpp); `agent` is then its name
-  packing::PackingSettings packing;
-  /// m, of agents that decide as items come (`PackingSettings::last_interference`): 1 mm more than the clearance that
-  /// the demonstrator's boxes have in contact (docs/decisions/0005).
-  double last_interference = 0.003;
-  int threads = 1;             ///< results do not depend on it
-  int samples = 8;             ///< sampled worlds in which every motion is rehearsed beside the nominal one; 0: none
-  double accepted_rate = 1.0;  ///< success rate at which an attempt is sent at once
-  double good_rate = 0.8;      ///< after `max_attempts`
-  double least_rate = 0.5;     ///< below it not even the best attempt is sent
-  int max_attempts = 10;       ///< for an item: candidates times insertions
-  int most_attempts = 24;      ///< where none was good
-  int most_tries = 4;          ///< motions that are sent for one item, those of recoveries included
-  int skips = 2;               ///< items without a place that are skipped before the session ends
-  int coarse_steps = 2;        ///< BeliefSettings::coarse_steps
+  packing::DecisionRun decision;
+  int threads = 1;           ///< results do not depend on it
+  int samples = 8;           ///< sampled worlds in which every motion is rehearsed beside the nominal one; 0: none
+  std::optional<int> skips;  ///< in the place of the scenario's (model::RecoverySettings)
   /// What may follow an item; absent: any parcel of the scenario.
   std::optional<packing::FutureModel> future;
-  PlaceLimits limits;
-  double press_force = 60.0;                                 ///< N, force guard of a press from above
   cell::SimulationOptions simulation = cell::own_motions();  ///< of rollouts
   std::function<bool()> is_interrupted;  ///< asked before every item; true ends the session; may be empty
 };
@@ -66,7 +55,7 @@ struct Send {
 /// A way to bring an item to a place that was rehearsed and did not go well in every rollout.
 struct FailedAttempt {
   packing::Placement planned;
-  InsertionSkill skill = InsertionSkill::TopDown;
+  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
   bool succeeded = false;     ///< in the nominal world; then `success_rate` of the samples is below 1
   double success_rate = 0.0;  ///< of the samples, by weight
   std::string reason;         ///< for people: of the nominal world, else of the first sample that failed
@@ -78,8 +67,8 @@ struct ItemReport {
   std::string reason;  ///< for people, where it is not placed
   packing::Placement planned;
   std::optional<Pose> X_TP;  ///< where it was seen (or is believed to be) in the end
-  Reorientation reorientation = Reorientation::None;
-  InsertionSkill skill = InsertionSkill::TopDown;
+  skills::Reorientation reorientation = skills::Reorientation::None;
+  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
   int flips = 0;
   int attempts = 0;                            ///< that were rehearsed for this item
   std::vector<FailedAttempt> failed_attempts;  ///< of these, in their order

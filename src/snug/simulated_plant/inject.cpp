@@ -113,7 +113,7 @@ bool SimulatedPlant::is_let_go(const motion::PreparedProgram& plan) const {
   if (container == nullptr || !state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) return false;
   const Vector3 p_TP = container->X_WT.inverse() * physics::pose_of(world.model, state_.world, body).p;
   const bool is_in = p_TP.z() > 0.0 && (p_TP.cwiseAbs() - 0.5 * container->inner_size).head<2>().maxCoeff() < 0.0;
-  return is_in && plan.program.waypoints.back().name.starts_with("PostPlace") &&
+  return is_in && plan.program.waypoints.back().motion_class == motion::MotionClass::PostPlace &&
          state_.gripper.cup.body != body.index && state_.controller.phase == motion::ControllerPhase::Finished;
 }
 

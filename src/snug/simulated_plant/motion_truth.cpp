@@ -39,7 +39,9 @@ void MotionWitness::follow_swing(const cell::Simulation& simulation, const cell:
   const int body = state.gripper.cup.body;
   const motion::ToolState& tool = state.arm ? state.arm->machine.tool : state.controller.command;
   const bool is_straight = tool.V_WE.linear.head<2>().norm() < kStill && tool.V_WE.angular.norm() < kStill;
-  if (body < 0 || !row.io.vacuum || !row.name.starts_with("Place") || !is_straight) {
+  const bool is_place =
+      row.motion_class == motion::MotionClass::Place || row.motion_class == motion::MotionClass::PlaceSlow;
+  if (body < 0 || !row.io.vacuum || !is_place || !is_straight) {
     is_inserting_ = false;
     return;
   }

@@ -142,7 +142,10 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
   course.follow(tick.row, simulation_.time(state_), state_.controller.phase == motion::ControllerPhase::Waiting);
   if (watcher_) watcher_(tick);
   inject(plan, course);
-  course.check(motion.guards, plant::kNeededVacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold, reading());
+  course.check(
+      motion.guards,
+      simulation_.scenario().motion_guards.needed_vacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold,
+      reading());
   if (!state_.controller.io.vacuum) state_.gripper.cannot_seal = false;
   if (!tick.failure.empty() && work_.arm.stop) {
     const cell::ProtectiveStop& stop = *work_.arm.stop;
@@ -167,8 +170,7 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWa
     return (state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE).linear.norm();
   };
   const bool is_fast = options_.simulation.controller == motion::ControllerKind::Fast;
-  const double at_least = is_fast ? plant::kExactSettle : plant::kLaggedSettle;
-  while (plant::is_settling(start, simulation_.time(state_), speed(), at_least)) {
+  while (plant::is_settling(simulation_.scenario().motion_guards, !is_fast, start, simulation_.time(state_), speed())) {
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
     objects_.watch(state_, work_);
     if (watcher_) watcher_(tick);
@@ -198,6 +200,7 @@ plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
   simulation_.begin_motion(state_);
   witness_.stand();
   plant::MotionWatch course;
+  course.settings = simulation_.scenario().motion_guards;
   course.begin(reading(), state_.gripper.cup.body >= 0);
   while (advance(motion, plan, course)) {
   }

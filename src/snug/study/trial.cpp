@@ -12,7 +12,7 @@ namespace {
 
 class Scorer {
  public:
-  Scorer(const model::Scenario& scenario, const session::PlaceLimits& limits, const Witness& witness)
+  Scorer(const model::Scenario& scenario, const model::PlaceLimits& limits, const Witness& witness)
       : scenario_(scenario),
         container_(*model::find_container(scenario, scenario.target)),
         limits_(limits),
@@ -61,7 +61,7 @@ class Scorer {
     int count = 0;
     for (const session::ItemReport& item : trial.session.items) {
       const bool is_plain = item.end == session::ItemEnd::Placed && item.sends.size() == 1 && item.recoveries.empty();
-      if (!is_plain || item.reorientation != session::Reorientation::None) continue;
+      if (!is_plain || item.reorientation != skills::Reorientation::None) continue;
       seconds += item.seconds.total();
       ++count;
     }
@@ -91,7 +91,7 @@ class Scorer {
 
   const model::Scenario& scenario_;
   const model::Container& container_;
-  session::PlaceLimits limits_;
+  model::PlaceLimits limits_;
   const Witness& witness_;
   TruePoses before_;
 };
@@ -126,8 +126,8 @@ Witness truth_of(const simulated_plant::SimulatedPlant& plant) {
 Trial run_trial(const model::Scenario& scenario, const std::string& sequence, const session::SessionOptions& session,
                 plant::Plant& plant, const Witness& witness, const TrialProgress& progress) {
   Trial trial;
-  trial.seed = session.packing.seed;
-  Scorer scorer(scenario, session.limits, witness);
+  trial.seed = session.decision.seed;
+  Scorer scorer(scenario, scenario.place_limits, witness);
   const auto after_item = [&](const session::SessionResult& so_far, int item, int items) {
     trial.session = so_far;
     scorer.add(so_far.items.back(), trial);

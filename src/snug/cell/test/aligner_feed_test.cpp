@@ -12,24 +12,29 @@
 
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cup/pick_length.hpp"
-#include "snug/motion/row_name.hpp"
-#include "snug/motion/side_pick.hpp"
-#include "snug/motion/unwinding.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::cell {
 namespace {
 
+/// The item that a waypoint of this name comes for, or -1.
+int find_pick(const model::Sequence& sequence, const std::string& name) {
+  const motion::Waypoint waypoint = motion::parse_waypoint_name(name);
+  return waypoint.motion_class == motion::MotionClass::PrePick ? find_item(sequence, waypoint) : -1;
+}
+
 TEST(FindItem, MatchesTheNumberAfterThePrefix) {
   const model::Sequence& sequence = *model::find_sequence(demonstrator(), "1");
-  EXPECT_EQ(find_item(sequence, "PrePick027", "PrePick"), 0);
-  EXPECT_EQ(find_item(sequence, "PrePick013_seq3", "PrePick"), 2);
-  EXPECT_EQ(find_item(sequence, "PrePick_022", "PrePick"), 17);
-  EXPECT_EQ(find_item(sequence, "Box027", "PrePick"), -1);
-  EXPECT_EQ(find_item(sequence, "PrePick", "PrePick"), -1);
-  EXPECT_EQ(find_item(sequence, "PrePick099", "PrePick"), -1);
-  EXPECT_EQ(find_item(sequence, "", "PrePick"), -1);
-  EXPECT_EQ(find_item(sequence, "PrePick7", "PrePick"), -1);
-  EXPECT_EQ(find_item(sequence, "PrePick27", "PrePick"), -1);
+  EXPECT_EQ(find_pick(sequence, "PrePick027"), 0);
+  EXPECT_EQ(find_pick(sequence, "PrePick013_seq3"), 2);
+  EXPECT_EQ(find_pick(sequence, "PrePick_022"), 17);
+  EXPECT_EQ(find_pick(sequence, "Box027"), -1);
+  EXPECT_EQ(find_pick(sequence, "PrePick"), -1);
+  EXPECT_EQ(find_pick(sequence, "PrePick099"), -1);
+  EXPECT_EQ(find_pick(sequence, ""), -1);
+  EXPECT_EQ(find_pick(sequence, "PrePick7"), -1);
+  EXPECT_EQ(find_pick(sequence, "PrePick27"), -1);
 }
 
 TEST(FindItem, KnowsBoxesWithAnyIdByTheNamesThatOurRowsHave) {
@@ -40,13 +45,16 @@ TEST(FindItem, KnowsBoxesWithAnyIdByTheNamesThatOurRowsHave) {
   }
   for (std::size_t i = 0; i < sequence.items.size(); ++i) {
     const std::string& id = sequence.items[i].parcel;
-    EXPECT_EQ(find_item(sequence, motion::row_name("PrePick", id), "PrePick"), static_cast<int>(i)) << id;
-    EXPECT_EQ(find_item(sequence, motion::row_name("PrePick", id, "_turn"), "PrePick"), static_cast<int>(i)) << id;
+    EXPECT_EQ(find_item(sequence, motion::make_waypoint(motion::MotionClass::PrePick, id, Pose{})), static_cast<int>(i))
+        << id;
+    EXPECT_EQ(find_item(sequence, motion::make_waypoint(motion::MotionClass::PrePick, id, Pose{}, {}, "_turn")),
+              static_cast<int>(i))
+        << id;
   }
-  EXPECT_EQ(find_item(sequence, "PrePick1", "PrePick"), 1);
-  EXPECT_EQ(find_item(sequence, "PrePickA12B", "PrePick"), 2);
-  EXPECT_EQ(find_item(sequence, "PrePickcrate_2", "PrePick"), 3);
-  EXPECT_EQ(find_item(sequence, "PrePick11", "PrePick"), 5);
+  EXPECT_EQ(find_pick(sequence, "PrePick1"), 1);
+  EXPECT_EQ(find_pick(sequence, "PrePickA12B"), 2);
+  EXPECT_EQ(find_pick(sequence, "PrePickcrate_2"), 3);
+  EXPECT_EQ(find_pick(sequence, "PrePick11"), 5);
 }
 
 TEST(PoseAtAligner, StandsInTheCornerOnTheBeltWithTheWantedAxisUp) {
@@ -71,8 +79,8 @@ TEST(PoseAtAligner, StandsInTheCornerOnTheBeltWithTheWantedAxisUp) {
 std::optional<Pose> pick_pose(const motion::Program& program, const std::string& number) {
   bool approaches = false;
   for (std::size_t i = 0; i < program.waypoints.size(); ++i) {
-    approaches = approaches || program.waypoints[i].name.starts_with("PrePick" + number);
-    if (approaches && program.waypoints[i].io.vacuum) return program.waypoints[i - 1].X_WE;
+    approaches = approaches || motion::name_of(program.waypoints[i]).starts_with("PrePick" + number);
+    if (approaches && program.waypoints[i].io.vacuum) return program.waypoints[i - 1].X_WE();
   }
   return std::nullopt;
 }
@@ -98,7 +106,7 @@ TEST(PoseAtAligner, TurnsEachBoxAsThePicksOfTheRealProgramsSay) {
     const auto program = motion::load_program(folder / ("poses" + cells[0] + "real.csv"));
     const model::Sequence& sequence = *model::find_sequence(scenario, cells[0]);
     const std::string number = "0" + cells[1];
-    const int index = find_item(sequence, "PrePick" + number, "PrePick");
+    const int index = find_pick(sequence, "PrePick" + number);
     const auto X_WE = pick_pose(program, number);
     ASSERT_TRUE(index >= 0 && X_WE);
     const Pose X_WP = pose_at_aligner(scenario, sequence.items[static_cast<std::size_t>(index)], X_WE);
@@ -116,14 +124,13 @@ TEST(PoseAtAligner, TurnsEachBoxAsThePicksOfTheRealProgramsSay) {
   EXPECT_EQ(checked, 37);
 }
 
-/// Where the tool touches a side of the box, pressed as packed programs press there.
+/// A tool that comes from 8 degrees above level and touches the middle of a side of the box, pressed as packed programs
+/// press there.
 Pose side_pick_of(const Pose& X_WP, const Vector3& size, const Vector3& face) {
-  motion::SidePickIntent intent;
-  intent.X_WP = X_WP;
-  intent.size = size;
-  intent.face = face;
-  intent.length = cup::pick_length(demonstrator().cup);
-  return motion::side_pick_rows(intent)[3].X_WE;
+  const Vector3 level_axis = Vector3::UnitZ().cross(face);
+  const Matrix3 R_WE = exp_rotation((0.5 * std::numbers::pi - 0.14) * level_axis) * motion::upright_tool(0.0);
+  const Vector3 touched = X_WP.p + 0.5 * (X_WP.R.transpose() * face).cwiseAbs().dot(size) * face;
+  return {R_WE, touched - cup::pick_length(demonstrator().cup) * R_WE.col(2)};
 }
 
 TEST(PoseAtAligner, IsTheSameForPicksFromAboveAndByASideHoweverNearlySquareTheBoxIs) {

@@ -11,23 +11,20 @@
 
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/run.hpp"
-#include "snug/cell/task.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/test/scratch_folder.hpp"
+#include "snug/motion/waypoint_name.hpp"
 #include "snug/record/reader.hpp"
 
 namespace snug::cell {
 namespace {
 
 RunOptions demo_options() {
-  const auto file = kSource / "scenarios/demo-placements.yaml";
-  const auto placements = model::load_placements(file, demonstrator());
-  const auto program = make_program(demonstrator(), "1", placements, file.string());
-  EXPECT_TRUE(program.has_value());
+  const motion::Program program = motion::load_program(kSource / "src/snug/cell/test/demo_program.csv");
   RunOptions options;
-  options.program = *program;
-  options.program_text = motion::format_program(*program);
+  options.program = program;
+  options.program_text = motion::format_program(program);
   options.sequence = "1";
   return options;
 }
@@ -52,30 +49,6 @@ TEST(DemoProgram, ChangesItsStateHashWhenTheSceneChanges) {
   model::Scenario shifted = demonstrator();
   shifted.aligner->X_WA.p.x() += 1e-6;
   EXPECT_NE(run(demonstrator(), options).state_hash, run(shifted, options).state_hash);
-}
-
-TEST(DemoProgram, SaysWhyABoxThatWouldNeedAFlipHasNone) {
-  model::PlacementEntry lying;
-  lying.parcel = "BOX027";  // stands with Z up
-  lying.X_TP = {exp_rotation(Vector3(0.5 * std::numbers::pi, 0.0, 0.0)), Vector3(0.0, 0.0, 0.12)};
-  const auto program = make_program(demonstrator(), "1", {lying}, "list.yaml");
-  ASSERT_FALSE(program.has_value());
-  EXPECT_EQ(program.error().reason, motion::NoProgram::NeedsFlip);
-  EXPECT_EQ(program.error().box, "BOX027");
-}
-
-TEST(DemoProgram, RefusesUnknownSequencesAndBoxes) {
-  model::PlacementEntry entry;
-  entry.parcel = "BOX999";
-  entry.line = 7;
-  EXPECT_THROW((void)make_program(demonstrator(), "nine", {}, "list.yaml"), InputError);
-  try {
-    (void)make_program(demonstrator(), "1", {entry}, "list.yaml");
-    ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.where, "list.yaml:7");
-    EXPECT_EQ(error.key, "box");
-  }
 }
 
 // ---- options that do not fit
@@ -111,7 +84,7 @@ TEST(RunOptions, AreRefusedWhenTheyDoNotFitTheScenario) {
 
 TEST(RunOptions, AreRefusedForAWaypointWhoseNameNoPrefixMatches) {
   RunOptions options = demo_options();
-  options.program->waypoints[3].name = "Dance007";
+  options.program->waypoints[3] = motion::named_waypoint("Dance007", options.program->waypoints[3].X_WE());
   EXPECT_THROW((void)run(demonstrator(), options), InputError);
 }
 

@@ -66,7 +66,8 @@ TEST(Check, StopsAtALimitWhereTheRunDoes) {
   std::vector<motion::Waypoint> rows;
   for (int i = 0; i <= 8; ++i) {
     rows.push_back(turned_tool(-0.3, 0.0));
-    rows.back().X_WE.R = rows.back().X_WE.R * exp_rotation(Vector3(0.0, 0.0, 1.0 * i));
+    const Pose X_WE = rows.back().X_WE();
+    rows.back().set_pose({X_WE.R * exp_rotation(Vector3(0.0, 0.0, 1.0 * i)), X_WE.p});
   }
   const BallWrist cell;
   const RunResult run = simulate(cell.scenario, rows);
@@ -167,7 +168,7 @@ TEST(Check, FindsTheSingularityOnTheWay) {
     robot::JointVector q = simulation.arm()->start();
     q[4] -= angle;
     motion::Waypoint turned = row_at(home().p);
-    turned.X_WE = robot::forward_tool(simulation.arm()->model(), q);
+    turned.set_pose(robot::forward_tool(simulation.arm()->model(), q));
     return check({row_at(home().p), turned}, "");
   };
   const CheckResult before = turned_by(1.3);

@@ -29,10 +29,8 @@ OutsideCommand command_of(DriveKind kind, const JointVector& target) {
 motion::Program to_the_side() {
   motion::Program program{"test", {}};
   for (const double y : {0.1, -0.1}) {
-    motion::Waypoint row;
-    row.X_WE = demonstrator().controller.X_WE_start;
-    row.X_WE.p += Vector3(0.0, y, 0.05);
-    row.name = "home";
+    motion::Waypoint row = motion::make_waypoint(motion::MotionClass::Home, {}, demonstrator().controller.X_WE_start);
+    row.p_WE += Vector3(0.0, y, 0.05);
     program.waypoints.push_back(row);
   }
   return program;

@@ -13,16 +13,14 @@
 #include "snug/cell/run.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/test/scratch_folder.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::cell::test {
 
 inline const Pose& home() { return demonstrator().controller.X_WE_start; }
 
 inline motion::Waypoint row_at(const Vector3& p_WE, const std::string& name = "home") {
-  motion::Waypoint row;
-  row.X_WE = {home().R, p_WE};
-  row.name = name;
-  return row;
+  return motion::named_waypoint(name, {home().R, p_WE});
 }
 
 inline RunResult simulate(const model::Scenario& scenario, std::vector<motion::Waypoint> rows,
@@ -49,7 +47,7 @@ inline std::vector<motion::Waypoint> wrist_into_the_wall() {
   std::vector<motion::Waypoint> rows;
   for (const Vector3& p : {Vector3(0.505, -0.45, 0.30), Vector3(0.505, -0.55, -0.05), Vector3(0.505, -0.50, -0.05)}) {
     rows.push_back(row_at(p));
-    rows.back().X_WE.R = exp_rotation(Vector3(0.5 * std::numbers::pi, 0.0, 0.0));
+    rows.back().rotation_WE = Vector3(0.5 * std::numbers::pi, 0.0, 0.0);
   }
   return rows;
 }
@@ -108,10 +106,9 @@ struct BallWrist {
 inline motion::Waypoint turned_tool(double pitch, double yaw) {
   const Vector3 wrist(0.8, 0.0, 1.3);
   const Matrix3 R = exp_rotation(Vector3(0.0, 0.0, yaw)) * exp_rotation(Vector3(0.0, pitch, 0.0));
-  motion::Waypoint row;
-  row.X_WE = {R * exp_rotation(Vector3(0.0, 0.5 * std::numbers::pi, 0.0)), wrist + R * Vector3(0.4, 0.0, 0.0)};
-  row.name = "home";
-  return row;
+  return motion::make_waypoint(
+      motion::MotionClass::Home, {},
+      {R * exp_rotation(Vector3(0.0, 0.5 * std::numbers::pi, 0.0)), wrist + R * Vector3(0.4, 0.0, 0.0)});
 }
 
 }  // namespace snug::cell::test

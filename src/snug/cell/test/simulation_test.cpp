@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "snug/cell/task.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 
@@ -11,10 +10,7 @@ namespace snug::cell {
 namespace {
 
 motion::Program demo_program(std::size_t rows = 16) {
-  const auto file = kSource / "scenarios/demo-placements.yaml";
-  const auto program = make_program(demonstrator(), "1", model::load_placements(file, demonstrator()), file.string());
-  EXPECT_TRUE(program.has_value());
-  motion::Program first_rows = *program;
+  motion::Program first_rows = motion::load_program(kSource / "src/snug/cell/test/demo_program.csv");
   first_rows.waypoints.resize(rows);
   return first_rows;
 }
@@ -95,7 +91,8 @@ TEST(Simulation, IsTakenUpWhereItsBoxesAreBelievedToBeAndTheyStayThere) {
   ASSERT_FALSE(anchor.boxes.empty());
   CellState taken_up = simulation.take_up(anchor);
   EXPECT_EQ(simulation.time(taken_up), 0.0);
-  const motion::PreparedProgram still = simulation.prepare({"still", {{anchor.X_WE, "home", {}, 0}}});
+  const motion::PreparedProgram still =
+      simulation.prepare({"still", {motion::make_waypoint(motion::MotionClass::Home, {}, anchor.X_WE)}});
   for (int i = 0; i < 50; ++i) ASSERT_EQ(simulation.advance(still, taken_up, work).failure, "");
   for (const CellAnchor::Box& box : anchor.boxes) {
     const Pose X_WP =
@@ -125,7 +122,8 @@ TEST(Simulation, BeginsMotionsWhereTheToolIsAndStandsWhenToldTo) {
   CellWorkspace work = simulation.make_workspace();
   Pose X_WE = state.controller.command.X_WE;
   X_WE.p.x() += 0.2;
-  const motion::PreparedProgram away = simulation.prepare({"away", {{X_WE, "home", {}, 0}}});
+  const motion::PreparedProgram away =
+      simulation.prepare({"away", {motion::make_waypoint(motion::MotionClass::Home, {}, X_WE)}});
   for (int i = 0; i < 60; ++i) (void)simulation.advance(away, state, work);
   const motion::ToolState under_way = state.controller.command;
   ASSERT_GT(under_way.V_WE.linear.norm(), 0.01);

@@ -11,6 +11,7 @@
 #include "snug/click/server.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/test/scratch_folder.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::click {
 namespace {
@@ -90,10 +91,8 @@ TEST(ClientServer, DoAProgramBitByBitAsTheCellDoes) {
   const cell::Simulation& simulation = demonstrator_cell();
   motion::Program program{"test", {}};
   for (const char* name : {"home", "PrePick027", "Box027", "PostPick027"}) {
-    motion::Waypoint row;
-    row.X_WE = simulation.scenario().controller.X_WE_start;
-    row.X_WE.p += Vector3(0.0, 0.02 * static_cast<double>(program.waypoints.size()), 0.02);
-    row.name = name;
+    motion::Waypoint row = motion::named_waypoint(name, simulation.scenario().controller.X_WE_start);
+    row.p_WE += Vector3(0.0, 0.02 * static_cast<double>(program.waypoints.size()), 0.02);
     row.io.vacuum = program.waypoints.size() == 3;
     program.waypoints.push_back(row);
   }

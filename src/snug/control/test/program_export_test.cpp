@@ -11,6 +11,7 @@
 #include "demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::control {
 namespace {
@@ -18,11 +19,9 @@ namespace {
 motion::Program small_program() {
   motion::Program program{"test", {}};
   const auto row = [&](const Vector3& offset, const char* name, bool vacuum) {
-    motion::Waypoint waypoint;
-    waypoint.X_WE = test::demonstrator().controller.X_WE_start;
-    waypoint.X_WE.p += offset;
-    waypoint.name = name;
-    waypoint.io.vacuum = vacuum;
+    motion::Waypoint waypoint =
+        motion::named_waypoint(name, test::demonstrator().controller.X_WE_start, {.vacuum = vacuum});
+    waypoint.p_WE += offset;
     program.waypoints.push_back(waypoint);
   };
   row({0.1, 0.0, 0.0}, "PrePick013", false);
@@ -49,7 +48,7 @@ TEST(UrScript, MovesTheToolInTheControllersBaseFrame) {
   const UrScript script = format_urscript(exported.for_robot(), {3, 4, 5, 2.0});
   const std::string& text = script.text;
   // W is the controller's base in this cell, so that the waypoint's own numbers appear.
-  const Vector3 p = exported.plan.program.waypoints[1].X_WE.p;
+  const Vector3 p = exported.plan.program.waypoints[1].X_WE().p;
   char expected[80];
   std::snprintf(expected, sizeof expected, "movel(p[%.6f, %.6f, %.6f,", p.x(), p.y(), p.z());
   EXPECT_NE(text.find(expected), std::string::npos) << text;
@@ -70,12 +69,9 @@ TEST(UrScript, CapsBlendsByTheMovesOnBothSides) {
   motion::Program program{"test", {}};
   Pose X_WE = test::demonstrator().controller.X_WE_start;
   for (int i = 0; i < 300; ++i) {
-    motion::Waypoint waypoint;
     const Vector3 way(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
     if (i % 7 != 3) X_WE.p += way.normalized() * std::pow(10.0, rng.uniform(-3.7, -0.92));  // else no way at all
-    waypoint.X_WE = X_WE;
-    waypoint.name = "PostPick013";
-    program.waypoints.push_back(waypoint);
+    program.waypoints.push_back(motion::named_waypoint("PostPick013", X_WE));
   }
   const JointController controller = test::make_controller();
   const motion::PreparedProgram plan =
@@ -164,7 +160,7 @@ TEST(JointRun, ComesToRestWithoutAJump) {
   const Exported exported;
   const JointState& end = exported.run.samples.back().after;
   EXPECT_EQ(end.qd.norm(), 0.0);
-  const Pose& goal = exported.plan.program.waypoints.back().X_WE;
+  const Pose& goal = exported.plan.program.waypoints.back().X_WE();
   EXPECT_LT((robot::forward_tool(exported.controller.arm(), end.q).p - goal.p).norm(), 1e-3);
   for (std::size_t i = 1; i < exported.run.samples.size(); ++i) {
     const JointSample& sample = exported.run.samples[i];

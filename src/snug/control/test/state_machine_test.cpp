@@ -30,10 +30,9 @@ struct MachineDrive {
 motion::Program moves(const std::vector<Vector3>& offsets) {
   motion::Program program{"test", {}};
   for (const Vector3& offset : offsets) {
-    motion::Waypoint row;
-    row.X_WE = test::demonstrator().controller.X_WE_start;
-    row.X_WE.p += offset;
-    row.name = "home";
+    motion::Waypoint row =
+        motion::make_waypoint(motion::MotionClass::Home, {}, test::demonstrator().controller.X_WE_start);
+    row.p_WE += offset;
     program.waypoints.push_back(row);
   }
   return program;

@@ -2,10 +2,10 @@
 #include <algorithm>
 
 #include "snug/cell/aligner_feed.hpp"
-#include "snug/cell/obstacles.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/environment/internal/happening.hpp"
-#include "snug/motion/placements.hpp"
+#include "snug/skills/highest_fixed_point.hpp"
+#include "snug/skills/placements.hpp"
 
 namespace snug::environment::internal {
 namespace {
@@ -21,7 +21,7 @@ class Execution final : public Happening {
         state_(simulation_->make_state()),
         work_(simulation_->make_workspace()) {
     plan_.X_WT = container_.X_WT;
-    plan_.obstacle_top = cell::highest_fixed_point(simulation_->scenario());
+    plan_.obstacle_top = skills::highest_fixed_point(simulation_->scenario());
     plan_.pick_length = plan_.hold_length = simulation_->scenario().cup.hold_length;
     plan_.X_WE_home = simulation_->scenario().controller.X_WE_start;
   }
@@ -76,12 +76,12 @@ class Execution final : public Happening {
   [[nodiscard]] std::optional<Pose> append_rows(int index, const Pose& X_TP,
                                                 const std::vector<packing::PlacedBox>& boxes) {
     const model::Item& item = simulation_->sequence().items[static_cast<std::size_t>(index)];
-    motion::PickSpec pick;
+    skills::PickSpec pick;
     pick.box = item.parcel;
     pick.X_WP = cell::pose_at_aligner(simulation_->scenario(), item, std::nullopt);
     pick.size =
         model::collision_size(simulation_->scenario(), *model::find_parcel(simulation_->scenario(), item.parcel));
-    motion::Placement placement{item.parcel, X_TP};
+    skills::Placement placement{item.parcel, X_TP};
     const Matrix3 half_turn = Vector3(-1.0, -1.0, 1.0).asDiagonal();
     const Matrix3 R_WP = container_.X_WT.R * X_TP.R, R_WP_other = container_.X_WT.R * half_turn * X_TP.R;
     if (angle_between(R_WP_other, pick.X_WP.R) < angle_between(R_WP, pick.X_WP.R) - 1e-9) {
@@ -91,10 +91,10 @@ class Execution final : public Happening {
     for (const packing::PlacedBox& box : boxes) {
       plan_.rim_height = std::max(plan_.rim_height, packing::bounding_extent(box).high.z());
     }
-    const auto rows = motion::program_from_placements({&pick, 1}, {&placement, 1}, plan_);
+    const auto rows = skills::program_from_placements({&pick, 1}, {&placement, 1}, plan_);
     if (!rows) return std::nullopt;
     for (const motion::Waypoint& row : rows->waypoints) {
-      if (row.name != "home") program_.waypoints.push_back(motion::as_written(row));
+      if (row.motion_class != motion::MotionClass::Home) program_.waypoints.push_back(motion::rounded(row));
     }
     return placement.X_TP;
   }
@@ -102,7 +102,7 @@ class Execution final : public Happening {
   std::shared_ptr<const cell::Simulation> simulation_;
   Settings settings_;
   model::Container container_;
-  motion::PlacementSettings plan_;
+  skills::PlacementSettings plan_;
   cell::CellState state_;
   cell::CellWorkspace work_;
   motion::Program program_;

@@ -1,6 +1,8 @@
 // read_fields: fills a settings struct from a mapping by the list of keys the struct itself gives.
 #pragma once
 
+#include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -36,6 +38,18 @@ class FieldReader {
   void operator()(const char* key, int& field, Range range) {
     if (const auto value = map_.find(key))
       field = static_cast<int>(value->integer(range == Range::Positive ? 1 : 0, 1'000'000'000));
+  }
+  void operator()(const char* key, double& field, Within range) {
+    if (const auto value = map_.find(key)) field = value->number_within(range.low, range.high, "a number");
+  }
+  void operator()(const char* key, int& field, Within range) {
+    if (const auto value = map_.find(key))
+      field =
+          static_cast<int>(value->integer(static_cast<std::int64_t>(range.low), static_cast<std::int64_t>(range.high)));
+  }
+  void operator()(const char* key, Degrees field, Within range) {
+    if (const auto value = map_.find(key))
+      field.radians = value->number_within(range.low, range.high, "degrees") * (std::numbers::pi / 180.0);
   }
   void operator()(const char* key, bool& field) {
     if (const auto value = map_.find(key)) field = value->boolean();

@@ -43,6 +43,8 @@ class ScenarioReader {
                                                    const Vector3& size) const;
   void read_aligner(const Value& value);
   void read_uncertainty(const Value& value);
+  // read_session_settings.cpp
+  void read_session_settings(const MapReader& map);
   void read_tool(const Value& value);
   void read_cup(const Value& value);
   void read_controller(const Value& value);

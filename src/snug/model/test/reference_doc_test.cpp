@@ -1,8 +1,12 @@
 // docs/scenario.md: every key that the reader knows has a row in the table of its mapping.
 #include <gtest/gtest.h>
 
+#include <iomanip>
 #include <map>
+#include <numbers>
 #include <set>
+#include <sstream>
+#include <type_traits>
 
 #include "scenario_text.hpp"
 #include "snug/model/internal/parse.hpp"
@@ -63,6 +67,85 @@ TEST(ScenarioReference, HasARowForEveryKeyTheReaderKnows) {
 TEST(ScenarioReference, HasNoRowForAKeyTheReaderDoesNotKnow) {
   const std::set<std::string> known = known_keys();
   for (const std::string& key : documented_keys()) EXPECT_TRUE(known.contains(key)) << key;
+}
+
+/// "kind.key" of each field with its default as numbers are written; of mappings those of their fields.
+class Defaults {
+ public:
+  template <class Settings>
+  static std::map<std::string, std::string> of(const std::string& kind) {
+    Defaults defaults;
+    Settings settings;
+    defaults.kind_ = kind;
+    settings.fields(defaults);
+    return defaults.texts_;
+  }
+
+  template <class... Any>
+  void operator()(const char* key, double& value, Any&&...) {
+    note(key, value);
+  }
+  template <class... Any>
+  void operator()(const char* key, int& value, Any&&...) {
+    note(key, value);
+  }
+  template <class... Any>
+  void operator()(const char* key, Degrees value, Any&&...) {
+    note(key, value.radians * 180.0 / std::numbers::pi);
+  }
+  void operator()(const char* key, bool& value) { texts_[kind_ + "." + key] = value ? "true" : "false"; }
+  template <class Settings>
+  requires std::is_class_v<Settings>
+  void operator()(const char* key, Settings& /*settings*/) {
+    const std::map<std::string, std::string> own = of<Settings>(key);
+    texts_.insert(own.begin(), own.end());
+  }
+
+ private:
+  void note(const char* key, double value) {
+    std::ostringstream text;
+    text << std::setprecision(10) << value;
+    texts_[kind_ + "." + key] = text.str();
+  }
+  std::string kind_;
+  std::map<std::string, std::string> texts_;
+};
+
+/// The third cell of each row of documented_keys().
+std::map<std::string, std::string> documented_defaults() {
+  std::istringstream text(test::read_text(test::project_file("docs/scenario.md")));
+  std::map<std::string, std::string> defaults;
+  std::vector<std::string> kinds;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with("#")) kinds = code_words(line);
+    if (!line.starts_with("| `")) continue;
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
+    if (cells.size() < 4) continue;
+    const std::string value = cells[3].substr(1, cells[3].size() - 2);
+    for (const std::string& key : code_words(cells[1]))
+      for (const std::string& kind : kinds) defaults[kind + "." + key] = value;
+  }
+  return defaults;
+}
+
+TEST(ScenarioReference, SaysTheDefaultsByWhichBoxesArePacked) {
+  const std::map<std::string, std::string> documented = documented_defaults();
+  const auto expect_documented = [&](const std::map<std::string, std::string>& defaults) {
+    EXPECT_FALSE(defaults.empty());
+    for (const auto& [key, value] : defaults) {
+      const auto found = documented.find(key);
+      EXPECT_EQ(found != documented.end() ? found->second : "no row", value) << key;
+    }
+  };
+  expect_documented(Defaults::of<SkillParams>("skills"));
+  expect_documented(Defaults::of<PackingSettings>("packing"));
+  expect_documented(Defaults::of<PlaceLimits>("place_limits"));
+  expect_documented(Defaults::of<RehearsalSettings>("rehearsal"));
+  expect_documented(Defaults::of<BeliefParams>("belief"));
+  expect_documented(Defaults::of<RecoverySettings>("recovery"));
+  expect_documented(Defaults::of<MotionGuards>("motion_guards"));
 }
 
 TEST(ScenarioReference, ShowsExamplesThatLoad) {

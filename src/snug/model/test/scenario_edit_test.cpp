@@ -93,5 +93,21 @@ TEST(ScenarioEdit, ReadsWordsOfTheCommandLine) {
   EXPECT_THROW((void)parse_key_value("=1", "--set"), InputError);
 }
 
+TEST(WithValues, ReachesSkillsAndSettingsThatTheFileDoesNotName) {
+  const Scenario scenario = load_scenario(test::project_file("scenarios/box-demonstrator.yaml"));
+  const Scenario changed = with_values(scenario,
+                                       {{"skills.insertion.overtravel", "0.004"},
+                                        {"skills.insertion.tilted.push", "0.002"},
+                                        {"packing.last_interference", "0.002"},
+                                        {"place_limits.force", "120"}},
+                                       "--set");
+  EXPECT_EQ(changed.skills.insertion.overtravel, 0.004);
+  EXPECT_EQ(changed.skills.insertion.tilted.push, 0.002);
+  EXPECT_EQ(changed.packing.last_interference, 0.002);
+  EXPECT_EQ(changed.place_limits.force, 120.0);
+  EXPECT_NE(changed.source_text, scenario.source_text) << "what is run is what is written down";
+  EXPECT_THROW((void)with_values(scenario, {{"skills.insertion.overtravel", "1"}}, "--set"), InputError);
+}
+
 }  // namespace
 }  // namespace snug::model

@@ -1,6 +1,8 @@
 // Strict loading: each way to get a scenario wrong is met by the line, the key and what would have been right.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "scenario_text.hpp"
 
 namespace snug::model {
@@ -319,6 +321,31 @@ TEST(StrictLoading, ReportsWhatIsNotYaml) {
 TEST(StrictLoading, ReportsAFileThatIsNotThere) {
   EXPECT_THROW((void)load_scenario("/nowhere/at/all.yaml"), InputError);
   EXPECT_THROW((void)load_scenario(test::project_file("scenarios")), InputError);
+}
+
+TEST(StrictLoading, HoldsSkillsAndSettingsOfSessionsToTheirRanges) {
+  const auto with = [](const std::string& text) { return "materials: [{name: floor}]\n" + text; };
+  const Scenario scenario = parse_scenario(
+      with("skills: {insertion: {overtravel: 0.004, tilted: {push: 0.002}}}\n"
+           "packing: {planned_interference: 0.002, last_interference: 0.003}\nplace_limits: {force: 120, tilt_deg: 3}\n"
+           "recovery: {skips: 0}\n"),
+      "s.yaml");
+  EXPECT_EQ(scenario.skills.insertion.overtravel, 0.004);
+  EXPECT_EQ(scenario.skills.insertion.tilted.push, 0.002);
+  EXPECT_EQ(scenario.skills.insertion.press, InsertionParams().press) << "what is not said stays";
+  EXPECT_EQ(scenario.packing.planned_interference, 0.002);
+  EXPECT_EQ(scenario.place_limits.force, 120.0);
+  EXPECT_NEAR(scenario.place_limits.tilt, 3.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_EQ(scenario.recovery.skips, 0);
+  for (const char* bad :
+       {"skills: {insertion: {overtravel: 0.2}}", "skills: {insertion: {overtravels: 0.004}}",
+        "skills: {pivot: {drag: 0.1, dragged: 0.2}}", "skills: {travel: {shortest_swing: 0.7}}",
+        "packing: {planned_interference: 0.02}", "packing: {max_flips: 3}", "packing: {max_flips: 0.5}",
+        "packing: {seed: 3}", "place_limits: {force: -1}", "place_limits: {tilt_deg: 91}",
+        "rehearsal: {good_rate: 0.4}", "rehearsal: {max_attempts: 30}", "belief: {model_error: 0}",
+        "recovery: {skips: -1}", "motion_guards: {needed_vacuum: 1.5}"}) {
+    EXPECT_THROW((void)parse_scenario(with(bad), "s.yaml"), InputError) << bad;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "snug/motion/test/demonstrator.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::motion {
 namespace {
@@ -13,8 +14,8 @@ namespace {
 /// Shift in mm of a waypoint of this name.
 Vector3 shift_mm(const std::string& name, int sequence) {
   Program program{"f.csv", {}};
-  program.waypoints.push_back({Pose{Matrix3::Identity(), Vector3::Zero()}, name, {}, 1});
-  return 1000.0 * apply_corrections(program, demonstrator_corrections(sequence)).waypoints[0].X_WE.p;
+  program.waypoints.push_back(named_waypoint(name, Pose{Matrix3::Identity(), Vector3::Zero()}));
+  return 1000.0 * apply_corrections(program, demonstrator_corrections(sequence)).waypoints[0].X_WE().p;
 }
 
 TEST(Corrections, ShiftTheRowsThatTheDemonstratorShifts) {
@@ -40,11 +41,11 @@ TEST(Corrections, LeaveNamesAloneThatOnlyContainAPrefix) {
 
 TEST(Corrections, ShiftARowOnceWhenTwoPrefixesOfOneMatch) {
   Program program{"f.csv", {}};
-  program.waypoints.push_back({Pose{}, "Box017", {}, 1});
+  program.waypoints.push_back(named_waypoint("Box017", Pose{}));
   const std::vector<Correction> corrections = {{{"Box", "Box017", "B"}, Vector3(1.0, 2.0, 3.0)}};
   const Program shifted = apply_corrections(program, corrections);
-  EXPECT_EQ(shifted.waypoints[0].X_WE.p, Vector3(1.0, 2.0, 3.0));
-  EXPECT_EQ(shifted.waypoints[0].X_WE.R, program.waypoints[0].X_WE.R);
+  EXPECT_EQ(shifted.waypoints[0].X_WE().p, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(shifted.waypoints[0].X_WE().R, program.waypoints[0].X_WE().R);
 }
 
 TEST(Corrections, OfNoneGiveTheSameProgram) {
@@ -60,7 +61,7 @@ TEST(Corrections, MatchEveryRePickOfTheRealFiles) {
     const Program shifted = apply_corrections(program, demonstrator_corrections(sequence));
     std::size_t count = 0;
     for (std::size_t i = 0; i < program.waypoints.size(); ++i) {
-      const Vector3 shift = shifted.waypoints[i].X_WE.p - program.waypoints[i].X_WE.p;
+      const Vector3 shift = shifted.waypoints[i].X_WE().p - program.waypoints[i].X_WE().p;
       if (shift.x() > 0.02 && shift.z() < -0.01) ++count;
     }
     EXPECT_EQ(count, expected_flips[static_cast<std::size_t>(sequence - 1)]) << sequence;

@@ -1,5 +1,6 @@
 // fit_limits: moves that take as long as the simulated ones, none faster than planned.
 #include "snug/motion/fitted_limits.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +13,9 @@ PreparedProgram make_plan(const std::vector<double>& lengths, double precision) 
   program.name = "moves";
   double x = 0.0;
   for (const double length : lengths) {
-    Waypoint waypoint;
-    waypoint.name = "move";
+    Waypoint waypoint = parse_waypoint_name("move");
     x += length;
-    waypoint.X_WE.p.x() = x;
+    waypoint.p_WE.x() = x;
     program.waypoints.push_back(waypoint);
   }
   ControllerSettings settings;
@@ -27,7 +27,7 @@ TEST(FitLimits, MakeAMoveTakeAsLongAsTheToolThatLagsBehind) {
   const PreparedProgram plan = make_plan({0.4}, 0.001);
   const std::vector<MotionLimits> fitted = fit_limits(plan, Pose());
   const double simulated = compute_duration(plan, Pose());
-  const LspbSegment segment(Pose(), plan.program.waypoints[0].X_WE, fitted[0]);
+  const LspbSegment segment(Pose(), plan.program.waypoints[0].X_WE(), fitted[0]);
   EXPECT_NEAR(segment.duration(), simulated, 2.0 * plan.settings.tick);  // when a tick begins and ends it
   EXPECT_LT(fitted[0].max_acceleration, 0.5 * plan.row_limits[0].max_acceleration);
   EXPECT_LT(fitted[0].max_speed, plan.row_limits[0].max_speed);

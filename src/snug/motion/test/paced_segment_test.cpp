@@ -137,7 +137,7 @@ TEST(PacedSegment, KeepsItsLimitsAndMeetsBothEnds) {
     };
     const Pose X_WA{exp_rotation(vector(2.0)), vector(1.0)};
     const Pose X_WB{exp_rotation(vector(1.5)) * X_WA.R, X_WA.p + vector(0.6)};
-    const std::optional<Vector3> axis = i % 2 == 0 ? std::nullopt : std::optional<Vector3>(vector(0.3));
+    const auto axis = i % 2 == 0 ? std::nullopt : std::optional<PanAxis>(PanAxis{vector(0.3)});
     const PacedSegment segment(Way(X_WA, X_WB, axis), pace, nullptr);
     EXPECT_LT((segment.sample(0.0).X_WE.p - X_WA.p).norm(), 1e-12);
     EXPECT_EQ(segment.sample(segment.duration()).X_WE, X_WB);

@@ -9,30 +9,31 @@
 namespace snug::motion {
 namespace {
 
-const std::string kRow = "0, 0, 0.5, 0, 3.14, 0,home,0,0,0,0,0,0\n";
+const std::string kTempoRow = "0, 0, 0.5, 0, 3.14, 0,home,0,0,0,0,0,0\n";
 
 TEST(ProgramTempo, ReadsBackAndLeavesTheRowsAlone) {
   for (const double tempo : {0.5, 0.1, 1.0, 0.77}) {
-    const std::string text = format_tempo(tempo) + kRow;
+    const std::string text = format_tempo(tempo) + kTempoRow;
     EXPECT_EQ(find_tempo(text, "p.csv"), tempo);
-    EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().X_WE, parse_program(kRow, "p.csv").waypoints.front().X_WE);
+    EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().X_WE(),
+              parse_program(kTempoRow, "p.csv").waypoints.front().X_WE());
     EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().line, 2);
   }
 }
 
 TEST(ProgramTempo, IsNoneWithoutOneAndInOtherComments) {
-  EXPECT_FALSE(find_tempo(kRow, "p.csv"));
-  EXPECT_FALSE(find_tempo("# made by hand\n#\n" + kRow, "p.csv"));
-  EXPECT_EQ(find_tempo(kRow + "  #  tempo:  0.6  \r\n", "p.csv"), 0.6);
+  EXPECT_FALSE(find_tempo(kTempoRow, "p.csv"));
+  EXPECT_FALSE(find_tempo("# made by hand\n#\n" + kTempoRow, "p.csv"));
+  EXPECT_EQ(find_tempo(kTempoRow + "  #  tempo:  0.6  \r\n", "p.csv"), 0.6);
 }
 
 TEST(ProgramTempo, IsRefusedOutOfRangeNotANumberAndTwice) {
   for (const char* bad : {"# tempo: 0\n", "# tempo: 1.01\n", "# tempo: nan\n", "# tempo: fast\n", "# tempo:\n",
                           "# tempo: 0.5 s\n", "# tempo: 0.5\n# tempo: 0.5\n"}) {
-    EXPECT_THROW((void)find_tempo(bad + kRow, "p.csv"), InputError) << bad;
+    EXPECT_THROW((void)find_tempo(bad + kTempoRow, "p.csv"), InputError) << bad;
   }
   try {
-    (void)find_tempo(kRow + "# tempo: 7\n", "p.csv");
+    (void)find_tempo(kTempoRow + "# tempo: 7\n", "p.csv");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("p.csv:2"), std::string::npos) << error.what();

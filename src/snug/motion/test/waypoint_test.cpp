@@ -13,6 +13,7 @@
 
 #include "snug/core/rng.hpp"
 #include "snug/motion/test/demonstrator.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::motion {
 namespace {
@@ -31,17 +32,13 @@ std::string with_column(int column, const std::string& value) {
   return text.substr(0, begin) + value + text.substr(std::min(text.find(',', begin), text.size()));
 }
 
-double largest_difference(const Pose& a, const Pose& b) {
-  return std::max((a.p - b.p).cwiseAbs().maxCoeff(), (a.R - b.R).cwiseAbs().maxCoeff());
-}
-
 TEST(Program, ReadsPoseNameSwitchesAndLine) {
   const Program program = parse_program("\n.1,-.2,+0.3,0,0,1.5707963267948966,Box027,1,0,1,0,1,0\n", "f.csv");
   ASSERT_EQ(program.waypoints.size(), 1u);
   const Waypoint& w = program.waypoints[0];
-  EXPECT_EQ(w.X_WE.p, Vector3(0.1, -0.2, 0.3));
-  EXPECT_LT((w.X_WE.R * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-15);  // rounding of sin and cos
-  EXPECT_EQ(w.name, "Box027");
+  EXPECT_EQ(w.X_WE().p, Vector3(0.1, -0.2, 0.3));
+  EXPECT_LT((w.X_WE().R * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-15);  // rounding of sin and cos
+  EXPECT_EQ(name_of(w), "Box027");
   EXPECT_EQ(w.io, (IO{true, false, true, false, true, false}));
   EXPECT_EQ(w.line, 2);
   EXPECT_EQ(place_of(program, 0), "f.csv:2");
@@ -54,8 +51,8 @@ TEST(Program, ToleratesCarriageReturnsBlankLinesSpacesAndMissingLastNewline) {
   ASSERT_EQ(program.waypoints.size(), 2u);
   EXPECT_EQ(program.waypoints[0].line, 2);
   EXPECT_EQ(program.waypoints[1].line, 4);
-  EXPECT_EQ(program.waypoints[0].X_WE, program.waypoints[1].X_WE);
-  EXPECT_EQ(program.waypoints[0].name, program.waypoints[1].name);
+  EXPECT_EQ(program.waypoints[0].X_WE(), program.waypoints[1].X_WE());
+  EXPECT_EQ(name_of(program.waypoints[0]), name_of(program.waypoints[1]));
 }
 
 TEST(Program, NamesFileLineAndColumnOfWhatItCannotUse) {
@@ -113,7 +110,7 @@ TEST(Program, NeverDoesAnythingButReadOrThrowOnGarbage) {
     }
     try {
       for (const Waypoint& w : parse_program(text, "f.csv").waypoints) {
-        ASSERT_TRUE(w.X_WE.p.allFinite() && w.X_WE.R.allFinite() && !w.name.empty()) << text;
+        ASSERT_TRUE(w.X_WE().p.allFinite() && w.X_WE().R.allFinite() && !name_of(w).empty()) << text;
       }
     } catch (const InputError& error) {
       ASSERT_TRUE(error.where.starts_with("f.csv")) << text;
@@ -121,39 +118,53 @@ TEST(Program, NeverDoesAnythingButReadOrThrowOnGarbage) {
   }
 }
 
-TEST(Program, ReadsRotationVectorsLongerThanPiAsTheSameTurn) {
+TEST(Program, KeepsRotationVectorsLongerThanPiAsTheyAre) {
   const Vector3 axis = Vector3(1.0, -2.0, 0.5).normalized();
   for (const double angle : {0.0, 1e-13, 1.0, std::numbers::pi, 3.1416, 4.0, 2.0 * std::numbers::pi, 9.0}) {
     SCOPED_TRACE(angle);
     Program program = parse_program(kRow, "f.csv");
-    program.waypoints[0].X_WE.R = exp_rotation(angle * axis);
+    program.waypoints[0].rotation_WE = angle * axis;
     const Program again = parse_program(format_program(program), "f.csv");
-    // Roundings of the logarithm and exponential.
-    EXPECT_LT(largest_difference(again.waypoints[0].X_WE, program.waypoints[0].X_WE), 1e-14);
-    EXPECT_LE(log_rotation(again.waypoints[0].X_WE.R).norm(), std::numbers::pi + 1e-15);
+    EXPECT_EQ(again.waypoints[0], program.waypoints[0]);
+    // Roundings of the exponential.
+    EXPECT_LT((again.waypoints[0].X_WE().R - exp_rotation(angle * axis)).norm(), 1e-14);
   }
 }
 
-TEST(Program, ComesBackFromItsTextToTheLastBitsForAnyPose) {
+TEST(Program, ComesBackFromItsTextToTheLastBitForAnyPose) {
   Rng rng = Rng(7).split("round trip");
   Program program{"f.csv", {}};
   for (int i = 0; i < 2000; ++i) {
-    Waypoint w;
-    w.X_WE = {exp_rotation(random_vector(rng, 4.0)), random_vector(rng, std::pow(10.0, rng.uniform(-12.0, 1.0)))};
-    w.name = "Box" + std::to_string(i);
+    const Pose X_WE = {exp_rotation(random_vector(rng, 4.0)),
+                       random_vector(rng, std::pow(10.0, rng.uniform(-12.0, 1.0)))};
+    Waypoint w = named_waypoint("Box" + std::to_string(i), X_WE);
+    if (i % 2 == 1) w.rotation_WE = random_vector(rng, 10.0);
     w.io = {rng.index(2) == 1, rng.index(2) == 1, rng.index(2) == 1, rng.index(2) == 1, rng.index(2) == 1, false};
     w.line = i + 1;
     program.waypoints.push_back(w);
   }
   const Program again = parse_program(format_program(program), "f.csv");
-  ASSERT_EQ(again.waypoints.size(), program.waypoints.size());
-  for (std::size_t i = 0; i < program.waypoints.size(); ++i) {
-    EXPECT_EQ(again.waypoints[i].X_WE.p, program.waypoints[i].X_WE.p);
+  EXPECT_EQ(again.waypoints, program.waypoints);
+}
+
+TEST(Waypoint, HasAPoseToTheAccuracyOfTheLogarithm) {
+  Rng rng(8);
+  for (int i = 0; i < 2000; ++i) {
+    Vector3 axis(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
+    const double angle = i % 3 == 0 ? std::numbers::pi : i % 3 == 1 ? rng.uniform(0.0, 3.1) : 0.5 * std::numbers::pi;
+    if (i % 4 == 0) axis.z() = 0.0;  // tools that point straight down
+    if (i % 20 == 0) axis.x() = 0.0;
+    if (i % 28 == 0) axis.y() = 0.0;
+    const Pose X_WE = {exp_rotation(angle * axis.normalized()), Vector3(0.1, -0.2, 1.0 / 3.0)};
+    const Waypoint row = make_waypoint(MotionClass::Home, {}, X_WE);
+    EXPECT_EQ(row.X_WE().p, X_WE.p);
     // Required is 1e-12; the logarithm near pi costs a few digits less than that.
-    EXPECT_LT(largest_difference(again.waypoints[i].X_WE, program.waypoints[i].X_WE), 1e-13);
-    EXPECT_EQ(again.waypoints[i].io, program.waypoints[i].io);
-    EXPECT_EQ(again.waypoints[i].name, program.waypoints[i].name);
-    EXPECT_EQ(again.waypoints[i].line, program.waypoints[i].line);
+    EXPECT_LT((row.X_WE().R - X_WE.R).norm(), 1e-13);
+    EXPECT_LE(row.rotation_WE.norm(), std::numbers::pi + 1e-15);
+    // Half of 2^-40 rad in each of three coordinates; the norm of the matrices' difference is sqrt(2) times as much.
+    const Waypoint coarse = rounded(row);
+    EXPECT_LT((coarse.X_WE().R - X_WE.R).norm(), std::sqrt(3.0) * 0x1p-41 * std::numbers::sqrt2 + 1e-13);
+    EXPECT_EQ(rounded(coarse), coarse);
   }
 }
 
@@ -161,11 +172,11 @@ TEST(Program, RefusesToWriteWhatCouldNotBeRead) {
   Program program = parse_program(kRow, "f.csv");
   program.waypoints[0].line = 0;
   for (const char* name : {"", "a,b", " a", "a\n"}) {
-    program.waypoints[0].name = name;
+    program.waypoints[0] = parse_waypoint_name(name);
     EXPECT_EQ(where_it_fails([&] { (void)format_program(program); }), "f.csv row 1 column 7 (name)");
   }
-  program.waypoints[0].name = "home";
-  program.waypoints[0].X_WE.p.x() = std::numeric_limits<double>::quiet_NaN();
+  program.waypoints[0] = parse_waypoint_name("home");
+  program.waypoints[0].p_WE.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(where_it_fails([&] { (void)format_program(program); }), "f.csv row 1 home");
 }
 
@@ -177,7 +188,7 @@ TEST(Program, IsWrittenWholeAndLeavesNothingBeside) {
   write_program(program, path);
   const Program again = load_program(path);
   ASSERT_EQ(again.waypoints.size(), 1u);
-  EXPECT_LT(largest_difference(again.waypoints[0].X_WE, program.waypoints[0].X_WE), 1e-14);
+  EXPECT_EQ(again.waypoints[0], program.waypoints[0]);
   EXPECT_EQ(folder.names(), std::set<std::string>{"program.csv"});
   EXPECT_THROW(write_program(program, folder / "missing" / "program.csv"), InputError);
   EXPECT_THROW((void)load_program(folder / "missing.csv"), InputError);
@@ -191,32 +202,13 @@ TEST(Program, ReadsEveryFileOfTheDemonstrator) {
     SCOPED_TRACE(waypoint_files()[i]);
     const Program program = load_program(waypoint_folder() / waypoint_files()[i]);
     EXPECT_EQ(program.waypoints.size(), rows[i]);
-    EXPECT_EQ(program.waypoints.back().name, "home");
+    EXPECT_EQ(name_of(program.waypoints.back()), "home");
     const Program again = parse_program(format_program(program), program.name);
     for (std::size_t k = 0; k < rows[i]; ++k) {
-      EXPECT_LT(largest_difference(again.waypoints[k].X_WE, program.waypoints[k].X_WE), 1e-12) << k;
+      Waypoint read = again.waypoints[k];
+      read.line = program.waypoints[k].line;
+      EXPECT_EQ(read, program.waypoints[k]) << k;
     }
-  }
-}
-
-TEST(AsWritten, ReadsBackExactlyWhateverTheRotation) {
-  Rng rng(8);
-  for (int i = 0; i < 2000; ++i) {
-    Waypoint row;
-    row.name = "Row";
-    Vector3 axis(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
-    const double angle = i % 3 == 0 ? std::numbers::pi : i % 3 == 1 ? rng.uniform(0.0, 3.1) : 0.5 * std::numbers::pi;
-    if (i % 4 == 0) axis.z() = 0.0;  // tools that point straight down
-    if (i % 20 == 0) axis.x() = 0.0;
-    if (i % 28 == 0) axis.y() = 0.0;
-    row.X_WE = {exp_rotation(angle * axis.normalized()), Vector3(0.1, -0.2, 1.0 / 3.0)};
-    const Waypoint written = as_written(row);
-    // At most 15 nudges of 2^-40 of half a turn and half a grid: 4.4e-11 rad; the norm is sqrt(2) times as much.
-    EXPECT_LT((written.X_WE.R - row.X_WE.R).norm(), 5e-11 * std::numbers::sqrt2);
-    const Program program{"row", {written}};
-    const Program read = parse_program(format_program(program), "row");
-    ASSERT_EQ(read.waypoints[0].X_WE, written.X_WE) << i;
-    ASSERT_EQ(format_program(read), format_program(program));
   }
 }
 

@@ -22,6 +22,7 @@ struct Options {
   int first = 1;
   int skips = 0;
   PackingSettings settings;
+  DecisionRun run;
 };
 
 struct Outcome {
@@ -33,10 +34,11 @@ struct Outcome {
 };
 
 Outcome pack(const model::Scenario& scenario, const std::vector<Item>& items, const Options& options) {
-  const auto agent = make_agent(options.agent, {options.settings, make_future_model(scenario), items, {}});
+  const auto agent =
+      make_agent(options.agent, {options.settings, make_future_model(scenario), items, {}, {}, options.run});
   ContainerState state = make_container_state(*model::find_container(scenario, scenario.target));
   state.skips_left = options.skips;
-  Rng rng = Rng(options.settings.seed).split("noise");
+  Rng rng = Rng(options.run.seed).split("noise");
   Outcome outcome;
   for (const Item& item : items) {
     const auto start = std::chrono::steady_clock::now();
@@ -85,16 +87,19 @@ int main(int argc, char** argv) {
     if (key == "--random") o.random = std::atoi(value);
     if (key == "--noise") o.noise = std::atof(value);
     if (key == "--seeds") o.seeds = std::atoi(value);
-    if (key == "--seed") o.settings.seed = static_cast<std::uint64_t>(std::atoll(value));
-    if (key == "--time") o.settings.decision_time = std::atof(value);
-    if (key == "--threads") o.settings.threads = std::atoi(value);
+    if (key == "--seed") o.run.seed = static_cast<std::uint64_t>(std::atoll(value));
+    if (key == "--time") o.run.time = std::atof(value);
+    if (key == "--threads") o.run.threads = std::atoi(value);
     if (key == "--planned-interference") o.settings.planned_interference = std::atof(value);
     if (key == "--first") o.first = std::atoi(value);
     if (key == "--skips") o.skips = std::atoi(value);
-    if (key == "--last-interference") o.settings.last_interference = std::atof(value);
+    if (key == "--last-interference") {
+      o.settings.last_interference = std::atof(value);
+      o.run.tries_places = true;
+    }
   }
   const model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
-  for (int s = 0; s < o.seeds; ++s, ++o.settings.seed) {
+  for (int s = 0; s < o.seeds; ++s, ++o.run.seed) {
     double sum = 0.0, slowest = 0.0, mean_time = 0.0;
     int count = 0;
     const int runs = o.random > 0 ? o.random : static_cast<int>(scenario.sequences.size());

@@ -15,7 +15,7 @@ constexpr double kUprightTilt = 0.105;
 constexpr double kBeside = 0.060;
 
 // m, kept to obstacles. Beside: boxes are let down up to 10 mm off their place and slid, and pushed against what is
-// within 7 mm (session/item_plan.cpp). Over: what carries a box beside an obstacle gives way a little.
+// within 7 mm (skills/item_plan.cpp). Over: what carries a box beside an obstacle gives way a little.
 constexpr double kObstacleSide = 0.012, kObstacleTop = 0.005;
 
 int to_grams(double mass) { return static_cast<int>(std::lround(std::clamp(mass * 1000.0, 0.0, 1.0e9))); }

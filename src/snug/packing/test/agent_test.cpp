@@ -17,9 +17,12 @@ class EveryAgent : public testing::TestWithParam<std::string> {
  protected:
   model::Scenario scenario = test::demonstrator();
 
-  std::unique_ptr<Agent> make(std::vector<Item> sequence, PackingSettings settings = {}) {
-    if (settings.decision_time == PackingSettings().decision_time) settings.decision_time = 0.01;
-    return make_agent(GetParam(), {settings, make_future_model(scenario), std::move(sequence), {}});
+  std::unique_ptr<Agent> make(std::vector<Item> sequence, int threads = 1) {
+    return make_agent(GetParam(), {.settings = {},
+                                   .future = make_future_model(scenario),
+                                   .sequence = std::move(sequence),
+                                   .is_reachable = {},
+                                   .run = {.time = 0.01, .threads = threads}});
   }
 };
 
@@ -77,10 +80,8 @@ TEST_P(EveryAgent, DecidesTheSameAtAnyNumberOfThreads) {
   const std::vector<Item> items = test::shuffled_items(scenario, 9);
   ContainerState one = make_container_state(scenario.containers.front());
   ContainerState four = one;
-  PackingSettings settings;
-  settings.threads = 4;
   one = test::pack_all(*make(items), one, items);
-  four = test::pack_all(*make(items, settings), four, items);
+  four = test::pack_all(*make(items, 4), four, items);
   EXPECT_EQ(one, four);
 }
 
@@ -130,7 +131,7 @@ TEST_P(EveryAgent, KeepsUprightWhatMustStandUpright) {
 TEST_P(EveryAgent, AsksWhatCanBeReached) {
   const Item item = make_box("one", Vector3(0.10, 0.12, 0.20));
   AgentInput input{{}, make_future_model(scenario), {item}, [](const Placement&) { return false; }};
-  input.settings.decision_time = 0.01;
+  input.run.time = 0.01;
   const auto agent = make_agent(GetParam(), std::move(input));
   const auto decision = agent->decide(make_container_state(scenario.containers.front()), item);
   ASSERT_FALSE(decision);
@@ -143,8 +144,8 @@ TEST_P(EveryAgent, PassesOnWhatAReachFunctionThrowsAtAnyNumberOfThreads) {
     AgentInput input{{}, make_future_model(scenario), {item, next}, [](const Placement&) -> bool {
                        throw InputError("arm", "reach", "nothing", "something");
                      }};
-    input.settings.decision_time = 0.01;
-    input.settings.threads = threads;
+    input.run.time = 0.01;
+    input.run.threads = threads;
     const auto agent = make_agent(GetParam(), std::move(input));
     EXPECT_THROW((void)agent->decide(make_container_state(scenario.containers.front()), item), InputError);
   }
@@ -176,10 +177,11 @@ TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
     wall.X_TP.p = Vector3(0.1 * side, 0.0, 0.1);
     state.boxes.push_back(wall);
   }
-  const auto is_placed = [&](double width, double last_interference) {
+  const auto is_placed = [&](double width, double last_interference, bool tries_places = true) {
     AgentInput input;
-    input.settings.decision_time = 0.01;
+    input.run.time = 0.01;
     input.settings.last_interference = last_interference;
+    input.run.tries_places = tries_places;
     const Item item = make_box("tight", Vector3(width, 0.15, 0.19));
     const auto decision = make_agent("contact-aware", std::move(input))->decide(state, item);
     EXPECT_TRUE(decision || decision.error() == NoPlace::NoSpace);
@@ -190,6 +192,7 @@ TEST(ContactAware, PressesInAtLastWhatFitsNowhereOtherwise) {
   EXPECT_TRUE(is_placed(0.1 + 2.0 * interference, 0.0));
   EXPECT_FALSE(is_placed(0.1 + 2.0 * interference + 0.001, 0.0));
   EXPECT_TRUE(is_placed(0.1 + 2.0 * interference + 0.001, 0.003));
+  EXPECT_FALSE(is_placed(0.1 + 2.0 * interference + 0.001, 0.003, false)) << "for who does not try places first";
   EXPECT_TRUE(is_placed(0.1 + 2.0 * 0.003, 0.003));
   EXPECT_FALSE(is_placed(0.1 + 2.0 * 0.003 + 0.001, 0.003));
 }
@@ -198,7 +201,7 @@ TEST(Agent, UnknownNamesAndSettingsThatCannotBeAreRefused) {
   EXPECT_THROW((void)make_agent("contact-awar", {}), InputError);
   for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     AgentInput input;
-    input.settings.decision_time = bad;
+    input.run.time = bad;
     EXPECT_THROW((void)make_agent("contact-aware", input), InputError);
   }
 }

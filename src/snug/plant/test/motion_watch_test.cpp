@@ -90,10 +90,12 @@ TEST(MotionWatch, ANewRowHasPatienceOfItsOwn) {
 }
 
 TEST(Settling, EndsWhenTheToolStandsButNotBeforeAndNotNever) {
-  EXPECT_TRUE(is_settling(10.0, 10.2, 0.0));
-  EXPECT_FALSE(is_settling(10.0, 10.31, 0.0));
-  EXPECT_TRUE(is_settling(10.0, 11.9, 0.1));
-  EXPECT_FALSE(is_settling(10.0, 12.0, 0.1));
+  const model::MotionGuards settings;
+  EXPECT_TRUE(is_settling(settings, true, 10.0, 10.2, 0.0));
+  EXPECT_FALSE(is_settling(settings, true, 10.0, 10.31, 0.0));
+  EXPECT_FALSE(is_settling(settings, false, 10.0, 10.11, 0.0));
+  EXPECT_TRUE(is_settling(settings, true, 10.0, 11.9, 0.1));
+  EXPECT_FALSE(is_settling(settings, true, 10.0, 12.0, 0.1));
 }
 
 TEST(MotionWatch, SumsWhatEachWaypointTook) {

@@ -8,11 +8,8 @@ namespace snug::plant {
 namespace {
 
 motion::Waypoint waypoint_at(double z, bool vacuum) {
-  motion::Waypoint waypoint;
-  waypoint.X_WE.p = Vector3(0.0, 0.0, z);
-  waypoint.name = "home";
-  waypoint.io.vacuum = vacuum;
-  return waypoint;
+  return motion::make_waypoint(motion::MotionClass::Home, {}, {Matrix3::Identity(), Vector3(0.0, 0.0, z)},
+                               {.vacuum = vacuum});
 }
 
 PlantCase kinematic() {
@@ -30,7 +27,8 @@ INSTANTIATE_TEST_SUITE_P(Kinematic, PlantContract, testing::Values(kinematic()))
 
 TEST(End, SaysWhatItWasAndWhere) {
   motion::Waypoint place;
-  place.name = "Place(BOX027)";
+  place.motion_class = motion::MotionClass::Place;
+  place.item = "BOX027";
   EXPECT_EQ(describe({EndReason::ForceGuard, 0, 61.2, 60.0, ""}, {&place, 1}),
             "force guard: 61 N of 60 N toward Place(BOX027)");
   EXPECT_EQ(describe({EndReason::ProtectiveStop, 0, 0.0, 0.0, "joint torque of elbow"}, {}),

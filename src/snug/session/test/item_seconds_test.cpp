@@ -1,5 +1,6 @@
 // Tests of where the time of an item goes: each part by the names that the planners give, nothing lost.
 #include "snug/session/item_seconds.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +11,7 @@ namespace snug::session {
 namespace {
 
 motion::Waypoint row(const std::string& name, bool vacuum = false) {
-  motion::Waypoint waypoint;
-  waypoint.name = name;
+  motion::Waypoint waypoint = motion::parse_waypoint_name(name);
   waypoint.io.vacuum = vacuum;
   return waypoint;
 }

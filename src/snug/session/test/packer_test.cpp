@@ -47,14 +47,14 @@ class ScriptedPlant final : public plant::Plant {
       ends.pop_front();
     }
     for (const motion::Waypoint& row : motion.waypoints) {
-      if (row.name.ends_with("_press") && row.name.starts_with("PlaceSlow")) pressed.push_back(motion.item);
+      if (row.variant == "_press" && row.motion_class == motion::MotionClass::PlaceSlow) pressed.push_back(motion.item);
     }
     if (motion.item.empty()) ++home_count;
     const motion::Waypoint& last = end == EndReason::Completed ? motion.waypoints.back() : *held;
-    if (holds) X_WE_let_go = last.X_WE;
+    if (holds) X_WE_let_go = last.X_WE();
     now_.time += 1.0;
     now_.end = {end, 0, 0.0, 0.0, ""};
-    now_.X_WE = last.X_WE;
+    now_.X_WE = last.X_WE();
     now_.io = last.io;
     now_.pressure_gauge = last.io.vacuum && end != EndReason::NoSeal && end != EndReason::VacuumLost ? -6.0e4 : 0.0;
     if (holds && happens) happens(++motions_);
@@ -99,8 +99,10 @@ SessionOptions quick_options() {
   return options;
 }
 
-SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick_options()) {
+SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick_options(),
+                   const model::RehearsalSettings& rehearsal = {}) {
   model::Scenario scenario = two_boxes();
+  scenario.rehearsal = rehearsal;
   scenario.sequences.front().items.resize(static_cast<std::size_t>(items));
   return session::pack(scenario, "1", options, plant);
 }
@@ -136,9 +138,9 @@ TEST(Packer, DoesNotKnowWhereABoxIsThatFellOrWasLetGoEarlyAndIsNotSeen) {
 TEST(Packer, RehearsesAnewWhatWasPickedInVain) {
   ScriptedPlant plant;
   plant.ends = {EndReason::NoSeal};
-  SessionOptions options = quick_options();
-  options.max_attempts = options.most_attempts = 1;  // used up by the first motion
-  const SessionResult result = pack(plant, 1, options);
+  model::RehearsalSettings rehearsal;
+  rehearsal.max_attempts = rehearsal.most_attempts = 1;  // used up by the first motion
+  const SessionResult result = pack(plant, 1, quick_options(), rehearsal);
   EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
   EXPECT_EQ(result.items[0].sends.size(), 2U);
   EXPECT_EQ(result.items[0].attempts, 2);

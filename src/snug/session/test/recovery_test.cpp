@@ -6,6 +6,10 @@
 namespace snug::session {
 namespace {
 
+const model::RecoverySettings kSettings;
+
+Remedy remedy_for(const Situation& situation) { return choose_remedy(situation, kSettings); }
+
 Situation at(Trouble trouble) {
   Situation situation;
   situation.trouble = trouble;
@@ -14,95 +18,95 @@ Situation at(Trouble trouble) {
   return situation;
 }
 
-TEST(ChooseRemedy, NothingIsDoneAboutNothing) { EXPECT_EQ(choose_remedy(at(Trouble::None)), Remedy::None); }
+TEST(ChooseRemedy, NothingIsDoneAboutNothing) { EXPECT_EQ(remedy_for(at(Trouble::None)), Remedy::None); }
 
 TEST(ChooseRemedy, WhatDidNotSealOrFellIsPickedAgainWhereItLiesUntilTheTriesAreUsedUp) {
   for (const Trouble trouble : {Trouble::NoSeal, Trouble::VacuumLost, Trouble::OffPlace}) {
     Situation situation = at(trouble);
-    for (situation.tries = 1; situation.tries < situation.most_tries; ++situation.tries) {
-      EXPECT_EQ(choose_remedy(situation), Remedy::PickAgain) << name_of(trouble) << " " << situation.tries;
+    for (situation.tries = 1; situation.tries < kSettings.most_tries; ++situation.tries) {
+      EXPECT_EQ(remedy_for(situation), Remedy::PickAgain) << name_of(trouble) << " " << situation.tries;
     }
-    EXPECT_EQ(choose_remedy(situation), Remedy::Skip);
+    EXPECT_EQ(remedy_for(situation), Remedy::Skip);
     situation.tries = 1;
     situation.can_be_picked = false;
-    EXPECT_EQ(choose_remedy(situation), Remedy::Skip);
+    EXPECT_EQ(remedy_for(situation), Remedy::Skip);
     situation.fits = true;  // it fell into the container, and may stay
-    EXPECT_EQ(choose_remedy(situation), Remedy::Accept);
+    EXPECT_EQ(remedy_for(situation), Remedy::Accept);
   }
 }
 
 TEST(ChooseRemedy, ABoxThatFellOverInTheContainerIsPickedAgainWhereItCanBe) {
   Situation situation = at(Trouble::VacuumLost);
   situation.fits = true;
-  EXPECT_EQ(choose_remedy(situation), Remedy::Accept) << "as it was meant to lie";
+  EXPECT_EQ(remedy_for(situation), Remedy::Accept) << "as it was meant to lie";
   situation.lies_turned = true;
-  EXPECT_EQ(choose_remedy(situation), Remedy::PickAgain);
-  situation.tries = situation.most_tries;
-  EXPECT_EQ(choose_remedy(situation), Remedy::Accept) << "enough was tried";
+  EXPECT_EQ(remedy_for(situation), Remedy::PickAgain);
+  situation.tries = kSettings.most_tries;
+  EXPECT_EQ(remedy_for(situation), Remedy::Accept) << "enough was tried";
   situation.tries = 1;
   situation.can_be_picked = false;
-  EXPECT_EQ(choose_remedy(situation), Remedy::Accept);
+  EXPECT_EQ(remedy_for(situation), Remedy::Accept);
 }
 
 TEST(ChooseRemedy, AStopIsResumedOnceThenTheBoxIsLetGoAndAtLastTheSessionEnds) {
   Situation situation = at(Trouble::ProtectiveStop);
   situation.is_held = true;
   situation.stops = 1;
-  EXPECT_EQ(choose_remedy(situation), Remedy::Resume);
+  EXPECT_EQ(remedy_for(situation), Remedy::Resume);
   situation.stops = 2;
-  EXPECT_EQ(choose_remedy(situation), Remedy::Release);
+  EXPECT_EQ(remedy_for(situation), Remedy::Release);
   situation.stops = 4;
-  EXPECT_EQ(choose_remedy(situation), Remedy::Stop);
+  EXPECT_EQ(remedy_for(situation), Remedy::Stop);
   situation.stops = 1;
   situation.is_held = false;
-  EXPECT_EQ(choose_remedy(situation), Remedy::Release);
+  EXPECT_EQ(remedy_for(situation), Remedy::Release);
 }
 
 TEST(ChooseRemedy, WhatLeansOrSticksOutIsPressedOnceAndThenTakenOut) {
   for (const Trouble trouble : {Trouble::Leaning, Trouble::SticksOut}) {
     Situation situation = at(trouble);
-    EXPECT_EQ(choose_remedy(situation), Remedy::PressLevel);
+    EXPECT_EQ(remedy_for(situation), Remedy::PressLevel);
     situation.was_pressed = true;
-    EXPECT_EQ(choose_remedy(situation), Remedy::PickAgain);
+    EXPECT_EQ(remedy_for(situation), Remedy::PickAgain);
     situation.can_be_picked = false;
-    EXPECT_EQ(choose_remedy(situation), Remedy::Skip);
+    EXPECT_EQ(remedy_for(situation), Remedy::Skip);
   }
 }
 
 TEST(ChooseRemedy, ABoxThatMeetsTooMuchForceIsPutDownOnTheBenchWhereThereIsOne) {
   for (const Trouble trouble : {Trouble::ForceGuard, Trouble::Timeout}) {
     Situation situation = at(trouble);
-    EXPECT_EQ(choose_remedy(situation), Remedy::Release) << "nothing is held";
+    EXPECT_EQ(remedy_for(situation), Remedy::Release) << "nothing is held";
     situation.is_held = true;
-    EXPECT_EQ(choose_remedy(situation), Remedy::Release) << "no bench";
+    EXPECT_EQ(remedy_for(situation), Remedy::Release) << "no bench";
     situation.can_set_down = true;
-    EXPECT_EQ(choose_remedy(situation), Remedy::SetDown);
-    situation.tries = situation.most_tries;
-    EXPECT_EQ(choose_remedy(situation), Remedy::Release);
+    EXPECT_EQ(remedy_for(situation), Remedy::SetDown);
+    situation.tries = kSettings.most_tries;
+    EXPECT_EQ(remedy_for(situation), Remedy::Release);
   }
 }
 
 TEST(ChooseRemedy, PicturesAreTakenThreeTimesThenBeliefGoesOnAndABlockedViewEndsTheSession) {
   Situation situation = at(Trouble::BadPicture);
   for (situation.pictures = 1; situation.pictures < 3; ++situation.pictures) {
-    EXPECT_EQ(choose_remedy(situation), Remedy::LookAgain);
+    EXPECT_EQ(remedy_for(situation), Remedy::LookAgain);
   }
-  EXPECT_EQ(choose_remedy(situation), Remedy::Believe);
+  EXPECT_EQ(remedy_for(situation), Remedy::Believe);
   situation = at(Trouble::ViewBlocked);
   situation.pictures = 1;
-  EXPECT_EQ(choose_remedy(situation), Remedy::MoveAway);
+  EXPECT_EQ(remedy_for(situation), Remedy::MoveAway);
   situation.is_held = true;
-  EXPECT_EQ(choose_remedy(situation), Remedy::LookAgain) << "not with a box";
+  EXPECT_EQ(remedy_for(situation), Remedy::LookAgain) << "not with a box";
   situation.pictures = 3;
-  EXPECT_EQ(choose_remedy(situation), Remedy::Stop);
+  EXPECT_EQ(remedy_for(situation), Remedy::Stop);
 }
 
 TEST(ChooseRemedy, EveryTroubleHasARemedyAndAName) {
   for (int i = 1; i <= static_cast<int>(Trouble::PlantFault); ++i) {
     const Trouble trouble = static_cast<Trouble>(i);
-    EXPECT_NE(choose_remedy(at(trouble)), Remedy::None) << name_of(trouble);
+    EXPECT_NE(remedy_for(at(trouble)), Remedy::None) << name_of(trouble);
     EXPECT_STRNE(name_of(trouble), "");
-    EXPECT_STRNE(name_of(choose_remedy(at(trouble))), "");
+    EXPECT_STRNE(name_of(remedy_for(at(trouble))), "");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "snug/cell/joint_pace.hpp"
 #include "snug/model/test/shortened.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/session/rollout.hpp"
@@ -27,7 +28,7 @@ packing::Placement placement_of(const model::Scenario& scenario, const Vector3& 
 
 TEST(Reach, IsInTheContainerAndNotFarBehindIt) {
   const model::Scenario scenario = shortened(1);
-  const CellLayout layout = make_layout(scenario);
+  const skills::CellLayout layout = skills::make_layout(scenario, cell::find_pan_axis(scenario));
   const auto can = make_reach(scenario, layout, scenario.sequences.front());
   ASSERT_TRUE(can);
   for (const double x : {-0.12, 0.0, 0.12}) {
@@ -40,9 +41,11 @@ TEST(Reach, IsInTheContainerAndNotFarBehindIt) {
 TEST(Reach, IsNotAskedWithoutARobot) {
   model::Scenario scenario = shortened(1);
   scenario.robot->urdf = "nowhere.urdf";
-  EXPECT_FALSE(make_reach(scenario, make_layout(scenario), scenario.sequences.front()));
+  EXPECT_FALSE(
+      make_reach(scenario, skills::make_layout(scenario, cell::find_pan_axis(scenario)), scenario.sequences.front()));
   scenario.robot.reset();
-  EXPECT_FALSE(make_reach(scenario, make_layout(scenario), scenario.sequences.front()));
+  EXPECT_FALSE(
+      make_reach(scenario, skills::make_layout(scenario, cell::find_pan_axis(scenario)), scenario.sequences.front()));
 }
 
 /// From the start to and fro over the container, and down to the bench.
@@ -50,10 +53,8 @@ motion::Program to_and_fro() {
   motion::Program program{"test", {}};
   const Pose X_WE = shortened(1).controller.X_WE_start;
   for (int i = 0; i < 6; ++i) {
-    motion::Waypoint row;
-    row.X_WE = X_WE;
-    row.X_WE.p += Vector3(0.1 * (i % 3), 0.3 * (i % 2), 0.1 * (i % 2));
-    row.name = "home";
+    motion::Waypoint row = motion::make_waypoint(motion::MotionClass::Home, {}, X_WE);
+    row.p_WE += Vector3(0.1 * (i % 3), 0.3 * (i % 2), 0.1 * (i % 2));
     program.waypoints.push_back(row);
   }
   return program;
@@ -97,10 +98,9 @@ model::Scenario with_post(model::Scenario scenario) {
 TEST(Rollout, FailsWhereALinkOfTheArmTouchesSomething) {
   const model::Scenario scenario = with_post(shortened(1));
   Rollout rollout(scenario, "1", moved_by("ur10"));
-  motion::Waypoint row;
-  row.X_WE = rollout.simulation().scenario().controller.X_WE_start;
-  row.X_WE.p.x() += 0.05;
-  row.name = "home";
+  motion::Waypoint row =
+      motion::make_waypoint(motion::MotionClass::Home, {}, rollout.simulation().scenario().controller.X_WE_start);
+  row.p_WE.x() += 0.05;
   const cell::CellState start = rollout.state();
   const Episode episode = rollout.run({"test", {row}});
   EXPECT_EQ(episode.end, RolloutEnd::ArmContact);

@@ -15,7 +15,7 @@ using session::Trouble;
 Trial run_with(const char* faults, std::size_t items = 3) {
   const model::Scenario scenario = model::test::shortened(items);
   session::SessionOptions options;
-  options.packing.decision_time = 0.05;
+  options.decision.time = 0.05;
   options.samples = 2;
   simulated_plant::SimulatedPlantOptions plant;
   plant.seed = 101;
@@ -106,11 +106,11 @@ TEST(Recovery, AllOfThemInOneSession) {
 }
 
 TEST(SessionRecord, EveryAttemptForAnItemWithoutPlaceHasItsReason) {
-  const model::Scenario scenario = model::test::shortened(1);
+  model::Scenario scenario = model::test::shortened(1);
   session::SessionOptions options;
-  options.packing.decision_time = 0.05;
+  options.decision.time = 0.05;
   options.samples = 0;
-  options.limits.force = 10.0;  // N: less than any pick takes
+  scenario.place_limits.force = 10.0;  // N: less than any pick takes
   const Trial trial = run_trial(scenario, "1", options, {});
   ASSERT_EQ(trial.session.items.size(), 1U);
   const session::ItemReport& item = trial.session.items[0];

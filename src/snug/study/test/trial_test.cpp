@@ -20,7 +20,7 @@ using model::test::shortened;
 
 SessionOptions quick(int samples = 2) {
   SessionOptions options;
-  options.packing.decision_time = 0.05;
+  options.decision.time = 0.05;
   options.samples = samples;
   return options;
 }
@@ -40,7 +40,7 @@ TEST(Trial, PacksADrawnPlantAndIsTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(one.items_as_planned, 2);
   EXPECT_EQ(one.boxes_lost, 0);
   EXPECT_EQ(one.session.stop_reason, StopReason::AllPacked);
-  options.threads = options.packing.threads = 2;
+  options.threads = options.decision.threads = 2;
   const Trial two = run_trial(scenario, "1", options, plant_seed(7));
   EXPECT_EQ(motion::format_program(one.session.program), motion::format_program(two.session.program));
   EXPECT_EQ(one.state_hash, two.state_hash);

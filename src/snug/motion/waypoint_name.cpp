@@ -1,0 +1,156 @@
+// Waypoint names: what a waypoint is for, as files say it: written one way, read in ours and the demonstrator's.
+#include "snug/motion/waypoint_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include "snug/core/check.hpp"
+
+namespace snug::motion {
+namespace {
+
+constexpr std::array kWords = {std::pair{MotionClass::Home, "home"},
+                               std::pair{MotionClass::PrePick, "PrePick"},
+                               std::pair{MotionClass::Pick, "Box"},
+                               std::pair{MotionClass::PostPick, "PostPick"},
+                               std::pair{MotionClass::PreRePick, "PreRePick"},
+                               std::pair{MotionClass::RePick, "RePick"},
+                               std::pair{MotionClass::PostRePick, "PostRePick"},
+                               std::pair{MotionClass::PreTwist, "PreTwist"},
+                               std::pair{MotionClass::Twist, "Twist"},
+                               std::pair{MotionClass::TwistDrag, "TwistDrag"},
+                               std::pair{MotionClass::PrePlace, "PrePlace"},
+                               std::pair{MotionClass::Place, "Place"},
+                               std::pair{MotionClass::PlaceSlow, "PlaceSlow"},
+                               std::pair{MotionClass::PostPlace, "PostPlace"}};
+
+/// The class whose word is the longest that the name begins with.
+MotionClass class_of(std::string_view name) noexcept {
+  MotionClass best = MotionClass::Other;
+  for (const auto& [motion_class, word] : kWords) {
+    if (name.starts_with(word) && std::string_view(word).size() > name_of(best).size()) best = motion_class;
+  }
+  return best;
+}
+
+bool is_period(double value) noexcept { return value >= 0.01 && value < 9.995; }
+
+std::string text_of(const Swing& swing) { return fmt::format("~{:.2f}+{:.2f}", swing.slow, swing.fast); }
+
+/// What stands behind class and item.
+struct Tail {
+  std::string variant;
+  std::optional<Swing> swing;
+};
+
+Tail parse_tail(std::string_view text) {
+  Tail tail{std::string(text), std::nullopt};
+  const std::size_t mark = text.rfind('~');
+  if (mark == std::string_view::npos) return tail;
+  const char* const end = text.data() + text.size();
+  Swing swing;
+  const auto slow = std::from_chars(text.data() + mark + 1, end, swing.slow);
+  if (slow.ec != std::errc() || slow.ptr == end || *slow.ptr != '+') return tail;
+  const auto fast = std::from_chars(slow.ptr + 1, end, swing.fast);
+  const bool is_whole = fast.ec == std::errc() && (fast.ptr == end || *fast.ptr == '_');
+  if (!is_whole || !is_period(swing.slow) || !is_period(swing.fast)) return tail;
+  return {std::string(text.substr(0, mark)) + std::string(fast.ptr, end), as_named(swing)};
+}
+
+/// Digits of an id of the demonstrator's form, or nothing.
+std::string_view number_of(std::string_view id) noexcept {
+  if (!id.starts_with("BOX") && !id.starts_with("Box")) return {};
+  id.remove_prefix(3);
+  const bool is_number = std::ranges::all_of(id, [](char c) { return c >= '0' && c <= '9'; });
+  return is_number ? id : std::string_view{};
+}
+
+/// Length of `word` when the text begins with it and goes on with a suffix or not at all.
+std::size_t begins_with_word(std::string_view text, std::string_view word) noexcept {
+  if (word.empty() || !text.starts_with(word)) return 0;
+  return text.size() == word.size() || text[word.size()] == '_' ? word.size() : 0;
+}
+
+}  // namespace
+
+std::string_view name_of(MotionClass motion_class) noexcept {
+  const auto* found = std::ranges::find(kWords, motion_class, [](const auto& entry) { return entry.first; });
+  return found != kWords.end() ? found->second : "";
+}
+
+bool is_contact(MotionClass motion_class) noexcept {
+  switch (motion_class) {
+    case MotionClass::Pick:
+    case MotionClass::RePick:
+    case MotionClass::Twist:
+    case MotionClass::TwistDrag:
+    case MotionClass::Place:
+    case MotionClass::PlaceSlow:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string name_of(const Waypoint& waypoint) {
+  const bool has_id = waypoint.item_is_id && !waypoint.item.empty();
+  return fmt::format("{}{}{}{}{}{}", name_of(waypoint.motion_class), has_id ? "(" : "", waypoint.item,
+                     has_id ? ")" : "", waypoint.variant, waypoint.swing ? text_of(*waypoint.swing) : "");
+}
+
+Waypoint parse_waypoint_name(std::string_view name) {
+  Waypoint waypoint;
+  waypoint.motion_class = class_of(name);
+  std::string_view rest = name.substr(name_of(waypoint.motion_class).size());
+  const bool is_for_item = waypoint.motion_class != MotionClass::Other && waypoint.motion_class != MotionClass::Home;
+  const std::size_t bracket = is_for_item && rest.starts_with('(') ? rest.rfind(')') : std::string_view::npos;
+  if (bracket != std::string_view::npos) {
+    waypoint.item = rest.substr(1, bracket - 1);
+    rest.remove_prefix(bracket + 1);
+  }
+  Tail tail = parse_tail(rest);
+  waypoint.swing = tail.swing;
+  waypoint.item_is_id = !is_for_item || bracket != std::string_view::npos;
+  (waypoint.item_is_id ? waypoint.variant : waypoint.item) = std::move(tail.variant);
+  return waypoint;
+}
+
+Waypoint named_waypoint(std::string_view name, const Pose& X_WE, const IO& io) {
+  Waypoint waypoint = parse_waypoint_name(name);
+  waypoint.set_pose(X_WE);
+  waypoint.io = io;
+  return waypoint;
+}
+
+Swing as_named(const Swing& swing) {
+  SNUG_CHECK(is_period(swing.slow) && is_period(swing.fast), "periods of a swing");
+  const auto rounded = [](double period) {
+    const std::string text = fmt::format("{:.2f}", period);
+    double value = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+  };
+  return {rounded(swing.slow), rounded(swing.fast)};
+}
+
+std::size_t fit_of(const Waypoint& waypoint, std::string_view id) noexcept {
+  const std::string_view item = waypoint.item;
+  if (waypoint.item_is_id) return !item.empty() && item == id ? 2 * item.size() : 0;
+  if (const std::size_t whole = begins_with_word(item, id)) return 2 * whole;
+  const std::string_view number = number_of(id);
+  std::string_view short_form = item;
+  if (short_form.starts_with("Box")) {
+    short_form.remove_prefix(3);
+  } else if (short_form.starts_with('_')) {
+    short_form.remove_prefix(1);
+  }
+  const std::size_t digits = begins_with_word(short_form, number);
+  return digits > 0 ? 2 * digits - 1 : 0;
+}
+
+}  // namespace snug::motion

@@ -1,0 +1,440 @@
+// ItemPlan: from a box and the place it shall have to the rows that bring it there.
+#include "snug/skills/item_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "snug/core/input_error.hpp"
+#include "snug/cup/pick_length.hpp"
+#include "snug/cup/statics.hpp"
+#include "snug/cup/swing.hpp"
+#include "snug/geometry/bounds.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/motion/way.hpp"
+#include "snug/motion/waypoint_name.hpp"
+#include "snug/skills/highest_fixed_point.hpp"
+#include "snug/skills/unwinding.hpp"
+
+namespace snug::skills {
+namespace {
+
+using motion::MotionClass;
+
+constexpr double kLevel = 1e-3;  ///< rad
+
+/// Bounds in W of the boxes that fixed bodies are made of, where one face lies level.
+std::vector<geometry::Aabb> flat_tops(const model::Scenario& scenario) {
+  std::vector<geometry::Aabb> tops;
+  for (const model::Body& body : scenario.bodies) {
+    if (body.kind != model::BodyKind::Static) continue;
+    for (const model::PlacedShape& placed : body.shapes) {
+      const Pose X_WG = body.X_WB * placed.X_BG;
+      const bool is_level = X_WG.R.row(2).cwiseAbs().maxCoeff() > std::cos(kLevel);
+      if (is_level && std::holds_alternative<geometry::Box>(placed.shape)) {
+        tops.push_back(geometry::bounds(placed.shape, X_WG));
+      }
+    }
+  }
+  return tops;
+}
+
+/// The axis of W that is nearest to the way from `from` to `to`.
+Vector3 main_direction(const Vector3& from, const Vector3& to) {
+  const Vector3 way = to - from;
+  const int axis = std::abs(way.x()) >= std::abs(way.y()) ? 0 : 1;
+  return std::copysign(1.0, way[axis]) * Vector3::Unit(axis);
+}
+
+/// The highest surface that is large enough, near the way from aligner to container.
+std::optional<FlipPlace> find_flip_place(const std::vector<geometry::Aabb>& tops, const Vector3& from,
+                                         const Vector3& to, const model::PivotParams& params) {
+  const Vector3 middle = 0.5 * (from + to), direction = main_direction(from, to);
+  std::optional<FlipPlace> best;
+  double best_distance = 0.0;
+  for (const geometry::Aabb& top : tops) {
+    // A flipped box is let go further on in `direction` and dragged back to its place: room on that side only.
+    const Vector3 low =
+        top.lower + Vector3::Constant(params.surface_room) + params.surface_drag * (-direction).cwiseMax(0.0);
+    const Vector3 high =
+        top.upper - Vector3::Constant(params.surface_room) - params.surface_drag * direction.cwiseMax(0.0);
+    if (low.x() > high.x() || low.y() > high.y()) continue;
+    const Vector3 nearest(std::clamp(middle.x(), low.x(), high.x()), std::clamp(middle.y(), low.y(), high.y()),
+                          top.upper.z());
+    const double distance = (nearest - middle).head<2>().norm();
+    const bool is_higher = best && nearest.z() > best->p_WF.z() + 1e-6;
+    const bool is_as_high = best && std::abs(nearest.z() - best->p_WF.z()) <= 1e-6;
+    if (best && !is_higher && !(is_as_high && distance < best_distance)) continue;
+    best = FlipPlace{nearest, direction};
+    best_distance = distance;
+  }
+  return best;
+}
+
+/// How far below `bottom` [m, z in W] a held box comes on a fast way, and after which share of it.
+struct Dip {
+  double depth = 0.0;  ///< m, 0: it stays over it
+  double share = 0.0;
+};
+
+Dip find_dip(const CellLayout& layout, const Pose& X_WE_from, const Pose& X_WE_to, const Pose& X_EP,
+             const Vector3& size, double bottom) {
+  constexpr int kLooks = 24;
+  const motion::Way way(X_WE_from, X_WE_to, layout.pan_axis);
+  Dip dip;
+  for (int i = 0; i <= kLooks; ++i) {
+    const double share = static_cast<double>(i) / kLooks;
+    const Pose X_WP = way.at(share) * X_EP;
+    const double depth = bottom - (X_WP.p.z() + lowest_corner(X_WP.R, size));
+    if (depth > dip.depth) dip = {depth, share};
+  }
+  return dip;
+}
+
+constexpr int kRaises = 4;           ///< rounds in which an end of a way is raised until nothing is met on it
+constexpr double kLeastLever = 0.3;  ///< of a raised end, where the way is lowest
+
+double yaw_between(const Matrix3& R_from, const Matrix3& R_to) {
+  const Matrix3 R = R_to * R_from.transpose();
+  return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+}
+
+/// What is beside a place along one axis of the container.
+struct AxisView {
+  double low = 1.0, high = 1.0;          ///< m, gaps
+  double low_top = 0.0, high_top = 0.0;  ///< m, of the neighbours over the lower face
+  [[nodiscard]] bool low_near(const model::InsertionParams& params) const {
+    return low < params.near && low_top > params.least_neighbour;
+  }
+  [[nodiscard]] bool high_near(const model::InsertionParams& params) const {
+    return high < params.near && high_top > params.least_neighbour;
+  }
+};
+
+AxisView view(const packing::Candidate& candidate, int axis) {
+  const auto low = static_cast<std::size_t>(2 * axis), high = low + 1;
+  return {candidate.side_gap[low], candidate.side_gap[high], candidate.side_height[low], candidate.side_height[high]};
+}
+
+}  // namespace
+
+const char* name_of(InsertionSkill skill) {
+  switch (skill) {
+    case InsertionSkill::TopDown:
+      return "top-down";
+    case InsertionSkill::SlideToContact:
+      return "slide to contact";
+    case InsertionSkill::Tilted:
+      return "tilted";
+  }
+  return "";
+}
+
+const char* name_of(Reorientation reorientation) {
+  switch (reorientation) {
+    case Reorientation::None:
+      return "";
+    case Reorientation::SideGrasp:
+      return "side grasp";
+    case Reorientation::Regrasp:
+      return "regrasp";
+    case Reorientation::Pivot:
+      return "pivot";
+  }
+  return "";
+}
+
+CellLayout make_layout(const model::Scenario& scenario, const std::optional<motion::PanAxis>& pan_axis) {
+  const model::Container* container = model::find_container(scenario, scenario.target);
+  if (!scenario.aligner || !scenario.tool || container == nullptr) {
+    throw InputError(scenario.source_name, "", "", "a cell with an aligner, a tool and a target container");
+  }
+  CellLayout layout;
+  layout.X_WT = container->X_WT;
+  layout.rim = container->has_walls ? container->inner_size.z() : 0.0;
+  layout.fixed_top = highest_fixed_point(scenario);
+  layout.flip_place =
+      find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p, scenario.skills.pivot);
+  layout.pan_axis = pan_axis;
+  layout.travel = scenario.skills.travel;
+  layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
+  return layout;
+}
+
+double travel_bottom(const CellLayout& layout, double packed_top) {
+  const double rim = layout.X_WT.p.z() + std::max(layout.rim, packed_top);
+  return std::max(rim, layout.fixed_top) + layout.travel.clearance;
+}
+
+std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
+                                         const model::InsertionParams& params) {
+  Insertion base;
+  int tight_axis = -1;
+  bool slides = false;
+  for (int axis = 0; axis < 2; ++axis) {
+    const AxisView v = view(candidate, axis);
+    if (v.low_near(params) && v.high_near(params)) {
+      if (tight_axis < 0 || view(candidate, tight_axis).low + view(candidate, tight_axis).high > v.low + v.high) {
+        tight_axis = axis;
+      }
+    } else if (v.low_near(params) && v.high > params.slide_room) {
+      base.come_from_T[axis] = std::min(params.slide_start, v.high - params.slide_margin);
+      base.overtravel_T[axis] = -params.overtravel;
+      slides = true;
+    } else if (v.high_near(params) && v.low > params.slide_room) {
+      base.come_from_T[axis] = -std::min(params.slide_start, v.low - params.slide_margin);
+      base.overtravel_T[axis] = params.overtravel;
+      slides = true;
+    }
+  }
+  base.skill = slides ? InsertionSkill::SlideToContact : InsertionSkill::TopDown;
+  std::vector<Insertion> insertions{base};
+  if (tight_axis >= 0) {
+    const AxisView v = view(candidate, tight_axis);
+    const double bottom = candidate.placement.X_TP.p.z() + lowest_corner(candidate.placement.X_TP.R, size);
+    Insertion tilted = base;
+    tilted.skill = InsertionSkill::Tilted;
+    tilted.edge_height_T = bottom + std::min(v.low_top, v.high_top);
+    const double low_side = v.low_top > v.high_top ? 1.0 : -1.0;
+    tilted.low_side_T[tight_axis] = low_side;
+    // A taller neighbour is what the box is pushed against; among equals the side that goes in first.
+    const double taller = std::abs(v.low_top - v.high_top) > params.tilted.taller ? -low_side : low_side;
+    tilted.push_T = base.overtravel_T;
+    tilted.push_T[tight_axis] = taller * params.tilted.push;
+    tilted.come_from_T[tight_axis] = -taller * params.tilted.push;
+    insertions.push_back(tilted);
+    tilted.low_side_T = -tilted.low_side_T;
+    tilted.push_T[tight_axis] = -tilted.push_T[tight_axis];
+    tilted.come_from_T[tight_axis] = -tilted.come_from_T[tight_axis];
+    insertions.push_back(tilted);
+  } else if (slides) {
+    Insertion gentle = base;
+    gentle.overtravel_T *= params.gentle;
+    gentle.gentle = true;
+    insertions.push_back(gentle);
+  }
+  return insertions;
+}
+
+PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item) {
+  const std::string& id = sequence.items[static_cast<std::size_t>(item)].parcel;
+  const model::Parcel& parcel = *model::find_parcel(scenario, id);
+  return {item, id, model::collision_size(scenario, parcel), parcel.inertia};
+}
+
+Vector3 cup_offset(const model::CupParams& cup, double seal_margin, const PlannedBox& box, const Matrix3& R_WP) {
+  return choose_cup_offset(R_WP, box.size, box.inertia.com, 0.5 * cup.effective_diameter + seal_margin);
+}
+
+double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP_next) {
+  const double turn = yaw_between(X_WP.R, X_WP_next.R);
+  if (!layout.is_fast || !layout.pan_axis) return turn;
+  const double pan = motion::pan_between(layout.pan_axis->p_WB, X_WP.p, X_WP_next.p);
+  const double other = turn - std::copysign(2.0 * std::numbers::pi, turn);
+  return std::abs(other) <= layout.travel.longest_turn && std::abs(pan - other) < std::abs(pan - turn) ? other : turn;
+}
+
+std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                        const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next, double travel,
+                                        PickKind kind) {
+  const model::PickParams& params = scenario.skills.pick;
+  PickIntent intent;
+  intent.box = box.id;
+  intent.X_WP = X_WP;
+  intent.size = box.size;
+  intent.cup_offset_P = cup_offset(scenario.cup, params.seal_margin, box, X_WP.R);
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, X_WP, X_WP_next);
+  intent.length = cup::pick_length(scenario.cup);
+  intent.again = kind != PickKind::First;
+  const double height = -2.0 * lowest_corner(X_WP.R, box.size);
+  const double top = X_WP.p.z() + 0.5 * height;
+  intent.approach_height =
+      scenario.cup.free_length + (kind == PickKind::FromAbove
+                                      ? top + params.above_box
+                                      : std::max(travel + params.above_travel, top + layout.travel.clearance));
+  intent.lift_height = travel + height + scenario.cup.hold_length;
+  return pick_rows(intent);
+}
+
+motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
+  const model::TravelParams& travel = scenario.skills.travel;
+  const cup::Swing swing = cup::find_swing(scenario.cup, box.inertia, box.size, up_P, scenario.gravity.norm());
+  return {std::clamp(swing.slow, travel.shortest_swing, travel.longest_swing),
+          std::clamp(swing.fast, travel.shortest_swing, travel.longest_swing)};
+}
+
+std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& last,
+                                       const std::vector<motion::Waypoint>& rows,
+                                       const std::optional<motion::Swing>& swing) {
+  if (rows.empty()) return rows;
+  if (layout.is_fast) {
+    std::vector<motion::Waypoint> turned =
+        with_turns(last, rows, {layout.neutral_yaw, layout.travel.sure_turn, true, layout.pan_axis});
+    for (motion::Waypoint& row : turned) {
+      if (swing && row.io.vacuum && !motion::is_contact(row.motion_class)) row.swing = motion::as_named(*swing);
+    }
+    return turned;
+  }
+  const std::vector<motion::Waypoint> turned = with_turns(last, rows, {layout.neutral_yaw, layout.travel.sure_turn});
+  if (!layout.pan_axis) return turned;
+  return with_detours(last, turned, layout.pan_axis->p_WB, layout.travel.near_base, layout.travel.base_radius);
+}
+
+Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction) {
+  const Vector3 now = R_WP * up_P;
+  const double yaw = std::atan2(direction.y(), direction.x()) - std::atan2(now.y(), now.x());
+  return exp_rotation(Vector3(0.0, 0.0, yaw)) * R_WP;
+}
+
+std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                             const PlannedBox& box, const Pose& X_WP, const Vector3& face,
+                                             const Pose& X_WP_next, double travel, bool again) {
+  const model::CupParams& cup = scenario.cup;
+  const model::SideGraspParams& params = scenario.skills.side_grasp;
+  SidePickIntent intent;
+  intent.params = params;
+  intent.box = box.id;
+  intent.X_WP = X_WP;
+  intent.size = box.size;
+  intent.face = face;
+  intent.again = again;
+  const Matrix3 R_WP_up = face_up(X_WP.R, face);
+  intent.cup_offset_P = cup_offset(cup, scenario.skills.pick.seal_margin, box, R_WP_up);
+  // The lip stays off what the box stands on; where the side is too low for that it reaches over its upper edge.
+  const double half_height = -lowest_corner(X_WP.R, box.size);
+  const double low = cup.lip_radius + params.lip_clearance - half_height;
+  const double offset = (X_WP.R * intent.cup_offset_P).z();
+  if (offset < low) intent.cup_offset_P += (low - offset) * X_WP.R.transpose() * Vector3::UnitZ();
+  if (low + cup.lip_radius - half_height > cup.seal.max_overhang - params.lip_clearance) return {};
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, {R_WP_up, X_WP.p}, X_WP_next);
+  // At the aligner the plates hold the box against the cup. Elsewhere the lip just touches, and pulls the box to
+  // itself.
+  intent.length = again ? cup.free_length : cup::pick_length(cup);
+  intent.lift = std::max(params.least_lift, travel - (X_WP.p.z() - half_height));
+  intent.approach_height = travel + half_height;
+  std::vector<motion::Waypoint> rows = side_pick_rows(intent);
+  if (!layout.is_fast) return rows;
+  SidePickPoses poses = side_pick_poses(intent);
+  const Pose X_EP = poses.X_WE_pick.inverse() * X_WP;
+  Pose X_WP_over = X_WP_next;
+  X_WP_over.p.z() = travel - lowest_corner(X_WP_next.R, box.size);
+  for (int i = 0; i < kRaises; ++i) {
+    Pose& X_WE_lifted = poses.X_WE_lifted;
+    const Dip dip = find_dip(layout, X_WE_lifted, X_WP_over * X_EP.inverse(), X_EP, box.size,
+                             travel - layout.travel.clearance + layout.travel.turning_clearance);
+    X_WE_lifted.p.z() += dip.depth / std::max(kLeastLever, 1.0 - dip.share);
+  }
+  rows.back().p_WE = poses.X_WE_lifted.p;
+  return rows;
+}
+
+motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
+                              const Pose& X_PS, const Vector3& face, double travel, bool again) {
+  const Matrix3 R_WP = face_up(X_WP.R, face);
+  Pose X_WP_up{R_WP, X_WP.p};
+  X_WP_up.p.z() = travel + scenario.skills.side_grasp.turn_clearance - lowest_corner(R_WP, box.size);
+  return motion::make_waypoint(again ? MotionClass::PostRePick : MotionClass::PostPick, box.id,
+                               make_tool_for(scenario, box, X_PS)(X_WP_up), {.vacuum = true}, "_up");
+}
+
+std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const CellLayout& layout,
+                                         const PlannedBox& box, const Pose& X_WP, double travel) {
+  const double top = X_WP.p.z() - lowest_corner(X_WP.R, box.size);
+  const double free = scenario.cup.free_length;
+  Pose X_WE{motion::upright_tool(layout.neutral_yaw), X_WP.p};
+  const auto row_at = [&](MotionClass motion_class, double z) {
+    X_WE.p.z() = z;
+    return motion::make_waypoint(motion_class, box.id, X_WE, {}, "_press");
+  };
+  const model::PressParams& params = scenario.skills.press;
+  const double over = std::max(travel, top) + free + params.stand_off;
+  return {row_at(MotionClass::PrePlace, over), row_at(MotionClass::PlaceSlow, top + free - params.depth),
+          row_at(MotionClass::PostPlace, over)};
+}
+
+std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, const PlannedBox& box,
+                                            const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                            double travel) {
+  SetDownIntent intent;
+  intent.params = scenario.skills.set_down;
+  intent.box = box.id;
+  intent.size = box.size;
+  intent.X_WP = {R_WP, place.p_WF - lowest_corner(R_WP, box.size) * Vector3::UnitZ()};
+  intent.travel_bottom = travel;
+  intent.tool_for = make_tool_for(scenario, box, X_PS);
+  return set_down_rows(intent);
+}
+
+std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box, const FlipPlace& place,
+                                        const Matrix3& R_WP, const Pose& X_PS, double travel) {
+  FlipIntent intent;
+  intent.params = scenario.skills.pivot;
+  intent.box = box.id;
+  intent.size = box.size;
+  intent.p_WF = place.p_WF;
+  intent.direction = place.direction;
+  intent.R_WP = R_WP;
+  intent.travel_bottom = travel;
+  intent.tool_for = make_tool_for(scenario, box, X_PS);
+  intent.X_PE = X_PS * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -scenario.cup.hold_length)};
+  return flip_rows(intent);
+}
+
+ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS) {
+  const model::CupParams& params = scenario.cup;
+  cup::HeldLoad load;
+  load.mass = box.inertia.mass;
+  load.p_SScm = X_PS.inverse() * box.inertia.com;
+  load.stiffness = cup::as_matrix(params.stiffness);
+  load.X_ES2 = Pose{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length - params.centre_from_lip)};
+  load.X_SS1 = Pose{Matrix3::Identity(), Vector3(0.0, 0.0, -params.centre_from_lip)};
+  load.gravity_W = scenario.gravity;
+  const Pose X_ES_rest{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length)};
+  return [load, X_PS, X_ES_rest](const Pose& X_WP) {
+    // The sag depends on how the tool is turned, and that on the sag: a few rounds settle it to below 0.01 degrees.
+    Pose X_ES = X_ES_rest;
+    for (int i = 0; i < 4; ++i) {
+      cup::HeldLoad turned = load;
+      turned.R_WE = X_WP.R * X_PS.R * X_ES.R.transpose();
+      const cup::SettleResult result = cup::settle(turned);
+      if (result.status != cup::SettleStatus::Converged) break;
+      X_ES = result.X_ES;
+    }
+    return X_WP * X_PS * X_ES.inverse();
+  };
+}
+
+std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
+                                         const PlaceRequest& request) {
+  const Matrix3& R_WT = layout.X_WT.R;
+  PlaceIntent intent;
+  intent.params = scenario.skills.insertion;
+  intent.box = request.box.id;
+  intent.X_WP = layout.X_WT * request.X_TP;
+  intent.size = request.box.size;
+  intent.tool_for = make_tool_for(scenario, request.box, request.X_PS);
+  intent.travel_bottom = travel_bottom(layout, request.packed_top);
+  const double rim = std::max(layout.rim, request.packed_top);
+  intent.entry_bottom = layout.X_WT.p.z() + rim + intent.params.entry_clearance;
+  intent.come_from = R_WT * request.insertion.come_from_T;
+  intent.overtravel = R_WT * request.insertion.overtravel_T;
+  intent.gentle = request.insertion.gentle;
+  if (request.insertion.skill == InsertionSkill::Tilted) {
+    TiltedEntry entry;
+    entry.low_side = R_WT * request.insertion.low_side_T;
+    entry.push = R_WT * request.insertion.push_T;
+    entry.edge_height = layout.X_WT.p.z() + request.insertion.edge_height_T;
+    intent.tilted = entry;
+  }
+  if (!layout.is_fast) return place_rows(intent);
+  intent.entry_bottom = intent.X_WP.p.z() + lowest_corner(intent.X_WP.R, intent.size);  // straight down
+  const double least = intent.travel_bottom - layout.travel.clearance + layout.travel.turning_clearance;
+  for (int i = 0; i < kRaises; ++i) {
+    const Pose X_WE_over = tool_over_place(intent);
+    const Dip dip = find_dip(layout, request.X_WE, X_WE_over, request.X_EP, intent.size, least);
+    intent.travel_bottom += dip.depth / std::max(kLeastLever, dip.share);
+  }
+  return place_rows(intent);
+}
+
+}  // namespace snug::skills

@@ -1,0 +1,145 @@
+// ItemPlan: from a box and the place it shall have to the rows that bring it there.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/motion/way.hpp"
+#include "snug/motion/waypoint.hpp"
+#include "snug/packing/placement.hpp"
+#include "snug/skills/primitives.hpp"
+#include "snug/skills/side_pick.hpp"
+
+namespace snug::skills {
+
+/// The flat surface on which boxes are flipped.
+struct FlipPlace {
+  Vector3 p_WF = Vector3::Zero();        ///< m, under the middle of the box
+  Vector3 direction = Vector3::UnitX();  ///< unit, where the tool points when it lets go
+};
+
+/// What the plans of all items have in common.
+struct CellLayout {
+  Pose X_WT;                                ///< target container
+  double rim = 0.0;                         ///< m, z in T of the upper edges of its walls; 0 without walls
+  double fixed_top = 0.0;                   ///< m, z in W of the highest fixed thing that the tool passes
+  std::optional<FlipPlace> flip_place;      ///< absent: nothing flat is large enough
+  std::optional<motion::PanAxis> pan_axis;  ///< of the robot, where that is vertical
+  double neutral_yaw = 0.0;                 ///< rad, of the tool at its start: half a turn to either side of it is used
+  /// Motions are fast ones (motion::ControllerKind::Fast): tracked exactly, around the robot's first axis. A held box
+  /// turns the way round that leaves the wrist less to do, and while it travels.
+  bool is_fast = false;
+  model::TravelParams travel;
+};
+/// Throws InputError for a scenario without aligner, tool or target container.
+[[nodiscard]] CellLayout make_layout(const model::Scenario& scenario, const std::optional<motion::PanAxis>& pan_axis);
+
+/// How another face of a box is brought up.
+enum class Reorientation {
+  None,       ///< it is up already
+  SideGrasp,  ///< picked by that face
+  Regrasp,    ///< put on a flat surface, then picked by that face
+  Pivot,      ///< turned over its lower edge on a flat surface, let go, picked again (report Figure 13)
+};
+[[nodiscard]] const char* name_of(Reorientation reorientation);
+
+/// How a box is brought to its place.
+enum class InsertionSkill {
+  TopDown,         ///< straight down
+  SlideToContact,  ///< beside its place, then pushed against its neighbours
+  Tilted,          ///< one side first, levelled while it is pushed
+};
+[[nodiscard]] const char* name_of(InsertionSkill skill);
+
+/// A skill and how much of it.
+struct Insertion {
+  InsertionSkill skill = InsertionSkill::TopDown;
+  Vector3 come_from_T = Vector3::Zero();   ///< m
+  Vector3 overtravel_T = Vector3::Zero();  ///< m
+  Vector3 low_side_T = Vector3::Zero();    ///< Tilted: unit
+  Vector3 push_T = Vector3::Zero();        ///< Tilted: m
+  double edge_height_T = 0.0;              ///< Tilted: m
+  bool gentle = false;
+};
+/// Insertions worth trying for a candidate, the most promising first; never empty.
+[[nodiscard]] std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
+                                                       const model::InsertionParams& params);
+
+/// A box of the plan: as the scenario has it.
+struct PlannedBox {
+  int item = 0;  ///< of the sequence
+  std::string id;
+  Vector3 size = Vector3::Constant(0.1);  ///< m, collision size
+  SpatialInertia inertia;
+};
+[[nodiscard]] PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item);
+/// m, in P, from the middle of the upper face to where the cup presses: as near the centre of mass as it seals.
+[[nodiscard]] Vector3 cup_offset(const model::CupParams& cup, double seal_margin, const PlannedBox& box,
+                                 const Matrix3& R_WP);
+
+/// Where a pick from above begins.
+enum class PickKind {
+  First,      ///< at the aligner
+  FromAfar,   ///< of a box that was let go before, the tool somewhere else
+  FromAbove,  ///< of a box that was just let go, the tool still over it
+};
+/// rad, about the vertical, that a box is turned by on its way from X_WP to X_WP_next: the shorter way round, or, with
+/// `layout.is_fast`, the one that differs less from the turn of the robot's first axis.
+[[nodiscard]] double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP_next);
+/// Rows that pick the box where it stands, so that it can be brought to X_WP_next next (of the place the direction
+/// from the robot counts). The turn between both is shared: at the pick the tool is turned from `layout.neutral_yaw` to
+/// one side by half of it, then to the other.
+[[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                                      const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next,
+                                                      double travel_bottom, PickKind kind);
+/// Of the box that hangs from the face that looks along `up_P` (P axis), within TravelParams.
+[[nodiscard]] motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
+/// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.
+/// `swing`: of what hangs on the way: fast motions are told. None: not known, or nothing does.
+[[nodiscard]] std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& before,
+                                                     const std::vector<motion::Waypoint>& rows,
+                                                     const std::optional<motion::Swing>& swing = std::nullopt);
+/// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.
+[[nodiscard]] Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction);
+
+/// Rows that pick the box by the side that looks along `face` (unit, level, in W) and lift it as it stood; `again`: it
+/// was set down before. Empty where the cup would touch what the box stands on or reach too far over its upper edge.
+/// Fast: so high that it passes over everything on the way to X_WP_next, on which that side may turn up.
+[[nodiscard]] std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                                           const PlannedBox& box, const Pose& X_WP, const Vector3& face,
+                                                           const Pose& X_WP_next, double travel_bottom, bool again);
+/// Row that turns that side up, in the air.
+[[nodiscard]] motion::Waypoint plan_turn_up(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_WP,
+                                            const Pose& X_PS, const Vector3& face, double travel_bottom, bool again);
+/// Rows that press once on the middle of the box from above, the vacuum off, so that it comes to stand level.
+[[nodiscard]] std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const CellLayout& layout,
+                                                       const PlannedBox& box, const Pose& X_WP, double travel_bottom);
+/// Rows that put the held box on the flat surface, its orientation R_WP, and let go.
+[[nodiscard]] std::vector<motion::Waypoint> plan_set_down(const model::Scenario& scenario, const PlannedBox& box,
+                                                          const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                                          double travel_bottom);
+/// Rows that turn the held box over its lower edge there and let go.
+[[nodiscard]] std::vector<motion::Waypoint> plan_flip(const model::Scenario& scenario, const PlannedBox& box,
+                                                      const FlipPlace& place, const Matrix3& R_WP, const Pose& X_PS,
+                                                      double travel_bottom);
+
+/// Tool over a box that hangs still from the cup where `X_PS` is the lip on it.
+[[nodiscard]] ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, const Pose& X_PS);
+
+struct PlaceRequest {
+  PlannedBox box;
+  Pose X_PS;  ///< lip on the held box
+  Pose X_TP;  ///< where it shall rest
+  Insertion insertion;
+  double packed_top = 0.0;  ///< m, z in T of the highest box in the container
+  Pose X_WE;                ///< from here
+  Pose X_EP;                ///< as the box hangs there
+};
+[[nodiscard]] std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
+                                                       const PlaceRequest& request);
+
+/// z in W below which nothing passes that crosses the cell: over fixed things, rim and packed boxes.
+[[nodiscard]] double travel_bottom(const CellLayout& layout, double packed_top);
+
+}  // namespace snug::skills
