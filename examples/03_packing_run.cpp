@@ -30,5 +30,5 @@ int main(int argc, char** argv) {
                 box.X_TP.p.x(), box.X_TP.p.y(), box.X_TP.p.z());
   }
   std::printf("filled to %.2f %%, %.0f s simulated\n", result.filling_degree_percent, result.duration);
-  return result.failure.empty() ? 0 : 1;
+  return result.failure ? 1 : 0;
 }

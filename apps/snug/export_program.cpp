@@ -147,7 +147,7 @@ LoadedProgram load(const ExportOptions& options) {
 /// otherwise, and what is worse is said on stderr. True with --unchecked.
 bool is_exportable(const LoadedProgram& program, const motion::PreparedProgram& done) {
   if (!program.trial) return true;
-  std::string worse = program.is_fast() ? cell::find_loss(*program.trial) : program.trial->failure;
+  std::string worse = program.is_fast() ? cell::find_loss(*program.trial) : program.trial->failure.text;
   if (worse.empty() && done.settings.kind == motion::ControllerKind::Ideal) {
     const cell::Simulation& own = program.simulation;
     cell::SimulationOptions exact = own.options();

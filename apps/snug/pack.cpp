@@ -16,6 +16,7 @@
 #include "python_agent.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
+#include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
@@ -44,7 +45,7 @@ void record(const model::Scenario& scenario, const study::Trial& trial, OutputFi
       {"agent", trial.session.agent},
       {"ended",
        trial.session.stopped}}.dump();
-  recorded.describe = [](const cell::RunResult& one) { return format_json(one); };
+  recorded.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
   (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
 }
 
@@ -186,7 +187,7 @@ int run_pack(const PackOptions& options) {
   if (files.plan) write_file(std::move(*files.plan), format_plan(result));
   if (files.record && has_program) record(scenario, trial, *files.record);
   print(options.json ? format_json(trial, repeated) : format_summary(trial, repeated));
-  std::string failure = result.failure;
+  std::string failure = result.failure.text;
   if (failure.empty() && repeated.failed > 0) {
     failure = fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
   }

@@ -80,6 +80,7 @@ Json attempts_as_json(const std::vector<session::FailedAttempt>& attempts) {
   for (const session::FailedAttempt& one : attempts) {
     list.push_back({{"planned", as_json(one.planned)},
                     {"insertion", skills::name_of(one.skill)},
+                    {"failure", session::name_of(one.failure)},
                     {"succeeded", one.succeeded},
                     {"samples_succeeded", one.success_rate},
                     {"reason", one.reason}});
@@ -320,7 +321,8 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
       {"decision_seconds_median", result.decision_seconds_median},
       {"stop_reason", session::name_of(result.stop_reason)},
       {"stopped", result.stopped},
-      {"failure", result.failure},
+      {"failure", result.failure.text},
+      {"failure_kind", session::name_of(result.failure.kind)},
       {"duration", result.duration},
       {"controller", motion::name_of(trial.plant.simulation.controller)},
       {"tempo",

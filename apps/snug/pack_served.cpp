@@ -86,8 +86,10 @@ study::Trial run_served_trial(const PackOptions& options, const model::Scenario&
   trial.is_elsewhere = true;
   trial.plant.perception = kind;
   trial.plant.simulation = session.simulation;
-  const std::string trouble = plant.finish();
-  if (trial.session.failure.empty()) trial.session.failure = trouble;
+  std::string trouble = plant.finish();
+  if (!trial.session.failure && !trouble.empty()) {
+    trial.session.failure = {session::SessionFailureKind::PlantLost, std::move(trouble)};
+  }
   return trial;
 }
 

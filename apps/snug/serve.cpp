@@ -13,6 +13,7 @@
 
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
+#include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/writer.hpp"
 #include "snug/session/session.hpp"
@@ -183,7 +184,7 @@ class Serving {
   cell::OutsideRunOptions begin(int run) {
     cell::OutsideRunOptions run_options;
     run_options.version = version_text();
-    run_options.describe = [](const cell::RunResult& result) { return format_json(result); };
+    run_options.describe = [](const cell::RunResult& result) { return cell::format_result(result); };
     if (options_.record) {
       if (run > 1) record_ = record::reserve_recording(name_of_run(*options_.record, run));
       run_options.record_file = &*record_;
@@ -193,15 +194,15 @@ class Serving {
   }
 
   void end(int run, const cell::RunResult& result) {
-    const std::string json = format_json(result);
+    const std::string json = cell::format_result(result);
     if (options_.json) {
       print(nlohmann::ordered_json::parse(json).dump() + "\n");
     } else {
       print(fmt::format("run {}, ended: {}\n{}", run, result.ended_by, format_table(result)));
     }
     std::fflush(stdout);
-    if (live_) live_->finish(json, result.failure);
-    has_failed_ = !result.failure.empty();
+    if (live_) live_->finish(json, result.failure.text);
+    has_failed_ = static_cast<bool>(result.failure);
     if (options_.once) server_->stop();
   }
 

@@ -9,6 +9,7 @@
 #include "repeated_runs.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
+#include "snug/cell/result_json.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
@@ -84,7 +85,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   run.until = options.until;
   run.threads = options.threads.value_or(core_count());
   run.version = version_text();
-  run.describe = [](const cell::RunResult& result) { return format_json(result); };
+  run.describe = [](const cell::RunResult& result) { return cell::format_result(result); };
   return run;
 }
 
@@ -130,9 +131,9 @@ int run_simulate(const SimulateOptions& options) {
   if (options.csv) run_options.observer = &table.emplace(OutputFile(*options.csv));
   const cell::RunResult result = cell::run(scenario, run_options);
   if (table) table->close();
-  print(options.json ? format_json(result) : format_table(result));
-  if (result.failure.empty()) return kSuccess;
-  std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());
+  print(options.json ? cell::format_result(result) : format_table(result));
+  if (!result.failure) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %s\n", result.failure.text.c_str());
   return kRunFailed;
 }
 

@@ -13,6 +13,7 @@
 
 #include "robot_files.hpp"
 #include "run_report.hpp"
+#include "snug/cell/result_json.hpp"
 #include "stop_signal.hpp"
 #include "view_served.hpp"
 #include "viewer_page.hpp"
@@ -50,7 +51,7 @@ int view_recordings(const ViewOptions& options) {
 
 /// The result without how long it took: a run that is watched waits for its watchers.
 std::string describe_watched(const cell::RunResult& result) {
-  auto json = nlohmann::ordered_json::parse(format_json(result));
+  auto json = nlohmann::ordered_json::parse(cell::format_result(result));
   json.erase("wall_s");
   json.erase("real_time_factor");
   return json.dump(2) + "\n";
@@ -72,7 +73,7 @@ class LiveSimulation {
     thread_ = std::thread([this, on_trouble = std::move(on_trouble)] {
       try {
         result_ = cell::run(scenario_, run_options_);
-        live_.finish(describe_watched(*result_), result_->failure, result_->is_interrupted);
+        live_.finish(describe_watched(*result_), result_->failure.text, result_->is_interrupted);
       } catch (const std::exception& error) {
         trouble_ = std::current_exception();
         live_.finish("", error.what());
@@ -120,8 +121,8 @@ int view_live(const ViewOptions& options) {
   server.run();
   const cell::RunResult& result = simulation.result();
   print(format_table(result));
-  if (result.failure.empty()) return kSuccess;
-  std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());
+  if (!result.failure) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %s\n", result.failure.text.c_str());
   return kRunFailed;
 }
 

@@ -5,6 +5,7 @@
 #include "handles.hpp"
 #include "pack_report.hpp"
 #include "run_report.hpp"
+#include "snug/cell/result_json.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
@@ -100,7 +101,7 @@ void save_recording(const model::Scenario& scenario, const study::Trial& trial, 
       {"agent", trial.session.agent},
       {"ended",
        trial.session.stopped}}.dump();
-  recorded.describe = [](const cell::RunResult& one) { return app::format_json(one); };
+  recorded.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
   (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
 }
 
@@ -121,7 +122,7 @@ cell::RunOptions run_options(const motion::Program& program, const std::string& 
   run.program_text = motion::format_program(program);
   run.sequence = sequence;
   run.version = SNUG_VERSION;
-  run.describe = [](const cell::RunResult& one) { return app::format_json(one); };
+  run.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
   return run;
 }
 
@@ -161,7 +162,7 @@ py::object simulate(const ScenarioHandle& scenario, const ProgramHandle& program
   cell::RunOptions run;
   if (program) run = run_options(**program, sequence);
   run.version = SNUG_VERSION;
-  run.describe = [](const cell::RunResult& one) { return app::format_json(one); };
+  run.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
   run.corrections = corrections;
   run.simulation.robot = robot;
   if (cup != "holding" && cup != "phases") throw InputError("argument", "cup", "'" + cup + "'", "holding or phases");
@@ -179,10 +180,10 @@ py::object simulate(const ScenarioHandle& scenario, const ProgramHandle& program
   std::string json;
   if (record.empty()) {
     const py::gil_scoped_release release;
-    json = app::format_json(cell::run(**scenario, run));
+    json = cell::format_result(cell::run(**scenario, run));
   } else {
     const HdfUse use;
-    json = app::format_json(cell::run(**scenario, run));
+    json = cell::format_result(cell::run(**scenario, run));
   }
   return from_json(json);
 }

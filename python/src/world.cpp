@@ -94,7 +94,7 @@ class World {
     for (int i = 0; i < steps; ++i) {
       report_ = scene_.advance();
       if (report_.status == physics::StepStatus::NotFinite || report_.status == physics::StepStatus::TooManyPairs) {
-        throw std::runtime_error(cell::describe_failure(world(), state(), scene_.work(), report_));
+        throw std::runtime_error(cell::find_failure(world(), state(), scene_.work(), report_).text);
       }
     }
   }
@@ -154,7 +154,7 @@ class Cell {
     for (int i = 0; i < ticks; ++i) {
       const cell::CellTick tick = simulation_.advance(plan_, state_, work_);
       has_ended_ |= tick.has_ended;
-      if (!tick.failure.empty()) throw std::runtime_error(tick.failure);
+      if (tick.failure) throw std::runtime_error(tick.failure.text);
     }
     return !has_ended_;
   }
@@ -165,7 +165,7 @@ class Cell {
     while (!has_ended_) {
       const cell::CellTick tick = simulation_.advance(plan_, state_, work_);
       has_ended_ = tick.has_ended;
-      if (!tick.failure.empty()) throw std::runtime_error(tick.failure);
+      if (tick.failure) throw std::runtime_error(tick.failure.text);
       if (simulation_.time(state_) > kLongest) throw std::runtime_error("the program did not end within two hours");
     }
   }

@@ -61,13 +61,33 @@ void add_touch(physics::BodyId link, physics::BodyId other, double force, std::v
 
 }  // namespace
 
+const char* name_of(StopCause cause) {
+  switch (cause) {
+    case StopCause::JointTorque:
+      return "joint torque";
+    case StopCause::JointSpeed:
+      return "joint speed";
+    case StopCause::JointRange:
+      return "joint range";
+    case StopCause::SensorForce:
+      return "sensor force";
+    case StopCause::SensorTorque:
+      return "sensor torque";
+    case StopCause::TrackingError:
+      return "tracking error";
+    case StopCause::Stuck:
+      return "stuck";
+  }
+  return "";
+}
+
 std::string describe(const ProtectiveStop& stop) {
   std::string text = fmt::format("protective stop at {:.3f} s", stop.time);
   if (stop.row >= 0) text += fmt::format(" toward {} (row {})", stop.waypoint, stop.row + 1);
   text += ": ";
-  text += stop.what == "stuck" ? fmt::format("stuck {:.3f} m from it", stop.value)
-                               : fmt::format("{} of {}: {:.4g} {}, limit {:.4g} {}", stop.what, stop.where, stop.value,
-                                             stop.unit, stop.limit, stop.unit);
+  text += stop.cause == StopCause::Stuck ? fmt::format("stuck {:.3f} m from it", stop.value)
+                                         : fmt::format("{} of {}: {:.4g} {}, limit {:.4g} {}", name_of(stop.cause),
+                                                       stop.where, stop.value, stop.unit, stop.limit, stop.unit);
   if (!stop.touching.empty()) text += "; touching " + stop.touching;
   if (!stop.limited_by.empty()) text += "; " + stop.limited_by;
   return text;
@@ -293,9 +313,9 @@ Wrench CellArm::disturbed(const Wrench& F, double time, Rng& noise) const {
 std::optional<ProtectiveStop> CellArm::find_stop(const ArmState& state, const ArmTask& task, const ArmReading& reading,
                                                  double sensor_force, double sensor_torque, double yielded) const {
   std::optional<ProtectiveStop> found;
-  const auto stop = [&](std::string what, std::string where, double value, double limit, const char* unit) {
+  const auto stop = [&](StopCause cause, std::string where, double value, double limit, const char* unit) {
     if (found || !(value > limit)) return;
-    found = ProtectiveStop{std::move(what), std::move(where), value, limit, unit, 0.0, task.row, "", "", ""};
+    found = ProtectiveStop{cause, std::move(where), value, limit, unit, 0.0, task.row, "", "", ""};
     if (task.waypoint != nullptr) found->waypoint = motion::name_of(*task.waypoint);
   };
   const control::JointState& joints = state.machine.joints;
@@ -303,19 +323,21 @@ std::optional<ProtectiveStop> CellArm::find_stop(const ArmState& state, const Ar
     const robot::Joint& joint = model().joints[static_cast<std::size_t>(j)];
     const bool turns = joint.kind == robot::JointKind::Revolute;
     const double torque = std::abs(reading.joints[static_cast<std::size_t>(j)].torque);
-    stop("joint torque", joint.name, torque, params_.protective_stop.torque_fraction * joint.max_effort,
+    stop(StopCause::JointTorque, joint.name, torque, params_.protective_stop.torque_fraction * joint.max_effort,
          turns ? "Nm" : "N");
     if (task.outside == nullptr) continue;
-    stop("joint speed", joint.name, std::abs(joints.qd[j]), joint.max_speed + kRounding, turns ? "rad/s" : "m/s");
-    stop("joint range", joint.name, joints.q[j], joint.upper + kRounding, turns ? "rad" : "m");
-    stop("joint range", joint.name, -joints.q[j], -joint.lower + kRounding, turns ? "rad" : "m");
+    stop(StopCause::JointSpeed, joint.name, std::abs(joints.qd[j]), joint.max_speed + kRounding,
+         turns ? "rad/s" : "m/s");
+    stop(StopCause::JointRange, joint.name, joints.q[j], joint.upper + kRounding, turns ? "rad" : "m");
+    stop(StopCause::JointRange, joint.name, -joints.q[j], -joint.lower + kRounding, turns ? "rad" : "m");
   }
   const std::string& sensor = params_.sensor_frame;
-  stop("sensor force", sensor, sensor_force, params_.protective_stop.sensor_force, "N");
-  stop("sensor torque", sensor, sensor_torque, params_.protective_stop.sensor_torque, "Nm");
-  stop("tracking error", "the joints", yielded, params_.protective_stop.tracking_error, "rad");
+  stop(StopCause::SensorForce, sensor, sensor_force, params_.protective_stop.sensor_force, "N");
+  stop(StopCause::SensorTorque, sensor, sensor_torque, params_.protective_stop.sensor_torque, "Nm");
+  stop(StopCause::TrackingError, "the joints", yielded, params_.protective_stop.tracking_error, "rad");
   if (task.is_stuck && task.waypoint != nullptr) {
-    stop("stuck", motion::name_of(*task.waypoint), (task.waypoint->p_WE - state.machine.tool.X_WE.p).norm(), -1.0, "m");
+    stop(StopCause::Stuck, motion::name_of(*task.waypoint), (task.waypoint->p_WE - state.machine.tool.X_WE.p).norm(),
+         -1.0, "m");
   }
   return found;
 }

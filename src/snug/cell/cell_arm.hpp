@@ -39,11 +39,20 @@ struct ArmState {
   OutsideDrive outside;
 };
 
+enum class StopCause {
+  JointTorque,
+  JointSpeed,  ///< of joints that are driven from outside
+  JointRange,  ///< the same
+  SensorForce,
+  SensorTorque,
+  TrackingError,
+  Stuck,  ///< a waypoint was not reached in time
+};
+[[nodiscard]] const char* name_of(StopCause cause);
+
 /// Why the arm stopped.
 struct ProtectiveStop {
-  /// "joint torque", "sensor force", "sensor torque", "tracking error", "stuck"; of joints that are driven from
-  /// outside also "joint speed", "joint range"
-  std::string what;
+  StopCause cause = StopCause::JointTorque;
   std::string where;  ///< joint, sensor or waypoint
   double value = 0.0;
   double limit = 0.0;

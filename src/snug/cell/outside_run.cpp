@@ -48,7 +48,7 @@ OutsideRun::~OutsideRun() = default;
 
 const CellTick& OutsideRun::advance(const OutsideCommand& command) {
   Impl& run = *impl_;
-  SNUG_CHECK(run.last.failure.empty(), "a run that failed does not go on");
+  SNUG_CHECK(!run.last.failure, "a run that failed does not go on");
   run.last = run.simulation.advance(command, run.state, run.work);
   for (record::Event& event : run.work.solver.take_events(run.simulation.world())) {
     run.state.event_log.note(std::move(event));
@@ -69,13 +69,11 @@ void OutsideRun::bring(int item, int quarter) {
 
 void OutsideRun::stand() { impl_->simulation.stand(impl_->state); }
 
-bool OutsideRun::is_stopped_for_protection() const {
-  return !impl_->last.failure.empty() && impl_->work.arm.stop.has_value();
-}
+bool OutsideRun::is_stopped_for_protection() const { return impl_->last.failure.kind == FailureKind::ProtectiveStop; }
 
 void OutsideRun::acknowledge() {
   if (!is_stopped_for_protection()) return;
-  impl_->last.failure.clear();
+  impl_->last.failure = {};
   stand();
 }
 
@@ -83,7 +81,7 @@ double OutsideRun::time() const { return impl_->simulation.time(impl_->state); }
 const CellState& OutsideRun::state() const { return impl_->state; }
 const ArmReading& OutsideRun::reading() const { return impl_->work.arm; }
 Wrench OutsideRun::tool_load() const { return impl_->simulation.tool_load(impl_->state, impl_->work); }
-const std::string& OutsideRun::failure() const { return impl_->last.failure; }
+const Failure& OutsideRun::failure() const { return impl_->last.failure; }
 bool OutsideRun::is_stopped() const { return impl_->is_stopped; }
 
 RunResult OutsideRun::finish(const std::string& ended_by) {

@@ -43,8 +43,8 @@ class OutsideRun {
   [[nodiscard]] const ArmReading& reading() const;
   /// As Simulation::tool_load.
   [[nodiscard]] Wrench tool_load() const;
-  /// Why the last tick was the last; empty while the run may go on.
-  [[nodiscard]] const std::string& failure() const;
+  /// Why the last tick was the last; none while the run may go on.
+  [[nodiscard]] const Failure& failure() const;
   /// The observer wants the run to stop.
   [[nodiscard]] bool is_stopped() const;
 

@@ -106,7 +106,7 @@ class Check {
       }
       if (out.departed >= 0) boxes_.depart(plan_.program, out.departed, tool.X_WE);
       if (out.finished_now) break;
-      if (tick.outcome != "Stuck") continue;
+      if (tick.outcome != control::Outcome::Stuck) continue;
       miss(tick, state.tool.X_WE);
       if (out.row + 1 == static_cast<int>(plan_.program.waypoints.size())) break;
       // On to the next row from where the arm stands.

@@ -51,7 +51,7 @@ MotionTrial try_motion(const Simulation& simulation, const motion::PreparedProgr
   CellState state = simulation.make_state();
   CellWorkspace work = simulation.make_workspace();
   bool has_ended = false;
-  while (!has_ended && trial.failure.empty()) {
+  while (!has_ended && !trial.failure) {
     const int row = state.controller.row;
     has_ended = advance(simulation, plan, state, work, trial).has_ended;
     const bool has_left = row >= 0 && state.controller.row != row;
@@ -59,11 +59,12 @@ MotionTrial try_motion(const Simulation& simulation, const motion::PreparedProgr
     if (has_left && plan.settings.kind == motion::ControllerKind::Fast && !is_left_moving(plan, row)) {
       trial.ended[static_cast<std::size_t>(row)] = state.controller.X_WE_departure;
     }
-    if (simulation.time(state) > motion::kLongestProgram) trial.failure = "the program did not end within two hours";
+    if (simulation.time(state) > motion::kLongestProgram)
+      trial.failure = {FailureKind::TooLong, "the program did not end within two hours"};
   }
-  trial.joints.is_complete = has_ended && trial.failure.empty();
+  trial.joints.is_complete = has_ended && !trial.failure;
   trial.duration = simulation.time(state);
-  while (trial.failure.empty() && simulation.time(state) < trial.duration + motion::kSettleTime) {
+  while (!trial.failure && simulation.time(state) < trial.duration + motion::kSettleTime) {
     (void)advance(simulation, plan, state, work, trial);
   }
   if (simulation.arm() != nullptr) {
@@ -74,7 +75,7 @@ MotionTrial try_motion(const Simulation& simulation, const motion::PreparedProgr
 }
 
 std::string compare_trials(const MotionTrial& wanted, const MotionTrial& trial) {
-  if (!trial.failure.empty()) return trial.failure;
+  if (trial.failure) return trial.failure.text;
   std::string worse;
   for (std::size_t i = 0; i < trial.boxes.size() && i < wanted.boxes.size(); ++i) {
     if (wanted.boxes[i].state != BoxState::Packed || trial.boxes[i].state == BoxState::Packed) continue;
@@ -85,7 +86,7 @@ std::string compare_trials(const MotionTrial& wanted, const MotionTrial& trial) 
 }
 
 std::string find_loss(const MotionTrial& trial) {
-  if (!trial.failure.empty()) return trial.failure;
+  if (trial.failure) return trial.failure.text;
   std::string lost;
   for (const BoxResult& box : trial.boxes) {
     if (box.state == BoxState::Packed || box.state == BoxState::Waiting) continue;

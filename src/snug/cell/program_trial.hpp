@@ -10,8 +10,8 @@
 namespace snug::cell {
 
 struct MotionTrial {
-  double duration = 0.0;  ///< s
-  std::string failure;  ///< why it had to stop: a protective stop, a body that left the cell, ...; empty if it did not
+  double duration = 0.0;         ///< s
+  Failure failure;               ///< why it had to stop
   std::vector<BoxResult> boxes;  ///< of the sequence, after boxes have settled
   /// With a robot: what its joints did, until they rested.
   control::JointRun joints;

@@ -227,7 +227,7 @@ CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& sta
     feel(plan, state, work);
     return tick;
   }
-  const ArmTask task{out.row, &waypoint, machine.outcome == "Stuck", machine.joints};
+  const ArmTask task{out.row, &waypoint, machine.outcome == control::Outcome::Stuck, machine.joints};
   advance_arm(task, joints, {joints.qd, state.arm->machine.joints.qdd}, state, work, tick);
   feel(plan, state, work);
   return tick;
@@ -255,7 +255,7 @@ CellTick Simulation::advance(const OutsideCommand& command, CellState& state, Ce
 void Simulation::advance_tool(const motion::Waypoint& waypoint, const motion::ToolState& start,
                               const motion::ToolState& end, CellState& state, CellWorkspace& work,
                               CellTick& tick) const {
-  for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
+  for (int k = 0; k < substeps_ && !tick.failure; ++k) {
     const motion::ToolState next =
         k + 1 == substeps_ ? end
                            : motion::interpolate(start, end, scenario_.controller.tick,
@@ -273,7 +273,7 @@ void Simulation::advance_arm(const ArmTask& task, const control::JointMotion& st
   control::JointMotion& end = state.arm->machine.joints;
   TorqueSteps torque(*arm_, task.outside, start, scenario_.controller.tick / substeps_);
   ArmLoads loads;
-  for (int k = 0; k < substeps_ && tick.failure.empty(); ++k) {
+  for (int k = 0; k < substeps_ && !tick.failure; ++k) {
     const bool is_last = k + 1 == substeps_;
     const double elapsed = scenario_.controller.tick * static_cast<double>(k + 1) / static_cast<double>(substeps_);
     control::JointMotion now = end;
@@ -301,14 +301,14 @@ void Simulation::read_arm(const ArmTask& task, ArmLoads& loads, CellState& state
   arm_->read(world_, task, time(state), loads, *state.arm, work.arm);
   for (const ArmTouch& touch : work.arm.touches_begun) note_touch(touch, false, state);
   for (const ArmTouch& touch : work.arm.touches_ended) note_touch(touch, true, state);
-  if (!work.arm.stop || !tick.failure.empty()) return;
+  if (!work.arm.stop || tick.failure) return;
   end_touches(state);
   const ProtectiveStop& stop = *work.arm.stop;
-  tick.failure = describe(stop);
+  tick.failure = {FailureKind::ProtectiveStop, describe(stop)};
   state.event_log.note({time(state),
                         "protective_stop",
                         stop.where,
-                        tick.failure,
+                        tick.failure.text,
                         {{"value", stop.value}, {"limit", stop.limit}, {"row", static_cast<double>(stop.row)}}});
 }
 
@@ -365,7 +365,7 @@ void Simulation::advance_step(const motion::Waypoint* waypoint, const motion::To
     state.event_log.body_lost(event_of(work.lost.back()));
     return;
   }
-  tick.failure = describe_failure(world_, state.world, work.physics, tick.step);
+  tick.failure = find_failure(world_, state.world, work.physics, tick.step);
 }
 
 bool Simulation::is_at_end(const motion::PreparedProgram& plan, const CellState& state) const {

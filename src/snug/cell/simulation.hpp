@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "snug/cell/cell_arm.hpp"
+#include "snug/cell/failure.hpp"
 #include "snug/cell/item_event_log.hpp"
 #include "snug/cell/joint_pace.hpp"
 #include "snug/cell/lost_body.hpp"
@@ -61,7 +62,7 @@ struct CellTick {
   Pose X_WE_reference;       ///< what the tool's task followed
   cup::CupCommand command;   ///< throughout
   physics::StepReport step;  ///< of its last physics step
-  std::string failure;       ///< empty, or why the run has to stop: body, time, last contacts
+  Failure failure;           ///< why the run has to stop
 };
 
 /// Where a cell is taken up: what somebody who did not watch it from the start believes of it. Nothing is held.

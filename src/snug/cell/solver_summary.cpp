@@ -97,7 +97,7 @@ std::vector<record::Event> SolverMonitor::take_events(const CellWorld& world) {
   return events;
 }
 
-std::string describe_depths(const SolverSummary& summary) {
+Failure find_depth_failure(const SolverSummary& summary) {
   const PassedLimit* worst = nullptr;
   std::size_t pairs = 0;
   for (const PassedLimit& passed : summary.passed) {
@@ -105,15 +105,16 @@ std::string describe_depths(const SolverSummary& summary) {
     ++pairs;
     if (worst == nullptr || worst_over_allowed(passed) > worst_over_allowed(*worst)) worst = &passed;
   }
-  if (worst == nullptr) return "";
+  if (worst == nullptr) return {};
   const bool is_rigid = worst->limit == ContactLimit::RigidDepth;
   std::string text = fmt::format(
       "{} bodies '{}' and '{}' were {:.1f} mm deep in each other at t = {:.3f} s (beyond {:.3g} mm since t = {:.3f} s",
       is_rigid ? "rigid" : "compliant", worst->body_a, worst->body_b, 1e3 * worst->worst, worst->worst_time,
       1e3 * worst->allowed, worst->since);
   if (pairs > 1) text += fmt::format("; {} other pair{} too", pairs - 1, pairs == 2 ? "" : "s");
-  return text + fmt::format("): {} (limit: solver.contact_limits.{})", remedy_of(worst->limit),
-                            is_rigid ? "rigid_depth" : "compliant_depth");
+  return {FailureKind::ContactDepth,
+          text + fmt::format("): {} (limit: solver.contact_limits.{})", remedy_of(worst->limit),
+                             is_rigid ? "rigid_depth" : "compliant_depth")};
 }
 
 std::vector<std::string> describe_warnings(const SolverSummary& summary) {
@@ -131,17 +132,18 @@ std::vector<std::string> describe_warnings(const SolverSummary& summary) {
                   worst->allowed)};
 }
 
-std::string describe_failure(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
-                             const physics::StepReport& report) {
-  if (report.status == physics::StepStatus::Converged || report.status == physics::StepStatus::NotConverged) return "";
+Failure find_failure(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,
+                     const physics::StepReport& report) {
+  if (report.status == physics::StepStatus::Converged || report.status == physics::StepStatus::NotConverged) return {};
   if (report.status == physics::StepStatus::TooManyPairs) {
-    return fmt::format("t = {:.3f} s: more pairs of bodies near each other than there is room for",
-                       state.time(world.model));
+    return {FailureKind::TooManyPairs,
+            fmt::format("t = {:.3f} s: more pairs of bodies near each other than there is room for",
+                        state.time(world.model))};
   }
-  std::string text =
-      fmt::format("t = {:.3f} s: {} of body '{}'", state.time(world.model),
-                  report.status == physics::StepStatus::NotFinite ? "the state is not a number any more" : "lost track",
-                  world.model.bodies[static_cast<std::size_t>(report.culprit.index)].name);
+  const bool is_finite = report.status != physics::StepStatus::NotFinite;
+  std::string text = fmt::format("t = {:.3f} s: {} of body '{}'", state.time(world.model),
+                                 is_finite ? "lost track" : "the state is not a number any more",
+                                 world.model.bodies[static_cast<std::size_t>(report.culprit.index)].name);
   for (const physics::ContactReport& contact : work.contacts()) {
     if (contact.a != report.culprit && contact.b != report.culprit) continue;
     text += fmt::format("; contact {} - {} at ({:.4f}, {:.4f}, {:.4f}), gap {:.3g} m, force {:.3g} N",
@@ -149,7 +151,7 @@ std::string describe_failure(const CellWorld& world, const physics::WorldState& 
                         world.model.bodies[static_cast<std::size_t>(contact.b.index)].name, contact.p_WQ.x(),
                         contact.p_WQ.y(), contact.p_WQ.z(), contact.phi, contact.force_W.norm());
   }
-  return text;
+  return {is_finite ? FailureKind::LostBody : FailureKind::NotFinite, std::move(text)};
 }
 
 }  // namespace snug::cell

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/cell/failure.hpp"
 #include "snug/cell/world_builder.hpp"
 #include "snug/record/recording.hpp"
 
@@ -60,12 +61,12 @@ class SolverMonitor {
   std::int64_t steps_with_contacts_ = 0;
 };
 
-/// Empty, or one line that names the body, the time and the last contacts: why a run cannot go on after this step.
-[[nodiscard]] std::string describe_failure(const CellWorld& world, const physics::WorldState& state,
-                                           const physics::Workspace& work, const physics::StepReport& report);
+/// Why a run cannot go on after this step, if so: the body, the time and the last contacts.
+[[nodiscard]] Failure find_failure(const CellWorld& world, const physics::WorldState& state,
+                                   const physics::Workspace& work, const physics::StepReport& report);
 
-/// Empty, or why a run that went on to its end failed all the same: bodies too deep in each other, and what to change.
-[[nodiscard]] std::string describe_depths(const SolverSummary& summary);
+/// Why a run that went on to its end failed all the same, if so: bodies too deep in each other, and what to change.
+[[nodiscard]] Failure find_depth_failure(const SolverSummary& summary);
 /// What a run's result is to be taken with: residuals over their limit.
 [[nodiscard]] std::vector<std::string> describe_warnings(const SolverSummary& summary);
 

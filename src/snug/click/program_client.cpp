@@ -61,7 +61,7 @@ class ProgramClient {
     while (link_.last().time < end) {
       const control::MachineTick tick = think();
       result_.row = std::max(0, tick.program.row);
-      if (tick.outcome == "Stuck") {
+      if (tick.outcome == control::Outcome::Stuck) {
         const motion::Waypoint& row = plan_.program.waypoints[static_cast<std::size_t>(result_.row)];
         const std::string text = fmt::format("stuck toward {} (row {})", motion::name_of(row), result_.row + 1);
         client_.report_error(text);

@@ -171,8 +171,8 @@ void Simulator::advance(const cell::OutsideCommand& command) {
   const auto start = std::chrono::steady_clock::now();
   const cell::CellTick& tick = run_->advance(command);
   step_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (tick.failure.empty()) return;
-  failure_ = tick.failure;
+  if (!tick.failure) return;
+  failure_ = tick.failure.text;
   if (!settings_.cell.is_plant || !run_->is_stopped_for_protection()) end(failure_);
 }
 

@@ -7,9 +7,9 @@ namespace {
 class HoldState final : public State {
  public:
   [[nodiscard]] std::string_view name() const override { return "Hold"; }
-  [[nodiscard]] std::string_view run(StateContext& context) const override {
+  [[nodiscard]] Outcome run(StateContext& context) const override {
     context.stand();
-    return "";
+    return Outcome::GoesOn;
   }
 };
 

@@ -7,7 +7,7 @@ namespace {
 class InitialState final : public State {
  public:
   [[nodiscard]] std::string_view name() const override { return "Initial"; }
-  [[nodiscard]] std::string_view run(StateContext&) const override { return "OK"; }
+  [[nodiscard]] Outcome run(StateContext&) const override { return Outcome::Ok; }
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ JointRun run_joints(const motion::PreparedProgram& plan, const JointController& 
     sample.state = machine.name_of(done.state);
     run.samples.push_back(std::move(sample));
     run.is_complete = run.is_complete || done.program.finished_now;
-    if (done.outcome == "Stuck") run.stuck_row = done.program.row;
+    if (done.outcome == Outcome::Stuck) run.stuck_row = done.program.row;
     return static_cast<double>(++i) * dt < longest;
   };
   while (!run.is_complete && run.stuck_row < 0 && tick(motion::kLongestProgram)) {

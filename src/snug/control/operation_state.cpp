@@ -14,7 +14,7 @@ class OperationState final : public State {
     context.machine.program = motion::make_controller_state(context.machine.tool.X_WE);
   }
 
-  [[nodiscard]] std::string_view run(StateContext& context) const override {
+  [[nodiscard]] Outcome run(StateContext& context) const override {
     motion::ControllerState& program = context.machine.program;
     const bool is_exact = context.plan.settings.kind != motion::ControllerKind::Faithful;
     motion::ControllerOutput& out = context.tick.program;
@@ -24,8 +24,8 @@ class OperationState final : public State {
     // The point model's own tool is where the joints put it: the next tick goes on from there.
     if (!is_exact) program.command = context.machine.tool;
     out.tool = context.machine.tool;
-    if (out.finished_now) return "OK";
-    return is_stuck(context) ? "Stuck" : "";
+    if (out.finished_now) return Outcome::Ok;
+    return is_stuck(context) ? Outcome::Stuck : Outcome::GoesOn;
   }
 
  private:

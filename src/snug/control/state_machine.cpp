@@ -52,7 +52,7 @@ MachineState StateMachine::make_state(const JointController& controller, const r
   return machine;
 }
 
-int StateMachine::next(int state, std::string_view outcome) const {
+int StateMachine::next(int state, Outcome outcome) const {
   for (const Transition& transition : transitions_) {
     if (transition.from != name_of(state) || transition.outcome != outcome) continue;
     for (int i = 0; i < static_cast<int>(states_.size()); ++i) {
@@ -78,7 +78,7 @@ MachineTick StateMachine::tick(const motion::PreparedProgram& plan, const JointC
     tick.state = machine.state;
     ++machine.state_ticks;
     tick.outcome = state.run(context);
-    if (tick.outcome.empty()) {
+    if (tick.outcome == Outcome::GoesOn) {
       SNUG_CHECK(tick.has_commanded, "a state that neither moves the joints nor ends");
       break;
     }
@@ -102,7 +102,7 @@ StateMachine make_demonstrator_machine(const StateSettings& settings) {
   states.push_back(make_initial_state());
   states.push_back(make_operation_state());
   states.push_back(make_hold_state());
-  return {std::move(states), {{"Initial", "OK", "Operation"}, {"Operation", "Stuck", "Hold"}}, settings};
+  return {std::move(states), {{"Initial", Outcome::Ok, "Operation"}, {"Operation", Outcome::Stuck, "Hold"}}, settings};
 }
 
 }  // namespace snug::control

@@ -24,12 +24,19 @@ struct MachineState {
 /// Where joints like this put the tool.
 [[nodiscard]] motion::ToolState tool_at(const robot::ArmModel& arm, const JointMotion& joints);
 
+/// What a state has come to.
+enum class Outcome {
+  GoesOn,
+  Ok,     ///< it is done
+  Stuck,  ///< a row of the program was not reached in time
+};
+
 /// What one tick did.
 struct MachineTick {
   motion::ControllerOutput program;
   JointTick joints;
-  int state = -1;            ///< that commanded the joints
-  std::string_view outcome;  ///< of the state, empty while it goes on
+  int state = -1;                     ///< that commanded the joints
+  Outcome outcome = Outcome::GoesOn;  ///< of the state
   bool has_commanded = false;
 };
 
@@ -60,8 +67,8 @@ class State {
   virtual void configure(const StateSettings&) {}
   /// When the machine comes to this state.
   virtual void start(StateContext&) const {}
-  /// Every tick; the outcome that ends the state ("OK"), or nothing while it goes on.
-  [[nodiscard]] virtual std::string_view run(StateContext&) const = 0;
+  /// Every tick; the outcome that ends the state, or that it goes on.
+  [[nodiscard]] virtual Outcome run(StateContext&) const = 0;
   /// When the machine leaves this state.
   virtual void teardown(StateContext&) const {}
 };
@@ -69,7 +76,7 @@ class State {
 /// From a state and its outcome to the next state. All are taken at once, without asking ("Auto" in mc_rtc).
 struct Transition {
   std::string from;
-  std::string outcome;
+  Outcome outcome = Outcome::Ok;
   std::string to;
 };
 
@@ -88,13 +95,13 @@ class StateMachine {
   [[nodiscard]] std::string_view name_of(int state) const;
 
  private:
-  [[nodiscard]] int next(int state, std::string_view outcome) const;
+  [[nodiscard]] int next(int state, Outcome outcome) const;
 
   std::vector<std::unique_ptr<State>> states_;
   std::vector<Transition> transitions_;
 };
 
-/// The demonstrator's: Initial -OK-> Operation; and one more, Operation -Stuck-> Hold.
+/// The demonstrator's: Initial -Ok-> Operation; and one more, Operation -Stuck-> Hold.
 [[nodiscard]] StateMachine make_demonstrator_machine(const StateSettings& settings = {});
 
 }  // namespace snug::control

@@ -155,7 +155,7 @@ void measure_hard_scenes(const BenchOptions& options, std::vector<Figure>& figur
     if (!is_wanted(options, name) && !is_wanted(options, "scenes.unsaid_limits")) continue;
     const model::Scenario scenario = model::load_scenario(file);
     const cell::RunResult result = cell::run(scenario, {});
-    const bool has_failed = !result.failure.empty();
+    const bool has_failed = static_cast<bool>(result.failure);
     const auto count = static_cast<double>(result.solver.not_converged);
     figures.push_back({name, count, "steps", "0 or failed", count == 0.0 || has_failed});
     const model::ContactLimits& limits = scenario.solver.contact_limits;

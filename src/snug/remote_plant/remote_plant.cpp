@@ -266,7 +266,7 @@ plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
   } else if (!(std::abs(length - plan.settings.tick) <= kSameTime)) {  // nor NaN
     fail(fmt::format("a Control is a step of {} s there, not of {} s: is it served with --async?", length,
                      plan.settings.tick));
-  } else if (tick.outcome == "Stuck") {
+  } else if (tick.outcome == control::Outcome::Stuck) {
     trouble = "stuck";
     is_stopped_ = true;
   }

@@ -1,9 +1,11 @@
 // The header of the replay form: what ran, the bodies, what happened and what became of it.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/model/reported_agent.hpp"
@@ -185,11 +187,9 @@ Json program_as_json(const record::RecordingHeader& header) {
   return {{"name", header.program_name}, {"names", std::move(names)}};
 }
 
-Json speed_as_json(const Json& result) {
-  if (!result.is_object() || !result.contains("wall_s")) return nullptr;
-  return {{"duration_s", result.value("duration_s", Json())},
-          {"wall_s", result["wall_s"]},
-          {"real_time_factor", result.value("real_time_factor", Json())}};
+Json speed_as_json(const std::optional<cell::RunResult>& result) {
+  if (!result || (result->duration <= 0.0 && result->wall <= 0.0)) return nullptr;
+  return {{"duration_s", result->duration}, {"wall_s", result->wall}, {"real_time_factor", result->real_time_factor}};
 }
 
 /// What others reached with the sequence, beside what the boxes of the first of them fill as snug counts.
@@ -234,24 +234,17 @@ Json events_as_json(const std::vector<record::Event>& events) {
 }
 
 /// Boxes as the result tells, for a run that ended.
-Json boxes_from_result(const Json& result) {
+Json boxes_from_result(const cell::RunResult& result) {
   Json list = Json::array();
-  for (const Json& box : result.value("boxes", Json::array())) {
+  for (const cell::BoxResult& box : result.boxes) {
     Json events = Json::array();
-    for (const Json& event : box.value("events", Json::array())) {
-      events.push_back({{"kind", event.value("kind", "")},
-                        {"time", event.value("time_s", Json())},
-                        {"text", event.value("text", "")}});
+    for (const record::Event& event : box.events) {
+      events.push_back({{"kind", event.kind}, {"time", event.time}, {"text", event.text}});
     }
-    Json pose;
-    if (const Json X_TP = box.value("X_TP", Json()); X_TP.is_object()) {
-      pose = X_TP.value("p", Json::array());
-      for (const Json& part : X_TP.value("quat_wxyz", Json::array())) pose.push_back(part);
-    }
-    list.push_back({{"id", box.value("id", "")},
-                    {"state", box.value("state", Json())},
-                    {"up", box.value("up", Json())},
-                    {"pose", std::move(pose)},
+    list.push_back({{"id", box.id},
+                    {"state", cell::name_of(box.state)},
+                    {"up", std::string(1, box.up)},
+                    {"pose", as_json(record::PoseSample(box.X_TP))},
                     {"events", std::move(events)}});
   }
   return list;
@@ -273,19 +266,19 @@ Json boxes_from_events(const std::vector<record::Event>& events) {
   return list;
 }
 
-Json result_as_json(const HeaderInput& input, const Json& result, const std::optional<model::Scenario>& scenario) {
-  const bool has_ended = result.is_object();
-  Json boxes = has_ended ? boxes_from_result(result) : boxes_from_events(input.events);
-  if (boxes.empty() && !has_ended) return nullptr;
+Json result_as_json(const HeaderInput& input, const std::optional<cell::RunResult>& result,
+                    const std::optional<model::Scenario>& scenario) {
+  Json boxes = result ? boxes_from_result(*result) : boxes_from_events(input.events);
+  if (boxes.empty() && !result) return nullptr;
   Json packed;
-  if (has_ended) {
-    packed = std::count_if(boxes.begin(), boxes.end(), [](const Json& box) { return box["state"] == "packed"; });
+  if (result) {
+    packed = std::ranges::count(result->boxes, cell::BoxState::Packed, &cell::BoxResult::state);
   }
   return {{"boxes", std::move(boxes)},
-          {"filling_degree_percent", has_ended ? result.value("filling_degree_percent", Json()) : Json()},
+          {"filling_degree_percent", result ? Json(result->filling_degree_percent) : Json()},
           {"packed", std::move(packed)},
-          {"failure", has_ended ? result.value("failure", "") : ""},
-          {"warnings", has_ended ? result.value("warnings", Json::array()) : Json::array()},
+          {"failure", result ? result->failure.text : ""},
+          {"warnings", result ? Json(result->warnings) : Json::array()},
           {"report_table7", reported_as_json(scenario, input.header->sequence)}};
 }
 
@@ -309,14 +302,9 @@ std::string make_header_json(const HeaderInput& input) {
                {"scenario", {{"name", scenario ? scenario->name : ""}, {"text", header.scenario_text}}},
                {"program", program_as_json(header)},
                {"settings", settings.is_object() ? settings : Json::object()}};
-  Json result = parsed(input.result_json);
-  try {
-    json["speed"] = speed_as_json(result);
-    json["result"] = result_as_json(input, result, scenario);
-  } catch (const Json::exception&) {  // not what snug simulate writes
-    json["speed"] = nullptr;
-    json["result"] = result_as_json(input, Json(), scenario);
-  }
+  const std::optional<cell::RunResult> result = cell::read_result(input.result_json);
+  json["speed"] = speed_as_json(result);
+  json["result"] = result_as_json(input, result, scenario);
   json["bodies"] = bodies_as_json(header);
   json["container"] = container_as_json(header.container);
   json["tool"] = tool_as_json(header);

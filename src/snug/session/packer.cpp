@@ -246,9 +246,9 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
       report.stops += attempt.was_rehearsed && attempt.was_stopped ? 1 : 0;
       if (!attempt.was_rehearsed) break;
       if (report.reason.empty()) report.reason = attempt.text;
-      if (!attempt.text.empty()) {
+      if (attempt.failure != AttemptFailure::None) {
         report.failed_attempts.push_back(
-            {attempt.planned, attempt.skill, attempt.succeeded, attempt.success_rate, attempt.text});
+            {attempt.planned, attempt.skill, attempt.failure, attempt.succeeded, attempt.success_rate, attempt.text});
       }
       if (!attempt.succeeded) continue;
       const double utility = utility_of(placed, attempt.success_rate);

@@ -41,8 +41,8 @@ class Packer {
   [[nodiscard]] bool is_gone(const std::string& id) const { return !belief_.box(index_of(id)); }
   /// Everything for one item, from its arrival to what became of it.
   [[nodiscard]] ItemReport bring_in(int item, const Decide& decide);
-  /// The tool back at its start. Empty, or why it did not get there.
-  [[nodiscard]] std::string go_home();
+  /// The tool back at its start, or why it did not get there.
+  [[nodiscard]] SessionFailure go_home();
 
   /// Since the last call.
   [[nodiscard]] std::vector<Repacked> take_repacked() { return std::exchange(repacked_, {}); }

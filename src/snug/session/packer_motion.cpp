@@ -382,11 +382,11 @@ void Packer::move_home(ItemReport& report) {
   submit("", rows.waypoints, {std::nullopt, false}, report);
 }
 
-std::string Packer::go_home() {
+SessionFailure Packer::go_home() {
   ItemReport nobody;
   move_home(nobody);
   if (robot_.end.reason == plant::EndReason::Completed) return {};
-  return "on the way home: " + plant::describe(robot_.end, last_);
+  return {SessionFailureKind::NotHome, "on the way home: " + plant::describe(robot_.end, last_)};
 }
 
 }  // namespace snug::session

@@ -34,6 +34,7 @@ enum class AttemptFailure {
   OthersMoved,   ///< PlaceLimits::displacement
   OthersCameOut  ///< of the container
 };
+[[nodiscard]] const char* name_of(AttemptFailure failure);
 
 /// One way to bring one box to one place, rehearsed everywhere but not yet sent.
 struct Attempt {

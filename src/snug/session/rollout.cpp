@@ -33,16 +33,17 @@ Rollout::Rollout(const model::Scenario& scenario, const std::string& sequence, c
 
 bool Rollout::advance(const motion::PreparedProgram& plan, Episode& episode) {
   const cell::CellTick tick = simulation_->advance(plan, state_, work_);
-  if (!tick.failure.empty()) {
-    episode.end = work_.arm.stop ? RolloutEnd::ProtectiveStop : RolloutEnd::Failed;
-    episode.text = tick.failure;
+  if (tick.failure) {
+    episode.end =
+        tick.failure.kind == cell::FailureKind::ProtectiveStop ? RolloutEnd::ProtectiveStop : RolloutEnd::Failed;
+    episode.text = tick.failure.text;
   }
   if (episode.arm_contact.empty() && !work_.arm.touches_begun.empty()) {
     episode.arm_contact = simulation_->describe_touch(work_.arm.touches_begun.front());
   }
   episode.peak_force = std::max(episode.peak_force, state_.gripper.F_S.force.norm());
   episode.peak_torque = std::max(episode.peak_torque, state_.gripper.F_S.torque.norm());
-  return tick.failure.empty();
+  return !tick.failure;
 }
 
 Episode Rollout::run(const motion::Program& program, const EpisodeLimits& limits) {

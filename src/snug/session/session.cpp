@@ -197,7 +197,7 @@ class Session {
       }
     }
     if (!packer_.sent().waypoints.empty()) result_.failure = packer_.go_home();
-    if (!result_.failure.empty()) result_.stopped += "; " + result_.failure;
+    if (result_.failure) result_.stopped += "; " + result_.failure.text;
     count();
     std::vector<double> seconds = std::move(paper_seconds_);
     if (seconds.empty()) {

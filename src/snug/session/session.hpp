@@ -52,10 +52,25 @@ struct Send {
   Trouble trouble = Trouble::None;  ///< found when it had ended
 };
 
+/// Why a session did not end as it should, whatever was packed.
+enum class SessionFailureKind {
+  None,
+  NotHome,    ///< the robot did not come to its start in the end
+  PlantLost,  ///< a plant elsewhere ended otherwise than agreed
+};
+[[nodiscard]] const char* name_of(SessionFailureKind kind);
+
+struct SessionFailure {
+  SessionFailureKind kind = SessionFailureKind::None;
+  std::string text;  ///< for people
+  [[nodiscard]] explicit operator bool() const { return kind != SessionFailureKind::None; }
+};
+
 /// A way to bring an item to a place that was rehearsed and did not go well in every rollout.
 struct FailedAttempt {
   packing::Placement planned;
   skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
+  AttemptFailure failure = AttemptFailure::None;  ///< in the nominal world, else the first of a sampled one
   bool succeeded = false;     ///< in the nominal world; then `success_rate` of the samples is below 1
   double success_rate = 0.0;  ///< of the samples, by weight
   std::string reason;         ///< for people: of the nominal world, else of the first sample that failed
@@ -115,8 +130,8 @@ struct SessionResult {
   double decision_seconds_median = 0.0;
   double duration = 0.0;  ///< s, of the plant
   StopReason stop_reason = StopReason::NoItems;
-  std::string stopped;                         ///< the same for people
-  std::string failure;                         ///< empty, or why the robot did not come home in the end
+  std::string stopped;  ///< the same for people
+  SessionFailure failure;
   std::vector<ObstacleReport> obstacles;       ///< that were seen, those that are gone again too
   std::optional<double> percent_before_skips;  ///< planned_percent when the first item without a place was skipped
 };

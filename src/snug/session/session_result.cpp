@@ -32,6 +32,34 @@ std::string describe(const ItemReport& item) {
   return item.reason.empty() || item.reason == end ? end : end + ": " + item.reason;
 }
 
+const char* name_of(AttemptFailure failure) {
+  switch (failure) {
+    case AttemptFailure::None:
+      return "none";
+    case AttemptFailure::Grasp:
+      return "grasp";
+    case AttemptFailure::OutOfReach:
+      return "out of reach";
+    case AttemptFailure::Rollout:
+      return "rollout";
+    case AttemptFailure::HoldMargin:
+      return "hold margin";
+    case AttemptFailure::Gone:
+      return "gone";
+    case AttemptFailure::SticksOut:
+      return "sticks out";
+    case AttemptFailure::OffPlace:
+      return "off its place";
+    case AttemptFailure::Tilted:
+      return "tilted";
+    case AttemptFailure::OthersMoved:
+      return "others moved";
+    case AttemptFailure::OthersCameOut:
+      return "others came out";
+  }
+  return "";
+}
+
 const char* name_of(StopReason reason) {
   switch (reason) {
     case StopReason::AllPacked:
@@ -50,6 +78,18 @@ const char* name_of(StopReason reason) {
       return "plant fault";
     case StopReason::Interrupted:
       return "interrupted";
+  }
+  return "";
+}
+
+const char* name_of(SessionFailureKind kind) {
+  switch (kind) {
+    case SessionFailureKind::None:
+      return "none";
+    case SessionFailureKind::NotHome:
+      return "not home";
+    case SessionFailureKind::PlantLost:
+      return "plant lost";
   }
   return "";
 }

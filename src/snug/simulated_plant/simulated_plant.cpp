@@ -147,10 +147,11 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
       simulation_.scenario().motion_guards.needed_vacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold,
       reading());
   if (!state_.controller.io.vacuum) state_.gripper.cannot_seal = false;
-  if (!tick.failure.empty() && work_.arm.stop) {
+  if (tick.failure.kind == cell::FailureKind::ProtectiveStop) {
     const cell::ProtectiveStop& stop = *work_.arm.stop;
-    course.end = {plant::EndReason::ProtectiveStop, tick.row, stop.value, stop.limit, stop.what + " of " + stop.where};
-  } else if (!tick.failure.empty()) {
+    course.end = {plant::EndReason::ProtectiveStop, tick.row, stop.value, stop.limit,
+                  std::string(name_of(stop.cause)) + " of " + stop.where};
+  } else if (tick.failure) {
     fail(tick, course);
   }
   is_stopped_ |= course.end.reason == plant::EndReason::ProtectiveStop;
@@ -159,7 +160,7 @@ bool SimulatedPlant::advance(const plant::Motion& motion, const motion::Prepared
 
 /// The simulation cannot go on.
 void SimulatedPlant::fail(const cell::CellTick& tick, plant::MotionWatch& course) {
-  course.end = {plant::EndReason::Fault, tick.row, 0.0, 0.0, tick.failure};
+  course.end = {plant::EndReason::Fault, tick.row, 0.0, 0.0, tick.failure.text};
   has_failed_ = true;
 }
 
@@ -174,8 +175,9 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWa
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
     objects_.watch(state_, work_);
     if (watcher_) watcher_(tick);
-    if (tick.failure.empty()) continue;
-    if (!work_.arm.stop) fail(tick, course);  // a stop now: the tool was where it was to come
+    if (!tick.failure) continue;
+    if (tick.failure.kind != cell::FailureKind::ProtectiveStop)
+      fail(tick, course);  // a stop now: the tool was where it was to come
     break;
   }
   course.rest(simulation_.time(state_));

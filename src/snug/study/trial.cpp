@@ -153,7 +153,7 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
 std::vector<record::Event> events_of(const session::SessionResult& result) {
   std::vector<record::Event> events;
   for (const session::ItemReport& item : result.items) {
-    if (item.sends.empty() && !item.reason.empty()) {
+    if (item.sends.empty() && !item.is_packed()) {
       events.push_back({item.done, "refused", item.id, session::describe(item), {}});
     }
     for (const session::Send& send : item.sends) {
@@ -185,7 +185,7 @@ std::vector<record::Event> events_of(const session::SessionResult& result) {
 
 std::vector<std::string> warnings_of(const session::SessionResult& result) {
   std::vector<std::string> warnings;
-  if (!result.failure.empty()) warnings.push_back(result.failure);
+  if (result.failure) warnings.push_back(result.failure.text);
   for (const session::ItemReport& item : result.items) {
     if (!item.sends.empty() && !item.is_packed()) warnings.push_back(item.id + " " + session::describe(item));
   }

@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/units.hpp"
 #include "snug/validation/log_table.hpp"
@@ -54,21 +54,15 @@ Window presence_of(const SimulatedRun& run, std::size_t body) {
   return window;
 }
 
-nlohmann::json parse_result(const SimulatedRun& run) {
-  return nlohmann::json::parse(run.result, nullptr, false);  // not an object when it cannot be parsed
+std::string simulated_state(const std::optional<cell::RunResult>& result, const std::string& body) {
+  if (!result) return "not known";
+  const auto box = std::ranges::find(result->boxes, body, &cell::BoxResult::id);
+  return box != result->boxes.end() ? cell::name_of(box->state) : "not known";
 }
 
-std::string simulated_state(const nlohmann::json& result, const std::string& body) {
-  if (!result.is_object() || !result.contains("boxes") || !result["boxes"].is_array()) return "not known";
-  for (const auto& box : result["boxes"])
-    if (box.is_object() && box.value("id", "") == body) return box.value("state", "not known");
-  return "not known";
-}
-
-std::string protective_stop(const nlohmann::json& result) {
-  if (!result.is_object() || !result.contains("protective_stop") || !result["protective_stop"].is_object()) return "";
-  const auto& stop = result["protective_stop"];
-  return stop.value("what", "") + " of " + stop.value("where", "");
+std::string protective_stop(const std::optional<cell::RunResult>& result) {
+  if (!result || !result->stop) return "";
+  return std::string(cell::name_of(result->stop->cause)) + " of " + result->stop->where;
 }
 
 /// Where the body was last seen in the window, and whether that was at its end.
@@ -182,7 +176,7 @@ std::vector<Window> find_windows(const SimulatedRun& run) {
 
 Validation validate(const SimulatedRun& run, std::vector<Measurement> repetitions, std::vector<Window> windows) {
   if (windows.empty()) windows = find_windows(run);
-  const nlohmann::json result = parse_result(run);
+  const std::optional<cell::RunResult> result = cell::read_result(run.result);
   Validation validation;
   validation.simulated = run.name;
   validation.sequence = run.header.sequence;

@@ -7,6 +7,7 @@ import { ConvexHull } from "three/examples/jsm/math/ConvexHull.js";
 import type { Column, Decoded, DecodedChannel } from "./decode";
 import { ReplayError } from "./errors";
 import { completeHeader, type Body, type Header, type PoseRow, type ReplayEvent, type ResultBox, type RunResult, type Shape } from "./header";
+import type { RunResult as CellResult } from "./result";
 
 /** Larger files would not fit into the memory of a page. */
 const LARGEST = 200e6;
@@ -118,15 +119,8 @@ function eventsOf(source: Source): ReplayEvent[] {
   });
 }
 
-interface StoredResult {
-  boxes?: { id?: string; state?: string; up?: string; X_TP?: { p?: number[]; quat_wxyz?: number[] }; events?: { kind?: string; time_s?: number; text?: string }[] }[];
-  filling_degree_percent?: number;
-  failure?: string;
-  warnings?: string[];
-  duration_s?: number;
-  wall_s?: number;
-  real_time_factor?: number;
-}
+/** Of another version, perhaps: keys may be missing. */
+type StoredResult = Partial<CellResult>;
 
 function parsed<T>(text: string): T | null {
   try {

@@ -30,15 +30,15 @@ class ProgramRun {
   RunResult run() {
     const auto start = std::chrono::steady_clock::now();
     RunResult result;
-    while (result.failure.empty() && !is_stopped_) {
+    while (!result.failure && !is_stopped_) {
       if (advance(result.failure)) break;
       if (options_.until && simulation_.time(state_) >= *options_.until) break;
       if (simulation_.time(state_) > motion::kLongestProgram)
-        result.failure = "the program did not end within two hours";
+        result.failure = {FailureKind::TooLong, "the program did not end within two hours"};
     }
     result.duration = simulation_.time(state_);
     const double settled = result.duration + motion::kSettleTime;
-    while (result.failure.empty() && !is_stopped_ && !options_.until && simulation_.time(state_) < settled) {
+    while (!result.failure && !is_stopped_ && !options_.until && simulation_.time(state_) < settled) {
       (void)advance(result.failure);
     }
     simulation_.end_touches(state_);
@@ -65,7 +65,7 @@ class ProgramRun {
   }
 
   /// One controller tick. Returns whether the program ended at its start.
-  bool advance(std::string& failure) {
+  bool advance(Failure& failure) {
     const CellTick tick = simulation_.advance(plan_, state_, work_);
     failure = tick.failure;
     for (record::Event& event : work_.solver.take_events(simulation_.world())) state_.event_log.note(std::move(event));
@@ -88,7 +88,7 @@ void fill_contacts(const CellWorld& world, const physics::WorldState& state, con
                    RunResult& result) {
   result.solver = monitor.summary(world);
   result.warnings = describe_warnings(result.solver);
-  if (result.failure.empty()) result.failure = describe_depths(result.solver);
+  if (!result.failure) result.failure = find_depth_failure(result.solver);
   const auto name_of = [&world](physics::BodyId id) {
     return world.model.bodies[static_cast<std::size_t>(id.index)].name;
   };

@@ -44,18 +44,18 @@ RunResult run_scene(const model::Scenario& scenario, const RunOptions& options) 
   SolverMonitor monitor(scenario.solver.contact_limits);
   RunResult result;
   bool is_stopped = false;  // by the observer
-  for (std::int64_t i = first; i < end && result.failure.empty() && !is_stopped; ++i) {
+  for (std::int64_t i = first; i < end && !result.failure && !is_stopped; ++i) {
     const physics::StepReport report = scene.advance();
     monitor.add(report, scene.state().time(scene.world().model));
     if (report.status == physics::StepStatus::LostBody) {
       result.events.push_back(event_of(scene.lost().back()));
     } else {
-      result.failure = describe_failure(scene.world(), scene.state(), scene.work(), report);
+      result.failure = find_failure(scene.world(), scene.state(), scene.work(), report);
     }
     for (record::Event& event : monitor.take_events(scene.world())) result.events.push_back(std::move(event));
     if (!recorder) continue;
     recorder->add_events(result.events);
-    if ((i + 1) % stride != 0 && result.failure.empty()) continue;
+    if ((i + 1) % stride != 0 && !result.failure) continue;
     is_stopped = !recorder->add_frame(scene.world(), scene.state(), scene.work(), report, FrameInput{});
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;

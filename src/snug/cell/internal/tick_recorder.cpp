@@ -33,7 +33,7 @@ bool TickRecorder::add(const CellTick& tick, const CellState& state, const CellW
                          &state.gripper,
                          tick.command,
                          simulation_.arm() != nullptr ? &work.arm : nullptr};
-  if (++ticks_ % ticks_a_frame_ != 0 && tick.failure.empty()) return true;
+  if (++ticks_ % ticks_a_frame_ != 0 && !tick.failure) return true;
   return recorder_->add_frame(simulation_.world(), state.world, work.physics, tick.step, input);
 }
 

@@ -33,7 +33,7 @@ RunOptions demo_options() {
 
 TEST(DemoProgram, PacksAllTwelveBoxesAndRepeatsBitByBit) {
   const RunResult result = run(demonstrator(), demo_options());
-  EXPECT_EQ(result.failure, "");
+  EXPECT_FALSE(result.failure) << result.failure.text;
   ASSERT_EQ(result.boxes.size(), 12U);
   for (const BoxResult& box : result.boxes) EXPECT_EQ(box.state, BoxState::Packed) << box.id;
   EXPECT_NEAR(result.filling_degree_percent, 74.22, 0.005);  // of the report's boxes; two decimals
@@ -251,7 +251,7 @@ TEST_F(GripperAtABox, LosesTheHoldWhenTheCupIsBentTooFar) {
 
 RunResult run_scene_file(const std::string& name) {
   const RunResult result = run(model::load_scenario(kSource / "scenarios" / name), RunOptions{});
-  EXPECT_EQ(result.failure, "") << name;
+  EXPECT_FALSE(result.failure) << result.failure.text << name;
   EXPECT_FALSE(result.bodies.empty()) << name;
   for (const BodyResult& body : result.bodies) {
     EXPECT_TRUE(body.X_WB.p.allFinite() && body.X_WB.R.allFinite() && std::isfinite(body.speed)) << body.name;

@@ -45,7 +45,7 @@ TEST(Check, DoesNotWindUpAWristThatTheControllerTakesThroughItsSingularity) {
   }
   const BallWrist cell;
   const RunResult run = simulate(cell.scenario, rows);
-  EXPECT_FALSE(run.stop) << run.failure;
+  EXPECT_FALSE(run.stop) << run.failure.text;
   CheckOptions options;
   const CheckResult result = check_program(cell.scenario, motion::Program{"test", rows}, options);
   EXPECT_EQ(find(result.findings, CheckKind::JointLimit), nullptr);
@@ -72,7 +72,7 @@ TEST(Check, StopsAtALimitWhereTheRunDoes) {
   const BallWrist cell;
   const RunResult run = simulate(cell.scenario, rows);
   ASSERT_TRUE(run.stop);
-  EXPECT_EQ(run.stop->what, "stuck");
+  EXPECT_EQ(run.stop->cause, StopCause::Stuck);
   const CheckResult result = check_program(cell.scenario, motion::Program{"test", rows}, {});
   const CheckFinding* reach = find(result.findings, CheckKind::Reach);
   ASSERT_NE(reach, nullptr);

@@ -62,11 +62,13 @@ TEST(JointPace, JointsKeepTheirSpeedsAndAccelerations) {
     const Matrix3 R_down = exp_rotation(Vector3(std::numbers::pi, 0.0, 0.0));
     const Pose X_WA{exp_rotation(vector(1.2)) * R_down, Vector3(-0.5, -0.5, 0.1) + vector(0.25)};
     Pose X_WB{exp_rotation(vector(0.3)) * X_WA.R, X_WA.p + vector(0.2)};
-    std::optional<Vector3> axis;
+    std::optional<motion::PanAxis> axis;
     if (i >= 60) {  // long ways around the first axis
-      axis = scenario.robot->X_WB.p;
+      axis = find_pan_axis(scenario);
+      ASSERT_TRUE(axis.has_value());
+      const Vector3& p_WC = axis->p_WB;
       const Matrix3 R_pan = exp_rotation(Vector3(0.0, 0.0, rng.uniform(0.5, 1.8)));
-      X_WB = {exp_rotation(vector(0.3)) * R_pan * X_WA.R, *axis + R_pan * (X_WB.p - *axis)};
+      X_WB = {exp_rotation(vector(0.3)) * R_pan * X_WA.R, p_WC + R_pan * (X_WB.p - p_WC)};
     }
     const motion::Way way(X_WA, X_WB, axis);
     const JointPeaks paced = peaks_on({way, tool, pace.get()}, scenario);

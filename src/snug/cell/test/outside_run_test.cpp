@@ -54,7 +54,7 @@ TEST(OutsideRun, IsBitByBitTheRunOfAProgramWhoseSpeedsItIsGiven) {
   const RunResult result = run.finish("the test");
   EXPECT_EQ(result.state_hash, simulation.hash(state));
   EXPECT_EQ(result.ended_by, "the test");
-  EXPECT_TRUE(result.failure.empty()) << result.failure;
+  EXPECT_FALSE(result.failure) << result.failure.text;
 }
 
 TEST(OutsideRun, HoldsStillUnderTheTorqueOfItsWeight) {
@@ -99,7 +99,7 @@ TEST(OutsideRun, StopsForProtectionWithoutATorqueThatHolds) {
   JointVector torques = JointVector::Zero(6);
   torques[0] = 2.0 * simulation.arm()->model().joints[0].max_effort;
   (void)run.advance(command_of(DriveKind::Torque, torques));
-  EXPECT_NE(run.failure().find("joint torque of shoulder_pan_joint"), std::string::npos) << run.failure();
+  EXPECT_NE(run.failure().text.find("joint torque of shoulder_pan_joint"), std::string::npos) << run.failure().text;
   const RunResult result = run.finish("stop");
   ASSERT_TRUE(result.stop.has_value());
   EXPECT_EQ(result.stop->row, -1);
@@ -108,10 +108,10 @@ TEST(OutsideRun, StopsForProtectionWithoutATorqueThatHolds) {
 TEST(OutsideRun, StopsWhenAJointUnderTorqueIsTooFast) {
   const Simulation& simulation = cell_with_robot();
   OutsideRun run(simulation, {});
-  for (int i = 0; i < 2000 && run.failure().empty(); ++i) {
+  for (int i = 0; i < 2000 && !run.failure(); ++i) {
     (void)run.advance(command_of(DriveKind::Torque, JointVector::Zero(6)));
   }
-  EXPECT_NE(run.failure().find("protective stop"), std::string::npos) << "the arm falls until something stops it";
+  EXPECT_NE(run.failure().text.find("protective stop"), std::string::npos) << "the arm falls until something stops it";
 }
 
 TEST(OutsideRun, LeavesARecordingLikeAnyOther) {

@@ -60,7 +60,7 @@ std::size_t count_packed(const RunResult& result) {
 }
 
 void expect_time_of_the_demonstrator(const RealProgram& program, const RunResult& result) {
-  EXPECT_EQ(result.failure, "");
+  EXPECT_FALSE(result.failure) << result.failure.text;
   EXPECT_NEAR(result.duration, program.duration, 0.04 * program.duration);
 }
 
@@ -131,7 +131,7 @@ TEST_F(RealPrograms, PackAtLeast33Of37BoxesInTheFilesForSimulation) {
   std::size_t packed = 0;
   for (std::size_t i = 0; i < results.size(); ++i) {
     SCOPED_TRACE(for_simulation()[i].file);
-    EXPECT_EQ(results[i].failure, "");
+    EXPECT_FALSE(results[i].failure) << results[i].failure.text;
     expect_packed_boxes_inside(results[i]);
     RecordProperty("packed_" + for_simulation()[i].sequence, static_cast<int>(count_packed(results[i])));
     std::printf("%s: %zu of %zu packed\n", for_simulation()[i].file.c_str(), count_packed(results[i]),

@@ -28,7 +28,7 @@ TEST(Robot, ReadsTheWeightOfTheGripperWhenNothingIsHeld) {
   const snug::test::ScratchFolder folder;
   const std::filesystem::path path = folder / "run.h5";
   const RunResult result = simulate(demonstrator(), {row_at(home().p + Vector3(0.02, 0.0, 0.0))}, path);
-  EXPECT_FALSE(result.stop) << result.failure;
+  EXPECT_FALSE(result.stop) << result.failure.text;
   const record::Recording recording = record::load_recording(path);
   ASSERT_EQ(recording.header.joints.size(), 6u);
   const record::Frame& last = recording.frames.back();
@@ -76,20 +76,21 @@ TEST(Robot, AddsNoiseBiasAndDriftOfTheSensorFromTheSeed) {
 
 TEST(Robot, StopsWhereItDrivesTheGripperIntoTheContainerWall) {
   const RunResult result = simulate(demonstrator(), into_the_wall());
-  ASSERT_TRUE(result.stop) << result.failure;
+  ASSERT_TRUE(result.stop) << result.failure.text;
   EXPECT_EQ(result.stop->row, 2);
   EXPECT_NE(result.stop->touching.find(demonstrator().target), std::string::npos) << describe(*result.stop);
   EXPECT_NE(result.stop->touching.find("tool"), std::string::npos) << describe(*result.stop);
   EXPECT_GT(result.stop->value, result.stop->limit);
-  EXPECT_EQ(result.failure, describe(*result.stop));
+  EXPECT_EQ(result.failure.text, describe(*result.stop));
+  EXPECT_EQ(result.failure.kind, FailureKind::ProtectiveStop);
   EXPECT_EQ(result.events.back().kind, "protective_stop");
 }
 
 TEST(Robot, StopsWhereItDrivesAWristIntoTheWall) {
   const RunResult result = simulate(demonstrator(), wrist_into_the_wall());
-  ASSERT_TRUE(result.stop) << result.failure;
+  ASSERT_TRUE(result.stop) << result.failure.text;
   EXPECT_EQ(result.stop->row, 2);
-  EXPECT_EQ(result.stop->what, "joint torque");  // behind the sensor nobody feels a wrist
+  EXPECT_EQ(result.stop->cause, StopCause::JointTorque);  // behind the sensor nobody feels a wrist
   EXPECT_NE(result.stop->touching.find("robot/wrist_2_link"), std::string::npos) << describe(*result.stop);
 }
 
@@ -108,7 +109,7 @@ TEST(Robot, RecordsWhatALinkTouchesWithTheForceOfTheRecordedContacts) {
   std::vector<motion::Waypoint> rows = wrist_into_the_wall();
   rows.push_back(rows.front());
   const RunResult result = simulate(scenario, rows, path);
-  EXPECT_FALSE(result.stop) << result.failure;
+  EXPECT_FALSE(result.stop) << result.failure.text;
   const std::string& tote = demonstrator().target;
   const record::Event* begin = find_event(result.events, "arm_contact", tote);
   ASSERT_NE(begin, nullptr);
@@ -152,7 +153,7 @@ TEST(Robot, RunsAProgramInAScenarioWithoutLimits) {
   model::Scenario scenario = demonstrator();
   scenario.controller.limits.clear();
   const RunResult result = simulate(scenario, {row_at(home().p + Vector3(0.1, 0.0, 0.0), "any name")});
-  EXPECT_EQ(result.failure, "");
+  EXPECT_FALSE(result.failure) << result.failure.text;
   // 0.1 m at 3 m/s^2 and 0.5 m/s takes 0.37 s, and the controller's lag some seconds.
   EXPECT_GT(result.duration, 0.37);
   EXPECT_LT(result.duration, 5.0);
@@ -161,7 +162,7 @@ TEST(Robot, RunsAProgramInAScenarioWithoutLimits) {
 TEST(Robot, WithoutAKnownEffortIsNotStoppedByATorque) {
   const BallWrist cell;  // effort 0 in its file
   const RunResult run = simulate(cell.scenario, {turned_tool(-0.3, 0.0), turned_tool(-0.4, 0.1)});
-  EXPECT_FALSE(run.stop) << run.failure;
+  EXPECT_FALSE(run.stop) << run.failure.text;
 }
 
 TEST(Robot, StopsWhenTheSensorIsOverloaded) {
@@ -170,14 +171,14 @@ TEST(Robot, StopsWhenTheSensorIsOverloaded) {
   scenario.robot->protective_stop.torque_fraction = 10.0;
   const RunResult result = simulate(scenario, into_the_wall());
   ASSERT_TRUE(result.stop);
-  EXPECT_EQ(result.stop->what, "sensor force");
+  EXPECT_EQ(result.stop->cause, StopCause::SensorForce);
   EXPECT_EQ(result.stop->where, scenario.robot->sensor_frame);
 }
 
 TEST(Robot, StandsAndSaysSoWhereARowIsOutOfReach) {
   const RunResult result = simulate(demonstrator(), {row_at(home().p), row_at(home().p + Vector3(0.0, -3.0, 0.0))});
   ASSERT_TRUE(result.stop);
-  EXPECT_EQ(result.stop->what, "stuck");
+  EXPECT_EQ(result.stop->cause, StopCause::Stuck);
   EXPECT_EQ(result.stop->row, 1);
   EXPECT_GT(result.stop->value, 1.0);
 }
@@ -221,7 +222,7 @@ TEST(Robot, PacksTheFirstBoxAsTheToolAloneDoes) {
   const RunResult alone = run(demonstrator(), options);
   options.simulation.robot = "ur10";
   const RunResult robot = run(demonstrator(), options);
-  EXPECT_FALSE(robot.stop) << robot.failure;
+  EXPECT_FALSE(robot.stop) << robot.failure.text;
   ASSERT_FALSE(alone.boxes.empty());
   ASSERT_EQ(robot.boxes.size(), alone.boxes.size());
   EXPECT_EQ(robot.boxes[0].state, alone.boxes[0].state);

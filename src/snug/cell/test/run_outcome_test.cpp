@@ -31,7 +31,7 @@ TEST(ContactLimits, ASqueezedBoxIsAFailureThatNamesItAndLeavesTheResultWhole) {
   options.record_path = folder / "run.h5";
   const RunResult result = run(scenario, options);
   for (const char* word : {"rigid", "'b'", "mm deep", "t = ", "time_step", "solver.contact_limits.rigid_depth"}) {
-    EXPECT_NE(result.failure.find(word), std::string::npos) << word << " in " << result.failure;
+    EXPECT_NE(result.failure.text.find(word), std::string::npos) << word << " in " << result.failure.text;
   }
   EXPECT_NEAR(result.duration, 2.0, 1e-9);
   ASSERT_EQ(result.bodies.size(), 1u);
@@ -58,7 +58,7 @@ containers: [{name: tote, inner_size: [1, 1, 1], material: m, floor_thickness: 0
                                                          "test.yaml");
   const RunResult result = run(scenario, {});
   for (const char* word : {"compliant", "'b'", "'tote'", "stiffer", "solver.contact_limits.compliant_depth"}) {
-    EXPECT_NE(result.failure.find(word), std::string::npos) << word << " in " << result.failure;
+    EXPECT_NE(result.failure.text.find(word), std::string::npos) << word << " in " << result.failure.text;
   }
   EXPECT_EQ(result.solver.worst_penetration, 0.0);
   EXPECT_GT(result.solver.worst_compliant_depth, 0.02);
@@ -68,8 +68,8 @@ TEST(ContactLimits, AreTheScenarios) {
   // 20 kg on 12 kN/m: 16 mm.
   const std::string body = "- {name: b, size: [0.2, 0.3, 0.1], mass: 20, material: m, pose: {position: [0, 0, 0.05]}}";
   const std::string contact = "{friction: 0.5, restitution: 0, stiffness: 12000, damping: 500}";
-  EXPECT_EQ(run(scene(1.0, body, contact, "solver: {contact_limits: {compliant_depth: 0.05}}"), {}).failure, "");
-  EXPECT_NE(run(scene(1.0, body, contact, "solver: {contact_limits: {compliant_depth: 0.01}}"), {}).failure, "");
+  EXPECT_EQ(run(scene(1.0, body, contact, "solver: {contact_limits: {compliant_depth: 0.05}}"), {}).failure.text, "");
+  EXPECT_NE(run(scene(1.0, body, contact, "solver: {contact_limits: {compliant_depth: 0.01}}"), {}).failure.text, "");
   EXPECT_NE(loading_error(scene_text(1.0, body, contact, "solver: {contact_limits: {compliant_depht: 0.01}}"), "t.yaml")
                 .find("'compliant_depth'"),
             std::string::npos);
@@ -84,7 +84,7 @@ TEST(Compliance, ABodyMayStartAtItsOwnEquilibrium) {
   const std::string contact = "{friction: 0.5, restitution: 0, stiffness: 12000, damping: 50}";
   const RunResult result = run(scene(1.0, body(0.05 - depth), contact), {});
   EXPECT_NEAR(body_of(result, "b").X_WB.p.z(), 0.05 - depth, 1e-6);
-  EXPECT_EQ(result.failure, "");
+  EXPECT_FALSE(result.failure) << result.failure.text;
   EXPECT_NE(loading_error(scene_text(1.0, body(0.05 - 1.2 * depth), contact), "t.yaml").find("overlaps"),
             std::string::npos);
   EXPECT_NE(
@@ -101,7 +101,7 @@ TEST(LostBody, IsAnOutcomeAndTheRunGoesOnWithoutIt) {
   RunOptions options;
   options.record_path = folder / "run.h5";
   const RunResult result = run(scenario, options);
-  EXPECT_EQ(result.failure, "");
+  EXPECT_FALSE(result.failure) << result.failure.text;
   EXPECT_NEAR(result.duration, 3.0, 1e-9);
   ASSERT_EQ(result.lost.size(), 2u);
   EXPECT_EQ(result.lost[0].name, "thrown");

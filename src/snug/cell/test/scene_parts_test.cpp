@@ -259,7 +259,7 @@ TEST(Cylinder, RestsOnItsSideAndOnItsEndAndInAPyramid) {
 - {name: stopper, kind: static, size: [0.1, 0.1, 0.2], material: m, pose: {position: [0, -0.15, 0.1]}}
 - {name: stopper2, kind: static, size: [0.1, 0.1, 0.2], material: m, pose: {position: [0, 0.15, 0.1]}})");
   const RunResult result = run(scenario, {});
-  EXPECT_EQ(result.failure, "");
+  EXPECT_FALSE(result.failure) << result.failure.text;
   EXPECT_NEAR(body_of(result, "end").X_WB.p.z(), 0.1, 1e-5);
   EXPECT_NEAR(body_of(result, "left").X_WB.p.z(), 0.05, 1e-5);
   EXPECT_NEAR(body_of(result, "top").X_WB.p.z(), 0.05 + 0.1 * std::sin(kPi / 3.0), 2e-4);

@@ -19,7 +19,7 @@ motion::Program demo_program(std::size_t rows = 16) {
 void run_to_end(const Simulation& simulation, const motion::PreparedProgram& plan, CellState& state,
                 CellWorkspace& work) {
   while (!simulation.is_at_end(plan, state)) {
-    ASSERT_EQ(simulation.advance(plan, state, work).failure, "");
+    ASSERT_FALSE(simulation.advance(plan, state, work).failure);
     ASSERT_LT(simulation.time(state), 200.0);
   }
 }
@@ -93,7 +93,7 @@ TEST(Simulation, IsTakenUpWhereItsBoxesAreBelievedToBeAndTheyStayThere) {
   EXPECT_EQ(simulation.time(taken_up), 0.0);
   const motion::PreparedProgram still =
       simulation.prepare({"still", {motion::make_waypoint(motion::MotionClass::Home, {}, anchor.X_WE)}});
-  for (int i = 0; i < 50; ++i) ASSERT_EQ(simulation.advance(still, taken_up, work).failure, "");
+  for (int i = 0; i < 50; ++i) ASSERT_FALSE(simulation.advance(still, taken_up, work).failure);
   for (const CellAnchor::Box& box : anchor.boxes) {
     const Pose X_WP =
         physics::pose_of(simulation.world().model, taken_up.world, parcels[static_cast<std::size_t>(box.item)]);

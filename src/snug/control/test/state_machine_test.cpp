@@ -87,7 +87,7 @@ TEST(StateMachine, EndsWithOkWhenTheProgramIsDone) {
   for (int i = 0; i < 2000; ++i) {
     const MachineTick tick = drive.tick();
     if (!tick.program.finished_now) continue;
-    EXPECT_EQ(tick.outcome, "OK");
+    EXPECT_EQ(tick.outcome, Outcome::Ok);
     EXPECT_EQ(drive.machine.name_of(drive.state.state), "Operation");  // nothing follows: it settles on the last row
     return;
   }
@@ -120,7 +120,7 @@ TEST(StateMachine, ComesToHoldWhenARowIsOutOfReach) {
   MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.0, -3.0, 0.0}}), motion::ControllerKind::Faithful, 10.0, {2.0});
   for (int i = 0; i < 5000; ++i) {
     const MachineTick tick = drive.tick();
-    if (tick.outcome != "Stuck") continue;
+    if (tick.outcome != Outcome::Stuck) continue;
     EXPECT_EQ(tick.program.row, 1);
     EXPECT_EQ(drive.machine.name_of(drive.state.state), "Hold");
     for (int k = 0; k < 200; ++k) (void)drive.tick();
@@ -153,9 +153,9 @@ class CountingState final : public State {
   [[nodiscard]] std::string_view name() const override { return "Counting"; }
   void configure(const StateSettings&) override { ++calls_.configured; }
   void start(StateContext&) const override { ++calls_.started; }
-  [[nodiscard]] std::string_view run(StateContext& context) const override {
+  [[nodiscard]] Outcome run(StateContext& context) const override {
     context.stand();
-    return ++calls_.run == 3 ? "Enough" : "";
+    return ++calls_.run == 3 ? Outcome::Ok : Outcome::GoesOn;
   }
   void teardown(StateContext&) const override { ++calls_.torn_down; }
 
@@ -169,7 +169,7 @@ TEST(StateMachine, LeadsAStateThroughItsLife) {
   std::vector<std::unique_ptr<State>> states;
   states.push_back(std::make_unique<CountingState>(calls));
   states.push_back(make_hold_state());
-  drive.machine = StateMachine(std::move(states), {{"Counting", "Enough", "Hold"}}, {});
+  drive.machine = StateMachine(std::move(states), {{"Counting", Outcome::Ok, "Hold"}}, {});
   drive.state = drive.machine.make_state(drive.controller, test::start_joints(drive.controller));
   for (int i = 0; i < 5; ++i) (void)drive.tick();
   EXPECT_EQ(calls.configured, 1);

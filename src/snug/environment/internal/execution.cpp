@@ -46,7 +46,7 @@ class Execution final : public Happening {
     const double latest = time() + kLongestPlacement;
     while (!simulation_->is_at_end(prepared, state_)) {
       const cell::CellTick tick = simulation_->advance(prepared, state_, work_);
-      if (!tick.failure.empty() || time() > latest) return {false, "the simulation could not go on", 0.0};
+      if (tick.failure || time() > latest) return {false, "the simulation could not go on", 0.0};
     }
     if (!is_present(index)) return {false, "it left the cell", 0.0};
     return judge(settings_, pose_of(index), *X_TP, is_packed(index));

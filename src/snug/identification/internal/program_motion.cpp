@@ -70,7 +70,7 @@ CapturedRun capture_program(const model::Scenario& scenario, const model::TaskPr
                             std::optional<double> until) {
   cell::RunCapture capture;
   const cell::RunResult result = run_observed(scenario, program, until, capture);
-  return {std::move(capture.recording), result.failure};
+  return {std::move(capture.recording), result.failure.text};
 }
 
 void Track::add(double time, const record::PoseSample& pose) {
@@ -89,9 +89,8 @@ ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& 
   ProgramRun run;
   run.tracks = std::move(capture.tracks);
   run.until = until;
-  run.end = result.failure.empty() ? std::numeric_limits<double>::infinity() : capture.end;
-  if (capture.end <= 0.0)
-    run.failure = result.failure.empty() ? "the run ended before its first frame" : result.failure;
+  run.end = result.failure ? capture.end : std::numeric_limits<double>::infinity();
+  if (capture.end <= 0.0) run.failure = result.failure ? result.failure.text : "the run ended before its first frame";
   return run;
 }
 

@@ -34,7 +34,7 @@ bool has(const std::vector<session::Recovery>& recoveries, Trouble trouble, Reme
 }
 
 void expect_nothing_in_the_way(const Trial& trial) {
-  EXPECT_EQ(trial.session.failure, "");
+  EXPECT_FALSE(trial.session.failure) << trial.session.failure.text;
   for (const cell::BoxResult& box : trial.boxes) {
     EXPECT_TRUE(box.state == cell::BoxState::Packed || box.state == cell::BoxState::Waiting)
         << box.id << " is " << cell::name_of(box.state);
@@ -60,7 +60,7 @@ TEST(Recovery, ABoxThatFallsWhileCarriedIsNoticedAndTheSessionGoesOn) {
   const auto& recoveries = recoveries_of(trial, 2);
   EXPECT_TRUE(std::ranges::any_of(recoveries, [](const auto& one) { return one.trouble == Trouble::VacuumLost; }));
   EXPECT_GE(trial.executed_boxes, 2) << trial.session.stopped;
-  EXPECT_EQ(trial.session.failure, "");
+  EXPECT_FALSE(trial.session.failure) << trial.session.failure.text;
 }
 
 TEST(Recovery, ADisplacedBoxIsSeenAndWhatFollowsIsPlannedAroundIt) {
@@ -119,6 +119,7 @@ TEST(SessionRecord, EveryAttemptForAnItemWithoutPlaceHasItsReason) {
   EXPECT_EQ(static_cast<int>(item.failed_attempts.size()), item.attempts);
   for (const session::FailedAttempt& one : item.failed_attempts) {
     EXPECT_FALSE(one.succeeded);
+    EXPECT_NE(one.failure, session::AttemptFailure::None);
     EXPECT_FALSE(one.reason.empty());
     EXPECT_EQ(one.planned.item, item.id);
   }
@@ -139,7 +140,7 @@ TEST(SessionRecord, SaysWhatWasRefusedAndWhatWasLostWithReasons) {
   packed.end = session::ItemEnd::Placed;
   packed.sends.resize(1);
   result.items = {packed, lost, refused};
-  result.failure = "the robot did not come home";
+  result.failure = {session::SessionFailureKind::NotHome, "the robot did not come home"};
 
   const std::vector<record::Event> events = events_of(result);
   const auto event = std::ranges::find(events, "refused", &record::Event::kind);

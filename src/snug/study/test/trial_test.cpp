@@ -68,7 +68,7 @@ TEST(Trial, PacksWithTheArm) {
   plant.simulation.robot = "ur10";
   const Trial trial = run_trial(shortened(1), "1", options, plant);
   EXPECT_EQ(trial.executed_boxes, 1) << trial.session.stopped;
-  EXPECT_EQ(trial.session.failure, "");
+  EXPECT_FALSE(trial.session.failure) << trial.session.failure.text;
 }
 
 TEST(Trial, PacksWithNoisyPerceptionAndWithNone) {
@@ -135,7 +135,7 @@ TEST(Trial, AnInterruptedSessionKeepsWhatIsDone) {
   const Trial trial = run_trial(shortened(3), "1", options, plant_seed(7));
   EXPECT_EQ(trial.session.stop_reason, StopReason::Interrupted);
   EXPECT_EQ(trial.executed_boxes, 1);
-  EXPECT_EQ(trial.session.failure, "");
+  EXPECT_FALSE(trial.session.failure) << trial.session.failure.text;
 }
 
 }  // namespace
