@@ -94,8 +94,8 @@ struct SearchSettings {
 struct TaskProgram {
   std::filesystem::path file;
   std::string sequence;
-  std::string corrections;   ///< name of a layer of the scenario, or empty
-  bool with_phases = false;  ///< the cup with vacuum phases
+  std::string corrections;          ///< name of a layer of the scenario, or empty
+  std::optional<bool> with_phases;  ///< the cup's vacuum phases; absent: as the corrections were made for
   bool operator==(const TaskProgram&) const = default;
 };
 

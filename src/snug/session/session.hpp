@@ -35,8 +35,8 @@ struct SessionOptions {
   /// What may follow an item; absent: any parcel of the scenario.
   std::optional<packing::FutureModel> future;
   PlaceLimits limits;
-  double press_force = 60.0;                                 ///< N, force guard of a press from above
-  cell::SimulationOptions simulation = cell::own_motions();  ///< of rollouts
+  double press_force = 60.0;             ///< N, force guard of a press from above
+  cell::SimulationOptions simulation;    ///< of rollouts
   std::function<bool()> is_interrupted;  ///< asked before every item; true ends the session; may be empty
 };
 
