@@ -104,7 +104,7 @@ def main():
         if not program:
             program = str(Path(folder, "program.csv"))
             answer_of("pack", CELL, "--sequence", words.sequence, "--agent", "margin", "--program", program)
-        is_same = whole_program(program, words.sequence, words.corrections, words.cup or ("holding" if words.program else "phases"))
+        is_same = whole_program(program, words.sequence, words.corrections, words.cup or ("holding" if words.corrections != "none" else "phases"))
     if words.minutes > 0.0:
         real_time(words.minutes)
     return 0 if is_same else 1

@@ -30,14 +30,11 @@ constexpr const char* kNotExported =
     "not exported: the robot that follows exactly does not do what was simulated: {} (--unchecked exports it all the "
     "same)";
 
-/// The cup that `simulate` has by default for the program.
-cup::CupMode cup_for(const ExportOptions& options) {
-  return is_own_program(motion::load_program(options.input)) ? cup::CupMode::Phases : cup::CupMode::Holding;
-}
+std::string layer_of(const ExportOptions& options) { return options.corrections == "none" ? "" : options.corrections; }
 
 cell::SimulationOptions simulation_for(const model::Scenario& scenario, const ExportOptions& options) {
   cell::SimulationOptions simulation;
-  simulation.cup = cup_for(options);
+  simulation.cup = cell::cup_for(scenario, layer_of(options));
   simulation.robot = scenario.robot->name;
   choose_motion(options.motion, read_file(options.input, "a program file (CSV)"), options.input, simulation);
   return simulation;
@@ -52,8 +49,7 @@ struct LoadedProgram {
 
   LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
       : simulation(scenario, sequence, simulation_for(scenario, options)),
-        plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input),
-                                                options.corrections == "none" ? "" : options.corrections))) {
+        plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input), layer_of(options)))) {
     if (!options.is_unchecked) trial = cell::try_motion(simulation, plan);
   }
 
@@ -62,7 +58,7 @@ struct LoadedProgram {
   /// `done`: the motion that is written, as simulated or fitted to that.
   [[nodiscard]] control::RobotProgram for_robot(const motion::PreparedProgram& done,
                                                 const ExportOptions& options) const {
-    const std::string layer = options.corrections == "none" ? "" : ", corrections " + options.corrections;
+    const std::string layer = layer_of(options).empty() ? "" : ", corrections " + options.corrections;
     const std::string tempo = is_fast() ? fmt::format(", tempo {}", plan.settings.fast.tempo) : "";
     const Pose& X_WE_start = simulation.scenario().controller.X_WE_start;
     return {.plan = done,

@@ -39,11 +39,6 @@ std::vector<std::string> picks_of(const model::Scenario& scenario, const motion:
 
 }  // namespace
 
-bool is_own_program(const motion::Program& program) {
-  return std::ranges::any_of(program.waypoints,
-                             [](const motion::Waypoint& row) { return row.item_is_id && !row.item.empty(); });
-}
-
 void warn_misfit(const model::Scenario& scenario, const std::string& sequence_name, const motion::Program& program) {
   const model::Sequence* sequence = model::find_sequence(scenario, sequence_name);
   if (sequence == nullptr) return;  // refused elsewhere

@@ -10,8 +10,4 @@ namespace snug::app {
 /// order. Of rows that name no box of the scenario nothing is said.
 void warn_misfit(const model::Scenario& scenario, const std::string& sequence, const motion::Program& program);
 
-/// Whether a program is one of ours: its rows have the box in brackets (motion::name_of), those of the demonstrator do
-/// not.
-[[nodiscard]] bool is_own_program(const motion::Program& program);
-
 }  // namespace snug::app

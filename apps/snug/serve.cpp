@@ -16,7 +16,6 @@
 #include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/writer.hpp"
-#include "snug/session/session.hpp"
 #include "snug/simulated_plant/simulated_plant.hpp"
 #include "stop_signal.hpp"
 #include "version.hpp"
@@ -53,8 +52,7 @@ model::Scenario load(const ServeOptions& options) {
 cell::SimulationOptions simulation_options(const ServeOptions& options, const model::Scenario& scenario) {
   cell::SimulationOptions simulation;
   simulation.robot = options.robot.value_or(scenario.robot->name);
-  if (options.plant_seed) simulation.cup = session::SessionOptions{}.simulation.cup;
-  if (options.cup) simulation.cup = *options.cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
+  if (options.cup) simulation.cup = cup::cup_mode_of(*options.cup, "command line");
   return simulation;
 }
 

@@ -31,8 +31,8 @@ void add_served_cell(CLI::App& verb, ServeOptions& options) {
       ->type_name("NAME");
   verb.add_option(
           "--cup", options.cup,
-          "holding: attached and released at once; phases: pressure builds up and decays, holds can fail (default: "
-          "holding, with --plant-seed phases)")
+          "phases: pressure builds up and decays, holds can fail; holding: attached and released at once (default: "
+          "phases)")
       ->check(one_of({"holding", "phases"}))
       ->type_name("MODEL");
   verb.add_option("--dt", options.dt, "time step of the physics, instead of the scenario's")

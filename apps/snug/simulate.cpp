@@ -78,10 +78,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
     print_robot_warnings(scenario);
   }
   choose_motion(options.motion, run.program_text, options.program.value_or(""), run.simulation);
-  const std::string cup = options.cup                                   ? *options.cup
-                          : run.program && is_own_program(*run.program) ? "phases"
-                                                                        : "holding";
-  run.simulation.cup = cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
+  if (options.cup) run.simulation.cup = cup::cup_mode_of(*options.cup, "command line");
   run.until = options.until;
   run.threads = options.threads.value_or(core_count());
   run.version = version_text();

@@ -47,9 +47,8 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
       ->type_name("SECONDS");
   verb.add_option(
           "--cup", options.cup,
-          "holding: attached and released at once; phases: pressure builds up and decays, holds can fail (default: "
-          "phases, "
-          "as pack; holding for scenes and for programs with the demonstrator's names, PrePick027 and the like)")
+          "phases: pressure builds up and decays, holds can fail; holding: attached and released at once (default: "
+          "phases, with --corrections the cup that they were made for)")
       ->check(one_of({"holding", "phases"}))
       ->type_name("MODEL");
   verb.add_option("--seed", options.seed, "seed of everything random, instead of the scenario's")

@@ -137,8 +137,9 @@ class World:
 class Cell:
     """The robot's cell under way with a program, one tick of its controller at a time.
 
-    cup: "holding" (the report's model) or "phases"; controller: "faithful" or "ideal"; robot: name of the scenario's
-    robot, or "": the tool moves by itself; corrections: layer of the scenario's site corrections, or "".
+    cup: "phases", "holding" (attached and released at once), or "": phases, with corrections the cup that they were made
+    for; controller: "faithful" or "ideal"; robot: name of the scenario's robot, or "": the tool moves by itself;
+    corrections: layer of the scenario's site corrections, or "".
     """
 
     def __init__(self, scenario: Scenario, sequence: str, program: Program, *, cup: str = ..., controller: str = ...,

@@ -68,7 +68,7 @@ def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware
 
 
 def simulate(scenario: _core.Scenario, program: Optional[_core.Program] = None, sequence: str = "", *,
-             corrections: str = "", robot: str = "", cup: str = "holding", controller: Optional[str] = None,
+             corrections: str = "", robot: str = "", cup: str = "", controller: Optional[str] = None,
              until: Optional[float] = None, record: PathLike = "") -> Result:
     """Runs a scenario, alone or with a program, as `snug simulate` does.
 
@@ -77,7 +77,8 @@ def simulate(scenario: _core.Scenario, program: Optional[_core.Program] = None, 
         sequence: that the program packs.
         corrections: layer of the scenario's site corrections, or "".
         robot: name of the scenario's robot; "": the tool moves by itself.
-        cup: "holding" (the report's model) or "phases" (pressure builds up and decays, holds can fail).
+        cup: "phases" (pressure builds up and decays, holds can fail) or "holding" (attached and released at once);
+            "": phases, with corrections the cup that they were made for.
         controller: "faithful" (the demonstrator's lag), "ideal" or "fast"; None: as the program was packed.
         until: s; the program's end or the scenario's duration by default.
         record: HDF5 file, or "".

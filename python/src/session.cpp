@@ -165,8 +165,7 @@ py::object simulate(const ScenarioHandle& scenario, const ProgramHandle& program
   run.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
   run.corrections = corrections;
   run.simulation.robot = robot;
-  if (cup != "holding" && cup != "phases") throw InputError("argument", "cup", "'" + cup + "'", "holding or phases");
-  run.simulation.cup = cup == "phases" ? cup::CupMode::Phases : cup::CupMode::Holding;
+  if (!cup.empty()) run.simulation.cup = cup::cup_mode_of(cup, "argument");
   const std::optional<double> tempo = program ? (**program).tempo : std::nullopt;
   if (!controller.empty()) {
     run.simulation.controller = motion::controller_kind_of(controller, "argument");

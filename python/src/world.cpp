@@ -123,12 +123,13 @@ class World {
   std::atomic<bool> busy_{false};
 };
 
-cell::SimulationOptions options_of(const std::string& cup, const std::string& controller, const std::string& robot) {
+cell::SimulationOptions options_of(const model::Scenario& scenario, const std::string& cup,
+                                   const std::string& controller, const std::string& robot,
+                                   const std::string& corrections) {
   cell::SimulationOptions options;
-  if (cup != "holding" && cup != "phases") throw InputError("argument", "cup", "'" + cup + "'", "holding or phases");
   if (controller != "faithful" && controller != "ideal")
     throw InputError("argument", "controller", "'" + controller + "'", "faithful or ideal");
-  options.cup = cup == "holding" ? cup::CupMode::Holding : cup::CupMode::Phases;
+  options.cup = cup.empty() ? cell::cup_for(scenario, corrections) : cup::cup_mode_of(cup, "argument");
   options.controller = controller == "ideal" ? motion::ControllerKind::Ideal : motion::ControllerKind::Faithful;
   options.robot = robot;
   return options;
@@ -140,7 +141,7 @@ class Cell {
        const std::string& controller, const std::string& robot, const std::string& corrections)
       : scenario_(std::move(scenario)),
         program_(std::move(program)),
-        simulation_(**scenario_, sequence, options_of(cup, controller, robot)),
+        simulation_(**scenario_, sequence, options_of(**scenario_, cup, controller, robot, corrections)),
         plan_(simulation_.prepare(cell::corrected(**scenario_, **program_, corrections))),
         state_(simulation_.make_state()),
         bodies_(bodies_of(simulation_.world())),
@@ -294,7 +295,7 @@ void bind_world(py::module_& m) {
   py::class_<Cell> cell(m, "Cell");
   cell.def(py::init<ScenarioHandle, const std::string&, ProgramHandle, const std::string&, const std::string&,
                     const std::string&, const std::string&>(),
-           py::arg("scenario"), py::arg("sequence"), py::arg("program"), py::kw_only(), py::arg("cup") = "holding",
+           py::arg("scenario"), py::arg("sequence"), py::arg("program"), py::kw_only(), py::arg("cup") = "",
            py::arg("controller") = "faithful", py::arg("robot") = "", py::arg("corrections") = "")
       .def("step", &Cell::step, py::arg("ticks") = 1)
       .def("run", &Cell::run)

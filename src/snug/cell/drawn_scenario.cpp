@@ -97,7 +97,9 @@ void draw_gripper(const model::Uncertainty& half_width, const Rng& rng, model::S
       std::max(cup.within(half_width.cup_length), scenario.cup.centre_from_lip - scenario.cup.hold_length);
   scenario.cup.hold_length += longer;
   scenario.cup.free_length += longer;
-  scenario.cup.release_push *= push.between(1.0 - half_width.release_push, 1.0);
+  const double pushes = scenario.cup.release_push;
+  scenario.cup.release_push =
+      push.between(std::max(0.0, pushes - half_width.release_push), std::min(1.0, pushes + half_width.release_push));
   const double quicker = tracking.factor(half_width.tracking);
   scenario.controller.task_stiffness *= quicker;
   for (model::Sequence& sequence : scenario.sequences) {

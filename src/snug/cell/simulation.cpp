@@ -138,7 +138,7 @@ Simulation::Simulation(model::Scenario scenario, const std::string& sequence, co
       arm_(make_arm(scenario_, sequence_, options.robot)),
       world_(build_world(scenario_, arm_ ? WorldOptions{&sequence_, true, &arm_->model(), arm_->start()}
                                          : WorldOptions{&sequence_, true, nullptr, {}})),
-      gripper_(scenario_.cup, options.cup, world_) {
+      gripper_(scenario_.cup, options.cup.value_or(cup::CupMode::Phases), world_) {
   if (arm_) arm_->attach(world_);
   if (options.controller == motion::ControllerKind::Fast) pace_ = make_joint_pace(scenario_, options.tempo);
 }

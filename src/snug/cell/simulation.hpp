@@ -17,17 +17,11 @@ namespace snug::cell {
 
 struct SimulationOptions {
   motion::ControllerKind controller = motion::ControllerKind::Faithful;
-  /// The report's model predicts the real programs better than the phases do (docs/decisions/0006): the default.
-  cup::CupMode cup = cup::CupMode::Holding;
+  /// Absent: with phases, in `run` as the corrections were made for (cell::cup_for; docs/decisions/0040).
+  std::optional<cup::CupMode> cup = {};
   std::string robot = {};  ///< name of the scenario's robot that moves the tool; empty: the tool moves by itself
   double tempo = 1.0;      ///< motion::FastSettings::tempo
 };
-
-/// How programs of our own are moved where no tempo is asked for: with the demonstrator's lag, the vacuum building up
-/// and decaying.
-[[nodiscard]] inline SimulationOptions own_motions() {
-  return {motion::ControllerKind::Faithful, cup::CupMode::Phases};
-}
 
 /// Everything of a cell that changes. A copy is a snapshot: going on from it gives the same bytes.
 struct CellState {

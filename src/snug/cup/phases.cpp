@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "snug/core/input_error.hpp"
+
 namespace snug::cup {
 namespace {
 
@@ -58,6 +60,14 @@ double lip_force(const model::CupParams& params, double pressure_gauge, const Wr
 }
 
 }  // namespace
+
+const char* name_of(CupMode mode) { return mode == CupMode::Holding ? "holding" : "phases"; }
+
+CupMode cup_mode_of(const std::string& name, const std::string& where) {
+  for (const CupMode mode : {CupMode::Holding, CupMode::Phases})
+    if (name == name_of(mode)) return mode;
+  throw InputError(where, "cup", "'" + name + "'", "holding or phases");
+}
 
 const char* describe(NoSeal reason) {
   switch (reason) {

@@ -1,6 +1,8 @@
 // Vacuum phases: when the lip seals, how pressure drives the cup, when it lets go, and the push of an unsealed lip.
 #pragma once
 
+#include <string>
+
 #include "snug/core/expected.hpp"
 #include "snug/cup/suction_cup.hpp"
 
@@ -8,6 +10,9 @@ namespace snug::cup {
 
 /// Holding: the model of the report, attached and released at once. Phases: with pressure (docs/theory/cup.md, 6).
 enum class CupMode { Holding, Phases };
+[[nodiscard]] const char* name_of(CupMode mode);
+/// Throws InputError for another name than those two; `where` it was said.
+[[nodiscard]] CupMode cup_mode_of(const std::string& name, const std::string& where);
 
 enum class CupPhase {
   Free,       ///< not sealed; the lip may push

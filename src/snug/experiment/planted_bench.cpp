@@ -93,7 +93,7 @@ class PlantedBench {
     const model::MotionCaptureParams& camera = sensors_.motion_capture;
     model::SceneTask task;
     task.path = task.scenario = options_.scenario;
-    task.program = model::TaskProgram{options_.program, kSequence, options_.corrections, false};
+    task.program = model::TaskProgram{options_.program, kSequence, options_.corrections, {}};
     task.simulation_time = experiment.clip;
     for (std::size_t i = 0; i < experiment.boxes; ++i) task.tracked.push_back({boxes_[i], {}, {}, {}});
     task.start.from = model::StartFrom::Scenario;

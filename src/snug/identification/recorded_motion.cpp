@@ -149,6 +149,8 @@ std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, con
       throw InputError(where, recording.name, "poses whose clock is not found", "a run of this program");
     RecordedMotion& motion = motions.emplace_back();
     motion.name = recording.name;
+    motion.world_position_error = measured.base_position_error;
+    motion.world_rotation_error = measured.base_rotation_error;
     const double end = task.simulation_time.value_or(run.times.back());
     const std::vector<double>& times = measured.pose_times;
     const double period =

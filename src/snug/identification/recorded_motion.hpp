@@ -26,6 +26,8 @@ struct RecordedMotion {
   std::string name;                     ///< "train.csv, toss 12"
   std::vector<double> times;            ///< s, growing
   double period = 0.0;                  ///< s, between the samples that poses are means of
+  double world_position_error = 0.0;    ///< m, standard error of each axis of where the recorded world is
+  double world_rotation_error = 0.0;    ///< rad, the same
   std::vector<RecordedBody> tracked;    ///< in the order of the task
   std::vector<RecordedBody> kinematic;  ///< in the order of the task
   bool operator==(const RecordedMotion&) const = default;

@@ -40,6 +40,7 @@ SceneExperiment::SceneExperiment(model::SceneTask task, std::vector<RecordedMoti
       threads_(threads),
       base_(model::load_scenario(task_.scenario)) {
   if (task_.time_step) base_.time_step = *task_.time_step;
+  expect_world_errors();
   for (const model::TaskParameter& parameter : task_.parameters) {
     std::vector<double>& numbers = base_numbers_.emplace_back();
     for (const std::string& path : parameter.paths) {
@@ -104,6 +105,14 @@ void SceneExperiment::check_bodies() const {
     check(object, model::BodyKind::Dynamic, "a dynamic body of the scenario");
   for (const model::RecordedObject& object : task_.kinematic)
     check(object, model::BodyKind::Kinematic, "a kinematic body of the scenario");
+}
+
+void SceneExperiment::expect_world_errors() {
+  if (task_.loss != model::TaskLoss::Squares || task_.own.bias > 0.0 || task_.own.bias_rotation > 0.0) return;
+  for (const RecordedMotion& motion : motions_) {
+    task_.own.bias = std::max(task_.own.bias, motion.world_position_error);
+    task_.own.bias_rotation = std::max(task_.own.bias_rotation, motion.world_rotation_error);
+  }
 }
 
 void SceneExperiment::find_flights() {

@@ -106,6 +106,8 @@ class SceneExperiment {
   [[nodiscard]] MotionError compare(const internal::SimulatedMotion& simulated, std::size_t motion,
                                     const Eigen::VectorXd& own, double until) const;
   void check_bodies() const;
+  /// Unless the task says how far off the recorded world may be, the recordings do.
+  void expect_world_errors();
   void find_flights();
 
   model::SceneTask task_;

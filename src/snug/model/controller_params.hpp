@@ -42,6 +42,7 @@ struct Correction {
 struct CorrectionLayer {
   std::string name;
   std::vector<Correction> corrections;
+  bool with_phases = true;  ///< made for a cup with vacuum phases; false: for one that holds and lets go at once
   bool operator==(const CorrectionLayer&) const = default;
 };
 

@@ -226,10 +226,11 @@ void ScenarioReader::read_controller(const Value& value) {
   const auto layers = map.find("correction_layers");
   if (!layers) return;
   for (const Value& entry : layers->list()) {
-    const MapReader layer_map = entry.map("correction_layer", {"name", "corrections"});
+    const MapReader layer_map = entry.map("correction_layer", {"name", "cup", "corrections"});
     const Value name = layer_map.require("name");
     check_new_name(name, "correction layer", find_correction_layer(scenario_, name.name()) != nullptr);
     CorrectionLayer layer{name.name(), {}};
+    if (const auto cup = layer_map.find("cup")) layer.with_phases = cup->choice({"holding", "phases"}) == 1;
     for (const Value& row_value : layer_map.require("corrections").list()) {
       const MapReader row = row_value.map("correction", {"prefixes", "offset"});
       Correction correction;

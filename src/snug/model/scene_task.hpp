@@ -66,6 +66,7 @@ struct OwnSettings {
   double angular_velocity = 0.0;  ///< rad/s
   double delay = 0.0;             ///< s, recorded times less those of the simulation
   double bias = 0.0;              ///< m, of recorded positions, each axis
+  double bias_rotation = 0.0;     ///< rad, of recorded poses about the world's origin, each axis
   double frame_position = 0.0;    ///< m, of the recorded frame of each tracked body in that body, each axis
   double frame_rotation = 0.0;    ///< rad, the same
 
@@ -75,6 +76,7 @@ struct OwnSettings {
     a("angular_velocity", angular_velocity, Range::NotNegative);
     a("delay", delay, Range::NotNegative);
     a("bias", bias, Range::NotNegative);
+    a("bias_rotation_deg", Degrees{bias_rotation}, Range::NotNegative);
     a("frame_position", frame_position, Range::NotNegative);
     a("frame_rotation_deg", Degrees{frame_rotation}, Range::NotNegative);
   }
@@ -94,8 +96,8 @@ struct SearchSettings {
 struct TaskProgram {
   std::filesystem::path file;
   std::string sequence;
-  std::string corrections;   ///< name of a layer of the scenario, or empty
-  bool with_phases = false;  ///< the cup with vacuum phases
+  std::string corrections;          ///< name of a layer of the scenario, or empty
+  std::optional<bool> with_phases;  ///< the cup's vacuum phases; absent: as the corrections were made for
   bool operator==(const TaskProgram&) const = default;
 };
 

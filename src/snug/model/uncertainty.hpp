@@ -24,7 +24,7 @@ struct Uncertainty {
   double aligner_yaw = 0.2 * std::numbers::pi / 180.0;  ///< rad, common
   double cup_stiffness = 0.10;                          ///< share, of the cup's stiffness, and of its damping
   double cup_length = 0.5e-3;                           ///< m, of the cup's lengths, free and holding together
-  double release_push = 1.0;  ///< share of the push at release that may be missing: drawn in [1 - this, 1]
+  double release_push = 1.0;  ///< of cup.release_push: drawn within this of it, from none to all
   double tracking = 0.10;     ///< share, of the controller's task stiffness
 
   template <class Archive>

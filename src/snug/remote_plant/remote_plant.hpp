@@ -19,7 +19,7 @@ struct RemotePlantOptions {
   perception::Kind perception = perception::Kind::Exact;
   std::uint64_t seed = 1;  ///< of the noise of perception alone
   /// How the joints are led to the waypoints: controller and tempo count.
-  cell::SimulationOptions motions = cell::own_motions();
+  cell::SimulationOptions motions;
 };
 
 /// The CLICK address of a plant's: "tcp://HOST:PORT" of "click://HOST:PORT". Throws InputError for other words.

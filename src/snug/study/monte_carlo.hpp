@@ -13,7 +13,7 @@ struct MonteCarloOptions {
   int count = 20;
   std::uint64_t seed = 1;
   int threads = 1;  ///< results do not depend on it
-  cell::SimulationOptions simulation = cell::own_motions();
+  cell::SimulationOptions simulation;
 };
 
 /// One item over all runs.

@@ -115,6 +115,9 @@ void align_poses(const SimulatedRun& run, const ArchiveRecording& recording, con
     const std::optional<Pose> X_MW = internal::mean_pose(base->poses, 0.0);
     if (!X_MW) throw InputError(where, '/' + recording.name, "a robot base that is lost all along", "its pose");
     X_WM = X_MW->inverse();
+    const internal::MeanPoseError error = internal::find_mean_error(base->poses, *X_MW);
+    measurement.base_position_error = error.position;
+    measurement.base_rotation_error = error.rotation;
   }
   Signals simulated{thinned(run.times), {}}, measured{thinned(times), {}};
   measurement.bodies.resize(run.header.bodies.size());

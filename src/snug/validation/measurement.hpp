@@ -28,6 +28,9 @@ struct Measurement {
   std::string note;
   std::vector<SourceClock> clocks;  ///< of the sources that were recorded
   std::vector<double> pose_times;   ///< s, simulation's clock
+  /// Standard errors, each axis, of the pose of the robot base that poses were brought into W by; 0 without one.
+  double base_position_error = 0.0;  ///< m
+  double base_rotation_error = 0.0;  ///< rad
   /// X_WB by body of the simulation's header, as long as `pose_times`; empty where the body was not measured.
   std::vector<std::vector<record::PoseSample>> bodies;
   std::vector<double> wrench_times;  ///< s, simulation's clock; empty when there is no clock for them

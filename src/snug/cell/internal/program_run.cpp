@@ -12,11 +12,17 @@
 namespace snug::cell::internal {
 namespace {
 
+SimulationOptions simulation_of(const model::Scenario& scenario, const RunOptions& options) {
+  SimulationOptions simulation = options.simulation;
+  if (!simulation.cup) simulation.cup = cup_for(scenario, options.corrections);
+  return simulation;
+}
+
 class ProgramRun {
  public:
   ProgramRun(const model::Scenario& scenario, const RunOptions& options)
       : options_(options),
-        simulation_(scenario, options.sequence, options.simulation),
+        simulation_(scenario, options.sequence, simulation_of(scenario, options)),
         plan_(simulation_.prepare(corrected(scenario, *options.program, options.corrections))),
         state_(simulation_.make_state()),
         work_(simulation_.make_workspace(options.threads)) {
@@ -52,7 +58,7 @@ class ProgramRun {
   }
 
  private:
-  static RecorderSetup recording_of(const RunOptions& options) {
+  [[nodiscard]] RecorderSetup recording_of(const RunOptions& options) const {
     RecorderSetup setup;
     setup.path = options.record_path;
     setup.file = options.record_file;
@@ -60,7 +66,7 @@ class ProgramRun {
     setup.program_text = options.program_text;
     setup.program_name = options.program->name;
     setup.version = options.version;
-    setup.settings_json = settings_json(options.simulation, options.corrections);
+    setup.settings_json = settings_json(simulation_.options(), options.corrections);
     return setup;
   }
 

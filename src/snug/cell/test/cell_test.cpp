@@ -1,6 +1,7 @@
 // Cell: our own program packs the container, runs repeat bit by bit, the cup seals or says why not, scenes come to
 // rest.
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/corrected.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
@@ -80,6 +82,29 @@ TEST(RunOptions, AreRefusedWhenTheyDoNotFitTheScenario) {
   scenario = demonstrator();
   scenario.aligner.reset();
   expect_refused(scenario, demo_options(), "aligner", "an aligner");
+}
+
+TEST(RunOptions, HaveTheCupThatCorrectionsWereMadeForUnlessTheySayAnother) {
+  model::Scenario scenario = demonstrator();
+  EXPECT_EQ(cup_for(scenario, ""), cup::CupMode::Phases);
+  EXPECT_EQ(cup_for(scenario, "seq1"), cup::CupMode::Holding);
+  EXPECT_THROW((void)cup_for(scenario, "seq9"), InputError);
+  const auto cup_of_run = [&](const RunOptions& options) {
+    RunCapture capture;
+    RunOptions short_run = options;
+    short_run.until = 0.1;
+    short_run.observer = &capture;
+    (void)run(scenario, short_run);
+    return nlohmann::json::parse(capture.recording.header.settings).at("cup").get<std::string>();
+  };
+  RunOptions options = demo_options();
+  EXPECT_EQ(cup_of_run(options), "phases");
+  options.corrections = "seq1";
+  EXPECT_EQ(cup_of_run(options), "holding");
+  scenario.controller.correction_layers[0].with_phases = true;
+  EXPECT_EQ(cup_of_run(options), "phases");
+  options.simulation.cup = cup::CupMode::Holding;
+  EXPECT_EQ(cup_of_run(options), "holding");
 }
 
 TEST(RunOptions, AreRefusedForAWaypointWhoseNameNoPrefixMatches) {

@@ -52,6 +52,30 @@ TEST(DrawScenario, StaysWithinTheWidthsAndKeepsTheTurnOfBoxes) {
   }
 }
 
+TEST(DrawScenario, DrawsThePushAboutThatOfTheScenarioFromNoneToAll) {
+  model::Scenario scenario = demonstrator();
+  const auto range_of = [&](double push, double half_width) {
+    scenario.cup.release_push = push;
+    scenario.uncertainty.release_push = half_width;
+    double least = 1.0, most = 0.0;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+      const double drawn = draw_scenario(scenario, "1", Rng(seed)).cup.release_push;
+      least = std::min(least, drawn), most = std::max(most, drawn);
+    }
+    return std::pair(least, most);
+  };
+  const auto expect_range = [](const std::pair<double, double>& found, double low, double high) {
+    const double slack = 0.1 * (high - low);  // of a hundred draws none lies in a tenth with a chance of 3e-5
+    EXPECT_GE(found.first, low);
+    EXPECT_LE(found.first, low + slack);
+    EXPECT_GE(found.second, high - slack);
+    EXPECT_LE(found.second, high);
+  };
+  expect_range(range_of(0.7, 0.2), 0.5, 0.9);
+  expect_range(range_of(0.7, 1.0), 0.0, 1.0);
+  expect_range(range_of(1.0, 0.25), 0.75, 1.0);
+}
+
 TEST(DrawScenario, IsTheScenarioItselfWhereNothingIsUncertain) {
   model::Scenario scenario = demonstrator();
   scenario.uncertainty = model::no_uncertainty();

@@ -41,14 +41,22 @@ const std::vector<RealProgram>& for_simulation() {
   return programs;
 }
 
-std::vector<RunResult> run_all(const std::vector<RealProgram>& programs) {
+/// As they ran on the real cell, whose cup has phases: without what stands in for them in a simulation (record 0040).
+std::vector<RealProgram> as_they_ran() {
+  std::vector<RealProgram> programs = with_corrections();
+  for (RealProgram& program : programs) program.corrections.clear();
+  return programs;
+}
+
+std::vector<RunResult> run_all(const std::vector<RealProgram>& programs,
+                               const model::Scenario& scenario = demonstrator()) {
   std::vector<RunResult> results;
   for (const RealProgram& program : programs) {
     RunOptions options;
     options.program = motion::load_program(kPrograms / program.file);
     options.sequence = program.sequence;
     options.corrections = program.corrections;
-    results.push_back(run(demonstrator(), options));
+    results.push_back(run(scenario, options));
   }
   return results;
 }
@@ -124,6 +132,29 @@ TEST_F(RealPrograms, PackAtLeast36Of37BoxesWithTheirCorrectionsInTimeAndOnTheInt
     packed += count_packed(results[i]);
   }
   EXPECT_GE(packed, 36U);
+}
+
+// The push was found on the re-picks of sequences 1 and 2; how far off those of sequence 3 are was not looked at then.
+TEST_F(RealPrograms, PackAtLeast36Of37BoxesAsTheyRanWhereACupWithPhasesPushes) {
+  model::Scenario scenario = demonstrator();
+  scenario.cup.release_push = 0.7;
+  const std::vector<RealProgram> programs = as_they_ran();
+  const std::vector<RunResult> results = run_all(programs, scenario);
+  std::size_t packed = 0;
+  double offset = 0.0, repicks = 0.0;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    SCOPED_TRACE(programs[i].file);
+    expect_time_of_the_demonstrator(programs[i], results[i]);
+    expect_flips_on_the_intended_face(results[i]);
+    expect_packed_boxes_inside(results[i]);
+    packed += count_packed(results[i]);
+    for (const Repick& repick : results[i].repicks) offset += repick.offset;
+    repicks += static_cast<double>(results[i].repicks.size());
+  }
+  EXPECT_GE(packed, 36U);
+  EXPECT_EQ(repicks, 10.0);
+  EXPECT_LE(offset / repicks, 0.008);
+  for (const Repick& repick : results.back().repicks) EXPECT_LE(repick.offset, 0.008) << repick.id;
 }
 
 TEST_F(RealPrograms, PackAtLeast33Of37BoxesInTheFilesForSimulation) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 
 namespace snug::cup {
@@ -24,6 +25,11 @@ Pose above(double length, double x = 0.0, double y = 0.0, double tilt = 0.0) {
   X_WE.R = exp_rotation(Vector3(tilt, 0.0, 0.0)) * exp_rotation(Vector3(pi, 0.0, 0.0));
   X_WE.p = Vector3(x, y, kHalf.z()) - length * X_WE.R.col(2);
   return X_WE;
+}
+
+TEST(CupMode, IsReadByTheNameThatItIsWrittenWith) {
+  for (const CupMode mode : {CupMode::Holding, CupMode::Phases}) EXPECT_EQ(cup_mode_of(name_of(mode), "here"), mode);
+  EXPECT_THROW((void)cup_mode_of("magnet", "here"), InputError);
 }
 
 TEST(Seal, IsFoundWithinReachAndNotBeyond) {

@@ -15,7 +15,8 @@ constexpr double kLongestPlacement = 300.0;  ///< s, simulated
 class Execution final : public Happening {
  public:
   explicit Execution(const Episode& episode)
-      : simulation_(std::make_shared<const cell::Simulation>(episode.scenario, episode.sequence, cell::own_motions())),
+      : simulation_(
+            std::make_shared<const cell::Simulation>(episode.scenario, episode.sequence, cell::SimulationOptions{})),
         settings_(episode.settings),
         container_(*model::find_container(simulation_->scenario(), simulation_->scenario().target)),
         state_(simulation_->make_state()),

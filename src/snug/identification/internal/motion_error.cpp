@@ -37,8 +37,8 @@ MotionError compare(const model::SceneTask& task, const RecordedMotion& motion, 
       if (has_ended) {
         shift = turn = Vector3::Constant(kLost / std::sqrt(3.0));
       } else {
-        const Pose X = predicted.pose() * own.X_BM[b], M = recorded.pose();
-        shift = X.p + own.bias - M.p;
+        const Pose X = own.bias * predicted.pose() * own.X_BM[b], M = recorded.pose();
+        shift = X.p - M.p;
         turn = log_rotation(M.R.transpose() * X.R);
       }
       if (task.use_position) error.residuals.segment<3>(row) = shift / position_noise;

@@ -23,7 +23,7 @@ cell::RunResult run_observed(const model::Scenario& scenario, const model::TaskP
   options.corrections = program.corrections;
   options.until = until;
   options.observer = &observer;
-  if (program.with_phases) options.simulation.cup = cup::CupMode::Phases;
+  if (program.with_phases) options.simulation.cup = *program.with_phases ? cup::CupMode::Phases : cup::CupMode::Holding;
   return cell::run(scenario, options);
 }
 

@@ -65,7 +65,8 @@ OwnValues::OwnValues(const model::SceneTask& task, const Eigen::VectorXd& values
   start.linear = take3(settings.velocity);
   start.angular = take3(settings.angular_velocity);
   if (settings.delay > 0.0) delay = values[at++];
-  bias = take3(settings.bias);
+  bias.p = take3(settings.bias);
+  bias.R = exp_rotation(take3(settings.bias_rotation));
   for (Pose& X : X_BM) {
     X.p = take3(settings.frame_position);
     X.R = exp_rotation(take3(settings.frame_rotation));
@@ -82,6 +83,7 @@ Eigen::VectorXd own_deviation(const model::SceneTask& task) {
   add(settings.angular_velocity, 3);
   add(settings.delay, 1);
   add(settings.bias, 3);
+  add(settings.bias_rotation, 3);
   for (std::size_t i = 0; i < task.tracked.size(); ++i) {
     add(settings.frame_position, 3);
     add(settings.frame_rotation, 3);

@@ -16,13 +16,13 @@ namespace snug::identification::internal {
 struct OwnValues {
   /// `values`: in the order of own_deviation(); empty: all zero.
   OwnValues(const model::SceneTask& task, const Eigen::VectorXd& values);
-  Twist start;                     ///< added to the start twist of each tracked body
-  double delay = 0.0;              ///< s
-  Vector3 bias = Vector3::Zero();  ///< m
-  std::vector<Pose> X_BM;          ///< of each tracked body: the frame that was recorded
+  Twist start;             ///< added to the start twist of each tracked body
+  double delay = 0.0;      ///< s
+  Pose bias;               ///< of the simulation's world in the recorded one
+  std::vector<Pose> X_BM;  ///< of each tracked body: the frame that was recorded
 };
-/// Standard deviations expected of velocity (3), angular velocity (3), delay, bias (3), then of each tracked body's
-/// frame: position (3), rotation vector (3); as far as they are fitted.
+/// Standard deviations expected of velocity (3), angular velocity (3), delay, bias: position (3), rotation vector (3),
+/// then of each tracked body's frame the same; as far as they are fitted.
 [[nodiscard]] Eigen::VectorXd own_deviation(const model::SceneTask& task);
 /// For each own unknown: the one tracked body of which it changes residuals; none: it may change those of all.
 [[nodiscard]] std::vector<std::optional<std::size_t>> own_bodies(const model::SceneTask& task);

@@ -167,6 +167,30 @@ parameters:
   EXPECT_GT(identify_scene(SceneExperiment(task(rest), motions, 2)).chi2_per_dof, 100.0);
 }
 
+TEST_F(SceneFitTest, FindsWhereTheRecordedWorldSits) {
+  // 5 mm and 0.6 degrees off, as a robot base whose pose is known badly.
+  const Pose X_MW{exp_rotation(Vector3(0.006, -0.008, 0.005)), Vector3(0.003, 0.004, -0.001)};
+  std::vector<RecordedMotion> motions{record({{"contacts.pairs[0].friction", 0.25}}, 18)};
+  for (record::PoseSample& pose : motions[0].tracked[0].poses) pose = X_MW * pose.pose();
+  const std::string rest = R"(search: {local: 100, held_back: 0}
+parameters:
+  - {name: friction, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.8], step: 0.002}
+)";
+  const SceneFit fit =
+      identify_scene(SceneExperiment(task("own: {bias: 0.005, bias_rotation_deg: 1}\n" + rest), motions, 2));
+  EXPECT_NEAR(fit.values[0], 0.25, 0.01);
+  EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.2);
+  EXPECT_GT(identify_scene(SceneExperiment(task(rest), motions, 2)).chi2_per_dof, 10.0);
+  // Unless the task says, the recording does.
+  motions[0].world_position_error = 0.004;
+  motions[0].world_rotation_error = 0.01;
+  const SceneExperiment told(task(rest), motions, 2);
+  EXPECT_EQ(told.task().own.bias, 0.004);
+  EXPECT_EQ(told.task().own.bias_rotation, 0.01);
+  EXPECT_NEAR(identify_scene(told).values[0], 0.25, 0.01);
+  EXPECT_EQ(SceneExperiment(task("own: {bias: 0.001}\n" + rest), motions, 2).task().own.bias, 0.001);
+}
+
 TEST_F(SceneFitTest, OwnUnknownsChangeTheRowsThatTheirTermNamesAndNoOther) {
   std::string two = kThrown;
   two.insert(two.find("bodies:"), "    - {between: [box, box], friction: 0.3, restitution: 0.1}\n");
@@ -177,7 +201,8 @@ TEST_F(SceneFitTest, OwnUnknownsChangeTheRowsThatTheirTermNamesAndNoOther) {
   motion.tracked.push_back(motion.tracked.front());
   motion.tracked.back().body = "other";
   model::SceneTask both = task(
-      "own: {velocity: 0.1, delay: 0.01, bias: 0.001, frame_position: 0.005, frame_rotation_deg: 1}\n"
+      "own: {velocity: 0.1, delay: 0.01, bias: 0.001, bias_rotation_deg: 0.1, frame_position: 0.005, "
+      "frame_rotation_deg: 1}\n"
       "search: {local: 10, held_back: 0}\n"
       "parameters: [{name: friction, path: \"contacts.pairs[0].friction\", value: 0.3, bounds: [0.05, 0.8], step: "
       "0.002}]\n");
@@ -185,7 +210,7 @@ TEST_F(SceneFitTest, OwnUnknownsChangeTheRowsThatTheirTermNamesAndNoOther) {
   both.tracked.back().body = "other";
   const SceneExperiment scene(both, {motion}, 1);
   const numerics::BatchedProblem::Term term = scene.term_of(0);
-  ASSERT_EQ(term.own.size(), 3 + 1 + 3 + 2 * 6);
+  ASSERT_EQ(term.own.size(), 3 + 1 + 6 + 2 * 6);
   ASSERT_EQ(term.own_rows.size(), static_cast<std::size_t>(term.own.size()));
   const std::vector<Eigen::VectorXd> points{scene.start()};
   const auto residuals = [&](const Eigen::VectorXd& own) {

@@ -146,6 +146,7 @@ TEST(Demonstrator, HasTheControllersTableInItsOrder) {
   ASSERT_EQ(c.correction_layers.size(), 2u);
   EXPECT_EQ(c.correction_layers[0].corrections[2].offset, Vector3(0.030, 0.010, 0.0));
   EXPECT_EQ(c.correction_layers[1].name, "seq2-5");
+  for (const CorrectionLayer& layer : c.correction_layers) EXPECT_FALSE(layer.with_phases) << layer.name;
   EXPECT_EQ(c.correction_layers[1].corrections[2].offset, Vector3(0.050, 0.010, 0.0));
 }
 

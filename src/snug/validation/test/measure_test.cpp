@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scene.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/validation/measurement.hpp"
 
 namespace snug::validation {
 namespace {
@@ -53,6 +56,21 @@ TEST(Measure, BaseIsWhereMotionCaptureSeesTheWorld) {
   const VirtualMeasurement measured = measure(test::example_run(), {}, {});
   const Pose X_MW = track(measured.recording, kBaseBody).poses[10].pose();
   EXPECT_LT((X_MW.p - measured.truth.X_MW.p).norm(), 1e-12);
+}
+
+TEST(Align, SaysHowWellThePoseOfTheBaseIsKnown) {
+  model::Sensors sensors;
+  sensors.motion_capture.position_noise = 1e-3;
+  sensors.motion_capture.rotation_noise = 2e-3;
+  const SimulatedRun run = test::example_run();
+  const VirtualMeasurement measured = measure(run, sensors, {});
+  const Measurement aligned = align(run, measured.recording, {}, "test");
+  const double root = std::sqrt(static_cast<double>(measured.recording.motion_capture.times.size()));
+  EXPECT_NEAR(aligned.base_position_error, 1e-3 / root, 0.02e-3 / root);  // scatter of 47 000 numbers: 0.3 %
+  EXPECT_NEAR(aligned.base_rotation_error, 2e-3 / root, 0.04e-3 / root);
+  record::ArchiveRecording without = measured.recording;
+  std::erase_if(without.motion_capture.bodies, [](const BodyTrack& body) { return body.name == kBaseBody; });
+  EXPECT_EQ(align(run, without, {}, "test").base_position_error, 0.0);
 }
 
 TEST(Measure, NoiseHasTheDeviationThatTheSensorsState) {
