@@ -374,6 +374,23 @@ class SameFile(Folder):
             hard.unlink()
         self.assertEqual({path: path.read_bytes() for path in self.folder.iterdir()}, before)
 
+    def test_draft_that_is_an_input_is_refused_and_kept(self):
+        """What a killed run left is read, to go on from it or to look at it, and the run is written to where that one was to be."""
+        recording = self.make_recording()
+        draft, link = self.folder / "run.h5.snug-part", self.folder / "link.h5"
+        shutil.copy(recording, draft)
+        link.symlink_to("run.h5")
+        old = draft.read_bytes()
+        for words in (("simulate", DROP, "--resume", draft, "--until", 1, "-o"), ("report", draft, "-o"), ("plot", draft, "--what", "speed", "-o"),
+                      ("export", draft, "--format", "csv", "-o"), ("measure", draft, "--sensors", SENSORS, "-o")):
+            for output in (recording, link, self.folder / "." / "run.h5"):
+                with self.subTest(words=words, output=output):
+                    result = snug(*words, output)
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assertIn("whose draft is the same file as", result.stderr)
+        self.assertEqual(draft.read_bytes(), old)
+        self.assertEqual(recording.read_bytes(), old)
+
     def test_two_outputs_in_one_file_are_refused(self):
         one, two = self.folder / "one", self.folder / "two"
         two.symlink_to("one")
