@@ -8,6 +8,7 @@
 
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/record/internal/archive_layout.hpp"
 #include "snug/record/internal/h5.hpp"
@@ -28,10 +29,16 @@ herr_t keep_name(hid_t, const char* name, const H5L_info_t*, void* out) {
   return 0;
 }
 
+/// Names go into JSON, tables and onto terminals.
+void check_name(const std::string& name) {
+  if (!is_printable(name)) throw H5Error("a name that is not UTF-8, or has control characters");
+}
+
 /// Names of what is in a group, sorted.
 std::vector<std::string> entries_of(hid_t group) {
   std::vector<std::string> names;
   check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &names), "list a group");
+  for (const std::string& name : names) check_name(name);
   return names;
 }
 
@@ -44,6 +51,7 @@ herr_t keep_attribute(hid_t, const char* name, const H5A_info_t*, void* out) {
 std::vector<std::pair<std::string, std::string>> texts_of(hid_t object) {
   std::vector<std::string> names;
   check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_attribute, &names), "attributes");
+  for (const std::string& name : names) check_name(name);
   std::vector<std::pair<std::string, std::string>> texts;
   for (const std::string& name : names) {
     const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), name.c_str());
@@ -59,6 +67,7 @@ std::vector<std::pair<std::string, std::string>> texts_of(hid_t object) {
     check(H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)), name);
     texts.emplace_back(name, text == nullptr ? "" : text);
     H5free_memory(text);
+    if (!is_utf8(texts.back().second)) throw H5Error("attribute " + name + " is not UTF-8");
   }
   return texts;
 }
@@ -248,6 +257,7 @@ struct ArchiveReader::Impl {
       char* text = H5Tget_member_name(type.get(), static_cast<unsigned>(member));
       const std::string name = text == nullptr ? "" : text;
       H5free_memory(text);
+      check_name(name);
       const H5T_class_t kind = H5Tget_member_class(type.get(), static_cast<unsigned>(member));
       if (kind != H5T_FLOAT && kind != H5T_INTEGER) continue;
       const Handle one(H5Tcreate(H5T_COMPOUND, sizeof(double)), "column");

@@ -195,6 +195,16 @@ TEST(ArchiveReader, RefusesMatricesThatAreNoRotations) {
   expect_says(complaint([&](hid_t f) { set_number(f, path, 3 * 40 + 8, 1350.0); }), {"index 8", "metres"});
 }
 
+TEST(ArchiveReader, RefusesNamesThatAreNoText) {
+  const std::string bodies = std::string(kMocap) + "POSTPROCESSING/";
+  for (const char* name : {"Box\xe9", "Box\x1b[2J", "Box\n", "\u202exoB"}) {
+    const std::string text = complaint([&](hid_t f) {
+      ASSERT_GE(H5Lmove(f, (bodies + "Base005").c_str(), f, (bodies + name).c_str(), H5P_DEFAULT, H5P_DEFAULT), 0);
+    });
+    expect_says(text, {"a name that is not UTF-8, or has control characters"});
+  }
+}
+
 TEST(ArchiveReader, RefusesOtherShapes) {
   expect_says(complaint([](hid_t f) {
                 replace(f, std::string(kForce) + "wrench", {6, 49}, std::vector<double>(294));
