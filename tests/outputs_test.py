@@ -333,6 +333,7 @@ class SameFile(Folder):
         copies["cell.yaml"].write_text(copies["cell.yaml"].read_text().replace("robots/ur10.urdf", str(copies["arm.urdf"])))
         copies["points.csv"].write_text("x,y,z,rx,ry,rz\n")
         cell, orders, places, arm, points = copies.values()
+        scene, pusher, mesh = (Path(shutil.copy(ROOT / "scenarios" / name, self.folder)) for name in ("conveyor.yaml", "conveyor-pusher.csv", "conveyor-ramp.obj"))
         before = {path: path.read_bytes() for path in self.folder.iterdir()}
         items = ("--items", orders, "--sequence", "kitchen")
         simulate = ("simulate", cell, "--program", program, "--sequence", "1")
@@ -357,6 +358,10 @@ class SameFile(Folder):
                               (("measure", recording, "--sensors", SENSORS, "-o"), recording),
                               (("validate", "--simulated", recording, "--measured", orders, "-o"), recording),
                               (("validate", "--simulated", recording, "--measured", orders, "--csv"), orders),
+                              (("report", recording, "--urdf", arm, "-o"), arm), (("plot", recording, "--what", "limits", "--urdf", arm, "-o"), arm),
+                              (("picture", recording, "--urdf", arm, "-o"), arm), (("export", recording, "--format", "mcap", "--urdf", arm, "-o"), arm),
+                              (("identify", "stiffness", points, "--scenario", cell, "-o"), cell), (("identify", "damping", points, "--scenario", cell, "-o"), cell),
+                              (("simulate", scene, "--csv"), pusher), (("simulate", scene, "--csv"), mesh),
                               (("archive", "convert", orders, "-o"), orders), (("archive", "merge", recording, orders, "-o"), recording),
                               (("identify", "stiffness", points, "-o"), points), (("identify", "damping", points, "-o"), points),
                               (("identify", "scene", TASK, "--recordings", points, "--log"), points),
