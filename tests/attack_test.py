@@ -99,6 +99,18 @@ class Memory(Attack):
     def test_yaml_that_contains_itself_is_refused(self):
         self.check("name: x\nbodies: &a\n  - *a\n", ":3: ", "contains itself")
 
+    def test_other_readers_of_yaml_count_its_values_too(self):
+        text = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + "".join(f"a{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * 10) + "]\n" for i in range(1, 9))
+        path, recording = self.file("x.yaml", text), self.folder / "run.h5"
+        self.assertEqual(snug("simulate", DROP, "--until", "0.1", "-o", recording).code, 0)
+        for words in (("study", path), ("identify", "scene", path), ("items", "sequence", CELL, "--types", path), ("program", CELL, path, "--sequence", "1"),
+                      ("measure", recording, "--sensors", path, "-o", self.folder / "m.h5"), ("pack", CELL, "--sequence", "1", "--items", path),
+                      ("calibrate", "kinematics", "--yaml", path, "-o", self.folder / "o")):
+            with self.subTest(words=words[:2]):
+                answer = snug(*words)
+                self.assert_refused(answer, "more than 100000 values")
+                self.assert_cheap(answer, len(text))
+
     def test_yaml_larger_than_any_scenario_is_refused(self):
         self.check("# " + "x" * 5_000_000 + "\n", "bytes")
 
@@ -180,7 +192,38 @@ class Files(Attack):
     def readers(self, path):
         """Every place in which a file may be named, as words."""
         table = self.file("ok.csv", "x,y,z,rx,ry,rz\n0,0,0,0,0,0\n")
+        recording, out = self.folder / "ok.h5", self.folder / "out"
+        if not recording.exists():
+            self.assertEqual(snug("simulate", DROP, "--until", "0.1", "-o", recording).code, 0)
+        task, sensors = (ROOT / "scenarios" / name for name in ("tosses/task.yaml", "sensors/demonstrator.yaml"))
+        placements = ROOT / "scenarios/demo-placements.yaml"
         return [
+            ("simulate", DROP, "--resume", path),
+            ("compare", CELL, "--items", str(path) + ".csv"),
+            ("study", str(path) + ".yaml"),
+            ("serve", path),
+            ("control", path),
+            ("report", recording, "--urdf", path, "-o", out),
+            ("cup", "evaluate", path),
+            ("camera", path, "-o", str(out) + ".png"),
+            ("camera", recording, "--scenario", path, "-o", str(out) + ".png"),
+            ("perceive", str(path) + ".png", "--scenario", CELL, "--expect", placements),
+            ("perceive", str(path) + ".ply", "--scenario", CELL, "--expect", placements),
+            ("perceive", str(path) + ".h5", "--scenario", CELL, "--expect", placements),
+            ("calibrate", "camera", path),
+            ("measure", path, "--sensors", sensors, "-o", str(out) + ".h5"),
+            ("measure", recording, "--sensors", path, "-o", str(out) + ".h5"),
+            ("archive", "check", path),
+            ("archive", "convert", str(path) + ".csv", "-o", str(out) + ".h5"),
+            ("validate", "--simulated", path, "--measured", str(path) + ".csv"),
+            ("validate", "--simulated", recording, "--measured", str(path) + ".csv"),
+            ("validate", "--simulated", recording, "--measured", path),
+            ("identify", "stiffness", path),
+            ("identify", "damping", str(path) + ".csv"),
+            ("identify", "scene", path),
+            ("identify", "scene", task, "--recordings", path),
+            ("identify", "scene", task, "--recordings", str(path) + ".csv"),
+            ("identify", "scene", task, "--log", path),
             ("simulate", path),
             ("simulate", CELL, "--sequence", "1", "--program", path),
             ("check", CELL, "--program", path),
@@ -208,7 +251,7 @@ class Files(Attack):
 
     def check_all(self, make):
         base = self.folder / "thing"
-        for ending in ("", ".csv", ".json", ".yaml", ".txt"):
+        for ending in ("", ".csv", ".json", ".yaml", ".txt", ".h5", ".png", ".ply"):
             make(Path(str(base) + ending))
         for words in self.readers(base):
             with self.subTest(words=" ".join(map(str, words[:2]))):

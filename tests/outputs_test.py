@@ -333,6 +333,7 @@ class SameFile(Folder):
         copies["cell.yaml"].write_text(copies["cell.yaml"].read_text().replace("robots/ur10.urdf", str(copies["arm.urdf"])))
         copies["points.csv"].write_text("x,y,z,rx,ry,rz\n")
         cell, orders, places, arm, points = copies.values()
+        scene, pusher, mesh = (Path(shutil.copy(ROOT / "scenarios" / name, self.folder)) for name in ("conveyor.yaml", "conveyor-pusher.csv", "conveyor-ramp.obj"))
         before = {path: path.read_bytes() for path in self.folder.iterdir()}
         items = ("--items", orders, "--sequence", "kitchen")
         simulate = ("simulate", cell, "--program", program, "--sequence", "1")
@@ -357,6 +358,10 @@ class SameFile(Folder):
                               (("measure", recording, "--sensors", SENSORS, "-o"), recording),
                               (("validate", "--simulated", recording, "--measured", orders, "-o"), recording),
                               (("validate", "--simulated", recording, "--measured", orders, "--csv"), orders),
+                              (("report", recording, "--urdf", arm, "-o"), arm), (("plot", recording, "--what", "limits", "--urdf", arm, "-o"), arm),
+                              (("picture", recording, "--urdf", arm, "-o"), arm), (("export", recording, "--format", "mcap", "--urdf", arm, "-o"), arm),
+                              (("identify", "stiffness", points, "--scenario", cell, "-o"), cell), (("identify", "damping", points, "--scenario", cell, "-o"), cell),
+                              (("simulate", scene, "--csv"), pusher), (("simulate", scene, "--csv"), mesh),
                               (("archive", "convert", orders, "-o"), orders), (("archive", "merge", recording, orders, "-o"), recording),
                               (("identify", "stiffness", points, "-o"), points), (("identify", "damping", points, "-o"), points),
                               (("identify", "scene", TASK, "--recordings", points, "--log"), points),
@@ -373,6 +378,23 @@ class SameFile(Folder):
             link.unlink()
             hard.unlink()
         self.assertEqual({path: path.read_bytes() for path in self.folder.iterdir()}, before)
+
+    def test_draft_that_is_an_input_is_refused_and_kept(self):
+        """What a killed run left is read, to go on from it or to look at it, and the run is written to where that one was to be."""
+        recording = self.make_recording()
+        draft, link = self.folder / "run.h5.snug-part", self.folder / "link.h5"
+        shutil.copy(recording, draft)
+        link.symlink_to("run.h5")
+        old = draft.read_bytes()
+        for words in (("simulate", DROP, "--resume", draft, "--until", 1, "-o"), ("report", draft, "-o"), ("plot", draft, "--what", "speed", "-o"),
+                      ("export", draft, "--format", "csv", "-o"), ("measure", draft, "--sensors", SENSORS, "-o")):
+            for output in (recording, link, self.folder / "." / "run.h5"):
+                with self.subTest(words=words, output=output):
+                    result = snug(*words, output)
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assertIn("whose draft is the same file as", result.stderr)
+        self.assertEqual(draft.read_bytes(), old)
+        self.assertEqual(recording.read_bytes(), old)
 
     def test_two_outputs_in_one_file_are_refused(self):
         one, two = self.folder / "one", self.folder / "two"

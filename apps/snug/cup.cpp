@@ -11,6 +11,7 @@
 
 #include "outputs.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
 #include "snug/cup/json_lines.hpp"
 
 namespace snug::app {
@@ -19,6 +20,8 @@ namespace {
 using AnswerLine = std::string (*)(std::string_view line, int line_number, std::string_view source);
 
 constexpr std::size_t kLongestLine = 65536;  // a question with all its digits has some 1500
+
+constexpr std::size_t kLargestLines = std::size_t{16} << 30U;  // read line by line
 
 /// Like std::getline, but of a line that does not end only a little more than is allowed.
 bool read_line(std::istream& input, std::string& line) {
@@ -47,10 +50,8 @@ int answer_lines(std::istream& input, const std::string& source, AnswerLine answ
 
 int run(const CupOptions& options, AnswerLine answer) {
   if (options.input == "-") return answer_lines(std::cin, "stdin", answer);
+  check_readable(options.input, "a file of JSON lines, or - for what comes on stdin", kLargestLines);
   std::ifstream file(options.input);
-  if (!file || std::filesystem::is_directory(options.input)) {
-    throw InputError(options.input, "", "", "a file of JSON lines that can be read");
-  }
   return answer_lines(file, options.input, answer);
 }
 

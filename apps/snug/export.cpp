@@ -69,6 +69,7 @@ int run_export(const ExportOptions& options) {
     throw InputError("command line", "--items, --container, --pallet", "without --scenario", "a scenario to change");
   }
   NamedFiles inputs = {{"the input", options.input}};
+  add_file(inputs, "--urdf", options.urdf);
   if (!options.scenario.empty()) add_file(inputs, "--scenario", options.scenario);
   for (NamedFile& items : name_all("--items", options.changes.items)) inputs.push_back(std::move(items));
   return found->write(options, reserve(inputs, options.output));

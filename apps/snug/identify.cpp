@@ -218,7 +218,9 @@ void show(const identification::DampingFit& fit, const HeldBackError& held_back,
 
 int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
   const model::CupParams cup = cup_of(options);
-  std::optional<OutputFile> output = reserve({{"the input", options.input}}, options.output);
+  NamedFiles inputs = {{"the input", options.input}};
+  add_file(inputs, "--scenario", options.scenario);
+  std::optional<OutputFile> output = reserve(inputs, options.output);
   identification::StaticPoses poses = identification::load_static_poses(options.input, cup);
   apply(options, poses.noise, poses.noise_is_given);
   const identification::StiffnessOptions fit_options = as_fit_options(options, cup);
@@ -239,7 +241,9 @@ int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
 
 int run_identify_damping(const IdentifyDampingOptions& options) {
   const model::CupParams cup = cup_of(options);
-  std::optional<OutputFile> output = reserve(name_all("the input", options.inputs), options.output);
+  NamedFiles inputs = name_all("the input", options.inputs);
+  add_file(inputs, "--scenario", options.scenario);
+  std::optional<OutputFile> output = reserve(inputs, options.output);
   const std::vector<identification::Release> releases = load_all(options, cup);
   identification::DampingOptions fit_options;
   fit_options.prior = cup.damping;

@@ -25,9 +25,11 @@ bool are_same(const std::filesystem::path& a, const std::filesystem::path& b) {
 }
 
 void expect_other(const NamedFile& output, const NamedFile& other, const char* expected) {
-  if (!are_same(output.path, other.path)) return;
-  throw InputError("command line", output.word, "'" + output.path.string() + "', the same file as " + other.word,
-                   expected);
+  const auto refuse = [&](const std::string& what) {
+    throw InputError("command line", output.word, "'" + output.path.string() + "', " + what + other.word, expected);
+  };
+  if (are_same(output.path, other.path)) refuse("the same file as ");
+  if (are_same(draft_of(output.path), other.path)) refuse("whose draft is the same file as ");
 }
 
 }  // namespace

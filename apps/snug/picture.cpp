@@ -207,7 +207,9 @@ int run_picture(const PictureOptions& options) {
   expect_finite("--from", options.from);
   expect_finite("--to", options.to);
   std::optional<OutputFile> output;
-  if (!options.output.empty()) output = reserve({{"the recording", options.recording}}, options.output);
+  NamedFiles inputs = {{"the recording", options.recording}};
+  add_file(inputs, "--urdf", options.urdf);
+  if (!options.output.empty()) output = reserve(inputs, options.output);
   record::RecordingReader reader(options.recording);
   if (reader.frame_count() == 0) {
     throw InputError(options.recording, "", "a recording without frames", "at least one frame");

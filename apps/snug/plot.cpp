@@ -23,7 +23,9 @@ int run_plot(const PlotOptions& options) {
     throw InputError("command line", "--width, --height", "a drawing that nobody could read",
                      "40 to 2000 mm wide, 10 to 2000 mm high");
   }
-  OutputFile output = reserve(name_all("a recording", options.recordings), options.output);
+  NamedFiles inputs = name_all("a recording", options.recordings);
+  add_file(inputs, "--urdf", options.urdf);
+  OutputFile output = reserve(inputs, options.output);
   std::vector<record::RecordingReader> readers;
   std::vector<replay::PlotSource> sources;
   readers.reserve(options.recordings.size());

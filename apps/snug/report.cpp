@@ -18,7 +18,9 @@ int run_report(const ReportOptions& options) {
     throw InputError("command line", "recordings", std::to_string(options.recordings.size()) + " of them",
                      "one, or one and another to lay over it");
   }
-  OutputFile output = reserve(name_all("a recording", options.recordings), options.output);
+  NamedFiles inputs = name_all("a recording", options.recordings);
+  add_file(inputs, "--urdf", options.urdf);
+  OutputFile output = reserve(inputs, options.output);
   const std::string_view page = viewer_page();
   std::vector<replay::PageRecording> recordings;
   for (const std::string& path : options.recordings) {

@@ -43,6 +43,7 @@ NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, con
   NamedFiles files = {{"the scenario", find_shipped(file)}};
   for (const std::string& items : changes.items) files.push_back({"--items", find_shipped(items)});
   if (scenario.robot) files.push_back({"the robot's URDF", robot::urdf_path(scenario)});
+  for (const std::filesystem::path& side : scenario.side_files) files.push_back({"a file of the scenario", side});
   return files;
 }
 

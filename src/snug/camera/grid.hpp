@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace snug::camera {
@@ -13,6 +14,9 @@ class Grid2 {
   Grid2() = default;
   Grid2(int rows, int cols, T value = T{})
       : rows_(rows), cols_(cols), values_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols), value) {}
+
+  /// Of so many values as there are pixels.
+  Grid2(int rows, int cols, std::vector<T> values) : rows_(rows), cols_(cols), values_(std::move(values)) {}
 
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int cols() const { return cols_; }

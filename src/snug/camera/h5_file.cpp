@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "snug/camera/internal/file_parts.hpp"
-#include "snug/core/input_error.hpp"
+#include "snug/record/grid_file.hpp"
 
 namespace snug::camera {
 namespace {
@@ -79,35 +79,10 @@ void write_poses(hid_t group, const FrameTruth& truth, const std::filesystem::pa
 }
 
 template <class T>
-Grid2<T> read_grid(hid_t file, const char* name, hid_t type, const std::string& path) {
-  const auto refuse = [&](const std::string& got) {
-    throw InputError(path, name, got, "a picture of at most 8192 x 8192");
-  };
-  const Id set(H5Dopen2(file, name, H5P_DEFAULT));
-  if (!set.is_open()) refuse("no such dataset");
-  const Id space(H5Dget_space(set.get())), settings(H5Dget_create_plist(set.get()));
-  hsize_t sides[2] = {};
-  if (H5Sget_simple_extent_ndims(space.get()) != 2) refuse("not two sides");
-  H5Sget_simple_extent_dims(space.get(), sides, nullptr);
-  if (sides[0] < 1 || sides[1] < 1 || sides[0] > internal::kLargestSide || sides[1] > internal::kLargestSide)
-    refuse(std::to_string(sides[0]) + " x " + std::to_string(sides[1]));
-  if (H5Pget_external_count(settings.get()) > 0) refuse("data in another file");
-  Grid2<T> grid(static_cast<int>(sides[0]), static_cast<int>(sides[1]));
-  if (H5Dread(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, grid.values().data()) < 0) refuse("damaged data");
-  return grid;
-}
-
-std::string read_text(hid_t file, const char* name, const std::string& path) {
-  const auto refuse = [&](const char* got) { throw InputError(path, name, got, "the camera as JSON"); };
-  const Id attribute(H5Aopen(file, name, H5P_DEFAULT));
-  if (!attribute.is_open()) refuse("no such attribute");
-  const Id type(H5Aget_type(attribute.get()));
-  const std::size_t size = H5Tget_size(type.get());
-  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 || size == 0 || size > 65536)
-    refuse("not a short text");
-  std::string text(size, '\0');
-  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) refuse("damaged");
-  return text.substr(0, text.find('\0'));
+Grid2<T> read_grid(const record::GridFile& file, const char* name) {
+  std::vector<T> values;
+  const record::GridFile::Size size = file.read(name, internal::kLargestSide, values);
+  return {size.rows, size.cols, std::move(values)};
 }
 
 }  // namespace
@@ -138,17 +113,14 @@ void write_h5(OutputFile& output, const Frame& frame, const FrameTruth* truth) {
 }
 
 Frame internal::read_h5(const std::filesystem::path& path, const FrameHints& hints) {
-  const Quiet quiet;
-  const Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  if (!file.is_open()) throw InputError(path.string(), "", "damaged", "an HDF5 file");
+  const record::GridFile file(path);
   Frame frame;
   frame.camera = hints.camera;
-  if (!hints.camera_is_given) parse_camera(read_text(file.get(), "camera", path.string()), path.string(), frame.camera);
-  frame.depth = read_grid<float>(file.get(), "depth", H5T_NATIVE_FLOAT, path.string());
+  if (!hints.camera_is_given) parse_camera(file.read_text("camera"), path.string(), frame.camera);
+  frame.depth = read_grid<float>(file, "depth");
   expect_size(frame.camera, frame.depth.cols(), frame.depth.rows(), path.string());
   for (float& depth : frame.depth.values()) depth = usable(frame.camera, depth);
-  if (H5Lexists(file.get(), "intensity", H5P_DEFAULT) > 0)
-    frame.intensity = read_grid<std::uint8_t>(file.get(), "intensity", H5T_NATIVE_UINT8, path.string());
+  if (file.has("intensity")) frame.intensity = read_grid<std::uint8_t>(file, "intensity");
   return frame;
 }
 

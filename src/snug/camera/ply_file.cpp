@@ -192,6 +192,9 @@ Frame internal::read_ply(const std::string& bytes, const std::string& name, cons
   const bool is_ours = !header.camera.empty() && !hints.camera_is_given;
   if (is_ours) parse_camera(header.camera, name, frame.camera);
   const model::CameraParams& camera = frame.camera;
+  if (is_ours &&
+      !has_room(static_cast<std::size_t>(camera.height) * static_cast<std::size_t>(camera.width), bytes.size()))
+    throw InputError(name, "size", "more pixels than a file of this size can hold", "as many as there are points");
   frame.depth = Grid2<float>(camera.height, camera.width);
   const int x = header.find("x"), y = header.find("y"), z = header.find("z"), row = header.find("row"),
             col = header.find("col");

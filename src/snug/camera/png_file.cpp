@@ -96,6 +96,8 @@ bool read_raster(Source& source, Raster& raster) {
   raster.cols = static_cast<int>(png_get_image_width(png, info));
   raster.rows = static_cast<int>(png_get_image_height(png, info));
   const std::size_t stride = static_cast<std::size_t>(raster.cols) * 2;
+  if (!internal::has_room(stride / 2 * static_cast<std::size_t>(raster.rows), source.bytes->size()))
+    png_error(png, "more pixels than a file of this size can hold");
   raster.bytes.resize(stride * static_cast<std::size_t>(raster.rows));
   for (int r = 0; r < raster.rows; ++r)
     png_read_row(png, reinterpret_cast<png_bytep>(raster.bytes.data() + stride * static_cast<std::size_t>(r)), nullptr);

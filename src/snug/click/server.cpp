@@ -14,10 +14,10 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <map>
 #include <utility>
 #include <vector>
 
+#include "snug/click/internal/connections.hpp"
 #include "snug/click/internal/socket.hpp"
 #include "snug/click/internal/spin_wait.hpp"
 #include "snug/core/check.hpp"
@@ -34,6 +34,9 @@ constexpr std::int64_t kMostBytes = std::int64_t{80} << 20;
 constexpr int kMostWaiting = 2;                             // messages of a peer that nobody has read yet
 constexpr int kMostUnread = 256;                            // answers that a peer does not read: then it is gone for us
 constexpr auto kTakeOver = std::chrono::milliseconds(200);  // for the news that the controller before has left
+// ZeroMQ tells that a connection is closed just before it closes it: then it is looked at again and again.
+constexpr auto kLookAgain = std::chrono::milliseconds(2);
+constexpr auto kLookFor = std::chrono::seconds(1);
 constexpr const char* kMonitor = "inproc://events";
 
 /// ZeroMQ removes a file that is in the way: only a socket that nobody listens at may be.
@@ -100,6 +103,8 @@ struct Server::Impl {
   void step_in_time();
   void ask_for_steps();
   void lose(const Simulator::Peer& peer);
+  [[nodiscard]] bool is_driven();
+  void look_for_controller();
   void wait();
   void log(const std::string& line) const {
     if (settings.log) settings.log(line);
@@ -114,7 +119,9 @@ struct Server::Impl {
   std::string endpoint;
   int stop_fd = -1;
   std::atomic<bool> is_stopping = false;
-  std::map<int, Simulator::Peer> connections;  ///< by descriptor
+  internal::Connections connections;
+  Simulator::Peer controller;  ///< while there is one
+  Clock::time_point next_look = Clock::time_point::max(), look_until;
   std::vector<Request> kept;
   int steps_allowed = 0;  ///< step by step; -1: all
   Clock::time_point next_due = Clock::time_point::max(), last_message;
@@ -161,23 +168,35 @@ void Server::Impl::bind() {
   endpoint = bound.data();
 }
 
-/// Which connections were closed.
+/// News that a connection was closed: which one, the kernel knows better.
 void Server::Impl::read_monitor() {
   internal::Parts event;
-  while (internal::receive(monitor.get(), event)) {
-    std::int32_t fd = -1;  // behind the number of the event, 16 bits
-    if (event.parts[0].size() >= 6) std::memcpy(&fd, event.parts[0].data() + 2, sizeof fd);
-    const auto found = connections.find(fd);
-    if (found == connections.end()) continue;
-    const Simulator::Peer peer = found->second;
-    connections.erase(found);
-    lose(peer);
-  }
+  bool is_told = false;
+  while (internal::receive(monitor.get(), event)) is_told = true;
+  if (!is_told) return;
+  connections.forget_closed();
+  next_look = Clock::now();
+  look_until = next_look + kLookFor;
 }
 
 void Server::Impl::lose(const Simulator::Peer& peer) {
   std::erase_if(kept, [&](const Request& request) { return request.peer == peer; });
   if (simulator.leave(peer)) log("the controller left");
+}
+
+/// By a controller that is still there; one that is not is lost.
+bool Server::Impl::is_driven() {
+  if (simulator.has_controller() && !connections.is_there(controller)) lose(controller);
+  return simulator.has_controller();
+}
+
+void Server::Impl::look_for_controller() {
+  const Clock::time_point now = Clock::now();
+  if (now >= next_look) {
+    next_look = now < look_until ? now + kLookAgain : Clock::time_point::max();
+    (void)is_driven();
+  }
+  if (simulator.has_controller()) next_due = std::min(next_due, next_look);
 }
 
 bool Server::Impl::read_message() {
@@ -188,7 +207,9 @@ bool Server::Impl::read_message() {
   Request request;
   request.received = last_message = Clock::now();
   request.peer = std::move(message.parts.front());
-  if (message.fd >= 0) connections[message.fd] = request.peer;
+  const auto sender = connections.see(request.peer, message.fd);
+  if (sender != internal::Connections::Sender::Known) lose(request.peer);
+  if (sender == internal::Connections::Sender::Gone) return true;
   const auto first = message.parts.begin() + 1;
   const auto delimiter = std::find(first, message.parts.end(), std::string());
   // A lone empty frame is a message of a DEALER socket, not a delimiter.
@@ -210,8 +231,7 @@ bool Server::Impl::must_wait(const Request& request, Clock::time_point& until) {
   until = Clock::time_point::max();
   const Clock::time_point now = Clock::now();
   const bool would_control = !simulator.is_controller(request.peer) && !Simulator::is_watcher(request.peer);
-  if (simulator.has_controller() && would_control && now < request.received + kTakeOver &&
-      simulator.is_handshake(request.frame)) {
+  if (would_control && is_driven() && now < request.received + kTakeOver && simulator.is_handshake(request.frame)) {
     until = request.received + kTakeOver;
     return true;
   }
@@ -232,6 +252,7 @@ void Server::Impl::serve(const Request& request) {
   const std::optional<std::string> reply = simulator.answer(request.peer, request.frame);
   bool is_sent = true;
   if (reply) {
+    if (!had_controller) (void)is_readable(socket.get());  // makes ZeroMQ see who has left: then sending fails
     is_sent = internal::send(socket.get(), request.peer, true);
     for (const std::string& part : request.envelope) is_sent = is_sent && internal::send(socket.get(), part, true);
     is_sent = is_sent && internal::send(socket.get(), *reply, false);
@@ -243,7 +264,10 @@ void Server::Impl::serve(const Request& request) {
     if (settings.speed && pacer.is_started()) pacer.step(start);
     if (steps_allowed > 0) --steps_allowed;
   }
-  if (!had_controller && simulator.has_controller()) log("a controller is there");
+  if (!had_controller && simulator.has_controller()) {
+    controller = request.peer;
+    log("a controller is there");
+  }
   if (had_controller && !simulator.has_controller()) log("the controller ended the session");
   if (!is_sent) lose(request.peer);  // it is gone, or does not read what it asked for
 }
@@ -253,6 +277,7 @@ void Server::Impl::serve_kept() {
   std::vector<Request> waiting;
   waiting.swap(kept);
   for (Request& request : waiting) {
+    if (!connections.is_there(request.peer)) continue;
     Clock::time_point until;
     if (must_wait(request, until)) {
       next_due = std::min(next_due, until);
@@ -314,6 +339,7 @@ void Server::Impl::run() {
   while (!is_stopping) {
     serve_kept();
     step_in_time();
+    look_for_controller();
     if (!read_message()) wait();
   }
 }

@@ -88,7 +88,7 @@ class SignalsHeld {
 };
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
-  throw InputError(path.string(), "", why, "a file that can be written");
+  throw InputError(path.empty() ? "a file to write" : path.string(), "", why, "a file that can be written");
 }
 
 [[noreturn]] void refuse_busy(const std::filesystem::path& path) {
@@ -193,6 +193,10 @@ std::filesystem::path follow_links(const std::filesystem::path& path) {
   return place;
 }
 
+std::filesystem::path draft_of(const std::filesystem::path& path) {
+  return follow_links(path).string() + kDraftSuffix;
+}
+
 OutputError::OutputError(const std::string& where, const std::string& why)
     : std::runtime_error(where + ": could not be written: " + why) {}
 
@@ -215,7 +219,7 @@ OutputFile::Impl::Impl(const std::filesystem::path& as_asked)
     : path(as_asked),
       place(follow_links(as_asked)),
       old(look_at(path, place)),
-      draft(path, place.string() + kDraftSuffix) {
+      draft(path, draft_of(place)) {
   // Behind the draft: a writer that has published its file holds the lock there, one that has not holds the draft.
   if (is_written_by_another(place)) refuse_busy(path);
   if (old) {

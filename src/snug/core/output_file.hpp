@@ -49,6 +49,10 @@ class OutputFile {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The draft of a file that would be written at `path`; what is there when it begins is taken for left over, and
+/// removed. Throws InputError for a circle of links.
+[[nodiscard]] std::filesystem::path draft_of(const std::filesystem::path& path);
+
 /// For `main` alone: when the user or the system ends the program (SIGINT, SIGTERM, SIGHUP), drafts are removed first.
 void remove_drafts_when_interrupted();
 

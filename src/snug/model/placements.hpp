@@ -17,8 +17,8 @@ struct PlacementEntry {
   bool operator==(const PlacementEntry&) const = default;
 };
 
-/// Reads the YAML list of docs/formats.md. Throws InputError (file:line, key, got, expected) for anything else, for a
-/// box that the scenario does not have and for one that is placed twice.
+/// Reads the YAML list of docs/formats.md, or the plan that `snug pack --plan` writes. Throws InputError (file:line,
+/// key, got, expected) for anything else, for a box that the scenario does not have and for one that is placed twice.
 [[nodiscard]] std::vector<PlacementEntry> load_placements(const std::filesystem::path& path, const Scenario& scenario);
 [[nodiscard]] std::vector<PlacementEntry> parse_placements(std::string_view text, std::string_view name,
                                                            const Scenario& scenario);

@@ -34,6 +34,7 @@ Scenario parse_text(std::string_view text, std::string_view name, std::set<std::
   } catch (const YAML::Exception& error) {
     throw InputError(where_of(name, error.mark), "", error.msg, "YAML that can be parsed");
   }
+  scenario.side_files = document.side_files;
   if (known_keys != nullptr) known_keys->insert(document.known_keys.begin(), document.known_keys.end());
   return scenario;
 }

@@ -90,8 +90,9 @@ struct InitialState {
 /// World frame W: z up unless gravity says otherwise. All poses are resolved to W while loading.
 struct Scenario {
   std::string name;
-  std::string source_name;  ///< file or label it was read from
-  std::string source_text;  ///< the text itself, for recordings
+  std::string source_name;                        ///< file or label it was read from
+  std::string source_text;                        ///< the text itself, for recordings
+  std::vector<std::filesystem::path> side_files;  ///< what it names and has read: meshes, tables of poses
 
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< m/s^2
   double time_step = 0.001;                    ///< s

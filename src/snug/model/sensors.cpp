@@ -1,10 +1,9 @@
 // Sensors: what an experiment is measured with, read from YAML.
 #include "snug/model/sensors.hpp"
 
-#include <fstream>
-#include <sstream>
-
+#include "snug/core/read_file.hpp"
 #include "snug/model/internal/fields.hpp"
+#include "snug/model/yaml_limits.hpp"
 
 namespace snug::model {
 namespace {
@@ -42,15 +41,12 @@ Sensors read(const Value& root) {
 }  // namespace
 
 Sensors load_sensors(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw InputError(path.string(), "", "no readable file", "a sensors file (YAML)");
-  return parse_sensors(text.str(), path.string());
+  return parse_sensors(read_file(path, "a sensors file (YAML)", kLargestYaml), path.string());
 }
 
 Sensors parse_sensors(std::string_view text, std::string_view name) {
   internal::Document document{std::string(name), {}};
+  check_yaml(text, name);
   try {
     return read(Value(YAML::Load(std::string(text)), "", document, 1));
   } catch (const YAML::Exception& error) {

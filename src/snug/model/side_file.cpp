@@ -18,6 +18,7 @@ std::filesystem::path find_side_file(const Value& value, const std::string& what
   if (!std::filesystem::is_regular_file(path, error))
     value.fail(value.describe() + ", which is not there (looked for " + path.string() + ")",
                what + ", path relative to the scenario");
+  value.document().side_files.push_back(path);
   return path;
 }
 

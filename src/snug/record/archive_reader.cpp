@@ -8,8 +8,10 @@
 
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/record/internal/archive_layout.hpp"
+#include "snug/record/internal/attribute_guard.hpp"
 #include "snug/record/internal/h5.hpp"
 #include "snug/record/internal/header_file.hpp"
 
@@ -19,19 +21,22 @@ namespace {
 using namespace internal;
 
 constexpr double kFarthest = 1000.0;  ///< m: beyond it, a length is taken for millimetres
-/// Bytes that the numbers of a dataset may take: counts in a damaged file may be anything. Archives of others are
-/// deflated.
-constexpr double kLargestExpansion = 16.0, kSmallest = 32e6;
 
 herr_t keep_name(hid_t, const char* name, const H5L_info_t*, void* out) {
   static_cast<std::vector<std::string>*>(out)->emplace_back(name);
   return 0;
 }
 
+/// Names go into JSON, tables and onto terminals.
+void check_name(const std::string& name) {
+  if (!is_printable(name)) throw H5Error("a name that is not UTF-8, or has control characters");
+}
+
 /// Names of what is in a group, sorted.
 std::vector<std::string> entries_of(hid_t group) {
   std::vector<std::string> names;
   check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &names), "list a group");
+  for (const std::string& name : names) check_name(name);
   return names;
 }
 
@@ -43,7 +48,9 @@ herr_t keep_attribute(hid_t, const char* name, const H5A_info_t*, void* out) {
 /// Text attributes of an object; those of other kinds are left out.
 std::vector<std::pair<std::string, std::string>> texts_of(hid_t object) {
   std::vector<std::string> names;
+  check_attributes(object);
   check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_attribute, &names), "attributes");
+  for (const std::string& name : names) check_name(name);
   std::vector<std::pair<std::string, std::string>> texts;
   for (const std::string& name : names) {
     const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), name.c_str());
@@ -59,6 +66,7 @@ std::vector<std::pair<std::string, std::string>> texts_of(hid_t object) {
     check(H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)), name);
     texts.emplace_back(name, text == nullptr ? "" : text);
     H5free_memory(text);
+    if (!is_utf8(texts.back().second)) throw H5Error("attribute " + name + " is not UTF-8");
   }
   return texts;
 }
@@ -104,6 +112,7 @@ struct ArchiveReader::Impl {
       throw InputError(path.string(), "", "a recording of a simulation",
                        "an archive of measurements; `snug measure` makes one of it");
     for (const std::string& name : entries_of(file.get())) {
+      check_links(file.get(), name);
       if (!exists(file.get(), name + '/' + kSensorGroup))
         throw InputError(path.string(), '/' + name, std::string("no group ") + kSensorGroup,
                          "recordings with the groups of docs/formats.md");
@@ -143,10 +152,12 @@ struct ArchiveReader::Impl {
 
   Handle open_part(std::size_t index, const Handle& group, const std::string& part, H5O_type_t kind) const {
     if (!exists(group.get(), part)) fail(index, part, "nothing", kind == H5O_TYPE_GROUP ? "a group" : "a dataset");
+    check_links(group.get(), part);
     Handle object(H5Oopen(group.get(), part.c_str(), H5P_DEFAULT), part.c_str());
     const bool is_group = H5Iget_type(object.get()) == H5I_GROUP;
     if (is_group != (kind == H5O_TYPE_GROUP))
       fail(index, part, is_group ? "a group" : "a dataset", is_group ? "a dataset" : "a group");
+    if (!is_group) check_storage(object.get(), part.c_str());
     return object;
   }
 
@@ -168,21 +179,20 @@ struct ArchiveReader::Impl {
     std::size_t size = 1;
     for (const hsize_t n : dims) size *= n;
     std::vector<double> values(size);
-    if (size > 0) check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), part);
+    if (size > 0) read_whole(dataset.get(), H5T_NATIVE_DOUBLE, values.data());
     return values;
   }
 
   void require_room(std::size_t index, const std::string& part, const Dims& dims) const {
     double bytes = sizeof(double);
     for (const hsize_t n : dims) bytes *= static_cast<double>(n);
-    if (bytes > kLargestExpansion * static_cast<double>(std::filesystem::file_size(path)) + kSmallest)
+    if (bytes > static_cast<double>(most_unpacked(std::filesystem::file_size(path))))
       fail(index, part, dims_text(dims), "no more values than a file of this size can hold");
   }
 
   void require_number_type(std::size_t index, const Handle& dataset, const std::string& part) const {
     const Handle type(H5Dget_type(dataset.get()), part.c_str());
-    const H5T_class_t kind = H5Tget_class(type.get());
-    if (kind != H5T_FLOAT && kind != H5T_INTEGER) fail(index, part, "values that are no numbers", "numbers");
+    if (!is_number(type.get())) fail(index, part, "values that are no numbers", "numbers");
   }
 
   /// `count` vectors of a dataset with three rows for each, from row `first`.
@@ -248,12 +258,16 @@ struct ArchiveReader::Impl {
       char* text = H5Tget_member_name(type.get(), static_cast<unsigned>(member));
       const std::string name = text == nullptr ? "" : text;
       H5free_memory(text);
-      const H5T_class_t kind = H5Tget_member_class(type.get(), static_cast<unsigned>(member));
-      if (kind != H5T_FLOAT && kind != H5T_INTEGER) continue;
+      check_name(name);
+      const Handle stored(H5Tget_member_type(type.get(), static_cast<unsigned>(member)), "column");
+      if (!is_number(stored.get())) continue;
+      if (H5Tget_member_offset(type.get(), static_cast<unsigned>(member)) + H5Tget_size(stored.get()) >
+          H5Tget_size(type.get()))
+        throw H5Error("a column beyond its row");
       const Handle one(H5Tcreate(H5T_COMPOUND, sizeof(double)), "column");
       check(H5Tinsert(one.get(), name.c_str(), 0, H5T_NATIVE_DOUBLE), name);
       std::vector<double> values(dims[0]);
-      if (!values.empty()) check(H5Dread(dataset.get(), one.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+      if (!values.empty()) read_whole(dataset.get(), one.get(), values.data());
       if (name == kTimeColumn) {
         table.times = std::move(values);
         has_time = true;
@@ -328,7 +342,7 @@ struct ArchiveReader::Impl {
       if (points != static_cast<hssize_t>(size))
         fail(index, part, std::to_string(points) + " values", std::to_string(size) + " of them");
       std::vector<double> values(size);
-      check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), part);
+      read_whole(dataset.get(), H5T_NATIVE_DOUBLE, values.data());
       for (std::size_t i = 0; i < size; ++i)
         if (!std::isfinite(values[i])) fail(index, part, "no number at index " + std::to_string(i), "numbers");
       return values;

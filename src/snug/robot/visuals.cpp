@@ -2,6 +2,7 @@
 #include "snug/robot/visuals.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <optional>
 
@@ -103,12 +104,20 @@ void add_visual(const Element& element, const std::map<std::string, Rgba>& mater
   visuals.push_back(std::move(visual));
 }
 
+/// Files are put into pages and exports that go to others: no file is that a stranger's URDF only calls a mesh.
+bool is_mesh_name(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension == ".stl" || extension == ".dae" || extension == ".obj";
+}
+
 }  // namespace
 
 std::vector<MeshFile> read_visual_meshes(const std::filesystem::path& urdf, std::size_t most_bytes) {
   std::vector<MeshFile> files;
   const Document document(read_file(urdf, "a URDF", internal::kLargestUrdf), urdf.string(), urdf.parent_path());
-  if (!document.robot) return files;
+  if (!document.robot || document.robot->tag() != "robot")
+    throw InputError(urdf.string(), "", "something else", "a URDF: XML with <robot>");
   std::size_t left = most_bytes;
   for (const Element& link : document.robot->children("link")) {
     for (const Element& visual : link.children("visual")) {
@@ -117,7 +126,7 @@ std::vector<MeshFile> read_visual_meshes(const std::filesystem::path& urdf, std:
         if (!geometry.has("mesh")) continue;
         const Element mesh = geometry.child("mesh");
         const std::string name = mesh.text("filename");
-        if (std::ranges::find(files, name, &MeshFile::name) != files.end()) continue;
+        if (!is_mesh_name(name) || std::ranges::find(files, name, &MeshFile::name) != files.end()) continue;
         std::string bytes = read_file(internal::find_mesh(mesh), "a mesh", left);
         left -= bytes.size();
         files.push_back({name, std::move(bytes)});

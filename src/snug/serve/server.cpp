@@ -42,6 +42,13 @@ void answer(httplib::Response& response, std::shared_ptr<const std::string> byte
   });
 }
 
+/// Browsers say where a request comes from. A link on another site's page may lead here; nothing else of it has any
+/// business here: it could not read the answers, but take the places of watchers.
+bool is_from_another_page(const httplib::Request& request) {
+  const std::string site = request.get_header_value("Sec-Fetch-Site");
+  return (site == "cross-site" || site == "same-site") && request.get_header_value("Sec-Fetch-Mode") != "navigate";
+}
+
 }  // namespace
 
 struct Server::Impl {
@@ -113,6 +120,10 @@ bool Server::Impl::is_for_us(const httplib::Request& request, httplib::Response&
   if (is_local && !is_named) {
     response.status = 403;
     response.set_content("This server answers to the names of this machine only.\n", "text/plain");
+    return false;
+  }
+  if (is_from_another_page(request)) {
+    response.status = 403;
     return false;
   }
   if (request.method == "GET" || request.method == "HEAD" || request.method == "POST") return true;

@@ -23,16 +23,18 @@ bool is_number(const std::string& text, double& number) {
   return error == std::errc{} && end == text.data() + text.size() && !text.empty();
 }
 
-/// A text as CSV: numbers as they are, others quoted where they have to be, none that a spreadsheet would run.
+/// A text as CSV: numbers as they are, of others none that a spreadsheet would run; lists keep their commas.
 std::string as_text(const std::string& text) {
   double number = 0.0;
   if (is_number(text, number)) return text;
-  std::string safe = text;
-  if (!safe.empty() && std::string_view("=+-@").find(safe[0]) != std::string_view::npos) safe[0] = '_';
-  if (safe.find_first_of(",\"\n\r") == std::string::npos) return safe;
-  std::string quoted = "\"";
-  for (const char c : safe) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
+  const std::size_t end = std::min(text.size(), text.find_first_of(",\""));
+  std::string safe = csv_cell(text.substr(0, end));
+  if (end == text.size()) return safe;
+  for (const char c : text.substr(end)) {
+    if (c == '"') safe += '"';  // twice is once
+    safe += c == ',' || c == '"' ? std::string(1, c) : csv_cell("x" + std::string(1, c)).substr(1);
+  }
+  return '"' + safe + '"';
 }
 
 /// A cell as CSV.

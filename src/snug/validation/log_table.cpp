@@ -7,12 +7,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <string>
 #include <string_view>
 
+#include "snug/core/csv_cell.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 #include "snug/core/units.hpp"
 #include "snug/core/write_file.hpp"
 
@@ -22,7 +24,9 @@ namespace {
 using record::ArchiveRecording;
 using record::PoseSample;
 
-constexpr double kUnitTolerance = 1e-3;  // of a quaternion written with four digits
+constexpr std::size_t kLargestLog = std::size_t{1} << 30U;  // bytes; four minutes of a whole log have 60 MB
+constexpr std::size_t kMostColumns = 10000;                 // a whole log has some hundred
+constexpr double kUnitTolerance = 1e-3;                     // of a quaternion written with four digits
 constexpr std::string_view kPosePart = "_FloatingBase_";
 constexpr std::array<const char*, 7> kPoseColumns = {"orientation_w", "orientation_x", "orientation_y", "orientation_z",
                                                      "position_x",    "position_y",    "position_z"};
@@ -55,20 +59,29 @@ struct LogColumns {
   std::array<int, kCount> at;
 };
 
+/// Takes the first line from the text, without its end.
+std::string_view next_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
 class LogReader {
  public:
   explicit LogReader(const std::filesystem::path& path) : path_(path) {}
 
   ArchiveRecording read() {
-    std::ifstream file(path_, std::ios::binary);
-    if (!file) throw InputError(path_.string(), "", "no readable file", "a table of measurements (CSV)");
-    std::string line;
-    if (!std::getline(file, line)) throw InputError(path_.string(), "", "an empty file", "a row of column names");
-    separator_ = line.find(';') != std::string::npos ? ';' : ',';
-    read_names(line);
-    for (line_ = 2; std::getline(file, line); ++line_) {
-      if (line.empty() || line == "\r") continue;
-      read_row(split(line, separator_));
+    const std::string text = read_file(path_, "a table of measurements (CSV)", kLargestLog);
+    check_utf8(text, path_.string());
+    std::string_view rest = text;
+    const std::string_view names = next_line(rest);
+    if (names.empty()) throw InputError(path_.string(), "", "an empty file", "a row of column names");
+    separator_ = names.find(';') != std::string_view::npos ? ';' : ',';
+    read_names(names);
+    for (line_ = 2; !rest.empty(); ++line_) {
+      const std::string_view line = next_line(rest);
+      if (!line.empty() && line != "\r") read_row(split(line, separator_));
     }
     return finish();
   }
@@ -78,8 +91,11 @@ class LogReader {
     throw InputError(path_.string() + ":" + std::to_string(line_), column, got, expected);
   }
 
-  void read_names(const std::string& line) {
+  void read_names(std::string_view line) {
     line_ = 1;
+    const auto separators = static_cast<std::size_t>(std::count(line.begin(), line.end(), separator_));
+    if (separators >= kMostColumns)
+      fail("", std::to_string(separators + 1) + " columns", std::to_string(kMostColumns) + " columns or fewer");
     for (const std::string_view name : split(line, separator_)) names_.emplace_back(name);
     std::map<std::string, LogColumns<7>> bodies;
     for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -221,7 +237,7 @@ std::string pose_names(const std::string& prefix) {
 
 std::string mocap_table(const record::MotionCaptureLog& log) {
   std::string text = "t";
-  for (const record::BodyTrack& body : log.bodies) text += pose_names(body.name + std::string(kPosePart));
+  for (const record::BodyTrack& body : log.bodies) text += pose_names(csv_cell(body.name) + std::string(kPosePart));
   text += '\n';
   for (std::size_t i = 0; i < log.times.size(); ++i) {
     text += fmt::format("{}", log.times[i]);
@@ -250,7 +266,7 @@ std::string force_table(const record::WrenchLog& log) {
 
 std::string robot_table(const record::RobotLog& log) {
   std::string text = "t";
-  for (const std::string& name : log.names) text += ';' + name;
+  for (const std::string& name : log.names) text += ';' + csv_cell(name);
   if (!log.tool.empty()) text += pose_names("tool_");
   text += '\n';
   for (std::size_t i = 0; i < log.times.size(); ++i) {

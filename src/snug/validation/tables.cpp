@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "snug/core/csv_cell.hpp"
 #include "snug/core/units.hpp"
 #include "snug/validation/page.hpp"
 #include "snug/validation/reported.hpp"
@@ -127,8 +128,9 @@ std::string as_csv(const Validation& validation) {
          {std::pair("clean", &body.errors.clean), std::pair("report", &body.errors.report)}) {
       for (std::size_t k = 0; k < errors->size(); ++k) {
         const Errors& one = (*errors)[k];
-        text += fmt::format("{},{},{},{:.3f},{:.3f},{},{}", body.body, validation.repetitions[k].name, form,
-                            body.window.start, body.window.end, body.simulated_state, body.measured_states[k]);
+        text += fmt::format("{},{},{},{:.3f},{:.3f},{},{}", csv_cell(body.body),
+                            csv_cell(validation.repetitions[k].name), form, body.window.start, body.window.end,
+                            csv_cell(body.simulated_state), csv_cell(body.measured_states[k]));
         for (const Quantity& quantity : kQuantities) {
           const double value = quantity.scale * (one.*quantity.value);
           text += std::isfinite(value) ? fmt::format(",{:.6g}", value) : ",";

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <utility>
 
 #include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 #include "snug/core/units.hpp"
 #include "snug/validation/log_table.hpp"
 #include "snug/validation/reported.hpp"
@@ -201,8 +203,8 @@ Validation validate(const SimulatedRun& run, std::vector<Measurement> repetition
 }
 
 std::vector<Window> load_windows(const std::filesystem::path& path, const SimulatedRun& run) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path.string(), "", "no readable file", "windows (CSV: body,start_s,end_s)");
+  std::istringstream file(read_file(path, "windows (CSV: body,start_s,end_s)"));
+  check_utf8(file.view(), path.string());
   int line_number = 0;
   const auto fail = [&](const std::string& key, const std::string& got, const std::string& expected) {
     throw InputError(path.string() + ":" + std::to_string(line_number), key, got, expected);

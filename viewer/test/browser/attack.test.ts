@@ -85,6 +85,16 @@ describe("a page of another site", () => {
     expect(await isPaused()).toBe(false);
   });
 
+  it("cannot take the places of watchers", async () => {
+    await page.evaluate(async (url) => {
+      const sources = Array.from({ length: 12 }, () => new EventSource(`${url}live`));
+      await Promise.all(sources.map((source) => new Promise<void>((resolve) => { source.onerror = () => resolve(); })));
+      const images = Array.from({ length: 12 }, () => { const image = new Image(); image.src = `${url}live`; return image; });
+      await Promise.all(images.map((image) => new Promise<void>((resolve) => { image.onerror = () => resolve(); })));
+    }, target);
+    expect(await told()).toContain("event: header");
+  });
+
   it("gets nothing under a name of its own that points to this machine", async () => {
     const rebound = await browser.newPage();
     const answer = await rebound.goto(target.replace("127.0.0.1", "evil.example"));

@@ -16,6 +16,11 @@ inline constexpr std::size_t kLargestFile = std::size_t{1} << 30U;
 
 /// Throws unless the picture has the size that the camera says.
 void expect_size(const model::CameraParams& camera, int cols, int rows, const std::string& name);
+/// May a frame of a file of so many bytes have so many pixels? A picture of nothing is packed a thousandfold.
+[[nodiscard]] constexpr bool has_room(std::size_t pixels, std::size_t file_bytes) {
+  constexpr std::size_t kPixelBytes = 6;  // as they are read, and as a frame has them
+  return pixels * kPixelBytes <= 16 * file_bytes + 32'000'000;
+}
 /// `depth` where it is a point within the working range, else 0.
 [[nodiscard]] float usable(const model::CameraParams& camera, double depth);
 

@@ -97,6 +97,15 @@ TEST_F(FrameFile, WhatCannotBeAFrameIsRefused) {
                  "absurd");
   expect_refused(write("list.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n"),
                  "list");
+  Frame blank = shot.frame;
+  blank.camera.width = blank.camera.height = 8000;
+  const std::string comment = format_camera(blank.camera);
+  expect_refused(write("blank.ply", "ply\nformat ascii 1.0\ncomment snug-camera " + comment +
+                                        "\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                                        "end_header\n0 0 1\n"),
+                 "more pixels than");
+  blank.depth = Grid2<float>(8000, 8000);
+  expect_refused(write("blank.png", format_png(blank)), "more pixels than");
   expect_refused(write("bad.h5", "\x89HDF\r\n\x1a\n and no more"), "bad.h5");
   FrameHints other;
   other.camera = shot.frame.camera;

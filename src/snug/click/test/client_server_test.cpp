@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "cell.hpp"
+#include "snug/click/internal/socket.hpp"
 #include "snug/click/program_client.hpp"
 #include "snug/click/server.hpp"
 #include "snug/core/input_error.hpp"
@@ -30,11 +31,14 @@ std::string an_address() {
 /// A server in a thread of its own.
 class Served {
  public:
-  explicit Served(SimulatorSettings settings = {}, const std::string& endpoint = an_address())
+  explicit Served(SimulatorSettings settings = {}, const std::string& endpoint = an_address(), bool runs_at_once = true)
       : simulator_(demonstrator_cell(), with_log(std::move(settings))), server_(simulator_, settings_of(endpoint)) {
-    thread_ = std::thread([this] { server_.run(); });
+    if (runs_at_once) run();
   }
   ~Served() { stop(); }
+  void run() {
+    thread_ = std::thread([this] { server_.run(); });
+  }
   void stop() {
     server_.stop();
     if (thread_.joinable()) thread_.join();
@@ -141,6 +145,59 @@ TEST(ClientServer, GiveTheCellToTheNextControllerWhenOneDies) {
   served.stop();
   ASSERT_EQ(served.runs.size(), 1u);
   EXPECT_EQ(served.runs[0].ended_by, "the controller left");
+}
+
+/// A peer that says something and does not wait for the answer.
+class Impolite {
+ public:
+  explicit Impolite(const std::string& endpoint) : socket_(internal::make_socket(context_.get(), ZMQ_DEALER, 10000)) {
+    EXPECT_EQ(zmq_connect(socket_.get(), endpoint.c_str()), 0);
+  }
+  void say(const Message& message) { EXPECT_TRUE(internal::send(socket_.get(), encode(message), false)); }
+
+ private:
+  internal::Context context_ = internal::make_context();  // ends when all is sent
+  internal::Socket socket_;
+};
+
+TEST(ClientServer, PeerThatIsGoneBeforeItIsReadDoesNotKeepTheCell) {
+  using namespace std::chrono_literals;
+  for (const std::string& address : {std::string("tcp://127.0.0.1:*"), an_address()}) {
+    for (const bool is_followed : {false, true}) {  // by a peer that stays, silent, and gets its descriptor
+      Served served({}, address, false);
+      Impolite(served.endpoint()).say(HandshakeInit{});
+      std::this_thread::sleep_for(100ms);  // for ZeroMQ to see that it left
+      std::unique_ptr<Impolite> follower;
+      if (is_followed) follower = std::make_unique<Impolite>(served.endpoint());
+      std::this_thread::sleep_for(100ms);
+      served.run();
+      Client client(served.endpoint());
+      const auto handshake = client.shake_hands();
+      EXPECT_TRUE(handshake.has_value()) << address << ": " << handshake.error();
+    }
+  }
+}
+
+TEST(ClientServer, ComingAndGoingOfManyLeavesTheControllerAlone) {
+  for (const std::string& address : {std::string("tcp://127.0.0.1:*"), an_address()}) {
+    Served served({}, address);
+    for (int round = 0; round < 20; ++round) {
+      for (int i = 0; i < 5; ++i) Impolite(served.endpoint()).say(HandshakeInit{});
+      Client client(served.endpoint());
+      const auto handshake = client.shake_hands();
+      ASSERT_TRUE(handshake.has_value()) << address << ", round " << round << ": " << handshake.error();
+      for (int i = 1; i <= 5; ++i) {
+        Impolite(served.endpoint()).say(HandshakeInit{});
+        Impolite(served.endpoint()).say(Reset{});
+        const auto sensor = client.control(control_of(kStill));
+        ASSERT_TRUE(sensor.has_value()) << address << ", round " << round << ": " << sensor.error();
+        EXPECT_DOUBLE_EQ((*sensor)->time, 0.008 * i);
+      }
+    }
+    served.stop();
+    EXPECT_GE(served.runs.size(), 19u) << "of the last one the end may come too late";
+    for (const cell::RunResult& result : served.runs) EXPECT_NEAR(result.duration, 0.04, 1e-12);
+  }
 }
 
 TEST(ClientServer, GiveUpOnSilence) {

@@ -2,6 +2,7 @@
 #include "snug/identification/scene_fit.hpp"
 #include "snug/core/test/scratch_folder.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,8 @@
 #include <string>
 
 #include "snug/cell/scene.hpp"
+#include "snug/core/descriptor.hpp"
+#include "snug/core/file_lock.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/identification/free_flight.hpp"
@@ -268,6 +271,18 @@ TEST_F(SceneFitTest, GoesOnFromItsLogWithoutComputingAgain) {
   EXPECT_EQ(before, std::string(std::istreambuf_iterator<char>(again), {}));  // nothing new
   EXPECT_EQ(first.values, second.values);
   EXPECT_NEAR(first.values[0], 0.4, 0.01);
+  // What a kill cut is taken away, and nothing else; a log that another search writes is refused.
+  for (const std::string& cut : {before + "0.25,0.", before.substr(0, before.size() - 3), before.substr(0, 10)}) {
+    std::ofstream(options.log, std::ios::binary) << cut;
+    (void)identify_scene(SceneExperiment(task(text), motions, 2), options);
+    std::ifstream whole(options.log);
+    EXPECT_EQ(before, std::string(std::istreambuf_iterator<char>(whole), {})) << cut.size();
+  }
+  {
+    const Descriptor other(::open(options.log.c_str(), O_RDWR | O_CLOEXEC));
+    ASSERT_TRUE(try_lock(other.get(), LockByte::Writer, LockKind::Exclusive));
+    EXPECT_THROW((void)identify_scene(SceneExperiment(task(text), motions, 2), options), InputError);
+  }
   // The log of another problem is refused.
   std::ofstream(options.log) << "something else\n";
   EXPECT_THROW((void)identify_scene(SceneExperiment(task(text), motions, 2), options), InputError);

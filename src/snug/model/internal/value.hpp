@@ -21,6 +21,7 @@ namespace snug::model::internal {
 struct Document {
   std::string name;                  ///< file or label, for messages
   std::set<std::string> known_keys;  ///< "kind.key" of every key that any mapping read so far may have
+  std::vector<std::filesystem::path> side_files = {};  ///< that were found beside it
 };
 
 /// Bounds of a length, m: outside of them a value is taken for a slip (millimetres, say) and refused.

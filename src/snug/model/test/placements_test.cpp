@@ -73,6 +73,24 @@ TEST(Placements, NormalizesAQuaternionWithFourDigits) {
   EXPECT_LT((entries[0].X_TP.R * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-15);
 }
 
+// What `snug pack --plan` writes.
+TEST(Placements, ReadsAPlan) {
+  const std::string text =
+      "{\"sequence\": \"1\", \"agent\": \"margin\", \"placements\": [\n"
+      "{\"box\": \"BOX014\", \"position\": [0.1, -0.2, 0.3], \"quaternion_wxyz\": [0.0, 0.0, 0.707106781, 0.707106781],\n"
+      " \"up\": \"Y\", \"up_sign\": 1, \"yaw_quarter\": 1}]}\n";
+  const auto entries = parse_placements(text, "plan.json", demonstrator());
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0].parcel, "BOX014");
+  EXPECT_EQ(entries[0].X_TP.p, Vector3(0.1, -0.2, 0.3));
+  EXPECT_LT((entries[0].X_TP.R * Vector3::UnitY() - Vector3::UnitZ()).norm(), 1e-8) << "the y axis is up";
+  for (const char* changed : {"quaternion_wxyz", "position", "box", "placements"}) {
+    std::string wrong = text;
+    wrong.replace(wrong.find(changed), 3, "xyz");
+    EXPECT_THROW((void)parse_placements(wrong, "plan.json", demonstrator()), InputError) << changed;
+  }
+}
+
 TEST(Placements, BlamesLineAndKeyOfABoxThatCannotBePlaced) {
   expect_blamed({"- {box: BOX047, position: [0, 0, 0]}", "[1].box", "BOX047", "nearest is 'BOX0"});
   expect_blamed({"- {box: BOX027, position: [0, 0, 0]}", "[1].box", "BOX027", "at most once"});

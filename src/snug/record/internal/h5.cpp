@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "snug/core/text.hpp"
+#include "snug/record/internal/attribute_guard.hpp"
 
 namespace snug::record::internal {
 namespace {
@@ -33,23 +34,12 @@ constexpr hsize_t kHarmlessPacked = hsize_t{48} << 10U;
 constexpr std::size_t kSlack = std::size_t{64} << 10U;
 constexpr std::size_t kLeastText = 8;
 
-/// Each group on the way, and the dataset itself, must lie in this file.
-void check_links(hid_t file, const std::string& path) {
-  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
-    const std::string part = path.substr(0, end);
-    H5L_info_t info;
-    check(H5Lget_info(file, part.c_str(), &info, H5P_DEFAULT), path);
-    if (info.type != H5L_TYPE_HARD) throw H5Error(part + " is a link to something else");
-    if (end == std::string::npos) return;
-  }
-}
-
 void check_type(hid_t dataset, const char* path) {
   const Handle type(H5Dget_type(dataset), path);
   const H5T_class_t kind = H5Tget_class(type.get());
-  const bool is_number = (kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Tget_size(type.get()) <= 8;
   const bool is_text = kind == H5T_STRING && H5Tis_variable_str(type.get()) == 0;
-  if (!is_number && !is_text) throw H5Error(std::string(path) + " holds neither numbers nor texts of fixed length");
+  if (!is_number(type.get()) && !is_text)
+    throw H5Error(std::string(path) + " holds neither numbers nor texts of fixed length");
 }
 
 /// Bytes of a chunk when it is unpacked, 0 without chunks.
@@ -63,25 +53,6 @@ hsize_t chunk_bytes_of(hid_t dataset, hid_t properties, Dims& chunk) {
   for (const hsize_t extent : chunk)
     bytes = extent > kLargestChunk ? kLargestChunk + 1 : std::min(bytes, kLargestChunk + 1) * extent;
   return bytes;
-}
-
-void check_storage(hid_t dataset, const char* path) {
-  const Handle properties(H5Dget_create_plist(dataset), path);
-  const H5D_layout_t layout = H5Pget_layout(properties.get());
-  if ((layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) ||
-      H5Pget_external_count(properties.get()) != 0)
-    throw H5Error(std::string(path) + " is kept in another file");
-  Dims chunk;
-  if (chunk_bytes_of(dataset, properties.get(), chunk) > kLargestChunk)
-    throw H5Error(std::string(path) + " is kept in chunks that are too large");
-  const int filters = H5Pget_nfilters(properties.get());
-  for (unsigned i = 0; filters > 0 && i < static_cast<unsigned>(filters); ++i) {
-    unsigned flags = 0, config = 0;
-    std::size_t values = 0;
-    const H5Z_filter_t filter = H5Pget_filter2(properties.get(), i, &flags, &values, nullptr, 0, nullptr, &config);
-    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE)
-      throw H5Error(std::string(path) + " is packed in an unknown way");
-  }
 }
 
 /// Unpacks into nothing: does it come to more than so many bytes?
@@ -119,7 +90,49 @@ void check_chunk(hid_t dataset, const Dims& at, hsize_t chunk_bytes) {
   if (skipped == 0 && inflates_beyond(packed, chunk_bytes)) throw H5Error(reason);
 }
 
-/// The chunks that hold rows [first, first + count), if they may be packed.
+Handle simple_space(const Dims& dims) {
+  if (dims.empty()) return {H5Screate(H5S_SCALAR), "scalar dataspace"};
+  return {H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), "dataspace"};
+}
+
+/// Properties that create missing parent groups.
+Handle with_parents() {
+  Handle properties(H5Pcreate(H5P_LINK_CREATE), "link properties");
+  check(H5Pset_create_intermediate_group(properties.get(), 1), "link properties");
+  return properties;
+}
+
+}  // namespace
+
+void check_links(hid_t place, const std::string& path) {
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    const std::string part = path.substr(0, end);
+    H5L_info_t info;
+    check(H5Lget_info(place, part.c_str(), &info, H5P_DEFAULT), path);
+    if (info.type != H5L_TYPE_HARD) throw H5Error(part + " is a link to something else");
+    if (end == std::string::npos) return;
+  }
+}
+
+void check_storage(hid_t dataset, const char* path) {
+  const Handle properties(H5Dget_create_plist(dataset), path);
+  const H5D_layout_t layout = H5Pget_layout(properties.get());
+  if ((layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) ||
+      H5Pget_external_count(properties.get()) != 0)
+    throw H5Error(std::string(path) + " is kept in another file");
+  Dims chunk;
+  if (chunk_bytes_of(dataset, properties.get(), chunk) > kLargestChunk)
+    throw H5Error(std::string(path) + " is kept in chunks that are too large");
+  const int filters = H5Pget_nfilters(properties.get());
+  for (unsigned i = 0; filters > 0 && i < static_cast<unsigned>(filters); ++i) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(properties.get(), i, &flags, &values, nullptr, 0, nullptr, &config);
+    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE)
+      throw H5Error(std::string(path) + " is packed in an unknown way");
+  }
+}
+
 void check_chunks(hid_t dataset, const Dims& dims, hsize_t first, hsize_t count) {
   const Handle properties(H5Dget_create_plist(dataset), "dataset");
   Dims chunk;
@@ -139,19 +152,13 @@ void check_chunks(hid_t dataset, const Dims& dims, hsize_t first, hsize_t count)
   }
 }
 
-Handle simple_space(const Dims& dims) {
-  if (dims.empty()) return {H5Screate(H5S_SCALAR), "scalar dataspace"};
-  return {H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), "dataspace"};
+bool is_number(hid_t type) {
+  const hid_t known[] = {H5T_STD_I8LE,  H5T_STD_I8BE,   H5T_STD_I16LE,  H5T_STD_I16BE,  H5T_STD_I32LE,
+                         H5T_STD_I32BE, H5T_STD_I64LE,  H5T_STD_I64BE,  H5T_STD_U8LE,   H5T_STD_U8BE,
+                         H5T_STD_U16LE, H5T_STD_U16BE,  H5T_STD_U32LE,  H5T_STD_U32BE,  H5T_STD_U64LE,
+                         H5T_STD_U64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE, H5T_IEEE_F64LE, H5T_IEEE_F64BE};
+  return std::ranges::any_of(known, [&](hid_t one) { return H5Tequal(type, one) > 0; });
 }
-
-/// Properties that create missing parent groups.
-Handle with_parents() {
-  Handle properties(H5Pcreate(H5P_LINK_CREATE), "link properties");
-  check(H5Pset_create_intermediate_group(properties.get(), 1), "link properties");
-  return properties;
-}
-
-}  // namespace
 
 QuietErrors::QuietErrors() {
   // All files are closed by their handles. The library's own clean-up at exit is switched off because it prints an
@@ -208,9 +215,13 @@ void update_attribute(hid_t object, const char* name, hid_t type, const void* va
   check(H5Awrite(attribute.get(), type, value), name);
 }
 
-bool has_attribute(hid_t object, const char* name) { return H5Aexists(object, name) > 0; }
+bool has_attribute(hid_t object, const char* name) {
+  check_attributes(object);
+  return H5Aexists(object, name) > 0;
+}
 
 std::string read_text_attribute(hid_t object, const char* name) {
+  check_attributes(object);
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), name);
   const Handle type(H5Aget_type(attribute.get()), name);
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0)
@@ -226,10 +237,12 @@ std::string read_text_attribute(hid_t object, const char* name) {
 }
 
 void read_attribute(hid_t object, const char* name, hid_t type, void* value) {
+  check_attributes(object);
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), name);
   const Handle space(H5Aget_space(attribute.get()), name);
-  if (H5Sget_simple_extent_npoints(space.get()) != 1)
-    throw H5Error(std::string("attribute ") + name + " is not a single value");
+  const Handle stored(H5Aget_type(attribute.get()), name);
+  if (H5Sget_simple_extent_npoints(space.get()) != 1 || !is_number(stored.get()))
+    throw H5Error(std::string("attribute ") + name + " is not a single number");
   check(H5Aread(attribute.get(), type, value), name);
 }
 
@@ -279,10 +292,8 @@ std::vector<std::string> read_texts(Source& source, const char* path) {
   const Handle space(H5Dget_space(dataset.get()), path);
   const auto count = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get())));
   source.take_texts(path, count, size);
-  const Dims dims = dims_of(dataset.get());
-  if (!dims.empty()) check_chunks(dataset.get(), dims, 0, dims[0]);
   std::string padded(size * count, '\0');
-  if (count > 0) check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), path);
+  if (count > 0) read_whole(dataset.get(), type.get(), padded.data());
   std::vector<std::string> texts;
   texts.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -316,6 +327,12 @@ Dims dims_of(hid_t dataset) {
   Dims dims(static_cast<std::size_t>(std::max(0, rank)));
   if (!dims.empty()) check(H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr), "dataspace");
   return dims;
+}
+
+void read_whole(hid_t dataset, hid_t type, void* out) {
+  const Dims dims = dims_of(dataset);
+  if (!dims.empty()) check_chunks(dataset, dims, 0, dims[0]);
+  check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out), "read");
 }
 
 void read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* out) {

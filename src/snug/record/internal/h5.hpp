@@ -123,7 +123,21 @@ void write_texts(hid_t file, const char* path, const std::vector<std::string>& t
 /// are deflated at most. Links to other files, and data kept in them, are refused: a recording from elsewhere must not
 /// show what else is on this machine.
 [[nodiscard]] Handle open_dataset(hid_t file, const char* path);
+/// Throws H5Error unless each group on the way from `place`, and what is there, lie in this file.
+void check_links(hid_t place, const std::string& path);
+/// Throws H5Error unless the data lie in this file, in chunks of sensible size that are deflated at most.
+void check_storage(hid_t dataset, const char* path);
+/// Is it a whole number or one of IEEE 754, of 1 to 8 bytes, all of whose bits count? The library converts others
+/// without asking whether their bits are there.
+[[nodiscard]] bool is_number(hid_t type);
+/// Throws H5Error for chunks that unpack to more than they say. Before rows [first, first + count) are read.
+void check_chunks(hid_t dataset, const Dims& dims, hsize_t first, hsize_t count);
+/// The whole dataset, into as many values as its dimensions say.
+void read_whole(hid_t dataset, hid_t type, void* out);
 [[nodiscard]] Dims dims_of(hid_t dataset);
+/// Bytes that the numbers of one dataset may take when they are read whole: counts in a damaged file may be anything,
+/// and files of others are deflated.
+[[nodiscard]] constexpr std::size_t most_unpacked(std::size_t file_bytes) { return 16 * file_bytes + 32'000'000; }
 /// Rows [first, first + count) of the outermost dimension.
 void read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* out);
 

@@ -195,6 +195,47 @@ TEST(ArchiveReader, RefusesMatricesThatAreNoRotations) {
   expect_says(complaint([&](hid_t f) { set_number(f, path, 3 * 40 + 8, 1350.0); }), {"index 8", "metres"});
 }
 
+TEST(ArchiveReader, ShowsNothingOfOtherFiles) {
+  const ScratchFolder folder;
+  save_archive(folder / "other.h5", {{example()}});
+  const std::string wrench = std::string(kForce) + "wrench", bodies = std::string(kMocap) + "POSTPROCESSING";
+  const auto link = [](hid_t file, const std::string& path, const std::string& target, const char* other) {
+    ASSERT_GE(H5Ldelete(file, path.c_str(), H5P_DEFAULT), 0);
+    if (other == nullptr) {
+      ASSERT_GE(H5Lcreate_soft(target.c_str(), file, path.c_str(), H5P_DEFAULT, H5P_DEFAULT), 0);
+    } else {
+      ASSERT_GE(H5Lcreate_external(other, target.c_str(), file, path.c_str(), H5P_DEFAULT, H5P_DEFAULT), 0);
+    }
+  };
+  const std::string other = (folder / "other.h5").string();
+  for (const std::string& path : {wrench, bodies, std::string(kForce).substr(0, std::string(kForce).find('/', 1))}) {
+    expect_says(complaint([&](hid_t f) { link(f, path, path, other.c_str()); }), {"is a link to something else"});
+  }
+  expect_says(complaint([&](hid_t f) { link(f, wrench, std::string("/") + kForce + "time", nullptr); }),
+              {"is a link to something else"});
+  expect_says(complaint([&](hid_t f) {
+                ASSERT_GE(H5Ldelete(f, wrench.c_str(), H5P_DEFAULT), 0);
+                const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+                H5Pset_external(properties, other.c_str(), 0, 6 * 50 * 8);
+                const hsize_t sides[2] = {6, 50};
+                const hid_t space = H5Screate_simple(2, sides, nullptr);
+                H5Dclose(H5Dcreate2(f, wrench.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT));
+                H5Sclose(space);
+                H5Pclose(properties);
+              }),
+              {"is kept in another file"});
+}
+
+TEST(ArchiveReader, RefusesNamesThatAreNoText) {
+  const std::string bodies = std::string(kMocap) + "POSTPROCESSING/";
+  for (const char* name : {"Box\xe9", "Box\x1b[2J", "Box\n", "\u202exoB"}) {
+    const std::string text = complaint([&](hid_t f) {
+      ASSERT_GE(H5Lmove(f, (bodies + "Base005").c_str(), f, (bodies + name).c_str(), H5P_DEFAULT, H5P_DEFAULT), 0);
+    });
+    expect_says(text, {"a name that is not UTF-8, or has control characters"});
+  }
+}
+
 TEST(ArchiveReader, RefusesOtherShapes) {
   expect_says(complaint([](hid_t f) {
                 replace(f, std::string(kForce) + "wrench", {6, 49}, std::vector<double>(294));

@@ -80,5 +80,22 @@ TEST(Visuals, ReadEachMeshFileOnceAndNoneBeyondTheLimit) {
   EXPECT_THROW((void)read_visual_meshes(folder / "absent.urdf", 1000), InputError);
 }
 
+// Meshes and the text go into pages and exports that are given away.
+TEST(Visuals, TakeNoFileThatIsNoMeshAndNoUrdf) {
+  const snug::test::ScratchFolder folder;
+  std::ofstream(folder / "secret") << "a key";
+  std::ofstream(folder / "secret.txt") << "a key";
+  const std::string meshes =
+      "<visual><geometry><mesh filename='secret'/></geometry></visual>"
+      "<visual><geometry><mesh filename='secret.txt'/></geometry></visual>"
+      "<visual><geometry><mesh filename='./secret'/></geometry></visual>";
+  std::ofstream(folder / "r.urdf") << robot_drawn_with(meshes);
+  EXPECT_TRUE(read_visual_meshes(folder / "r.urdf", 1000).empty());
+  for (const char* text : {"", "a key", "<html/>", "<robot>"}) {
+    std::ofstream(folder / "other.urdf") << text;
+    EXPECT_THROW((void)read_visual_meshes(folder / "other.urdf", 1000), InputError) << text;
+  }
+}
+
 }  // namespace
 }  // namespace snug::robot

@@ -191,6 +191,19 @@ TEST_F(ServerTest, AnswersToTheNamesOfThisMachineOnlyAtEveryAddressOfItsOwn) {
   }
 }
 
+TEST_F(ServerTest, AnswersOtherPagesOnlyWhenTheyLinkToIt) {
+  start({kPage, {}, nullptr});
+  const auto status_for = [this](const std::string& site, const std::string& mode) {
+    return status(ask("GET", "/recordings.json",
+                      "Host: localhost\r\nSec-Fetch-Site: " + site + "\r\nSec-Fetch-Mode: " + mode + "\r\n"));
+  };
+  for (const char* site : {"cross-site", "same-site"}) {
+    EXPECT_EQ(status_for(site, "navigate"), 200) << site;
+    for (const char* mode : {"no-cors", "cors", "websocket"}) EXPECT_EQ(status_for(site, mode), 403) << site << mode;
+  }
+  for (const char* site : {"same-origin", "none"}) EXPECT_EQ(status_for(site, "cors"), 200) << site;
+}
+
 int count_of(const std::string& text, const std::string& word) {
   int count = 0;
   for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;

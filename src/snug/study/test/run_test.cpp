@@ -40,6 +40,21 @@ TEST(RunStudy, DoesEveryRowOnceAndMergesTheSameBytesAtAnyNumberOfProcesses) {
   EXPECT_NE(first.find("\n0,0,0,"), std::string::npos);
 }
 
+TEST(MergeCsv, HasNoCellThatASpreadsheetWouldRunAndKeepsLists) {
+  const test::ScratchFolder scratch;
+  const Study study = test::grid(1, 1, 1, "outputs: [a, b, c, d, list]\n");
+  const Folder folder(study, scratch / "f", true);
+  const Verb verb = [](const std::vector<std::string>&) {
+    std::puts(
+        R"j({"a": "=cmd|' /C calc'!A0", "b": "\t=1;=2", "c": "@SUM(1,\"2\")", "d": -1.5, "list": [-1, "x;=y"]})j");
+    return 0;
+  };
+  (void)run_study(study, folder, verb, {});
+  const std::string text = merged(study, folder, scratch / "merged.csv");
+  EXPECT_NE(text.find(R"j(,_cmd|' /C calc'!A0,_=1_=2,"_SUM(1,""2"")",-1.5,"[-1,""x_=y""]",)j"), std::string::npos)
+      << text;
+}
+
 TEST(RunStudy, GoesOnAfterAKillAnywhere) {
   const test::ScratchFolder scratch;
   const Study study = test::grid(10, 2, 8);

@@ -47,6 +47,8 @@ TEST(LogTable, SlipsAreRefusedWithLineAndColumn) {
     std::string text, part;
   } slips[] = {
       {"", "empty"},
+      {std::string(kNames) + "0.0;\xe9\n", "log.csv:2: got the byte 0x"},
+      {"t" + std::string(10000, ';') + "\n1\n", "log.csv:1: got 10001 columns"},
       {"x;y\n1;2\n", "log.csv:1: t"},
       {"t;q\n1;2\n", "no pose and no wrench"},
       {std::string(kNames) + good + "0.0;1;0;0;0;1;2;3;0.1;0.2;0.3;10;20;30;\n", "log.csv:3: t"},
