@@ -123,38 +123,6 @@ inline double worst_residual(const Row* first, const Row* end, const double* u) 
   return worst;
 }
 
-/// A contact law around given impulses: what it answers to a relative velocity, and minus its derivative.
-struct AugmentedLaw {
-  double lambda[3];
-  double slope[9];  ///< row-major
-};
-
-/// The Alart-Curnier law relaxed around `center` with penalties [N s/(m/s)] (contact.md, section 4).
-inline void augmented_law(const Row& row, double penalty_n, double penalty_t, const double* center,
-                          const double (&xi)[3], AugmentedLaw& law) {
-  std::fill_n(law.slope, 9, 0.0);
-  std::fill_n(law.lambda, 3, 0.0);
-  const double c = penalty_n / (1.0 + penalty_n * row.gamma);
-  const double normal = center[0] / (1.0 + penalty_n * row.gamma) - c * (xi[0] - row.target);
-  if (normal <= 0.0) return;
-  const double z1 = center[1] - penalty_t * xi[1], z2 = center[2] - penalty_t * xi[2];
-  const double square = z1 * z1 + z2 * z2, limit = row.mu * normal;
-  law.lambda[0] = normal;
-  law.slope[0] = c;
-  if (square <= limit * limit) {
-    law.lambda[1] = z1, law.lambda[2] = z2;
-    law.slope[4] = law.slope[8] = penalty_t;
-    return;
-  }
-  const double length = std::sqrt(square);
-  const double d1 = z1 / length, d2 = z2 / length, turn = penalty_t * limit / length;
-  law.lambda[1] = limit * d1, law.lambda[2] = limit * d2;
-  law.slope[3] = row.mu * d1 * c, law.slope[6] = row.mu * d2 * c;
-  law.slope[4] = turn * (1.0 - d1 * d1);
-  law.slope[5] = law.slope[7] = -turn * d1 * d2;
-  law.slope[8] = turn * (1.0 - d2 * d2);
-}
-
 /// One sweep of Gauss-Seidel; returns the largest change of relative velocity, m/s.
 double sweep_rows(Row* first, Row* end, double* u, bool is_forward) noexcept;
 
