@@ -8,34 +8,7 @@
 namespace snug::physics::internal {
 namespace {
 
-constexpr int kMaxPatchRows = 8;  ///< whose products are made at once
-
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-/// M += the block whose columns lie behind each other at `stride`.
-void add_block(const PanelBlock& M, const double* block, std::ptrdiff_t stride) {
-  if (M.is_transposed) {
-    for (int j = 0; j < 6; ++j, block += stride) {
-      for (int i = 0; i < 6; ++i) M.data[j + i * M.stride] += block[i];
-    }
-    return;
-  }
-  double* column = M.data;
-  for (int j = 0; j < 6; ++j, column += M.stride, block += stride) {
-    for (int i = 0; i < 6; i += 2) store(column + i, load(column + i) + load(block + i));
-  }
-}
-
-/// slope * rows.
-void multiply(const double (&slope)[9], const double (&rows)[3][6], double* out) {
-  for (int i = 0; i < 3; ++i) {
-    const Pair s0{slope[3 * i], slope[3 * i]}, s1{slope[3 * i + 1], slope[3 * i + 1]},
-        s2{slope[3 * i + 2], slope[3 * i + 2]};
-    for (int k = 0; k < 6; k += 2) {
-      store(out + 6 * i + k, load(rows[0] + k) * s0 + load(rows[1] + k) * s1 + load(rows[2] + k) * s2);
-    }
-  }
-}
 
 }  // namespace
 
@@ -61,11 +34,11 @@ void ContactSystem::add_body(int body) {
 
 void ContactSystem::add_row(const Row& row) {
   const bool is_same = !patches_.empty() && patches_.back().ia == row.ia && patches_.back().ib == row.ib &&
-                       patches_.back().count < kMaxPatchRows;
+                       patches_.back().count < kMaxContactTerms;
   if (!is_same) {
     add_body(row.ia);
     add_body(row.ib);
-    patches_.push_back({row_count_, 0, row.ia, row.ib, -1, {}, {}, {}, {}});
+    patches_.push_back({row_count_, 0, row.ia, row.ib, -1, {}});
     is_analyzed_ = false;
   }
   ++patches_.back().count;
@@ -79,11 +52,11 @@ bool ContactSystem::analyze() {
   }
   if (!solver_.analyze()) return false;
   for (RowPatch& patch : patches_) {
-    if (patch.ia >= 0) patch.aa = solver_.diagonal(place_[at(patch.ia)]);
-    if (patch.ib >= 0) patch.bb = solver_.diagonal(place_[at(patch.ib)]);
+    if (patch.ia >= 0) patch.blocks.aa = solver_.diagonal(place_[at(patch.ia)]);
+    if (patch.ib >= 0) patch.blocks.bb = solver_.diagonal(place_[at(patch.ib)]);
     if (patch.connection < 0) continue;
     const BlockSolver::Coupling coupling = solver_.coupling(patch.connection);
-    patch.ab = coupling.ij, patch.ba = coupling.ji;
+    patch.blocks.ab = coupling.ij, patch.blocks.ba = coupling.ji;
   }
   is_analyzed_ = true;
   return true;
@@ -97,36 +70,18 @@ bool ContactSystem::factorize(const Row* rows, const NewtonRow* newton) {
   return true;
 }
 
-/// What the contacts of one pair of bodies bring in: [a b]^T slope a and [a b]^T slope b, each one product.
+/// What the contacts of one pair of bodies bring in.
 void ContactSystem::add_patch(const RowPatch& patch, const Row* rows, const NewtonRow* newton) {
-  alignas(64) double left[3 * kMaxPatchRows * 12], force_a[3 * kMaxPatchRows * 6], force_b[3 * kMaxPatchRows * 6];
-  alignas(64) double product[12 * 6];
-  const Row* row = rows + patch.first;
-  newton += patch.first;
+  ContactTerm terms[kMaxContactTerms];
   const bool is_pair = patch.connection >= 0;
-  const int width = is_pair ? 12 : 6;
-  int depth = 0;
-  for (int i = 0; i < patch.count; ++i, ++row, ++newton) {
-    const double(&slope)[9] = newton->law.slope;
-    if (slope[0] <= 0.0) continue;
-    const double(&own)[3][6] = row->ia >= 0 ? row->a : row->b;
-    double* to = left + depth * width;
-    for (int k = 0; k < 3; ++k, to += width) {
-      std::copy_n(own[k], 6, to);
-      if (is_pair) std::copy_n(row->b[k], 6, to + 6);
-    }
-    multiply(slope, own, force_a + 6 * depth);
-    if (is_pair) multiply(slope, row->b, force_b + 6 * depth);
-    depth += 3;
+  const int column = is_pair || patch.ia >= 0 ? 0 : 6;
+  int count = 0;
+  for (int i = patch.first; i < patch.first + patch.count; ++i) {
+    if (newton[i].law.slope[0] > 0.0) terms[count++] = {rows[i].j[0] + column, newton[i].law.slope};
   }
-  if (depth == 0) return;
-  set_product({width, depth, left, width, force_a, 1, 6, product, width});
-  if (!is_pair) return add_block(patch.ia >= 0 ? patch.aa : patch.bb, product, width);
-  add_block(patch.aa, product, width);
-  add_block(patch.ba, product + 6, width);
-  set_product({width, depth, left, width, force_b, 1, 6, product, width});
-  add_block(patch.ab, product, width);
-  add_block(patch.bb, product + 6, width);
+  if (count == 0) return;
+  if (is_pair) return add_contact_terms(terms, count, patch.blocks);
+  add_contact_terms(terms, count, patch.ia >= 0 ? patch.blocks.aa : patch.blocks.bb);
 }
 
 void ContactSystem::solve(const double* y, double* x) {

@@ -25,7 +25,7 @@ struct RowPatch {
   int first = 0, count = 0;
   int ia = -1, ib = -1;
   int connection = -1;  ///< of the two bodies, or -1 when only one moves
-  PanelBlock aa, bb, ab, ba;
+  PairBlocks blocks;
 };
 
 /// I + sum (J T)^T S (J T) in blocks of the bodies, S the slopes of the laws, factorised. Never allocates after

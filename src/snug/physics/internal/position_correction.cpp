@@ -39,8 +39,8 @@ double PositionCorrection::find_errors(const StepSettings& settings, const Row* 
     const bool is_swept = contact.point < 0;  // not an old overlap
     worst = std::max(worst, row->is_bounce ? std::abs(error) : error);
     Normal& normal = normals_[count_];
-    std::copy_n(row->a[0], 6, normal.a);
-    std::copy_n(row->b[0], 6, normal.b);
+    std::copy_n(row->a(0), 6, normal.a);
+    std::copy_n(row->b(0), 6, normal.b);
     normal.W = row->W[0];
     normal.wanted = is_swept ? error : std::min(error, cap);
     normal.lambda = 0.0;

@@ -110,8 +110,8 @@ void RowGroups::sort_rows() {
 
 void RowGroups::add_idle(const Row& row, int index) {
   IdleRow& idle = idle_[idle_count_++];
-  std::copy_n(row.a[0], 6, idle.a);
-  std::copy_n(row.b[0], 6, idle.b);
+  std::copy_n(row.a(0), 6, idle.a);
+  std::copy_n(row.b(0), 6, idle.b);
   idle.least = row.target - row.bias[0];
   idle.ia = row.ia;
   idle.ib = row.ib;
