@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "snug/physics/internal/block_pattern.hpp"
+#include "snug/physics/internal/panel_kernels.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::physics::internal {
@@ -21,13 +22,6 @@ class LazyStore {
     void operator()(double* data) const;
   };
   std::unique_ptr<double, Free> data_;
-};
-
-/// A 6 x 6 block within a panel, stored by columns, or its transpose so.
-struct PanelBlock {
-  double* data = nullptr;
-  std::ptrdiff_t stride = 6;
-  bool is_transposed = false;
 };
 
 /// LU factorisation of matrices I + sum J^T S J, whose pattern is symmetric and whose blocks on the diagonal stay

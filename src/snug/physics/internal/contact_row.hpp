@@ -12,24 +12,26 @@ namespace snug::physics::internal {
 enum class RowKind : std::uint8_t { Contact, Rolling, Spinning };
 
 /// One frictional contact in whitened coordinates: rows n, t1, t2.
-struct alignas(16) Row {
-  double a[3][6];  ///< of body A (zero when A does not move)
-  double b[3][6];
-  double W[6];  ///< Delassus block: nn, n1, n2, 11, 12, 22 (with regularisation in nn)
+struct alignas(64) Row {
+  double j[3][12];      ///< J T: of body A, then of B; of one that does not move without meaning
+  double lambda[3];     ///< impulses, N s
+  double bias[3];       ///< relative velocity from kinematic bodies, m/s
+  double target;        ///< least allowed normal velocity (regularised when compliant), m/s
+  std::int32_t ia, ib;  ///< active body or -1
+  double W[6];          ///< Delassus block: nn, n1, n2, 11, 12, 22 (with regularisation in nn)
   double W_inverse[6];
-  double lambda[3];  ///< impulses, N s
-  double bias[3];    ///< relative velocity from kinematic bodies, m/s
-  double target;     ///< least allowed normal velocity (regularised when compliant), m/s
-  double gamma;      ///< compliance in nn, (m/s)/(N s)
+  double gamma;  ///< compliance in nn, (m/s)/(N s)
   double mu;
   double step_t;         ///< 1 / largest eigenvalue of the tangential block
   double gap_end;        ///< wanted gap after the step, m
-  std::int32_t ia, ib;   ///< active body or -1
   std::int32_t contact;  ///< turning: the first of the pair
   RowKind kind;
   bool is_rigid;
   bool is_bounce;
   bool is_changed;  ///< lambda is not what the state remembers
+
+  [[nodiscard]] const double* a(int axis) const { return j[axis]; }
+  [[nodiscard]] const double* b(int axis) const { return j[axis] + 6; }
 };
 
 using Pair = double __attribute__((vector_size(16)));
@@ -41,10 +43,11 @@ inline Pair dot(const double* row, const double* u) {
   return load(row) * load(u) + load(row + 2) * load(u + 2) + load(row + 4) * load(u + 4);
 }
 
-inline void add_scaled(double* u, const double (&rows)[3][6], const double (&d)[3]) {
+/// u += rows^T d, rows that lie 12 numbers behind each other.
+inline void add_scaled(double* u, const double* rows, const double (&d)[3]) {
   const Pair d0{d[0], d[0]}, d1{d[1], d[1]}, d2{d[2], d[2]};
   for (int k = 0; k < 6; k += 2) {
-    store(u + k, load(u + k) + (load(rows[0] + k) * d0 + load(rows[1] + k) * d1 + load(rows[2] + k) * d2));
+    store(u + k, load(u + k) + (load(rows + k) * d0 + load(rows + 12 + k) * d1 + load(rows + 24 + k) * d2));
   }
 }
 
@@ -52,11 +55,11 @@ inline void contact_velocity(const Row& row, const double* u, double (&xi)[3]) {
   Pair s0{}, s1{}, s2{};
   if (row.ia >= 0) {
     const double* ua = u + 6 * row.ia;
-    s0 = dot(row.a[0], ua), s1 = dot(row.a[1], ua), s2 = dot(row.a[2], ua);
+    s0 = dot(row.a(0), ua), s1 = dot(row.a(1), ua), s2 = dot(row.a(2), ua);
   }
   if (row.ib >= 0) {
     const double* ub = u + 6 * row.ib;
-    s0 += dot(row.b[0], ub), s1 += dot(row.b[1], ub), s2 += dot(row.b[2], ub);
+    s0 += dot(row.b(0), ub), s1 += dot(row.b(1), ub), s2 += dot(row.b(2), ub);
   }
   xi[0] = row.bias[0] + (s0[0] + s0[1]);
   xi[1] = row.bias[1] + (s1[0] + s1[1]);
@@ -66,14 +69,14 @@ inline void contact_velocity(const Row& row, const double* u, double (&xi)[3]) {
 /// Relative velocity along one axis.
 inline double relative_velocity(const Row& row, int axis, const double* u) {
   Pair s{};
-  if (row.ia >= 0) s = dot(row.a[axis], u + 6 * row.ia);
-  if (row.ib >= 0) s += dot(row.b[axis], u + 6 * row.ib);
+  if (row.ia >= 0) s = dot(row.a(axis), u + 6 * row.ia);
+  if (row.ib >= 0) s += dot(row.b(axis), u + 6 * row.ib);
   return row.bias[axis] + (s[0] + s[1]);
 }
 
 inline void apply(const Row& row, const double (&d)[3], double* u) {
-  if (row.ia >= 0) add_scaled(u + 6 * row.ia, row.a, d);
-  if (row.ib >= 0) add_scaled(u + 6 * row.ib, row.b, d);
+  if (row.ia >= 0) add_scaled(u + 6 * row.ia, row.a(0), d);
+  if (row.ib >= 0) add_scaled(u + 6 * row.ib, row.b(0), d);
 }
 
 inline void project_to_disc(double radius, double& x, double& y) {
@@ -121,38 +124,6 @@ inline double worst_residual(const Row* first, const Row* end, const double* u) 
   double worst = 0.0;
   for (const Row* row = first; row != end; ++row) worst = std::max(worst, natural_map(*row, u));
   return worst;
-}
-
-/// A contact law around given impulses: what it answers to a relative velocity, and minus its derivative.
-struct AugmentedLaw {
-  double lambda[3];
-  double slope[9];  ///< row-major
-};
-
-/// The Alart-Curnier law relaxed around `center` with penalties [N s/(m/s)] (contact.md, section 4).
-inline void augmented_law(const Row& row, double penalty_n, double penalty_t, const double* center,
-                          const double (&xi)[3], AugmentedLaw& law) {
-  std::fill_n(law.slope, 9, 0.0);
-  std::fill_n(law.lambda, 3, 0.0);
-  const double c = penalty_n / (1.0 + penalty_n * row.gamma);
-  const double normal = center[0] / (1.0 + penalty_n * row.gamma) - c * (xi[0] - row.target);
-  if (normal <= 0.0) return;
-  const double z1 = center[1] - penalty_t * xi[1], z2 = center[2] - penalty_t * xi[2];
-  const double square = z1 * z1 + z2 * z2, limit = row.mu * normal;
-  law.lambda[0] = normal;
-  law.slope[0] = c;
-  if (square <= limit * limit) {
-    law.lambda[1] = z1, law.lambda[2] = z2;
-    law.slope[4] = law.slope[8] = penalty_t;
-    return;
-  }
-  const double length = std::sqrt(square);
-  const double d1 = z1 / length, d2 = z2 / length, turn = penalty_t * limit / length;
-  law.lambda[1] = limit * d1, law.lambda[2] = limit * d2;
-  law.slope[3] = row.mu * d1 * c, law.slope[6] = row.mu * d2 * c;
-  law.slope[4] = turn * (1.0 - d1 * d1);
-  law.slope[5] = law.slope[7] = -turn * d1 * d2;
-  law.slope[8] = turn * (1.0 - d2 * d2);
 }
 
 /// One sweep of Gauss-Seidel; returns the largest change of relative velocity, m/s.

@@ -36,23 +36,24 @@ Side side_of(const Scratch& work, const BodyWork& body, const Patch& patch, cons
   return side;
 }
 
-void fill_side(const Side& side, const Patch& patch, const Vector3& p_WQ, double (&out)[3][6]) {
+/// From `column` on.
+void fill_side(const Side& side, const Patch& patch, const Vector3& p_WQ, int column, Row& row) {
   const Vector3 arm = p_WQ - side.p_WBcm;
   if (side.whitening->is_dense) {
     const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
     for (int i = 0; i < 3; ++i) {
       Vector6 j;
       j << side.sign * *axes[i], arm.cross(side.sign * *axes[i]);
-      Eigen::Map<Vector6> row(out[i]);
-      row = side.whitening->dense.triangularView<Eigen::Upper>().transpose() * j;
+      Eigen::Map<Vector6> out(row.j[i] + column);
+      out = side.whitening->dense.triangularView<Eigen::Upper>().transpose() * j;
     }
     return;
   }
   const Eigen::Matrix<double, 9, 1> angular = side.angular * arm;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      out[i][j] = side.linear[i][j];
-      out[i][3 + j] = angular[3 * i + j];
+      row.j[i][column + j] = side.linear[i][j];
+      row.j[i][column + 3 + j] = angular[3 * i + j];
     }
   }
 }
@@ -69,8 +70,8 @@ void add_bias(const BodyWork& body, const Patch& patch, const Vector3& arm, doub
 double normal_mobility(const Row& row, bool turns) {
   double sum = 0.0;
   for (int k = 0; k < (turns ? 6 : 3); ++k) {
-    if (row.ia >= 0) sum += row.a[0][k] * row.a[0][k];
-    if (row.ib >= 0) sum += row.b[0][k] * row.b[0][k];
+    if (row.ia >= 0) sum += row.a(0)[k] * row.a(0)[k];
+    if (row.ib >= 0) sum += row.b(0)[k] * row.b(0)[k];
   }
   return sum;
 }
@@ -164,8 +165,8 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
         row->contact = k;
         row->kind = RowKind::Contact;
         std::fill_n(row->bias, 3, 0.0);
-        if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, row->a);
-        if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, row->b);
+        if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, 0, *row);
+        if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, 6, *row);
         if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ - a.p_WBcm - patch.way_a, -1.0, *row);
         if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ - b.p_WBcm - patch.way_b, 1.0, *row);
         if (patch.has_belt) row->bias[1] += patch.t1.dot(patch.belt_W), row->bias[2] += patch.t2.dot(patch.belt_W);

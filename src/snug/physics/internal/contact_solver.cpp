@@ -81,8 +81,8 @@ void finish_row(Row& row) noexcept {
   double* W = row.W;
   const auto product = [&row](int i, int j) {
     Pair sum{};
-    if (row.ia >= 0) sum = dot(row.a[i], row.a[j]);
-    if (row.ib >= 0) sum += dot(row.b[i], row.b[j]);
+    if (row.ia >= 0) sum = dot(row.a(i), row.a(j));
+    if (row.ib >= 0) sum += dot(row.b(i), row.b(j));
     return sum[0] + sum[1];
   };
   W[0] = product(0, 0) + row.gamma, W[1] = product(0, 1), W[2] = product(0, 2);

@@ -23,4 +23,27 @@ void set_product(const PanelProduct& p) noexcept;
 /// C -= A B^T, likewise; C must not overlap A or B.
 void subtract_product(const PanelProduct& p) noexcept;
 
+/// A 6 x 6 block within a panel, stored by columns, or its transpose so.
+struct PanelBlock {
+  double* data = nullptr;
+  std::ptrdiff_t stride = 6;
+  bool is_transposed = false;
+};
+
+/// One contact of two bodies: its rows J (3 x 12, those of A first) and the slope S of its law (3 x 3), both by rows.
+struct ContactTerm {
+  const double* j;
+  const double* slope;
+};
+constexpr int kMaxContactTerms = 8;
+
+/// The blocks to which the contacts of two bodies A and B add.
+struct PairBlocks {
+  PanelBlock aa, ab, ba, bb;
+};
+/// Adds sum J^T (S J) to the blocks. The order of sums does not depend on the processor. At most kMaxContactTerms.
+void add_contact_terms(const ContactTerm* terms, int count, const PairBlocks& blocks) noexcept;
+/// The same where only one of the bodies moves: `j` of the terms are its six columns of each row.
+void add_contact_terms(const ContactTerm* terms, int count, const PanelBlock& block) noexcept;
+
 }  // namespace snug::physics::internal

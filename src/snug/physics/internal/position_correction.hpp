@@ -25,29 +25,36 @@ class PositionCorrection {
  private:
   /// The normal axis of a rigid contact.
   struct alignas(16) Normal {
-    double a[6], b[6];
+    double a[6], b[6];  ///< zero of a body that does not move
     double W;
     double wanted;  ///< m, displacement
     double lambda;  ///< of the displacement, in units of impulses
     bool is_bounce;
   };
-  struct Bodies {
+  /// Normals behind each other with the same bodies.
+  struct Run {
     int a, b;  ///< active bodies, or -1
+    std::size_t first, end;
+  };
+  struct Sweep {
+    bool is_bounce_pulled;
+    double relaxation;  ///< of the step to each normal's wanted displacement
+    double least;       ///< m, of a change after which the neighbours are visited again
   };
 
   /// Returns the largest displacement wanted, m.
   double find_errors(const StepSettings& settings, const Row* first, const Row* end, const Contact* contacts,
                      const double* u);
-  /// Returns the largest change, m. Bodies that it moves by more than `least` have their flag set.
-  double sweep(bool is_bounce_pulled, double least, double* shift);
-  double visit(std::size_t i, bool is_bounce_pulled, double* shift);
+  /// Returns the largest change, m.
+  double sweep(const Sweep& sweep, double* shift);
+  double visit(const Run& run, const Sweep& sweep, double* shift);
   void take_moved();
 
   std::unique_ptr<Normal[]> normals_;
-  std::unique_ptr<Bodies[]> bodies_;  ///< of each normal, apart: they are looked through for those to visit
   std::size_t count_ = 0;
-  std::vector<std::size_t> visited_;
-  std::vector<char> has_moved_;  ///< of each active body, and one more that never does
+  std::vector<Run> runs_;
+  std::vector<std::size_t> visited_;  ///< runs
+  std::vector<char> has_moved_;       ///< of each active body, and one more that never does
 };
 
 }  // namespace snug::physics::internal

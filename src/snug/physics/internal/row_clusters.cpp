@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "snug/physics/internal/contact_newton.hpp"
+#include "snug/physics/internal/contact_system.hpp"
 
 namespace snug::physics::internal {
 namespace {
@@ -16,6 +16,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 RowClusters::RowClusters(std::size_t bodies, std::size_t rows)
     : ring_(bodies, -1), parent_(bodies), cluster_(bodies), copies_(new Row[rows]), source_(new int[rows]) {
   ends_.reserve(bodies);
+  bearing_.reserve(rows);
 }
 
 std::span<Row> RowClusters::operator[](std::size_t cluster) {
@@ -27,8 +28,6 @@ void RowClusters::put_back(Row* rows) const {
   for (std::size_t i = 0; i < ends_.back(); ++i) std::copy_n(copies_[i].lambda, 3, rows[source_[i]].lambda);
 }
 
-bool RowClusters::has_body(int body) const { return body < 0 || ring_[at(body)] >= 0; }
-
 int RowClusters::root_of(int body) {
   while (parent_[at(body)] != body) {
     int& up = parent_[at(body)];
@@ -37,72 +36,77 @@ int RowClusters::root_of(int body) {
   return body;
 }
 
-void RowClusters::mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const NewtonPatch> patches,
+/// Patches that bear or are unsolved; the bodies of the unsolved make ring 0.
+void RowClusters::mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches,
                                 double residual) {
-  for (const NewtonPatch& patch : patches) {
-    for (const int body : {rows[patch.first].ia, rows[patch.first].ib}) {
+  bearing_.clear();
+  for (const RowPatch& patch : patches) {
+    for (const int body : {patch.ia, patch.ib}) {
       if (body >= 0) ring_[at(body)] = -1, parent_[at(body)] = body, cluster_[at(body)] = -1;
     }
   }
-  for (const NewtonPatch& patch : patches) {
-    const NewtonRow* first = newton + patch.first;
-    if (std::none_of(first, first + patch.count, [&](const NewtonRow& row) { return row.residual > residual; }))
-      continue;
-    for (const int body : {rows[patch.first].ia, rows[patch.first].ib}) {
+  for (const RowPatch& patch : patches) {
+    bool bears = false, is_unsolved = false;
+    for (int i = patch.first; i < patch.first + patch.count; ++i) {
+      bears |= rows[i].lambda[0] > 0.0 || newton[i].residual > 0.0;
+      is_unsolved |= newton[i].residual > residual;
+    }
+    if (bears) bearing_.push_back(&patch);
+    if (!is_unsolved) continue;
+    for (const int body : {patch.ia, patch.ib}) {
       if (body >= 0) ring_[at(body)] = 0;
     }
   }
 }
 
-void RowClusters::add_ring(const Row* rows, std::span<const NewtonPatch> patches, int ring) {
-  for (const NewtonPatch& patch : patches) {
-    const int a = rows[patch.first].ia, b = rows[patch.first].ib;
+void RowClusters::add_ring(int ring) {
+  for (const RowPatch* patch : bearing_) {
+    const int a = patch->ia, b = patch->ib;
     if (a < 0 || b < 0) continue;
     if (ring_[at(a)] == ring - 1 && ring_[at(b)] < 0) ring_[at(b)] = ring;
     if (ring_[at(b)] == ring - 1 && ring_[at(a)] < 0) ring_[at(a)] = ring;
   }
 }
 
-/// Bodies that share a row of a cluster get one root. Returns the number of such rows.
-std::size_t RowClusters::join(const Row* rows, std::span<const NewtonPatch> patches) {
+/// Patches between bodies of rings stay; such bodies get one root. Returns the number of their rows.
+std::size_t RowClusters::join() {
+  const auto has_body = [&](int body) { return body < 0 || ring_[at(body)] >= 0; };
+  std::erase_if(bearing_, [&](const RowPatch* patch) { return !has_body(patch->ia) || !has_body(patch->ib); });
   std::size_t count = 0;
-  for (const NewtonPatch& patch : patches) {
-    const Row& row = rows[patch.first];
-    if (!has_row(row)) continue;
-    count += at(patch.count);
-    if (row.ia < 0 || row.ib < 0) continue;
-    const int a = root_of(row.ia), b = root_of(row.ib);
+  for (const RowPatch* patch : bearing_) {
+    count += at(patch->count);
+    if (patch->ia < 0 || patch->ib < 0) continue;
+    const int a = root_of(patch->ia), b = root_of(patch->ib);
     parent_[at(std::max(a, b))] = std::min(a, b);
   }
   return count;
 }
 
-void RowClusters::copy_rows(const Row* rows, std::span<const NewtonPatch> patches) {
-  const auto root_of_row = [&](const Row& row) { return at(root_of(std::max(row.ia, row.ib))); };
+void RowClusters::copy_rows(const Row* rows) {
+  const auto cluster_of = [&](const RowPatch& patch) -> int& {
+    return cluster_[at(root_of(std::max(patch.ia, patch.ib)))];
+  };
   ends_.clear();
-  for (const NewtonPatch& patch : patches) {  // counts first
-    const Row& row = rows[patch.first];
-    if (!has_row(row)) continue;
-    int& cluster = cluster_[root_of_row(row)];
+  for (const RowPatch* patch : bearing_) {  // counts first
+    int& cluster = cluster_of(*patch);
     if (cluster < 0) cluster = static_cast<int>(ends_.size()), ends_.push_back(0);
-    ends_[at(cluster)] += at(patch.count);
+    ends_[at(cluster)] += at(patch->count);
   }
   std::size_t begin = 0;
   for (std::size_t& end : ends_) begin += std::exchange(end, begin);
-  for (const NewtonPatch& patch : patches) {
-    if (!has_row(rows[patch.first])) continue;
-    std::size_t& end = ends_[at(cluster_[root_of_row(rows[patch.first])])];
-    for (int i = patch.first; i < patch.first + patch.count; ++i, ++end) copies_[end] = rows[i], source_[end] = i;
+  for (const RowPatch* patch : bearing_) {
+    std::size_t& end = ends_[at(cluster_of(*patch))];
+    for (int i = patch->first; i < patch->first + patch->count; ++i, ++end) copies_[end] = rows[i], source_[end] = i;
   }
 }
 
-bool RowClusters::find(const Row* rows, const NewtonRow* newton, std::span<const NewtonPatch> patches, double residual,
+bool RowClusters::find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
                        int rings) {
   mark_unsolved(rows, newton, patches, residual);
-  for (int ring = 1; ring <= rings; ++ring) add_ring(rows, patches, ring);
-  const NewtonPatch& last = patches.back();
-  if (2 * join(rows, patches) > at(last.first + last.count)) return false;
-  copy_rows(rows, patches);
+  for (int ring = 1; ring <= rings; ++ring) add_ring(ring);
+  const RowPatch& last = patches.back();
+  if (2 * join() > at(last.first + last.count)) return false;
+  copy_rows(rows);
   return true;
 }
 

@@ -10,7 +10,7 @@
 
 namespace snug::physics::internal {
 
-struct NewtonPatch;
+struct RowPatch;
 struct NewtonRow;
 
 /// Rows near those whose residual is too large, in groups that share no body: each can be solved alone, with the
@@ -21,8 +21,8 @@ class RowClusters {
 
   /// Takes the bodies of all rows above `residual` and, `rings` times, what touches these; then the rows between them.
   /// False when that is more than half of the island: then it has no parts.
-  [[nodiscard]] bool find(const Row* rows, const NewtonRow* newton, std::span<const NewtonPatch> patches,
-                          double residual, int rings);
+  [[nodiscard]] bool find(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual,
+                          int rings);
   /// Copies of the rows of each, in the order of the island.
   [[nodiscard]] std::size_t count() const { return ends_.size(); }
   [[nodiscard]] std::span<Row> operator[](std::size_t cluster);
@@ -30,18 +30,17 @@ class RowClusters {
   void put_back(Row* rows) const;
 
  private:
-  [[nodiscard]] bool has_body(int body) const;
-  [[nodiscard]] bool has_row(const Row& row) const { return has_body(row.ia) && has_body(row.ib); }
   [[nodiscard]] int root_of(int body);
-  void mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const NewtonPatch> patches, double residual);
-  void add_ring(const Row* rows, std::span<const NewtonPatch> patches, int ring);
-  [[nodiscard]] std::size_t join(const Row* rows, std::span<const NewtonPatch> patches);
-  void copy_rows(const Row* rows, std::span<const NewtonPatch> patches);
+  void mark_unsolved(const Row* rows, const NewtonRow* newton, std::span<const RowPatch> patches, double residual);
+  void add_ring(int ring);
+  [[nodiscard]] std::size_t join();
+  void copy_rows(const Row* rows);
 
-  std::vector<int> ring_;          ///< of each body: the ring that took it, or -1
-  std::vector<int> parent_;        ///< union-find over bodies
-  std::vector<int> cluster_;       ///< of each root, or -1
-  std::vector<std::size_t> ends_;  ///< of each cluster, in copies_
+  std::vector<const RowPatch*> bearing_;  ///< open ones join nothing and are left out
+  std::vector<int> ring_;                 ///< of each body: the ring that took it, or -1
+  std::vector<int> parent_;               ///< union-find over bodies
+  std::vector<int> cluster_;              ///< of each root, or -1
+  std::vector<std::size_t> ends_;         ///< of each cluster, in copies_
   std::unique_ptr<Row[]> copies_;
   std::unique_ptr<int[]> source_;  ///< of each copy: its row
 };

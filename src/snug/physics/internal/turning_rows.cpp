@@ -9,7 +9,7 @@ namespace snug::physics::internal {
 namespace {
 
 /// Whitened row of the angular velocity along d.
-void fill_axis(const Whitening& whitening, const Vector3& d, double (&out)[6]) {
+void fill_axis(const Whitening& whitening, const Vector3& d, double* out) {
   if (whitening.is_dense) {
     Vector6 j;
     j << Vector3::Zero(), d;
@@ -34,17 +34,19 @@ double lever_of(const Scratch& work, const Patch& patch) {
   return std::max(lever, 1e-3);
 }
 
-/// The axes of one side, which has sign -1 for A and 1 for B.
-void add_side(const Scratch& work, const BodyWork& body, const std::array<Vector3, 2>& axes, double sign,
-              double (&out)[3][6], Row& row) {
+/// The axes of one side, which has sign -1 for A and 1 for B, from `column` on.
+void add_side(const Scratch& work, const BodyWork& body, const std::array<Vector3, 2>& axes, double sign, int column,
+              Row& row) {
   if (body.active < 0) {
     if (!body.is_moving) return;
     for (int i = 0; i < 2; ++i) row.bias[i + 1] += sign * axes[static_cast<std::size_t>(i)].dot(body.angular_start);
     return;
   }
   const Whitening& whitening = work.whitening[static_cast<std::size_t>(body.active)];
-  std::fill_n(out[0], 6, 0.0);
-  for (int i = 0; i < 2; ++i) fill_axis(whitening, sign * axes[static_cast<std::size_t>(i)], out[i + 1]);
+  std::fill_n(row.j[0] + column, 6, 0.0);
+  for (int i = 0; i < 2; ++i) {
+    fill_axis(whitening, sign * axes[static_cast<std::size_t>(i)], row.j[i + 1] + column);
+  }
 }
 
 /// Everything but impulse and target. The normal axis is none: its law, gamma lambda = target, holds the impulse that
@@ -62,12 +64,12 @@ void fill_turning_row(const Scratch& work, const Patch& patch, double coefficien
   std::fill_n(row.bias, 3, 0.0);
   std::array<Vector3, 2> axes = {lever * patch.t1, lever * patch.t2};
   if (row.kind == RowKind::Spinning) axes = {lever * patch.n, Vector3::Zero()};
-  add_side(work, a, axes, -1.0, row.a, row);
-  add_side(work, b, axes, 1.0, row.b, row);
+  add_side(work, a, axes, -1.0, 0, row);
+  add_side(work, b, axes, 1.0, 6, row);
   row.gamma = 0.0;
   for (int k = 0; k < 6; ++k) {
-    if (row.ia >= 0) row.gamma += row.a[1][k] * row.a[1][k];
-    if (row.ib >= 0) row.gamma += row.b[1][k] * row.b[1][k];
+    if (row.ia >= 0) row.gamma += row.a(1)[k] * row.a(1)[k];
+    if (row.ib >= 0) row.gamma += row.b(1)[k] * row.b(1)[k];
   }
   finish_row(row);
 }

@@ -1,0 +1,164 @@
+// RowGroups: measures the rows of an island, joins bodies that bear on each other, sorts rows by group.
+#include "snug/physics/internal/row_groups.hpp"
+
+#include <algorithm>
+
+namespace snug::physics::internal {
+namespace {
+
+constexpr int kNone = -1, kUnsolved = -2;  // of a root
+/// m/s, by which an idle contact opens at least. Those that hardly open are about to close.
+constexpr double kIdleSpeed = 1e-2;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+RowGroups::RowGroups(std::size_t bodies, std::size_t rows)
+    : state_(new State[rows]),
+      parent_(bodies),
+      group_(bodies),
+      order_(new int[rows]),
+      copies_(new Row[rows]),
+      source_(new int[rows]),
+      idle_(new IdleRow[rows]) {
+  groups_.reserve(bodies);
+}
+
+int RowGroups::root_of(int body) {
+  while (parent_[at(body)] != body) {
+    int& up = parent_[at(body)];
+    body = up = parent_[at(up)];
+  }
+  return body;
+}
+
+void RowGroups::begin_bodies(const Row* first, const Row* end) {
+  for (const Row* row = first; row != end; ++row) {
+    for (const int body : {row->ia, row->ib}) {
+      if (body >= 0) parent_[at(body)] = body, group_[at(body)] = kNone;
+    }
+  }
+}
+
+double RowGroups::find(Row* first, Row* end, const double* u, double residual) {
+  first_ = first;
+  row_count_ = static_cast<std::size_t>(end - first);
+  begin_bodies(first, end);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < row_count_; ++i) {
+    const Row& row = first[i];
+    const bool is_open = stays_open(row, u);
+    state_[i] = is_open && relative_velocity(row, 0, u) >= row.target + kIdleSpeed ? State::Idle : State::Bears;
+    if (state_[i] == State::Idle) continue;
+    int root = root_of(std::max(row.ia, row.ib));
+    if (row.ia >= 0 && row.ib >= 0) {
+      const int other = root_of(std::min(row.ia, row.ib));
+      if (group_[at(other)] == kUnsolved || group_[at(root)] == kUnsolved) {
+        group_[at(other)] = group_[at(root)] = kUnsolved;
+      }
+      parent_[at(std::max(root, other))] = std::min(root, other);
+      root = std::min(root, other);
+    }
+    if (is_open) continue;
+    const double miss = natural_map(row, u);
+    worst = std::max(worst, miss);
+    if (miss > residual) group_[at(root)] = kUnsolved;
+  }
+  number_groups();
+  return worst;
+}
+
+int RowGroups::group_of(const Row& row) {
+  const int a = row.ia >= 0 ? group_[at(root_of(row.ia))] : kNone;
+  const int b = row.ib >= 0 ? group_[at(root_of(row.ib))] : kNone;
+  if (row.ia < 0) return b;
+  return row.ib < 0 || a == b ? a : kNone;  // between two groups: of none
+}
+
+/// Groups in the order of their first rows, and the rows of each.
+void RowGroups::number_groups() {
+  groups_.clear();
+  for (std::size_t i = 0; i < row_count_; ++i) {
+    if (state_[i] == State::Idle) continue;
+    int& group = group_[at(root_of(std::max(first_[i].ia, first_[i].ib)))];
+    if (group == kNone) continue;
+    if (group == kUnsolved) group = static_cast<int>(groups_.size()), groups_.push_back({});
+    ++groups_[at(group)].rows;
+  }
+  sort_rows();
+}
+
+void RowGroups::sort_rows() {
+  for (std::size_t i = 0; i < row_count_; ++i) {
+    const int group = state_[i] == State::Idle ? group_of(first_[i]) : kNone;
+    if (group >= 0) ++groups_[at(group)].idle;
+  }
+  std::size_t begin = 0;
+  for (Group& group : groups_) {
+    group.end = begin;  // of its rows so far, until all are there
+    begin += group.rows + group.idle;
+  }
+  for (const State state : {State::Bears, State::Idle}) {
+    for (std::size_t i = 0; i < row_count_; ++i) {
+      if (state_[i] != state) continue;
+      const int group = group_of(first_[i]);
+      if (group >= 0) order_[groups_[at(group)].end++] = static_cast<int>(i);
+    }
+  }
+}
+
+void RowGroups::add_idle(const Row& row, int index) {
+  IdleRow& idle = idle_[idle_count_++];
+  std::copy_n(row.a(0), 6, idle.a);
+  std::copy_n(row.b(0), 6, idle.b);
+  idle.least = row.target - row.bias[0];
+  idle.ia = row.ia;
+  idle.ib = row.ib;
+  idle.row = index;
+}
+
+std::span<Row> RowGroups::open(std::size_t group) {
+  const Group& open = groups_[group];
+  copy_count_ = idle_count_ = 0;
+  if (open.rows == row_count_) {
+    for (std::size_t i = 0; i < row_count_; ++i) first_[i].is_changed = true;
+    return {first_, row_count_};
+  }
+  const int* order = order_.get() + open.end - open.idle - open.rows;
+  for (; copy_count_ < open.rows; ++copy_count_) {
+    copies_[copy_count_] = first_[order[copy_count_]];
+    source_[copy_count_] = order[copy_count_];
+  }
+  for (std::size_t i = open.rows; i < open.rows + open.idle; ++i) add_idle(first_[order[i]], order[i]);
+  return {copies_.get(), copy_count_};
+}
+
+std::size_t RowGroups::wake(const double* u) {
+  std::size_t woken = 0;
+  for (std::size_t i = 0; i < idle_count_;) {
+    const IdleRow& idle = idle_[i];
+    Pair s{};
+    if (idle.ia >= 0) s = dot(idle.a, u + 6 * idle.ia);
+    if (idle.ib >= 0) s += dot(idle.b, u + 6 * idle.ib);
+    if (s[0] + s[1] >= idle.least) {
+      ++i;
+      continue;
+    }
+    copies_[copy_count_] = first_[idle.row];
+    source_[copy_count_++] = idle.row;
+    ++woken;
+    idle_[i] = idle_[--idle_count_];
+  }
+  return woken;
+}
+
+void RowGroups::close() {
+  for (std::size_t i = 0; i < copy_count_; ++i) {
+    Row& row = first_[source_[i]];
+    std::copy_n(copies_[i].lambda, 3, row.lambda);
+    row.is_changed = true;
+  }
+}
+
+}  // namespace snug::physics::internal
