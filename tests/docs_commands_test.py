@@ -9,6 +9,7 @@ import random
 import re
 import shlex
 import shutil
+import socket
 import subprocess
 import tempfile
 import unittest
@@ -132,7 +133,10 @@ class Commands(unittest.TestCase):
         self.assertIn(process.returncode, allowed, f"{line}\n{errors}")
 
     def run_all(self, lines):
-        lines = list(lines)
+        with socket.socket() as any_free:  # tests run side by side, and all documents name the same port
+            any_free.bind(("127.0.0.1", 0))
+            port = any_free.getsockname()[1]
+        lines = [line.replace(":5555", f":{port}") for line in lines]
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             for file in self.path.iterdir():

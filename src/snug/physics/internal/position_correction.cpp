@@ -16,8 +16,9 @@ constexpr double kRecoverySpeed = 0.2;
 constexpr int kSweeps = 50, kMostSweeps = 1000;
 constexpr double kCoarse = 1e-6;  ///< m, change of a sweep
 constexpr double kLarge = 1e-4;   ///< m, displacement wanted; what rests or is pressed slowly stays below
-/// Of the largest displacement wanted: a change that is left for the next step.
+/// Of the largest displacement wanted, in heaps of more pairs than this: a change that is left for the next step.
 constexpr double kPrecision = 1e-3;
+constexpr std::size_t kHeap = 32;
 /// The first sweeps end what a few contacts want exactly; then large heaps gain a quarter by going further each time
 /// (of 1.2, 1.3, 1.4 and 1.6; piles of 1000).
 constexpr int kPlainSweeps = 5;
@@ -131,10 +132,11 @@ void PositionCorrection::run(const StepSettings& settings, const Row* first, con
                              const double* u, double* shift) noexcept {
   const double worst = find_errors(settings, first, end, contacts, u);
   if (worst <= settings.position_slop) return;
-  const double least = std::max(0.1 * settings.position_slop, kPrecision * worst);
+  const bool is_heap = runs_.size() > kHeap;
+  const double least = std::max(0.1 * settings.position_slop, is_heap ? kPrecision * worst : 0.0);
   double change = 0.0;
   for (int i = 0; i < kSweeps || (worst > kLarge && change > kCoarse && i < kMostSweeps); ++i) {
-    change = sweep({i < kSweeps, i < kPlainSweeps ? 1.0 : kRelaxation, least}, shift);
+    change = sweep({i < kSweeps, is_heap && i >= kPlainSweeps ? kRelaxation : 1.0, least}, shift);
     if (change <= least) break;
     take_moved();
   }
