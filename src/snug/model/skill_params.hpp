@@ -182,6 +182,8 @@ struct TravelParams {
   /// rad, of the tool, of which the way round is sure: waypoints may be left 25 degrees early (precision 0.05 m).
   double sure_turn = 145.0 * std::numbers::pi / 180.0;
   double longest_turn = 1.5 * std::numbers::pi;  ///< rad, of a held box the longer way round
+  /// m, of the free cup's lip over a box that fast motions let go, up to where the tool leaves slowly, blowing.
+  double detach = 0.003;
   double shortest_swing = 0.1;                   ///< s, periods of what hangs from the cup that fast motions avoid
   double longest_swing = 0.6;                    ///< s, the same
 
@@ -196,6 +198,7 @@ struct TravelParams {
     a("least_radius", least_radius, Within{0.0, 2.0});
     a("sure_turn_deg", Degrees{sure_turn}, Within{1.0, 179.0});
     a("longest_turn_deg", Degrees{longest_turn}, Within{180.0, 360.0});
+    a("detach", detach, Within{0.0, 0.1});
     a("shortest_swing", shortest_swing, Within{0.01, 5.0});
     a("longest_swing", longest_swing, Within{0.01, 5.0});
   }

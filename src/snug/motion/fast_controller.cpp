@@ -47,6 +47,15 @@ bool is_insertion(const Waypoint& waypoint) {
   return waypoint.io.vacuum && waypoint.motion_class == MotionClass::Place;
 }
 
+bool is_detaching(const Waypoint& waypoint) {
+  return waypoint.io.blow_off && !waypoint.io.vacuum && !is_contact(waypoint.motion_class);
+}
+
+/// Switching so, the tool stands still until the cup has followed.
+bool has_to_wait(const IO& before, const IO& after) {
+  return after.vacuum != before.vacuum || (after.blow_off && !before.blow_off);
+}
+
 bool is_plumb(const Pose& X_WA, const Pose& X_WB) {
   return (X_WB.p - X_WA.p).head<2>().norm() < kPlumb && angle_between(X_WA.R, X_WB.R) < kPlumb;
 }
@@ -107,7 +116,9 @@ bool goes_level(const Vector3& from, const Vector3& to) {
 /// m, from a row where the next one may begin; 0: the tool stops there.
 double blend_at(const PreparedProgram& plan, const ControllerState& state) {
   if (!has_next(plan, state.row)) return 0.0;
-  if (row_of(plan, state.row).io != row_of(plan, state.row + 1).io || is_contact_row(plan, state.row)) return 0.0;
+  if (is_contact_row(plan, state.row)) return 0.0;
+  const Waypoint &waypoint = row_of(plan, state.row), &after = row_of(plan, state.row + 1);
+  if (waypoint.io != after.io && (!is_detaching(waypoint) || has_to_wait(waypoint.io, after.io))) return 0.0;
   const Pose &row = pose_of(plan, state.row), &next = pose_of(plan, state.row + 1);
   const double degrees = plan.settings.convergence_deg_per_metre;
   const double to = convergence_error(state.paced.start(), row, degrees);
@@ -132,7 +143,7 @@ void begin_motion(const PreparedProgram& plan, const Pose& X_WE, ControllerState
 
 void depart(const PreparedProgram& plan, int row, ControllerState& state) {
   const IO& io = row_of(plan, row).io;
-  const bool waits = io.vacuum != state.io.vacuum || (io.blow_off && !state.io.blow_off);
+  const bool waits = has_to_wait(state.io, io);
   const bool is_moving = state.phase == ControllerPhase::Moving && row > 0 && !state.was_felt &&
                          seconds_in_phase(plan, state) < state.paced.duration();
   state.row = row;
@@ -181,6 +192,7 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
             fast.contact_window};
   }
   if (is_insertion(waypoint)) pace = fast.insert;
+  if (is_detaching(waypoint)) pace = fast.detach;
   if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {  // swings only where the box is held by its side
     if (std::abs(X_WE.R(2, 2)) > kUpright) pace.window = std::min(pace.window, fast.insert.window);
     pace.shaper_delay = 0.0;
@@ -245,7 +257,7 @@ void check_fast(const FastSettings& settings, const std::string& where) {
     if (!ok) throw InputError(where, fmt::format("fast: {}", key), fmt::format("{}", value), expected);
   };
   require("tempo", settings.tempo, settings.tempo >= 0.1 && settings.tempo <= 1.0, "a number from 0.1 to 1");
-  for (const Pace& pace : {settings.empty, settings.held, settings.insert}) {
+  for (const Pace& pace : {settings.empty, settings.held, settings.insert, settings.detach}) {
     for (const double value :
          {pace.max_speed, pace.max_acceleration, pace.max_turn_speed, pace.max_turn_acceleration, pace.window}) {
       require("pace", value, is_positive(value), "a finite number above 0");

@@ -153,8 +153,8 @@ class GraspPlanner {
       return;
     }
     const std::optional<motion::PanAxis>& pan_axis = request_.layout.pan_axis;
-    // A fast tool comes to the second row, level, without the upright one before.
-    if (request_.layout.is_fast && reaches({last().X_WE(), rows[1].X_WE(), pan_axis})) rows.erase(rows.begin());
+    // A fast tool comes to the second row, level, without the upright one before, unless it would pass over the box.
+    if (request_.layout.is_fast && !again && reaches({last().X_WE(), rows[1].X_WE(), pan_axis})) rows.erase(rows.begin());
     execute(rows);
     if (!holds()) return;
     const motion::Waypoint up = plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again);
@@ -241,11 +241,39 @@ class GraspPlanner {
     look();
   }
 
+  /// From waypoint `first` on where the box stands elsewhere than in the nominal rollout, as a session plans anew then.
+  void follow_box(const Pose& X_WP_nominal, const Pose& X_WP, std::size_t first, motion::Program& program) const {
+    const model::RecoverySettings& recovery = request_.scenario.recovery;
+    const bool is_as_rehearsed = (X_WP.p - X_WP_nominal.p).norm() <= recovery.as_rehearsed &&
+                                 angle_between(X_WP.R, X_WP_nominal.R) <= recovery.turned_as_rehearsed;
+    if (is_as_rehearsed || !is_upright(X_WP.R, max_lean())) return;
+    const Pose X_moved = X_WP * X_WP_nominal.inverse();
+    for (std::size_t i = first; i < program.waypoints.size(); ++i) {
+      motion::Waypoint& waypoint = program.waypoints[i];
+      waypoint.set_pose(X_moved * grasp_.program.waypoints[i].X_WE());
+      waypoint = motion::rounded(waypoint);
+    }
+  }
+
+  /// As a session sends it: it stops and looks where the box was let go.
+  void run_sample(Rollout& rollout, Episode& episode) const {
+    motion::Program program = grasp_.program;
+    for (std::size_t stage = 0; stage < grasp_.looks.size() && episode.is_complete(); ++stage) {
+      const auto look = static_cast<std::ptrdiff_t>(grasp_.looks[stage]);
+      motion::Program so_far = program;
+      so_far.waypoints.erase(so_far.waypoints.begin() + look, so_far.waypoints.end());
+      merge(episode, rollout.run(so_far));
+      const std::optional<Pose> X_WP = rollout.pose_of(request_.box.item);
+      if (X_WP) follow_box(grasp_.seen[stage], *X_WP, grasp_.looks[stage], program);
+    }
+    if (episode.is_complete()) merge(episode, rollout.run(program));
+  }
+
   void run_samples() {
     const int samples = static_cast<int>(request_.rollouts.size()) - 1;
     parallel_for(samples, request_.threads, [&](int i, int) {
       const auto slot = static_cast<std::size_t>(i) + 1;
-      merge(grasp_.episodes[slot], request_.rollouts[slot]->run(grasp_.program));
+      run_sample(*request_.rollouts[slot], grasp_.episodes[slot]);
     });
     double good = 0.0, all = 0.0;
     const Matrix3 R_WP = request_.rollouts[0]->pose_of(request_.box.item)->R;

@@ -144,7 +144,8 @@ void Packer::retreat(const std::string& id, ItemReport& report) {
   const motion::Waypoint let_go =
       motion::make_waypoint(MotionClass::Place, id, robot_.X_WE, {.blow_off = true}, "_release");
   plant_.acknowledge();
-  submit(id, {let_go, up}, {std::nullopt, false}, report);
+  const std::vector<motion::Waypoint> rows{let_go, up};
+  submit(id, layout_.is_fast ? with_detaching(layout_, rows) : rows, {std::nullopt, false}, report);
 }
 
 void Packer::give_up(int item, Trouble trouble, ItemReport& report) {

@@ -14,6 +14,7 @@
 #include "snug/motion/way.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/skills/highest_fixed_point.hpp"
+#include "snug/skills/internal/row_parts.hpp"
 #include "snug/skills/unwinding.hpp"
 
 namespace snug::skills {
@@ -157,6 +158,7 @@ CellLayout make_layout(const model::Scenario& scenario, const std::optional<moti
       find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p, scenario.skills.pivot);
   layout.pan_axis = pan_axis;
   layout.travel = scenario.skills.travel;
+  layout.cup_growth = std::max(0.0, scenario.cup.free_length - scenario.cup.hold_length);
   layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
   return layout;
 }
@@ -269,7 +271,7 @@ std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::W
   if (rows.empty()) return rows;
   if (layout.is_fast) {
     std::vector<motion::Waypoint> turned =
-        with_turns(last, rows, {layout.neutral_yaw, layout.travel.sure_turn, true, layout.pan_axis});
+        with_turns(last, with_detaching(layout, rows), {layout.neutral_yaw, layout.travel.sure_turn, true, layout.pan_axis});
     for (motion::Waypoint& row : turned) {
       if (swing && row.io.vacuum && !motion::is_contact(row.motion_class)) row.swing = motion::as_named(*swing);
     }
@@ -278,6 +280,21 @@ std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::W
   const std::vector<motion::Waypoint> turned = with_turns(last, rows, {layout.neutral_yaw, layout.travel.sure_turn});
   if (!layout.pan_axis) return turned;
   return with_detours(last, turned, layout.pan_axis->p_WB, layout.travel.near_base, layout.travel.base_radius);
+}
+
+std::vector<motion::Waypoint> with_detaching(const CellLayout& layout, const std::vector<motion::Waypoint>& rows) {
+  std::vector<motion::Waypoint> detaching;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    detaching.push_back(rows[i]);
+    const bool lets_go = rows[i].io == internal::kRelease && rows[i].motion_class != MotionClass::TwistDrag;
+    if (!lets_go || i + 1 == rows.size()) continue;
+    motion::Waypoint off = rows[i];
+    off.motion_class = rows[i + 1].motion_class;
+    off.variant = "_off";
+    off.p_WE -= (layout.cup_growth + layout.travel.detach) * rows[i].X_WE().R.col(2);
+    detaching.push_back(off);
+  }
+  return detaching;
 }
 
 Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction) {
@@ -314,6 +331,10 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   intent.approach_height = travel + half_height;
   std::vector<motion::Waypoint> rows = side_pick_rows(intent);
   if (!layout.is_fast) return rows;
+  if (again) {  // it was set down by a tool that is still over it
+    const double top = X_WP.p.z() + half_height;
+    rows.front().p_WE.z() = std::max(rows.front().p_WE.z(), top + cup.free_length + layout.travel.turning_clearance);
+  }
   SidePickPoses poses = side_pick_poses(intent);
   const Pose X_EP = poses.X_WE_pick.inverse() * X_WP;
   Pose X_WP_over = X_WP_next;

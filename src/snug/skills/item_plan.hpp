@@ -31,6 +31,7 @@ struct CellLayout {
   /// turns the way round that leaves the wrist less to do, and while it travels.
   bool is_fast = false;
   model::TravelParams travel;
+  double cup_growth = 0.0;  ///< m, of a cup that lets go
 };
 /// Throws InputError for a scenario without aligner, tool or target container.
 [[nodiscard]] CellLayout make_layout(const model::Scenario& scenario, const std::optional<motion::PanAxis>& pan_axis);
@@ -100,6 +101,10 @@ enum class PickKind {
 [[nodiscard]] std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& before,
                                                      const std::vector<motion::Waypoint>& rows,
                                                      const std::optional<motion::Swing>& swing = std::nullopt);
+/// Rows of a fast motion: where a box was let go the tool leaves it slowly, blowing, until the lip is off it. Faster the
+/// bellows would draw in air and lift the box.
+[[nodiscard]] std::vector<motion::Waypoint> with_detaching(const CellLayout& layout,
+                                                           const std::vector<motion::Waypoint>& rows);
 /// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.
 [[nodiscard]] Matrix3 orientation_before_flip(const Matrix3& R_WP, const Vector3& up_P, const Vector3& direction);
 

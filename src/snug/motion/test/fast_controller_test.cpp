@@ -109,6 +109,25 @@ TEST(FastController, WaitsUntilThePressureSaysSoOrTheTimeIsOver) {
   EXPECT_NEAR(waited(run(plan), 1), 0.5, 1.1 * 0.008) << "nothing is felt";
 }
 
+TEST(FastController, LeavesABoxSlowlyUntilItStopsBlowingAndThenWithoutAStop) {
+  constexpr IO kBlow{.blow_off = true};
+  const std::vector<Waypoint> release = {row("Place(A)", {0.0, 0.0, 0.0}, kHold), row("Place(A)", {0.0, 0.0, 0.0}, kBlow),
+                                         row("PostPlace(A)_off", {0.0, 0.0, 0.025}, kBlow),
+                                         row("PostPlace(A)", {0.0, 0.0, 0.4})};
+  const PreparedProgram plan = prepare({"release", release}, fast_settings());
+  const Course course = run(plan);
+  double fastest_blowing = 0.0, fastest = 0.0, slowest_between = 1.0;
+  for (const ControllerOutput& out : course.ticks) {
+    const double z = out.tool.X_WE.p.z(), speed = out.tool.V_WE.linear.z();
+    (out.io.blow_off ? fastest_blowing : fastest) = std::max(out.io.blow_off ? fastest_blowing : fastest, speed);
+    if (z > 0.012 && z < 0.2) slowest_between = std::min(slowest_between, speed);
+    EXPECT_TRUE(!out.io.blow_off || z <= 0.025) << z;
+  }
+  EXPECT_LE(fastest_blowing, plan.settings.fast.detach.max_speed + 1e-9);
+  EXPECT_GT(fastest, 2.0 * plan.settings.fast.detach.max_speed);
+  EXPECT_GT(slowest_between, 0.05) << "the retreat begins on the way";
+}
+
 /// A support 4 mm above where the box is sent, felt as a spring.
 Sensed on_support(const ControllerState& state) {
   const double depth = std::max(0.0, -0.196 - state.command.X_WE.p.z());

@@ -15,10 +15,13 @@ namespace {
 
 /// Every box of sequence 1 in every orientation that needs one turn, in cells that are all a little different: the
 /// grasp says how it got there, and the box hangs as asked in nearly all of them.
-TEST(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
+class PlanGrasp : public testing::TestWithParam<motion::ControllerKind> {};
+
+TEST_P(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
   const model::Scenario scenario = demonstrator();
-  const skills::CellLayout layout = skills::make_layout(scenario, cell::find_pan_axis(scenario));
-  const cell::SimulationOptions options{motion::ControllerKind::Faithful, cup::CupMode::Phases, {}};
+  skills::CellLayout layout = skills::make_layout(scenario, cell::find_pan_axis(scenario));
+  layout.is_fast = GetParam() == motion::ControllerKind::Fast;
+  const cell::SimulationOptions options{GetParam(), cup::CupMode::Phases, {}};
   std::vector<std::unique_ptr<Rollout>> rollouts;
   std::vector<cell::CellState> states;
   std::vector<double> weights;
@@ -54,15 +57,21 @@ TEST(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
       EXPECT_NE(grasp.reorientation, skills::Reorientation::None);
       EXPECT_TRUE(packing::extents(grasp.held_as, box.size).isApprox(packing::extents(orientation, box.size)));
       rollouts[0]->restore(grasp.states[0]);
-      const Matrix3 R_WP = rollouts[0]->pose_of(box.item)->R;
-      // Hanging, perhaps still swinging: within the 15 degrees that the grasp itself asks of the samples.
-      EXPECT_GT(std::abs(R_WP(2, axis)), std::cos(0.26));
+      const Matrix3 R_EP =
+          rollouts[0]->state().controller.command.X_WE.R.transpose() * rollouts[0]->pose_of(box.item)->R;
+      // From the cup, by that face, perhaps still swinging: within the 15 degrees that the grasp itself asks of samples.
+      // Fast motions turn it up on the way to its place: it may still hang from a level tool, as the cup can bear.
+      const double bend = layout.is_fast ? scenario.cup.limits.warn_bend : 0.26;
+      EXPECT_GT(std::abs(R_EP(2, axis)), std::cos(bend));
       rate += grasp.success_rate;
       ++grasps;
     }
   }
   EXPECT_GE(rate / grasps, 0.9);  // what is asked of items in open-loop runs as a whole
 }
+
+INSTANTIATE_TEST_SUITE_P(Controllers, PlanGrasp,
+                         testing::Values(motion::ControllerKind::Faithful, motion::ControllerKind::Fast));
 
 }  // namespace
 }  // namespace snug::session

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "snug/model/other_container.hpp"
+#include "snug/motion/tool_yaw.hpp"
 #include "snug/skills/surroundings.hpp"
 #include "snug/skills/test/demonstrator.hpp"
 
@@ -94,6 +95,25 @@ TEST(TurnBetween, GoesTheWayRoundOfTheRobotsFirstAxisWhereThatSparesTheWrist) {
     }
   }
   EXPECT_NEAR(turn_between(layout, box_at(0.0, 0.0), box_at(1.7, -2.27)), kTurn - 2.27, 1e-9);
+}
+
+TEST(WithDetaching, LeavesABoxAlongTheToolUntilTheFreeCupIsOffIt) {
+  const model::Scenario& scenario = demonstrator();
+  const CellLayout layout = make_layout(scenario, std::nullopt);
+  const Pose X_WE{motion::upright_tool(0.4), Vector3(0.2, -0.3, 0.15)};
+  const auto rows = [&](motion::MotionClass place, motion::MotionClass after) {
+    return std::vector<motion::Waypoint>{
+        motion::make_waypoint(place, "A", X_WE, {.vacuum = true}), motion::make_waypoint(place, "A", X_WE, {.blow_off = true}),
+        motion::make_waypoint(after, "A", {X_WE.R, X_WE.p + Vector3(0.0, 0.0, 0.2)})};
+  };
+  const auto placed = with_detaching(layout, rows(motion::MotionClass::Place, motion::MotionClass::PostPlace));
+  ASSERT_EQ(placed.size(), 4U);
+  const double growth = scenario.cup.free_length - scenario.cup.hold_length;
+  EXPECT_NEAR((placed[2].p_WE - X_WE.p - Vector3(0.0, 0.0, growth + 0.003)).norm(), 0.0, 1e-12);
+  EXPECT_TRUE(placed[2].io.blow_off);
+  EXPECT_EQ(placed[2].motion_class, motion::MotionClass::PostPlace);
+  const auto dragged = rows(motion::MotionClass::TwistDrag, motion::MotionClass::PreTwist);
+  EXPECT_EQ(with_detaching(layout, dragged), dragged) << "it is let go on the way";
 }
 
 /// A cell with one bench of 0.5 x 0.7 m over the aligner, the container twice `way` from there.
