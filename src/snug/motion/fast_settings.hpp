@@ -27,7 +27,7 @@ struct FastSettings {
   /// A held box on its way in (Place). Other rows that touch something have the scenario's limits for their names.
   Pace insert = {0.6, 4.0, 1.5, 3.0, 0.10};
   /// The empty cup off a box that it let go, blowing: faster, the bellows would draw air in and the box with them.
-  Pace detach = {0.25, 2.5, 1.0, 3.0, 0.04};
+  Pace detach = {0.4, 4.0, 1.0, 3.0, 0.04};
   /// Ways that touch nothing go around it (Way). None: straight.
   std::optional<PanAxis> pan_axis;
   double contact_window = 0.10;  ///< s, of those others

@@ -176,7 +176,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   attempt.swing = grasp.swing;
   const motion::Waypoint& last = attempt.program.waypoints.back();
   const skills::PlaceRequest request{box_,        grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
-                                     last.X_WE(), grasp.X_EP};
+                                     last.X_WE(), grasp.X_EP,  grasp.swing};
   const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
   if (!can_follow(last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;

@@ -5,10 +5,18 @@
 
 #include <algorithm>
 
+#include "snug/motion/waypoint_name.hpp"
+
 namespace snug::session {
 namespace {
 
 constexpr double kLongestEpisode = 7200.0;  ///< s
+
+std::string toward(const motion::Program& program, int row) {
+  return row >= 0 && row < static_cast<int>(program.waypoints.size())
+             ? motion::name_of(program.waypoints[static_cast<std::size_t>(row)])
+             : "its end";
+}
 
 }  // namespace
 
@@ -57,7 +65,7 @@ Episode Rollout::run(const motion::Program& program, const EpisodeLimits& limits
   while (episode.is_complete() && !simulation_->is_at_end(plan, state_)) {
     if (!advance(plan, episode)) break;
     if (episode.peak_force > limits.force) {
-      fail(RolloutEnd::TooMuchForce, fmt::format("{:.0f} N on the box", episode.peak_force));
+      fail(RolloutEnd::TooMuchForce, fmt::format("{:.0f} N on the box toward {}", episode.peak_force, toward(program, state_.controller.row)));
     } else if (!limits.arm_may_touch && !episode.arm_contact.empty()) {
       fail(RolloutEnd::ArmContact, episode.arm_contact);
     } else if (time() - start > kLongestEpisode) {
