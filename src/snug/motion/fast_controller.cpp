@@ -191,10 +191,7 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
     pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
             fast.contact_window};
   }
-  if (is_insertion(waypoint)) {
-    pace = fast.insert;
-    if (waypoint.swing) pace.window = waypoint.swing->slow, pace.shaper_delay = 0.5 * waypoint.swing->fast;
-  }
+  if (is_insertion(waypoint)) pace = fast.insert;
   if (is_detaching(waypoint)) pace = fast.detach;
   if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {  // swings only where the box is held by its side
     if (std::abs(X_WE.R(2, 2)) > kUpright) pace.window = std::min(pace.window, fast.insert.window);

@@ -256,8 +256,7 @@ class GraspPlanner {
   }
 
   /// As a session sends it: it stops and looks where the box was let go.
-  void run_sample(Rollout& rollout, Episode& episode) const {
-    motion::Program program = grasp_.program;
+  void run_sample(Rollout& rollout, motion::Program& program, Episode& episode) const {
     for (std::size_t stage = 0; stage < grasp_.looks.size() && episode.is_complete(); ++stage) {
       const auto look = static_cast<std::ptrdiff_t>(grasp_.looks[stage]);
       motion::Program so_far = program;
@@ -271,9 +270,10 @@ class GraspPlanner {
 
   void run_samples() {
     const int samples = static_cast<int>(request_.rollouts.size()) - 1;
+    grasp_.programs.assign(request_.rollouts.size(), grasp_.program);
     parallel_for(samples, request_.threads, [&](int i, int) {
       const auto slot = static_cast<std::size_t>(i) + 1;
-      run_sample(*request_.rollouts[slot], grasp_.episodes[slot]);
+      run_sample(*request_.rollouts[slot], grasp_.programs[slot], grasp_.episodes[slot]);
     });
     double good = 0.0, all = 0.0;
     const Matrix3 R_WP = request_.rollouts[0]->pose_of(request_.box.item)->R;

@@ -49,6 +49,7 @@ struct Grasp {
   Pose X_PS;                            ///< lip on the box
   std::optional<motion::Swing> swing;   ///< of how it hangs
   Pose X_EP;                            ///< as the box hangs from the tool in the end, nominal
+  std::vector<motion::Program> programs;  ///< rollout by rollout: where the box stands elsewhere after a look, other rows
   std::vector<cell::CellState> states;  ///< rollout by rollout
   std::vector<Episode> episodes;        ///< rollout by rollout
   double success_rate = 0.0;            ///< share of the samples, by weight, in which it is held

@@ -176,7 +176,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   attempt.swing = grasp.swing;
   const motion::Waypoint& last = attempt.program.waypoints.back();
   const skills::PlaceRequest request{box_,        grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
-                                     last.X_WE(), grasp.X_EP,  grasp.swing};
+                                     last.X_WE(), grasp.X_EP};
   const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
   if (!can_follow(last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;
@@ -190,8 +190,10 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
     Rollout& rollout = *rollouts_[i];
     rollout.restore(grasp.states[i]);
     Episode episode = grasp.episodes[i];
-    merge(episode, rollout.run(attempt.program, {limits_.force, false}));
-    if (episode.is_complete()) merge(episode, rollout.settle(attempt.program, belief_.nominal().rehearsal.rest));
+    motion::Program program = grasp.programs[i];
+    append(program, rows);
+    merge(episode, rollout.run(program, {limits_.force, false}));
+    if (episode.is_complete()) merge(episode, rollout.settle(program, belief_.nominal().rehearsal.rest));
     Outcome outcome = judge(rollout, before_[i], attempt.planned.X_TP);
     outcome.end = episode.end;
     outcome.forces.force = episode.peak_force;

@@ -448,7 +448,6 @@ std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const 
     intent.tilted = entry;
   }
   if (!layout.is_fast) return place_rows(intent);
-  if (request.swing) intent.swing = motion::as_named(*request.swing);
   intent.entry_bottom = intent.X_WP.p.z() + lowest_corner(intent.X_WP.R, intent.size);  // straight down
   const double least = intent.travel_bottom - layout.travel.clearance + layout.travel.turning_clearance;
   for (int i = 0; i < kRaises; ++i) {

@@ -140,7 +140,6 @@ struct PlaceRequest {
   double packed_top = 0.0;  ///< m, z in T of the highest box in the container
   Pose X_WE;                ///< from here
   Pose X_EP;                ///< as the box hangs there
-  std::optional<motion::Swing> swing;  ///< of the box that hangs
 };
 [[nodiscard]] std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
                                                        const PlaceRequest& request);

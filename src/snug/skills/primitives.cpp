@@ -37,10 +37,8 @@ Pose shifted(Pose X, const Vector3& by) {
 class Rows {
  public:
   explicit Rows(std::string box) : box_(std::move(box)) {}
-  void add(motion::MotionClass motion_class, const Pose& X_WE, const motion::IO& io, const char* variant = "",
-           const std::optional<motion::Swing>& swing = std::nullopt) {
+  void add(motion::MotionClass motion_class, const Pose& X_WE, const motion::IO& io, const char* variant = "") {
     rows_.push_back(motion::make_waypoint(motion_class, box_, X_WE, io, variant));
-    rows_.back().swing = swing;
   }
   std::vector<motion::Waypoint> take() { return std::move(rows_); }
 
@@ -72,10 +70,9 @@ void add_tilted_entry(const PlaceIntent& intent, const TiltedEntry& entry, Rows&
   const auto tool = [&](const Pose& X_WP) { return intent.tool_for(X_WP); };
   rows.add(MotionClass::PrePlace, tool(tilted_pose(intent, entry, entry.edge_height + tilted.above, intent.come_from)),
            kHold, "_2");
-  const auto add = [&](const Pose& X_WP, const char* variant) { rows.add(place, tool(X_WP), kHold, variant, intent.swing); };
-  add(tilted_pose(intent, entry, entry.edge_height + tilted.at_edge, entry.push), "_tilted");
-  add(tilted_pose(intent, entry, low, entry.push), "_in");
-  add(shifted(at_height(intent.X_WP, low + height), entry.push), "_level");
+  rows.add(place, tool(tilted_pose(intent, entry, entry.edge_height + tilted.at_edge, entry.push)), kHold, "_tilted");
+  rows.add(place, tool(tilted_pose(intent, entry, low, entry.push)), kHold, "_in");
+  rows.add(place, tool(shifted(at_height(intent.X_WP, low + height), entry.push)), kHold, "_level");
 }
 
 /// Where the box stops before it goes down.

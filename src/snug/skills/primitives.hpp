@@ -82,7 +82,6 @@ struct PlaceIntent {
   /// Given in the place of travel_bottom and entry_bottom, and of where the tool leaves to.
   std::optional<ToolHeights> tool_heights;
   bool gentle = false;  ///< slow rows (PlaceSlow) instead of quick ones
-  std::optional<motion::Swing> swing;  ///< of the hanging box, that tilted rows leave nothing of
 };
 /// Rows PrePlace, PrePlace_2, Place ..., Place with vacuum off and blow-off on, PostPlace straight up.
 [[nodiscard]] std::vector<motion::Waypoint> place_rows(const PlaceIntent& intent);
