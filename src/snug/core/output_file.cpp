@@ -193,9 +193,7 @@ std::filesystem::path follow_links(const std::filesystem::path& path) {
   return place;
 }
 
-std::filesystem::path draft_of(const std::filesystem::path& path) {
-  return follow_links(path).string() + kDraftSuffix;
-}
+std::filesystem::path draft_of(const std::filesystem::path& path) { return follow_links(path).string() + kDraftSuffix; }
 
 OutputError::OutputError(const std::string& where, const std::string& why)
     : std::runtime_error(where + ": could not be written: " + why) {}
@@ -216,10 +214,7 @@ struct OutputFile::Impl {
 };
 
 OutputFile::Impl::Impl(const std::filesystem::path& as_asked)
-    : path(as_asked),
-      place(follow_links(as_asked)),
-      old(look_at(path, place)),
-      draft(path, draft_of(place)) {
+    : path(as_asked), place(follow_links(as_asked)), old(look_at(path, place)), draft(path, draft_of(place)) {
   // Behind the draft: a writer that has published its file holds the lock there, one that has not holds the draft.
   if (is_written_by_another(place)) refuse_busy(path);
   if (old) {

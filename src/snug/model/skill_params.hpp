@@ -184,8 +184,8 @@ struct TravelParams {
   double longest_turn = 1.5 * std::numbers::pi;  ///< rad, of a held box the longer way round
   /// m, of the free cup's lip over a box that fast motions let go, up to where the tool leaves slowly, blowing.
   double detach = 0.003;
-  double shortest_swing = 0.1;                   ///< s, periods of what hangs from the cup that fast motions avoid
-  double longest_swing = 0.6;                    ///< s, the same
+  double shortest_swing = 0.1;  ///< s, periods of what hangs from the cup that fast motions avoid
+  double longest_swing = 0.6;   ///< s, the same
 
   template <class Archive>
   void fields(Archive& a) {

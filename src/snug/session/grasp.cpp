@@ -154,7 +154,8 @@ class GraspPlanner {
     }
     const std::optional<motion::PanAxis>& pan_axis = request_.layout.pan_axis;
     // A fast tool comes to the second row, level, without the upright one before, unless it would pass over the box.
-    if (request_.layout.is_fast && !again && reaches({last().X_WE(), rows[1].X_WE(), pan_axis})) rows.erase(rows.begin());
+    if (request_.layout.is_fast && !again && reaches({last().X_WE(), rows[1].X_WE(), pan_axis}))
+      rows.erase(rows.begin());
     execute(rows);
     if (!holds()) return;
     const motion::Waypoint up = plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again);

@@ -44,12 +44,13 @@ struct Grasp {
   skills::Reorientation reorientation = skills::Reorientation::None;
   GraspProblem problem = GraspProblem::None;
   motion::Program program;
-  std::vector<std::size_t> looks;       ///< so many waypoints are done when the box is let go on the way: look there
-  std::vector<Pose> seen;               ///< X_WP at each of them in the nominal rollout
-  Pose X_PS;                            ///< lip on the box
-  std::optional<motion::Swing> swing;   ///< of how it hangs
-  Pose X_EP;                            ///< as the box hangs from the tool in the end, nominal
-  std::vector<motion::Program> programs;  ///< rollout by rollout: where the box stands elsewhere after a look, other rows
+  std::vector<std::size_t> looks;      ///< so many waypoints are done when the box is let go on the way: look there
+  std::vector<Pose> seen;              ///< X_WP at each of them in the nominal rollout
+  Pose X_PS;                           ///< lip on the box
+  std::optional<motion::Swing> swing;  ///< of how it hangs
+  Pose X_EP;                           ///< as the box hangs from the tool in the end, nominal
+  std::vector<motion::Program>
+      programs;                         ///< rollout by rollout: where the box stands elsewhere after a look, other rows
   std::vector<cell::CellState> states;  ///< rollout by rollout
   std::vector<Episode> episodes;        ///< rollout by rollout
   double success_rate = 0.0;            ///< share of the samples, by weight, in which it is held

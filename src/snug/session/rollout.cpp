@@ -65,8 +65,8 @@ Episode Rollout::run(const motion::Program& program, const EpisodeLimits& limits
   while (episode.is_complete() && !simulation_->is_at_end(plan, state_)) {
     if (!advance(plan, episode)) break;
     if (episode.peak_force > limits.force) {
-      fail(RolloutEnd::TooMuchForce, fmt::format("{:.0f} N on the box toward {}", episode.peak_force,
-                                                 toward(program, state_.controller.row)));
+      fail(RolloutEnd::TooMuchForce,
+           fmt::format("{:.0f} N on the box toward {}", episode.peak_force, toward(program, state_.controller.row)));
     } else if (!limits.arm_may_touch && !episode.arm_contact.empty()) {
       fail(RolloutEnd::ArmContact, episode.arm_contact);
     } else if (time() - start > kLongestEpisode) {

@@ -270,8 +270,8 @@ std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::W
                                        const std::optional<motion::Swing>& swing) {
   if (rows.empty()) return rows;
   if (layout.is_fast) {
-    std::vector<motion::Waypoint> turned =
-        with_turns(last, with_detaching(layout, rows), {layout.neutral_yaw, layout.travel.sure_turn, true, layout.pan_axis});
+    std::vector<motion::Waypoint> turned = with_turns(
+        last, with_detaching(layout, rows), {layout.neutral_yaw, layout.travel.sure_turn, true, layout.pan_axis});
     for (motion::Waypoint& row : turned) {
       if (swing && row.io.vacuum && !motion::is_contact(row.motion_class)) row.swing = motion::as_named(*swing);
     }

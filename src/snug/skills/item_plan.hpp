@@ -101,8 +101,8 @@ enum class PickKind {
 [[nodiscard]] std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& before,
                                                      const std::vector<motion::Waypoint>& rows,
                                                      const std::optional<motion::Swing>& swing = std::nullopt);
-/// Rows of a fast motion: where a box was let go the tool leaves it slowly, blowing, until the lip is off it. Faster the
-/// bellows would draw in air and lift the box.
+/// Rows of a fast motion: where a box was let go the tool leaves it slowly, blowing, until the lip is off it. Faster
+/// the bellows would draw in air and lift the box.
 [[nodiscard]] std::vector<motion::Waypoint> with_detaching(const CellLayout& layout,
                                                            const std::vector<motion::Waypoint>& rows);
 /// Orientation in which a standing box is carried to a flip that turns the P axis `up_P` upward.

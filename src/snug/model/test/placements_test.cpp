@@ -77,7 +77,8 @@ TEST(Placements, NormalizesAQuaternionWithFourDigits) {
 TEST(Placements, ReadsAPlan) {
   const std::string text =
       "{\"sequence\": \"1\", \"agent\": \"margin\", \"placements\": [\n"
-      "{\"box\": \"BOX014\", \"position\": [0.1, -0.2, 0.3], \"quaternion_wxyz\": [0.0, 0.0, 0.707106781, 0.707106781],\n"
+      "{\"box\": \"BOX014\", \"position\": [0.1, -0.2, 0.3], \"quaternion_wxyz\": [0.0, 0.0, 0.707106781, "
+      "0.707106781],\n"
       " \"up\": \"Y\", \"up_sign\": 1, \"yaw_quarter\": 1}]}\n";
   const auto entries = parse_placements(text, "plan.json", demonstrator());
   ASSERT_EQ(entries.size(), 1U);

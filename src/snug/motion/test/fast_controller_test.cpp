@@ -111,9 +111,9 @@ TEST(FastController, WaitsUntilThePressureSaysSoOrTheTimeIsOver) {
 
 TEST(FastController, LeavesABoxSlowlyUntilItStopsBlowingAndThenWithoutAStop) {
   constexpr IO kBlow{.blow_off = true};
-  const std::vector<Waypoint> release = {row("Place(A)", {0.0, 0.0, 0.0}, kHold), row("Place(A)", {0.0, 0.0, 0.0}, kBlow),
-                                         row("PostPlace(A)_off", {0.0, 0.0, 0.025}, kBlow),
-                                         row("PostPlace(A)", {0.0, 0.0, 0.4})};
+  const std::vector<Waypoint> release = {
+      row("Place(A)", {0.0, 0.0, 0.0}, kHold), row("Place(A)", {0.0, 0.0, 0.0}, kBlow),
+      row("PostPlace(A)_off", {0.0, 0.0, 0.025}, kBlow), row("PostPlace(A)", {0.0, 0.0, 0.4})};
   const PreparedProgram plan = prepare({"release", release}, fast_settings());
   const Course course = run(plan);
   double fastest_blowing = 0.0, fastest = 0.0, slowest_between = 1.0;

@@ -59,8 +59,9 @@ TEST_P(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
       rollouts[0]->restore(grasp.states[0]);
       const Matrix3 R_EP =
           rollouts[0]->state().controller.command.X_WE.R.transpose() * rollouts[0]->pose_of(box.item)->R;
-      // From the cup, by that face, perhaps still swinging: within the 15 degrees that the grasp itself asks of samples.
-      // Fast motions turn it up on the way to its place: it may still hang from a level tool, as the cup can bear.
+      // From the cup, by that face, perhaps still swinging: within the 15 degrees that the grasp itself asks of
+      // samples. Fast motions turn it up on the way to its place: it may still hang from a level tool, as the cup can
+      // bear.
       const double bend = layout.is_fast ? scenario.cup.limits.warn_bend : 0.26;
       EXPECT_GT(std::abs(R_EP(2, axis)), std::cos(bend));
       rate += grasp.success_rate;

@@ -102,9 +102,9 @@ TEST(WithDetaching, LeavesABoxAlongTheToolUntilTheFreeCupIsOffIt) {
   const CellLayout layout = make_layout(scenario, std::nullopt);
   const Pose X_WE{motion::upright_tool(0.4), Vector3(0.2, -0.3, 0.15)};
   const auto rows = [&](motion::MotionClass place, motion::MotionClass after) {
-    return std::vector<motion::Waypoint>{
-        motion::make_waypoint(place, "A", X_WE, {.vacuum = true}), motion::make_waypoint(place, "A", X_WE, {.blow_off = true}),
-        motion::make_waypoint(after, "A", {X_WE.R, X_WE.p + Vector3(0.0, 0.0, 0.2)})};
+    return std::vector<motion::Waypoint>{motion::make_waypoint(place, "A", X_WE, {.vacuum = true}),
+                                         motion::make_waypoint(place, "A", X_WE, {.blow_off = true}),
+                                         motion::make_waypoint(after, "A", {X_WE.R, X_WE.p + Vector3(0.0, 0.0, 0.2)})};
   };
   const auto placed = with_detaching(layout, rows(motion::MotionClass::Place, motion::MotionClass::PostPlace));
   ASSERT_EQ(placed.size(), 4U);
