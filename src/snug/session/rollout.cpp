@@ -10,7 +10,7 @@
 namespace snug::session {
 namespace {
 
-constexpr double kLongestEpisode = 7200.0;  ///< s
+constexpr double kLongestEpisode = 600.0;  ///< s, ten times what an item takes with the lag
 
 std::string toward(const motion::Program& program, int row) {
   return row >= 0 && row < static_cast<int>(program.waypoints.size())
@@ -70,7 +70,7 @@ Episode Rollout::run(const motion::Program& program, const EpisodeLimits& limits
     } else if (!limits.arm_may_touch && !episode.arm_contact.empty()) {
       fail(RolloutEnd::ArmContact, episode.arm_contact);
     } else if (time() - start > kLongestEpisode) {
-      fail(RolloutEnd::TooLong, "the waypoints did not end within two hours");
+      fail(RolloutEnd::TooLong, "the waypoints did not end within ten minutes");
     }
   }
   episode.duration = time() - start;
