@@ -25,11 +25,10 @@ def find_program(folder, sequence, is_real):
     return next((folder / name for name in names if (folder / name).is_file()), None)
 
 
-def run(program, sequence, is_real):
+def run(program, sequence):
     """What `snug simulate --json` says of a program, or an explanation why there is nothing."""
-    corrections = "none" if not is_real else "seq1" if sequence == "1" else "seq2-5"
     words = [SNUG, "simulate", str(ROOT / "scenarios" / "box-demonstrator.yaml"), "--program", str(program),
-             "--sequence", sequence, "--corrections", corrections, "--json"]
+             "--sequence", sequence, "--json"]
     result = subprocess.run(words, capture_output=True, text=True, check=False)
     if not result.stdout:
         return None, result.stderr.strip().splitlines()[-1] if result.stderr.strip() else f"exit code {result.returncode}"
@@ -67,15 +66,14 @@ def main(arguments):
     print("| programs | " + " | ".join(f"sequence {n}" for n in sequences) + " | |")
     print("|---|" + "---|" * len(sequences) + "---|")
     problems = []
-    for is_real, title in ((True, "run on the real cell, with its site corrections"),
-                           (False, "made for simulation, without corrections")):
+    for is_real, title in ((True, "run on the real cell"), (False, "made for simulation")):
         cells, runs = [], {}
         for n in sequences:
             program = found[n, is_real]
             if program is None:
                 cells.append("-")
                 continue
-            document, problem = run(program, n, is_real)
+            document, problem = run(program, n)
             if problem:
                 problems.append(f"{program.name}: {problem}")
             if document is None:

@@ -150,7 +150,11 @@ TEST(Demonstrator, HasTheControllersTableInItsOrder) {
   EXPECT_EQ(c.correction_layers[1].corrections[2].offset, Vector3(0.050, 0.010, 0.0));
 }
 
-TEST(Demonstrator, WritesOutTheDefaultsOfTheCup) { EXPECT_EQ(demonstrator().cup, CupParams{}); }
+TEST(Demonstrator, WritesOutTheDefaultsOfTheCupButThePushFoundFromItsPrograms) {
+  CupParams cup;
+  cup.release_push = 0.7;  // docs/decisions/0040
+  EXPECT_EQ(demonstrator().cup, cup);
+}
 
 TEST(Demonstrator, PutsEveryBoxOnTheBeltWithoutTouchingAnythingElse) {
   // The loader's own check of bodies that start inside others, with each box of each sequence standing at the aligner.
