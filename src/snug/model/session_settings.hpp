@@ -17,8 +17,7 @@ struct PackingSettings {
   /// m, each box is planned this much smaller than measured along Tx and Ty: boxes give way when pressed together.
   double planned_interference = 0.001;
   /// m, the same for a box that `contact-aware` has no place for otherwise, where every place is tried before it counts
-  /// (sessions). Not more than `planned_interference`: such a box has no place. The default is 1 mm more than the
-  /// clearance that the demonstrator's boxes have in contact (docs/decisions/0005).
+  /// (sessions). Not more than `planned_interference`: such a box has no place.
   double last_interference = 0.003;
   double min_support = 0.6;    ///< part of the lower face that has to rest on something
   double com_margin = 0.005;   ///< m, the centre of mass stays inside the support polygon by this
