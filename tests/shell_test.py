@@ -43,6 +43,10 @@ class Shell(unittest.TestCase):
         self.assertEqual(complete("pack", "--agent", "mar"), ["margin"])
         self.assertEqual(complete("pack", "--agent", "margin", "--perc"), ["--perception"])
 
+    def test_bash_offers_what_may_follow_a_flag(self):
+        self.assertIn("--csv", complete("simulate", "--json", "--c"))
+        self.assertIn("pack", complete("--help", "pa"))
+
     def test_bash_leaves_names_of_files_to_the_shell(self):
         self.assertEqual(complete("pack", "--program", ""), [])
         self.assertEqual(complete("report", ""), [])

@@ -44,8 +44,9 @@ def remark(runs):
     deviations = [abs(runs[n]["duration_s"] / DURATION[n] - 1.0) for n in runs if n in DURATION]
     if deviations:
         parts.append(f"durations within {100.0 * max(deviations):.1f} %")
-    worst = max((repick["offset_mm"] for repick in repicks), default=0.0)
-    parts.append(f"re-picks off by up to {worst:.0f} mm")
+    if repicks:
+        offsets = [repick["offset_mm"] for repick in repicks]
+        parts.append(f"re-picks off by {sum(offsets) / len(offsets):.1f} mm on average, by {max(offsets):.0f} at most")
     return ", ".join(parts)
 
 

@@ -12,7 +12,7 @@ CommandOption describe(CLI::Option& option) {
   CommandOption described;
   for (const std::string& name : option.get_snames()) described.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) described.names.push_back("--" + name);
-  if (option.get_type_size() != 0) {
+  if (option.get_items_expected_max() > 0) {  // none: a flag
     described.value = option.get_type_name();
     if (described.value.empty() || described.value == "TEXT") described.value = "VALUE";
   }

@@ -156,11 +156,15 @@ int run_compare(const CompareOptions& options) {
   const study::Study study = make_compare_study(options, seed, points);
   const CompareForm form = options.json ? CompareForm::Json : options.csv ? CompareForm::Csv : CompareForm::Table;
   check_words(options.pack, agents);
-  std::optional<OutputFile> page =
-      reserve(files_of(options.pack.scenario, options.pack.changes, scenario), options.page);
+  NamedFiles inputs = files_of(options.pack.scenario, options.pack.changes, scenario);
+  expect_distinct(inputs, options.page ? NamedFiles{{"-o", *options.page}} : NamedFiles{});  // before a folder is made
   std::optional<study::Folder> folder;
-  if (options.runs) make_folder(*options.runs);
   if (options.dir) folder.emplace(study, *options.dir, true);
+  if (folder) {
+    for (const std::filesystem::path& file : folder->files()) inputs.push_back({"a file of --dir", file});
+  }
+  std::optional<OutputFile> page = reserve(inputs, options.page);
+  if (options.runs) make_folder(*options.runs);
   catch_interrupts();
   std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %d plants\n", points.size(), agents.size(),
                sequences.size(), options.plants);

@@ -213,7 +213,7 @@ void add_completion(CLI::App& app, Action& action) {
       const std::string text = *shell == "bash"  ? format_bash(commands)
                                : *shell == "zsh" ? format_zsh(commands)
                                                  : format_fish(commands);
-      std::fputs(text.c_str(), stdout);
+      print(text);
       return kSuccess;
     };
   });

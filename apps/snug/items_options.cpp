@@ -41,7 +41,7 @@ void add_reduce(CLI::App& parent, Action& action) {
       ->type_name("N");
   verb.add_option("--group", options->group_percent, "boxes join whose edges and mass differ by at most so much")
       ->capture_default_str()
-      ->check(positive())
+      ->check(within(1e-3, 1000.0))
       ->type_name("PERCENT");
   verb.add_option("--cover", options->cover_percent, "a box is represented when its edges differ by at most so much")
       ->capture_default_str()

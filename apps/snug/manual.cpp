@@ -92,7 +92,7 @@ void add_manual(CLI::App& app, Action& action) {
   verb.footer(kManualExamples);
   verb.callback([&app, &action] {
     action = [&app] {
-      std::fputs(format_manual(list_commands(app), version_text()).c_str(), stdout);
+      print(format_manual(list_commands(app), version_text()));
       return kSuccess;
     };
   });

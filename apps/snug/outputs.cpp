@@ -14,6 +14,13 @@
 namespace snug::app {
 namespace {
 
+bool g_is_stdout_reported = false;  ///< what is wrong with it was thrown
+
+[[noreturn]] void fail_stdout() {
+  g_is_stdout_reported = true;
+  throw OutputError("standard output", std::strerror(errno));
+}
+
 bool are_same(const std::filesystem::path& a, const std::filesystem::path& b) {
   struct stat of_a = {}, of_b = {};
   const bool has_a = ::stat(a.c_str(), &of_a) == 0, has_b = ::stat(b.c_str(), &of_b) == 0;
@@ -72,19 +79,19 @@ std::optional<OutputFile> reserve_recording(const std::optional<std::string>& pa
 }
 
 void print(std::string_view text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
-    throw OutputError("standard output", std::strerror(errno));
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) fail_stdout();
 }
 
 void print_now(std::string_view text) {
   print(text);
-  if (std::fflush(stdout) != 0) throw OutputError("standard output", std::strerror(errno));
+  if (std::fflush(stdout) != 0) fail_stdout();
 }
 
 bool flush_stdout() {
   const bool has_failed = std::ferror(stdout) != 0;
   errno = 0;
   if (std::fflush(stdout) == 0 && !has_failed) return true;
+  if (g_is_stdout_reported) return false;
   const char* why = errno != 0 ? std::strerror(errno) : "an earlier write failed";
   std::fprintf(stderr, "snug: failed: %s\n", OutputError("standard output", why).what());
   return false;

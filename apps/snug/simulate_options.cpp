@@ -40,7 +40,7 @@ void add_program_options(CLI::App& verb, SimulateOptions& options) {
 
 void add_physics_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--until", options.until, "stop at this simulated time; default: the program's end")
-      ->check(positive())
+      ->check(within(1e-6, 1e6))
       ->type_name("SECONDS");
   verb.add_option("--dt", options.dt, "time step, instead of the scenario's")
       ->check(within(1e-6, 0.1))

@@ -148,10 +148,22 @@ int run_study_status(const StudyOptions& options) {
   return kSuccess;
 }
 
+namespace {
+
+/// What a study reads, and what it has found.
+NamedFiles files_of(const StudyOptions& options, const study::Study& study, const study::Folder& folder) {
+  NamedFiles files{{"the study", options.file}};
+  if (!study.scenario.empty()) files.push_back({"the study's scenario", study.scenario});
+  for (const fs::path& file : folder.files()) files.push_back({"a file of the study's folder", file});
+  return files;
+}
+
+}  // namespace
+
 int run_study_merge(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);
   const study::Folder folder(study, folder_of(options), false);
-  OutputFile file = reserve({{"the study", options.file}}, *options.output);
+  OutputFile file = reserve(files_of(options, study, folder), *options.output);
   const std::string ending = fs::path(*options.output).extension().string();
   if (ending == ".csv") {
     study::write_csv(study, folder, std::move(file));
@@ -171,7 +183,7 @@ int run_study_merge(const StudyOptions& options) {
 int run_study_report(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);
   const study::Folder folder(study, folder_of(options), false);
-  OutputFile file = reserve({{"the study", options.file}}, *options.output);
+  OutputFile file = reserve(files_of(options, study, folder), *options.output);
   const auto effects = study::find_effects(study, folder, static_cast<std::size_t>(options.worst));
   write_file(std::move(file), study::make_page(study, study::status_of(study, folder), effects));
   return kSuccess;

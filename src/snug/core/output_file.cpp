@@ -26,7 +26,7 @@ namespace snug {
 namespace {
 
 constexpr const char* kDraftSuffix = ".snug-part";
-constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 /// Paths of drafts for the handler of signals, which may neither lock nor allocate. Beyond so many at a time (no verb
 /// has them) a draft may be left behind.

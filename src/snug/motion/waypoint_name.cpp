@@ -109,13 +109,14 @@ Waypoint parse_waypoint_name(std::string_view name) {
   std::string_view rest = name.substr(name_of(waypoint.motion_class).size());
   const bool is_for_item = waypoint.motion_class != MotionClass::Other && waypoint.motion_class != MotionClass::Home;
   const std::size_t bracket = is_for_item && rest.starts_with('(') ? rest.rfind(')') : std::string_view::npos;
-  if (bracket != std::string_view::npos) {
+  const bool has_id = bracket != std::string_view::npos && bracket > 1;
+  if (has_id) {
     waypoint.item = rest.substr(1, bracket - 1);
     rest.remove_prefix(bracket + 1);
   }
   Tail tail = parse_tail(rest);
   waypoint.swing = tail.swing;
-  waypoint.item_is_id = !is_for_item || bracket != std::string_view::npos;
+  waypoint.item_is_id = !is_for_item || has_id;
   (waypoint.item_is_id ? waypoint.variant : waypoint.item) = std::move(tail.variant);
   return waypoint;
 }

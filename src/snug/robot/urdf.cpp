@@ -146,8 +146,9 @@ SpatialInertia read_inertial(const Element& link) {
   result.com = X_LI.p;
   const Element tensor = inertial.child("inertia");
   const double xy = tensor.number_or("ixy", 0.0), xz = tensor.number_or("ixz", 0.0), yz = tensor.number_or("iyz", 0.0);
+  const double xx = tensor.number("ixx"), yy = tensor.number("iyy"), zz = tensor.number("izz");
   Matrix3 M_I;
-  M_I << tensor.number("ixx"), xy, xz, xy, tensor.number("iyy"), yz, xz, yz, tensor.number("izz");
+  M_I << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   const Vector3 moments = symmetric_eigenpairs(M_I).values;
   // The triangle inequality holds for any mass distribution; published tensors are rounded to about 1e-5 kg m^2.
   if (moments(0) < 0.0 || moments(0) + moments(1) < moments(2) * (1.0 - 1e-2) - 2e-5)

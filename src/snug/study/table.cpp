@@ -160,6 +160,15 @@ std::filesystem::path Folder::table(std::uint64_t chunk) const {
   return path_ / fmt::format("chunk-{:06}.jsonl", chunk);
 }
 
+std::vector<std::filesystem::path> Folder::files() const {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(path_)) {
+    const std::string name = entry.path().filename().string();
+    if (name == kCopy || (name.starts_with("chunk-") && name.ends_with(".jsonl"))) files.push_back(entry.path());
+  }
+  return files;
+}
+
 std::map<std::uint64_t, RowResult> Folder::read(std::uint64_t chunk) const {
   std::map<std::uint64_t, RowResult> rows;
   std::ifstream file(table(chunk), std::ios::binary);

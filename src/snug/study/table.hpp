@@ -46,6 +46,8 @@ class Folder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::filesystem::path table(std::uint64_t chunk) const;
+  /// Those of the study that are there: its file as it was, the tables.
+  [[nodiscard]] std::vector<std::filesystem::path> files() const;
   /// Every row that is done, by index; lines that are not whole are passed over, equal ones count once. Throws
   /// InputError when a row was done twice with different results: then it is no function of its index.
   [[nodiscard]] std::map<std::uint64_t, RowResult> read(std::uint64_t chunk) const;

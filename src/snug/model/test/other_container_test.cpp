@@ -133,6 +133,7 @@ TEST(ItemsText, RefusesWhatAScenarioCouldNotSay) {
   const std::string header = "order,article,length_mm,width_mm,height_mm,mass_kg\n";
   const auto add = [&](const std::string& line) {
     Scenario scenario = demonstrator();
+    scenario.parcel_clearance = 0.002;
     add_orders(scenario, parse_orders_csv(header + line, "orders.csv"), "orders.csv");
     return 0;
   };

@@ -38,6 +38,14 @@ TEST(WaypointName, IsForItsBoxAloneWhateverTheIdsAreLike) {
   }
 }
 
+TEST(WaypointName, WithAnEmptyIdIsKeptAsItIs) {
+  for (const char* name : {"PrePick()", "PrePick()_turn", "Place()e~", "Box(a"}) {
+    const Waypoint read = parse_waypoint_name(name);
+    EXPECT_EQ(name_of(read), name);
+    EXPECT_EQ(parse_waypoint_name(name_of(read)), read) << name;
+  }
+}
+
 /// 0 as well where it is no PrePick.
 std::size_t fit_of_pick(const std::string& name, const std::string& id) {
   const Waypoint waypoint = parse_waypoint_name(name);

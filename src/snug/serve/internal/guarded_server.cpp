@@ -144,7 +144,9 @@ void GuardedServer::serve_connection(socket_t socket) {
   GuardedStream stream(socket, limits_);
   bool is_closed = false;
   const bool is_last = true;  // what follows a request may be its body, which a page of another site can write
-  if (!process_request(stream, is_last, is_closed, nullptr)) return;
+  // Answers are whole: the library sends what lies behind them to who asks for a range that ends there.
+  const auto without_ranges = [](httplib::Request& request) { request.ranges.clear(); };
+  if (!process_request(stream, is_last, is_closed, without_ranges)) return;
   // Closed with something unread, the client's system would throw the answer away.
   ::shutdown(socket, SHUT_WR);
   const Clock::time_point deadline = Clock::now() + kFarewell;

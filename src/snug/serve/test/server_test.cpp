@@ -96,6 +96,15 @@ TEST_F(ServerTest, ServesPageAndRecordings) {
   EXPECT_EQ(status(ask("POST", "/live/pause", "Host: localhost\r\nX-Snug: 1\r\nContent-Length: 0\r\n")), 404);
 }
 
+// The library would send what lies behind an answer to who asks for more than that.
+TEST_F(ServerTest, SendsWholeAnswersToWhoAsksForAPart) {
+  for (const char* range : {"bytes=0-1000", "bytes=3-1000000", "bytes=100-200", "bytes=-1000", "bytes=1-2,4-9000"}) {
+    const std::string answer = ask("GET", "/recording/1", "Host: localhost\r\nRange: " + std::string(range) + "\r\n");
+    EXPECT_EQ(status(answer), 200) << range;
+    EXPECT_TRUE(answer.ends_with("\r\n\r\ntwo")) << answer;
+  }
+}
+
 TEST_F(ServerTest, HasNoWayToFiles) {
   start({kPage, {{"a.h5", "one"}}, nullptr});
   for (const char* path :
