@@ -6,10 +6,10 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 #include "options.hpp"
+#include "outputs.hpp"
 
 namespace snug::app {
 namespace {

@@ -1,9 +1,6 @@
 // cup: reads JSON lines, asks the cup module, prints its answers.
 #include "cup.hpp"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -42,8 +39,7 @@ int answer_lines(std::istream& input, const std::string& source, AnswerLine answ
                        "one JSON object on each line");
     }
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    print(answer(line, number, source) + "\n");
-    if (std::fflush(stdout) != 0) throw OutputError("standard output", std::strerror(errno));
+    print_now(answer(line, number, source) + "\n");
   }
   return kSuccess;
 }

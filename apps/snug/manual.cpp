@@ -1,12 +1,11 @@
 // manual: the manual page, made from what `--help` of each verb says.
 #include "manual.hpp"
+#include "outputs.hpp"
 #include "version.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-
-#include <cstdio>
 
 namespace snug::app {
 namespace {

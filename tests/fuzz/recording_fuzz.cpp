@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <vector>
 
 #include "fuzz.hpp"
+#include "scratch_file.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/record/reader.hpp"
 #include "snug/record/test/random_recording.hpp"
@@ -94,14 +94,9 @@ class Bytes {
 };
 
 /// In memory where the system offers it; of this process alone.
-const std::filesystem::path& scratch() {
-  static const std::filesystem::path path = [] {
-    const std::filesystem::path memory = "/dev/shm";
-    const bool has_memory = ::access(memory.c_str(), W_OK) == 0;
-    return (has_memory ? memory : std::filesystem::temp_directory_path()) /
-           ("snug-fuzz-" + std::to_string(::getpid()) + ".h5");
-  }();
-  return path;
+const fuzz::ScratchFile& scratch() {
+  static const fuzz::ScratchFile file(".h5");
+  return file;
 }
 
 const std::string& good_recording() {
@@ -110,15 +105,10 @@ const std::string& good_recording() {
     record::Recording recording = record::test::random_recording(rng, 3, 8, 4);
     recording.header.record_period = 0.25;  // chunks of four frames
     recording.result = R"({"boxes": [{"id": "a", "state": "packed", "events": []}], "wall_s": 1.0})";
-    record::save_recording(scratch(), recording);
-    return read_file(scratch(), "a recording");
+    record::save_recording(scratch().path(), recording);
+    return read_file(scratch().path(), "a recording");
   }();
   return bytes;
-}
-
-void write_file_bytes(const std::string& bytes) {
-  std::ofstream(scratch(), std::ios::binary | std::ios::trunc)
-      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 /// One number of a dataset becomes another.
@@ -163,7 +153,7 @@ void change_texts(hid_t file, const char* path, Bytes& bytes) {
 void apply_changes(Bytes& bytes) {
   const int changes = bytes.next() % 8;
   if (changes == 0) return;
-  const Id file(H5Fopen(scratch().c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+  const Id file(H5Fopen(scratch().path().c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
   for (int i = 0; i < changes; ++i) {
     switch (bytes.next() % 4) {
       case 0:
@@ -181,11 +171,11 @@ void apply_changes(Bytes& bytes) {
 
 /// Bytes here and there, wherever they lie.
 void poke(Bytes& bytes) {
-  std::string text = read_file(scratch(), "a recording");
+  std::string text = read_file(scratch().path(), "a recording");
   for (int i = bytes.next() % 16; i > 0 && !text.empty(); --i)
     text[bytes.number(3) % text.size()] = static_cast<char>(bytes.next());
   if (bytes.next() % 4 == 1) text.resize(bytes.number(3) % (text.size() + 1));
-  write_file_bytes(text);
+  scratch().write(text);
 }
 
 }  // namespace
@@ -194,13 +184,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   Bytes bytes(data, size);
-  write_file_bytes(good_recording());
+  scratch().write(good_recording());
   apply_changes(bytes);
   if (!bytes.is_empty()) poke(bytes);
   fuzz::expect_answer([] {
-    record::RecordingReader reader(scratch());
+    record::RecordingReader reader(scratch().path());
     (void)replay::encode_recording(reader, "x.h5");
   });
-  ::unlink(scratch().c_str());
+  ::unlink(scratch().path().c_str());
   return 0;
 }

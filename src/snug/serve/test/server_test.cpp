@@ -98,6 +98,7 @@ TEST_F(ServerTest, ServesPageAndRecordings) {
 
 // The library would send what lies behind an answer to who asks for more than that.
 TEST_F(ServerTest, SendsWholeAnswersToWhoAsksForAPart) {
+  start({kPage, {{"a.h5", std::string("\0one", 4)}, {"b.h5", "two"}}, nullptr});
   for (const char* range : {"bytes=0-1000", "bytes=3-1000000", "bytes=100-200", "bytes=-1000", "bytes=1-2,4-9000"}) {
     const std::string answer = ask("GET", "/recording/1", "Host: localhost\r\nRange: " + std::string(range) + "\r\n");
     EXPECT_EQ(status(answer), 200) << range;
