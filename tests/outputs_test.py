@@ -283,6 +283,24 @@ class WholeFiles(Folder):
         self.assertEqual(kept.read_text(), "months of work")
         self.assertEqual(self.names(), ["kept.h5", "program.csv", "run.h5"])
 
+    def test_folder_that_cannot_be_written_into_is_refused_before_the_work(self):
+        recording, file, closed = self.make_recording(), self.folder / "file", self.folder / "closed"
+        file.write_text("kept")
+        closed.mkdir(mode=0o555)
+        self.folder.chmod(0o755)
+        user = 65534 if os.geteuid() == 0 else None  # root may write everywhere
+        for words, word in ((("compare", CELL, "--runs"), "--runs"), (("picture", recording, "--video"), "--video"),
+                            (("init", "cell"), "folder")):
+            for place in (file, file / "below", closed):
+                with self.subTest(words=words, place=place):
+                    began = time.monotonic()
+                    result = subprocess.run([SNUG, *map(str, words), place], capture_output=True, text=True, check=False,
+                                            user=user, cwd="/")
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assertIn(f"{word}: '{place}'", result.stderr)
+                    self.assertLess(time.monotonic() - began, 30)
+        self.assertEqual((file.read_text(), list(closed.iterdir())), ("kept", []))
+
 
 class TwoWriters(Folder):
     def assert_busy(self, *words):

@@ -123,11 +123,7 @@ int run_archive_convert(const ArchiveConvertOptions& options) {
     return kSuccess;
   }
   const record::ArchiveReader reader(options.input);
-  std::error_code error;
-  std::filesystem::create_directories(options.output, error);
-  if (error || !std::filesystem::is_directory(options.output))
-    throw InputError(options.output, "", error ? error.message() : "something that is no folder",
-                     "a folder for tables");
+  make_folder("-o", options.output);
   for (std::size_t i = 0; i < reader.size(); ++i) {
     for (const std::filesystem::path& path : validation::save_tables(reader.read(i), options.output))
       print(path.string() + "\n");

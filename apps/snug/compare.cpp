@@ -113,13 +113,6 @@ class Printer {
   bool is_terminal_ = isatty(STDERR_FILENO) != 0;
 };
 
-/// The folder of --runs, there before the first session.
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw InputError("command line", "--runs", "'" + folder + "': " + error.message(), "a folder");
-}
-
 /// The report page of a session's recording, beside it; nothing where nothing was sent, and so nothing recorded.
 std::string make_report(const std::string& recording, const CompareRow& row) {
   if (row.items_sent == 0 || !std::filesystem::exists(recording)) return {};
@@ -164,7 +157,7 @@ int run_compare(const CompareOptions& options) {
     for (const std::filesystem::path& file : folder->files()) inputs.push_back({"a file of --dir", file});
   }
   std::optional<OutputFile> page = reserve(inputs, options.page);
-  if (options.runs) make_folder(*options.runs);
+  if (options.runs) make_folder("--runs", *options.runs);
   catch_interrupts();
   std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %d plants\n", points.size(), agents.size(),
                sequences.size(), options.plants);

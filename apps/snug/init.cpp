@@ -41,12 +41,9 @@ int run_init(const InitOptions& options) {
   const std::string name = options.kind + ".yaml";
   const std::string text = read_file(shipped_folder() / "scenarios/init" / name, "a scenario to begin with");
   const fs::path folder = options.folder;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) {
-    throw InputError(folder.string(), "", error ? error.message() : "not a folder", "a folder that can be made");
-  }
+  make_folder("folder", folder);
   const fs::path file = folder / name;
+  std::error_code error;
   if (fs::exists(fs::symlink_status(file, error))) {
     throw InputError(file.string(), "", "a file that is there already: not overwritten", "another folder");
   }

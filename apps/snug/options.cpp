@@ -75,7 +75,7 @@ CLI::Validator whole(std::uint64_t least) {
         std::uint64_t value = 0;
         const bool fits = reads_as(text, value) && value >= least;
         return fits ? std::string()
-                    : "got '" + text + "'; expected a whole number, " + std::to_string(least) + " or more";
+                    : "got '" + text + "'; expected a whole number, " + std::to_string(least) + " or more, below 2^64";
       },
       "");
 }

@@ -2,6 +2,7 @@
 #include "outputs.hpp"
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -71,6 +72,16 @@ std::optional<OutputFile> reserve(const NamedFiles& inputs, const std::optional<
 std::optional<OutputFile> reserve(const std::optional<std::string>& path) {
   if (!path) return std::nullopt;
   return OutputFile(*path);
+}
+
+void make_folder(const std::string& word, const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  std::string reason = error ? error.message() : std::string();
+  if (reason.empty() && !std::filesystem::is_directory(path, error)) reason = "not a folder";
+  if (reason.empty() && ::access(path.c_str(), W_OK | X_OK) != 0) reason = std::strerror(errno);
+  if (!reason.empty())
+    throw InputError("command line", word, "'" + path.string() + "': " + reason, "a folder that can be written into");
 }
 
 std::optional<OutputFile> reserve_recording(const std::optional<std::string>& path) {

@@ -32,6 +32,10 @@ void expect_distinct(const NamedFiles& inputs, const NamedFiles& outputs);
 /// The file of an option that was given and checked with the others.
 [[nodiscard]] std::optional<OutputFile> reserve(const std::optional<std::string>& path);
 
+/// Makes the folder that `word` of the command line names, if it is not there. Throws InputError when that fails, and
+/// when nothing could be put into it.
+void make_folder(const std::string& word, const std::filesystem::path& path);
+
 [[nodiscard]] std::optional<OutputFile> reserve_recording(const std::optional<std::string>& path);
 
 /// To stdout. Throws OutputError when it cannot be written.

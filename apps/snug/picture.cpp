@@ -148,14 +148,6 @@ std::vector<double> video_times(const PictureOptions& options, const record::Rec
   return instants;
 }
 
-void make_folder(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error || !fs::is_directory(path)) {
-    throw InputError(path.string(), "--video", error ? error.message() : "not a folder", "a folder that can be made");
-  }
-}
-
 /// Pictures of an earlier video must not get among the new ones.
 void expect_empty(const fs::path& path) {
   std::error_code error;
@@ -182,7 +174,7 @@ Descriptor lock_folder(const std::string& path) {
 
 void draw_video(const PictureOptions& options, record::RecordingReader& reader) {
   const std::vector<double> instants = video_times(options, reader);
-  make_folder(options.video);
+  make_folder("--video", options.video);
   const Descriptor lock = lock_folder(options.video);
   expect_empty(options.video);
   Studio studio(options, reader);

@@ -43,10 +43,6 @@ validation::HandShifts parse_shifts(const std::vector<std::string>& words) {
 }
 
 void write_figures(const std::string& folder, const std::vector<validation::NamedFigure>& figures) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder))
-    throw InputError(folder, "", error ? error.message() : "something that is no folder", "a folder for figures");
   for (const validation::NamedFigure& figure : figures)
     write_file(std::filesystem::path(folder) / figure.file, replay::draw_svg(figure.figure));
 }
@@ -60,6 +56,7 @@ int run_validate(const ValidateOptions& options) {
   add_file(outputs, "--csv", options.csv);
   expect_distinct(inputs, outputs);
   std::optional<OutputFile> csv = reserve(options.csv), page = reserve(options.page);
+  if (options.svg) make_folder("--svg", *options.svg);
   const validation::HandShifts shifts = parse_shifts(options.shifts);
   const validation::SimulatedRun run = validation::load_run(options.simulated);
   std::vector<validation::Window> windows;

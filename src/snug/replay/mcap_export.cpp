@@ -19,7 +19,7 @@
 namespace snug::replay {
 namespace {
 
-using internal::JsonText;
+using internal::Json;
 
 /// Of the robot: viewers of MCAP run on graphics cards.
 constexpr std::size_t kMostTriangles = 200'000;
@@ -29,9 +29,9 @@ class Topic {
  public:
   Topic(McapWriter& writer, const std::string& name, McapSchema schema)
       : writer_(writer), id_(writer.add_channel(name, schema_name(schema), schema_text(schema))) {}
-  void write(std::uint64_t ns, std::string_view message) {
+  void write(std::uint64_t ns, const Json& message) {
     last_ = last_ ? std::max(ns, *last_ + 1) : ns;
-    writer_.write(id_, *last_, message);
+    writer_.write(id_, *last_, internal::to_text(message));
   }
 
  private:
@@ -67,11 +67,6 @@ class Exporter {
   void write_program(std::uint64_t ns, int row);
   /// The URDF and how its links look: once, each fixed to the frame of its link.
   void write_robot(std::uint64_t ns);
-  /// Ends the message and hands it on.
-  void send(Topic& topic, std::uint64_t ns) {
-    topic.write(ns, text_.str());
-    text_.clear();
-  }
 
   const record::RecordingHeader& header_;
   const RobotDescription& robot_;
@@ -82,7 +77,6 @@ class Exporter {
   std::optional<Topic> joints_, description_, robot_scene_;
   std::vector<internal::LinkLook> looks_;
   internal::RobotFrames robot_frames_;
-  JsonText text_;
   bool is_first_ = true;
   std::vector<bool> present_;
   std::optional<record::CupSample> drawn_cup_;
@@ -115,20 +109,15 @@ Exporter::Exporter(McapWriter& writer, const record::RecordingHeader& header, co
 }
 
 void Exporter::write_robot(std::uint64_t ns) {
-  if (description_) {
-    text_.raw("{\"data\":").quoted(robot::embed_meshes(robot_.urdf, robot_.meshes)).raw("}");
-    send(*description_, ns);
-  }
+  if (description_) description_->write(ns, {{"data", robot::embed_meshes(robot_.urdf, robot_.meshes)}});
   if (robot_scene_) robot_scene_->write(ns, internal::robot_message(ns, header_, looks_));
 }
 
 void Exporter::write_static_frames(std::uint64_t ns, const record::Frame& frame) {
-  text_.raw("{\"transforms\":[");
-  bool has_any = false;
+  Json transforms = Json::array();
   robot_frames_ = internal::RobotFrames(header_, robot_.urdf, frame);
   const auto put = [&](std::string_view parent, const std::string& name, const record::PoseSample& X) {
-    text_.raw(has_any ? "," : "").transform(ns, parent, name, X);
-    has_any = true;
+    transforms.push_back(internal::transform_json(ns, parent, name, X));
   };
   for (const internal::LinkFrame& link : robot_frames_.still()) put(link.parent, link.child, link.X_PC);
   for (std::size_t i = 0; i < header_.bodies.size(); ++i) {
@@ -145,17 +134,13 @@ void Exporter::write_static_frames(std::uint64_t ns, const record::Frame& frame)
   }
   // Without a robot its flange is where the tool is; of a robot the recording does not tell where it is.
   if (header_.joints.empty()) put(internal::kToolFrame, std::string(internal::kFlangeFrame), {});
-  text_.raw("]}");
-  if (!has_any) return text_.clear();
-  send(tf_static_, ns);
+  if (!transforms.empty()) tf_static_.write(ns, {{"transforms", std::move(transforms)}});
 }
 
 void Exporter::write_moving_frames(std::uint64_t ns, const record::Frame& frame) {
-  text_.raw("{\"transforms\":[");
-  bool has_any = false;
+  Json transforms = Json::array();
   const auto put = [&](std::string_view parent, std::string_view child, const record::PoseSample& X) {
-    text_.raw(has_any ? "," : "").transform(ns, parent, child, X);
-    has_any = true;
+    transforms.push_back(internal::transform_json(ns, parent, child, X));
   };
   if (!robot_frames_.has(internal::kToolFrame)) put(internal::kWorldFrame, internal::kToolFrame, frame.X_WE);
   for (const internal::LinkFrame& link : robot_frames_.moving(frame)) put(link.parent, link.child, link.X_PC);
@@ -164,28 +149,18 @@ void Exporter::write_moving_frames(std::uint64_t ns, const record::Frame& frame)
     if (header_.bodies[i].kind == record::BodyKind::Static || !frame.bodies[i].present) continue;
     put(internal::kWorldFrame, header_.bodies[i].name, frame.bodies[i].X_WB);
   }
-  text_.raw("]}");
-  send(tf_, ns);
+  tf_.write(ns, {{"transforms", std::move(transforms)}});
 }
 
 void Exporter::write_tool(std::uint64_t ns, const record::Frame& frame) {
-  internal::write_pose(text_, ns, internal::kWorldFrame, frame.X_WE);
-  send(tool_pose_, ns);
-  internal::write_pose(text_, ns, internal::kWorldFrame, frame.X_WE_command);
-  send(tool_command_, ns);
-  internal::write_twist(text_, ns, internal::kWorldFrame, frame.V_WE);
-  send(tool_twist_, ns);
-  internal::write_cup(text_, ns, frame.cup, header_);
-  send(cup_state_, ns);
-  internal::write_wrench(text_, ns, internal::kLipFrame, frame.cup.F_PSo_S);
-  send(cup_wrench_, ns);
-  internal::write_wrench(text_, ns, internal::kFlangeFrame, frame.F_flange);
-  send(flange_wrench_, ns);
-  internal::write_solver(text_, ns, frame);
-  send(solver_, ns);
-  if (!joints_) return;
-  internal::write_joints(text_, ns, header_.joints, frame.joints);
-  send(*joints_, ns);
+  tool_pose_.write(ns, internal::pose_json(ns, internal::kWorldFrame, frame.X_WE));
+  tool_command_.write(ns, internal::pose_json(ns, internal::kWorldFrame, frame.X_WE_command));
+  tool_twist_.write(ns, internal::twist_json(ns, internal::kWorldFrame, frame.V_WE));
+  cup_state_.write(ns, internal::cup_json(ns, frame.cup, header_));
+  cup_wrench_.write(ns, internal::wrench_json(ns, internal::kLipFrame, frame.cup.F_PSo_S));
+  flange_wrench_.write(ns, internal::wrench_json(ns, internal::kFlangeFrame, frame.F_flange));
+  solver_.write(ns, internal::solver_json(ns, frame));
+  if (joints_) joints_->write(ns, internal::joints_json(ns, header_.joints, frame.joints));
 }
 
 void Exporter::write_scene(std::uint64_t ns, const record::Frame& frame) {
@@ -208,9 +183,9 @@ void Exporter::write_program(std::uint64_t ns, int row) {
   if (!is_first_ && row == row_) return;
   row_ = row;
   const bool is_named = row >= 0 && static_cast<std::size_t>(row) < row_names_.size();
-  text_.raw("{\"timestamp\":").time(ns).raw(",\"row\":").integer(row).raw(",\"name\":");
-  text_.quoted(is_named ? row_names_[static_cast<std::size_t>(row)] : "").raw("}");
-  send(program_, ns);
+  program_.write(ns, {{"timestamp", internal::time_json(ns)},
+                      {"row", row},
+                      {"name", is_named ? row_names_[static_cast<std::size_t>(row)] : ""}});
 }
 
 void Exporter::add(const record::Frame& frame) {
@@ -228,8 +203,7 @@ void Exporter::add(const record::Frame& frame) {
 
 void Exporter::add(const record::Event& event) {
   const std::uint64_t ns = internal::to_ns(event.time);
-  internal::write_event(text_, ns, event);
-  send(events_, ns);
+  events_.write(ns, internal::event_json(ns, event));
 }
 
 std::vector<record::Event> events_within(const std::vector<record::Event>& all, double from, double to) {

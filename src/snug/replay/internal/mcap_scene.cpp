@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
@@ -12,7 +11,6 @@
 namespace snug::replay::internal {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using record::PoseSample;
 
 constexpr int kDeleteAll = 1;  // of a SceneEntityDeletion
@@ -26,18 +24,9 @@ constexpr std::array<double, 4> kLabel = {0.1, 0.1, 0.1, 1.0};
 constexpr std::array<double, 4> kCupFree = {0.35, 0.35, 0.4, 1.0};
 constexpr std::array<double, 4> kCupHolds = {0.0, 0.45, 0.70, 1.0};
 
-Json as_json(const Vector3& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
-
-Json as_json(const PoseSample& X) {
-  const Quaternion& q = X.quat;
-  return {{"position", as_json(X.p)}, {"orientation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}};
-}
-
 Json as_json(const std::array<double, 4>& color) {
   return {{"r", color[0]}, {"g", color[1]}, {"b", color[2]}, {"a", color[3]}};
 }
-
-Json time_json(std::uint64_t ns) { return {{"sec", ns / 1'000'000'000}, {"nsec", ns % 1'000'000'000}}; }
 
 Json make_entity(std::uint64_t ns, std::string_view frame, const std::string& id) {
   Json entity = {{"timestamp", time_json(ns)}, {"frame_id", frame},    {"id", id},
@@ -155,15 +144,14 @@ void add_visual(Json& entity, const robot::Visual& visual) {
   }
 }
 
-std::string update(std::uint64_t ns, Json entities) {
+Json update(std::uint64_t ns, Json entities) {
   const Json deletions = Json::array({{{"timestamp", time_json(ns)}, {"type", kDeleteAll}, {"id", ""}}});
-  const Json message = {{"deletions", deletions}, {"entities", std::move(entities)}};
-  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return {{"deletions", deletions}, {"entities", std::move(entities)}};
 }
 
 }  // namespace
 
-std::string robot_message(std::uint64_t ns, const record::RecordingHeader& header, const std::vector<LinkLook>& looks) {
+Json robot_message(std::uint64_t ns, const record::RecordingHeader& header, const std::vector<LinkLook>& looks) {
   Json entities = Json::array();
   for (const LinkLook& look : looks) {
     const std::string& name = header.bodies[static_cast<std::size_t>(look.body)].name;
@@ -174,8 +162,8 @@ std::string robot_message(std::uint64_t ns, const record::RecordingHeader& heade
   return update(ns, std::move(entities));
 }
 
-std::string scene_message(std::uint64_t ns, const record::RecordingHeader& header, const record::Frame& frame,
-                          const std::vector<LinkLook>& looks) {
+Json scene_message(std::uint64_t ns, const record::RecordingHeader& header, const record::Frame& frame,
+                   const std::vector<LinkLook>& looks) {
   Json entities = Json::array();
   for (std::size_t i = 0; i < header.bodies.size(); ++i) {
     const record::BodyInfo& body = header.bodies[i];
@@ -185,7 +173,7 @@ std::string scene_message(std::uint64_t ns, const record::RecordingHeader& heade
   return update(ns, std::move(entities));
 }
 
-std::string cup_message(std::uint64_t ns, const CupLook& look, const record::CupSample& cup) {
+Json cup_message(std::uint64_t ns, const CupLook& look, const record::CupSample& cup) {
   constexpr double kLip = 0.004;  // m, drawn thickness of the lip
   const bool holds = cup.attached_body >= 0;
   const PoseSample X_ES = holds ? cup.X_ES : PoseSample({0.0, 0.0, look.free_length}, Quaternion::Identity());

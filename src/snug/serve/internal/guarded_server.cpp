@@ -93,6 +93,7 @@ class GuardedStream : public httplib::Stream {
 }  // namespace
 
 bool is_loopback_name(std::string_view text) {
+  if (text.find('\0') != std::string_view::npos) return false;  // what follows it would not be looked at below
   std::string name(text);
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
   if (name == "localhost") return true;
