@@ -346,7 +346,7 @@ class SameFile(Folder):
     def test_files_of_a_study_are_not_replaced_by_what_is_found_in_it(self):
         scene = Path(shutil.copy(DROP, self.folder / "drop.yaml"))
         study, folder, page = self.folder / "study.yaml", self.folder / "rows", self.folder / "page.html"
-        study.write_text(f"name: s\nverb: simulate\nscenario: {scene}\noptions: {--until: 0.02}\n"
+        study.write_text(f"name: s\nverb: simulate\nscenario: {scene}\noptions: {{--until: 0.02}}\n"
                          "factors:\n  - {option: --dt, values: [0.001, 0.002]}\n")
         self.assertEqual(run("study", study, "--dir", folder).returncode, 0)
         link = self.folder / "link.csv"

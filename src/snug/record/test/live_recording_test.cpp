@@ -70,7 +70,7 @@ class LiveRecording : public testing::Test {
 TEST_F(LiveRecording, IsReadWholeAtAnyMomentWhileItIsWritten) {
   constexpr std::uintmax_t kLarge = std::uintmax_t{1} << 24U;  // bytes, after less than a second
   int reads = 0;
-  for (int run = 0; run < 4; ++run) {
+  for (int run = 0; run < 4 || (reads <= 20 && run < 100); ++run) {  // slow machines read less often in a run
     const std::filesystem::path path = folder / ("run" + std::to_string(run) + ".h5");
     const WritingProcess writer(path, recording);
     ASSERT_TRUE(writer.wait_for(path));

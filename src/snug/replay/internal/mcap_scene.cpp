@@ -24,7 +24,7 @@ constexpr std::array<double, 4> kLabel = {0.1, 0.1, 0.1, 1.0};
 constexpr std::array<double, 4> kCupFree = {0.35, 0.35, 0.4, 1.0};
 constexpr std::array<double, 4> kCupHolds = {0.0, 0.45, 0.70, 1.0};
 
-Json as_json(const std::array<double, 4>& color) {
+Json color_json(const std::array<double, 4>& color) {
   return {{"r", color[0]}, {"g", color[1]}, {"b", color[2]}, {"a", color[3]}};
 }
 
@@ -83,7 +83,7 @@ Json body_entity(std::uint64_t ns, const record::BodyInfo& body, bool is_contain
   Json entity = make_entity(ns, body.name, body.name);
   const bool is_parcel = body.kind == record::BodyKind::Dynamic;
   const bool is_still = body.kind == record::BodyKind::Static;
-  const Json color = as_json(is_parcel ? kParcel : is_container ? kSeeThrough : is_still ? kStill : kMover);
+  const Json color = color_json(is_parcel ? kParcel : is_container ? kSeeThrough : is_still ? kStill : kMover);
   for (const record::ShapeInfo& shape : body.shapes) {
     switch (shape.kind) {
       case record::ShapeKind::Box:
@@ -107,7 +107,7 @@ Json body_entity(std::uint64_t ns, const record::BodyInfo& body, bool is_contain
                              {"billboard", true},
                              {"font_size", 12.0},
                              {"scale_invariant", true},
-                             {"color", as_json(kLabel)},
+                             {"color", color_json(kLabel)},
                              {"text", body.name}});
   return entity;
 }
@@ -126,7 +126,7 @@ void add_mesh(Json& entity, const model::DrawnMesh& mesh, const PoseSample& X, c
 }
 
 void add_visual(Json& entity, const robot::Visual& visual) {
-  const Json color = as_json(visual.rgba);
+  const Json color = color_json(visual.rgba);
   record::ShapeInfo shape;
   shape.X_BG = visual.X_LG;
   if (const auto* box = std::get_if<geometry::Box>(&visual.shape)) {
@@ -180,7 +180,7 @@ Json cup_message(std::uint64_t ns, const CupLook& look, const record::CupSample&
   const Quaternion towards_lip = rotation_between(Vector3::UnitZ(), X_ES.p);
   const double length = X_ES.p.norm(), width = 2.0 * look.lip_radius;
   Json entity = make_entity(ns, kToolFrame, "cup");
-  const Json color = as_json(holds ? kCupHolds : kCupFree);
+  const Json color = color_json(holds ? kCupHolds : kCupFree);
   // Narrow at the gripper, wide at the lip.
   Json bellows = cylinder({0.5 * X_ES.p, towards_lip}, {width, width, length}, 1.0, color);
   bellows["bottom_scale"] = 0.6;

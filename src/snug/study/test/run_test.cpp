@@ -74,7 +74,8 @@ TEST(RunStudy, GoesOnAfterAKillAnywhere) {
       (void)run_study(study, killed, slow, settings);
       ::_exit(0);
     }
-    ::usleep(static_cast<useconds_t>(4000 + 1500 * (kills % 9)));
+    // On slow machines it takes longer until a first row ends.
+    ::usleep(static_cast<useconds_t>((1 + kills / 9) * (4000 + 1500 * (kills % 9))));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
   }
