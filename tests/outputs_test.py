@@ -297,7 +297,7 @@ class WholeFiles(Folder):
                     result = subprocess.run([SNUG, *map(str, words), place], capture_output=True, text=True, check=False,
                                             user=user, cwd="/")
                     self.assertEqual(result.returncode, 2, result.stderr)
-                    self.assertIn(f"{word}: '{place}'", result.stderr)
+                    self.assertIn(f"{word}: got '{place}'", result.stderr)
                     self.assertLess(time.monotonic() - began, 30)
         self.assertEqual((file.read_text(), list(closed.iterdir())), ("kept", []))
 

@@ -115,8 +115,9 @@ bool Server::Impl::is_for_us(const httplib::Request& request, httplib::Response&
     response.status = 413;  // the body is not read: each connection ends after its answer
     return false;
   }
-  const bool is_named = request.get_header_value_count("Host") == 1 &&
-                        internal::is_loopback_name(host_of(request.get_header_value("Host")));
+  const auto host = request.headers.find("Host");  // get_header_value() ends at a NUL
+  const bool is_named =
+      request.get_header_value_count("Host") == 1 && internal::is_loopback_name(host_of(host->second));
   if (is_local && !is_named) {
     response.status = 403;
     response.set_content("This server answers to the names of this machine only.\n", "text/plain");
