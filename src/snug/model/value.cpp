@@ -90,7 +90,7 @@ void Value::fail(const std::string& got, const std::string& expected) const {
 }
 
 double Value::number(Range range) const {
-  const std::string expected = std::string(range_text(range)) + ", SI units, without unit text";
+  const std::string expected = std::string(range_text(range)) + ", at most 1e12, SI units, without unit text";
   if (!node_.IsScalar() || node_.Tag() == "!") fail(expected);
   std::string_view text = node_.Scalar();
   if (text.starts_with('+')) text.remove_prefix(1);
