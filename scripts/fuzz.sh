@@ -10,6 +10,7 @@ build="$1"
 seconds="$2"
 readers="${3:-}"
 seeds="$(dirname "$0")/../tests/fuzz/seeds"
+export LSAN_OPTIONS="suppressions=$(dirname "$0")/../tests/sanitizer-leaks.txt:print_suppressions=0"
 [ -n "$readers" ] || readers="$(ls "$seeds")"
 case "$seconds" in *[!0-9]* | "") echo "fuzz.sh: got TIME='$seconds'; expected whole seconds" >&2; exit 2 ;; esac
 for reader in $readers; do

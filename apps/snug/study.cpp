@@ -30,6 +30,14 @@ fs::path folder_of(const StudyOptions& options) {
   return fs::path(options.file).stem().string() + ".study";
 }
 
+/// What a study reads, and what it has found.
+NamedFiles files_of(const StudyOptions& options, const study::Study& study, const study::Folder& folder) {
+  NamedFiles files{{"the study", options.file}};
+  if (!study.scenario.empty()) files.push_back({"the study's scenario", study.scenario});
+  for (const fs::path& file : folder.files()) files.push_back({"a file of the study's folder", file});
+  return files;
+}
+
 /// "12" or "3-7".
 std::pair<std::uint64_t, std::uint64_t> parse_chunks(const std::string& words, const study::Study& study) {
   const char* const end = words.data() + words.size();
@@ -147,18 +155,6 @@ int run_study_status(const StudyOptions& options) {
       status.done, status.rows, status.failed, status.chunks_done, status.chunks, status.mean_seconds, left));
   return kSuccess;
 }
-
-namespace {
-
-/// What a study reads, and what it has found.
-NamedFiles files_of(const StudyOptions& options, const study::Study& study, const study::Folder& folder) {
-  NamedFiles files{{"the study", options.file}};
-  if (!study.scenario.empty()) files.push_back({"the study's scenario", study.scenario});
-  for (const fs::path& file : folder.files()) files.push_back({"a file of the study's folder", file});
-  return files;
-}
-
-}  // namespace
 
 int run_study_merge(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);

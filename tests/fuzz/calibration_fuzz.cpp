@@ -17,10 +17,8 @@ const snug::robot::ArmModel& nominal() {
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace snug;
-  if (size == 0) return 0;
-  const std::string text(fuzz::text_of(data + 1, size - 1));
-  fuzz::expect_answer([&] {
-    switch (data[0]) {
+  fuzz::expect_answer(data, size, [](char kind, const std::string& text) {
+    switch (kind) {
       case 't':
         (void)parse_table(text, "x.csv", {"x", "y", "z", "rx", "ry", "rz"});
         break;
@@ -28,7 +26,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         (void)calibration::parse_deltas(text, "x.conf");
         break;
       default: {
-        const auto reading = data[0] == 'u' ? calibration::AngleReading::Urdf : calibration::AngleReading::EulerXyz;
+        const auto reading = kind == 'u' ? calibration::AngleReading::Urdf : calibration::AngleReading::EulerXyz;
         const robot::ArmModel arm = calibration::parse_calibration_yaml(text, "x.yaml", reading, nominal());
         (void)calibration::format_calibration_yaml(arm, reading);
       }

@@ -35,4 +35,13 @@ void expect_answer(Read read) {
   }
 }
 
+/// The same of `read(kind, text)`: the first byte of the input says what the others are.
+template <class Read>
+void expect_answer(const std::uint8_t* data, std::size_t size, Read read) {
+  if (size == 0) return;
+  const auto kind = static_cast<char>(data[0]);
+  const std::string text(text_of(data + 1, size - 1));
+  expect_answer([&] { read(kind, text); });
+}
+
 }  // namespace snug::fuzz

@@ -7,12 +7,10 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace snug;
-  if (size == 0) return 0;
   static const model::SceneTask task =
       model::load_scene_task(std::filesystem::path(SNUG_SOURCE_DIR) / "scenarios/tosses/task.yaml");
-  const std::string text(fuzz::text_of(data + 1, size - 1));
-  fuzz::expect_answer([&] {
-    switch (data[0]) {
+  fuzz::expect_answer(data, size, [](char kind, const std::string& text) {
+    switch (kind) {
       case 'p':
         (void)identification::parse_static_poses_json(text, "x.json");
         break;

@@ -8,11 +8,10 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace snug;
-  if (size == 0) return 0;
   static const fuzz::ScratchFile file(".csv");
-  file.write(fuzz::text_of(data + 1, size - 1));
-  fuzz::expect_answer([&] {
-    switch (data[0]) {
+  fuzz::expect_answer(data, size, [](char kind, const std::string& bytes) {
+    file.write(bytes);
+    switch (kind) {
       case 'a':
         (void)record::load_archive(file.path());
         break;
@@ -21,7 +20,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         break;
       default: {
         camera::FrameHints hints;
-        hints.camera_is_given = data[0] == 'c';
+        hints.camera_is_given = kind == 'c';
         (void)camera::load_frame(file.path(), hints);
       }
     }

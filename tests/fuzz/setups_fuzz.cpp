@@ -7,10 +7,8 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace snug;
-  if (size == 0) return 0;
-  const std::string text(fuzz::text_of(data + 1, size - 1));
-  fuzz::expect_answer([&] {
-    switch (data[0]) {
+  fuzz::expect_answer(data, size, [](char kind, const std::string& text) {
+    switch (kind) {
       case 't':
         (void)model::parse_scene_task(text, std::filesystem::path(SNUG_SOURCE_DIR) / "scenarios/tosses/task.yaml");
         break;

@@ -90,14 +90,15 @@ void Value::fail(const std::string& got, const std::string& expected) const {
 }
 
 double Value::number(Range range) const {
-  const std::string expected = std::string(range_text(range)) + ", at most 1e12, SI units, without unit text";
+  const std::string expected = std::string(range_text(range)) + ", SI units, without unit text";
   if (!node_.IsScalar() || node_.Tag() == "!") fail(expected);
   std::string_view text = node_.Scalar();
   if (text.starts_with('+')) text.remove_prefix(1);
   double x = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
   if (error != std::errc() || end != text.data() + text.size()) fail(expected);
-  if (!std::isfinite(x) || std::abs(x) > kLargestNumber || !is_within(x, range)) fail(expected);
+  if (std::isfinite(x) && std::abs(x) > kLargestNumber) fail("a magnitude of at most " + to_text(kLargestNumber));
+  if (!std::isfinite(x) || !is_within(x, range)) fail(expected);
   return x;
 }
 

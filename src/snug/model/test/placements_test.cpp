@@ -105,6 +105,7 @@ TEST(Placements, BlamesLineAndKeyOfAPositionThatIsNone) {
   expect_blamed({"- {box: BOX013, position: [0, 0, .nan]}", "[1].position[2]", ".nan", "a finite number"});
   expect_blamed({"- {box: BOX013, position: [0, 1e999, 0]}", "[1].position[1]", "1e999", "a finite number"});
   expect_blamed({"- {box: BOX013, position: [61, 102, 7600]}", "[1].position[2]", "7600", "metres"});
+  expect_blamed({"- {box: BOX013, position: [0, -1e17, 0]}", "[1].position[1]", "-1e17", "at most 1e+12"});
   expect_blamed({"- {box: BOX013, position: [0.061 m, 0, 0]}", "[1].position[0]", "0.061 m", "without unit text"});
 }
 
