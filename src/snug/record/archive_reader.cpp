@@ -11,9 +11,9 @@
 #include "snug/core/text.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/record/internal/archive_layout.hpp"
-#include "snug/record/internal/attribute_guard.hpp"
 #include "snug/record/internal/h5.hpp"
 #include "snug/record/internal/header_file.hpp"
+#include "snug/record/internal/object_guard.hpp"
 
 namespace snug::record {
 namespace {
@@ -48,7 +48,7 @@ herr_t keep_attribute(hid_t, const char* name, const H5A_info_t*, void* out) {
 /// Text attributes of an object; those of other kinds are left out.
 std::vector<std::pair<std::string, std::string>> texts_of(hid_t object) {
   std::vector<std::string> names;
-  check_attributes(object);
+  check_header(object, ".");
   check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_attribute, &names), "attributes");
   for (const std::string& name : names) check_name(name);
   std::vector<std::pair<std::string, std::string>> texts;
@@ -153,6 +153,7 @@ struct ArchiveReader::Impl {
   Handle open_part(std::size_t index, const Handle& group, const std::string& part, H5O_type_t kind) const {
     if (!exists(group.get(), part)) fail(index, part, "nothing", kind == H5O_TYPE_GROUP ? "a group" : "a dataset");
     check_links(group.get(), part);
+    check_header(group.get(), part.c_str());
     Handle object(H5Oopen(group.get(), part.c_str(), H5P_DEFAULT), part.c_str());
     const bool is_group = H5Iget_type(object.get()) == H5I_GROUP;
     if (is_group != (kind == H5O_TYPE_GROUP))

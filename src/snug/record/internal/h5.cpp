@@ -1,14 +1,13 @@
 // h5: the few things of the HDF5 C library that this module uses, with handles that close and errors that throw.
 #include "snug/record/internal/h5.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "snug/core/text.hpp"
-#include "snug/record/internal/attribute_guard.hpp"
+#include "snug/record/internal/chunks.hpp"
+#include "snug/record/internal/object_guard.hpp"
 
 namespace snug::record::internal {
 namespace {
@@ -26,10 +25,6 @@ std::string take_reason() {
   return reason.empty() ? "unknown HDF5 error" : reason;
 }
 
-/// Bytes of a chunk when it is unpacked. The largest of ours holds a second of one byte for each body.
-constexpr hsize_t kLargestChunk = hsize_t{32} << 20U;
-/// A deflated chunk of this size unpacks to 50 MB at most (deflate: 1032 times).
-constexpr hsize_t kHarmlessPacked = hsize_t{48} << 10U;
 /// What small files may have beyond their size: short texts count as kLeastText.
 constexpr std::size_t kSlack = std::size_t{64} << 10U;
 constexpr std::size_t kLeastText = 8;
@@ -40,54 +35,6 @@ void check_type(hid_t dataset, const char* path) {
   const bool is_text = kind == H5T_STRING && H5Tis_variable_str(type.get()) == 0;
   if (!is_number(type.get()) && !is_text)
     throw H5Error(std::string(path) + " holds neither numbers nor texts of fixed length");
-}
-
-/// Bytes of a chunk when it is unpacked, 0 without chunks.
-hsize_t chunk_bytes_of(hid_t dataset, hid_t properties, Dims& chunk) {
-  if (H5Pget_layout(properties) != H5D_CHUNKED) return 0;
-  chunk.assign(H5S_MAX_RANK, 0);
-  const int rank = H5Pget_chunk(properties, H5S_MAX_RANK, chunk.data());
-  chunk.resize(static_cast<std::size_t>(std::max(0, rank)));
-  const Handle type(H5Dget_type(dataset), "type");
-  hsize_t bytes = H5Tget_size(type.get());
-  for (const hsize_t extent : chunk)
-    bytes = extent > kLargestChunk ? kLargestChunk + 1 : std::min(bytes, kLargestChunk + 1) * extent;
-  return bytes;
-}
-
-/// Unpacks into nothing: does it come to more than so many bytes?
-bool inflates_beyond(const std::vector<unsigned char>& packed, hsize_t most) {
-  z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) throw H5Error("no memory to unpack");
-  std::array<unsigned char, 65536> out;
-  stream.next_in = const_cast<unsigned char*>(packed.data());
-  stream.avail_in = static_cast<uInt>(packed.size());
-  int status = Z_OK;
-  while (status == Z_OK && stream.total_out <= most) {
-    stream.next_out = out.data();
-    stream.avail_out = static_cast<uInt>(out.size());
-    status = inflate(&stream, Z_NO_FLUSH);
-  }
-  const bool is_beyond = stream.total_out > most;
-  inflateEnd(&stream);
-  return is_beyond;
-}
-
-/// The library unpacks a chunk to whatever it comes to, however large it says that it is.
-void check_chunk(hid_t dataset, const Dims& at, hsize_t chunk_bytes) {
-  hsize_t stored = 0;
-  if (H5Dget_chunk_storage_size(dataset, at.data(), &stored) < 0) {
-    H5Eclear2(H5E_DEFAULT);  // a chunk that was never written
-    return;
-  }
-  constexpr hsize_t kOverhead = 1024;
-  const char* const reason = "a chunk that is larger than it says";
-  if (stored > chunk_bytes + chunk_bytes / 1000 + kOverhead) throw H5Error(reason);
-  if (stored <= kHarmlessPacked) return;
-  std::vector<unsigned char> packed(stored);
-  std::uint32_t skipped = 0;
-  check(H5Dread_chunk(dataset, H5P_DEFAULT, at.data(), &skipped, packed.data()), "chunk");
-  if (skipped == 0 && inflates_beyond(packed, chunk_bytes)) throw H5Error(reason);
 }
 
 Handle simple_space(const Dims& dims) {
@@ -120,36 +67,19 @@ void check_storage(hid_t dataset, const char* path) {
   if ((layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) ||
       H5Pget_external_count(properties.get()) != 0)
     throw H5Error(std::string(path) + " is kept in another file");
-  Dims chunk;
-  if (chunk_bytes_of(dataset, properties.get(), chunk) > kLargestChunk)
-    throw H5Error(std::string(path) + " is kept in chunks that are too large");
-  const int filters = H5Pget_nfilters(properties.get());
-  for (unsigned i = 0; filters > 0 && i < static_cast<unsigned>(filters); ++i) {
-    unsigned flags = 0, config = 0;
-    std::size_t values = 0;
-    const H5Z_filter_t filter = H5Pget_filter2(properties.get(), i, &flags, &values, nullptr, 0, nullptr, &config);
-    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE)
-      throw H5Error(std::string(path) + " is packed in an unknown way");
-  }
+  const Handle space(H5Dget_space(dataset), path), type(H5Dget_type(dataset), path);
+  if (layout == H5D_CHUNKED) return check_chunk_layout(properties.get(), type.get(), path);
+  // The library reads beyond the end of what is stored. Nothing is stored of what was never written.
+  const auto count = static_cast<hsize_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get())));
+  const hsize_t stored = H5Dget_storage_size(dataset);
+  const bool may_be_absent = layout == H5D_CONTIGUOUS && stored == 0;
+  if (!may_be_absent && count > stored / std::max<std::size_t>(1, H5Tget_size(type.get())))
+    throw H5Error(std::string(path) + " is shorter than its extent says");
 }
 
-void check_chunks(hid_t dataset, const Dims& dims, hsize_t first, hsize_t count) {
+bool is_chunked(hid_t dataset) {
   const Handle properties(H5Dget_create_plist(dataset), "dataset");
-  Dims chunk;
-  const hsize_t chunk_bytes = chunk_bytes_of(dataset, properties.get(), chunk);
-  if (chunk_bytes == 0 || count == 0 || H5Pget_nfilters(properties.get()) == 0) return;
-  Dims at(dims.size(), 0);
-  at[0] = first - first % chunk[0];
-  // Every corner of the grid of chunks, the last dimension fastest.
-  for (std::size_t d = 0;;) {
-    check_chunk(dataset, at, chunk_bytes);
-    for (d = dims.size(); d-- > 0;) {
-      at[d] += chunk[d];
-      if (at[d] < (d == 0 ? first + count : dims[d])) break;
-      if (d == 0) return;
-      at[d] = 0;
-    }
-  }
+  return H5Pget_layout(properties.get()) == H5D_CHUNKED;
 }
 
 bool is_number(hid_t type) {
@@ -216,12 +146,12 @@ void update_attribute(hid_t object, const char* name, hid_t type, const void* va
 }
 
 bool has_attribute(hid_t object, const char* name) {
-  check_attributes(object);
+  check_header(object, ".");
   return H5Aexists(object, name) > 0;
 }
 
 std::string read_text_attribute(hid_t object, const char* name) {
-  check_attributes(object);
+  check_header(object, ".");
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), name);
   const Handle type(H5Aget_type(attribute.get()), name);
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0)
@@ -237,7 +167,7 @@ std::string read_text_attribute(hid_t object, const char* name) {
 }
 
 void read_attribute(hid_t object, const char* name, hid_t type, void* value) {
-  check_attributes(object);
+  check_header(object, ".");
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), name);
   const Handle space(H5Aget_space(attribute.get()), name);
   const Handle stored(H5Aget_type(attribute.get()), name);
@@ -315,6 +245,7 @@ bool has_link(hid_t file, const char* path) { return H5Lexists(file, path, H5P_D
 
 Handle open_dataset(hid_t file, const char* path) {
   check_links(file, path);
+  check_header(file, path);
   Handle dataset(H5Dopen2(file, path, H5P_DEFAULT), path);
   check_type(dataset.get(), path);
   check_storage(dataset.get(), path);
@@ -331,14 +262,14 @@ Dims dims_of(hid_t dataset) {
 
 void read_whole(hid_t dataset, hid_t type, void* out) {
   const Dims dims = dims_of(dataset);
-  if (!dims.empty()) check_chunks(dataset, dims, 0, dims[0]);
+  if (is_chunked(dataset)) return read_chunked_rows(dataset, type, dims, 0, dims.empty() ? 1 : dims[0], out);
   check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out), "read");
 }
 
 void read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* out) {
   Dims size = dims_of(dataset);
   if (size.empty() || count > size[0] || first > size[0] - count) throw H5Error("dataset is shorter than expected");
-  check_chunks(dataset, size, first, count);
+  if (is_chunked(dataset)) return read_chunked_rows(dataset, type, size, first, count, out);
   size[0] = count;
   Dims start(size.size(), 0);
   start[0] = first;

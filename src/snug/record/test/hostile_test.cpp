@@ -173,7 +173,7 @@ TEST_F(HostileRecording, ChunksThatUnpackToMoreThanTheySayAreRefused) {
     const hsize_t at[3] = {0, 0, 0};
     internal::check(H5Dwrite_chunk(dataset.get(), H5P_DEFAULT, 0, at, size, packed.data()), "chunk");
   });
-  expect_refused_in_little_memory("a chunk that is larger than it says");
+  expect_refused_in_little_memory("a chunk of another size than it says");
   SetUp();  // and one within a chunk that says 8 MB: not larger packed than unpacked
   edit([&](hid_t file) {
     const Handle dataset =
@@ -187,12 +187,33 @@ TEST_F(HostileRecording, ChunksThatUnpackToMoreThanTheySayAreRefused) {
     const hsize_t at[1] = {0};
     internal::check(H5Dwrite_chunk(dataset.get(), H5P_DEFAULT, 0, at, size, packed.data()), "chunk");
   });
-  expect_refused_in_little_memory("a chunk that is larger than it says");
+  expect_refused_in_little_memory("a chunk of another size than it says");
   SetUp();
   edit([&](hid_t file) {
     replace(file, "/solver/residual", H5T_IEEE_F64LE, {kFrames}, in_chunks({100'000'000}, true));
   });
   expect_refused_in_little_memory("chunks that are too large");
+}
+
+// The library would read beyond the end of what it unpacked, or found.
+TEST_F(HostileRecording, ChunksThatUnpackToLessThanTheySayAreRefused) {
+  const std::array<double, kFrames / 2> half{};
+  std::vector<unsigned char> packed(compressBound(sizeof half));
+  uLongf size = packed.size();
+  ASSERT_EQ(compress(packed.data(), &size, reinterpret_cast<const Bytef*>(half.data()), sizeof half), Z_OK);
+  const auto write = [&](bool is_deflated, std::uint32_t skipped, std::size_t bytes, const void* data) {
+    SetUp();
+    edit([&](hid_t file) {
+      const Handle dataset =
+          replace(file, "/solver/residual", H5T_IEEE_F64LE, {kFrames}, in_chunks({kFrames}, is_deflated));
+      const hsize_t at[1] = {0};
+      internal::check(H5Dwrite_chunk(dataset.get(), H5P_DEFAULT, skipped, at, bytes, data), "chunk");
+    });
+    expect_refused_in_little_memory("a chunk of another size than it says");
+  };
+  write(true, 0, size, packed.data());
+  write(true, 1, sizeof half, half.data());  // not packed, though others of the dataset are
+  write(false, 0, sizeof half, half.data());
 }
 
 TEST_F(HostileRecording, WhatLiesInOtherFilesIsNotShown) {
@@ -242,7 +263,7 @@ TEST_F(HostileRecording, AttributesThatSayTheyAreLargerAreRefused) {
     ASSERT_NE(at, std::string::npos) << name;
     for (const std::size_t byte : {2U, 3U}) {
       change_byte(path_, bytes, at + static_cast<std::size_t>(behind) + byte, '\x7f');
-      expect_refused_in_little_memory("an attribute that is larger than what holds it");
+      expect_refused_in_little_memory("an attribute or a layout that is larger than what holds it");
     }
   }
 }

@@ -1,8 +1,9 @@
-// attribute_guard: are the attributes of an object within the bytes that hold them? HDF5 before 1.14.1 does not ask.
+// object_guard: what HDF5 1.10 does not ask of an object's header before it uses it.
 //
 // Object headers: HDF5 file format specification, sections IV.A.1 and IV.A.2; messages: dataspace IV.A.2.b, datatype
-// IV.A.2.d, attribute IV.A.2.m, continuation IV.A.2.q. All numbers are little endian, offsets and lengths have 8 bytes.
-#include "snug/record/internal/attribute_guard.hpp"
+// IV.A.2.d, data layout IV.A.2.i, attribute IV.A.2.m, continuation IV.A.2.q. All numbers are little endian, offsets and
+// lengths have 8 bytes.
+#include "snug/record/internal/object_guard.hpp"
 
 #include <unistd.h>
 
@@ -19,10 +20,10 @@ namespace {
 
 constexpr std::size_t kLargestBlock = std::size_t{1} << 24U;  // of a header; messages have at most 64 kB
 constexpr std::size_t kMostBlocks = 1000;
-constexpr std::uint64_t kAttribute = 0x0c, kContinuation = 0x10;
+constexpr std::uint64_t kLayout = 0x08, kAttribute = 0x0c, kContinuation = 0x10;
 constexpr std::uint64_t kShared = 0x02;  // flag of a message: it is elsewhere
 
-[[noreturn]] void fail() { throw H5Error("an attribute that is larger than what holds it"); }
+[[noreturn]] void fail() { throw H5Error("an attribute or a layout that is larger than what holds it"); }
 
 /// Reads numbers from bytes; beyond them there is nothing.
 class Bytes {
@@ -77,6 +78,28 @@ void check_attribute(Bytes message) {
   if (multiply(type_bytes.number(4), count_values(space_bytes)) > message.size()) fail();
 }
 
+/// Chunks without extent: the library divides by it as it opens the dataset.
+void check_layout(Bytes message) {
+  constexpr std::uint64_t kChunked = 2;
+  const std::uint64_t version = message.number(1);
+  std::uint64_t rank = version < 3 ? message.number(1) : 0, bytes = 4;
+  if (message.number(1) != kChunked) return;
+  if (version < 3) {
+    message.take(5 + 8);  // reserved, address
+  } else if (version == 3) {
+    rank = message.number(1);
+    message.take(8);  // address
+  } else {
+    message.take(1);  // flags
+    rank = message.number(1);
+    bytes = message.number(1);
+    if (bytes < 1 || bytes > 8) throw H5Error("chunks of an unknown shape");
+  }
+  for (std::uint64_t i = 0; i < rank; ++i) {
+    if (message.number(bytes) == 0) throw H5Error("chunks that hold nothing");
+  }
+}
+
 struct Place {
   std::uint64_t address = 0, size = 0;
 };
@@ -112,6 +135,7 @@ void check_block(Bytes block, const Layout& layout, std::vector<Place>& more) {
     if (size > block.size()) return;  // the library refuses such a header, or it is the gap at the end of a block
     Bytes message(block.take(size));
     if (type == kAttribute && (flags & kShared) == 0) check_attribute(message);
+    if (type == kLayout && (flags & kShared) == 0) check_layout(message);
     if (type == kContinuation && size >= 16) {
       const std::uint64_t address = message.number(8);
       more.push_back({address, message.number(8)});
@@ -141,8 +165,10 @@ std::optional<std::string> read_first(const File& file, std::uint64_t address, L
 
 }  // namespace
 
-void check_attributes(hid_t object) {
-  const Handle file(H5Iget_file_id(object), "file of an object");
+void check_header(hid_t place, const char* path) {
+  H5O_info_t info;
+  check(H5Oget_info_by_name2(place, path, &info, H5O_INFO_BASIC, H5P_DEFAULT), path);
+  const Handle file(H5Iget_file_id(place), "file of an object");
   const Handle access(H5Fget_access_plist(file.get()), "file access");
   void* descriptor = nullptr;
   if (H5Pget_driver(access.get()) != H5FD_SEC2 || H5Fget_vfd_handle(file.get(), access.get(), &descriptor) < 0) return;
@@ -152,8 +178,6 @@ void check_attributes(hid_t object) {
   check(H5Pget_userblock(creation.get(), &base), "file creation");
   check(H5Pget_sizes(creation.get(), &offset_bytes, &length_bytes), "file creation");
   if (offset_bytes != 8 || length_bytes != 8) throw H5Error("a file with offsets of an unusual size");
-  H5O_info_t info;
-  check(H5Oget_info2(object, &info, H5O_INFO_BASIC), "object");
   const File bytes(*static_cast<int*>(descriptor), base);
   Layout layout;
   std::vector<Place> more;
