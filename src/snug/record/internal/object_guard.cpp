@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kLargestBlock = std::size_t{1} << 24U;  // of a header; messages have at most 64 kB
 constexpr std::size_t kMostBlocks = 1000;
-constexpr std::uint64_t kLayout = 0x08, kAttribute = 0x0c, kContinuation = 0x10;
+constexpr std::uint64_t kDataspace = 0x01, kLayout = 0x08, kAttribute = 0x0c, kContinuation = 0x10;
 constexpr std::uint64_t kShared = 0x02;  // flag of a message: it is elsewhere
 
 [[noreturn]] void fail() { throw H5Error("an attribute or a layout that is larger than what holds it"); }
@@ -78,12 +78,17 @@ void check_attribute(Bytes message) {
   if (multiply(type_bytes.number(4), count_values(space_bytes)) > message.size()) fail();
 }
 
-/// Chunks without extent: the library divides by it as it opens the dataset.
-void check_layout(Bytes message) {
+/// What the messages of a header say of a dataset; empty where they say nothing.
+struct Shape {
+  std::optional<std::uint64_t> rank, chunk_rank;
+};
+
+/// Chunks without extent: the library divides by it as it opens the dataset. Returns their rank.
+std::optional<std::uint64_t> check_layout(Bytes message) {
   constexpr std::uint64_t kChunked = 2;
   const std::uint64_t version = message.number(1);
   std::uint64_t rank = version < 3 ? message.number(1) : 0, bytes = 4;
-  if (message.number(1) != kChunked) return;
+  if (message.number(1) != kChunked) return std::nullopt;
   if (version < 3) {
     message.take(5 + 8);  // reserved, address
   } else if (version == 3) {
@@ -98,6 +103,7 @@ void check_layout(Bytes message) {
   for (std::uint64_t i = 0; i < rank; ++i) {
     if (message.number(bytes) == 0) throw H5Error("chunks that hold nothing");
   }
+  return rank;
 }
 
 struct Place {
@@ -128,14 +134,18 @@ struct Layout {
 };
 
 /// Checks the messages of a block, collects where the header goes on.
-void check_block(Bytes block, const Layout& layout, std::vector<Place>& more) {
+void check_block(Bytes block, const Layout& layout, std::vector<Place>& more, Shape& shape) {
   while (block.size() >= layout.prefix()) {
     const std::uint64_t type = block.number(layout.is_second ? 1 : 2), size = block.number(2), flags = block.number(1);
     block.take(layout.prefix() - (layout.is_second ? 4 : 5));
     if (size > block.size()) return;  // the library refuses such a header, or it is the gap at the end of a block
     Bytes message(block.take(size));
     if (type == kAttribute && (flags & kShared) == 0) check_attribute(message);
-    if (type == kLayout && (flags & kShared) == 0) check_layout(message);
+    if (type == kLayout && (flags & kShared) == 0) shape.chunk_rank = check_layout(message);
+    if (type == kDataspace && (flags & kShared) == 0 && size >= 2) {
+      message.take(1);  // version
+      shape.rank = message.number(1);
+    }
     if (type == kContinuation && size >= 16) {
       const std::uint64_t address = message.number(8);
       more.push_back({address, message.number(8)});
@@ -180,9 +190,10 @@ void check_header(hid_t place, const char* path) {
   if (offset_bytes != 8 || length_bytes != 8) throw H5Error("a file with offsets of an unusual size");
   const File bytes(*static_cast<int*>(descriptor), base);
   Layout layout;
+  Shape shape;
   std::vector<Place> more;
   if (const std::optional<std::string> first = read_first(bytes, info.addr, layout))
-    check_block(Bytes(*first), layout, more);
+    check_block(Bytes(*first), layout, more, shape);
   for (std::size_t i = 0; i < more.size(); ++i) {
     if (i == kMostBlocks) throw H5Error("a header in too many pieces");
     std::string block = bytes.read(more[i]);
@@ -190,8 +201,11 @@ void check_header(hid_t place, const char* path) {
       if (block.size() < 8) continue;
       block = block.substr(4, block.size() - 8);
     }
-    check_block(Bytes(block), layout, more);
+    check_block(Bytes(block), layout, more, shape);
   }
+  // The last extent of a chunk is the size of an element.
+  if (shape.chunk_rank && shape.rank && *shape.chunk_rank != *shape.rank + 1)
+    throw H5Error("chunks of another shape than the dataset");
 }
 
 }  // namespace snug::record::internal
