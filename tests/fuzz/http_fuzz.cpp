@@ -67,14 +67,14 @@ std::size_t count_of(const std::string& text, const std::string& word) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static Running running;
   const std::string_view request = fuzz::text_of(data, std::min<std::size_t>(size, 4096));
-  static bool may_pause_late = false;  // a request with the header was left before it was answered
+  static bool may_pause_late = false;  // a command with the header was left before it was answered
   const Answer answer = ask(running.server.port(), request);
   const std::size_t answers = count_of(answer.text, "HTTP/1.1 ") - count_of(answer.text, "HTTP/1.1 100 ");
   SNUG_CHECK(answers <= 1, "one answer to a connection");
   std::string head(request.substr(0, request.find("\r\n\r\n")));
   std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return std::tolower(c); });
   const bool has_header = head.find("\nx-snug") != std::string::npos;
-  may_pause_late = may_pause_late || (has_header && answer.is_late);
+  may_pause_late = may_pause_late || (has_header && answer.is_late && head.starts_with("post "));
   if (running.live.is_paused()) {
     SNUG_CHECK(has_header || may_pause_late, "a run is paused by its own page only");
     running.live.resume();
