@@ -47,6 +47,8 @@ JointVector start_joints(const model::Scenario& scenario, const robot::ArmModel&
 constexpr double kRounding = 1e-9;
 // N, of a link against something: less is rounding.
 constexpr double kTouch = 0.5;
+// By how much more than what was acknowledged a load stops the arm again.
+constexpr double kMoreThanAcknowledged = 1.5;
 // s, after which links that no longer touch have parted: shorter gaps are bounces.
 constexpr double kParted = 0.1;
 
@@ -131,10 +133,18 @@ void CellArm::attach(const CellWorld& world) {
 
 ArmState CellArm::make_state(std::uint64_t seed, const JointVector& q) const {
   const JointVector none = JointVector::Zero(model().joint_count());
-  return {machine_.make_state(controller_, q), Rng(seed).split("force sensor"), {}, {q, none, none}};
+  return {machine_.make_state(controller_, q), Rng(seed).split("force sensor"), {}, {q, none, none}, {none}};
 }
 
 void CellArm::stand(ArmState& state) const { state.machine = machine_.make_state(controller_, state.machine.joints.q); }
+
+void CellArm::acknowledge(const ArmReading& reading, ArmState& state) const {
+  for (std::size_t j = 0; j < reading.joints.size(); ++j) {
+    state.acknowledged.torques[static_cast<Eigen::Index>(j)] = std::abs(reading.joints[j].torque);
+  }
+  state.acknowledged.force = reading.sensor_force;
+  state.acknowledged.torque = reading.sensor_torque;
+}
 
 control::MachineTick CellArm::tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
                                    ArmState& state, control::JointControllerWork& work) const {
@@ -311,20 +321,24 @@ Wrench CellArm::disturbed(const Wrench& F, double time, Rng& noise) const {
 }
 
 std::optional<ProtectiveStop> CellArm::find_stop(const ArmState& state, const ArmTask& task, const ArmReading& reading,
-                                                 double sensor_force, double sensor_torque, double yielded) const {
+                                                 double yielded) const {
   std::optional<ProtectiveStop> found;
   const auto stop = [&](StopCause cause, std::string where, double value, double limit, const char* unit) {
     if (found || !(value > limit)) return;
     found = ProtectiveStop{cause, std::move(where), value, limit, unit, 0.0, task.row, "", "", ""};
     if (task.waypoint != nullptr) found->waypoint = motion::name_of(*task.waypoint);
   };
+  const auto stop_by_load = [&](StopCause cause, const std::string& where, double value, double limit,
+                                double acknowledged, const char* unit) {
+    stop(cause, where, value, std::max(limit, kMoreThanAcknowledged * acknowledged), unit);
+  };
+  const AcknowledgedLoad& known = state.acknowledged;
   const control::JointState& joints = state.machine.joints;
   for (Eigen::Index j = 0; j < joints.q.size(); ++j) {
     const robot::Joint& joint = model().joints[static_cast<std::size_t>(j)];
     const bool turns = joint.kind == robot::JointKind::Revolute;
     const double torque = std::abs(reading.joints[static_cast<std::size_t>(j)].torque);
-    stop(StopCause::JointTorque, joint.name, torque, params_.protective_stop.torque_fraction * joint.max_effort,
-         turns ? "Nm" : "N");
+    stop_by_load(StopCause::JointTorque, joint.name, torque, torque_limit(j), known.torques[j], turns ? "Nm" : "N");
     if (task.outside == nullptr) continue;
     stop(StopCause::JointSpeed, joint.name, std::abs(joints.qd[j]), joint.max_speed + kRounding,
          turns ? "rad/s" : "m/s");
@@ -332,14 +346,28 @@ std::optional<ProtectiveStop> CellArm::find_stop(const ArmState& state, const Ar
     stop(StopCause::JointRange, joint.name, -joints.q[j], -joint.lower + kRounding, turns ? "rad" : "m");
   }
   const std::string& sensor = params_.sensor_frame;
-  stop(StopCause::SensorForce, sensor, sensor_force, params_.protective_stop.sensor_force, "N");
-  stop(StopCause::SensorTorque, sensor, sensor_torque, params_.protective_stop.sensor_torque, "Nm");
+  const model::ProtectiveStop& limits = params_.protective_stop;
+  stop_by_load(StopCause::SensorForce, sensor, reading.sensor_force, limits.sensor_force, known.force, "N");
+  stop_by_load(StopCause::SensorTorque, sensor, reading.sensor_torque, limits.sensor_torque, known.torque, "Nm");
   stop(StopCause::TrackingError, "the joints", yielded, params_.protective_stop.tracking_error, "rad");
   if (task.is_stuck && task.waypoint != nullptr) {
     stop(StopCause::Stuck, motion::name_of(*task.waypoint), (task.waypoint->p_WE - state.machine.tool.X_WE.p).norm(),
          -1.0, "m");
   }
   return found;
+}
+
+double CellArm::torque_limit(Eigen::Index joint) const {
+  return params_.protective_stop.torque_fraction * model().joints[static_cast<std::size_t>(joint)].max_effort;
+}
+
+void CellArm::forget_released(const ArmReading& reading, AcknowledgedLoad& acknowledged) const {
+  for (Eigen::Index j = 0; j < acknowledged.torques.size(); ++j) {
+    const double torque = std::abs(reading.joints[static_cast<std::size_t>(j)].torque);
+    if (torque <= torque_limit(j)) acknowledged.torques[j] = 0.0;
+  }
+  if (reading.sensor_force <= params_.protective_stop.sensor_force) acknowledged.force = 0.0;
+  if (reading.sensor_torque <= params_.protective_stop.sensor_torque) acknowledged.torque = 0.0;
 }
 
 void CellArm::read(const CellWorld& world, const ArmTask& task, double time, ArmLoads& loads, ArmState& state,
@@ -370,8 +398,10 @@ void CellArm::read(const CellWorld& world, const ArmTask& task, double time, Arm
   }
 
   follow_touches(time, loads, state, reading);
-  reading.stop = find_stop(state, task, reading, (F_sensor.force - weight.force).norm(),
-                           (F_sensor.torque - weight.torque).norm(), yielded);
+  reading.sensor_force = (F_sensor.force - weight.force).norm();
+  reading.sensor_torque = (F_sensor.torque - weight.torque).norm();
+  reading.stop = find_stop(state, task, reading, yielded);
+  forget_released(reading, state.acknowledged);
   if (!reading.stop) return;
   reading.stop->time = time;
   if (loads.worst_force > 0.0) {

@@ -31,12 +31,20 @@ struct OutsideDrive {
   robot::JointVector torques_fixed;  ///< likewise: of what never moves, at the end of the last tick
 };
 
+/// What pressed on the arm when a stop was acknowledged: it may move out of that. Zero: nothing.
+struct AcknowledgedLoad {
+  robot::JointVector torques;  ///< Nm (N), at the joints
+  double force = 0.0;          ///< N, at the sensor, beyond the weight
+  double torque = 0.0;         ///< Nm, likewise
+};
+
 /// Everything of the arm that changes. Copying it is a snapshot.
 struct ArmState {
   control::MachineState machine;
   Rng noise{0};                   ///< of the force sensor
   std::vector<ArmTouch> touches;  ///< that have not ended
   OutsideDrive outside;
+  AcknowledgedLoad acknowledged;
 };
 
 enum class StopCause {
@@ -93,6 +101,8 @@ struct ArmReading {
   std::vector<record::JointSample> joints;
   Wrench F_Eo_W;                                 ///< on the tool, about E's origin: mean over the tick
   Wrench F_sensor;                               ///< with noise, bias and drift; in the sensor's frame
+  double sensor_force = 0.0;                     ///< N, without those, beyond the weight of the gripper
+  double sensor_torque = 0.0;                    ///< Nm, likewise
   std::vector<physics::ContactReport> contacts;  ///< of links and gripper with what never moves
   control::JointTick control;
   std::optional<ProtectiveStop> stop;
@@ -117,6 +127,9 @@ class CellArm {
   [[nodiscard]] ArmState make_state(std::uint64_t seed, const robot::JointVector& q) const;
   /// At rest where it is; its controller starts anew.
   void stand(ArmState& state) const;
+  /// After a stop: the load that `reading` shows stops the arm again only when it grows by a tenth, until it was below
+  /// the limit once.
+  void acknowledge(const ArmReading& reading, ArmState& state) const;
   /// One tick of the controller. `program` is brought up to date.
   [[nodiscard]] control::MachineTick tick(const motion::PreparedProgram& plan, motion::ControllerState& program,
                                           ArmState& state, control::JointControllerWork& work) const;
@@ -149,8 +162,10 @@ class CellArm {
   [[nodiscard]] double touch_obstacles(const CellWorld& world, const robot::ArmPose& at, ArmLoads& loads,
                                        ArmReading& reading) const;
   [[nodiscard]] std::optional<ProtectiveStop> find_stop(const ArmState& state, const ArmTask& task,
-                                                        const ArmReading& reading, double sensor_force,
-                                                        double sensor_torque, double yielded) const;
+                                                        const ArmReading& reading, double yielded) const;
+  /// A load that is below its limit again is no longer acknowledged.
+  void forget_released(const ArmReading& reading, AcknowledgedLoad& acknowledged) const;
+  [[nodiscard]] double torque_limit(Eigen::Index joint) const;
   void follow_touches(double time, const ArmLoads& loads, ArmState& state, ArmReading& reading) const;
   void add_force(const robot::ArmPose& at, int segment, const Vector3& p_WQ, const Vector3& force_W, bool is_tool,
                  ArmLoads& loads) const;

@@ -74,6 +74,7 @@ bool OutsideRun::is_stopped_for_protection() const { return impl_->last.failure.
 void OutsideRun::acknowledge() {
   if (!is_stopped_for_protection()) return;
   impl_->last.failure = {};
+  impl_->simulation.acknowledge(impl_->work, impl_->state);
   stand();
 }
 

@@ -134,6 +134,8 @@ class Simulation {
   void begin_motion(CellState& state) const;
   /// The tool, and the arm, are at rest from now on: the brakes are closed.
   void stand(CellState& state) const;
+  /// A protective stop, after the tick that `work` is of: CellArm::acknowledge.
+  void acknowledge(const CellWorkspace& work, CellState& state) const;
   /// The item comes to the aligner; what stands where it comes, and is not held, is taken away.
   void bring(int item, CellState& state) const;
   /// On the tool, from what it carries and touches, about Eo, in E: what a sensor between arm and tool reads beyond the

@@ -53,6 +53,10 @@ void Simulation::stand(CellState& state) const {
   state.controller.command.V_WE = Twist{};
 }
 
+void Simulation::acknowledge(const CellWorkspace& work, CellState& state) const {
+  if (arm_) arm_->acknowledge(work.arm, *state.arm);
+}
+
 void Simulation::bring(int item, CellState& state) const {
   const auto index = static_cast<std::size_t>(item);
   const auto radius = [this](std::size_t i) {

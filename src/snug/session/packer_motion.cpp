@@ -143,9 +143,12 @@ void Packer::retreat(const std::string& id, ItemReport& report) {
   up.p_WE.z() = std::max(up.p_WE.z(), travel + scenario_.cup.free_length + scenario_.skills.travel.retreat);
   const motion::Waypoint let_go =
       motion::make_waypoint(MotionClass::Place, id, robot_.X_WE, {.blow_off = true}, "_release");
-  plant_.acknowledge();
   const std::vector<motion::Waypoint> rows{let_go, up};
-  submit(id, layout_.is_fast ? with_detaching(layout_, rows) : rows, {std::nullopt, false}, report);
+  for (int stops = 0; stops <= scenario_.recovery.most_stops; ++stops) {
+    plant_.acknowledge();
+    submit(id, layout_.is_fast ? with_detaching(layout_, rows) : rows, {std::nullopt, false}, report);
+    if (robot_.end.reason != plant::EndReason::ProtectiveStop) return;
+  }
 }
 
 void Packer::give_up(int item, Trouble trouble, ItemReport& report) {

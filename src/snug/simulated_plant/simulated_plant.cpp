@@ -81,6 +81,7 @@ bool SimulatedPlant::bring(const std::string& item) {
 
 void SimulatedPlant::acknowledge() {
   calls_.push_back({Call::Kind::Acknowledge, {}, {}});
+  if (is_stopped_) simulation_.acknowledge(work_, state_);
   is_stopped_ = false;
 }
 
