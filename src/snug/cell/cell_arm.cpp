@@ -47,7 +47,8 @@ JointVector start_joints(const model::Scenario& scenario, const robot::ArmModel&
 constexpr double kRounding = 1e-9;
 // N, of a link against something: less is rounding.
 constexpr double kTouch = 0.5;
-// By how much more than what was acknowledged a load stops the arm again.
+// A load that was acknowledged stops the arm again when it grows to so many times itself: what moves off shifts a load
+// before it gives it up.
 constexpr double kMoreThanAcknowledged = 1.5;
 // s, after which links that no longer touch have parted: shorter gaps are bounces.
 constexpr double kParted = 0.1;

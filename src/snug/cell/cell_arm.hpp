@@ -31,7 +31,7 @@ struct OutsideDrive {
   robot::JointVector torques_fixed;  ///< likewise: of what never moves, at the end of the last tick
 };
 
-/// What pressed on the arm when a stop was acknowledged: it may move out of that. Zero: nothing.
+/// What pressed on the arm when a stop was acknowledged: it may move out of that load. Zero: nothing.
 struct AcknowledgedLoad {
   robot::JointVector torques;  ///< Nm (N), at the joints
   double force = 0.0;          ///< N, at the sensor, beyond the weight
@@ -127,7 +127,7 @@ class CellArm {
   [[nodiscard]] ArmState make_state(std::uint64_t seed, const robot::JointVector& q) const;
   /// At rest where it is; its controller starts anew.
   void stand(ArmState& state) const;
-  /// After a stop: the load that `reading` shows stops the arm again only when it grows by a tenth, until it was below
+  /// After a stop: the load that `reading` shows stops the arm again only when it grows by half, until it was below
   /// the limit once.
   void acknowledge(const ArmReading& reading, ArmState& state) const;
   /// One tick of the controller. `program` is brought up to date.

@@ -57,12 +57,10 @@ void draw_parcels(const model::Uncertainty& half_width, const Rng& rng, model::S
 
 void draw_contacts(const model::Uncertainty& half_width, const Rng& rng, model::Scenario& scenario) {
   Draw friction(rng, "friction"), stiffness(rng, "contact stiffness"), travel(rng, "contact travel");
-  const double stiffer = stiffness.factor(half_width.contact_stiffness);
+  stiffen(scenario, stiffness.factor(half_width.contact_stiffness));
   const double farther = travel.factor(half_width.contact_travel);
   const auto draw = [&](model::ContactParams& params) {
     params.friction *= friction.factor(half_width.friction);
-    if (params.stiffness) *params.stiffness *= stiffer;
-    if (params.stiffness_beyond) *params.stiffness_beyond *= stiffer;
     if (params.travel) *params.travel *= farther;
   };
   for (model::ContactPair& pair : scenario.contact_pairs) draw(pair.params);
@@ -143,6 +141,15 @@ model::Scenario draw_scenario(const model::Scenario& scenario, const std::string
   draw_aligner(half_width, sequence, rng, drawn);
   draw_gripper(half_width, rng, drawn);
   return drawn;
+}
+
+void stiffen(model::Scenario& scenario, double factor) {
+  const auto scale = [factor](model::ContactParams& params) {
+    if (params.stiffness) *params.stiffness *= factor;
+    if (params.stiffness_beyond) *params.stiffness_beyond *= factor;
+  };
+  for (model::ContactPair& pair : scenario.contact_pairs) scale(pair.params);
+  if (scenario.default_contact) scale(*scenario.default_contact);
 }
 
 }  // namespace snug::cell

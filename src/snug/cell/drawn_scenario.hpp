@@ -20,4 +20,7 @@ namespace snug::cell {
 /// differ by a millimetre do not turn a square box. Without an aligner nothing is drawn of it.
 [[nodiscard]] model::Scenario draw_scenario(const model::Scenario& scenario, const std::string& sequence, Rng rng);
 
+/// Scales the stiffness of every compliant contact.
+void stiffen(model::Scenario& scenario, double factor);
+
 }  // namespace snug::cell

@@ -104,6 +104,10 @@ struct BeliefParams {
   double least_weight = 0.25;  ///< of the mean, below which no world's weight falls: one surprise rules out no world
   double unseen_position = 0.005;  ///< m, standard deviation of what was not seen
   double unseen_rotation = 0.02;   ///< rad, the same
+  /// Boxes are so many times as stiff as was believed, after an insertion that every rehearsal got through and that
+  /// ended by its load.
+  double stiffer = 2.0;
+  double stiffest = 4.0;  ///< times what the scenario says, at most
 
   template <class Archive>
   void fields(Archive& a) {
@@ -112,6 +116,8 @@ struct BeliefParams {
     a("least_weight", least_weight, Range::Fraction);
     a("unseen_position", unseen_position, Within{0.0, 1.0});
     a("unseen_rotation", unseen_rotation, Within{0.0, 1.6});
+    a("stiffer", stiffer, Within{1.0, 100.0});
+    a("stiffest", stiffest, Within{1.0, 1000.0});
   }
   bool operator==(const BeliefParams&) const = default;
 };
@@ -128,6 +134,7 @@ struct RecoverySettings {
   double turned_as_rehearsed = 0.05;             ///< rad, from how it lay there
   /// m: edges that differ by more are another item's. Tapes and damp make 2 mm of the demonstrator's.
   double wrong_size = 0.010;
+  double aside = 0.025;           ///< m, from both plates of the aligner: a box that is put back to it
   double at_aligner = 0.050;      ///< m, from where it was seen to arrive: still against the plates
   double on_bench = 0.200;        ///< m, level, from the middle of the surface where boxes are turned
   double on_surface = 0.030;      ///< m, of its lower face over that surface
@@ -145,6 +152,7 @@ struct RecoverySettings {
     a("as_rehearsed", as_rehearsed, Within{0.0, 1.0});
     a("turned_as_rehearsed", turned_as_rehearsed, Within{0.0, 3.2});
     a("wrong_size", wrong_size, Within{0.0, 1.0});
+    a("aside", aside, Within{0.0, 1.0});
     a("at_aligner", at_aligner, Within{0.0, 1.0});
     a("on_bench", on_bench, Within{0.0, 2.0});
     a("on_surface", on_surface, Within{0.0, 1.0});

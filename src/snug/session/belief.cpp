@@ -206,6 +206,16 @@ void Belief::expect_on_the_way(int item, const Pose& X_WP) {
   expect(std::vector<std::vector<std::optional<Pose>>>(worlds_.size(), predicted));
 }
 
+void Belief::stiffen() {
+  const double stiffness = std::min(nominal().belief.stiffest, stiffness_ * nominal().belief.stiffer);
+  if (stiffness <= stiffness_) return;
+  for (World& world : worlds_) {
+    cell::stiffen(world.scenario, stiffness / stiffness_);
+    world.is_stale = true;
+  }
+  stiffness_ = stiffness;
+}
+
 void Belief::weigh(int item) {
   const auto i = static_cast<std::size_t>(item);
   if (!boxes_[i] || !boxes_[i]->was_seen || worlds_.size() < 2) return;

@@ -66,6 +66,8 @@ class Belief {
   void expect_on_the_way(int item, const Pose& X_WP);
   /// The motion that was expected ended early: what is not seen at the next look is believed to be where it was.
   void doubt_prediction() { is_prediction_sound_ = false; }
+  /// Boxes are stiffer than was believed, in every world: BeliefParams::stiffer.
+  void stiffen();
   /// Weighs the sampled worlds by how near they predicted `item` to where it is believed to be now.
   void weigh(int item);
 
@@ -93,6 +95,7 @@ class Belief {
   std::size_t own_bodies_ = 0;  ///< of the scenario; those of obstacles follow
   std::vector<geometry::Aabb> obstacle_bodies_;
   ObstacleMemory obstacles_;
+  double stiffness_ = 1.0;            ///< times what the scenario says
   bool is_prediction_new_ = false;    ///< something was expected since the last look
   bool is_prediction_sound_ = false;  ///< the motion that it is of was not broken off
   std::vector<double> weights_;

@@ -88,6 +88,8 @@ class Packer {
               ItemReport& report);
   /// Stage by stage. False when the box was let go on the way and does not stand where the plan needs it.
   [[nodiscard]] bool send(const Attempt& attempt, const std::string& id, ItemReport& report);
+  /// The box met more than it should on the way to its place.
+  [[nodiscard]] bool was_stopped_by_load() const;
   [[nodiscard]] Trouble assess(int item, const packing::Placement& planned,
                                const std::vector<std::optional<Pose>>& before, ItemReport& report) const;
   [[nodiscard]] int who_sticks_out(int item) const;
@@ -104,8 +106,23 @@ class Packer {
   [[nodiscard]] Situation situation_of(int item, Trouble trouble, const ItemReport& report) const;
   void resume(const std::string& id, ItemReport& report);
   void press(int item, ItemReport& report);
+  /// How a box hangs from the cup and how it is to stand.
+  struct Carried {
+    skills::PlannedBox box;
+    Matrix3 R_WP;  ///< put down like that
+    Pose X_PS;     ///< lip on it
+    std::optional<motion::Swing> swing;
+  };
+  /// After `rows`, at whose end it hangs from the cup: the box to `place`.
+  void put_down(const Carried& carried, const skills::FlipPlace& place, std::vector<motion::Waypoint> rows,
+                ItemReport& report);
+  /// Straight up from where the tool is, with the held box.
+  [[nodiscard]] motion::Waypoint lift(const Carried& carried) const;
   /// The held box, as it hangs for `planned`, to the bench.
   void set_down(const Planned& planned, ItemReport& report);
+  /// Back to the aligner: held as it hangs for `planned`, or picked where it lies.
+  void set_aside(int item, const Planned* planned, ItemReport& report);
+  [[nodiscard]] bool can_set_aside(int item) const;
   /// Another box, that sticks out, once more: to a place that is planned anew.
   void repack(int item, const Decide& decide, ItemReport& report);
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "snug/cup/pick_length.hpp"
 #include "snug/plant/motion_watch.hpp"
 #include "snug/session/packer.hpp"
 #include "snug/skills/primitives.hpp"
@@ -66,6 +67,15 @@ void Packer::submit(const std::string& id, std::vector<motion::Waypoint> waypoin
   report.happened.torque = std::max(report.happened.torque, robot_.peak_torque);
 }
 
+bool Packer::was_stopped_by_load() const {
+  const plant::EndReason reason = robot_.end.reason;
+  const bool is_of_load = reason == plant::EndReason::ForceGuard || reason == plant::EndReason::VacuumLost ||
+                          reason == plant::EndReason::HoldGuard || reason == plant::EndReason::ProtectiveStop;
+  if (!is_of_load || robot_.end.waypoint < 0) return false;
+  const MotionClass at = last_[static_cast<std::size_t>(robot_.end.waypoint)].motion_class;
+  return at == MotionClass::Place || at == MotionClass::PlaceSlow;
+}
+
 bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& report) {
   const auto& all = attempt.program.waypoints;
   const int item = index_of(id);
@@ -81,6 +91,7 @@ bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& rep
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
     submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)}, {limits_.force, true, limits_.hold_guard},
            report);
+    if (was_stopped_by_load()) belief_.stiffen();
     if (robot_.end.reason != plant::EndReason::Completed || is_last) return true;
     look(report, true);
     const std::optional<BelievedBox>& box = belief_.box(item);
@@ -185,6 +196,8 @@ Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& repo
   at.is_held = is_holding();
   at.can_set_down = layout_.flip_place.has_value();
   at.fits = belief_.box(item) && fit_of(item, belief_.box(item)->X_WP).is_in && who_sticks_out(item) < 0;
+  at.leans = belief_.box(item) && locate(item) == Location::Container &&
+             tilt_of(layout_.X_WT.inverse() * belief_.box(item)->X_WP) > limits_.tilt;
   at.lies_turned = report.angle_error > scenario_.recovery.lies_turned;
   at.can_be_picked = can_be_picked(item);
   return at;
@@ -205,23 +218,64 @@ void Packer::press(int item, ItemReport& report) {
   if (robot_.end.reason == plant::EndReason::ForceGuard) retreat(box.id, report);
 }
 
+motion::Waypoint Packer::lift(const Carried& carried) const {
+  motion::Waypoint up =
+      motion::make_waypoint(MotionClass::PostPick, carried.box.id, robot_.X_WE, {.vacuum = true}, "_up");
+  const double hanging = -2.0 * skills::lowest_corner(carried.R_WP, carried.box.size) + scenario_.cup.hold_length;
+  up.p_WE.z() = std::max(up.p_WE.z(), travel_bottom(layout_, obstacle_top(-1)) + hanging);
+  return up;
+}
+
+void Packer::put_down(const Carried& carried, const skills::FlipPlace& place, std::vector<motion::Waypoint> rows,
+                      ItemReport& report) {
+  const double travel = travel_bottom(layout_, obstacle_top(-1));
+  const auto down = plan_set_down(belief_.nominal(), carried.box, place, carried.R_WP, carried.X_PS, travel);
+  const motion::Waypoint here = motion::make_waypoint(MotionClass::PostPick, carried.box.id, robot_.X_WE, robot_.io);
+  rows.insert(rows.end(), down.begin(), down.end());
+  motion::Program program;
+  append(program, drivable(layout_, here, rows, carried.swing));
+  submit(carried.box.id, program.waypoints, {std::nullopt, true}, report);
+}
+
 void Packer::set_down(const Planned& planned, ItemReport& report) {
   belief_.doubt_prediction();
   let_go_ = planned.box.item;
-  const skills::PlannedBox& box = planned.box;
-  const Matrix3 R_WP = layout_.X_WT.R * planned.attempt.planned.X_TP.R;
-  const double travel = travel_bottom(layout_, obstacle_top(-1));
-  const motion::Waypoint here =
-      motion::make_waypoint(MotionClass::PostPick, box.id, robot_.X_WE, {.vacuum = true}, "_up");
-  motion::Waypoint up = here;
-  const double hanging = -2.0 * skills::lowest_corner(R_WP, box.size) + scenario_.cup.hold_length;
-  up.p_WE.z() = std::max(up.p_WE.z(), travel + hanging);
-  std::vector<motion::Waypoint> rows{up};
-  const auto down = plan_set_down(belief_.nominal(), box, *layout_.flip_place, R_WP, planned.attempt.X_PS, travel);
-  rows.insert(rows.end(), down.begin(), down.end());
-  motion::Program program;
-  append(program, drivable(layout_, here, rows, planned.attempt.swing));
-  submit(box.id, program.waypoints, {std::nullopt, true}, report);
+  const Carried carried{planned.box, layout_.X_WT.R * planned.attempt.planned.X_TP.R, planned.attempt.X_PS,
+                        planned.attempt.swing};
+  put_down(carried, *layout_.flip_place, {lift(carried)}, report);
+}
+
+bool Packer::can_set_aside(int item) const {
+  return is_holding() || (can_be_picked(item) && locate(item) != Location::Aligner);
+}
+
+void Packer::set_aside(int item, const Planned* planned, ItemReport& report) {
+  belief_.doubt_prediction();
+  let_go_ = item;
+  const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const Pose& X_WA = scenario_.aligner->X_WA;
+  const Pose& X_WP = belief_.box(item)->X_WP;
+  const bool is_held = planned != nullptr && is_holding();
+  const Matrix3 R_AP = is_held ? planned->attempt.planned.X_TP.R
+                               : packing::rotation(packing::nearest_orientation(X_WA.R.transpose() * X_WP.R));
+  Carried carried{box, X_WA.R * R_AP, Pose{}, std::nullopt};
+  const Pose arrival = cell::arrival_pose(belief_.nominal(), belief_.sequence().items[static_cast<std::size_t>(item)]);
+  const Vector3 aside = Vector3::Constant(scenario_.recovery.aside) + 0.5 * (R_AP.cwiseAbs() * box.size);
+  skills::FlipPlace place{X_WA * aside, Vector3::UnitX()};
+  place.p_WF.z() = arrival.p.z() + skills::lowest_corner(arrival.R, box.size);
+  std::vector<motion::Waypoint> rows;
+  if (is_held) {
+    carried.X_PS = planned->attempt.X_PS;
+    carried.swing = planned->attempt.swing;
+    rows = {lift(carried)};
+  } else {
+    rows = plan_pick(belief_.nominal(), layout_, box, X_WP, {carried.R_WP, place.p_WF},
+                     travel_bottom(layout_, obstacle_top(-1)), skills::PickKind::FromAfar);
+    const auto pick = std::ranges::find(rows, MotionClass::RePick, &motion::Waypoint::motion_class);
+    const Pose X_ES{Matrix3::Identity(), cup::pick_length(scenario_.cup) * Vector3::UnitZ()};
+    carried.X_PS = X_WP.inverse() * pick->X_WE() * X_ES;
+  }
+  put_down(carried, place, std::move(rows), report);
 }
 
 void Packer::repack(int item, const Decide& decide, ItemReport& report) {
@@ -247,7 +301,7 @@ void Packer::repack(int item, const Decide& decide, ItemReport& report) {
 bool Packer::recover(int item, const Planned& planned, const std::vector<std::optional<Pose>>& before,
                      const Decide& decide, ItemReport& report) {
   int stops = 0;
-  bool was_pressed = false;
+  bool was_pressed = false, was_set_aside = false;
   const packing::Placement goal = planned.attempt.planned;
   Trouble trouble = find_trouble(item, goal, before, report);
   for (int round = 0; round < scenario_.recovery.most_rounds && trouble != Trouble::None; ++round) {
@@ -257,6 +311,7 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
     stops += trouble == Trouble::ProtectiveStop ? 1 : 0;
     Situation at = situation_of(culprit, trouble, report);
     at.stops = stops;
+    at.can_set_aside = !was_set_aside && can_set_aside(culprit);
     at.was_pressed = was_pressed || (belief_.box(culprit) && is_under_obstacle(culprit));
     const Remedy remedy = choose_remedy(at, scenario_.recovery);
     const bool is_of_motion = trouble_of(robot_.end.reason) == trouble;
@@ -273,6 +328,15 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
         repack(culprit, decide, report);
         was_pressed = false;
         break;
+      case Remedy::SetAside:
+        was_set_aside = true;
+        set_aside(culprit, culprit == item ? &planned : nullptr, report);
+        if (robot_.end.reason != plant::EndReason::Completed) break;
+        belief_.forget(culprit);  // the next arrival takes it away
+        if (culprit != item) break;
+        report.end = ItemEnd::SetAside;
+        report.reason = name_of(trouble);
+        return false;
       case Remedy::Skip:
         left_out_.insert(culprit);
         if (culprit != item) break;
@@ -351,6 +415,10 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
     const std::optional<Planned> planned = plan(item, decide, report);
     if (!planned) {
       leave(item, report);
+      if (report.end == ItemEnd::Left && can_set_aside(item)) {
+        set_aside(item, nullptr, report);
+        if (robot_.end.reason == plant::EndReason::Completed) report.end = ItemEnd::SetAside;
+      }
       break;
     }
     const std::vector<std::optional<Pose>> before = believed_poses();
@@ -369,9 +437,10 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
     again = recover(item, *planned, before, decide, report);
     if (robot_.end.reason == plant::EndReason::Completed) belief_.weigh(item);
   }
-  const bool is_waiting =
-      report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless || report.end == ItemEnd::NotHeld;
-  if (is_waiting || is_refused || report.end == ItemEnd::Gone) belief_.forget(item);  // the next arrival takes it away
+  const bool is_taken_away =
+      report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless || report.end == ItemEnd::NotHeld ||
+      report.end == ItemEnd::SetAside;
+  if (is_taken_away || is_refused || report.end == ItemEnd::Gone) belief_.forget(item);  // the next arrival takes it away
   if (!report.is_packed()) skipped_.push_back(report.id);
   if (report.end == ItemEnd::NoPlace) --skips_left_;
   report.done = robot_.time;

@@ -7,7 +7,9 @@ namespace {
 Remedy where_it_lies(const Situation& at, const model::RecoverySettings& settings) {
   const bool may_pick = at.can_be_picked && at.tries < settings.most_tries;
   if (at.fits) return at.lies_turned && may_pick ? Remedy::PickAgain : Remedy::Accept;
-  return may_pick ? Remedy::PickAgain : Remedy::Skip;
+  if (may_pick) return Remedy::PickAgain;
+  if (at.leans && !at.was_pressed) return Remedy::PressLevel;
+  return at.can_set_aside ? Remedy::SetAside : Remedy::Skip;
 }
 
 }  // namespace
@@ -66,6 +68,8 @@ const char* name_of(Remedy remedy) {
       return "press level";
     case Remedy::Accept:
       return "accept";
+    case Remedy::SetAside:
+      return "set aside";
     case Remedy::Skip:
       return "skip";
     case Remedy::LookAgain:
@@ -92,7 +96,8 @@ Remedy choose_remedy(const Situation& at, const model::RecoverySettings& setting
     case Trouble::ForceGuard:
     case Trouble::HoldGuard:
     case Trouble::Timeout:
-      return at.is_held && at.can_set_down && at.tries < settings.most_tries ? Remedy::SetDown : Remedy::Release;
+      if (at.is_held && at.can_set_down && at.tries < settings.most_tries) return Remedy::SetDown;
+      return at.is_held && at.can_set_aside && at.tries >= settings.most_tries ? Remedy::SetAside : Remedy::Release;
     case Trouble::NoSeal:
     case Trouble::VacuumLost:
     case Trouble::OffPlace:

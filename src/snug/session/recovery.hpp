@@ -36,6 +36,7 @@ enum class Remedy {
   PickAgain,   ///< look, plan anew, pick it where it lies
   PressLevel,  ///< press on it from above, look
   Accept,      ///< it stays where it lies; what follows is planned around it
+  SetAside,    ///< back to the aligner, from where the next arrival takes it away
   Skip,        ///< it is left, or taken away; the next item comes
   LookAgain,   ///< another picture
   MoveAway,    ///< the tool goes to its start, another picture
@@ -51,7 +52,9 @@ struct Situation {
   int stops = 0;               ///< protective stops of this item, this one included
   bool is_held = false;        ///< the vacuum says that something hangs from the cup
   bool can_set_down = false;   ///< there is a bench to put it on
+  bool can_set_aside = false;  ///< held, or pickable elsewhere than at the aligner; not tried before
   bool fits = false;           ///< it lies in the container, inside walls and rim
+  bool leans = false;          ///< in the container, by more than the limit
   bool lies_turned = false;    ///< by more than 45 degrees from its plan: it takes room meant for others
   bool can_be_picked = false;  ///< seen, standing on a face, within reach of the tool
   bool was_pressed = false;    ///< since it was let go

@@ -87,6 +87,26 @@ TEST_F(BeliefOfOneBox, SizesAreLearnedByEveryWorld) {
   }
 }
 
+TEST_F(BeliefOfOneBox, BoxesThatTurnOutStifferAreSoInEveryWorldAndNeverBeyondTheLimit) {
+  const auto stiffness = [&] {
+    std::vector<double> all;
+    for (const auto& rollout : belief.take_up(at_start(scenario))) {
+      for (const model::ContactPair& pair : rollout->simulation().scenario().contact_pairs) {
+        if (pair.params.stiffness) all.push_back(*pair.params.stiffness);
+      }
+    }
+    return all;
+  };
+  const std::vector<double> before = stiffness();
+  ASSERT_FALSE(before.empty());
+  for (const double factor : {scenario.belief.stiffer, scenario.belief.stiffest, scenario.belief.stiffest}) {
+    belief.stiffen();
+    const std::vector<double> now = stiffness();
+    ASSERT_EQ(now.size(), before.size());
+    for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NEAR(now[i], factor * before[i], 1e-9 * now[i]);
+  }
+}
+
 TEST_F(BeliefOfOneBox, ForgetsWhatIsTakenAway) {
   EXPECT_EQ(belief.expectations().size(), 1U);
   belief.forget(0);

@@ -32,11 +32,13 @@ class ScriptedPlant final : public plant::Plant {
   std::optional<std::vector<perception::Obstacle>> obstacles;  ///< of every look
   Pose X_WE_let_go;                                            ///< of the last motion with the vacuum on
   int home_count = 0;                                          ///< motions that do nothing but go home
+  std::deque<EndReason> retreat_ends;                          ///< of retreats; when they are used up: Completed
+  int acknowledged = 0;
 
   [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
   [[nodiscard]] plant::Feedback read() override { return now_; }
   [[nodiscard]] bool bring(const std::string&) override { return true; }
-  void acknowledge() override {}
+  void acknowledge() override { ++acknowledged; }
 
   [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override {
     const auto held = std::ranges::find_if(motion.waypoints, [](const auto& row) { return row.io.vacuum; });
@@ -46,11 +48,15 @@ class ScriptedPlant final : public plant::Plant {
       end = ends.front();
       ends.pop_front();
     }
+    if (motion.waypoints.back().variant == "_retreat" && !retreat_ends.empty()) {
+      end = retreat_ends.front();
+      retreat_ends.pop_front();
+    }
     for (const motion::Waypoint& row : motion.waypoints) {
       if (row.variant == "_press" && row.motion_class == motion::MotionClass::PlaceSlow) pressed.push_back(motion.item);
     }
     if (motion.item.empty()) ++home_count;
-    const motion::Waypoint& last = end == EndReason::Completed ? motion.waypoints.back() : *held;
+    const motion::Waypoint& last = end == EndReason::Completed || !holds ? motion.waypoints.back() : *held;
     if (holds) X_WE_let_go = last.X_WE();
     now_.time += 1.0;
     now_.end = {end, 0, 0.0, 0.0, ""};
@@ -100,9 +106,10 @@ SessionOptions quick_options() {
 }
 
 SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick_options(),
-                   const model::RehearsalSettings& rehearsal = {}) {
+                   const model::RehearsalSettings& rehearsal = {}, int most_tries = 4) {
   model::Scenario scenario = two_boxes();
   scenario.rehearsal = rehearsal;
+  scenario.recovery.most_tries = most_tries;
   scenario.sequences.front().items.resize(static_cast<std::size_t>(items));
   return session::pack(scenario, "1", options, plant);
 }
@@ -149,6 +156,30 @@ TEST(Packer, RehearsesAnewWhatWasPickedInVain) {
 bool has(const ItemReport& item, Trouble trouble, Remedy remedy) {
   return std::ranges::any_of(item.recoveries,
                              [&](const Recovery& one) { return one.trouble == trouble && one.remedy == remedy; });
+}
+
+TEST(Packer, SetsABoxAsideThatMetTooMuchForceAtTheLastTry) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::ForceGuard};
+  const SessionResult result = pack(plant, 1, quick_options(), {}, 1);
+  ASSERT_TRUE(has(result.items[0], Trouble::ForceGuard, Remedy::SetAside));
+  EXPECT_EQ(result.items[0].end, ItemEnd::SetAside);
+  EXPECT_EQ(result.items[0].reason, "force guard");
+  EXPECT_TRUE(result.plan.empty());
+  const Pose& X_WA = two_boxes().aligner->X_WA;
+  const Vector3 size = model::find_parcel(two_boxes(), "BOX027")->size;
+  const Vector3 p_A = X_WA.inverse() * plant.X_WE_let_go.p;
+  EXPECT_GT(p_A.head<2>().minCoeff(), 0.0) << "clear of the plates";
+  EXPECT_LT(p_A.head<2>().norm(), size.norm());
+}
+
+TEST(Packer, AcknowledgesAndGoesOnUntilItsToolIsAway) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::VacuumLost};
+  plant.retreat_ends = {EndReason::ProtectiveStop, EndReason::ProtectiveStop};
+  (void)pack(plant, 1);
+  EXPECT_TRUE(plant.retreat_ends.empty());
+  EXPECT_GE(plant.acknowledged, 3);
 }
 
 TEST(Packer, ABadPictureIsTakenAgainAndThenBeliefGoesOn) {

@@ -107,6 +107,27 @@ TEST(SimulatedPlant, AStopHoldsTheBoxAndAsksForAnAcknowledgement) {
   EXPECT_EQ(plant.submit(rest).end.reason, plant::EndReason::Completed);
 }
 
+/// What pressed on the arm when it was acknowledged presses on it still at the first tick of the way out.
+TEST(SimulatedPlant, AStopByLoadIsLeftTheWayItCameButNotPressedOn) {
+  SimulatedPlantOptions options;
+  options.simulation.robot = "ur10";
+  SimulatedPlant plant(scenario(), "1", options);
+  const Pose above = plant.read().X_WE;
+  Pose below = above;
+  below.p.z() = -0.1;  // inside the workbench
+  const auto to = [&](const Pose& X_WE) {
+    return plant.submit({"BOX027", {motion::make_waypoint(motion::MotionClass::Place, "BOX027", X_WE)}, {}});
+  };
+  for (int push = 0; push < 3; ++push) {
+    const plant::Feedback stopped = to(below);
+    ASSERT_EQ(stopped.end.reason, plant::EndReason::ProtectiveStop) << push;
+    EXPECT_GT(stopped.X_WE.p.z(), -0.03) << "a tenth of a metre was asked for";
+    plant.acknowledge();
+  }
+  EXPECT_EQ(to(above).end.reason, plant::EndReason::Completed);
+  EXPECT_EQ(to(below).end.reason, plant::EndReason::ProtectiveStop) << "that limit is back";
+}
+
 /// Twenty seeds, one object after the other: inside the walls, apart from each other, and not the same place each time.
 TEST(ForeignObjects, StandWhereThereIsRoomAtAPlaceDrawnByTheSeed) {
   const std::vector<Fault> faults{{FaultKind::Object, 1}, {FaultKind::Object, 2}};
