@@ -12,7 +12,8 @@ struct PickParams {
   double seal_margin = 0.001;   ///< m, of the face around the cup's sealing disc, where the face has room for it
   double above_travel = 0.020;  ///< m, of the free cup's lip over the travel height, before
   double above_box = 0.030;     ///< m, of that lip over a box that was just let go
-  double max_lean = 0.26;       ///< rad, from level: what leans more is not picked
+  double max_lean = 0.26;       ///< rad, from level: what leans more is not picked but to set it aside
+  double leaning_lift = 0.030;  ///< m, along the face's normal, before a box that leans is brought level
 
   template <class Archive>
   void fields(Archive& a) {
@@ -20,6 +21,7 @@ struct PickParams {
     a("above_travel", above_travel, Within{0.0, 1.0});
     a("above_box", above_box, Within{0.0, 1.0});
     a("max_lean", max_lean, Within{0.0, 0.8});
+    a("leaning_lift", leaning_lift, Within{0.0, 0.5});
   }
   bool operator==(const PickParams&) const = default;
 };

@@ -90,6 +90,8 @@ class Packer {
   [[nodiscard]] bool send(const Attempt& attempt, const std::string& id, ItemReport& report);
   /// The box met more than it should on the way to its place.
   [[nodiscard]] bool was_stopped_by_load() const;
+  /// rad, from standing on a face in the container.
+  [[nodiscard]] double tilt_of(int item) const;
   [[nodiscard]] Trouble assess(int item, const packing::Placement& planned,
                                const std::vector<std::optional<Pose>>& before, ItemReport& report) const;
   [[nodiscard]] int who_sticks_out(int item) const;
@@ -123,6 +125,10 @@ class Packer {
   /// Back to the aligner: held as it hangs for `planned`, or picked where it lies.
   void set_aside(int item, const Planned* planned, ItemReport& report);
   [[nodiscard]] bool can_set_aside(int item) const;
+  /// A pick of the box where it lies or leans, so that it can be put down like R_WP.
+  [[nodiscard]] std::vector<motion::Waypoint> plan_pick_to_set_aside(int item, const Matrix3& R_WP) const;
+  /// How a box that lies or leans is put down to the aligner.
+  [[nodiscard]] Matrix3 rotation_aside(int item) const;
   /// Another box, that sticks out, once more: to a place that is planned anew.
   void repack(int item, const Decide& decide, ItemReport& report);
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;

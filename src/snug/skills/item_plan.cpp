@@ -117,6 +117,27 @@ AxisView view(const packing::Candidate& candidate, int axis) {
   return {candidate.side_gap[low], candidate.side_gap[high], candidate.side_height[low], candidate.side_height[high]};
 }
 
+PickIntent pick_intent(const model::Scenario& scenario, const CellLayout& layout, const PlannedBox& box,
+                       const Pose& X_WP, const Pose& X_WP_next, double travel, PickKind kind) {
+  const model::PickParams& params = scenario.skills.pick;
+  PickIntent intent;
+  intent.box = box.id;
+  intent.X_WP = X_WP;
+  intent.size = box.size;
+  intent.cup_offset_P = cup_offset(scenario.cup, params.seal_margin, box, X_WP.R);
+  intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, X_WP, X_WP_next);
+  intent.length = cup::pick_length(scenario.cup);
+  intent.again = kind != PickKind::First;
+  const double height = -2.0 * lowest_corner(X_WP.R, box.size);
+  const double top = X_WP.p.z() + 0.5 * height;
+  intent.approach_height =
+      scenario.cup.free_length + (kind == PickKind::FromAbove
+                                      ? top + params.above_box
+                                      : std::max(travel + params.above_travel, top + layout.travel.clearance));
+  intent.lift_height = travel + height + scenario.cup.hold_length;
+  return intent;
+}
+
 }  // namespace
 
 const char* name_of(InsertionSkill skill) {
@@ -239,23 +260,14 @@ double turn_between(const CellLayout& layout, const Pose& X_WP, const Pose& X_WP
 std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                         const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next, double travel,
                                         PickKind kind) {
-  const model::PickParams& params = scenario.skills.pick;
-  PickIntent intent;
-  intent.box = box.id;
-  intent.X_WP = X_WP;
-  intent.size = box.size;
-  intent.cup_offset_P = cup_offset(scenario.cup, params.seal_margin, box, X_WP.R);
-  intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, X_WP, X_WP_next);
-  intent.length = cup::pick_length(scenario.cup);
-  intent.again = kind != PickKind::First;
-  const double height = -2.0 * lowest_corner(X_WP.R, box.size);
-  const double top = X_WP.p.z() + 0.5 * height;
-  intent.approach_height =
-      scenario.cup.free_length + (kind == PickKind::FromAbove
-                                      ? top + params.above_box
-                                      : std::max(travel + params.above_travel, top + layout.travel.clearance));
-  intent.lift_height = travel + height + scenario.cup.hold_length;
-  return pick_rows(intent);
+  return pick_rows(pick_intent(scenario, layout, box, X_WP, X_WP_next, travel, kind));
+}
+
+std::vector<motion::Waypoint> plan_leaning_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                                const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next,
+                                                double travel) {
+  return leaning_pick_rows(pick_intent(scenario, layout, box, X_WP, X_WP_next, travel, PickKind::FromAfar),
+                           scenario.skills.pick.leaning_lift);
 }
 
 motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {

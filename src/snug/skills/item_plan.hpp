@@ -94,6 +94,10 @@ enum class PickKind {
 [[nodiscard]] std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                       const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next,
                                                       double travel_bottom, PickKind kind);
+/// The same of a box that leans: leaning_pick_rows.
+[[nodiscard]] std::vector<motion::Waypoint> plan_leaning_pick(const model::Scenario& scenario, const CellLayout& layout,
+                                                              const PlannedBox& box, const Pose& X_WP,
+                                                              const Pose& X_WP_next, double travel_bottom);
 /// Of the box that hangs from the face that looks along `up_P` (P axis), within TravelParams.
 [[nodiscard]] motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
 /// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.

@@ -121,6 +121,32 @@ std::vector<motion::Waypoint> pick_rows(const PickIntent& intent) {
   return rows.take();
 }
 
+Matrix3 leveling(const Matrix3& R_WP) {
+  const int up = vertical_axis_of(R_WP);
+  const Vector3 normal = std::copysign(1.0, R_WP(2, up)) * R_WP.col(up);
+  const Vector3 axis = normal.cross(Vector3::UnitZ());
+  const double sine = axis.norm();
+  return sine > 0.0 ? turn(axis / sine, std::atan2(sine, normal.z())) : Matrix3(Matrix3::Identity());
+}
+
+std::vector<motion::Waypoint> leaning_pick_rows(const PickIntent& intent, double leaning_lift) {
+  const Matrix3 level = leveling(intent.X_WP.R);
+  PickIntent standing = intent;
+  standing.X_WP.R = level * intent.X_WP.R;
+  const Pose X_WE_level = tool_on_face(standing);
+  const Pose X_WE_pick{level.transpose() * X_WE_level.R,
+                       intent.X_WP.p + level.transpose() * (X_WE_level.p - intent.X_WP.p)};
+  const Pose X_WE_off = shifted(X_WE_pick, -leaning_lift * X_WE_pick.R.col(2));
+  const Pose X_WE_over{X_WE_level.R, X_WE_off.p};
+  Rows rows(intent.box);
+  rows.add(MotionClass::PreRePick, at_height(X_WE_over, intent.approach_height), {});
+  rows.add(MotionClass::PreRePick, X_WE_off, {}, "_lean");
+  rows.add(MotionClass::RePick, X_WE_pick, {});
+  rows.add(MotionClass::PostRePick, X_WE_off, kHold, "_off");
+  rows.add(MotionClass::PostRePick, at_height(X_WE_over, intent.lift_height), kHold);
+  return rows.take();
+}
+
 Matrix3 flipped(const Matrix3& R_WP, const Vector3& direction) {
   return turn(-Vector3::UnitZ().cross(direction), kQuarterTurn) * R_WP;
 }

@@ -28,6 +28,12 @@ struct PickIntent {
 };
 [[nodiscard]] std::vector<motion::Waypoint> pick_rows(const PickIntent& intent);
 
+/// Box as it leans: the tool square to its uppermost face, the box drawn off along that face's normal by `leaning_lift`
+/// m, then level above.
+[[nodiscard]] std::vector<motion::Waypoint> leaning_pick_rows(const PickIntent& intent, double leaning_lift);
+/// The least turn that brings the uppermost face of a box level.
+[[nodiscard]] Matrix3 leveling(const Matrix3& R_WP);
+
 /// The tool on the box, pressed.
 [[nodiscard]] Pose tool_on_face(const PickIntent& intent);
 

@@ -173,6 +173,19 @@ TEST(Packer, SetsABoxAsideThatMetTooMuchForceAtTheLastTry) {
   EXPECT_LT(p_A.head<2>().norm(), size.norm());
 }
 
+TEST(Packer, SetsABoxAsideThatFellAndLeansWhenPressingDoesNotHelp) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::VacuumLost};
+  const Pose X_WT = model::find_container(two_boxes(), two_boxes().target)->X_WT;
+  plant.happens = [&](int) {
+    plant.visible["BOX027"] = {X_WT.R * exp_rotation(Vector3(0.6, 0.0, 0.0)), X_WT.p + Vector3(0.0, 0.0, 0.22)};
+  };
+  const SessionResult result = pack(plant, 1);
+  EXPECT_EQ(plant.pressed, std::vector<std::string>{"BOX027"});
+  EXPECT_TRUE(has(result.items[0], Trouble::Leaning, Remedy::SetAside));
+  EXPECT_EQ(result.items[0].end, ItemEnd::SetAside);
+}
+
 TEST(Packer, AcknowledgesAndGoesOnUntilItsToolIsAway) {
   ScriptedPlant plant;
   plant.ends = {EndReason::VacuumLost};

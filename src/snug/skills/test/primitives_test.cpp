@@ -46,6 +46,36 @@ TEST(PickRows, PressFromAboveAndLiftWithVacuum) {
   EXPECT_NEAR(rows[1].X_WE().R(2, 2), -1.0, kRounding);
 }
 
+TEST(LeaningPickRows, AreSquareToTheUppermostFaceHoweverItLeansAndEndLevel) {
+  for (int i = 0; i < 24; ++i) {
+    const double lean = 0.03 * i, way = 0.9 * i;  // to 40 degrees, all around
+    SCOPED_TRACE(lean);
+    PickIntent intent;
+    intent.box = "BOX027";
+    intent.size = Vector3(0.2, 0.1, 0.06);
+    intent.cup_offset_P = Vector3(0.01, -0.02, 0.0);
+    const Matrix3 R_WP = exp_rotation(Vector3(0.0, 0.0, 0.4 * i)) * exp_rotation(Vector3(0.5 * pi * (i % 4), 0.0, 0.0));
+    intent.X_WP = {exp_rotation(lean * Vector3(std::cos(way), std::sin(way), 0.0)) * R_WP, Vector3(0.1, 0.2, 0.05)};
+    intent.cup_offset_P =
+        intent.cup_offset_P - R_WP.transpose().col(2).dot(intent.cup_offset_P) * R_WP.transpose().col(2);
+    EXPECT_TRUE((leveling(intent.X_WP.R) * intent.X_WP.R).isApprox(R_WP, 1e-9)) << "what leant it is undone";
+    const auto rows = leaning_pick_rows(intent, 0.03);
+    ASSERT_EQ(rows.size(), 5u);
+    const Vector3 normal = intent.X_WP.R * R_WP.transpose().col(2);
+    const Pose pick = rows[2].X_WE(), off = rows[3].X_WE();
+    EXPECT_NEAR(pick.R.col(2).dot(normal), -1.0, kRounding);
+    const Vector3 lip_P = intent.X_WP.inverse() * (pick.p - intent.length * normal);
+    const Vector3 up_P = R_WP.transpose().col(2);
+    EXPECT_NEAR(lip_P.dot(up_P), 0.5 * intent.size.dot(up_P.cwiseAbs()), kRounding) << "on the face";
+    EXPECT_TRUE((lip_P - lip_P.dot(up_P) * up_P).isApprox(intent.cup_offset_P, 1e-6));
+    EXPECT_TRUE((off.p - pick.p).isApprox(0.03 * normal, 1e-6));
+    EXPECT_NEAR(rows[0].X_WE().R(2, 2), -1.0, kRounding);
+    EXPECT_NEAR(rows[4].X_WE().R(2, 2), -1.0, kRounding);
+    EXPECT_FALSE(rows[2].io.vacuum);
+    EXPECT_TRUE(rows[3].io.vacuum);
+  }
+}
+
 TEST(FlipRows, EndFlatOnTheSideThatFacedAway) {
   FlipIntent intent;
   intent.size = Vector3(0.2, 0.12, 0.1);
