@@ -104,8 +104,8 @@ struct BeliefParams {
   double least_weight = 0.25;  ///< of the mean, below which no world's weight falls: one surprise rules out no world
   double unseen_position = 0.005;  ///< m, standard deviation of what was not seen
   double unseen_rotation = 0.02;   ///< rad, the same
-  /// Boxes are so many times as stiff as was believed, after an insertion that every rehearsal got through and that
-  /// ended by its load.
+  /// Boxes are so many times as stiff as was believed, after an insertion that succeeded in the nominal rollout and was
+  /// ended by load in the plant.
   double stiffer = 2.0;
   double stiffest = 4.0;  ///< times what the scenario says, at most
 

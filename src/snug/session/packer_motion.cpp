@@ -3,13 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
-#include "snug/plant/motion_watch.hpp"
 #include "snug/session/packer.hpp"
-#include "snug/skills/primitives.hpp"
-#include "snug/skills/surroundings.hpp"
 
 namespace snug::session {
 namespace {
