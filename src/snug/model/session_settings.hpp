@@ -130,6 +130,8 @@ struct RecoverySettings {
   int most_stops = 3;                            ///< protective stops of one item; then the session ends
   int most_pictures = 3;                         ///< that tell nothing, one after the other
   double lies_turned = 0.25 * std::numbers::pi;  ///< rad, from what was planned: it takes room meant for others
+  /// Percent of the container in the end, by which more must be expected of another place to pick a packed box again.
+  double gain_elsewhere = 1.0;
   double as_rehearsed = 0.004;                   ///< m, from where the nominal rollout let the box go on the way
   double turned_as_rehearsed = 0.05;             ///< rad, from how it lay there
   /// m: edges that differ by more are another item's. Tapes and damp make 2 mm of the demonstrator's.
@@ -149,6 +151,7 @@ struct RecoverySettings {
     a("most_stops", most_stops, Within{0, 1000});
     a("most_pictures", most_pictures, Within{1, 1000});
     a("lies_turned_deg", Degrees{lies_turned}, Within{0.0, 180.0});
+    a("gain_elsewhere", gain_elsewhere, Within{0.0, 100.0});
     a("as_rehearsed", as_rehearsed, Within{0.0, 1.0});
     a("turned_as_rehearsed", turned_as_rehearsed, Within{0.0, 3.2});
     a("wrong_size", wrong_size, Within{0.0, 1.0});

@@ -41,6 +41,8 @@ Expected<Decision, NoPlace> Agent::decide_pressed(const ContainerState& /*state*
   return tl::unexpected(NoPlace::NoSpace);
 }
 
+std::optional<double> Agent::expected_percent(const ContainerState& /*state*/) { return std::nullopt; }
+
 std::unique_ptr<Agent> make_agent(std::string_view name, AgentInput input) {
   check(input.settings, input.run);
   // Places in which a box presses deeper are for those who try them before they count.

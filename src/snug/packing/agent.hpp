@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -46,6 +47,9 @@ class Agent {
   [[nodiscard]] virtual Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) = 0;
   /// Other places, planned with `last_interference`, where none of decide() can be had; for most agents there are none.
   [[nodiscard]] virtual Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item);
+  /// Percent filled in the end, on average over what may come, when everything stays where it lies; nothing for agents
+  /// that do not look ahead.
+  [[nodiscard]] virtual std::optional<double> expected_percent(const ContainerState& state);
 };
 
 /// Sends a line of JSON to whoever decides elsewhere and returns his answer, a line of JSON.

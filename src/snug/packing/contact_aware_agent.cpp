@@ -15,6 +15,8 @@ namespace {
 /// around them: turns a decision time into work, so that a decision does not depend on the clock.
 constexpr double kPlacesPerSecond = 6.0e6;
 constexpr int kEntrants = 64;
+/// Futures that a container met as it is: 0.3 % of it, standard error.
+constexpr int kFutures = 256;
 
 std::vector<Piece> pieces_of(const Planning& planning, const FutureModel& future) {
   std::vector<Piece> pieces;
@@ -22,14 +24,15 @@ std::vector<Piece> pieces_of(const Planning& planning, const FutureModel& future
   return pieces;
 }
 
+/// `item`: decided on now, so that it does not come again; may be empty.
 Prospect make_prospect(const FutureModel& future, std::vector<Piece> pieces, const ContainerState& state,
-                       const Item& item) {
+                       std::string_view item) {
   Prospect prospect;
   prospect.kinds = std::move(pieces);
   prospect.weights = future.weights;
   prospect.comes_once = future.comes_once;
   if (!future.comes_once) return prospect;
-  std::unordered_set<std::string_view> seen{item.id};
+  std::unordered_set<std::string_view> seen{item};
   seen.insert(state.skipped.begin(), state.skipped.end());
   for (const PlacedBox& box : state.boxes) seen.insert(box.item.id);
   for (std::size_t i = 0; i < future.kinds.size(); ++i) {
@@ -71,7 +74,43 @@ class ContactAwareAgent : public Agent {
     return decision;
   }
 
+  std::optional<double> expected_percent(const ContainerState& state) override {
+    const Planning planning = plan_for_contact(state, input_.settings);
+    const std::vector<Item>& kinds = input_.future.kinds;
+    Outlook outlook = look_ahead(planning, state, nullptr);
+    outlook.race.first_futures = kFutures;
+    const std::vector<Layout> entrants{to_layout(planning, make_rules(planning, kinds), state)};
+    return outlook.percent(
+        race(entrants, make_policy(planning, kinds), outlook.prospect, outlook.free_volume, outlook.race, nullptr)
+            .front());
+  }
+
  private:
+  /// What may come into a container.
+  struct Outlook {
+    double room = 0.0;         ///< m^3, of the empty container
+    double filled = 0.0;       ///< m^3
+    double free_volume = 0.0;  ///< m^3, of items that are drawn
+    Prospect prospect;
+    RaceSettings race;
+    [[nodiscard]] double percent(const Standing& standing) const { return 100.0 * (filled + standing.mean) / room; }
+  };
+
+  /// `item`: decided on now, if there is one.
+  Outlook look_ahead(const Planning& planning, const ContainerState& state, const Item* item) {
+    Outlook outlook;
+    outlook.room = planning.inner_size.prod();
+    outlook.filled = 0.01 * filling_percent(state) * outlook.room + (item != nullptr ? item->size.prod() : 0.0);
+    outlook.race.seed = input_.run.seed + 1000003U * state.boxes.size();
+    outlook.race.threads = input_.run.threads;
+    outlook.race.effort = work_for(input_.run.time);
+    outlook.race.skips = state.skips_left;
+    outlook.prospect = make_prospect(input_.future, pieces(planning), state, item != nullptr ? std::string_view(item->id) : std::string_view());
+    outlook.free_volume = std::max(0.0, outlook.room - outlook.filled);
+    for (int i = 0; i < outlook.race.skips; ++i) outlook.free_volume += largest_volume(outlook.prospect);
+    return outlook;
+  }
+
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item, const Planning& planning) {
     const Choice choice = make_choice(planning, item);
     if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
@@ -112,21 +151,13 @@ class ContactAwareAgent : public Agent {
   Decision settle_race(const Planning& planning, const ContainerState& state, const Item& item, const Policy& policy,
                        const std::vector<Candidate>& candidates, const std::vector<Layout>& entrants) {
     Decision decision;
-    const double room = planning.inner_size.prod();
-    const double filled = 0.01 * filling_percent(state) * room + item.size.prod();
-    RaceSettings settings;
-    settings.seed = input_.run.seed + 1000003U * state.boxes.size();
-    settings.threads = input_.run.threads;
-    settings.effort = work_for(input_.run.time);
-    settings.skips = state.skips_left;
-    const Prospect prospect = make_prospect(input_.future, pieces(planning), state, item);
-    double volume = std::max(0.0, room - filled);
-    for (int i = 0; i < settings.skips; ++i) volume += largest_volume(prospect);
-    const std::vector<Standing> order = race(entrants, policy, prospect, volume, settings, &decision.roll_outs);
+    const Outlook outlook = look_ahead(planning, state, &item);
+    const std::vector<Standing> order =
+        race(entrants, policy, outlook.prospect, outlook.free_volume, outlook.race, &decision.roll_outs);
     for (const Standing& standing : order) {
       if (static_cast<int>(decision.candidates.size()) >= input_.settings.max_candidates) break;
       Candidate candidate = candidates[static_cast<std::size_t>(standing.entrant)];
-      candidate.expected_percent = 100.0 * (filled + standing.mean) / room;
+      candidate.expected_percent = outlook.percent(standing);
       candidate.score = candidate.expected_percent;
       decision.candidates.push_back(candidate);
     }

@@ -224,18 +224,18 @@ bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
 }
 
 std::optional<Attempt> Packer::best_attempt(int item, Location location,
-                                            const std::vector<packing::Candidate>& candidates, ItemReport& report) {
-  packing::ContainerState state = container_state();
-  std::erase_if(state.boxes, [&](const packing::PlacedBox& box) { return box.item.id == report.id; });
+                                            const std::vector<packing::Candidate>& candidates, double least_percent,
+                                            ItemReport& report) {
+  const packing::ContainerState state = state_without(item);
   const double top = obstacle_top(item);
   Rehearsal rehearsal(belief_, layout_, reaches_, limits_, options_.threads,
                       {item, belief_.box(item)->X_WP, location, robot_});
   std::optional<Attempt> best;
-  double best_utility = 0.0;
+  double best_utility = least_percent;
   const double clearance = belief_.nominal().parcel_clearance;
   const int before = report.attempts;  // when it was planned before
   for (const packing::Candidate& candidate : candidates) {
-    if (best && best_utility >= utility_of(candidate, 1.0)) break;
+    if (best_utility >= utility_of(candidate, 1.0)) break;
     const packing::Candidate placed = skills::measured(state, candidate, items_[static_cast<std::size_t>(item)].size,
                                                        clearance, scenario_.skills.insertion);
     for (const skills::Insertion& insertion :
@@ -252,7 +252,7 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
       }
       if (!attempt.succeeded) continue;
       const double utility = utility_of(placed, attempt.success_rate);
-      if (best && utility <= best_utility + 1e-9) continue;
+      if (utility <= best_utility + 1e-9) continue;
       best_utility = utility;
       best = std::move(attempt);
     }
@@ -262,15 +262,41 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location,
   return best;
 }
 
-std::optional<Packer::Planned> Packer::plan(int item, const Decide& decide, ItemReport& report) {
-  packing::Item& one = items_[static_cast<std::size_t>(item)];
+packing::ContainerState Packer::state_without(int item) const {
   packing::ContainerState state = container_state();
-  std::erase_if(state.boxes, [&](const packing::PlacedBox& box) { return box.item.id == one.id; });
-  const Location location = locate(item);
-  const Matrix3 R = location == Location::Aligner ? scenario_.aligner->X_WA.R : layout_.X_WT.R;
+  const std::string& id = items_[static_cast<std::size_t>(item)].id;
+  std::erase_if(state.boxes, [&](const packing::PlacedBox& box) { return box.item.id == id; });
+  return state;
+}
+
+packing::Item Packer::item_as_it_stands(int item) const {
+  packing::Item one = items_[static_cast<std::size_t>(item)];
+  const Matrix3& R = locate(item) == Location::Aligner ? scenario_.aligner->X_WA.R : layout_.X_WT.R;
   one.arrival = packing::nearest_orientation(R.transpose() * belief_.box(item)->X_WP.R);
+  return one;
+}
+
+std::optional<double> Packer::expected_percent(int item, packing::Agent& agent) const {
+  if (locate(item) != Location::Container || !fit_of(item, belief_.box(item)->X_WP).is_in) return std::nullopt;
+  return agent.expected_percent(container_state());
+}
+
+double Packer::gain_elsewhere(int item, packing::Agent& agent) const {
+  const std::optional<double> here = expected_percent(item, agent);
+  if (!here) return 0.0;
+  const auto decision = agent.decide(state_without(item), item_as_it_stands(item));
+  return decision ? decision->candidates.front().expected_percent - *here : 0.0;
+}
+
+std::optional<Packer::Planned> Packer::plan(int item, packing::Agent& agent, ItemReport& report) {
+  packing::Item& one = items_[static_cast<std::size_t>(item)];
+  one = item_as_it_stands(item);
+  const packing::ContainerState state = state_without(item);
+  const Location location = locate(item);
   auto start = std::chrono::steady_clock::now();
-  const auto decision = decide(state, one, false);
+  const std::optional<double> here = expected_percent(item, agent);
+  const double least = here ? *here + scenario_.recovery.gain_elsewhere : 0.0;
+  const auto decision = agent.decide(state, one);
   report.decision_seconds += seconds_since(start);
   if (!decision) {
     report.reason = packing::describe(decision.error());
@@ -279,14 +305,14 @@ std::optional<Packer::Planned> Packer::plan(int item, const Decide& decide, Item
   }
   start = std::chrono::steady_clock::now();
   report.reason.clear();
-  std::optional<Attempt> best = best_attempt(item, location, decision->candidates, report);
+  std::optional<Attempt> best = best_attempt(item, location, decision->candidates, least, report);
   report.rehearsal_seconds += seconds_since(start);
   if (!best && !decision->is_pressed) {
     start = std::chrono::steady_clock::now();
-    const auto pressed = decide(state, one, true);
+    const auto pressed = agent.decide_pressed(state, one);
     report.decision_seconds += seconds_since(start);
     start = std::chrono::steady_clock::now();
-    if (pressed) best = best_attempt(item, location, pressed->candidates, report);
+    if (pressed) best = best_attempt(item, location, pressed->candidates, least, report);
     report.rehearsal_seconds += seconds_since(start);
   }
   if (!best) {

@@ -1,7 +1,6 @@
 // Packer: brings one item in: look, plan, rehearse, send, look, and what is done when that goes wrong.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <set>
 #include <span>
@@ -12,10 +11,6 @@
 #include "snug/session/session.hpp"
 
 namespace snug::session {
-
-/// What decides where an item goes: the agent, or a plan that was made before. `pressed`: Agent::decide_pressed.
-using Decide = std::function<Expected<packing::Decision, packing::NoPlace>(const packing::ContainerState& state,
-                                                                           const packing::Item& item, bool pressed)>;
 
 /// A box that was packed before and was taken out and packed once more.
 struct Repacked {
@@ -39,8 +34,10 @@ class Packer {
   [[nodiscard]] bool is_seen_outside(const std::string& id) const;
   /// Nothing is believed of where it is: its place was seen and is empty, or it was let go unseen.
   [[nodiscard]] bool is_gone(const std::string& id) const { return !belief_.box(index_of(id)); }
+  /// It was packed before and was put back to the aligner.
+  [[nodiscard]] bool is_set_aside(const std::string& id) const { return aside_.contains(index_of(id)); }
   /// Everything for one item, from its arrival to what became of it.
-  [[nodiscard]] ItemReport bring_in(int item, const Decide& decide);
+  [[nodiscard]] ItemReport bring_in(int item, packing::Agent& agent);
   /// The tool back at its start, or why it did not get there.
   [[nodiscard]] SessionFailure go_home();
 
@@ -78,10 +75,18 @@ class Packer {
   /// all), those that were left outside too: what is carried passes over it.
   [[nodiscard]] double obstacle_top(int item) const;
   [[nodiscard]] cell::ContainerFit fit_of(int item, const Pose& X_WP) const;
-  [[nodiscard]] std::optional<Planned> plan(int item, const Decide& decide, ItemReport& report);
+  [[nodiscard]] std::optional<Planned> plan(int item, packing::Agent& agent, ItemReport& report);
   [[nodiscard]] std::optional<Attempt> best_attempt(int item, Location location,
                                                     const std::vector<packing::Candidate>& candidates,
-                                                    ItemReport& report);
+                                                    double least_percent, ItemReport& report);
+  /// In the end, when the item stays where it lies in the container; nothing: the agent does not know, or it may not.
+  [[nodiscard]] std::optional<double> expected_percent(int item, packing::Agent& agent) const;
+  /// Percent of the container that is expected more with the item in the best other place; 0 where that is not known.
+  [[nodiscard]] double gain_elsewhere(int item, packing::Agent& agent) const;
+  /// In the container without it.
+  [[nodiscard]] packing::ContainerState state_without(int item) const;
+  /// How it stands now, as the agent counts.
+  [[nodiscard]] packing::Item item_as_it_stands(int item) const;
   [[nodiscard]] double utility_of(const packing::Candidate& candidate, double rate) const;
   [[nodiscard]] bool is_enough(const std::optional<Attempt>& best, int attempts) const;
   void submit(const std::string& id, std::vector<motion::Waypoint> waypoints, const plant::Guards& guards,
@@ -95,17 +100,21 @@ class Packer {
   [[nodiscard]] Trouble assess(int item, const packing::Placement& planned,
                                const std::vector<std::optional<Pose>>& before, ItemReport& report) const;
   [[nodiscard]] int who_sticks_out(int item) const;
+  /// Of the others that were moved beyond the limit the highest: it may lie on the rest. -1: none was.
+  [[nodiscard]] int who_was_moved(int item, const std::vector<std::optional<Pose>>& before) const;
+  /// m, as it was seen, less what the look may be off.
+  [[nodiscard]] double moved(int item, const std::vector<std::optional<Pose>>& before) const;
   /// The vacuum says that something hangs from the cup.
   [[nodiscard]] bool is_holding() const;
   /// The tool straight up, vacuum off.
   void retreat(const std::string& id, ItemReport& report);
   /// Until nothing is wrong, or nothing more can be done. True: the item is to be planned once more.
-  [[nodiscard]] bool recover(int item, const Planned& planned, const std::vector<std::optional<Pose>>& before,
-                             const Decide& decide, ItemReport& report);
+  [[nodiscard]] bool recover(int item, const Planned& planned, std::vector<std::optional<Pose>> before,
+                             packing::Agent& agent, ItemReport& report);
   /// Look and compare, after a retreat where the motion did not end as it should.
   [[nodiscard]] Trouble find_trouble(int item, const packing::Placement& planned,
                                      const std::vector<std::optional<Pose>>& before, ItemReport& report);
-  [[nodiscard]] Situation situation_of(int item, Trouble trouble, const ItemReport& report) const;
+  [[nodiscard]] Situation situation_of(int item, Trouble trouble, packing::Agent& agent, const ItemReport& report);
   void resume(const std::string& id, ItemReport& report);
   void press(int item, ItemReport& report);
   /// How a box hangs from the cup and how it is to stand.
@@ -129,9 +138,13 @@ class Packer {
   [[nodiscard]] std::vector<motion::Waypoint> plan_pick_to_set_aside(int item, const Matrix3& R_WP) const;
   /// How a box that lies or leans is put down to the aligner.
   [[nodiscard]] Matrix3 rotation_aside(int item) const;
-  /// Another box, that sticks out, once more: to a place that is planned anew.
-  void repack(int item, const Decide& decide, ItemReport& report);
+  /// Another box, that sticks out or was moved, once more: to a place that is planned anew.
+  void repack(int item, packing::Agent& agent, ItemReport& report);
+  [[nodiscard]] std::optional<Pose> pose_of(int item) const;  ///< X_WP, as believed
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;
+  /// Plan, send, look, recover, until it is packed or given up.
+  void bring_to_place(int item, packing::Agent& agent, ItemReport& report);
+  [[nodiscard]] bool is_handled(int item) const;
   void give_up(int item, Trouble trouble, ItemReport& report);
   /// No motion is planned for it any more: one that was moved before stays where it lies.
   void leave(int item, ItemReport& report) const;
@@ -149,6 +162,8 @@ class Packer {
   int skips_left_;                    ///< below 0: more items had no place than may be skipped
   std::set<int> left_out_;            ///< of them, those that stick out and that nothing more is done about
   std::vector<Repacked> repacked_;
+  std::vector<int> handled_;  ///< under way now: the item that came, and boxes that are packed anew because of it
+  std::set<int> aside_;       ///< packed before, and put back to the aligner
   int let_go_ = -1;  ///< item that fell, or was let go, before its motion ended: to be found at the next look
   plant::Feedback robot_;
   motion::Program sent_;

@@ -17,10 +17,14 @@ double slack_of(const BelievedBox& box) { return 2.0 * std::sqrt(std::max(0.0, b
 
 }  // namespace
 
+std::optional<Pose> Packer::pose_of(int item) const {
+  return belief_.box(item) ? std::optional<Pose>(belief_.box(item)->X_WP) : std::nullopt;
+}
+
 std::vector<std::optional<Pose>> Packer::believed_poses() const {
   std::vector<std::optional<Pose>> poses;
   for (int i = 0; i < static_cast<int>(items_.size()); ++i) {
-    poses.push_back(belief_.box(i) ? std::optional<Pose>(belief_.box(i)->X_WP) : std::nullopt);
+    poses.push_back(pose_of(i));
   }
   return poses;
 }
@@ -74,15 +78,33 @@ bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& rep
   return true;
 }
 
+bool Packer::is_handled(int item) const { return std::ranges::find(handled_, item) != handled_.end(); }
+
 int Packer::who_sticks_out(int item) const {
   const auto is_out = [&](int one) {
     return !left_out_.contains(one) && is_seen_outside(items_[static_cast<std::size_t>(one)].id);
   };
   for (const int other : order_) {
-    if (other == item || !belief_.box(other)) continue;
+    if (is_handled(other) || !belief_.box(other)) continue;
     if (locate(other) == Location::Container && is_out(other)) return other;
   }
   return is_out(item) ? item : -1;
+}
+
+double Packer::moved(int item, const std::vector<std::optional<Pose>>& before) const {
+  const std::optional<Pose>& was = before[static_cast<std::size_t>(item)];
+  const std::optional<BelievedBox>& box = belief_.box(item);
+  if (!was || !box || !box->was_seen) return 0.0;
+  return std::max(0.0, (box->X_WP.p - was->p).norm() - slack_of(*box));
+}
+
+int Packer::who_was_moved(int item, const std::vector<std::optional<Pose>>& before) const {
+  int highest = -1;
+  for (const int other : order_) {
+    if (other == item || is_handled(other) || moved(other, before) <= limits_.displacement) continue;
+    if (highest < 0 || belief_.box(other)->X_WP.p.z() > belief_.box(highest)->X_WP.p.z()) highest = other;
+  }
+  return highest;
 }
 
 double Packer::tilt_of(int item) const {
@@ -98,20 +120,16 @@ Trouble Packer::assess(int item, const packing::Placement& planned, const std::v
   report.X_TP = X_TP;
   report.position_error = (X_TP.p - planned.X_TP.p).head<2>().norm();
   report.angle_error = angle_between(X_TP.R, planned.X_TP.R);
-  double moved = 0.0;
   for (const int other : order_) {
-    const std::optional<Pose>& was = before[static_cast<std::size_t>(other)];
-    if (other == item || !was || !belief_.box(other) || !belief_.box(other)->was_seen) continue;
-    moved = std::max(moved, (belief_.box(other)->X_WP.p - was->p).norm() - slack_of(*belief_.box(other)));
+    if (other != item) report.happened.displacement = std::max(report.happened.displacement, moved(other, before));
   }
-  report.happened.displacement = std::max(0.0, moved);
   if (locate(item) != Location::Container) return Trouble::OffPlace;  // nothing there is to be pressed on
   if (tilt_of(item) > limits_.tilt) return Trouble::Leaning;
   if (who_sticks_out(item) >= 0) return Trouble::SticksOut;
   if (report.position_error > limits_.position || report.angle_error > limits_.tilt) {
     return Trouble::OffPlace;
   }
-  return moved > limits_.displacement ? Trouble::NeighbourMoved : Trouble::None;
+  return who_was_moved(item, before) >= 0 ? Trouble::NeighbourMoved : Trouble::None;
 }
 
 bool Packer::is_holding() const {
@@ -119,7 +137,7 @@ bool Packer::is_holding() const {
          robot_.pressure_gauge < scenario_.motion_guards.needed_vacuum * scenario_.cup.vacuum.pressure_gauge_hold;
 }
 
-ItemReport Packer::bring_in(int item, const Decide& decide) {
+ItemReport Packer::bring_in(int item, packing::Agent& agent) {
   ItemReport report;
   report.id = items_[static_cast<std::size_t>(item)].id;
   robot_ = plant_.read();
@@ -147,14 +165,27 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
     report.reason = report.recoveries.back().detail;
   }
   const bool is_refused = report.end == ItemEnd::WrongItem;
+  if (!is_refused) bring_to_place(item, agent, report);
+  const bool is_taken_away = report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless ||
+                             report.end == ItemEnd::NotHeld || report.end == ItemEnd::SetAside;
+  if (is_taken_away || is_refused || report.end == ItemEnd::Gone)
+    belief_.forget(item);  // the next arrival takes it away
+  if (!report.is_packed()) skipped_.push_back(report.id);
+  if (report.end == ItemEnd::NoPlace) --skips_left_;
+  report.done = robot_.time;
+  return report;
+}
+
+void Packer::bring_to_place(int item, packing::Agent& agent, ItemReport& report) {
+  handled_.push_back(item);
   bool is_whole = true;
-  for (bool again = !is_refused; again && !stop_reason_;) {
+  for (bool again = true; again && !stop_reason_;) {
     again = false;
     if (is_gone(report.id)) {
       give_up(item, Trouble::Gone, report);
       break;
     }
-    const std::optional<Planned> planned = plan(item, decide, report);
+    const std::optional<Planned> planned = plan(item, agent, report);
     if (!planned) {
       leave(item, report);
       if (report.end == ItemEnd::Left && can_set_aside(item)) {
@@ -176,17 +207,10 @@ ItemReport Packer::bring_in(int item, const Decide& decide) {
       leave(item, report);
       break;
     }
-    again = recover(item, *planned, before, decide, report);
+    again = recover(item, *planned, before, agent, report);
     if (robot_.end.reason == plant::EndReason::Completed) belief_.weigh(item);
   }
-  const bool is_taken_away = report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless ||
-                             report.end == ItemEnd::NotHeld || report.end == ItemEnd::SetAside;
-  if (is_taken_away || is_refused || report.end == ItemEnd::Gone)
-    belief_.forget(item);  // the next arrival takes it away
-  if (!report.is_packed()) skipped_.push_back(report.id);
-  if (report.end == ItemEnd::NoPlace) --skips_left_;
-  report.done = robot_.time;
-  return report;
+  handled_.pop_back();
 }
 
 void Packer::move_home(ItemReport& report) {

@@ -1,4 +1,6 @@
 // Packer: what is done when a motion did not come to what was planned.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -12,6 +14,10 @@ namespace snug::session {
 namespace {
 
 using motion::MotionClass;
+
+/// Boxes under way at once: the item that came, one that it moved, one that this one moved.
+constexpr std::size_t kMostHandled = 3;
+constexpr int kMostSetAsides = 2;  ///< for one motion: the first may push a box that leans over
 
 Trouble trouble_of(plant::EndReason reason) {
   switch (reason) {
@@ -63,9 +69,10 @@ void Packer::give_up(int item, Trouble trouble, ItemReport& report) {
 }
 
 void Packer::leave(int item, ItemReport& report) const {
-  if (report.sends.empty()) return;
+  if (std::ranges::find(order_, item) == order_.end()) return;
   if (locate(item) == Location::Aligner) {
-    report.end = ItemEnd::NotHeld;
+    const bool is_aside = !report.recoveries.empty() && report.recoveries.back().remedy == Remedy::SetAside;
+    report.end = is_aside ? ItemEnd::SetAside : ItemEnd::NotHeld;
   } else {
     report.end = fit_of(item, belief_.box(item)->X_WP).is_in ? ItemEnd::Accepted : ItemEnd::Left;
   }
@@ -81,7 +88,7 @@ Trouble Packer::find_trouble(int item, const packing::Placement& planned,
   return ended != Trouble::None ? ended : seen;
 }
 
-Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& report) const {
+Situation Packer::situation_of(int item, Trouble trouble, packing::Agent& agent, const ItemReport& report) {
   Situation at;
   at.trouble = trouble;
   at.tries = static_cast<int>(report.sends.size());
@@ -91,6 +98,7 @@ Situation Packer::situation_of(int item, Trouble trouble, const ItemReport& repo
   at.leans = belief_.box(item) && locate(item) == Location::Container && tilt_of(item) > limits_.tilt;
   at.lies_turned = report.angle_error > scenario_.recovery.lies_turned;
   at.can_be_picked = can_be_picked(item);
+  if (at.fits) at.gain_elsewhere = gain_elsewhere(item, agent);
   return at;
 }
 
@@ -188,62 +196,80 @@ void Packer::set_aside(int item, const Planned* planned, ItemReport& report) {
   put_down(carried, place, std::move(rows), report);
 }
 
-void Packer::repack(int item, const Decide& decide, ItemReport& report) {
+void Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
   ItemReport own;
   own.id = items_[static_cast<std::size_t>(item)].id;
-  const std::optional<Planned> planned = plan(item, decide, own);
+  bring_to_place(item, agent, own);
   report.attempts += own.attempts;
-  if (!planned) {
-    left_out_.insert(item);
-    return;
-  }
-  (void)send(planned->attempt, own.id, report);
+  report.seconds += own.seconds;
+  report.recoveries.insert(report.recoveries.end(), own.recoveries.begin(), own.recoveries.end());
   if (robot_.end.reason != plant::EndReason::Completed) retreat(own.id, report);
-  look(report);
-  if (is_gone(own.id)) return;
-  if (is_seen_outside(own.id)) {
+  if (belief_.box(item) && locate(item) == Location::Aligner) {
+    belief_.forget(item);  // the next arrival takes it away
+    aside_.insert(item);
+  } else if (belief_.box(item) && is_seen_outside(own.id)) {
     left_out_.insert(item);
-  } else {
-    repacked_.push_back({planned->attempt.planned, layout_.X_WT.inverse() * belief_.box(item)->X_WP});
+  } else if (belief_.box(item) && !own.sends.empty()) {
+    repacked_.push_back({own.planned, layout_.X_WT.inverse() * belief_.box(item)->X_WP});
   }
 }
 
-bool Packer::recover(int item, const Planned& planned, const std::vector<std::optional<Pose>>& before,
-                     const Decide& decide, ItemReport& report) {
-  int stops = 0;
-  bool was_pressed = false, was_set_aside = false;
+bool Packer::recover(int item, const Planned& planned, std::vector<std::optional<Pose>> before, packing::Agent& agent,
+                     ItemReport& report) {
+  int stops = 0, repacked = 0;
+  int set_aside_count = 0;
+  bool was_pressed = false;
   const packing::Placement goal = planned.attempt.planned;
   Trouble trouble = find_trouble(item, goal, before, report);
   for (int round = 0; round < scenario_.recovery.most_rounds && trouble != Trouble::None; ++round) {
     if (report.sends.back().trouble == Trouble::None) report.sends.back().trouble = trouble;
-    // It may be another box that sticks out: then that is pressed, or taken out and packed anew.
-    const int culprit = trouble == Trouble::SticksOut ? who_sticks_out(item) : item;
+    // It may be another box that sticks out or was moved: then that is pressed, or taken out and packed anew.
+    const int culprit = trouble == Trouble::SticksOut        ? who_sticks_out(item)
+                        : trouble == Trouble::NeighbourMoved ? who_was_moved(item, before)
+                                                             : item;
     stops += trouble == Trouble::ProtectiveStop ? 1 : 0;
-    Situation at = situation_of(culprit, trouble, report);
+    Situation at = situation_of(culprit, trouble, agent, report);
+    if (culprit != item) at.tries = handled_.size() < kMostHandled ? 1 + repacked : scenario_.recovery.most_tries;
     at.stops = stops;
-    at.can_set_aside = !was_set_aside && can_set_aside(culprit);
+    at.can_set_aside = set_aside_count < kMostSetAsides && can_set_aside(culprit);
     at.was_pressed = was_pressed || (belief_.box(culprit) && is_under_obstacle(culprit));
     const Remedy remedy = choose_remedy(at, scenario_.recovery);
     const bool is_of_motion = trouble_of(robot_.end.reason) == trouble;
     std::string detail = is_of_motion ? plant::describe(robot_.end, last_) : std::string();
     if (culprit != item) detail = items_[static_cast<std::size_t>(culprit)].id;
+    if (at.gain_elsewhere > 0.0)
+      detail += fmt::format("{}{:.1f} % more expected elsewhere", detail.empty() ? "" : ", ", at.gain_elsewhere);
     report.recoveries.push_back({robot_.time, report.id, trouble, remedy, std::move(detail)});
     switch (remedy) {
       case Remedy::None:
       case Remedy::Accept:
-        report.end = trouble == Trouble::NeighbourMoved ? ItemEnd::Placed : ItemEnd::Accepted;
+        if (culprit != item) break;
+        report.end = ItemEnd::Accepted;
         return false;
       case Remedy::PickAgain:
         if (culprit == item) return true;
-        repack(culprit, decide, report);
+        ++repacked;
+        repack(culprit, agent, report);
         was_pressed = false;
         break;
       case Remedy::SetAside:
-        was_set_aside = true;
+        ++set_aside_count;
         set_aside(culprit, culprit == item ? &planned : nullptr, report);
         if (robot_.end.reason != plant::EndReason::Completed) break;
+        look(report);
+        if (belief_.box(culprit) && locate(culprit) != Location::Aligner) break;  // it did not come there
+        if (belief_.box(culprit) && at.tries < scenario_.recovery.most_tries) {
+          if (culprit == item) return true;
+          ++repacked;
+          repack(culprit, agent, report);
+          was_pressed = false;
+          break;
+        }
         belief_.forget(culprit);  // the next arrival takes it away
-        if (culprit != item) break;
+        if (culprit != item) {
+          aside_.insert(culprit);
+          break;
+        }
         report.end = ItemEnd::SetAside;
         report.reason = name_of(trouble);
         return false;
@@ -277,6 +303,7 @@ bool Packer::recover(int item, const Planned& planned, const std::vector<std::op
         press(culprit, report);
         break;
     }
+    if (culprit != item) before[static_cast<std::size_t>(culprit)] = pose_of(culprit);
     trouble = find_trouble(item, goal, before, report);
   }
   if (trouble == Trouble::None) {

@@ -6,7 +6,10 @@ namespace {
 
 Remedy where_it_lies(const Situation& at, const model::RecoverySettings& settings) {
   const bool may_pick = at.can_be_picked && at.tries < settings.most_tries;
-  if (at.fits) return at.lies_turned && may_pick ? Remedy::PickAgain : Remedy::Accept;
+  const bool may_set_aside = at.can_set_aside && at.tries < settings.most_tries;
+  const bool is_worth_moving = at.gain_elsewhere > settings.gain_elsewhere;
+  if (at.fits && !at.lies_turned && !is_worth_moving) return Remedy::Accept;
+  if (at.fits) return may_pick ? Remedy::PickAgain : may_set_aside ? Remedy::SetAside : Remedy::Accept;
   if (may_pick) return Remedy::PickAgain;
   if (at.leans && !at.was_pressed) return Remedy::PressLevel;
   return at.can_set_aside ? Remedy::SetAside : Remedy::Skip;
@@ -104,10 +107,10 @@ Remedy choose_remedy(const Situation& at, const model::RecoverySettings& setting
       return where_it_lies(at, settings);
     case Trouble::Leaning:
     case Trouble::SticksOut:
-      if (!at.was_pressed) return Remedy::PressLevel;
-      return where_it_lies(at, settings);
+      if (at.was_pressed) return where_it_lies(at, settings);
+      return Remedy::PressLevel;
     case Trouble::NeighbourMoved:
-      return Remedy::Accept;
+      return where_it_lies(at, settings);
     case Trouble::Gone:
     case Trouble::WrongItem:
       return Remedy::Skip;

@@ -57,6 +57,7 @@ struct Situation {
   bool leans = false;          ///< in the container, by more than the limit
   bool lies_turned = false;    ///< by more than 45 degrees from its plan: it takes room meant for others
   bool can_be_picked = false;  ///< seen, standing on a face, within reach of the tool
+  double gain_elsewhere = 0.0;  ///< percent of the container that is expected more with it in another place
   bool was_pressed = false;    ///< since it was let go
   int pictures = 0;            ///< that told nothing, one after the other, this one included
 };

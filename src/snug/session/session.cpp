@@ -27,6 +27,22 @@ bool plans_on_paper(const SessionOptions& options) {
   return !options.ask && (options.agent == "manual" || options.agent == "offline");
 }
 
+/// Of one item alone, whose place was chosen before.
+class ChosenPlace : public packing::Agent {
+ public:
+  explicit ChosenPlace(const packing::Placement& placement) {
+    decision_.candidates.emplace_back().placement = placement;
+  }
+  [[nodiscard]] std::string_view name() const override { return "chosen place"; }
+  [[nodiscard]] Expected<packing::Decision, packing::NoPlace> decide(const packing::ContainerState& /*state*/,
+                                                                     const packing::Item& /*item*/) override {
+    return decision_;
+  }
+
+ private:
+  packing::Decision decision_;
+};
+
 class Session {
  public:
   Session(const model::Scenario& scenario, const std::string& sequence, const SessionOptions& options,
@@ -50,9 +66,7 @@ class Session {
     if (plans_on_paper(options_)) return execute(plan_on_paper(*agent));
     const int count = static_cast<int>(packer_.items().size());
     for (int i = 0; i < count && !is_over(); ++i) {
-      ItemReport report = packer_.bring_in(i, [&](const auto& state, const packing::Item& item, bool pressed) {
-        return pressed ? agent->decide_pressed(state, item) : agent->decide(state, item);
-      });
+      ItemReport report = packer_.bring_in(i, *agent);
       const bool has_no_place = report.end == ItemEnd::NoPlace;
       if (has_no_place && !result_.percent_before_skips) result_.percent_before_skips = result_.planned_percent;
       if (packer_.skips_left() < 0) {
@@ -73,16 +87,8 @@ class Session {
         throw InputError("plan", "item", placement.item, "an item of sequence " + result_.sequence);
       }
       if (is_over()) break;
-      const auto decide = [&](const auto&, const packing::Item&,
-                              bool pressed) -> Expected<packing::Decision, packing::NoPlace> {
-        if (pressed) return tl::unexpected(packing::NoPlace::NoSpace);
-        packing::Decision decision;
-        packing::Candidate candidate;
-        candidate.placement = placement;
-        decision.candidates.push_back(candidate);
-        return decision;
-      };
-      finish_item(packer_.bring_in(static_cast<int>(item - items.begin()), decide), ++done,
+      ChosenPlace agent(placement);
+      finish_item(packer_.bring_in(static_cast<int>(item - items.begin()), agent), ++done,
                   static_cast<int>(plan.size()));
     }
     return finish();
@@ -165,8 +171,11 @@ class Session {
       if (!item.is_packed()) continue;
       const bool is_gone = packer_.is_gone(item.id);
       if (!is_gone && !packer_.is_seen_outside(item.id)) continue;
-      item.end = is_gone ? ItemEnd::Gone : ItemEnd::Left;
-      item.reason = is_gone ? "it is not seen any more" : "it is seen outside the container";
+      const bool is_aside = packer_.is_set_aside(item.id);
+      item.end = is_aside ? ItemEnd::SetAside : is_gone ? ItemEnd::Gone : ItemEnd::Left;
+      item.reason = is_aside  ? "it was moved, and found no other place"
+                    : is_gone ? "it is not seen any more"
+                              : "it is seen outside the container";
       leave_out_of_plan(item.id);
     }
   }

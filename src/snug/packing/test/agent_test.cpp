@@ -76,6 +76,56 @@ TEST_P(EveryAgent, KeepsToObstaclesAndPutsNothingOnThem) {
   }
 }
 
+/// What lies as it was decided is worth what was expected of it; what stands in the middle of the floor is worth less.
+TEST(ContactAwareAgent, KnowsWhatABoxInTheWrongPlaceCosts) {
+  const model::Scenario scenario = test::demonstrator();
+  const std::vector<Item> items = test::shuffled_items(scenario, 5);
+  const auto make = [&](int threads) {
+    return make_agent("contact-aware", {.settings = {},
+                                        .future = make_future_model(scenario),
+                                        .sequence = items,
+                                        .is_reachable = {},
+                                        .run = {.time = 0.1, .threads = threads}});
+  };
+  const std::unique_ptr<Agent> agent = make(1);
+  const ContainerState empty = make_container_state(scenario.containers.front());
+  const auto decision = agent->decide(empty, items[0]);
+  ASSERT_TRUE(decision);
+  const Candidate& best = decision->candidates.front();
+  const ContainerState as_decided = with_candidate(empty, items[0], best);
+  const std::optional<double> there = agent->expected_percent(as_decided);
+  ASSERT_TRUE(there);
+  EXPECT_NEAR(*there, best.expected_percent, 1.5);  // two estimates of a mean, some tenths of a percent each
+  EXPECT_EQ(make(3)->expected_percent(as_decided), there);
+  ContainerState in_the_middle = as_decided;
+  in_the_middle.boxes[0].X_TP.p.head<2>().setZero();
+  EXPECT_LT(*agent->expected_percent(in_the_middle), *there - 3.0);
+}
+
+TEST(ContactAwareAgent, ExpectsNoMoreThanIsInAFullContainer) {
+  const model::Scenario scenario = test::demonstrator();
+  ContainerState state = make_container_state(scenario.containers.front());
+  Vector3 size = state.inner_size;
+  size.z() *= 0.95;
+  state.boxes.push_back({make_box("all", size), Pose{Matrix3::Identity(), Vector3(0.0, 0.0, 0.5 * size.z())}});
+  const auto agent = make_agent("contact-aware", {.settings = {},
+                                                  .future = make_future_model(scenario),
+                                                  .sequence = {},
+                                                  .is_reachable = {},
+                                                  .run = {.time = 0.1, .threads = 1}});
+  EXPECT_DOUBLE_EQ(agent->expected_percent(state).value(), filling_percent(state));
+}
+
+TEST(Agent, OneThatDoesNotLookAheadDoesNotSayWhatItExpects) {
+  const model::Scenario scenario = test::demonstrator();
+  const auto agent = make_agent("margin", {.settings = {},
+                                           .future = make_future_model(scenario),
+                                           .sequence = {},
+                                           .is_reachable = {},
+                                           .run = {.time = 0.1, .threads = 1}});
+  EXPECT_FALSE(agent->expected_percent(make_container_state(scenario.containers.front())));
+}
+
 TEST_P(EveryAgent, DecidesTheSameAtAnyNumberOfThreads) {
   const std::vector<Item> items = test::shuffled_items(scenario, 9);
   ContainerState one = make_container_state(scenario.containers.front());

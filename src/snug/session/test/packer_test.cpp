@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "snug/model/test/shortened.hpp"
 #include "snug/session/session.hpp"
@@ -33,6 +34,7 @@ class ScriptedPlant final : public plant::Plant {
   Pose X_WE_let_go;                                            ///< of the last motion with the vacuum on
   int home_count = 0;                                          ///< motions that do nothing but go home
   std::deque<EndReason> retreat_ends;                          ///< of retreats; when they are used up: Completed
+  std::string item;                                            ///< of the last motion
   int acknowledged = 0;
 
   [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
@@ -43,6 +45,7 @@ class ScriptedPlant final : public plant::Plant {
   [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override {
     const auto held = std::ranges::find_if(motion.waypoints, [](const auto& row) { return row.io.vacuum; });
     const bool holds = held != motion.waypoints.end();
+    item = motion.item;
     EndReason end = EndReason::Completed;
     if (holds && !ends.empty()) {
       end = ends.front();
@@ -177,13 +180,82 @@ TEST(Packer, SetsABoxAsideThatFellAndLeansWhenPressingDoesNotHelp) {
   ScriptedPlant plant;
   plant.ends = {EndReason::VacuumLost};
   const Pose X_WT = model::find_container(two_boxes(), two_boxes().target)->X_WT;
-  plant.happens = [&](int) {
+  plant.happens = [&](int motion) {
+    plant.visible.clear();
+    if (motion > 1) return;
     plant.visible["BOX027"] = {X_WT.R * exp_rotation(Vector3(0.6, 0.0, 0.0)), X_WT.p + Vector3(0.0, 0.0, 0.22)};
   };
   const SessionResult result = pack(plant, 1);
   EXPECT_EQ(plant.pressed, std::vector<std::string>{"BOX027"});
   EXPECT_TRUE(has(result.items[0], Trouble::Leaning, Remedy::SetAside));
   EXPECT_EQ(result.items[0].end, ItemEnd::SetAside);
+}
+
+SessionOptions foresighted_options() {
+  SessionOptions options = quick_options();
+  options.agent = "contact-aware";
+  options.decision.time = 0.02;
+  return options;
+}
+
+/// Standing in the middle of the floor, where it is in the way of everything that may come.
+Pose middle_of_floor(const std::string& id) {
+  const Pose X_WT = model::find_container(two_boxes(), two_boxes().target)->X_WT;
+  const double height = model::find_parcel(two_boxes(), id)->size.z();
+  return {X_WT.R, X_WT.p + Vector3(0.0, 0.0, 0.5 * height)};
+}
+
+TEST(Packer, PicksAgainABoxThatWasMovedToWhereItCostsMuch) {
+  ScriptedPlant plant;
+  plant.happens = [&](int motion) {
+    plant.visible.clear();
+    if (motion == 1) plant.visible["BOX027"] = middle_of_floor("BOX027");
+  };
+  const SessionResult result = pack(plant, 1, foresighted_options());
+  ASSERT_TRUE(has(result.items[0], Trouble::OffPlace, Remedy::PickAgain));
+  EXPECT_NE(result.items[0].recoveries[0].detail.find("% more expected elsewhere"), std::string::npos);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed);
+  EXPECT_EQ(result.items[0].sends.size(), 2U);
+  ScriptedPlant other;
+  other.happens = [&](int) { other.visible["BOX027"] = middle_of_floor("BOX027"); };
+  const SessionResult left = pack(other, 1);
+  EXPECT_TRUE(has(left.items[0], Trouble::OffPlace, Remedy::Accept)) << "by who does not look ahead";
+  EXPECT_EQ(left.items[0].end, ItemEnd::Accepted);
+}
+
+TEST(Packer, PacksANeighbourAnewThatWasMovedToWhereItCostsMuch) {
+  ScriptedPlant plant;
+  bool is_moved = false;
+  plant.happens = [&](int) {
+    if (plant.item == "BOX027") plant.visible.clear();
+    if (plant.item == "BOX028" && !std::exchange(is_moved, true)) plant.visible["BOX027"] = middle_of_floor("BOX027");
+  };
+  const SessionResult result = pack(plant, 2, foresighted_options());
+  ASSERT_EQ(result.items.size(), 2U);
+  EXPECT_TRUE(has(result.items[1], Trouble::NeighbourMoved, Remedy::PickAgain));
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed);
+  EXPECT_EQ(result.items[1].end, ItemEnd::Placed);
+  EXPECT_EQ(result.plan.size(), 2U);
+  EXPECT_EQ(result.plan.back().item, "BOX027") << "packed after the other one";
+}
+
+TEST(Packer, PlansABoxAnewThatItSetAside) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::VacuumLost};
+  const Pose X_WT = model::find_container(two_boxes(), two_boxes().target)->X_WT;
+  plant.happens = [&](int motion) {
+    plant.visible.clear();
+    if (motion == 1) {
+      plant.visible["BOX027"] = {X_WT.R * exp_rotation(Vector3(0.6, 0.0, 0.0)), X_WT.p + Vector3(0.0, 0.0, 0.22)};
+    } else if (motion == 2) {
+      plant.visible["BOX027"] = cell::arrival_pose(two_boxes(), two_boxes().sequences.front().items.front());
+      plant.visible["BOX027"].p.x() += 0.02;
+    }
+  };
+  const SessionResult result = pack(plant, 1);
+  EXPECT_TRUE(has(result.items[0], Trouble::Leaning, Remedy::SetAside));
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
+  EXPECT_EQ(result.items[0].sends.size(), 2U);
 }
 
 TEST(Packer, AcknowledgesAndGoesOnUntilItsToolIsAway) {

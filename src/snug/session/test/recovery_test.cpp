@@ -48,6 +48,18 @@ TEST(ChooseRemedy, ABoxThatFellOverInTheContainerIsPickedAgainWhereItCanBe) {
   EXPECT_EQ(remedy_for(situation), Remedy::Accept);
 }
 
+TEST(ChooseRemedy, ABoxThatWasMovedIsPickedAgainWhereThatIsWorthIt) {
+  for (const Trouble trouble : {Trouble::OffPlace, Trouble::NeighbourMoved}) {
+    Situation situation = at(trouble);
+    situation.fits = true;
+    EXPECT_EQ(remedy_for(situation), Remedy::Accept);
+    situation.gain_elsewhere = kSettings.gain_elsewhere + 0.1;
+    EXPECT_EQ(remedy_for(situation), Remedy::PickAgain);
+    situation.tries = kSettings.most_tries;
+    EXPECT_EQ(remedy_for(situation), Remedy::Accept) << "enough was tried";
+  }
+}
+
 TEST(ChooseRemedy, AStopIsResumedOnceThenTheBoxIsLetGoAndAtLastTheSessionEnds) {
   Situation situation = at(Trouble::ProtectiveStop);
   situation.is_held = true;
