@@ -2,8 +2,8 @@
 """check_headers.py PROJECT [COMPILER]: every public header compiles without others before it.
 
 Nothing of src/snug/*/*.hpp may need what only another file includes. What a header includes anyway, directly or through others, may
-stand before it and changes no answer. So headers are compiled in chains, each after one that it includes, with spatial/pose.hpp
-precompiled where a chain's first includes it: a third of the work of one by one. Those of a chain that fails are compiled one by one."""
+stand before it and changes no answer. So headers are compiled in chains, each after one that it includes, with what many include
+precompiled before chains of headers that all include it. Those of a chain that fails are compiled one by one."""
 import os
 import re
 import subprocess
@@ -12,7 +12,7 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-BASE = "snug/spatial/pose.hpp"
+BASES = ("snug/model/scenario.hpp", "snug/spatial/pose.hpp")  # precompiled; the first of them that a header includes
 EIGEN = ("/usr/include/eigen3", "/usr/local/include/eigen3")
 
 
@@ -59,6 +59,15 @@ def chains(includes):
     return found + [[name] for name in sorted(in_circle)]
 
 
+def by_base(includes):
+    """Headers with all of these headers that each includes, by the precompiled one that may stand before them ("": none)."""
+    groups = {}
+    for name in includes:
+        base = next((base for base in BASES if base in includes[name]), "")
+        groups.setdefault(base, {})[name] = includes[name]
+    return groups
+
+
 def check(source, compiler="c++"):
     """What the compiler says of each header that it refuses, by name."""
     is_gcc = "Free Software Foundation" in subprocess.run([compiler, "--version"], capture_output=True, text=True, check=False).stdout
@@ -67,9 +76,9 @@ def check(source, compiler="c++"):
     headers = headers_of(source)
     includes = closures(source, headers)
 
-    def compile_one(chain, folder):
+    def compile_one(chain, precompiled):
         """What is said of those that do not compile alone."""
-        before = ["-include", f"{folder}/base.hpp"] if BASE in includes[chain[0]] else []
+        before = ["-include", precompiled] if precompiled else []
         text = "".join(f'#include "{name}"\n' for name in chain)
         result = subprocess.run([*command, "c++", "-fsyntax-only", *before, "-"], input=text, capture_output=True, text=True, check=False)
         if result.returncode == 0:
@@ -78,16 +87,21 @@ def check(source, compiler="c++"):
             return {chain[0]: result.stderr}
         one_by_one = {}
         for name in chain:
-            one_by_one.update(compile_one([name], folder))
+            one_by_one.update(compile_one([name], precompiled))
         return one_by_one or {chain[-1]: result.stderr}
 
     with tempfile.TemporaryDirectory() as folder:
-        base = Path(folder, "base.hpp")
-        base.write_text(f'#include "{BASE}"\n', encoding="utf-8")
-        if BASE in headers:
-            subprocess.run([*command, "c++-header", str(base), "-o", f"{base}.gch"], capture_output=True, check=False)
+        def precompile(base):
+            header = Path(folder, base.replace("/", "_"))
+            header.write_text(f'#include "{base}"\n', encoding="utf-8")
+            subprocess.run([*command, "c++-header", str(header), "-o", f"{header}.gch"], capture_output=True, check=False)
+            return str(header)
+
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            said = list(pool.map(lambda chain: compile_one(chain, folder), chains(includes)))
+            groups = by_base(includes)
+            bases = [base for base in groups if base]
+            precompiled = dict(zip(bases, pool.map(precompile, bases)))
+            said = list(pool.map(lambda job: compile_one(*job), [(chain, precompiled.get(base, "")) for base, group in groups.items() for chain in chains(group)]))
     return {name: errors for chain in said for name, errors in chain.items()}, len(headers)
 
 

@@ -181,8 +181,15 @@ void Packer::look(ItemReport& report, bool stays) {
 
 Location Packer::locate(int item) const {
   const Pose& X_WP = belief_.box(item)->X_WP;
+  const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
+  const Pose X_AW = scenario_.aligner->X_WA.inverse();
+  const auto corner_at_plates = [&](const Pose& X_WB) {  // of its extents, whatever face it stands on
+    const Pose X_AB = X_AW * X_WB;
+    return Vector3(X_AB.p - 0.5 * (X_AB.R.cwiseAbs() * box.size));
+  };
   const Pose arrival = cell::arrival_pose(belief_.nominal(), belief_.sequence().items[static_cast<std::size_t>(item)]);
-  if ((X_WP.p - arrival.p).norm() < scenario_.recovery.at_aligner && is_upright(X_WP.R, scenario_.skills.pick.max_lean))
+  const double off = (corner_at_plates(X_WP) - corner_at_plates(arrival)).norm();
+  if (off < scenario_.recovery.at_aligner && is_upright(X_WP.R, scenario_.skills.pick.max_lean))
     return Location::Aligner;
   const Vector3 p_TP = layout_.X_WT.inverse() * X_WP.p;
   const Vector3 half = 0.5 * model::find_container(scenario_, scenario_.target)->inner_size;
@@ -191,10 +198,9 @@ Location Packer::locate(int item) const {
     return Location::Container;
   }
   if (layout_.flip_place) {
-    const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
-    const Vector3 off = X_WP.p - layout_.flip_place->p_WF;
-    const double bottom = off.z() + skills::lowest_corner(X_WP.R, box.size);
-    if (off.head<2>().norm() < scenario_.recovery.on_bench && std::abs(bottom) < scenario_.recovery.on_surface)
+    const Vector3 p_FP = X_WP.p - layout_.flip_place->p_WF;
+    const double bottom = p_FP.z() + skills::lowest_corner(X_WP.R, box.size);
+    if (p_FP.head<2>().norm() < scenario_.recovery.on_bench && std::abs(bottom) < scenario_.recovery.on_surface)
       return Location::Bench;
   }
   return Location::Elsewhere;
