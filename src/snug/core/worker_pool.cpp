@@ -1,9 +1,28 @@
 // WorkerPool: threads that wait for short jobs, for work that comes thousands of times a second.
 #include "snug/core/worker_pool.hpp"
 
+#include <chrono>
 #include <system_error>
 
 namespace snug {
+namespace {
+
+/// Waiting without sleep: to wake a thread takes as long as many a run. Long enough for what is done between the runs
+/// of one step of physics.
+constexpr std::chrono::microseconds kAwake{100};
+
+/// Whether the condition held within kAwake. Gives way to whatever else wants the core.
+template <class Condition>
+bool await(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + kAwake;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+}  // namespace
 
 WorkerPool::WorkerPool(int threads) {
   try {
@@ -13,24 +32,28 @@ WorkerPool::WorkerPool(int threads) {
 }
 
 WorkerPool::~WorkerPool() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_over_ = true;
-  }
-  has_work_.notify_all();
+  is_over_ = true;
+  wake(helpers_asleep_, has_work_);
   for (std::thread& helper : helpers_) helper.join();
 }
 
-/// Works on indices until there are none; the lock is held outside of the jobs.
-void WorkerPool::take_indices(std::unique_lock<std::mutex>& lock, int worker) {
-  while (next_ < count_) {
-    const int index = next_++;
-    const Function function = function_;
-    const void* const context = context_;
-    lock.unlock();
-    function(context, index, worker);
-    lock.lock();
-  }
+/// Whoever fell asleep before it could see the change that the caller has made.
+void WorkerPool::wake(const std::atomic<int>& asleep, std::condition_variable& condition) {
+  if (asleep == 0) return;
+  { const std::lock_guard lock(mutex_); }
+  condition.notify_all();
+}
+
+template <class Condition>
+void WorkerPool::sleep_until(std::atomic<int>& asleep, std::condition_variable& changed, const Condition& condition) {
+  std::unique_lock lock(mutex_);
+  ++asleep;  // before the condition is read again: who changes it after that sees this
+  changed.wait(lock, condition);
+  --asleep;
+}
+
+void WorkerPool::take_indices(int worker) {
+  for (int index = next_++; index < count_; index = next_++) function_(context_, index, worker);
 }
 
 void WorkerPool::run_erased(int count, Function function, const void* context) noexcept {
@@ -38,23 +61,38 @@ void WorkerPool::run_erased(int count, Function function, const void* context) n
     for (int index = 0; index < count; ++index) function(context, index, 0);
     return;
   }
-  std::unique_lock lock(mutex_);
-  function_ = function, context_ = context;
-  next_ = 0, count_ = count;
-  has_work_.notify_all();
-  take_indices(lock, 0);
-  has_ended_.wait(lock, [this] { return busy_ == 0; });
-  function_ = nullptr;
+  function_ = function, context_ = context, count_ = count;
+  next_ = 0;
+  state_ += kOpen;  // the helpers see all of the above
+  wake(helpers_asleep_, has_work_);
+  take_indices(0);
+  state_ += kOpen;  // no helper begins from here on
+  const auto has_ended = [this] { return state_ % kOpen == 0; };
+  if (!await(has_ended)) sleep_until(callers_asleep_, has_ended_, has_ended);
+}
+
+/// Counts the helper among those at work, if the run with this state is still open.
+bool WorkerPool::join_run(std::uint64_t state) {
+  while (is_open(state)) {
+    if (state_.compare_exchange_weak(state, state + 1)) return true;
+  }
+  return false;
 }
 
 void WorkerPool::help(int worker) {
-  std::unique_lock lock(mutex_);
+  std::uint64_t last = 0;  // number of the run that it worked at
+  const auto has_work = [&] {
+    const std::uint64_t state = state_;
+    return is_over_ || (is_open(state) && state / kOpen != last);
+  };
   while (true) {
-    has_work_.wait(lock, [this] { return is_over_ || (function_ != nullptr && next_ < count_); });
+    if (!await(has_work)) sleep_until(helpers_asleep_, has_work_, has_work);
     if (is_over_) return;
-    ++busy_;
-    take_indices(lock, worker);
-    if (--busy_ == 0) has_ended_.notify_one();
+    std::uint64_t state = state_;
+    if (!join_run(state)) continue;
+    last = state_ / kOpen;
+    take_indices(worker);
+    if (--state_ % kOpen == 0) wake(callers_asleep_, has_ended_);
   }
 }
 

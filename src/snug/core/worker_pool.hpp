@@ -1,7 +1,9 @@
 // WorkerPool: threads that wait for short jobs, for work that comes thousands of times a second.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -33,15 +35,25 @@ class WorkerPool {
   using Function = void (*)(const void* context, int index, int worker);
   void run_erased(int count, Function function, const void* context) noexcept;
   void help(int worker);
-  void take_indices(std::unique_lock<std::mutex>& lock, int worker);
+  void take_indices(int worker);
+  bool join_run(std::uint64_t state);
+  void wake(const std::atomic<int>& asleep, std::condition_variable& condition);
+  template <class Condition>
+  void sleep_until(std::atomic<int>& asleep, std::condition_variable& changed, const Condition& condition);
 
+  /// state_: twice the number of runs that have ended, one more while one is open to helpers; below it helpers at work.
+  static constexpr std::uint64_t kOpen = 1 << 16;
+  static bool is_open(std::uint64_t state) { return state / kOpen % 2 == 1; }
+
+  Function function_ = nullptr;
+  const void* context_ = nullptr;
+  int count_ = 0;
+  alignas(64) std::atomic<int> next_{0};
+  alignas(64) std::atomic<std::uint64_t> state_{0};
+  std::atomic<bool> is_over_{false};
+  std::atomic<int> helpers_asleep_{0}, callers_asleep_{0};
   std::mutex mutex_;
   std::condition_variable has_work_, has_ended_;
-  Function function_ = nullptr;  ///< nullptr: nothing to do
-  const void* context_ = nullptr;
-  int count_ = 0, next_ = 0;
-  int busy_ = 0;  ///< helpers at work
-  bool is_over_ = false;
   std::vector<std::thread> helpers_;
 };
 
