@@ -1,5 +1,6 @@
 // step: one instant to the next. Reads like the sequence in docs/theory/contact.md, section 1.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "snug/physics/internal/scratch.hpp"
@@ -32,6 +33,23 @@ void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, c
   work.velocity_start = work.velocity = state.velocity;
   work.angular_start = work.angular = state.angular_velocity;
   work.speed = state.velocity.norm() + state.angular_velocity.norm() * mass.radius;
+}
+
+void start_bodies(const WorldModel& model, const WorldState& state, Scratch& work) {
+  for_ranges(work.pool, model.bodies.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const BodyState& body = state.bodies[i];
+      start_body(model.bodies[i], model.masses[i], body, work.memories[i], work.knows_state, work.bodies[i]);
+      work.is_moving[i] = model.bodies[i].kind == BodyKind::Dynamic && body.is_present && body.sleep_group < 0 ? 1 : 0;
+    }
+  });
+  work.active_count = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (work.is_moving[i] == 0) continue;
+    work.bodies[i].is_moving = true;
+    work.bodies[i].active = work.active_count;
+    work.active[static_cast<std::size_t>(work.active_count++)] = static_cast<int>(i);
+  }
 }
 
 /// Whether a kinematic body stays where it is: rotations pass through quaternions, which is not exact to the last bit.
@@ -72,11 +90,28 @@ void move_body(int index, const Scratch& work, BodyState& state) {
   state.angular_velocity = body.angular;
 }
 
+/// The first index for which the condition holds, or `count`. It is asked of every index, by threads side by side.
+template <class Condition>
+std::size_t find_first(WorkerPool& pool, std::size_t count, const Condition& condition) {
+  std::atomic<std::size_t> found{count};
+  for_ranges(pool, count, [&](std::size_t first, std::size_t end) {
+    std::size_t mine = count;
+    for (std::size_t i = first; i < end; ++i) {
+      if (condition(i)) mine = std::min(mine, i);
+    }
+    std::size_t least = found;
+    while (mine < least && !found.compare_exchange_weak(least, mine)) {
+    }
+  });
+  return found;
+}
+
 /// The first body whose state or input is not a number.
-BodyId find_not_finite(const WorldInput& input, const WorldState& state) {
-  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    if (state.bodies[i].is_present && !has_finite(state.bodies[i])) return BodyId{static_cast<int>(i)};
-  }
+BodyId find_not_finite(const WorldInput& input, const WorldState& state, Scratch& work) {
+  const std::size_t body = find_first(work.pool, state.bodies.size(), [&state](std::size_t i) {
+    return state.bodies[i].is_present && !has_finite(state.bodies[i]);
+  });
+  if (body < state.bodies.size()) return BodyId{static_cast<int>(body)};
   for (const KinematicTarget& target : input.kinematic) {
     if (!target.X_WB_end.p.allFinite() || !target.X_WB_end.R.allFinite()) return target.body;
   }
@@ -101,49 +136,53 @@ BodyPair find_worst_pair(const Scratch& work) {
   return pair;
 }
 
-/// Wake and sleep rules: docs/theory/contact.md, section 6.
-void put_to_sleep(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work) {
+/// How long each body has been slow. What a moving kinematic body touches is not, nor what lies on a belt that runs.
+void count_slow_time(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work) {
   const SleepSettings& sleep = model.settings.sleep;
-  for (int i = 0; i < work.active_count; ++i) {
-    const auto index = static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)]);
-    BodyState& body = state.bodies[index];
-    const bool is_slow = body.velocity.norm() < sleep.linear_speed &&
-                         body.angular_velocity.norm() < sleep.angular_speed && !work.bodies[index].has_element;
-    body.slow_time = is_slow ? body.slow_time + model.settings.dt : 0.0;
-  }
+  for_ranges(work.pool, static_cast<std::size_t>(work.active_count), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const auto index = static_cast<std::size_t>(work.active[i]);
+      BodyState& body = state.bodies[index];
+      const bool is_slow = body.velocity.norm() < sleep.linear_speed &&
+                           body.angular_velocity.norm() < sleep.angular_speed && !work.bodies[index].has_element;
+      body.slow_time = is_slow ? body.slow_time + model.settings.dt : 0.0;
+    }
+  });
   for (const ExternalWrench& wrench : input.wrenches) {
     state.bodies[static_cast<std::size_t>(wrench.body.index)].slow_time = 0.0;
   }
-  for (const Patch& patch : work.patches) {  // what a moving kinematic body touches stays awake
+  if (input.kinematic.empty() && !work.has_belts) return;
+  for (const Patch& patch : work.patches) {
     const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
     const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
-    if (a.active < 0 && a.is_moving) state.bodies[static_cast<std::size_t>(patch.body_b)].slow_time = 0.0;
-    if (b.active < 0 && b.is_moving) state.bodies[static_cast<std::size_t>(patch.body_a)].slow_time = 0.0;
-    if (patch.has_belt) {  // and what lies on a belt that runs
-      for (const int index : {patch.body_a, patch.body_b})
-        state.bodies[static_cast<std::size_t>(index)].slow_time = 0.0;
-    }
+    if ((a.active < 0 && a.is_moving) || patch.has_belt)
+      state.bodies[static_cast<std::size_t>(patch.body_b)].slow_time = 0.0;
+    if ((b.active < 0 && b.is_moving) || patch.has_belt)
+      state.bodies[static_cast<std::size_t>(patch.body_a)].slow_time = 0.0;
   }
+}
+
+/// Wake and sleep rules: docs/theory/contact.md, section 6.
+void put_to_sleep(const WorldModel& model, WorldState& state, Scratch& work) {
   // Islands are complete sets in the union-find forest. One that nothing carries never sleeps.
-  std::fill_n(work.island_of_root.begin(), work.active_count, 0);  // now: 1 may sleep, 0 must not
   const auto root_of = [&work](int i) {
     while (work.parent[static_cast<std::size_t>(i)] != i) i = work.parent[static_cast<std::size_t>(i)];
     return static_cast<std::size_t>(i);
   };
-  for (const Row& row : work.rows) {
-    if (row.kind != RowKind::Contact) continue;
-    if ((row.ia < 0 || row.ib < 0) && row.lambda[0] > 0.0) work.island_of_root[root_of(std::max(row.ia, row.ib))] = 1;
+  for (int i = 0; i < work.active_count; ++i) {  // from here on: 1 may sleep, 0 must not
+    int& island = work.island_of_root[static_cast<std::size_t>(i)];
+    island = island >= 0 && work.islands[static_cast<std::size_t>(island)].is_carried ? 1 : 0;
   }
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < work.active_count; ++i) {
-      const std::size_t root = root_of(i);
+      int& may_sleep = work.island_of_root[root_of(i)];
+      if (may_sleep == 0) continue;
       const auto index = static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)]);
       BodyState& body = state.bodies[index];
-      int& may_sleep = work.island_of_root[root];
       if (pass == 0) {
-        may_sleep = (may_sleep != 0 && body.slow_time >= sleep.time) ? 1 : 0;
-      } else if (may_sleep == 1) {
-        body.sleep_group = work.active[root];
+        may_sleep = body.slow_time >= model.settings.sleep.time ? 1 : 0;
+      } else {
+        body.sleep_group = work.active[root_of(i)];
         body.velocity.setZero();
         body.angular_velocity.setZero();
       }
@@ -168,8 +207,8 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
   bool is_anything_moving = false;
   for (const ElementUse& use : input.elements) wake(state, use.body);
   for (const ExternalWrench& wrench : input.wrenches) wake(state, wrench.body);
-  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    is_anything_moving |=
+  for (std::size_t i = 0; i < model.bodies.size() && !is_anything_moving; ++i) {
+    is_anything_moving =
         model.bodies[i].kind == BodyKind::Dynamic && state.bodies[i].is_present && state.bodies[i].sleep_group < 0;
   }
   for (const KinematicTarget& target : input.kinematic) {
@@ -182,16 +221,7 @@ bool begin_step(const WorldModel& model, const WorldInput& input, WorldState& st
     state.bodies[i].angular_velocity.setZero();
   }
   if (!is_anything_moving) return false;
-  work.active_count = 0;
-  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    const BodyState& body = state.bodies[i];
-    BodyWork& body_work = work.bodies[i];
-    start_body(model.bodies[i], model.masses[i], body, work.memories[i], work.knows_state, body_work);
-    if (model.bodies[i].kind != BodyKind::Dynamic || !body.is_present || body.sleep_group >= 0) continue;
-    body_work.is_moving = true;
-    body_work.active = work.active_count;
-    work.active[static_cast<std::size_t>(work.active_count++)] = static_cast<int>(i);
-  }
+  start_bodies(model, state, work);
   for (const KinematicTarget& target : input.kinematic) {
     const auto i = static_cast<std::size_t>(target.body.index);
     if (!state.bodies[i].is_present) continue;
@@ -227,18 +257,16 @@ bool solve_step(const WorldModel& model, const WorldInput& input, WorldState& st
 }
 
 void end_step(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, StepReport& report) {
-  for (int i = 0; i < work.active_count; ++i) {
-    const int index = work.active[static_cast<std::size_t>(i)];
-    BodyState& body = state.bodies[static_cast<std::size_t>(index)];
-    move_body(index, work, body);
-    if (report.culprit.is_valid()) continue;  // the first one is named
-    if (!has_finite(body)) {
-      report.status = StepStatus::NotFinite;
-      report.culprit = BodyId{index};
-    } else if (body.p_WBcm.cwiseAbs().maxCoeff() > kFarthest) {
-      report.status = StepStatus::LostBody;
-      report.culprit = BodyId{index};
-    }
+  const auto count = static_cast<std::size_t>(work.active_count);
+  const std::size_t culprit = find_first(work.pool, count, [&](std::size_t i) {
+    BodyState& body = state.bodies[static_cast<std::size_t>(work.active[i])];
+    move_body(work.active[i], work, body);
+    return !has_finite(body) || body.p_WBcm.cwiseAbs().maxCoeff() > kFarthest;
+  });
+  if (culprit < count) {
+    report.culprit = BodyId{work.active[culprit]};
+    const bool is_lost = has_finite(state.bodies[static_cast<std::size_t>(report.culprit.index)]);
+    report.status = is_lost ? StepStatus::LostBody : StepStatus::NotFinite;
   }
   for (const KinematicTarget& target : input.kinematic) {
     const auto i = static_cast<std::size_t>(target.body.index);
@@ -252,7 +280,9 @@ void end_step(const WorldModel& model, const WorldInput& input, WorldState& stat
   if (report.status == StepStatus::NotConverged) report.residual_pair = find_worst_pair(work);
   report.contacts = static_cast<int>(work.contacts.size());
   report.awake = work.active_count;
-  if (model.settings.sleep.enabled) put_to_sleep(model, input, state, work);
+  if (!model.settings.sleep.enabled) return;
+  count_slow_time(model, input, state, work);
+  put_to_sleep(model, state, work);
 }
 
 void report_contacts(Scratch& work) {
@@ -278,7 +308,7 @@ StepReport step(const WorldModel& model, const WorldInput& input, WorldState& st
     report.status = status;
     return report;
   };
-  report.culprit = internal::find_not_finite(input, state);
+  report.culprit = internal::find_not_finite(input, state, work);
   if (report.culprit.is_valid()) return stop(StepStatus::NotFinite);  // the contacts of the last step stay readable
   work.reports.clear();
   work.has_reports = true;

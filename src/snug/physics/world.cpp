@@ -126,6 +126,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   stamp = (++scratches) << 40;
   memories.resize(n);
   pair_memories.resize(model.pair_capacity);
+  if (pool.size() > 1) visits.resize(model.pair_capacity);
   bodies.resize(n);
   ends.resize(n);
   active.resize(n);
@@ -151,7 +152,10 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
     workers.back().element_bodies.reserve(n);
   }
   merged_pairs = BoundedVector<PairState>(model.pair_capacity);
-  keys.reserve(model.pair_capacity + 1);
+  keys.reserve(2 * model.pair_capacity + 1);
+  old_keys.reserve(model.pair_capacity);
+  new_keys.reserve(model.pair_capacity + 1);
+  pair_origin.resize(model.pair_capacity);
   moved.reserve(geom_count);
   is_moved.resize(geom_count);
   sweep_order.resize(geom_count);
@@ -159,6 +163,9 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   pair_done.resize(model.pair_capacity);
   is_moving.resize(n);
   still_since.resize(n);
+  for (const BodyModel& body : model.bodies) {
+    for (const Geom& geom : body.geoms) has_belts |= !geom.surface_velocity.isZero(0.0);
+  }
 }
 
 Pose pose_of(const WorldModel& model, const WorldState& state, BodyId body) {

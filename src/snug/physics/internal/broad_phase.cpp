@@ -70,58 +70,91 @@ std::uint64_t key_of(int a, int b) {
   return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b);
 }
 
-void refresh_fat_boxes(const WorldModel& model, WorldState& state, Scratch& work) {
-  work.moved.clear();
-  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    const BodyState& body = state.bodies[i];
-    const BodyWork& moving = work.bodies[i];
-    const int first = model.first_geom[i], end = model.first_geom[i + 1];
-    for (int g = first; g < end; ++g) {
-      FatBox& fat = state.fat_boxes[static_cast<std::size_t>(g)];
-      const bool is_valid = fat.lower.x() <= fat.upper.x();
-      if (!body.is_present) {
-        if (!is_valid) continue;
-        fat = FatBox();
-      } else {
-        if (is_valid && (!moving.is_moving || moving.has_same_pose)) continue;
-        const Geom& geom = model.bodies[i].geoms[static_cast<std::size_t>(g - first)];
-        const Matrix3 R_WG = moving.R_WB * geom.X_BG.R;
-        const Vector3 p_WG = moving.R_WB * geom.X_BG.p + moving.p_WB;
-        const FatBox tight = tight_box(geom.shape, R_WG, p_WG);
-        const FatBox swept = swept_box(model, i, moving, tight);
-        if (contains(fat, swept)) continue;
-        const Vector3 ahead = kLookAhead * moving.velocity_start;
-        const Vector3 margin = Vector3::Constant(kFatMargin);
-        fat.lower = swept.lower.cwiseMin(tight.lower + ahead) - margin;
-        fat.upper = swept.upper.cwiseMax(tight.upper + ahead) + margin;
-      }
-      work.moved.push_back(g);
-      work.is_moved[static_cast<std::size_t>(g)] = 1;
+/// Whether the box had to change.
+bool refresh_fat_box(const WorldModel& model, std::size_t body, const BodyWork& moving, const Geom& geom, FatBox& fat) {
+  const Matrix3 R_WG = moving.R_WB * geom.X_BG.R;
+  const Vector3 p_WG = moving.R_WB * geom.X_BG.p + moving.p_WB;
+  const FatBox tight = tight_box(geom.shape, R_WG, p_WG);
+  const FatBox swept = swept_box(model, body, moving, tight);
+  if (contains(fat, swept)) return false;
+  const Vector3 ahead = kLookAhead * moving.velocity_start;
+  const Vector3 margin = Vector3::Constant(kFatMargin);
+  fat.lower = swept.lower.cwiseMin(tight.lower + ahead) - margin;
+  fat.upper = swept.upper.cwiseMax(tight.upper + ahead) + margin;
+  return true;
+}
+
+void refresh_body(const WorldModel& model, WorldState& state, Scratch& work, std::size_t index) {
+  const BodyWork& moving = work.bodies[index];
+  const int first = model.first_geom[index], end = model.first_geom[index + 1];
+  for (int g = first; g < end; ++g) {
+    FatBox& fat = state.fat_boxes[static_cast<std::size_t>(g)];
+    const bool is_valid = fat.lower.x() <= fat.upper.x();
+    if (!state.bodies[index].is_present) {
+      if (!is_valid) continue;
+      fat = FatBox();
+    } else {
+      if (is_valid && (!moving.is_moving || moving.has_same_pose)) continue;
+      const Geom& geom = model.bodies[index].geoms[static_cast<std::size_t>(g - first)];
+      if (!refresh_fat_box(model, index, moving, geom, fat)) continue;
     }
+    work.is_moved[static_cast<std::size_t>(g)] = 1;
+  }
+}
+
+/// Marks and lists the geoms whose boxes changed.
+void refresh_fat_boxes(const WorldModel& model, WorldState& state, Scratch& work) {
+  for_ranges(work.pool, model.bodies.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) refresh_body(model, state, work, i);
+  });
+  work.moved.clear();
+  for (std::size_t g = 0; g < work.is_moved.size(); ++g) {
+    if (work.is_moved[g] != 0) work.moved.push_back(static_cast<int>(g));
   }
 }
 
 bool add_key(const WorldModel& model, const WorldState& state, Scratch& work, int a, int b) {
   if (!may_touch(model, a, b)) return true;
   if (!overlap(state.fat_boxes[static_cast<std::size_t>(a)], state.fat_boxes[static_cast<std::size_t>(b)])) return true;
-  if (work.keys.size() == work.keys.capacity()) return false;
-  work.keys.push_back(key_of(a, b));
+  if (work.new_keys.size() == work.new_keys.capacity()) return false;
+  work.new_keys.push_back(key_of(a, b));
   return true;
 }
 
+/// Orders the geoms by where their boxes begin along x, which changed for few.
+void order_sweep(const WorldState& state, Scratch& work) {
+  const auto is_before = [&state](int a, int b) {
+    const double x_a = state.fat_boxes[static_cast<std::size_t>(a)].lower.x();
+    const double x_b = state.fat_boxes[static_cast<std::size_t>(b)].lower.x();
+    return x_a != x_b ? x_a < x_b : a < b;
+  };
+  std::vector<int>& order = work.sweep_order;
+  const auto is_moved = [&work](int g) { return work.is_moved[static_cast<std::size_t>(g)] != 0; };
+  std::sort(work.moved.begin(), work.moved.end(), is_before);
+  const auto kept_end = std::remove_if(order.begin(), order.end(), is_moved);
+  if (!std::is_sorted(order.begin(), kept_end, is_before)) std::sort(order.begin(), kept_end, is_before);
+  // From the back, so that the places of those that moved are overwritten last.
+  auto kept = kept_end;
+  auto moved = work.moved.end();
+  for (auto out = order.end(); moved != work.moved.begin();) {
+    const bool takes_kept = kept != order.begin() && is_before(*(moved - 1), *(kept - 1));
+    *--out = takes_kept ? *--kept : *--moved;
+  }
+}
+
+/// Those that begin within the box of another one, of which at least one moved.
 bool find_pairs_by_sweep(const WorldModel& model, const WorldState& state, Scratch& work) {
+  order_sweep(state, work);
   const auto lower = [&state](int g) { return state.fat_boxes[static_cast<std::size_t>(g)].lower.x(); };
-  std::sort(work.sweep_order.begin(), work.sweep_order.end(),
-            [&lower](int a, int b) { return lower(a) != lower(b) ? lower(a) < lower(b) : a < b; });
+  std::size_t next = 0;  // of those that moved: the first behind a
   for (std::size_t i = 0; i < work.sweep_order.size(); ++i) {
     const int a = work.sweep_order[i];
     const double end = state.fat_boxes[static_cast<std::size_t>(a)].upper.x();
-    const bool a_moved = work.is_moved[static_cast<std::size_t>(a)] != 0;
-    for (std::size_t j = i + 1; j < work.sweep_order.size(); ++j) {
-      const int b = work.sweep_order[j];
-      if (lower(b) > end) break;
-      if (!a_moved && work.is_moved[static_cast<std::size_t>(b)] == 0) continue;
-      if (!add_key(model, state, work, a, b)) return false;
+    const bool a_moved = next < work.moved.size() && work.moved[next] == a;
+    if (a_moved) ++next;
+    const std::vector<int>& others = a_moved ? work.sweep_order : work.moved;
+    for (std::size_t j = a_moved ? i + 1 : next; j < others.size() && !(lower(others[j]) > end); ++j) {
+      if (!add_key(model, state, work, a, others[j])) return false;
     }
   }
   return true;
@@ -138,35 +171,49 @@ bool find_pairs_by_force(const WorldModel& model, const WorldState& state, Scrat
   return true;
 }
 
-/// Replaces state.pairs by the sorted keys, keeping what is known of pairs that stay.
-bool merge_pairs(WorldState& state, Scratch& work) {
-  if (work.keys.size() > state.pairs.capacity()) return false;
-  bool is_same = work.keys.size() == state.pairs.size();
-  for (std::size_t i = 0; is_same && i < work.keys.size(); ++i) {
-    is_same = key_of(static_cast<int>(state.pairs[i].geom_a), static_cast<int>(state.pairs[i].geom_b)) == work.keys[i];
-  }
-  if (is_same) return true;
-  work.knows_pairs = false;
-  work.merged_pairs.clear();
+/// What matters of a pair: points beyond its count are not read.
+void copy_pair(const PairState& from, PairState& to) {
+  to.geom_a = from.geom_a, to.geom_b = from.geom_b;
+  to.cache = from.cache;
+  to.count = from.count;
+  to.is_known = from.is_known;
+  to.p_AB = from.p_AB;
+  to.quat_AB = from.quat_AB;
+  to.margin = from.margin;
+  to.face_area = from.face_area;
+  to.n_A = from.n_A, to.t_A = from.t_A;
+  std::copy_n(from.points.begin(), from.count, to.points.begin());
+  std::copy_n(from.impulses.begin(), from.count, to.impulses.begin());
+  to.turning = from.turning;
+}
+
+std::uint64_t key_of(const PairState& pair) {
+  return key_of(static_cast<int>(pair.geom_a), static_cast<int>(pair.geom_b));
+}
+
+/// Replaces state.pairs by those of work.keys, keeping what is known of pairs that stay.
+void replace_pairs(WorldState& state, Scratch& work) {
+  constexpr int kNew = -1;
   std::size_t old = 0;
-  for (const std::uint64_t key : work.keys) {
-    const auto a = static_cast<std::uint32_t>(key >> 32);
-    const auto b = static_cast<std::uint32_t>(key);
-    while (old < state.pairs.size() &&
-           key_of(static_cast<int>(state.pairs[old].geom_a), static_cast<int>(state.pairs[old].geom_b)) < key) {
-      ++old;
-    }
-    if (old < state.pairs.size() && state.pairs[old].geom_a == a && state.pairs[old].geom_b == b) {
-      work.merged_pairs.push_back(state.pairs[old]);
-    } else {
-      PairState fresh;
-      fresh.geom_a = a;
-      fresh.geom_b = b;
-      work.merged_pairs.push_back(fresh);
-    }
+  for (std::size_t i = 0; i < work.keys.size(); ++i) {
+    while (old < work.old_keys.size() && work.old_keys[old] < work.keys[i]) ++old;
+    const bool is_old = old < work.old_keys.size() && work.old_keys[old] == work.keys[i];
+    work.pair_origin[i] = is_old ? static_cast<int>(old) : kNew;
   }
+  work.merged_pairs.resize(work.keys.size());
+  for_ranges(work.pool, work.keys.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      PairState& pair = work.merged_pairs[i];
+      if (work.pair_origin[i] != kNew) {
+        copy_pair(state.pairs[static_cast<std::size_t>(work.pair_origin[i])], pair);
+        continue;
+      }
+      pair = PairState{};
+      pair.geom_a = static_cast<std::uint32_t>(work.keys[i] >> 32);
+      pair.geom_b = static_cast<std::uint32_t>(work.keys[i]);
+    }
+  });
   std::swap(state.pairs, work.merged_pairs);
-  return true;
 }
 
 }  // namespace
@@ -175,19 +222,26 @@ bool update_pairs(const WorldModel& model, WorldState& state, Scratch& work) {
   work.knows_pairs = work.knows_state;
   refresh_fat_boxes(model, state, work);
   if (work.moved.empty()) return true;
+  work.new_keys.clear();
+  const bool has_room = model.geoms.size() <= kBruteForce ? find_pairs_by_force(model, state, work)
+                                                          : find_pairs_by_sweep(model, state, work);
+  std::sort(work.new_keys.begin(), work.new_keys.end());
+  work.old_keys.clear();
+  for (const PairState& pair : state.pairs) work.old_keys.push_back(key_of(pair));
   work.keys.clear();
-  bool has_room = true;
-  for (const PairState& pair : state.pairs) {  // pairs of geoms that stayed in their fat boxes stay
-    if (work.is_moved[pair.geom_a] == 0 && work.is_moved[pair.geom_b] == 0) {
-      work.keys.push_back(key_of(static_cast<int>(pair.geom_a), static_cast<int>(pair.geom_b)));
-    }
+  auto next = work.new_keys.begin();
+  for (const std::uint64_t key : work.old_keys) {  // pairs of geoms that stayed in their fat boxes stay
+    if (work.is_moved[key >> 32] != 0 || work.is_moved[key & 0xffffffffU] != 0) continue;
+    while (next != work.new_keys.end() && *next < key) work.keys.push_back(*next++);
+    work.keys.push_back(key);
   }
-  has_room = model.geoms.size() <= kBruteForce ? find_pairs_by_force(model, state, work)
-                                               : find_pairs_by_sweep(model, state, work);
+  work.keys.insert(work.keys.end(), next, work.new_keys.end());
   for (const int g : work.moved) work.is_moved[static_cast<std::size_t>(g)] = 0;
-  if (!has_room) return false;
-  std::sort(work.keys.begin(), work.keys.end());
-  return merge_pairs(state, work);
+  if (!has_room || work.keys.size() > model.pair_capacity) return false;
+  if (work.keys == work.old_keys) return true;
+  work.knows_pairs = false;
+  replace_pairs(state, work);
+  return true;
 }
 
 }  // namespace snug::physics::internal

@@ -170,57 +170,95 @@ double share_of(const ContactLaw& law, double face_area) {
   return face_area < law.full_area ? std::max(law.edge_share, face_area / law.full_area) : 1.0;
 }
 
-/// Adds the pair's points that can matter within this step. Returns whether one of them touches.
-bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32_t index, double reach, PairState& pair,
-                  Scratch& work) {
+/// Writes the pair's points that can matter within this step, and forgets the impulses of the others. Says what of them
+/// all the walk over the pairs has to know.
+PairVisit find_contacts(const PairBodies& bodies, double reach, double dt, const Scratch& work, PairState& pair,
+                        Contact* contacts) {
   const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
   const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
-  PairMemory& memory = work.pair_memories[index];
-  memory = {bodies.a, bodies.b, -1, pair.margin, work.stamp + 1};
   const Vector3 n = a.R_WB * pair.n_A;
-  const auto first = static_cast<int>(work.contacts.size());
-  bool touches = false;
-  double reach_from = 0.0, reach_to = pair.margin;
+  PairVisit visit;
+  visit.count = 0;
+  visit.clearance = visit.reach_to = pair.margin;
   for (int i = 0; i < pair.count; ++i) {
     const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
     const Vector3 p_WA = a.R_WB * point.p_A + a.p_WB;
     const Vector3 p_WB = b.R_WB * point.p_B + b.p_WB;
     const double phi = n.dot(p_WB - p_WA);
-    memory.clearance = std::min(memory.clearance, phi);
-    work.has_too_many_contacts |= phi <= reach && work.contacts.full();
-    if (phi > reach || work.contacts.full()) {
+    visit.clearance = std::min(visit.clearance, phi);
+    if (phi > reach) {
       pair.impulses[static_cast<std::size_t>(i)] = {};
-      reach_to = std::min(reach_to, phi);
+      visit.reach_to = std::min(visit.reach_to, phi);
       continue;
     }
-    reach_from = std::max(reach_from, phi);
+    visit.reach_from = std::max(visit.reach_from, phi);
     const Vector3 p_WQ = 0.5 * (p_WA + p_WB);
-    const Contact& contact =
-        work.contacts.push_back({p_WQ, phi, approach_at(p_WQ, n, a, b), static_cast<int>(work.patches.size()), i});
-    touches |= is_touching(contact, model.settings.dt);
+    Contact& contact = contacts[visit.count++];
+    contact = {p_WQ, phi, approach_at(p_WQ, n, a, b), 0, i};
+    visit.touches |= is_touching(contact, dt);
   }
-  const int count = static_cast<int>(work.contacts.size()) - first;
-  if (count == 0) {
-    pair.turning = {};
-    return false;
-  }
+  if (visit.count == 0) pair.turning = {};
+  return visit;
+}
+
+/// Takes room for the contacts of a visit. Returns whether one of them touches.
+bool place_contacts(const PairBodies& bodies, std::uint32_t index, const PairVisit& visit, Scratch& work) {
+  PairMemory& memory = work.pair_memories[index];
+  memory = {bodies.a, bodies.b, -1, visit.clearance, work.stamp + 1};
+  if (visit.count == 0) return false;
+  const std::size_t first = work.contacts.size(), end = first + static_cast<std::size_t>(visit.count);
+  work.has_too_many_contacts |= end > work.contacts.capacity();
+  if (work.has_too_many_contacts) return visit.touches;
   memory.patch = static_cast<int>(work.patches.size());
-  Patch& patch = work.patches.push_back(Patch{});
+  work.contacts.resize(end);
+  work.patches.resize(work.patches.size() + 1);
+  Patch& patch = work.patches.back();
+  patch.is_kept = false;
   patch.pair = index;
-  patch.body_a = bodies.a;
-  patch.body_b = bodies.b;
-  patch.first_contact = first;
-  patch.contact_count = count;
-  patch.reach_from = reach_from;
-  patch.reach_to = reach_to;
-  patch.n = n;
-  patch.t1 = a.R_WB * pair.t_A;
-  patch.t2 = n.cross(patch.t1);
-  patch.law = static_cast<std::size_t>(bodies.geom_a.material * model.material_count + bodies.geom_b.material);
-  patch.share = share_of(model.laws[patch.law], pair.face_area);
-  patch.row_count = count + count_turning_rows(model.laws[patch.law]);
-  patch.belt_W = b.R_WB * bodies.geom_b.surface_velocity - a.R_WB * bodies.geom_a.surface_velocity;
-  patch.has_belt = !patch.belt_W.isZero(0.0);
+  patch.first_contact = static_cast<int>(first);
+  patch.contact_count = visit.count;
+  return visit.touches;
+}
+
+/// What the contacts of a patch that has its place have in common.
+void fill_patch(const WorldModel& model, const PairBodies& bodies, const PairState& pair, const PairVisit& visit,
+                const Scratch& work, Patch& patch) {
+  const Matrix3 &R_WA = work.bodies[static_cast<std::size_t>(bodies.a)].R_WB,
+                &R_WB = work.bodies[static_cast<std::size_t>(bodies.b)].R_WB;
+  Patch filled;
+  filled.pair = patch.pair;
+  filled.body_a = bodies.a;
+  filled.body_b = bodies.b;
+  filled.first_contact = patch.first_contact;
+  filled.contact_count = patch.contact_count;
+  filled.reach_from = visit.reach_from;
+  filled.reach_to = visit.reach_to;
+  filled.n = R_WA * pair.n_A;
+  filled.t1 = R_WA * pair.t_A;
+  filled.t2 = filled.n.cross(filled.t1);
+  filled.law = static_cast<std::size_t>(bodies.geom_a.material * model.material_count + bodies.geom_b.material);
+  filled.share = share_of(model.laws[filled.law], pair.face_area);
+  filled.row_count = filled.contact_count + count_turning_rows(model.laws[filled.law]);
+  filled.belt_W = R_WB * bodies.geom_b.surface_velocity - R_WA * bodies.geom_a.surface_velocity;
+  filled.has_belt = !filled.belt_W.isZero(0.0);
+  patch = filled;
+}
+
+void copy_contacts(const FoundContacts& found, int patch_index, Scratch& work) {
+  const Patch& patch = work.patches[static_cast<std::size_t>(patch_index)];
+  Contact* const contacts = work.contacts.begin() + patch.first_contact;
+  std::copy_n(found.begin(), patch.contact_count, contacts);
+  for (int i = 0; i < patch.contact_count; ++i) contacts[i].patch = patch_index;
+}
+
+/// Adds the pair's contacts. Returns whether one of them touches.
+bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32_t index, double reach, PairState& pair,
+                  Scratch& work) {
+  const PairVisit visit = find_contacts(bodies, reach, model.settings.dt, work, pair, work.found.data());
+  const bool touches = place_contacts(bodies, index, visit, work);
+  if (work.pair_memories[index].patch < 0) return touches;
+  fill_patch(model, bodies, pair, visit, work, work.patches.back());
+  copy_contacts(work.found, static_cast<int>(work.patches.size()) - 1, work);
   return touches;
 }
 
@@ -277,23 +315,51 @@ void refresh_manifold(const PairBodies& bodies, const WorldState& state, const S
   if (!has_kept(pair, now, reach)) find_manifold(bodies, a, b, margin, now, pair);
 }
 
-/// Manifolds of the pairs whose bodies move, on all threads; those of sleepers that wake are found later.
-void refresh_manifolds(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, double reach,
-                       double margin) {
-  constexpr std::size_t kLeastPairs = 1000;  // some 100 us of work
-  constexpr std::size_t kChunk = 128;
-  const std::size_t count = state.pairs.size();
-  if (work.pool.size() < 2 || count < kLeastPairs) return;
-  work.pool.run(static_cast<int>((count + kChunk - 1) / kChunk), [&](int chunk, int) {
-    const std::size_t first = kChunk * static_cast<std::size_t>(chunk);
-    for (std::size_t i = first; i < std::min(count, first + kChunk); ++i) {
+/// Whether the pair stands where it stood in the last step, so that what the workspace remembers of it holds.
+bool is_same(const PairMemory& memory, const Scratch& work) {
+  return memory.stamp >= std::max(work.still_since[static_cast<std::size_t>(memory.body_a)],
+                                  work.still_since[static_cast<std::size_t>(memory.body_b)]);
+}
+
+/// Whether a pair that stands where it stood is too far apart to matter.
+bool stays_clear(const PairMemory& memory, double reach) { return memory.patch < 0 && memory.clearance > reach; }
+
+/// Visits of the pairs whose bodies move, side by side: of everything but the order in which their contacts lie. What
+/// sleepers that wake bring in is found later.
+void visit_pairs(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, double reach,
+                 double margin) {
+  work.has_visits = is_shared(work.pool, state.pairs.size());
+  if (!work.has_visits) return;
+  for_ranges(work.pool, state.pairs.size(), [&](std::size_t first, std::size_t end) {
+    FoundContacts found;
+    for (std::size_t i = first; i < end; ++i) {
       PairState& pair = state.pairs[i];
+      PairMemory& memory = work.pair_memories[i];
+      work.visits[i].count = PairVisit::kNone;
+      if (!work.knows_pairs) memory = memory_of(model, pair);
+      const auto a = static_cast<std::size_t>(memory.body_a), b = static_cast<std::size_t>(memory.body_b);
+      if (work.is_moving[a] == 0 && work.is_moving[b] == 0) continue;
       const PairBodies bodies = bodies_of(model, pair);
-      const auto a = static_cast<std::size_t>(bodies.a), b = static_cast<std::size_t>(bodies.b);
-      if ((work.is_moving[a] == 0 && work.is_moving[b] == 0) || ignores_held(bodies, input)) continue;
-      const PairMemory& memory = work.pair_memories[i];
-      if (work.knows_pairs && memory.stamp >= std::max(work.still_since[a], work.still_since[b])) continue;
+      if (ignores_held(bodies, input) || (is_same(memory, work) && stays_clear(memory, reach))) continue;
       refresh_manifold(bodies, state, work, reach, margin, pair);
+      work.visits[i] = find_contacts(bodies, reach, model.settings.dt, work, pair, found.data());
+    }
+  });
+}
+
+/// The contacts of visited pairs, which have their places now.
+void fill_visited(const WorldModel& model, double reach, WorldState& state, Scratch& work) {
+  if (!work.has_visits || work.has_too_many_contacts) return;
+  for_ranges(work.pool, work.patches.size(), [&](std::size_t first, std::size_t end) {
+    FoundContacts found;
+    for (std::size_t i = first; i < end; ++i) {
+      Patch& patch = work.patches[i];
+      if (patch.is_kept || work.visits[patch.pair].count == PairVisit::kNone) continue;
+      PairState& pair = state.pairs[patch.pair];
+      const PairBodies bodies = bodies_of(model, pair);
+      (void)find_contacts(bodies, reach, model.settings.dt, work, pair, found.data());
+      fill_patch(model, bodies, pair, work.visits[patch.pair], work, patch);
+      copy_contacts(found, static_cast<int>(i), work);
     }
   });
 }
@@ -303,6 +369,8 @@ bool visit_pair(const WorldModel& model, const WorldInput& input, WorldState& st
                 double reach, double margin) {
   PairState& pair = state.pairs[index];
   const PairBodies bodies = bodies_of(model, pair);
+  if (work.has_visits && work.visits[index].count != PairVisit::kNone)
+    return place_contacts(bodies, index, work.visits[index], work);
   if (ignores_held(bodies, input)) {
     pair.count = 0;
     pair.is_known = false;
@@ -311,6 +379,54 @@ bool visit_pair(const WorldModel& model, const WorldInput& input, WorldState& st
   }
   refresh_manifold(bodies, state, work, reach, margin, pair);
   return add_contacts(model, bodies, index, reach, pair, work);
+}
+
+/// One walk over the pairs that were not looked at before. Whether something woke: then others matter.
+bool walk_pairs(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, double reach,
+                double margin) {
+  bool has_woken = false;
+  for (std::uint32_t i = 0; i < state.pairs.size(); ++i) {
+    if (work.pair_done[i] != 0) continue;
+    PairMemory& memory = work.pair_memories[i];
+    if (!work.knows_pairs && !work.has_visits) memory = memory_of(model, state.pairs[i]);
+    const auto a = static_cast<std::size_t>(memory.body_a), b = static_cast<std::size_t>(memory.body_b);
+    if (work.is_moving[a] == 0 && work.is_moving[b] == 0) continue;
+    work.pair_done[i] = 1;
+    const bool is_held = memory.body_a == input.held.index || memory.body_b == input.held.index;
+    const bool stands = is_same(memory, work) && !is_held;
+    if (stands && stays_clear(memory, reach)) continue;
+    // Contacts can stand where they stood only if they were there in the last step.
+    const bool touches = stands && memory.stamp == work.stamp && can_keep(memory, reach, work)
+                             ? keep_contacts(memory, model.settings.dt, work)
+                             : visit_pair(model, input, state, work, i, reach, margin);
+    if (!touches) {
+      // A sleeper that a moving kinematic body comes near but does not reach: nothing to solve, unless it is woken.
+      if (work.bodies[a].active < 0 && work.bodies[b].active < 0) forget_contacts(i, work);
+      continue;
+    }
+    for (const std::size_t k : {a, b}) {
+      if (!is_sleeping(state.bodies[k], model.bodies[k])) continue;
+      wake_group(model, state, work, state.bodies[k].sleep_group);
+      has_woken = true;
+    }
+  }
+  return has_woken;
+}
+
+/// The deepest contacts at the start of the step.
+void report_depth(const WorldModel& model, const Scratch& work, StepReport& report) {
+  for (const Contact& contact : work.contacts) {
+    const bool is_deeper = -contact.phi > std::min(report.worst_penetration, report.worst_compliant_depth);
+    if (!is_deeper) continue;
+    const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+    const bool is_rigid = model.laws[patch.law].stiffness <= 0.0;
+    double& worst = is_rigid ? report.worst_penetration : report.worst_compliant_depth;
+    if (!(-contact.phi > worst)) continue;
+    worst = -contact.phi;
+    BodyPair& pair = is_rigid ? report.worst_penetration_pair : report.worst_compliant_pair;
+    pair.a = BodyId{patch.body_a};
+    pair.b = BodyId{patch.body_b};
+  }
 }
 
 }  // namespace
@@ -332,45 +448,11 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   work.contacts.clear();
   work.has_too_many_contacts = false;
   std::fill_n(work.pair_done.begin(), state.pairs.size(), char{0});
-  refresh_manifolds(model, input, state, work, reach, margin);
-  for (bool has_woken = true; has_woken;) {  // waking a group brings its pairs in
-    has_woken = false;
-    for (std::uint32_t i = 0; i < state.pairs.size(); ++i) {
-      if (work.pair_done[i] != 0) continue;
-      PairMemory& memory = work.pair_memories[i];
-      if (!work.knows_pairs) memory = memory_of(model, state.pairs[i]);
-      const auto a = static_cast<std::size_t>(memory.body_a), b = static_cast<std::size_t>(memory.body_b);
-      if (work.is_moving[a] == 0 && work.is_moving[b] == 0) continue;
-      work.pair_done[i] = 1;
-      const bool is_held = memory.body_a == input.held.index || memory.body_b == input.held.index;
-      const bool is_same = memory.stamp >= std::max(work.still_since[a], work.still_since[b]) && !is_held;
-      if (is_same && memory.patch < 0 && memory.clearance > reach) continue;
-      // Contacts can stand where they stood only if they were there in the last step.
-      const bool touches = is_same && memory.stamp == work.stamp && can_keep(memory, reach, work)
-                               ? keep_contacts(memory, dt, work)
-                               : visit_pair(model, input, state, work, i, reach, margin);
-      if (!touches) {
-        // A sleeper that a moving kinematic body comes near but does not reach: nothing to solve, unless it is woken.
-        if (work.bodies[a].active < 0 && work.bodies[b].active < 0) forget_contacts(i, work);
-        continue;
-      }
-      for (const std::size_t k : {a, b}) {
-        if (!is_sleeping(state.bodies[k], model.bodies[k])) continue;
-        wake_group(model, state, work, state.bodies[k].sleep_group);
-        has_woken = true;
-      }
-    }
+  visit_pairs(model, input, state, work, reach, margin);
+  while (walk_pairs(model, input, state, work, reach, margin)) {  // waking a group brings its pairs in
   }
-  for (const Contact& contact : work.contacts) {
-    const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
-    const bool is_rigid = model.laws[patch.law].stiffness <= 0.0;
-    double& worst = is_rigid ? report.worst_penetration : report.worst_compliant_depth;
-    if (!(-contact.phi > worst)) continue;
-    worst = -contact.phi;
-    BodyPair& pair = is_rigid ? report.worst_penetration_pair : report.worst_compliant_pair;
-    pair.a = BodyId{patch.body_a};
-    pair.b = BodyId{patch.body_b};
-  }
+  fill_visited(model, reach, state, work);
+  report_depth(model, work, report);
 }
 
 }  // namespace snug::physics::internal

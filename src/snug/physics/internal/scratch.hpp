@@ -1,11 +1,13 @@
 // Scratch: what a step works with and forgets.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "snug/core/bounded_vector.hpp"
 #include "snug/core/worker_pool.hpp"
+#include "snug/physics/internal/chunks.hpp"
 #include "snug/physics/internal/contact_newton.hpp"
 #include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/element_bodies.hpp"
@@ -49,6 +51,16 @@ struct PairMemory {
   std::uint64_t stamp = 0;  ///< of the step in which this was so
 };
 
+/// What the walk over the pairs has to know of a pair that was looked at before.
+struct PairVisit {
+  static constexpr int kNone = -1;
+  int count = kNone;        ///< points that matter in this step
+  bool touches = false;     ///< one of them
+  double clearance = 0.0;   ///< m, no point nearer than this
+  double reach_from = 0.0;  ///< m, the same points for any reach from here
+  double reach_to = 0.0;    ///< m, to below here
+};
+
 /// Maps impulses to velocities of one moving body: v = T u with T T^T = inverse mass, so that every row of the
 /// contact problem is J T and the mass disappears from the sweeps.
 struct Whitening {
@@ -88,6 +100,9 @@ struct Contact {
   int point = 0;  ///< of the pair's manifold; swept: -1
 };
 
+/// Of one pair.
+using FoundContacts = std::array<Contact, geometry::kMaxManifoldPoints>;
+
 struct Island {
   int first_patch = 0;  ///< in Scratch::patch_order
   int end_patch = 0;
@@ -95,6 +110,7 @@ struct Island {
   int end_row = 0;
   bool has_element = false;
   bool has_turning = false;  ///< rows that resist turning
+  bool is_carried = false;   ///< once solved: by something that the solver does not move
 };
 
 /// What a body moves by in a step.
@@ -130,6 +146,8 @@ struct Scratch {
   bool knows_pairs = false;  ///< the memories of pairs hold
   std::vector<BodyMemory> memories;
   std::vector<PairMemory> pair_memories;
+  std::vector<PairVisit> visits;  ///< of each pair, if has_visits
+  bool has_visits = false;
   std::size_t last_rows = 0;  ///< rows of the last step
 
   std::vector<BodyWork> bodies;
@@ -144,6 +162,7 @@ struct Scratch {
   std::vector<int> island_of_root;
   BoundedVector<Patch> patches;
   BoundedVector<Contact> contacts;  ///< by patch
+  FoundContacts found;              ///< of the pair that is added
   std::vector<int> patch_order;     ///< patches by island
   BoundedVector<Row> rows;
   int row_count = 0;  ///< of this step's islands
@@ -154,9 +173,11 @@ struct Scratch {
   int island_count = 0;
   std::vector<int> island_order;  ///< those with most rows first
   bool has_too_many_contacts = false;
+  bool has_belts = false;  ///< the model: surfaces that run
 
-  BoundedVector<PairState> merged_pairs;  ///< broad phase
-  std::vector<std::uint64_t> keys;
+  BoundedVector<PairState> merged_pairs;                ///< broad phase
+  std::vector<std::uint64_t> keys, old_keys, new_keys;  ///< of pairs: all, those before, those of boxes that moved
+  std::vector<int> pair_origin;                         ///< of each key: its place among the old ones
   std::vector<int> moved;
   std::vector<char> is_moved;
   std::vector<int> sweep_order;

@@ -125,10 +125,15 @@ void keep_impulses(const Row* first, const Row* end, WorldState& state, const Sc
   }
 }
 
+/// Whether the contact presses against something that the solver does not move.
+bool bears_on_fixed(const Row& row) {
+  return row.kind == RowKind::Contact && (row.ia < 0 || row.ib < 0) && row.lambda[0] > 0.0;
+}
+
 /// Islands are independent: each touches only its own rows, bodies and pairs.
 void solve_island(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work, int index,
                   IslandWorker& worker) {
-  const Island& island = work.islands[static_cast<std::size_t>(index)];
+  Island& island = work.islands[static_cast<std::size_t>(index)];
   if (island.has_element) {
     solve_element_island(model, input, state, work, index, worker);
   } else {
@@ -136,23 +141,31 @@ void solve_island(const WorldModel& model, const WorldInput& input, WorldState& 
   }
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
+  island.is_carried = std::any_of(first, end, bears_on_fixed);
   keep_impulses(first, end, state, work);
   worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
   read_velocities(work, island);
 }
 
-/// Those with most rows first, so that threads end at about the same time. Whether it pays to share them.
+/// Those with many rows first, the largest of all at the head, so that threads end at about the same time. Whether it
+/// pays to share them.
 bool order_islands(Scratch& work) {
-  constexpr int kLeastShared = 200;  // rows beside the largest island, about 50 us of work
+  constexpr int kLeastRows = 200;  // beside the largest island, about 50 us of work
+  constexpr int kLarge = 48;       // rows; the order of smaller islands does not matter
   const auto first = work.island_order.begin(), end = first + work.island_count;
   std::iota(first, end, 0);
-  if (work.pool.size() < 2) return false;
+  if (work.pool.size() < 2 || work.island_count < 2) return false;
   const auto rows_of = [&work](int i) {
     const Island& island = work.islands[static_cast<std::size_t>(i)];
     return island.end_row - island.first_row;
   };
-  std::sort(first, end, [&](int a, int b) { return rows_of(a) != rows_of(b) ? rows_of(a) > rows_of(b) : a < b; });
-  return work.island_count > 1 && static_cast<int>(work.rows.size()) - rows_of(*first) >= kLeastShared;
+  auto large_end = first;
+  for (auto i = first; i != end; ++i) {
+    if (rows_of(*i) >= kLarge) std::iter_swap(large_end++, i);
+  }
+  if (large_end == first) return static_cast<int>(work.rows.size()) >= kLeastRows;
+  std::sort(first, large_end, [&](int a, int b) { return rows_of(a) != rows_of(b) ? rows_of(a) > rows_of(b) : a < b; });
+  return static_cast<int>(work.rows.size()) - rows_of(*first) >= kLeastRows;
 }
 
 void add_report(const StepReport& part, StepReport& report) {
@@ -163,56 +176,67 @@ void add_report(const StepReport& part, StepReport& report) {
   name_culprit(part.culprit, report);
 }
 
+/// A body that is not moved by the solver.
+void keep_memory(BodyWork& body, BodyMemory& memory) {
+  body.is_steady = body.has_same_pose && !body.is_moving && memory.is_plain && memory.active < 0;
+  memory.is_plain = !body.is_moving;
+  memory.active = -1;
+}
+
+/// Euler's equations in principal axes by the implicit midpoint rule; keeps energy and angular momentum.
+Vector3 turn_freely(const WorldModel::MassProperties& mass, const BodyWork& body, double dt) {
+  const Matrix3 R_WI = body.R_WB * mass.R_BI;
+  const Vector3 inertia = mass.inverse_inertia.cwiseInverse();
+  const Vector3 w0 = R_WI.transpose() * body.angular_start;
+  Vector3 w1 = w0;
+  for (int k = 0; k < 20; ++k) {
+    const Vector3 mid = 0.5 * (w0 + w1);
+    const Vector3 next = w0 - dt * mass.inverse_inertia.cwiseProduct(mid.cross(inertia.cwiseProduct(mid)));
+    const double change = (next - w1).norm();
+    w1 = next;
+    if (change <= 1e-14 * (1.0 + w0.norm())) break;
+  }
+  return R_WI * (exp_rotation(0.5 * dt * (w0 + w1)) * w1);
+}
+
+void move_freely(const WorldModel& model, const WorldModel::MassProperties& mass, BodyWork& body, BodyMemory& memory,
+                 Whitening& whitening) {
+  const double dt = model.settings.dt;
+  body.velocity = body.velocity_start + dt * model.gravity;
+  body.angular = body.angular_start;
+  body.has_result = false;
+  // Inertia at the middle of the step: what makes turning under a torque second order.
+  const bool turns = dt * dt * body.angular_start.squaredNorm() > 1e-18;
+  const bool is_plain = !turns && !body.has_element;
+  body.is_steady = body.has_same_pose && is_plain && memory.is_plain && memory.active == body.active;
+  memory.is_plain = is_plain;
+  memory.active = body.active;
+  if (!body.is_steady) {
+    const Matrix3 R_WB_mid = turns ? Matrix3(exp_rotation(0.5 * dt * body.angular_start) * body.R_WB) : body.R_WB;
+    whitening = plain_whitening(mass, R_WB_mid);
+  }
+  if (body.has_element) {  // first guess of Newton's method
+    body.velocity = body.velocity_start;
+    return;
+  }
+  if (dt * body.angular_start.squaredNorm() > 1e-9) body.angular = turn_freely(mass, body, dt);
+}
+
 }  // namespace
 
 void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work) {
   const double dt = model.settings.dt;
-  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-    BodyWork& body = work.bodies[i];
-    if (body.active >= 0) continue;
-    BodyMemory& memory = work.memories[i];
-    body.is_steady = body.has_same_pose && !body.is_moving && memory.is_plain && memory.active < 0;
-    memory.is_plain = !body.is_moving;
-    memory.active = -1;
-  }
-  for (int i = 0; i < work.active_count; ++i) {
-    const int index = work.active[static_cast<std::size_t>(i)];
-    BodyWork& body = work.bodies[static_cast<std::size_t>(index)];
-    const WorldModel::MassProperties& mass = model.masses[static_cast<std::size_t>(index)];
-    body.velocity = body.velocity_start + dt * model.gravity;
-    body.angular = body.angular_start;
-    body.has_result = false;
-    // Inertia at the middle of the step: what makes turning under a torque second order.
-    const bool turns = dt * dt * body.angular_start.squaredNorm() > 1e-18;
-    BodyMemory& memory = work.memories[static_cast<std::size_t>(index)];
-    const bool is_plain = !turns && !body.has_element;
-    body.is_steady = body.has_same_pose && is_plain && memory.is_plain && memory.active == i;
-    memory.is_plain = is_plain;
-    memory.active = i;
-    if (!body.is_steady) {
-      const Matrix3 R_WB_mid = turns ? Matrix3(exp_rotation(0.5 * dt * body.angular_start) * body.R_WB) : body.R_WB;
-      work.whitening[static_cast<std::size_t>(i)] = plain_whitening(mass, R_WB_mid);
-    }
-    if (body.has_element) {  // first guess of Newton's method
-      body.velocity = body.velocity_start;
-      continue;
-    }
-    if (dt * body.angular_start.squaredNorm() > 1e-9) {
-      // Euler's equations in principal axes by the implicit midpoint rule; keeps energy and angular momentum.
-      const Matrix3 R_WI = body.R_WB * mass.R_BI;
-      const Vector3 inertia = mass.inverse_inertia.cwiseInverse();
-      const Vector3 w0 = R_WI.transpose() * body.angular_start;
-      Vector3 w1 = w0;
-      for (int k = 0; k < 20; ++k) {
-        const Vector3 mid = 0.5 * (w0 + w1);
-        const Vector3 next = w0 - dt * mass.inverse_inertia.cwiseProduct(mid.cross(inertia.cwiseProduct(mid)));
-        const double change = (next - w1).norm();
-        w1 = next;
-        if (change <= 1e-14 * (1.0 + w0.norm())) break;
+  for_ranges(work.pool, work.bodies.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      BodyWork& body = work.bodies[i];
+      if (body.active < 0) {
+        keep_memory(body, work.memories[i]);
+      } else {
+        move_freely(model, model.masses[i], body, work.memories[i],
+                    work.whitening[static_cast<std::size_t>(body.active)]);
       }
-      body.angular = R_WI * (exp_rotation(0.5 * dt * (w0 + w1)) * w1);
     }
-  }
+  });
   for (const ExternalWrench& wrench : input.wrenches) {
     BodyWork& body = work.bodies[static_cast<std::size_t>(wrench.body.index)];
     if (body.active < 0 || body.has_element) continue;
@@ -225,11 +249,12 @@ void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work
 
 void solve_islands(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
                    StepReport& report) {
-  for (int i = 0; i < work.active_count; ++i) {
-    const BodyWork& body = work.bodies[static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)])];
-    Eigen::Map<Vector6>(work.u.data() + 6 * i) =
-        whiten(work.whitening[static_cast<std::size_t>(i)], body.velocity, body.angular);
-  }
+  for_ranges(work.pool, static_cast<std::size_t>(work.active_count), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const BodyWork& body = work.bodies[static_cast<std::size_t>(work.active[i])];
+      Eigen::Map<Vector6>(work.u.data() + 6 * i) = whiten(work.whitening[i], body.velocity, body.angular);
+    }
+  });
   work.rows.resize(static_cast<std::size_t>(work.row_count));
   std::fill_n(work.shift.begin(), 6 * work.active_count, 0.0);
   const bool is_shared = order_islands(work);

@@ -1,6 +1,7 @@
 // Swept contacts: what a body that turns fast would run into by the end of a step, beside the contacts found at its
 // start.
 #include <algorithm>
+#include <atomic>
 
 #include "snug/physics/internal/scratch.hpp"
 
@@ -97,47 +98,82 @@ bool wake_pair(const WorldModel& model, WorldState& state, Scratch& work, int bo
 
 /// Whether one of the bodies turns fast: then all ends are known.
 bool find_ends(const WorldModel& model, Scratch& work) {
-  bool is_one_fast = false;
-  for (int i = 0; i < static_cast<int>(work.bodies.size()) && !is_one_fast; ++i) {
-    is_one_fast = turns_fast(model, work, i);
-  }
+  std::atomic<bool> is_one_fast{false};
+  const std::size_t count = work.bodies.size();
+  for_ranges(work.pool, count, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end && !is_one_fast; ++i) {
+      if (turns_fast(model, work, static_cast<int>(i))) is_one_fast = true;
+    }
+  });
   if (!is_one_fast) return false;
-  bool is_finite = true;  // else the end of the step names the body
-  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-    work.ends[i] = end_of(model, work, static_cast<int>(i));
-    is_finite = is_finite && work.ends[i].X_WB.p.allFinite() && work.ends[i].X_WB.R.allFinite();
-  }
+  std::atomic<bool> is_finite{true};  // else the end of the step names the body
+  for_ranges(work.pool, count, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      work.ends[i] = end_of(model, work, static_cast<int>(i));
+      if (!work.ends[i].X_WB.p.allFinite() || !work.ends[i].X_WB.R.allFinite()) is_finite = false;
+    }
+  });
   return is_finite;
+}
+
+/// A pair that could meet by turning: rigid, and one of the bodies turns fast.
+bool may_meet(const WorldModel& model, const PairState& pair, const Scratch& work, std::size_t& law) {
+  const WorldModel::GeomRef &a = model.geoms[pair.geom_a], &b = model.geoms[pair.geom_b];
+  const bool is_one_fast =
+      work.ends[static_cast<std::size_t>(a.body)].turns_fast || work.ends[static_cast<std::size_t>(b.body)].turns_fast;
+  if (!is_one_fast || !pair.is_known) return false;  // unknown: passes through what is held
+  law = static_cast<std::size_t>(geom_of(model, a).material * model.material_count + geom_of(model, b).material);
+  return model.laws[law].stiffness <= 0.0;  // else gives way by its law
+}
+
+/// Whether the pair overlaps at the end of the step much more than at its start.
+bool meets(const WorldModel& model, const PairState& pair, double clearance, const Scratch& work,
+           geometry::Manifold& manifold) {
+  const WorldModel::GeomRef &a = model.geoms[pair.geom_a], &b = model.geoms[pair.geom_b];
+  const Geom &geom_a = geom_of(model, a), &geom_b = geom_of(model, b);
+  geometry::PairCache cache = pair.cache;
+  geometry::collide(geom_a.shape, work.ends[static_cast<std::size_t>(a.body)].X_WB * geom_a.X_BG, geom_b.shape,
+                    work.ends[static_cast<std::size_t>(b.body)].X_WB * geom_b.X_BG, model.settings.contact_margin,
+                    cache, manifold);
+  return !(deepest_of(manifold) > std::min(0.0, clearance) - kDeep);
+}
+
+/// Marks in work.pair_done the pairs that are not to be looked at in turn.
+void leave_out_pairs(const WorldModel& model, const WorldState& state, Scratch& work) {
+  for_ranges(work.pool, state.pairs.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      std::size_t law = 0;
+      geometry::Manifold manifold;
+      const bool is_of_interest = may_meet(model, state.pairs[i], work, law) &&
+                                  meets(model, state.pairs[i], work.pair_memories[i].clearance, work, manifold);
+      work.pair_done[i] = is_of_interest ? 0 : 1;
+    }
+  });
 }
 
 }  // namespace
 
 Swept add_swept_contacts(const WorldModel& model, WorldState& state, Scratch& work) {
   if (!find_ends(model, work)) return Swept::Nothing;
+  const bool are_left_out = is_shared(work.pool, state.pairs.size());
+  if (are_left_out) leave_out_pairs(model, state, work);
   bool has_added = false, has_woken = false;
   for (std::uint32_t i = 0; i < state.pairs.size(); ++i) {
+    if (are_left_out && work.pair_done[i] != 0) continue;
     const PairState& pair = state.pairs[i];
-    const WorldModel::GeomRef &a = model.geoms[pair.geom_a], &b = model.geoms[pair.geom_b];
-    const BodyEnd& end_a = work.ends[static_cast<std::size_t>(a.body)];
-    const BodyEnd& end_b = work.ends[static_cast<std::size_t>(b.body)];
-    if ((!end_a.turns_fast && !end_b.turns_fast) || !pair.is_known) continue;  // unknown: passes through what is held
-    if (work.bodies[static_cast<std::size_t>(a.body)].active < 0 &&
-        work.bodies[static_cast<std::size_t>(b.body)].active < 0)
+    std::size_t law = 0;
+    if (!may_meet(model, pair, work, law)) continue;
+    const int a = model.geoms[pair.geom_a].body, b = model.geoms[pair.geom_b].body;
+    if (work.bodies[static_cast<std::size_t>(a)].active < 0 && work.bodies[static_cast<std::size_t>(b)].active < 0)
       continue;
-    const Geom &geom_a = geom_of(model, a), &geom_b = geom_of(model, b);
-    const auto law = static_cast<std::size_t>(geom_a.material * model.material_count + geom_b.material);
-    if (model.laws[law].stiffness > 0.0) continue;  // gives way by its law
     geometry::Manifold manifold;
-    geometry::PairCache cache = pair.cache;
-    geometry::collide(geom_a.shape, end_a.X_WB * geom_a.X_BG, geom_b.shape, end_b.X_WB * geom_b.X_BG,
-                      model.settings.contact_margin, cache, manifold);
-    if (deepest_of(manifold) > std::min(0.0, work.pair_memories[i].clearance) - kDeep) continue;
-    if (wake_pair(model, state, work, a.body, b.body)) {
+    if (!meets(model, pair, work.pair_memories[i].clearance, work, manifold)) continue;
+    if (wake_pair(model, state, work, a, b)) {
       has_woken = true;
       continue;
     }
     if (work.patches.full() || work.contacts.capacity() - work.contacts.size() < geometry::kMaxManifoldPoints) break;
-    add_patch(i, a.body, b.body, law, manifold, work);
+    add_patch(i, a, b, law, manifold, work);
     has_added = true;
   }
   return has_woken ? Swept::Sleepers : has_added ? Swept::Contacts : Swept::Nothing;

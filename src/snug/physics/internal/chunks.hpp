@@ -1,0 +1,27 @@
+// Chunks: loops over bodies, pairs or patches that the threads of a pool share.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "snug/core/worker_pool.hpp"
+
+namespace snug::physics::internal {
+
+/// Below it a loop is not shared: it takes about as long as to hand it over.
+constexpr std::size_t kLeastShared = 512;
+constexpr std::size_t kChunk = 128;  ///< whatever the number of threads
+
+inline bool is_shared(const WorkerPool& pool, std::size_t count) { return pool.size() > 1 && count >= kLeastShared; }
+
+/// Calls job(first, end) for ranges that make up 0 .. count-1 and may be done side by side.
+template <class Job>
+void for_ranges(WorkerPool& pool, std::size_t count, const Job& job) {
+  if (!is_shared(pool, count)) return job(std::size_t{0}, count);
+  pool.run(static_cast<int>((count + kChunk - 1) / kChunk), [&](int chunk, int) {
+    const std::size_t first = kChunk * static_cast<std::size_t>(chunk);
+    job(first, std::min(count, first + kChunk));
+  });
+}
+
+}  // namespace snug::physics::internal
