@@ -201,16 +201,21 @@ PairVisit find_contacts(const PairBodies& bodies, double reach, double dt, const
   return visit;
 }
 
+/// For the contacts of one more pair.
+bool has_room(const Scratch& work) {
+  return work.contacts.capacity() - work.contacts.size() >= geometry::kMaxManifoldPoints;
+}
+
 /// Takes room for the contacts of a visit. Returns whether one of them touches.
 bool place_contacts(const PairBodies& bodies, std::uint32_t index, const PairVisit& visit, Scratch& work) {
   PairMemory& memory = work.pair_memories[index];
   memory = {bodies.a, bodies.b, -1, visit.clearance, work.stamp + 1};
   if (visit.count == 0) return false;
-  const std::size_t first = work.contacts.size(), end = first + static_cast<std::size_t>(visit.count);
-  work.has_too_many_contacts |= end > work.contacts.capacity();
+  work.has_too_many_contacts |= !has_room(work);
   if (work.has_too_many_contacts) return visit.touches;
+  const std::size_t first = work.contacts.size();
   memory.patch = static_cast<int>(work.patches.size());
-  work.contacts.resize(end);
+  work.contacts.resize(first + static_cast<std::size_t>(visit.count));
   work.patches.resize(work.patches.size() + 1);
   Patch& patch = work.patches.back();
   patch.is_kept = false;
@@ -220,45 +225,42 @@ bool place_contacts(const PairBodies& bodies, std::uint32_t index, const PairVis
   return visit.touches;
 }
 
-/// What the contacts of a patch that has its place have in common.
+/// A patch that has its place, with contacts that are in theirs.
 void fill_patch(const WorldModel& model, const PairBodies& bodies, const PairState& pair, const PairVisit& visit,
-                const Scratch& work, Patch& patch) {
-  const Matrix3 &R_WA = work.bodies[static_cast<std::size_t>(bodies.a)].R_WB,
-                &R_WB = work.bodies[static_cast<std::size_t>(bodies.b)].R_WB;
-  Patch filled;
-  filled.pair = patch.pair;
-  filled.body_a = bodies.a;
-  filled.body_b = bodies.b;
-  filled.first_contact = patch.first_contact;
-  filled.contact_count = patch.contact_count;
-  filled.reach_from = visit.reach_from;
-  filled.reach_to = visit.reach_to;
-  filled.n = R_WA * pair.n_A;
-  filled.t1 = R_WA * pair.t_A;
-  filled.t2 = filled.n.cross(filled.t1);
-  filled.law = static_cast<std::size_t>(bodies.geom_a.material * model.material_count + bodies.geom_b.material);
-  filled.share = share_of(model.laws[filled.law], pair.face_area);
-  filled.row_count = filled.contact_count + count_turning_rows(model.laws[filled.law]);
-  filled.belt_W = R_WB * bodies.geom_b.surface_velocity - R_WA * bodies.geom_a.surface_velocity;
-  filled.has_belt = !filled.belt_W.isZero(0.0);
-  patch = filled;
-}
-
-void copy_contacts(const FoundContacts& found, int patch_index, Scratch& work) {
-  const Patch& patch = work.patches[static_cast<std::size_t>(patch_index)];
-  Contact* const contacts = work.contacts.begin() + patch.first_contact;
-  std::copy_n(found.begin(), patch.contact_count, contacts);
-  for (int i = 0; i < patch.contact_count; ++i) contacts[i].patch = patch_index;
+                int index, Scratch& work) {
+  const Matrix3& R_WA = work.bodies[static_cast<std::size_t>(bodies.a)].R_WB;
+  const Matrix3& R_WB = work.bodies[static_cast<std::size_t>(bodies.b)].R_WB;
+  Patch& patch = work.patches[static_cast<std::size_t>(index)];
+  const std::uint32_t pair_index = patch.pair;
+  const int first_contact = patch.first_contact;
+  patch = Patch{};
+  patch.pair = pair_index;
+  patch.body_a = bodies.a;
+  patch.body_b = bodies.b;
+  patch.first_contact = first_contact;
+  patch.contact_count = visit.count;
+  patch.reach_from = visit.reach_from;
+  patch.reach_to = visit.reach_to;
+  patch.n = R_WA * pair.n_A;
+  patch.t1 = R_WA * pair.t_A;
+  patch.t2 = patch.n.cross(patch.t1);
+  patch.law = static_cast<std::size_t>(bodies.geom_a.material * model.material_count + bodies.geom_b.material);
+  patch.share = share_of(model.laws[patch.law], pair.face_area);
+  patch.row_count = visit.count + count_turning_rows(model.laws[patch.law]);
+  patch.belt_W = R_WB * bodies.geom_b.surface_velocity - R_WA * bodies.geom_a.surface_velocity;
+  patch.has_belt = !patch.belt_W.isZero(0.0);
+  Contact* const contacts = work.contacts.begin() + first_contact;
+  for (int i = 0; i < visit.count; ++i) contacts[i].patch = index;
 }
 
 /// Adds the pair's contacts. Returns whether one of them touches.
 bool add_contacts(const WorldModel& model, const PairBodies& bodies, std::uint32_t index, double reach, PairState& pair,
                   Scratch& work) {
-  const PairVisit visit = find_contacts(bodies, reach, model.settings.dt, work, pair, work.found.data());
+  Contact* const contacts = has_room(work) ? work.contacts.end() : work.no_room.data();
+  const PairVisit visit = find_contacts(bodies, reach, model.settings.dt, work, pair, contacts);
   const bool touches = place_contacts(bodies, index, visit, work);
-  if (work.pair_memories[index].patch < 0) return touches;
-  fill_patch(model, bodies, pair, visit, work, work.patches.back());
-  copy_contacts(work.found, static_cast<int>(work.patches.size()) - 1, work);
+  const int patch = work.pair_memories[index].patch;
+  if (patch >= 0) fill_patch(model, bodies, pair, visit, patch, work);
   return touches;
 }
 
@@ -331,7 +333,7 @@ void visit_pairs(const WorldModel& model, const WorldInput& input, WorldState& s
   work.has_visits = is_shared(work.pool, state.pairs.size());
   if (!work.has_visits) return;
   for_ranges(work.pool, state.pairs.size(), [&](std::size_t first, std::size_t end) {
-    FoundContacts found;
+    PairContacts found;
     for (std::size_t i = first; i < end; ++i) {
       PairState& pair = state.pairs[i];
       PairMemory& memory = work.pair_memories[i];
@@ -351,15 +353,14 @@ void visit_pairs(const WorldModel& model, const WorldInput& input, WorldState& s
 void fill_visited(const WorldModel& model, double reach, WorldState& state, Scratch& work) {
   if (!work.has_visits || work.has_too_many_contacts) return;
   for_ranges(work.pool, work.patches.size(), [&](std::size_t first, std::size_t end) {
-    FoundContacts found;
     for (std::size_t i = first; i < end; ++i) {
-      Patch& patch = work.patches[i];
+      const Patch& patch = work.patches[i];
       if (patch.is_kept || work.visits[patch.pair].count == PairVisit::kNone) continue;
       PairState& pair = state.pairs[patch.pair];
       const PairBodies bodies = bodies_of(model, pair);
-      (void)find_contacts(bodies, reach, model.settings.dt, work, pair, found.data());
-      fill_patch(model, bodies, pair, work.visits[patch.pair], work, patch);
-      copy_contacts(found, static_cast<int>(i), work);
+      Contact* const contacts = work.contacts.begin() + patch.first_contact;
+      const PairVisit visit = find_contacts(bodies, reach, model.settings.dt, work, pair, contacts);
+      fill_patch(model, bodies, pair, visit, static_cast<int>(i), work);
     }
   });
 }

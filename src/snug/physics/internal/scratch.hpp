@@ -101,7 +101,7 @@ struct Contact {
 };
 
 /// Of one pair.
-using FoundContacts = std::array<Contact, geometry::kMaxManifoldPoints>;
+using PairContacts = std::array<Contact, geometry::kMaxManifoldPoints>;
 
 struct Island {
   int first_patch = 0;  ///< in Scratch::patch_order
@@ -162,7 +162,7 @@ struct Scratch {
   std::vector<int> island_of_root;
   BoundedVector<Patch> patches;
   BoundedVector<Contact> contacts;  ///< by patch
-  FoundContacts found;              ///< of the pair that is added
+  PairContacts no_room;             ///< where contacts go that are too many
   std::vector<int> patch_order;     ///< patches by island
   BoundedVector<Row> rows;
   int row_count = 0;  ///< of this step's islands

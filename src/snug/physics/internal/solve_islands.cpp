@@ -109,9 +109,16 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
   name_culprit(culprit, report);
 }
 
-/// What the next step starts from.
-void keep_impulses(const Row* first, const Row* end, WorldState& state, const Scratch& work) {
+/// Whether the contact presses against something that the solver does not move.
+bool bears_on_fixed(const Row& row) {
+  return row.kind == RowKind::Contact && (row.ia < 0 || row.ib < 0) && row.lambda[0] > 0.0;
+}
+
+/// What the next step starts from. Returns whether something carries the island.
+bool keep_impulses(const Row* first, const Row* end, WorldState& state, const Scratch& work) {
+  bool is_carried = false;
   for (const Row* row = first; row != end; ++row) {
+    is_carried = is_carried || bears_on_fixed(*row);
     if (!row->is_changed) continue;
     const Contact& contact = work.contacts[static_cast<std::size_t>(row->contact)];
     const Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
@@ -123,11 +130,7 @@ void keep_impulses(const Row* first, const Row* end, WorldState& state, const Sc
     state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)] = {row->lambda[0], row->lambda[1],
                                                                                  row->lambda[2]};
   }
-}
-
-/// Whether the contact presses against something that the solver does not move.
-bool bears_on_fixed(const Row& row) {
-  return row.kind == RowKind::Contact && (row.ia < 0 || row.ib < 0) && row.lambda[0] > 0.0;
+  return is_carried;
 }
 
 /// Islands are independent: each touches only its own rows, bodies and pairs.
@@ -141,8 +144,7 @@ void solve_island(const WorldModel& model, const WorldInput& input, WorldState& 
   }
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
-  island.is_carried = std::any_of(first, end, bears_on_fixed);
-  keep_impulses(first, end, state, work);
+  island.is_carried = keep_impulses(first, end, state, work);
   worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
   read_velocities(work, island);
 }
