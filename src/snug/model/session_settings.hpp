@@ -80,6 +80,8 @@ struct RehearsalSettings {
   /// Success expected of a motion before anything is rehearsed. From sessions in plants 101 and up.
   double prior_rate = 0.97;
   double prior_count = 4.0;  ///< how many rollouts that is worth; from the same sessions
+  /// Percent of the container, of fast motions only: what a place is worth less for which the box has to be turned.
+  double turn_cost = 0.0;
 
   template <class Archive>
   void fields(Archive& a) {
@@ -93,6 +95,7 @@ struct RehearsalSettings {
     a("coarse_steps", coarse_steps, Within{1, 16});
     a("prior_rate", prior_rate, Range::Fraction);
     a("prior_count", prior_count, Within{0.0, 10000.0});
+    a("turn_cost", turn_cost, Within{0.0, 100.0});
   }
   bool operator==(const RehearsalSettings&) const = default;
 };

@@ -105,7 +105,8 @@ class ContactAwareAgent : public Agent {
     outlook.race.threads = input_.run.threads;
     outlook.race.effort = work_for(input_.run.time);
     outlook.race.skips = state.skips_left;
-    outlook.prospect = make_prospect(input_.future, pieces(planning), state, item != nullptr ? std::string_view(item->id) : std::string_view());
+    outlook.prospect = make_prospect(input_.future, pieces(planning), state,
+                                     item != nullptr ? std::string_view(item->id) : std::string_view());
     outlook.free_volume = std::max(0.0, outlook.room - outlook.filled);
     for (int i = 0; i < outlook.race.skips; ++i) outlook.free_volume += largest_volume(outlook.prospect);
     return outlook;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "snug/cell/drawn_scenario.hpp"
@@ -216,9 +217,11 @@ bool Packer::can_be_picked(int item) const {
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_({row.X_WE(), row.X_WE()}); });
 }
 
-/// Percent in the end, on average, when this share of the worlds goes well and the others end here.
+/// Percent in the end, on average, when this share of the worlds goes well and the others end here, less what turning
+/// the box costs.
 double Packer::utility_of(const packing::Candidate& candidate, double rate) const {
-  const double expected = candidate.expected_percent > 0.0 ? candidate.expected_percent : 100.0;
+  double expected = candidate.expected_percent > 0.0 ? candidate.expected_percent : 100.0;
+  if (layout_.is_fast && candidate.placement.flips > 0) expected -= scenario_.rehearsal.turn_cost;
   return rate * expected + (1.0 - rate) * packing::filling_percent(container_state());
 }
 
@@ -229,9 +232,10 @@ bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
          (attempts >= settings.max_attempts && rate >= settings.good_rate);
 }
 
-std::optional<Attempt> Packer::best_attempt(int item, Location location,
-                                            const std::vector<packing::Candidate>& candidates, double least_percent,
-                                            ItemReport& report) {
+std::optional<Attempt> Packer::best_attempt(int item, Location location, std::vector<packing::Candidate> candidates,
+                                            double least_percent, ItemReport& report) {
+  if (layout_.is_fast && scenario_.rehearsal.turn_cost > 0.0)  // else they are in the agent's order
+    std::ranges::stable_sort(candidates, std::greater(), [this](const auto& one) { return utility_of(one, 1.0); });
   const packing::ContainerState state = state_without(item);
   const double top = obstacle_top(item);
   Rehearsal rehearsal(belief_, layout_, reaches_, limits_, options_.threads,

@@ -77,8 +77,8 @@ class Packer {
   [[nodiscard]] cell::ContainerFit fit_of(int item, const Pose& X_WP) const;
   [[nodiscard]] std::optional<Planned> plan(int item, packing::Agent& agent, ItemReport& report);
   [[nodiscard]] std::optional<Attempt> best_attempt(int item, Location location,
-                                                    const std::vector<packing::Candidate>& candidates,
-                                                    double least_percent, ItemReport& report);
+                                                    std::vector<packing::Candidate> candidates, double least_percent,
+                                                    ItemReport& report);
   /// In the end, when the item stays where it lies in the container; nothing: the agent does not know, or it may not.
   [[nodiscard]] std::optional<double> expected_percent(int item, packing::Agent& agent) const;
   /// Percent of the container that is expected more with the item in the best other place; 0 where that is not known.
@@ -102,6 +102,8 @@ class Packer {
   [[nodiscard]] int who_sticks_out(int item) const;
   /// Of the others that were moved beyond the limit the highest: it may lie on the rest. -1: none was.
   [[nodiscard]] int who_was_moved(int item, const std::vector<std::optional<Pose>>& before) const;
+  /// Higher than it was by more than the limit of displacements: it lies on others.
+  [[nodiscard]] bool was_lifted(int item, const std::vector<std::optional<Pose>>& before) const;
   /// m, as it was seen, less what the look may be off.
   [[nodiscard]] double moved(int item, const std::vector<std::optional<Pose>>& before) const;
   /// The vacuum says that something hangs from the cup.
@@ -139,7 +141,8 @@ class Packer {
   /// How a box that lies or leans is put down to the aligner.
   [[nodiscard]] Matrix3 rotation_aside(int item) const;
   /// Another box, that sticks out or was moved, once more: to a place that is planned anew.
-  void repack(int item, packing::Agent& agent, ItemReport& report);
+  /// False: no way was found, and no motion sent.
+  bool repack(int item, packing::Agent& agent, ItemReport& report);
   [[nodiscard]] std::optional<Pose> pose_of(int item) const;  ///< X_WP, as believed
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;
   /// Plan, send, look, recover, until it is packed or given up.
@@ -164,7 +167,7 @@ class Packer {
   std::vector<Repacked> repacked_;
   std::vector<int> handled_;  ///< under way now: the item that came, and boxes that are packed anew because of it
   std::set<int> aside_;       ///< packed before, and put back to the aligner
-  int let_go_ = -1;  ///< item that fell, or was let go, before its motion ended: to be found at the next look
+  int let_go_ = -1;           ///< item that fell, or was let go, before its motion ended: to be found at the next look
   plant::Feedback robot_;
   motion::Program sent_;
   std::vector<motion::Waypoint> last_;  ///< motion

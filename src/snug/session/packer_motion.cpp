@@ -98,6 +98,11 @@ double Packer::moved(int item, const std::vector<std::optional<Pose>>& before) c
   return std::max(0.0, (box->X_WP.p - was->p).norm() - slack_of(*box));
 }
 
+bool Packer::was_lifted(int item, const std::vector<std::optional<Pose>>& before) const {
+  const std::optional<Pose>& was = before[static_cast<std::size_t>(item)];
+  return was && belief_.box(item) && belief_.box(item)->X_WP.p.z() > was->p.z() + limits_.displacement;
+}
+
 int Packer::who_was_moved(int item, const std::vector<std::optional<Pose>>& before) const {
   int highest = -1;
   for (const int other : order_) {
@@ -124,12 +129,16 @@ Trouble Packer::assess(int item, const packing::Placement& planned, const std::v
     if (other != item) report.happened.displacement = std::max(report.happened.displacement, moved(other, before));
   }
   if (locate(item) != Location::Container) return Trouble::OffPlace;  // nothing there is to be pressed on
+  const int neighbour = who_was_moved(item, before);
+  const bool may_lie_on_it = neighbour >= 0 && belief_.box(neighbour)->X_WP.p.z() > box->X_WP.p.z();
+  const bool is_off = report.position_error > limits_.position || tilt_of(item) > limits_.tilt;
+  if (may_lie_on_it && is_off) return Trouble::NeighbourMoved;
   if (tilt_of(item) > limits_.tilt) return Trouble::Leaning;
   if (who_sticks_out(item) >= 0) return Trouble::SticksOut;
   if (report.position_error > limits_.position || report.angle_error > limits_.tilt) {
     return Trouble::OffPlace;
   }
-  return who_was_moved(item, before) >= 0 ? Trouble::NeighbourMoved : Trouble::None;
+  return neighbour >= 0 ? Trouble::NeighbourMoved : Trouble::None;
 }
 
 bool Packer::is_holding() const {

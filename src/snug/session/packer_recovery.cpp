@@ -196,7 +196,7 @@ void Packer::set_aside(int item, const Planned* planned, ItemReport& report) {
   put_down(carried, place, std::move(rows), report);
 }
 
-void Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
+bool Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
   ItemReport own;
   own.id = items_[static_cast<std::size_t>(item)].id;
   bring_to_place(item, agent, own);
@@ -212,6 +212,7 @@ void Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
   } else if (belief_.box(item) && !own.sends.empty()) {
     repacked_.push_back({own.planned, layout_.X_WT.inverse() * belief_.box(item)->X_WP});
   }
+  return !own.sends.empty();
 }
 
 bool Packer::recover(int item, const Planned& planned, std::vector<std::optional<Pose>> before, packing::Agent& agent,
@@ -229,7 +230,10 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
                                                              : item;
     stops += trouble == Trouble::ProtectiveStop ? 1 : 0;
     Situation at = situation_of(culprit, trouble, agent, report);
-    if (culprit != item) at.tries = handled_.size() < kMostHandled ? 1 + repacked : scenario_.recovery.most_tries;
+    if (culprit != item) {
+      at.tries = handled_.size() < kMostHandled ? 1 + repacked : scenario_.recovery.most_tries;
+      at.lies_on_others = was_lifted(culprit, before);
+    }
     at.stops = stops;
     at.can_set_aside = set_aside_count < kMostSetAsides && can_set_aside(culprit);
     at.was_pressed = was_pressed || (belief_.box(culprit) && is_under_obstacle(culprit));
@@ -248,8 +252,7 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
         return false;
       case Remedy::PickAgain:
         if (culprit == item) return true;
-        ++repacked;
-        repack(culprit, agent, report);
+        repacked = repack(culprit, agent, report) ? repacked + 1 : scenario_.recovery.most_tries;
         was_pressed = false;
         break;
       case Remedy::SetAside:
@@ -261,7 +264,7 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
         if (belief_.box(culprit) && at.tries < scenario_.recovery.most_tries) {
           if (culprit == item) return true;
           ++repacked;
-          repack(culprit, agent, report);
+          (void)repack(culprit, agent, report);
           was_pressed = false;
           break;
         }
@@ -303,7 +306,7 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
         press(culprit, report);
         break;
     }
-    if (culprit != item) before[static_cast<std::size_t>(culprit)] = pose_of(culprit);
+    if (culprit != item && remedy != Remedy::PressLevel) before[static_cast<std::size_t>(culprit)] = pose_of(culprit);
     trouble = find_trouble(item, goal, before, report);
   }
   if (trouble == Trouble::None) {

@@ -107,6 +107,7 @@ Remedy choose_remedy(const Situation& at, const model::RecoverySettings& setting
       return where_it_lies(at, settings);
     case Trouble::Leaning:
     case Trouble::SticksOut:
+      if (at.lies_on_others && at.can_be_picked && at.tries < settings.most_tries) return Remedy::PickAgain;
       if (at.was_pressed) return where_it_lies(at, settings);
       return Remedy::PressLevel;
     case Trouble::NeighbourMoved:

@@ -48,18 +48,19 @@ enum class Remedy {
 /// What the choice depends on.
 struct Situation {
   Trouble trouble = Trouble::None;
-  int tries = 0;               ///< motions that were sent for this item before, this one included
-  int stops = 0;               ///< protective stops of this item, this one included
-  bool is_held = false;        ///< the vacuum says that something hangs from the cup
-  bool can_set_down = false;   ///< there is a bench to put it on
-  bool can_set_aside = false;  ///< held, or pickable elsewhere than at the aligner; not tried before
-  bool fits = false;           ///< it lies in the container, inside walls and rim
-  bool leans = false;          ///< in the container, by more than the limit
-  bool lies_turned = false;    ///< by more than 45 degrees from its plan: it takes room meant for others
-  bool can_be_picked = false;  ///< seen, standing on a face, within reach of the tool
+  int tries = 0;                ///< motions that were sent for this item before, this one included
+  int stops = 0;                ///< protective stops of this item, this one included
+  bool is_held = false;         ///< the vacuum says that something hangs from the cup
+  bool can_set_down = false;    ///< there is a bench to put it on
+  bool can_set_aside = false;   ///< held, or pickable elsewhere than at the aligner; not tried before
+  bool fits = false;            ///< it lies in the container, inside walls and rim
+  bool leans = false;           ///< in the container, by more than the limit
+  bool lies_turned = false;     ///< by more than 45 degrees from its plan: it takes room meant for others
+  bool lies_on_others = false;  ///< a neighbour that was moved: pressed on, it would push them away
+  bool can_be_picked = false;   ///< seen, standing on a face, within reach of the tool
   double gain_elsewhere = 0.0;  ///< percent of the container that is expected more with it in another place
-  bool was_pressed = false;    ///< since it was let go
-  int pictures = 0;            ///< that told nothing, one after the other, this one included
+  bool was_pressed = false;     ///< since it was let go
+  int pictures = 0;             ///< that told nothing, one after the other, this one included
 };
 [[nodiscard]] Remedy choose_remedy(const Situation& situation, const model::RecoverySettings& settings);
 

@@ -60,6 +60,17 @@ TEST(ChooseRemedy, ABoxThatWasMovedIsPickedAgainWhereThatIsWorthIt) {
   }
 }
 
+TEST(ChooseRemedy, ANeighbourThatLiesOnOthersIsTakenOffAndPressedOnlyWhereItCannotBe) {
+  Situation situation = at(Trouble::SticksOut);
+  situation.lies_on_others = true;
+  EXPECT_EQ(remedy_for(situation), Remedy::PickAgain);
+  situation.can_be_picked = false;
+  EXPECT_EQ(remedy_for(situation), Remedy::PressLevel);
+  situation.can_be_picked = true;
+  situation.tries = kSettings.most_tries;
+  EXPECT_EQ(remedy_for(situation), Remedy::PressLevel);
+}
+
 TEST(ChooseRemedy, AStopIsResumedOnceThenTheBoxIsLetGoAndAtLastTheSessionEnds) {
   Situation situation = at(Trouble::ProtectiveStop);
   situation.is_held = true;
