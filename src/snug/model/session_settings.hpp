@@ -81,7 +81,7 @@ struct RehearsalSettings {
   double prior_rate = 0.97;
   double prior_count = 4.0;  ///< how many rollouts that is worth; from the same sessions
   /// Percent of the container, of fast motions only: what a place is worth less for which the box has to be turned.
-  double turn_cost = 0.0;
+  double turn_cost = 0.5;
 
   template <class Archive>
   void fields(Archive& a) {
@@ -135,8 +135,8 @@ struct RecoverySettings {
   double lies_turned = 0.25 * std::numbers::pi;  ///< rad, from what was planned: it takes room meant for others
   /// Percent of the container in the end, by which more must be expected of another place to pick a packed box again.
   double gain_elsewhere = 1.0;
-  double as_rehearsed = 0.004;                   ///< m, from where the nominal rollout let the box go on the way
-  double turned_as_rehearsed = 0.05;             ///< rad, from how it lay there
+  double as_rehearsed = 0.004;        ///< m, from where the nominal rollout let the box go on the way
+  double turned_as_rehearsed = 0.05;  ///< rad, from how it lay there
   /// m: edges that differ by more are another item's. Tapes and damp make 2 mm of the demonstrator's.
   double wrong_size = 0.010;
   double aside = 0.025;           ///< m, from both plates of the aligner: a box that is put back to it

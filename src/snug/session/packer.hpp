@@ -141,7 +141,7 @@ class Packer {
   /// How a box that lies or leans is put down to the aligner.
   [[nodiscard]] Matrix3 rotation_aside(int item) const;
   /// Another box, that sticks out or was moved, once more: to a place that is planned anew.
-  /// False: no way was found, and no motion sent.
+  /// False: no way was found, and nothing was moved.
   bool repack(int item, packing::Agent& agent, ItemReport& report);
   [[nodiscard]] std::optional<Pose> pose_of(int item) const;  ///< X_WP, as believed
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;

@@ -199,6 +199,7 @@ void Packer::set_aside(int item, const Planned* planned, ItemReport& report) {
 bool Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
   ItemReport own;
   own.id = items_[static_cast<std::size_t>(item)].id;
+  const double begin = robot_.time;
   bring_to_place(item, agent, own);
   report.attempts += own.attempts;
   report.seconds += own.seconds;
@@ -212,13 +213,12 @@ bool Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
   } else if (belief_.box(item) && !own.sends.empty()) {
     repacked_.push_back({own.planned, layout_.X_WT.inverse() * belief_.box(item)->X_WP});
   }
-  return !own.sends.empty();
+  return robot_.time > begin;
 }
 
 bool Packer::recover(int item, const Planned& planned, std::vector<std::optional<Pose>> before, packing::Agent& agent,
                      ItemReport& report) {
-  int stops = 0, repacked = 0;
-  int set_aside_count = 0;
+  int stops = 0, repacked = 0, set_aside_count = 0;
   bool was_pressed = false;
   const packing::Placement goal = planned.attempt.planned;
   Trouble trouble = find_trouble(item, goal, before, report);
@@ -309,7 +309,7 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
     if (culprit != item && remedy != Remedy::PressLevel) before[static_cast<std::size_t>(culprit)] = pose_of(culprit);
     trouble = find_trouble(item, goal, before, report);
   }
-  if (trouble == Trouble::None) {
+  if (trouble == Trouble::None || trouble == Trouble::NeighbourMoved) {
     report.end = ItemEnd::Placed;
   } else {
     give_up(item, trouble, report);

@@ -239,6 +239,22 @@ TEST(Packer, PacksANeighbourAnewThatWasMovedToWhereItCostsMuch) {
   EXPECT_EQ(result.plan.back().item, "BOX027") << "packed after the other one";
 }
 
+TEST(Packer, AFastRobotTurnsABoxOnlyWhereThatIsWorthIt) {
+  SessionOptions options = foresighted_options();
+  const auto flips = [&](double turn_cost) {
+    ScriptedPlant plant;
+    model::RehearsalSettings rehearsal;
+    rehearsal.turn_cost = turn_cost;
+    const SessionResult result = pack(plant, 1, options, rehearsal);
+    EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
+    return result.items[0].flips;
+  };
+  EXPECT_GT(flips(100.0), 0) << "with the lag it costs nothing";
+  options.simulation.controller = motion::ControllerKind::Fast;
+  EXPECT_GT(flips(0.0), 0);
+  EXPECT_EQ(flips(100.0), 0);
+}
+
 TEST(Packer, PlansABoxAnewThatItSetAside) {
   ScriptedPlant plant;
   plant.ends = {EndReason::VacuumLost};

@@ -63,14 +63,14 @@ TEST(Recovery, ABoxThatFallsWhileCarriedIsNoticedAndTheSessionGoesOn) {
   EXPECT_FALSE(trial.session.failure) << trial.session.failure.text;
 }
 
-TEST(Recovery, ADisplacedBoxIsSeenAndWhatFollowsIsPlannedAroundIt) {
+TEST(Recovery, ADisplacedBoxIsSeenAndLeavesNothingInTheWay) {
   const Trial trial = run_with("displace@2");
   EXPECT_FALSE(recoveries_of(trial, 2).empty());
   EXPECT_EQ(trial.executed_boxes, 3) << trial.session.stopped;
   expect_nothing_in_the_way(trial);
 }
 
-TEST(Recovery, APushedNeighbourIsSeenAndWhatFollowsIsPlannedAroundIt) {
+TEST(Recovery, APushedNeighbourIsSeenAndLeavesNothingInTheWay) {
   const Trial trial = run_with("push@2");
   EXPECT_FALSE(recoveries_of(trial, 2).empty());
   EXPECT_EQ(trial.executed_boxes, 3) << trial.session.stopped;
