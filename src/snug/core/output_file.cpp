@@ -21,12 +21,12 @@
 #include "snug/core/file_lock.hpp"
 #include "snug/core/follow_links.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/signals_held.hpp"
 
 namespace snug {
 namespace {
 
 constexpr const char* kDraftSuffix = ".snug-part";
-constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 /// Paths of drafts for the handler of signals, which may neither lock nor allocate. Beyond so many at a time (no verb
 /// has them) a draft may be left behind.
@@ -70,23 +70,6 @@ void remove_drafts(int signal) {
   ::raise(signal);  // SA_RESETHAND: now it ends the program
 }
 
-/// Holds back the signals that remove drafts: a draft that exists is registered, or is about to be when they come.
-class SignalsHeld {
- public:
-  SignalsHeld() {
-    sigset_t held;
-    ::sigemptyset(&held);
-    for (const int signal : kEnding) ::sigaddset(&held, signal);
-    ::pthread_sigmask(SIG_BLOCK, &held, &before_);
-  }
-  ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsHeld(const SignalsHeld&) = delete;
-  SignalsHeld& operator=(const SignalsHeld&) = delete;
-
- private:
-  sigset_t before_ = {};
-};
-
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw InputError(path.empty() ? "a file to write" : path.string(), "", why, "a file that can be written");
 }
@@ -125,7 +108,7 @@ Descriptor create_draft(const std::filesystem::path& path, const std::filesystem
 class Draft {
  public:
   Draft(const std::filesystem::path& path, std::filesystem::path location) : location_(std::move(location)) {
-    const SignalsHeld held;
+    const SignalsHeld held;  // a draft that exists is registered, or is about to be when they come
     descriptor_ = create_draft(path, location_);
     registration_.set(location_.string());
   }
@@ -250,7 +233,7 @@ void OutputFile::publish() {
 }
 
 void remove_drafts_when_interrupted() {
-  for (const int signal : kEnding) {
+  for (const int signal : kEndingSignals) {
     struct sigaction before = {}, action = {};
     if (::sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) continue;  // nohup, background jobs
     action.sa_handler = remove_drafts;
