@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -21,42 +22,47 @@
 #include "snug/core/file_lock.hpp"
 #include "snug/core/follow_links.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/core/signals_held.hpp"
 
 namespace snug {
 namespace {
 
 constexpr const char* kDraftSuffix = ".snug-part";
+constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 /// Paths of drafts for the handler of signals, which may neither lock nor allocate. Beyond so many at a time (no verb
-/// has them) a draft may be left behind.
+/// has them) a draft may be left behind. Busy: a thread creates, moves or removes the draft; that thread holds the
+/// signals back, so a handler in another one can wait for it.
 struct DraftSlot {
-  enum State : int { Free, Taken, Ready };
+  enum State : int { Free, Busy, Ready };
   std::atomic<int> state{Free};
   std::array<char, PATH_MAX> path{};
 };
 std::array<DraftSlot, 16> g_drafts;
+std::atomic<bool> g_is_ending{false};  ///< a handler runs
 
 class Registration {
  public:
   Registration() = default;
-  ~Registration() { reset(); }
+  ~Registration() { set(DraftSlot::Free); }
   Registration(const Registration&) = delete;
   Registration& operator=(const Registration&) = delete;
 
-  void set(const std::string& path) {
+  /// A busy one.
+  void take(const std::string& path) {
     for (DraftSlot& slot : g_drafts) {
       int free = DraftSlot::Free;
-      if (path.size() >= slot.path.size() || !slot.state.compare_exchange_strong(free, DraftSlot::Taken)) continue;
+      if (path.size() >= slot.path.size() || !slot.state.compare_exchange_strong(free, DraftSlot::Busy)) continue;
       std::memcpy(slot.path.data(), path.c_str(), path.size() + 1);
-      slot.state = DraftSlot::Ready;
       slot_ = &slot;
-      return;
+      break;
     }
+    if (!g_is_ending) return;  // else the handler may have passed the slot
+    set(DraftSlot::Free);
+    while (true) ::pause();  // the program ends
   }
-  void reset() {
-    if (slot_ != nullptr) slot_->state = DraftSlot::Free;
-    slot_ = nullptr;
+  void set(DraftSlot::State state) {
+    if (slot_ != nullptr) slot_->state = state;
+    if (state == DraftSlot::Free) slot_ = nullptr;
   }
 
  private:
@@ -64,11 +70,32 @@ class Registration {
 };
 
 void remove_drafts(int signal) {
+  constexpr timespec kMoment{0, 1'000'000};
+  constexpr int kMoments = 1000;  // a file system that does not answer keeps nobody from ending the program
+  g_is_ending = true;
   for (const DraftSlot& slot : g_drafts) {
+    for (int i = 0; i < kMoments && slot.state == DraftSlot::Busy; ++i) ::nanosleep(&kMoment, nullptr);
     if (slot.state == DraftSlot::Ready) ::unlink(slot.path.data());
   }
   ::raise(signal);  // SA_RESETHAND: now it ends the program
 }
+
+/// Holds back the signals that remove drafts from this thread, while it is busy with one.
+class SignalsHeld {
+ public:
+  SignalsHeld() {
+    sigset_t held;
+    ::sigemptyset(&held);
+    for (const int signal : kEnding) ::sigaddset(&held, signal);
+    ::pthread_sigmask(SIG_BLOCK, &held, &before_);
+  }
+  ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsHeld(const SignalsHeld&) = delete;
+  SignalsHeld& operator=(const SignalsHeld&) = delete;
+
+ private:
+  sigset_t before_ = {};
+};
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw InputError(path.empty() ? "a file to write" : path.string(), "", why, "a file that can be written");
@@ -108,14 +135,16 @@ Descriptor create_draft(const std::filesystem::path& path, const std::filesystem
 class Draft {
  public:
   Draft(const std::filesystem::path& path, std::filesystem::path location) : location_(std::move(location)) {
-    const SignalsHeld held;  // a draft that exists is registered, or is about to be when they come
+    const SignalsHeld held;
+    registration_.take(location_.string());
     descriptor_ = create_draft(path, location_);
-    registration_.set(location_.string());
+    registration_.set(DraftSlot::Ready);
   }
   ~Draft() {
     const SignalsHeld held;
-    registration_.reset();
+    registration_.set(DraftSlot::Busy);
     if (!is_moved_ && names_file(location_, descriptor_.get())) ::unlink(location_.c_str());
+    registration_.set(DraftSlot::Free);
   }
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
@@ -127,8 +156,10 @@ class Draft {
       return false;
     }
     const SignalsHeld held;
-    registration_.reset();
-    if (::rename(location_.c_str(), place.c_str()) != 0) return false;
+    registration_.set(DraftSlot::Busy);
+    const bool has_moved = ::rename(location_.c_str(), place.c_str()) == 0;
+    registration_.set(has_moved ? DraftSlot::Free : DraftSlot::Ready);
+    if (!has_moved) return false;
     location_ = place;
     is_moved_ = true;
     return true;
@@ -233,7 +264,7 @@ void OutputFile::publish() {
 }
 
 void remove_drafts_when_interrupted() {
-  for (const int signal : kEndingSignals) {
+  for (const int signal : kEnding) {
     struct sigaction before = {}, action = {};
     if (::sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) continue;  // nohup, background jobs
     action.sa_handler = remove_drafts;

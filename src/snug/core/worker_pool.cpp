@@ -4,8 +4,6 @@
 #include <chrono>
 #include <system_error>
 
-#include "snug/core/signals_held.hpp"
-
 namespace snug {
 namespace {
 
@@ -27,7 +25,6 @@ bool await(const Condition& condition) {
 }  // namespace
 
 WorkerPool::WorkerPool(int threads) {
-  const SignalsHeld held;  // for the helpers: who creates a draft holds them back, and no other thread may take them
   try {
     for (int worker = 1; worker < threads; ++worker) helpers_.emplace_back([this, worker] { help(worker); });
   } catch (const std::system_error&) {  // no more threads: those that there are do it

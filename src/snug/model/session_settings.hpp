@@ -80,8 +80,9 @@ struct RehearsalSettings {
   /// Success expected of a motion before anything is rehearsed. From sessions in plants 101 and up.
   double prior_rate = 0.97;
   double prior_count = 4.0;  ///< how many rollouts that is worth; from the same sessions
-  /// Percent of the container, of fast motions only: what a place is worth less for which the box has to be turned.
-  double turn_cost = 0.5;
+  /// Percent of the container, fast motions alone: taken off what a place is expected to fill when the box has to be
+  /// reoriented for it.
+  double reorientation_cost = 0.5;
 
   template <class Archive>
   void fields(Archive& a) {
@@ -95,7 +96,7 @@ struct RehearsalSettings {
     a("coarse_steps", coarse_steps, Within{1, 16});
     a("prior_rate", prior_rate, Range::Fraction);
     a("prior_count", prior_count, Within{0.0, 10000.0});
-    a("turn_cost", turn_cost, Within{0.0, 100.0});
+    a("reorientation_cost", reorientation_cost, Within{0.0, 100.0});
   }
   bool operator==(const RehearsalSettings&) const = default;
 };
@@ -133,16 +134,18 @@ struct RecoverySettings {
   int most_stops = 3;                            ///< protective stops of one item; then the session ends
   int most_pictures = 3;                         ///< that tell nothing, one after the other
   double lies_turned = 0.25 * std::numbers::pi;  ///< rad, from what was planned: it takes room meant for others
-  /// Percent of the container in the end, by which more must be expected of another place to pick a packed box again.
+  /// Percent of the container: a moved box is picked again where the filling expected in the end is larger by more than
+  /// this with the box in another place.
   double gain_elsewhere = 1.0;
   double as_rehearsed = 0.004;        ///< m, from where the nominal rollout let the box go on the way
   double turned_as_rehearsed = 0.05;  ///< rad, from how it lay there
   /// m: edges that differ by more are another item's. Tapes and damp make 2 mm of the demonstrator's.
   double wrong_size = 0.010;
-  double aside = 0.025;           ///< m, from both plates of the aligner: a box that is put back to it
-  double at_aligner = 0.050;      ///< m, from where it was seen to arrive: still against the plates
-  double on_bench = 0.200;        ///< m, level, from the middle of the surface where boxes are turned
-  double on_surface = 0.030;      ///< m, of its lower face over that surface
+  double return_distance =
+      0.025;                  ///< m, from both plates of the aligner: where a box that is returned to it is put down
+  double at_aligner = 0.050;  ///< m, from where it was seen to arrive: still against the plates
+  double on_bench = 0.200;    ///< m, level, from the middle of the surface where boxes are turned
+  double on_surface = 0.030;  ///< m, of its lower face over that surface
   double under_obstacle = 0.005;  ///< m, an obstacle that shares less with a box in plan view is beside it
   double footprint = 0.030;       ///< m, a middle so far beyond the walls still is the container's affair
 
@@ -158,7 +161,7 @@ struct RecoverySettings {
     a("as_rehearsed", as_rehearsed, Within{0.0, 1.0});
     a("turned_as_rehearsed", turned_as_rehearsed, Within{0.0, 3.2});
     a("wrong_size", wrong_size, Within{0.0, 1.0});
-    a("aside", aside, Within{0.0, 1.0});
+    a("return_distance", return_distance, Within{0.0, 1.0});
     a("at_aligner", at_aligner, Within{0.0, 1.0});
     a("on_bench", on_bench, Within{0.0, 2.0});
     a("on_surface", on_surface, Within{0.0, 1.0});

@@ -12,7 +12,7 @@ struct PickParams {
   double seal_margin = 0.001;   ///< m, of the face around the cup's sealing disc, where the face has room for it
   double above_travel = 0.020;  ///< m, of the free cup's lip over the travel height, before
   double above_box = 0.030;     ///< m, of that lip over a box that was just let go
-  double max_lean = 0.26;       ///< rad, from level: what leans more is not picked but to set it aside
+  double max_lean = 0.26;       ///< rad, from level: what leans more is picked to return it to the aligner alone
   double leaning_lift = 0.030;  ///< m, along the face's normal, before a box that leans is brought level
 
   template <class Archive>

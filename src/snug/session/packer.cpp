@@ -221,7 +221,7 @@ bool Packer::can_be_picked(int item) const {
 /// the box costs.
 double Packer::utility_of(const packing::Candidate& candidate, double rate) const {
   double expected = candidate.expected_percent > 0.0 ? candidate.expected_percent : 100.0;
-  if (layout_.is_fast && candidate.placement.flips > 0) expected -= scenario_.rehearsal.turn_cost;
+  if (layout_.is_fast && candidate.placement.flips > 0) expected -= scenario_.rehearsal.reorientation_cost;
   return rate * expected + (1.0 - rate) * packing::filling_percent(container_state());
 }
 
@@ -234,7 +234,7 @@ bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
 
 std::optional<Attempt> Packer::best_attempt(int item, Location location, std::vector<packing::Candidate> candidates,
                                             double least_percent, ItemReport& report) {
-  if (layout_.is_fast && scenario_.rehearsal.turn_cost > 0.0)  // else they are in the agent's order
+  if (layout_.is_fast && scenario_.rehearsal.reorientation_cost > 0.0)  // else they are in the agent's order
     std::ranges::stable_sort(candidates, std::greater(), [this](const auto& one) { return utility_of(one, 1.0); });
   const packing::ContainerState state = state_without(item);
   const double top = obstacle_top(item);

@@ -34,8 +34,8 @@ class Packer {
   [[nodiscard]] bool is_seen_outside(const std::string& id) const;
   /// Nothing is believed of where it is: its place was seen and is empty, or it was let go unseen.
   [[nodiscard]] bool is_gone(const std::string& id) const { return !belief_.box(index_of(id)); }
-  /// It was packed before and was put back to the aligner.
-  [[nodiscard]] bool is_set_aside(const std::string& id) const { return aside_.contains(index_of(id)); }
+  /// It was packed before and was returned to the aligner.
+  [[nodiscard]] bool was_returned(const std::string& id) const { return returned_.contains(index_of(id)); }
   /// Everything for one item, from its arrival to what became of it.
   [[nodiscard]] ItemReport bring_in(int item, packing::Agent& agent);
   /// The tool back at its start, or why it did not get there.
@@ -134,12 +134,12 @@ class Packer {
   /// The held box, as it hangs for `planned`, to the bench.
   void set_down(const Planned& planned, ItemReport& report);
   /// Back to the aligner: held as it hangs for `planned`, or picked where it lies.
-  void set_aside(int item, const Planned* planned, ItemReport& report);
-  [[nodiscard]] bool can_set_aside(int item) const;
+  void return_to_aligner(int item, const Planned* planned, ItemReport& report);
+  [[nodiscard]] bool can_return(int item) const;
   /// A pick of the box where it lies or leans, so that it can be put down like R_WP.
-  [[nodiscard]] std::vector<motion::Waypoint> plan_pick_to_set_aside(int item, const Matrix3& R_WP) const;
+  [[nodiscard]] std::vector<motion::Waypoint> plan_pick_to_return(int item, const Matrix3& R_WP) const;
   /// How a box that lies or leans is put down to the aligner.
-  [[nodiscard]] Matrix3 rotation_aside(int item) const;
+  [[nodiscard]] Matrix3 rotation_at_aligner(int item) const;
   /// Another box, that sticks out or was moved, once more: to a place that is planned anew.
   /// False: no way was found, and nothing was moved.
   bool repack(int item, packing::Agent& agent, ItemReport& report);
@@ -166,7 +166,7 @@ class Packer {
   std::set<int> left_out_;            ///< of them, those that stick out and that nothing more is done about
   std::vector<Repacked> repacked_;
   std::vector<int> handled_;  ///< under way now: the item that came, and boxes that are packed anew because of it
-  std::set<int> aside_;       ///< packed before, and put back to the aligner
+  std::set<int> returned_;    ///< packed before, and returned to the aligner
   int let_go_ = -1;           ///< item that fell, or was let go, before its motion ended: to be found at the next look
   plant::Feedback robot_;
   motion::Program sent_;

@@ -131,13 +131,11 @@ Trouble Packer::assess(int item, const packing::Placement& planned, const std::v
   if (locate(item) != Location::Container) return Trouble::OffPlace;  // nothing there is to be pressed on
   const int neighbour = who_was_moved(item, before);
   const bool may_lie_on_it = neighbour >= 0 && belief_.box(neighbour)->X_WP.p.z() > box->X_WP.p.z();
-  const bool is_off = report.position_error > limits_.position || tilt_of(item) > limits_.tilt;
-  if (may_lie_on_it && is_off) return Trouble::NeighbourMoved;
+  const bool is_off_place = report.position_error > limits_.position || report.angle_error > limits_.tilt;
+  if (may_lie_on_it && is_off_place) return Trouble::NeighbourMoved;
   if (tilt_of(item) > limits_.tilt) return Trouble::Leaning;
   if (who_sticks_out(item) >= 0) return Trouble::SticksOut;
-  if (report.position_error > limits_.position || report.angle_error > limits_.tilt) {
-    return Trouble::OffPlace;
-  }
+  if (is_off_place) return Trouble::OffPlace;
   return neighbour >= 0 ? Trouble::NeighbourMoved : Trouble::None;
 }
 
@@ -176,7 +174,7 @@ ItemReport Packer::bring_in(int item, packing::Agent& agent) {
   const bool is_refused = report.end == ItemEnd::WrongItem;
   if (!is_refused) bring_to_place(item, agent, report);
   const bool is_taken_away = report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless ||
-                             report.end == ItemEnd::NotHeld || report.end == ItemEnd::SetAside;
+                             report.end == ItemEnd::NotHeld || report.end == ItemEnd::Returned;
   if (is_taken_away || is_refused || report.end == ItemEnd::Gone)
     belief_.forget(item);  // the next arrival takes it away
   if (!report.is_packed()) skipped_.push_back(report.id);
@@ -197,9 +195,9 @@ void Packer::bring_to_place(int item, packing::Agent& agent, ItemReport& report)
     const std::optional<Planned> planned = plan(item, agent, report);
     if (!planned) {
       leave(item, report);
-      if (report.end == ItemEnd::Left && can_set_aside(item)) {
-        set_aside(item, nullptr, report);
-        if (robot_.end.reason == plant::EndReason::Completed) report.end = ItemEnd::SetAside;
+      if (report.end == ItemEnd::Left && can_return(item)) {
+        return_to_aligner(item, nullptr, report);
+        if (robot_.end.reason == plant::EndReason::Completed) report.end = ItemEnd::Returned;
       }
       break;
     }

@@ -17,7 +17,7 @@ using motion::MotionClass;
 
 /// Boxes under way at once: the item that came, one that it moved, one that this one moved.
 constexpr std::size_t kMostHandled = 3;
-constexpr int kMostSetAsides = 2;  ///< for one motion: the first may push a box that leans over
+constexpr int kMostReturns = 2;  ///< for one motion: the first may push a box that leans over
 
 Trouble trouble_of(plant::EndReason reason) {
   switch (reason) {
@@ -71,8 +71,8 @@ void Packer::give_up(int item, Trouble trouble, ItemReport& report) {
 void Packer::leave(int item, ItemReport& report) const {
   if (std::ranges::find(order_, item) == order_.end()) return;
   if (locate(item) == Location::Aligner) {
-    const bool is_aside = !report.recoveries.empty() && report.recoveries.back().remedy == Remedy::SetAside;
-    report.end = is_aside ? ItemEnd::SetAside : ItemEnd::NotHeld;
+    const bool was_returned = !report.recoveries.empty() && report.recoveries.back().remedy == Remedy::ReturnToAligner;
+    report.end = was_returned ? ItemEnd::Returned : ItemEnd::NotHeld;
   } else {
     report.end = fit_of(item, belief_.box(item)->X_WP).is_in ? ItemEnd::Accepted : ItemEnd::Left;
   }
@@ -98,7 +98,7 @@ Situation Packer::situation_of(int item, Trouble trouble, packing::Agent& agent,
   at.leans = belief_.box(item) && locate(item) == Location::Container && tilt_of(item) > limits_.tilt;
   at.lies_turned = report.angle_error > scenario_.recovery.lies_turned;
   at.can_be_picked = can_be_picked(item);
-  if (at.fits) at.gain_elsewhere = gain_elsewhere(item, agent);
+  if (at.fits && !at.is_held) at.gain_elsewhere = gain_elsewhere(item, agent);
   return at;
 }
 
@@ -144,13 +144,13 @@ void Packer::set_down(const Planned& planned, ItemReport& report) {
   put_down(carried, *layout_.flip_place, {lift(carried)}, report);
 }
 
-Matrix3 Packer::rotation_aside(int item) const {
+Matrix3 Packer::rotation_at_aligner(int item) const {
   const Matrix3& R_WA = scenario_.aligner->X_WA.R;
   const Matrix3& R_WP = belief_.box(item)->X_WP.R;
   return R_WA * packing::rotation(packing::nearest_orientation(R_WA.transpose() * skills::leveling(R_WP) * R_WP));
 }
 
-std::vector<motion::Waypoint> Packer::plan_pick_to_set_aside(int item, const Matrix3& R_WP) const {
+std::vector<motion::Waypoint> Packer::plan_pick_to_return(int item, const Matrix3& R_WP) const {
   const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const Pose& X_WP = belief_.box(item)->X_WP;
   const Pose X_WP_next{R_WP, scenario_.aligner->X_WA.p};
@@ -160,27 +160,27 @@ std::vector<motion::Waypoint> Packer::plan_pick_to_set_aside(int item, const Mat
   return plan_leaning_pick(belief_.nominal(), layout_, box, X_WP, X_WP_next, travel);
 }
 
-bool Packer::can_set_aside(int item) const {
+bool Packer::can_return(int item) const {
   if (is_holding()) return true;
   if (!belief_.box(item) || is_under_obstacle(item) || locate(item) == Location::Aligner) return false;
-  return !reaches_ || std::ranges::all_of(plan_pick_to_set_aside(item, rotation_aside(item)), [&](const auto& row) {
+  return !reaches_ || std::ranges::all_of(plan_pick_to_return(item, rotation_at_aligner(item)), [&](const auto& row) {
     return reaches_({row.X_WE(), row.X_WE()});
   });
 }
 
-void Packer::set_aside(int item, const Planned* planned, ItemReport& report) {
+void Packer::return_to_aligner(int item, const Planned* planned, ItemReport& report) {
   belief_.doubt_prediction();
   let_go_ = item;
   const skills::PlannedBox box = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const Pose& X_WA = scenario_.aligner->X_WA;
   const Pose& X_WP = belief_.box(item)->X_WP;
   const bool is_held = planned != nullptr && is_holding();
-  const Matrix3 R_WP = is_held ? Matrix3(X_WA.R * planned->attempt.planned.X_TP.R) : rotation_aside(item);
+  const Matrix3 R_WP = is_held ? Matrix3(X_WA.R * planned->attempt.planned.X_TP.R) : rotation_at_aligner(item);
   Carried carried{box, R_WP, Pose{}, std::nullopt};
   const Pose arrival = cell::arrival_pose(belief_.nominal(), belief_.sequence().items[static_cast<std::size_t>(item)]);
-  const Vector3 aside =
-      Vector3::Constant(scenario_.recovery.aside) + 0.5 * ((X_WA.R.transpose() * R_WP).cwiseAbs() * box.size);
-  skills::FlipPlace place{X_WA * aside, Vector3::UnitX()};
+  const Vector3 middle =
+      Vector3::Constant(scenario_.recovery.return_distance) + 0.5 * ((X_WA.R.transpose() * R_WP).cwiseAbs() * box.size);
+  skills::FlipPlace place{X_WA * middle, Vector3::UnitX()};
   place.p_WF.z() = arrival.p.z() + skills::lowest_corner(arrival.R, box.size);
   std::vector<motion::Waypoint> rows;
   if (is_held) {
@@ -188,7 +188,7 @@ void Packer::set_aside(int item, const Planned* planned, ItemReport& report) {
     carried.swing = planned->attempt.swing;
     rows = {lift(carried)};
   } else {
-    rows = plan_pick_to_set_aside(item, R_WP);
+    rows = plan_pick_to_return(item, R_WP);
     const auto pick = std::ranges::find(rows, MotionClass::RePick, &motion::Waypoint::motion_class);
     const Pose X_ES{Matrix3::Identity(), cup::pick_length(scenario_.cup) * Vector3::UnitZ()};
     carried.X_PS = X_WP.inverse() * pick->X_WE() * X_ES;
@@ -207,7 +207,7 @@ bool Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
   if (robot_.end.reason != plant::EndReason::Completed) retreat(own.id, report);
   if (belief_.box(item) && locate(item) == Location::Aligner) {
     belief_.forget(item);  // the next arrival takes it away
-    aside_.insert(item);
+    returned_.insert(item);
   } else if (belief_.box(item) && is_seen_outside(own.id)) {
     left_out_.insert(item);
   } else if (belief_.box(item) && !own.sends.empty()) {
@@ -218,7 +218,7 @@ bool Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
 
 bool Packer::recover(int item, const Planned& planned, std::vector<std::optional<Pose>> before, packing::Agent& agent,
                      ItemReport& report) {
-  int stops = 0, repacked = 0, set_aside_count = 0;
+  int stops = 0, repacked = 0, returns = 0;
   bool was_pressed = false;
   const packing::Placement goal = planned.attempt.planned;
   Trouble trouble = find_trouble(item, goal, before, report);
@@ -235,13 +235,13 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
       at.lies_on_others = was_lifted(culprit, before);
     }
     at.stops = stops;
-    at.can_set_aside = set_aside_count < kMostSetAsides && can_set_aside(culprit);
+    at.can_return = returns < kMostReturns && can_return(culprit);
     at.was_pressed = was_pressed || (belief_.box(culprit) && is_under_obstacle(culprit));
     const Remedy remedy = choose_remedy(at, scenario_.recovery);
     const bool is_of_motion = trouble_of(robot_.end.reason) == trouble;
     std::string detail = is_of_motion ? plant::describe(robot_.end, last_) : std::string();
     if (culprit != item) detail = items_[static_cast<std::size_t>(culprit)].id;
-    if (at.gain_elsewhere > 0.0)
+    if (at.gain_elsewhere > 0.05)
       detail += fmt::format("{}{:.1f} % more expected elsewhere", detail.empty() ? "" : ", ", at.gain_elsewhere);
     report.recoveries.push_back({robot_.time, report.id, trouble, remedy, std::move(detail)});
     switch (remedy) {
@@ -255,9 +255,9 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
         repacked = repack(culprit, agent, report) ? repacked + 1 : scenario_.recovery.most_tries;
         was_pressed = false;
         break;
-      case Remedy::SetAside:
-        ++set_aside_count;
-        set_aside(culprit, culprit == item ? &planned : nullptr, report);
+      case Remedy::ReturnToAligner:
+        ++returns;
+        return_to_aligner(culprit, culprit == item ? &planned : nullptr, report);
         if (robot_.end.reason != plant::EndReason::Completed) break;
         look(report);
         if (belief_.box(culprit) && locate(culprit) != Location::Aligner) break;  // it did not come there
@@ -270,10 +270,10 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
         }
         belief_.forget(culprit);  // the next arrival takes it away
         if (culprit != item) {
-          aside_.insert(culprit);
+          returned_.insert(culprit);
           break;
         }
-        report.end = ItemEnd::SetAside;
+        report.end = ItemEnd::Returned;
         report.reason = name_of(trouble);
         return false;
       case Remedy::Skip:

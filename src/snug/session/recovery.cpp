@@ -6,13 +6,13 @@ namespace {
 
 Remedy where_it_lies(const Situation& at, const model::RecoverySettings& settings) {
   const bool may_pick = at.can_be_picked && at.tries < settings.most_tries;
-  const bool may_set_aside = at.can_set_aside && at.tries < settings.most_tries;
+  const bool may_return = at.can_return && at.tries < settings.most_tries;
   const bool is_worth_moving = at.gain_elsewhere > settings.gain_elsewhere;
   if (at.fits && !at.lies_turned && !is_worth_moving) return Remedy::Accept;
-  if (at.fits) return may_pick ? Remedy::PickAgain : may_set_aside ? Remedy::SetAside : Remedy::Accept;
+  if (at.fits) return may_pick ? Remedy::PickAgain : may_return ? Remedy::ReturnToAligner : Remedy::Accept;
   if (may_pick) return Remedy::PickAgain;
   if (at.leans && !at.was_pressed) return Remedy::PressLevel;
-  return at.can_set_aside ? Remedy::SetAside : Remedy::Skip;
+  return at.can_return ? Remedy::ReturnToAligner : Remedy::Skip;
 }
 
 }  // namespace
@@ -71,8 +71,8 @@ const char* name_of(Remedy remedy) {
       return "press level";
     case Remedy::Accept:
       return "accept";
-    case Remedy::SetAside:
-      return "set aside";
+    case Remedy::ReturnToAligner:
+      return "return to aligner";
     case Remedy::Skip:
       return "skip";
     case Remedy::LookAgain:
@@ -100,7 +100,7 @@ Remedy choose_remedy(const Situation& at, const model::RecoverySettings& setting
     case Trouble::HoldGuard:
     case Trouble::Timeout:
       if (at.is_held && at.can_set_down && at.tries < settings.most_tries) return Remedy::SetDown;
-      return at.is_held && at.can_set_aside && at.tries >= settings.most_tries ? Remedy::SetAside : Remedy::Release;
+      return at.is_held && at.can_return && at.tries >= settings.most_tries ? Remedy::ReturnToAligner : Remedy::Release;
     case Trouble::NoSeal:
     case Trouble::VacuumLost:
     case Trouble::OffPlace:

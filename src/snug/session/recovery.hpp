@@ -30,18 +30,18 @@ enum class Trouble {
 
 enum class Remedy {
   None,
-  Resume,      ///< acknowledge the stop, and go on with the rest of the motion
-  SetDown,     ///< go up with the box, put it down on the bench, look, plan anew
-  Release,     ///< let go where it is, go up, look
-  PickAgain,   ///< look, plan anew, pick it where it lies
-  PressLevel,  ///< press on it from above, look
-  Accept,      ///< it stays where it lies; what follows is planned around it
-  SetAside,    ///< back to the aligner, from where the next arrival takes it away
-  Skip,        ///< it is left, or taken away; the next item comes
-  LookAgain,   ///< another picture
-  MoveAway,    ///< the tool goes to its start, another picture
-  Believe,     ///< go on with what is believed
-  Stop,        ///< the session ends
+  Resume,           ///< acknowledge the stop, and go on with the rest of the motion
+  SetDown,          ///< go up with the box, put it down on the bench, look, plan anew
+  Release,          ///< let go where it is, go up, look
+  PickAgain,        ///< look, plan anew, pick it where it lies
+  PressLevel,       ///< press on it from above, look
+  Accept,           ///< it stays where it lies; what follows is planned around it
+  ReturnToAligner,  ///< planned anew from there, or taken away by the next arrival
+  Skip,             ///< it is left, or taken away; the next item comes
+  LookAgain,        ///< another picture
+  MoveAway,         ///< the tool goes to its start, another picture
+  Believe,          ///< go on with what is believed
+  Stop,             ///< the session ends
 };
 [[nodiscard]] const char* name_of(Remedy remedy);
 
@@ -52,7 +52,7 @@ struct Situation {
   int stops = 0;                ///< protective stops of this item, this one included
   bool is_held = false;         ///< the vacuum says that something hangs from the cup
   bool can_set_down = false;    ///< there is a bench to put it on
-  bool can_set_aside = false;   ///< held, or pickable elsewhere than at the aligner; not tried before
+  bool can_return = false;      ///< held, or pickable elsewhere than at the aligner; tried twice at most for one motion
   bool fits = false;            ///< it lies in the container, inside walls and rim
   bool leans = false;           ///< in the container, by more than the limit
   bool lies_turned = false;     ///< by more than 45 degrees from its plan: it takes room meant for others

@@ -171,11 +171,11 @@ class Session {
       if (!item.is_packed()) continue;
       const bool is_gone = packer_.is_gone(item.id);
       if (!is_gone && !packer_.is_seen_outside(item.id)) continue;
-      const bool is_aside = packer_.is_set_aside(item.id);
-      item.end = is_aside ? ItemEnd::SetAside : is_gone ? ItemEnd::Gone : ItemEnd::Left;
-      item.reason = is_aside  ? "it was moved, and found no other place"
-                    : is_gone ? "it is not seen any more"
-                              : "it is seen outside the container";
+      const bool was_returned = packer_.was_returned(item.id);
+      item.end = was_returned ? ItemEnd::Returned : is_gone ? ItemEnd::Gone : ItemEnd::Left;
+      item.reason = was_returned ? "it was moved, and no other place was found for it"
+                    : is_gone    ? "it is not seen any more"
+                                 : "it is seen outside the container";
       leave_out_of_plan(item.id);
     }
   }

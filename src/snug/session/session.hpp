@@ -36,7 +36,7 @@ enum class ItemEnd {
   NoPlace,    ///< nothing was found that would come to rest as planned; it was taken away
   Hopeless,   ///< it would not fit into the empty container either, is too heavy or cannot be held
   NotHeld,    ///< every pick failed; it was left behind
-  SetAside,   ///< after tries that failed it was put back to the aligner, and taken away from there
+  Returned,   ///< after tries that failed it was put back to the aligner, and taken away from there
   Left,       ///< it lies where it cannot be picked, or the tries were used up
   Gone,       ///< it is not seen any more
   WrongItem,  ///< another one came in its place; it was taken away

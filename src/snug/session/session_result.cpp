@@ -15,8 +15,8 @@ const char* name_of(ItemEnd end) {
       return "hopeless";
     case ItemEnd::NotHeld:
       return "not held";
-    case ItemEnd::SetAside:
-      return "set aside";
+    case ItemEnd::Returned:
+      return "returned";
     case ItemEnd::Left:
       return "left";
     case ItemEnd::Gone:

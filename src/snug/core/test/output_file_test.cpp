@@ -9,6 +9,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "snug/core/csv_cell.hpp"
 #include "snug/core/file_lock.hpp"
@@ -276,17 +277,18 @@ TEST(OutputFile, RemovesDraftsWhenTheProgramIsInterrupted) {
 
 TEST(OutputFile, RemovesDraftsWheneverTheInterruptComes) {
   const ScratchFolder folder;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 120; ++round) {
     const pid_t child = ::fork();
     if (child == 0) {
       remove_drafts_when_interrupted();
+      if (round % 2 == 1) std::thread([] { ::pause(); }).detach();  // takes signals that the first thread holds back
       for (int i = 0;; ++i) {
         OutputFile file(folder / "a");
         if (i % 2 == 0) file.publish();
       }
     }
     while (!fs::exists(folder / "a")) ::usleep(100);
-    ::usleep(static_cast<useconds_t>(37 * round));
+    ::usleep(static_cast<useconds_t>(37 * (round / 2)));
     ::kill(child, SIGTERM);
     int status = 0;
     ::waitpid(child, &status, 0);

@@ -1,133 +1,12 @@
-// Contact detection: manifolds of near pairs, kept while the pair hardly moves, with impulses handed on by feature.
+// Contact detection: the contacts that can matter within a step, and what they wake.
 #include <algorithm>
-#include <cmath>
 
-#include "snug/physics/internal/scratch.hpp"
+#include "snug/physics/internal/pair_manifold.hpp"
 
 namespace snug::physics::internal {
 namespace {
 
-// A manifold is kept while its bodies moved less than this relative to each other since it was found. Its gaps are
-// still followed exactly to first order; the neglected part is angle^2 * size, below 1e-8 m for a 0.3 m box.
-constexpr double kKeepDistance = 5e-5;   ///< m
-constexpr double kKeepHalfAngle = 5e-5;  ///< rad/2
-constexpr double kTouchGap = 1e-5;       ///< m, a pair nearer than this at the end of a step wakes sleepers
-constexpr double kMatchDistance = 4e-3;  ///< m, impulses are handed to a new feature this near to an old one
-
-struct PairBodies {
-  int a, b;
-  const Geom& geom_a;
-  const Geom& geom_b;
-};
-
-PairBodies bodies_of(const WorldModel& model, const PairState& pair) {
-  const WorldModel::GeomRef& a = model.geoms[pair.geom_a];
-  const WorldModel::GeomRef& b = model.geoms[pair.geom_b];
-  return {a.body, b.body, model.bodies[static_cast<std::size_t>(a.body)].geoms[static_cast<std::size_t>(a.geom)],
-          model.bodies[static_cast<std::size_t>(b.body)].geoms[static_cast<std::size_t>(b.geom)]};
-}
-
-struct RelativePose {
-  Vector3 p;
-  Quaternion quat;
-};
-
-RelativePose relative_pose(const BodyWork& a, const BodyState& state_a, const BodyWork& b, const BodyState& state_b) {
-  return {a.R_WB.transpose() * (b.p_WB - a.p_WB), state_a.quat_WB.conjugate() * state_b.quat_WB};
-}
-
-bool has_kept(const PairState& pair, const RelativePose& now, double reach) {
-  if (!pair.is_known || pair.margin < reach) return false;
-  if ((now.p - pair.p_AB).squaredNorm() > kKeepDistance * kKeepDistance) return false;
-  // |sin(angle/2)|^2 of the rotation between then and now.
-  const double along = now.quat.dot(pair.quat_AB);
-  const double square = (now.quat.coeffs() - std::copysign(1.0, along) * pair.quat_AB.coeffs()).squaredNorm();
-  return square <= kKeepHalfAngle * kKeepHalfAngle;
-}
-
-/// Two unit vectors that complete n; depends on n alone.
-Vector3 tangent_of(const Vector3& n) {
-  int smallest = 0;
-  for (int i = 1; i < 3; ++i) {
-    if (std::abs(n[i]) < std::abs(n[smallest])) smallest = i;
-  }
-  return n.cross(Vector3::Unit(smallest)).normalized();
-}
-
-using Impulse = std::array<double, 3>;
-
-void turn(const Matrix3& R, const Impulse& from, Impulse& to) {
-  Eigen::Map<Vector3>(to.data()) = R * Eigen::Map<const Vector3>(from.data());
-}
-
-/// Impulses of the old manifold, turned into the axes of the new one, for the new points: same feature first, else the
-/// nearest old point.
-void hand_on_impulses(const PairState& old, const Matrix3& R_new_old, PairState& pair) {
-  const int old_count = old.count;
-  std::uint32_t used = 0;
-  for (int i = 0; i < pair.count; ++i) {
-    const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
-    for (int j = 0; j < old_count; ++j) {
-      if ((used >> j & 1U) == 0 && old.points[static_cast<std::size_t>(j)].feature == point.feature) {
-        turn(R_new_old, old.impulses[static_cast<std::size_t>(j)], pair.impulses[static_cast<std::size_t>(i)]);
-        used |= 1U << j;
-        break;
-      }
-    }
-  }
-  for (int i = 0; i < pair.count && used != (1U << old_count) - 1U; ++i) {
-    const PairPoint& point = pair.points[static_cast<std::size_t>(i)];
-    if (pair.impulses[static_cast<std::size_t>(i)] != Impulse{}) continue;
-    int best = -1;
-    double best_square = kMatchDistance * kMatchDistance;
-    for (int j = 0; j < old_count; ++j) {
-      const double square = (old.points[static_cast<std::size_t>(j)].p_A - point.p_A).squaredNorm();
-      if ((used >> j & 1U) == 0 && square < best_square) {
-        best_square = square;
-        best = j;
-      }
-    }
-    if (best < 0) continue;
-    turn(R_new_old, old.impulses[static_cast<std::size_t>(best)], pair.impulses[static_cast<std::size_t>(i)]);
-    used |= 1U << best;
-  }
-}
-
-/// Columns n, t1, t2 of a pair, in A.
-Matrix3 axes_of(const PairState& pair) {
-  Matrix3 axes;
-  axes << pair.n_A, pair.t_A, pair.n_A.cross(pair.t_A);
-  return axes;
-}
-
-void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& b, double margin,
-                   const RelativePose& now, PairState& pair) {
-  const Pose X_WA{a.R_WB, a.p_WB}, X_WB{b.R_WB, b.p_WB};
-  geometry::Manifold manifold;
-  geometry::collide(bodies.geom_a.shape, X_WA * bodies.geom_a.X_BG, bodies.geom_b.shape, X_WB * bodies.geom_b.X_BG,
-                    margin, pair.cache, manifold);
-  const PairState old = pair;
-  pair.is_known = true;
-  pair.p_AB = now.p;
-  pair.quat_AB = now.quat;
-  pair.margin = margin;
-  pair.face_area = manifold.face_area;
-  pair.n_A = a.R_WB.transpose() * manifold.n_AB_W;
-  pair.t_A = tangent_of(pair.n_A);
-  pair.count = manifold.count;
-  for (int i = 0; i < manifold.count; ++i) {
-    const geometry::ManifoldPoint& found = manifold.points[static_cast<std::size_t>(i)];
-    PairPoint& point = pair.points[static_cast<std::size_t>(i)];
-    point.p_A = a.R_WB.transpose() * (found.p_WA - a.p_WB);
-    point.p_B = b.R_WB.transpose() * (found.p_WB - b.p_WB);
-    point.feature = found.feature;
-    pair.impulses[static_cast<std::size_t>(i)] = {};
-  }
-  if (old.count == 0 || pair.count == 0) return;
-  const Matrix3 R_new_old = axes_of(pair).transpose() * axes_of(old);
-  hand_on_impulses(old, R_new_old, pair);
-  pair.turning.moment = R_new_old * old.turning.moment;
-}
+constexpr double kTouchGap = 1e-5;  ///< m, a pair nearer than this at the end of a step wakes sleepers
 
 double approach_at(const Vector3& p_WQ, const Vector3& n, const BodyWork& a, const BodyWork& b) {
   const Vector3 v = (b.velocity_start + b.angular_start.cross(p_WQ - b.p_WBcm)) -
@@ -307,16 +186,6 @@ bool ignores_held(const PairBodies& bodies, const WorldInput& input) {
                        (bodies.b == held && !bodies.geom_a.touches_held_body));
 }
 
-/// A manifold that holds for the present poses.
-void refresh_manifold(const PairBodies& bodies, const WorldState& state, const Scratch& work, double reach,
-                      double margin, PairState& pair) {
-  const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
-  const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
-  const RelativePose now = relative_pose(a, state.bodies[static_cast<std::size_t>(bodies.a)], b,
-                                         state.bodies[static_cast<std::size_t>(bodies.b)]);
-  if (!has_kept(pair, now, reach)) find_manifold(bodies, a, b, margin, now, pair);
-}
-
 /// Whether the pair stands where it stood in the last step, so that what the workspace remembers of it holds.
 bool is_same(const PairMemory& memory, const Scratch& work) {
   return memory.stamp >= std::max(work.still_since[static_cast<std::size_t>(memory.body_a)],
@@ -349,7 +218,8 @@ void visit_pairs(const WorldModel& model, const WorldInput& input, WorldState& s
   });
 }
 
-/// The contacts of visited pairs, which have their places now.
+/// The contacts of visited pairs, which have their places now. They are found once more, in place: cheaper than to keep
+/// them all and copy them on one thread.
 void fill_visited(const WorldModel& model, double reach, WorldState& state, Scratch& work) {
   if (!work.has_visits || work.has_too_many_contacts) return;
   for_ranges(work.pool, work.patches.size(), [&](std::size_t first, std::size_t end) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -161,12 +162,12 @@ bool has(const ItemReport& item, Trouble trouble, Remedy remedy) {
                              [&](const Recovery& one) { return one.trouble == trouble && one.remedy == remedy; });
 }
 
-TEST(Packer, SetsABoxAsideThatMetTooMuchForceAtTheLastTry) {
+TEST(Packer, ReturnsABoxThatMetTooMuchForceAtTheLastTry) {
   ScriptedPlant plant;
   plant.ends = {EndReason::ForceGuard};
   const SessionResult result = pack(plant, 1, quick_options(), {}, 1);
-  ASSERT_TRUE(has(result.items[0], Trouble::ForceGuard, Remedy::SetAside));
-  EXPECT_EQ(result.items[0].end, ItemEnd::SetAside);
+  ASSERT_TRUE(has(result.items[0], Trouble::ForceGuard, Remedy::ReturnToAligner));
+  EXPECT_EQ(result.items[0].end, ItemEnd::Returned);
   EXPECT_EQ(result.items[0].reason, "force guard");
   EXPECT_TRUE(result.plan.empty());
   const Pose& X_WA = two_boxes().aligner->X_WA;
@@ -176,7 +177,7 @@ TEST(Packer, SetsABoxAsideThatMetTooMuchForceAtTheLastTry) {
   EXPECT_LT(p_A.head<2>().norm(), size.norm());
 }
 
-TEST(Packer, SetsABoxAsideThatFellAndLeansWhenPressingDoesNotHelp) {
+TEST(Packer, ReturnsABoxThatFellAndLeansWhenPressingDoesNotHelp) {
   ScriptedPlant plant;
   plant.ends = {EndReason::VacuumLost};
   const Pose X_WT = model::find_container(two_boxes(), two_boxes().target)->X_WT;
@@ -187,8 +188,8 @@ TEST(Packer, SetsABoxAsideThatFellAndLeansWhenPressingDoesNotHelp) {
   };
   const SessionResult result = pack(plant, 1);
   EXPECT_EQ(plant.pressed, std::vector<std::string>{"BOX027"});
-  EXPECT_TRUE(has(result.items[0], Trouble::Leaning, Remedy::SetAside));
-  EXPECT_EQ(result.items[0].end, ItemEnd::SetAside);
+  EXPECT_TRUE(has(result.items[0], Trouble::Leaning, Remedy::ReturnToAligner));
+  EXPECT_EQ(result.items[0].end, ItemEnd::Returned);
 }
 
 SessionOptions foresighted_options() {
@@ -241,10 +242,10 @@ TEST(Packer, PacksANeighbourAnewThatWasMovedToWhereItCostsMuch) {
 
 TEST(Packer, AFastRobotTurnsABoxOnlyWhereThatIsWorthIt) {
   SessionOptions options = foresighted_options();
-  const auto flips = [&](double turn_cost) {
+  const auto flips = [&](double reorientation_cost) {
     ScriptedPlant plant;
     model::RehearsalSettings rehearsal;
-    rehearsal.turn_cost = turn_cost;
+    rehearsal.reorientation_cost = reorientation_cost;
     const SessionResult result = pack(plant, 1, options, rehearsal);
     EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
     return result.items[0].flips;
@@ -255,7 +256,17 @@ TEST(Packer, AFastRobotTurnsABoxOnlyWhereThatIsWorthIt) {
   EXPECT_EQ(flips(100.0), 0);
 }
 
-TEST(Packer, PlansABoxAnewThatItSetAside) {
+/// 25 mm from both plates, on a face that the box does not arrive on: its middle is farther from where it arrived.
+Pose at_aligner_on_another_face(const std::string& id) {
+  const Pose& X_WA = two_boxes().aligner->X_WA;
+  const Vector3 size = model::find_parcel(two_boxes(), id)->size;
+  const Pose arrived = X_WA.inverse() * cell::arrival_pose(two_boxes(), two_boxes().sequences.front().items.front());
+  const Matrix3 R_AP = exp_rotation(Vector3(0.5 * std::numbers::pi, 0.0, 0.0)) * arrived.R;
+  const Vector3 half = 0.5 * (R_AP.cwiseAbs() * size), half_arrived = 0.5 * (arrived.R.cwiseAbs() * size);
+  return X_WA * Pose{R_AP, arrived.p - half_arrived + half + Vector3(0.025, 0.025, 0.0)};
+}
+
+TEST(Packer, PlansABoxAnewThatItReturnedToTheAligner) {
   ScriptedPlant plant;
   plant.ends = {EndReason::VacuumLost};
   const Pose X_WT = model::find_container(two_boxes(), two_boxes().target)->X_WT;
@@ -264,12 +275,12 @@ TEST(Packer, PlansABoxAnewThatItSetAside) {
     if (motion == 1) {
       plant.visible["BOX027"] = {X_WT.R * exp_rotation(Vector3(0.6, 0.0, 0.0)), X_WT.p + Vector3(0.0, 0.0, 0.22)};
     } else if (motion == 2) {
-      plant.visible["BOX027"] = cell::arrival_pose(two_boxes(), two_boxes().sequences.front().items.front());
-      plant.visible["BOX027"].p.x() += 0.02;
+      plant.visible["BOX027"] = at_aligner_on_another_face("BOX027");
     }
   };
   const SessionResult result = pack(plant, 1);
-  EXPECT_TRUE(has(result.items[0], Trouble::Leaning, Remedy::SetAside));
+  EXPECT_TRUE(has(result.items[0], Trouble::Leaning, Remedy::ReturnToAligner));
+  EXPECT_EQ(result.items[0].recoveries.back().remedy, Remedy::ReturnToAligner) << "it is seen to be there";
   EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
   EXPECT_EQ(result.items[0].sends.size(), 2U);
 }

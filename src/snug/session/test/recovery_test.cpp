@@ -105,20 +105,20 @@ TEST(ChooseRemedy, ABoxThatMeetsTooMuchForceIsPutDownOnTheBenchWhereThereIsOne) 
     situation.can_set_down = true;
     EXPECT_EQ(remedy_for(situation), Remedy::SetDown);
     situation.tries = kSettings.most_tries;
-    EXPECT_EQ(remedy_for(situation), Remedy::Release) << "it was set aside in vain";
-    situation.can_set_aside = true;
-    EXPECT_EQ(remedy_for(situation), Remedy::SetAside);
+    EXPECT_EQ(remedy_for(situation), Remedy::Release) << "it was returned in vain";
+    situation.can_return = true;
+    EXPECT_EQ(remedy_for(situation), Remedy::ReturnToAligner);
   }
 }
 
-TEST(ChooseRemedy, WhatCannotStayIsPressedWhereItLeansAndElseSetAsideWhereItCanBe) {
+TEST(ChooseRemedy, WhatCannotStayIsPressedWhereItLeansAndElseReturnedWhereItCanBe) {
   Situation situation = at(Trouble::VacuumLost);
   situation.tries = kSettings.most_tries;
-  situation.can_set_aside = situation.leans = true;
+  situation.can_return = situation.leans = true;
   EXPECT_EQ(remedy_for(situation), Remedy::PressLevel);
   situation.was_pressed = true;
-  EXPECT_EQ(remedy_for(situation), Remedy::SetAside);
-  situation.can_set_aside = false;
+  EXPECT_EQ(remedy_for(situation), Remedy::ReturnToAligner);
+  situation.can_return = false;
   EXPECT_EQ(remedy_for(situation), Remedy::Skip);
   situation.fits = true;
   EXPECT_EQ(remedy_for(situation), Remedy::Accept);
