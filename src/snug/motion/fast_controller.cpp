@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "snug/core/check.hpp"
@@ -193,9 +194,14 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
   }
   if (is_insertion(waypoint)) pace = fast.insert;
   if (is_detaching(waypoint)) pace = fast.detach;
-  if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {  // swings only where the box is held by its side
-    if (std::abs(X_WE.R(2, 2)) > kUpright) pace.window = std::min(pace.window, fast.insert.window);
-    pace.shaper_delay = 0.0;
+  if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {
+    const bool is_upright = std::abs(X_WE.R(2, 2)) > kUpright;
+    const bool is_lift = pose_of(plan, row).p.z() > X_WE.p.z();
+    if (is_upright || is_lift) pace.window = std::min(pace.window, fast.insert.window);
+    pace.shaper_delay = is_insertion(waypoint) && waypoint.swing ? 0.5 * waypoint.swing->slow : 0.0;
+    if (is_lift && !is_upright && waypoint.swing) {
+      pace.max_speed = std::min(pace.max_speed, 2.0 * std::numbers::pi / waypoint.swing->slow * fast.lift_swing);
+    }
   }
   pace.max_speed *= fast.tempo;
   pace.max_turn_speed *= fast.tempo;
@@ -263,8 +269,9 @@ void check_fast(const FastSettings& settings, const std::string& where) {
       require("pace", value, is_positive(value), "a finite number above 0");
     }
   }
-  for (const double value : {settings.contact_window, settings.blend, settings.level_blend, settings.feel_within,
-                             settings.pick_force, settings.press_force, settings.push_force, settings.felt_hold}) {
+  for (const double value :
+       {settings.lift_swing, settings.contact_window, settings.blend, settings.level_blend, settings.feel_within,
+        settings.pick_force, settings.press_force, settings.push_force, settings.felt_hold}) {
     require("limits", value, is_positive(value), "a finite number above 0");
   }
 }

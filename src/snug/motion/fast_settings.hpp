@@ -24,10 +24,14 @@ struct FastSettings {
   Pace empty = {2.0, 8.0, 2.5, 8.0, 0.10};
   /// The same with a box: averaged over a window in which most boxes swing a whole number of times (3 to 8 Hz).
   Pace held = {2.0, 5.0, 2.5, 6.0, 0.25};
-  /// A held box on its way in (Place). Other rows that touch something have the scenario's limits for their names.
-  Pace insert = {0.6, 4.0, 1.5, 3.0, 0.10};
+  /// A held box on its way in (Place). Straight down, half of the motion comes later by half the period of its slow
+  /// swing. Other rows that touch something have the scenario's limits for their names.
+  Pace insert = {0.9, 6.0, 1.5, 3.0, 0.10};
   /// The empty cup off a box that it let go, blowing: faster, the bellows would draw air in and the box with them.
   Pace detach = {0.4, 4.0, 1.0, 3.0, 0.04};
+  /// m: so far a box that is lifted by its side swings at most when it leaves what it stood on. It tilts about its far
+  /// edge until the cup carries it; then it has the lift's speed, which is 2 pi / (slow period) times this.
+  double lift_swing = 0.015;
   /// Ways that touch nothing go around it (Way). None: straight.
   std::optional<PanAxis> pan_axis;
   double contact_window = 0.10;  ///< s, of those others

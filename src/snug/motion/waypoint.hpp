@@ -60,7 +60,7 @@ struct Waypoint {
   bool item_is_id = true;  ///< false: as a file of the demonstrator has it, such as 027: fit_of (waypoint_name.hpp)
   std::string variant;     ///< what tells it from others of its class and item, such as _2; of Other the whole name
   /// Of the box that hangs on the way to it. Fast motions leave nothing of these swings: they are averaged over the
-  /// slow one, and half of them comes half the fast one later.
+  /// slow one, and half of them comes half the fast one later (straight down to its place: half the slow one).
   std::optional<Swing> swing;
   IO io;
   int line = 0;  ///< in the file it was read from, from 1; 0: made by the program itself

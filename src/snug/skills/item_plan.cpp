@@ -285,7 +285,8 @@ std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::W
     std::vector<motion::Waypoint> turned = with_turns(
         last, with_detaching(layout, rows), {layout.neutral_yaw, layout.travel.sure_turn, true, layout.pan_axis});
     for (motion::Waypoint& row : turned) {
-      if (swing && row.io.vacuum && !motion::is_contact(row.motion_class)) row.swing = motion::as_named(*swing);
+      const bool hangs = !motion::is_contact(row.motion_class) || row.motion_class == MotionClass::Place;
+      if (swing && row.io.vacuum && hangs) row.swing = motion::as_named(*swing);
     }
     return turned;
   }

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "snug/core/input_error.hpp"
@@ -128,6 +130,51 @@ TEST(FastController, LeavesABoxSlowlyUntilItStopsBlowingAndThenWithoutAStop) {
   EXPECT_GT(slowest_between, 0.05) << "the retreat begins on the way";
 }
 
+/// Amplitude that an undamped swing of this period has in the end, which the tool's vertical acceleration drives, m.
+double swing_after(const Course& course, double period) {
+  const double frequency = 2.0 * std::numbers::pi / period;
+  std::complex<double> sum = 0.0;
+  double before = 0.0;
+  for (std::size_t i = 0; i < course.ticks.size(); ++i) {
+    const double speed = course.ticks[i].tool.V_WE.linear.z();
+    sum += (speed - before) * std::polar(1.0, -frequency * 0.008 * static_cast<double>(i));
+    before = speed;
+  }
+  return std::abs(sum) / frequency;
+}
+
+TEST(FastController, ABoxThatIsSentStraightDownDoesNotSwing) {
+  const auto sent = [](const char* name) {
+    return run(prepare({"place", {row(name, {0.0, 0.0, -0.3}, kHold)}}, fast_settings()));
+  };
+  const Course shaped = sent("Place(A)_down~0.42+0.30"), plain = sent("Place(A)_down");
+  EXPECT_GT(swing_after(plain, 0.42), 0.01);
+  EXPECT_LT(swing_after(shaped, 0.42), 0.02 * swing_after(plain, 0.42));
+  EXPECT_NEAR(shaped.arrival(0) - plain.arrival(0), 0.21, 1.1 * 0.008) << "half of it comes half a period later";
+  const Course aside = run(prepare({"place", {row("Place(A)~0.42+0.30", {0.1, 0.0, -0.3}, kHold)}}, fast_settings()));
+  const Course told_nothing = run(prepare({"place", {row("Place(A)", {0.1, 0.0, -0.3}, kHold)}}, fast_settings()));
+  EXPECT_EQ(aside.arrival(0), told_nothing.arrival(0)) << "pushed, it leans on something";
+}
+
+TEST(FastController, ABoxThatIsLiftedByItsSideLeavesTheBenchSlowly) {
+  const auto fastest = [](const char* name, const Matrix3& R_WE) {
+    const std::vector<Waypoint> lift = {named_waypoint("PreRePick(A)", {R_WE, Vector3::Zero()}),
+                                        named_waypoint(name, {R_WE, Vector3(0.0, 0.0, 0.4)}, kHold)};
+    double most = 0.0;
+    for (const ControllerOutput& out : run(prepare({"lift", lift}, fast_settings())).ticks) {
+      most = std::max(most, out.tool.V_WE.linear.z());
+    }
+    return most;
+  };
+  const Matrix3 level = exp_rotation(Vector3(0.0, 0.5 * std::numbers::pi, 0.0));
+  // A swing of period T that begins at its middle with speed v has the amplitude v T / (2 pi).
+  const double swings = FastSettings{}.lift_swing;
+  EXPECT_NEAR(fastest("PostRePick(A)~0.42+0.30", level) * 0.42 / (2.0 * std::numbers::pi), swings, 1e-6);
+  EXPECT_NEAR(fastest("PostRePick(A)~0.21+0.20", level) * 0.21 / (2.0 * std::numbers::pi), swings, 1e-6);
+  const Matrix3 upright = exp_rotation(Vector3(std::numbers::pi, 0.0, 0.0));
+  EXPECT_GT(fastest("PostRePick(A)~0.42+0.30", upright), 0.8) << "hanging under the cup it does not tilt";
+}
+
 /// A support 4 mm above where the box is sent, felt as a spring.
 Sensed on_support(const ControllerState& state) {
   const double depth = std::max(0.0, -0.196 - state.command.X_WE.p.z());
@@ -212,6 +259,7 @@ TEST(FastController, RefusesSettingsOutOfRange) {
   for (const double bad : {0.0, 0.09, 1.01, -1.0, kNaN}) refused([&](FastSettings& fast) { fast.tempo = bad; });
   for (const double bad : {0.0, -1.0, kNaN, std::numeric_limits<double>::infinity()}) {
     refused([&](FastSettings& fast) { fast.held.max_acceleration = bad; });
+    refused([&](FastSettings& fast) { fast.lift_swing = bad; });
     refused([&](FastSettings& fast) { fast.blend = bad; });
     refused([&](FastSettings& fast) { fast.press_force = bad; });
   }
