@@ -1001,7 +1001,7 @@ class OtherCells(unittest.TestCase):
         self.assertEqual(line.split().count("-"), 2, "neither a success rate nor a force")
 
     def test_tempo_is_faster_and_says_where_the_seconds_go(self):
-        lagged, fast = self.pack("--sequence", "two"), self.pack("--sequence", "two", "--tempo", 1)
+        lagged, fast = self.pack("--sequence", "two", "--controller", "faithful"), self.pack("--sequence", "two")
         slower = self.pack("--sequence", "two", "--tempo", 0.5)
         self.assertEqual((lagged["controller"], lagged["tempo"]), ("faithful", None))
         self.assertEqual((fast["controller"], fast["tempo"]), ("fast", 1.0))
@@ -1021,7 +1021,7 @@ class OtherCells(unittest.TestCase):
 
     def test_program_packed_fast_runs_again_fast(self):
         program = self.folder / "fast.csv"
-        self.pack("--sequence", "two", "--plant-seed", 0, "--tempo", 1, "--program", program)
+        self.pack("--sequence", "two", "--plant-seed", 0, "--program", program)
         words = (CELL, "--items", self.orders, "--program", program, "--sequence", "two")
         runs = {kind: json.loads(snug("simulate", *words, "--cup", "phases", "--controller", kind, "--json").stdout)
                 for kind in ("fast", "faithful")}
@@ -1073,6 +1073,8 @@ class OtherCells(unittest.TestCase):
     def test_tempo_out_of_range_is_refused(self):
         for tempo in (0.49, 1.01, "nan", "fast"):
             self.assert_refused(snug("pack", CELL, "--sequence", "1", "--tempo", tempo), "--tempo")
+        for verb in (("pack", CELL, "--sequence", "1"), ("compare", CELL)):
+            self.assert_refused(snug(*verb, "--tempo", 0.8, "--controller", "faithful"), "--tempo", "--controller fast")
 
     def test_comparison_prints_names_whole(self):
         lines = snug("compare", CELL, "--sequences", "1", "--agents", "margin", *self.QUICK).stdout.splitlines()

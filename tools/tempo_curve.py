@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def pack(words, tempo, sequence):
     """The documented JSON of one session; without --tempo where `tempo` is None."""
-    command = [*words, "--sequence", sequence, "--json"] + (["--tempo", str(tempo)] if tempo else [])
+    command = [*words, "--sequence", sequence, "--json"] + (["--tempo", str(tempo)] if tempo else ["--controller", "faithful"])
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)}\n{done.stderr}")

@@ -32,6 +32,7 @@ OrderedJson common_words(const PackOptions& pack, std::uint64_t seed) {
   add("--decision-time", pack.decision_time, usual.decision_time);
   add("--future", pack.future, usual.future);
   add("--fault", pack.fault, usual.fault);
+  add("--controller", pack.controller, usual.controller);
   if (pack.tempo) words.emplace_back("--tempo", fmt::format("{}", *pack.tempo));
   if (pack.robot) words.emplace_back("--robot", *pack.robot);
   OrderedJson json = OrderedJson::object();

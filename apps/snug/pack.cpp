@@ -13,6 +13,7 @@
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "pack_report.hpp"
+#include "program_motion.hpp"
 #include "python_agent.hpp"
 #include "robot_warnings.hpp"
 #include "run_report.hpp"
@@ -118,10 +119,9 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
   session.samples = options.samples;
   session.skips = options.skips;
   session.simulation.robot = choose_robot(options, loaded.scenario);
-  if (options.tempo) {
-    session.simulation.controller = motion::ControllerKind::Fast;
-    session.simulation.tempo = *options.tempo;
-  }
+  refuse_tempo_without_fast(options.tempo, options.controller);
+  session.simulation.controller = motion::controller_kind_of(options.controller, "command line");
+  session.simulation.tempo = options.tempo.value_or(session.simulation.tempo);
   session.is_interrupted = is_interrupted;
   if (options.robot && *options.robot != "none") print_robot_warnings(loaded.scenario);
   return session;

@@ -26,7 +26,8 @@ struct PackOptions {
   std::optional<int> threads;                          ///< absent: all cores
   int samples = session::SessionOptions{}.samples;
   std::optional<int> skips;
-  std::optional<double> tempo;  ///< absent: with the demonstrator's lag
+  std::string controller = "fast";  ///< or faithful
+  std::optional<double> tempo;      ///< only with fast; absent: 1
   std::string future = "own";
   std::string perception = "exact";
   std::vector<std::string> plant_set;  ///< "KEY=VALUE", of the plant's scenario alone

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 7
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --robot none --json
-  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 2 --tempo 1
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 2 --tempo 0.8
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --fault drop@3,noseal@5,displace@7,stop@9 -o run.h5
   snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --perception noisy
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-set contacts.pairs.box/container.friction=0.15
@@ -59,10 +59,13 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
           "by itself (default: the scenario's robot)")
       ->type_name("NAME");
   verb.add_option(
-          "--tempo", options.tempo,
-          "move fast: exactly on paths of bounded jerk, blended where nothing is switched, waypoints in contact "
-          "and waits for the vacuum end by what is felt; fraction of the speeds (absent: with the demonstrator's "
-          "lag)")
+          "--controller", options.controller,
+          "fast: exactly on paths of bounded jerk, blended where nothing is switched, waypoints in contact and waits "
+          "for the vacuum end by what is felt; faithful: with the demonstrator's timing and lag")
+      ->check(one_of({"fast", "faithful"}))
+      ->type_name("KIND")
+      ->capture_default_str();
+  verb.add_option("--tempo", options.tempo, "fraction of the speeds, with fast (default: 1)")
       ->check(within(0.5, 1.0))
       ->type_name("FRACTION");
   verb.add_option("--fault", options.fault,

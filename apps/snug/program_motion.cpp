@@ -14,7 +14,7 @@ void add_motion_words(CLI::App& verb, MotionWords& words) {
   verb.add_option(
           "--controller", words.controller,
           "faithful: the demonstrator's timing and lag; ideal: the reference, exactly; fast: bounded jerk, blends, "
-          "rows and waits that end by what is felt, as pack --tempo (default: as the program was packed)")
+          "rows and waits that end by what is felt, as pack does (default: as the program was packed)")
       ->check(one_of({"faithful", "ideal", "fast"}))
       ->type_name("KIND");
   verb.add_option("--tempo", words.tempo,
@@ -23,12 +23,15 @@ void add_motion_words(CLI::App& verb, MotionWords& words) {
       ->type_name("FRACTION");
 }
 
+void refuse_tempo_without_fast(const std::optional<double>& tempo, const std::string& controller) {
+  if (!tempo || controller == "fast") return;
+  throw InputError("command line", "--tempo", "with --controller " + controller, "--controller fast, or none");
+}
+
 void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,
                    cell::SimulationOptions& options) {
   const std::optional<double> packed = motion::find_tempo(text, name);
-  if (words.tempo && words.controller && *words.controller != "fast") {
-    throw InputError("command line", "--tempo", "with --controller " + *words.controller, "--controller fast, or none");
-  }
+  if (words.controller) refuse_tempo_without_fast(words.tempo, *words.controller);
   if (words.controller) {
     options.controller = motion::controller_kind_of(*words.controller, "command line");
   } else if (words.tempo || packed) {

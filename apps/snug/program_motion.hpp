@@ -18,6 +18,8 @@ struct MotionWords {
 
 /// --controller and --tempo.
 void add_motion_words(CLI::App& verb, MotionWords& words);
+/// Throws InputError.
+void refuse_tempo_without_fast(const std::optional<double>& tempo, const std::string& controller);
 /// `text`: of the program's file `name`. Throws InputError for a --tempo that does not fit --controller, and for a
 /// tempo of the program that is none.
 void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,

@@ -30,7 +30,7 @@ class Result(Dict[str, Any]):
 
 def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware", seed: Optional[int] = None,
          plant_seed: int = 1, decision_time: float = 0.5, samples: int = 8, threads: int = 0,
-         robot: Optional[str] = None, perception: str = "exact", monte_carlo: int = 0, tempo: Optional[float] = None,
+         robot: Optional[str] = None, perception: str = "exact", monte_carlo: int = 0, tempo: Optional[float] = 1.0,
          record: PathLike = "",
          progress: Optional[Callable[[int, int, int, float], None]] = None) -> Result:
     """Packs a sequence as `snug pack` does: decides, rehearses, sends motions to a simulated plant, looks, recovers.
@@ -48,7 +48,7 @@ def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware
         robot: name of the scenario's robot, "none": the tool moves by itself; None: the robot where its file is there.
         perception: "exact", "noisy", "dead-reckoning" or "camera" (the scenario's first).
         monte_carlo: repeats the finished program so many times, open loop, in cells drawn anew.
-        tempo: fraction of the speeds, 0.5 .. 1, of fast motions (`--tempo`); None: with the demonstrator's lag.
+        tempo: fraction of the speeds, 0.5 .. 1, of fast motions; None: with the demonstrator's lag (`--controller faithful`).
         record: HDF5 file for a recording of the plant's course, or "".
         progress: called as progress(item, items, packed, percent) after each item.
 

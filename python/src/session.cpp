@@ -75,10 +75,10 @@ session::SessionOptions session_options(const model::Scenario& scenario, const P
   session.decision.threads = session.threads;
   session.samples = words.samples;
   session.simulation.robot = choose_robot(words, scenario);
+  session.simulation.controller = words.tempo ? motion::ControllerKind::Fast : motion::ControllerKind::Faithful;
   if (words.tempo) {
     if (!(*words.tempo >= 0.5 && *words.tempo <= 1.0))
       throw InputError("argument", "tempo", std::to_string(*words.tempo), "0.5 .. 1, or None");
-    session.simulation.controller = motion::ControllerKind::Fast;
     session.simulation.tempo = *words.tempo;
   }
   return session;

@@ -282,7 +282,7 @@ class TestPacking:
 
     def test_a_tempo_moves_fast_and_the_program_remembers(self, demonstrator):
         words = dict(agent="margin", samples=0, robot="none", decision_time=0.01, threads=1)
-        fast, lagged = snug.pack(demonstrator, "1", tempo=1, **words), snug.pack(demonstrator, "1", **words)
+        fast, lagged = snug.pack(demonstrator, "1", **words), snug.pack(demonstrator, "1", tempo=None, **words)
         assert (fast.controller, fast.tempo) == ("fast", 1.0)
         assert (lagged.controller, lagged.tempo) == ("faithful", None)
         assert fast.boxes_per_hour > lagged.boxes_per_hour

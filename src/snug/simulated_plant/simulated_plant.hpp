@@ -22,7 +22,7 @@ struct SimulatedPlantOptions {
   std::vector<Fault> faults;
   /// What is otherwise in this cell than in the scenario that the planner has, before the seed draws from it.
   std::vector<model::KeyValue> set;
-  cell::SimulationOptions simulation;
+  cell::SimulationOptions simulation{.controller = motion::ControllerKind::Fast};
 };
 
 /// One call that changed the plant, with what it was called with: enough to run the same again.
