@@ -24,6 +24,8 @@ constexpr double kRadian = 0.3;  ///< m, that a turn by 1 rad counts as
 constexpr double kSingular = 0.05;
 // Beyond a limit by less than this is the rounding of a controller that keeps it.
 constexpr double kLimitRounding = 1e-6;
+/// m, by which a tick may fall short of a safety distance: the controller's dampers keep it to first order.
+constexpr double kDamperSlack = 0.001;
 
 struct Obstacle {
   std::string name;
@@ -205,7 +207,7 @@ class Check {
       const control::Nearest nearest = clearance.nearest(at, i);
       if (nearest.index < 0) continue;
       note(CheckKind::SelfCollision, clearance.name_of(i),
-           nearest.distance - clearance.pairs()[static_cast<std::size_t>(i)].safety, "m");
+           nearest.distance - clearance.pairs()[static_cast<std::size_t>(i)].safety, "m", true, kDamperSlack);
     }
     for (const Mover& mover : movers_) look_at_obstacles(mover, at.X_WS[static_cast<std::size_t>(mover.segment)]);
     if (!boxes_.held() || options_.sequence.empty()) return;

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 
+#include "snug/cell/rest_watch.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
 namespace snug::session {
 namespace {
 
 constexpr double kLongestEpisode = 600.0;  ///< s, ten times what an item takes with the lag
+constexpr double kLongestFall = 2.0;       ///< s, of boxes that do not stay where they were seen
 
 std::string toward(const motion::Program& program, int row) {
   return row >= 0 && row < static_cast<int>(program.waypoints.size())
@@ -96,7 +98,14 @@ void Rollout::take_up(const cell::CellAnchor& anchor, double seconds) {
   motion::PreparedProgram still =
       simulation_->prepare({"still", {motion::make_waypoint(motion::MotionClass::Home, {}, X_WE)}});
   still.X_WE.front() = X_WE;  // without the rounding of a file: the tool stays where it is
-  (void)settle(still, seconds);
+  Episode episode;
+  const double start = time();
+  cell::RestWatch rest(start);
+  while (time() < start + std::max(seconds, kLongestFall)) {
+    if (time() >= start + seconds && rest.is_at_rest(time())) break;
+    if (!advance(still, episode)) break;
+    rest.follow(*simulation_, state_);
+  }
   simulation_->stand(state_);
 }
 

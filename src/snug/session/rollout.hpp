@@ -52,7 +52,8 @@ class Rollout {
   Episode run(const motion::Program& program, const EpisodeLimits& limits = {});
   /// Goes on at the end of `program` for this long: boxes come to rest.
   Episode settle(const motion::Program& program, double seconds);
-  /// Everything where the anchor says, after boxes came to rest for `seconds`.
+  /// Everything where the anchor says, after boxes came to rest for `seconds`, longer while one still falls: what does
+  /// not stay in this world where it was seen shall not count as moved by what is rehearsed.
   void take_up(const cell::CellAnchor& anchor, double seconds);
 
   [[nodiscard]] const cell::CellState& state() const { return state_; }

@@ -10,6 +10,7 @@
 
 #include "snug/camera_perception/camera_perception.hpp"
 #include "snug/cell/drawn_scenario.hpp"
+#include "snug/cell/rest_watch.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/phases.hpp"
 
@@ -165,15 +166,21 @@ void SimulatedPlant::fail(const cell::CellTick& tick, plant::MotionWatch& course
   has_failed_ = true;
 }
 
-/// The tool comes to stand, boxes come to rest.
-void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
+void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, bool until_boxes_rest) {
+  const model::MotionGuards& guards = simulation_.scenario().motion_guards;
   const double start = simulation_.time(state_);
+  cell::RestWatch rest(start);
   const auto speed = [this] {
     return (state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE).linear.norm();
   };
   const bool is_fast = options_.simulation.controller == motion::ControllerKind::Fast;
-  while (plant::is_settling(simulation_.scenario().motion_guards, !is_fast, start, simulation_.time(state_), speed())) {
+  const auto has_to_wait = [&](double now) {
+    return until_boxes_rest && now < start + guards.longest_settle && !rest.is_at_rest(now);
+  };
+  while (plant::is_settling(guards, !is_fast, start, simulation_.time(state_), speed()) ||
+         has_to_wait(simulation_.time(state_))) {
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
+    rest.follow(simulation_, state_);
     objects_.watch(state_, work_);
     if (watcher_) watcher_(tick);
     if (!tick.failure) continue;

@@ -67,7 +67,8 @@ class SimulatedPlant final : public plant::Plant {
   };
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
                              plant::MotionWatch& course);
-  void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course);
+  /// The tool comes to stand; and boxes to rest, which were put somewhere.
+  void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, bool until_boxes_rest = false);
   void fail(const cell::CellTick& tick, plant::MotionWatch& course);
   [[nodiscard]] plant::TickReading reading() const;
   void inject(const motion::PreparedProgram& plan, plant::MotionWatch& course);

@@ -54,7 +54,7 @@ TEST_F(BeliefOfOneBox, ErrorsThatPosesHaveInCommonLeaveWhatIsBetweenBoxesAsItWas
   common.topLeftCorner<3, 3>() = 0.003 * Matrix3::Identity();
   perception::Observation seen;
   for (const int item : {0, 1}) {
-    const Pose X_WP{Matrix3::Identity(), Vector3(0.0, 0.4 * item, 3.0)};  // in the air, away from everything
+    const Pose X_WP{Matrix3::Identity(), Vector3(0.0, 0.4 * item, 30.0)};  // in the air, away from everything
     seen.seen.push_back({belief.sequence().items[static_cast<std::size_t>(item)].parcel,
                          X_WP,
                          common * common.transpose(),
@@ -75,6 +75,20 @@ TEST_F(BeliefOfOneBox, ErrorsThatPosesHaveInCommonLeaveWhatIsBetweenBoxesAsItWas
         EXPECT_GT((a - first[w - 1]).norm(), 1e-4) << "each world has its own";
       }
     }
+  }
+}
+
+TEST_F(BeliefOfOneBox, WhatDoesNotStayWhereItWasSeenHasFallenBeforeAnythingIsRehearsed) {
+  Pose seen = belief.box(0)->X_WP;
+  seen.p.z() += 1.0;
+  belief.see(seen_at(seen));
+  for (const auto& rollout : belief.take_up(at_start(scenario))) {
+    const Vector3 p = rollout->pose_of(0)->p;
+    EXPECT_LT(p.z(), seen.p.z() - 0.5);
+    const motion::Program still = {
+        "still", {motion::make_waypoint(motion::MotionClass::Home, {}, rollout->state().controller.command.X_WE)}};
+    (void)rollout->settle(still, 0.5);
+    EXPECT_LT((rollout->pose_of(0)->p - p).norm(), 1e-3);
   }
 }
 
