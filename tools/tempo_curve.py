@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def pack(words, tempo, sequence):
-    """The documented JSON of one session; without --tempo where `tempo` is None."""
+    """The documented JSON of one session; with the lag where `tempo` is 0."""
     command = [*words, "--sequence", sequence, "--json"] + (["--tempo", str(tempo)] if tempo else ["--controller", "faithful"])
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
