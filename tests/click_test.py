@@ -328,18 +328,32 @@ class Click(unittest.TestCase):
             program = Path(folder, "program.csv")
             rows = ["-0.6,0.1,0.3,0,3.14159,0,home,0,0,0,0,0,0", "-0.6,-0.2,0.25,0,3.14159,0,PrePick027,0,0,0,0,0,0"]
             program.write_text("\n".join(rows))
-            words = [str(program), "--sequence", "1", "--json"]
-            simulated = subprocess.run([SNUG, "simulate", str(CELL), "--program", words[0], *words[1:], "--robot", "ur10"],
-                                       capture_output=True, text=True, check=False, timeout=1100)
-            self.assertEqual(simulated.returncode, 0, simulated.stderr)
-            endpoint = f"ipc://{folder}/cell"
-            with Served("--sequence", "1", "--json", endpoint=endpoint) as served:
-                controlled = subprocess.run([SNUG, "control", *words, "--click", endpoint], capture_output=True, text=True,
-                                            check=False, timeout=1100)
-                self.assertEqual(controlled.returncode, 0, controlled.stderr)
-                served.end()
-            self.assertEqual(json.loads(served.stdout)["state_hash"], json.loads(simulated.stdout)["state_hash"])
-            self.assertEqual(json.loads(controlled.stdout)["duration_s"], json.loads(simulated.stdout)["duration_s"])
+            self.assert_same_as_simulated(program, folder)
+
+    def test_control_moves_a_fast_program_by_what_the_served_cell_feels(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder, "program.csv")
+            packed = subprocess.run([SNUG, "pack", str(CELL), "--sequence", "1", "--plant-seed", "4", "--samples", "0", "--agent", "margin",
+                                     "--decision-time", "0.01", "--program", str(program)], capture_output=True, text=True, check=False, timeout=1100)
+            self.assertEqual(packed.returncode, 0, packed.stderr)
+            lines = program.read_text().splitlines(keepends=True)
+            last = next(i for i, line in enumerate(lines) if "PrePick(BOX028)" in line)  # the first item's rows
+            program.write_text("".join(lines[:last]))
+            self.assert_same_as_simulated(program, folder)
+
+    def assert_same_as_simulated(self, program, folder):
+        words = [str(program), "--sequence", "1", "--json"]
+        simulated = subprocess.run([SNUG, "simulate", str(CELL), "--program", words[0], *words[1:], "--robot", "ur10"],
+                                   capture_output=True, text=True, check=False, timeout=1100)
+        self.assertEqual(simulated.returncode, 0, simulated.stderr)
+        endpoint = f"ipc://{folder}/cell"
+        with Served("--sequence", "1", "--json", endpoint=endpoint) as served:
+            controlled = subprocess.run([SNUG, "control", *words, "--click", endpoint], capture_output=True, text=True,
+                                        check=False, timeout=1100)
+            self.assertEqual(controlled.returncode, 0, controlled.stderr)
+            served.end()
+        self.assertEqual(json.loads(served.stdout)["state_hash"], json.loads(simulated.stdout)["state_hash"])
+        self.assertEqual(json.loads(controlled.stdout)["duration_s"], json.loads(simulated.stdout)["duration_s"])
 
     def test_control_says_that_nobody_is_there(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -99,11 +99,11 @@ class ServedPlant(unittest.TestCase):
 
     def test_a_server_that_dies_ends_the_session_with_a_reason_and_leaves_a_whole_recording(self):
         recording = self.folder / "run.h5"
-        process, address = self.serve("--sequence", "two", "--plant-seed", 7, "--once", "--speed", 20, "-o", recording)
+        process, address = self.serve("--sequence", "two", "--plant-seed", 7, "--once", "--speed", 4, "-o", recording)
         packing = subprocess.Popen([SNUG, "pack", CELL, "--items", self.items, "--sequence", "two", "--plant", address,
                                     *map(str, QUICK), "--plant-timeout", "1", "--json"], text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        time.sleep(2.0)  # 40 s of simulated time: in the midst of it, or before it on a slow machine
+        time.sleep(2.0)  # 8 s of simulated time: in the midst of it, or before it on a slow machine
         process.send_signal(signal.SIGINT)
         out, err = packing.communicate(timeout=60)
         self.assertEqual(process.wait(60), 0)
@@ -116,7 +116,7 @@ class ServedPlant(unittest.TestCase):
 
     def test_a_session_that_dies_leaves_the_server_a_whole_run(self):
         recording = self.folder / "run.h5"
-        process, address = self.serve("--sequence", "two", "--plant-seed", 7, "--once", "--speed", 20, "--json", "-o", recording)
+        process, address = self.serve("--sequence", "two", "--plant-seed", 7, "--once", "--speed", 4, "--json", "-o", recording)
         packing = subprocess.Popen([SNUG, "pack", CELL, "--items", self.items, "--sequence", "two", "--plant", address,
                                     *map(str, QUICK)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         packing.stdout.read(1)  # it is connected when it prints its head

@@ -16,8 +16,8 @@ constexpr const char* kCameraExamples = R"(What is written goes by the ending of
   .h5   depth, intensity, and the truth: depth, labels, poses
 The truth is what nobody measures: poses and labels of the bodies, and where the camera really is. docs/camera.md has the errors.
 Examples:
-  snug camera run.h5 --time 40 -o frame.png
-  snug camera run.h5 --time 40 --camera tote --seed 3 --shot 2 -o frame.h5
+  snug camera run.h5 --time 20 -o frame.png
+  snug camera run.h5 --time 20 --camera tote --seed 3 --shot 2 -o frame.h5
   snug camera run.h5 --scenario scenarios/box-demonstrator.yaml -o frame.ply   # with the cameras of another scenario)";
 
 }  // namespace

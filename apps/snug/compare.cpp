@@ -14,6 +14,7 @@
 #include "compare_study.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
+#include "program_motion.hpp"
 #include "python_agent.hpp"
 #include "report.hpp"
 #include "snug/core/input_error.hpp"
@@ -88,6 +89,7 @@ std::vector<SessionPoint> list_sessions(const CompareOptions& options, const std
 /// What no session could use is said before the first one.
 void check_words(const PackOptions& pack, const std::vector<std::string>& agents) {
   (void)make_plant_options(pack, {});
+  refuse_tempo_without_fast(pack.tempo, pack.controller);
   for (const std::string& agent : agents) {
     if (is_python_agent(agent)) (void)start_python_agent(agent);
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "outputs.hpp"
@@ -11,6 +12,7 @@
 #include "robot_warnings.hpp"
 #include "scenario_options.hpp"
 #include "snug/cell/corrected.hpp"
+#include "snug/cell/joint_pace.hpp"
 #include "snug/click/program_client.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
@@ -71,8 +73,11 @@ int run_control(const ControlOptions& options) {
   const motion::Program program = motion::parse_program(text, options.program);
   if (options.sequence) warn_misfit(scenario, *options.sequence, program);
   const std::string corrections = options.corrections == "none" ? "" : options.corrections;
-  const motion::PreparedProgram plan =
+  motion::PreparedProgram plan =
       cell::prepare(scenario, sequence, how, cell::corrected(scenario, program, corrections));
+  std::unique_ptr<const cell::JointPace> pace;
+  if (how.controller == motion::ControllerKind::Fast) pace = cell::make_joint_pace(scenario, how.tempo);
+  plan.path_limits = pace.get();
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
   click::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
                                         options.sequence ? &sequence : nullptr};

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kExportExamples = R"(
 Examples:
   snug export run.h5 --format mcap -o run.mcap
-  snug export run.h5 --format mcap --from 40 --to 60 --every 4 -o part.mcap
+  snug export run.h5 --format mcap --from 10 --to 20 --every 4 -o part.mcap
   snug export run.h5 --format csv -o run.csv
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml

@@ -19,9 +19,9 @@ EXPECT is a list of placements as `snug pack --plan` writes it: which box is bel
 elsewhere is looked for.
 Exit code 1: the frame itself cannot be used (too few points, or something stands in the view).
 Examples:
-  snug camera run.h5 -o frame.png
+  snug camera run.h5 --time 20 -o frame.png
   snug perceive frame.png --scenario scenarios/box-demonstrator.yaml --expect scenarios/demo-placements.yaml --json
-  snug camera run.h5 -o frame.ply
+  snug camera run.h5 --time 20 -o frame.ply
   snug perceive frame.ply --scenario scenarios/box-demonstrator.yaml --expect scenarios/demo-placements.yaml -o boxes.json
 Frames of other cameras: a PNG with --intrinsics FX FY CX CY and --depth-unit METRES, a PLY with --points-in-camera if need be.)";
 

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kPictureExamples = R"(Examples:
   snug picture run.h5 -o end.png --camera top
   snug picture run.h5 --time 12.3 --size 1920x1080 --show frames,wrenches -o pick.png
-  snug picture run.h5 --video frames --fps 25 --from 40 --to 60
+  snug picture run.h5 --video frames --fps 25 --from 10 --to 20
   ffmpeg -framerate 25 -i frames/frame-%06d.png -pix_fmt yuv420p run.mp4      # makes a film of the last)";
 
 // Pictures a second, and times as fast as it was.

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kReportExamples = R"(Examples:
   snug report run.h5 -o run.html
   snug report run.h5 again.h5 -o both.html       # the second is laid over the first
-  snug report run.h5 -o part.html --from 40 --to 60)";
+  snug report run.h5 -o part.html --from 10 --to 20)";
 
 }  // namespace
 

@@ -32,6 +32,16 @@ bool is_active(const ObjectSensors& object, std::string_view name) {
   return value != nullptr && value->is_active;
 }
 
+RobotFeel feel_of(const ObjectSensors& robot) {
+  RobotFeel feel;
+  if (const auto* force = find_sensor(robot, kLoadSensor, ValueType::Force3D)) feel.F_E.force = force->vector;
+  if (const auto* torque = find_sensor(robot, kLoadSensor, ValueType::Torque3D, 1)) feel.F_E.torque = torque->vector;
+  if (const auto* pressure = find_sensor(robot, kPressureSensor, ValueType::Force1D)) {
+    feel.pressure_gauge = pressure->scalar;
+  }
+  return feel;
+}
+
 std::optional<Pose> sensed_pose(const ObjectSensors& object) {
   Pose X_WP;
   bool has_position = false;

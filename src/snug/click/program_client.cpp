@@ -11,6 +11,7 @@
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/click/joint_link.hpp"
 #include "snug/click/served_cell.hpp"
+#include "snug/cup/phases.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/record/csv.hpp"
 
@@ -69,6 +70,7 @@ class ProgramClient {
       }
       std::string trouble = link_.send(command(tick.program));
       if (!trouble.empty()) return trouble;
+      feel();
       ++result_.ticks;
       if (!tick.program.finished_now || has_ended) continue;
       has_ended = true;
@@ -82,6 +84,19 @@ class ProgramClient {
   control::MachineTick think() {
     state_.machine.tool = control::tool_at(arm_.model(), link_.measured());
     return arm_.tick(plan_, program_, state_, work_);
+  }
+
+  /// What fast motions end by. A simulator that senses neither load nor pressure tells the controller nothing.
+  void feel() {
+    const ObjectSensors& robot = link_.last_of_robot();
+    if (find_sensor(robot, kLoadSensor, ValueType::Force3D) == nullptr ||
+        find_sensor(robot, kPressureSensor, ValueType::Force1D) == nullptr) {
+      return;
+    }
+    const RobotFeel felt = feel_of(robot);
+    const Matrix3 R_WE = control::tool_at(arm_.model(), link_.measured()).X_WE.R;
+    program_.sensed = {felt.pressure_gauge, R_WE * felt.F_E.force,
+                       cup::sensed_hold_factor(scenario_.cup, felt.pressure_gauge, felt.F_E)};
   }
 
   Control command(const motion::ControllerOutput& out) {

@@ -211,17 +211,11 @@ void RemotePlant::acknowledge() {
 }
 
 plant::TickReading RemotePlant::reading() const {
-  const click::ObjectSensors& robot = link_.last_of_robot();
+  const click::RobotFeel feel = click::feel_of(link_.last_of_robot());
   plant::TickReading now;
   now.time = link_.last().time;
-  if (const auto* force = find_sensor(robot, click::kLoadSensor, click::ValueType::Force3D))
-    now.F_E.force = force->vector;
-  if (const auto* torque = find_sensor(robot, click::kLoadSensor, click::ValueType::Torque3D, 1)) {
-    now.F_E.torque = torque->vector;
-  }
-  if (const auto* pressure = find_sensor(robot, click::kPressureSensor, click::ValueType::Force1D)) {
-    now.pressure_gauge = pressure->scalar;
-  }
+  now.F_E = feel.F_E;
+  now.pressure_gauge = feel.pressure_gauge;
   now.is_vacuum_on = program_.io.vacuum;
   now.hold_factor = cup::sensed_hold_factor(scenario_.cup, now.pressure_gauge, now.F_E);
   return now;
