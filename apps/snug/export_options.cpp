@@ -17,7 +17,7 @@ Examples:
   snug export run.h5 --format csv -o run.csv
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml
-A program that was packed with --tempo is exported with its own timing, as it is simulated in the scenario's cell.)";
+A program that was packed with fast motions is exported with its own timing, as it is simulated in the scenario's cell.)";
 
 }  // namespace
 

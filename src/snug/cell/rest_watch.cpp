@@ -6,8 +6,9 @@
 namespace snug::cell {
 namespace {
 
-constexpr double kStill = 0.02;  ///< m/s: slower, a box is not on its way
-constexpr double kQuiet = 0.1;   ///< s, of which all of them have been slow: longer than a box rocks slowly
+/// m/s: slower, a box is not on its way. Soft boxes that sink into each other are slower, boxes that tip are not.
+constexpr double kStill = 0.02;
+constexpr double kQuiet = 0.1;  ///< s, of which all of them have been slow: longer than a box rocks slowly
 
 }  // namespace
 

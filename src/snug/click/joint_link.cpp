@@ -32,14 +32,12 @@ bool is_active(const ObjectSensors& object, std::string_view name) {
   return value != nullptr && value->is_active;
 }
 
-RobotFeel feel_of(const ObjectSensors& robot) {
-  RobotFeel feel;
-  if (const auto* force = find_sensor(robot, kLoadSensor, ValueType::Force3D)) feel.F_E.force = force->vector;
-  if (const auto* torque = find_sensor(robot, kLoadSensor, ValueType::Torque3D, 1)) feel.F_E.torque = torque->vector;
-  if (const auto* pressure = find_sensor(robot, kPressureSensor, ValueType::Force1D)) {
-    feel.pressure_gauge = pressure->scalar;
-  }
-  return feel;
+std::optional<RobotFeel> feel_of(const ObjectSensors& robot) {
+  const SensorValue* force = find_sensor(robot, kLoadSensor, ValueType::Force3D);
+  const SensorValue* torque = find_sensor(robot, kLoadSensor, ValueType::Torque3D, 1);
+  const SensorValue* pressure = find_sensor(robot, kPressureSensor, ValueType::Force1D);
+  if (force == nullptr || torque == nullptr || pressure == nullptr) return std::nullopt;
+  return RobotFeel{pressure->scalar, {force->vector, torque->vector}};
 }
 
 std::optional<Pose> sensed_pose(const ObjectSensors& object) {

@@ -72,12 +72,13 @@ class JointLink {
 [[nodiscard]] const SensorValue* find_sensor(const ObjectSensors& object, std::string_view name, ValueType type,
                                              std::size_t index = 0);
 [[nodiscard]] bool is_active(const ObjectSensors& object, std::string_view name);
-/// What the robot's sensors of load and pressure say; zeros where it has none.
+/// What the robot's sensors of load and pressure say.
 struct RobotFeel {
   double pressure_gauge = 0.0;  ///< Pa
   Wrench F_E;                   ///< on the tool, from what it carries and touches
 };
-[[nodiscard]] RobotFeel feel_of(const ObjectSensors& robot);
+/// Nothing where one of them is missing.
+[[nodiscard]] std::optional<RobotFeel> feel_of(const ObjectSensors& robot);
 /// Where an object says that it is, in W: its axes, where it tells them, else its RPY (about x, y, z). Nothing where it
 /// has no position or what it says is no pose.
 [[nodiscard]] std::optional<Pose> sensed_pose(const ObjectSensors& object);

@@ -86,17 +86,13 @@ class ProgramClient {
     return arm_.tick(plan_, program_, state_, work_);
   }
 
-  /// What fast motions end by. A simulator that senses neither load nor pressure tells the controller nothing.
+  /// What fast motions end by. A simulator that lacks a sensor of load or pressure tells the controller nothing.
   void feel() {
-    const ObjectSensors& robot = link_.last_of_robot();
-    if (find_sensor(robot, kLoadSensor, ValueType::Force3D) == nullptr ||
-        find_sensor(robot, kPressureSensor, ValueType::Force1D) == nullptr) {
-      return;
-    }
-    const RobotFeel felt = feel_of(robot);
+    const std::optional<RobotFeel> felt = feel_of(link_.last_of_robot());
+    if (!felt) return;
     const Matrix3 R_WE = control::tool_at(arm_.model(), link_.measured()).X_WE.R;
-    program_.sensed = {felt.pressure_gauge, R_WE * felt.F_E.force,
-                       cup::sensed_hold_factor(scenario_.cup, felt.pressure_gauge, felt.F_E)};
+    program_.sensed = {felt->pressure_gauge, R_WE * felt->F_E.force,
+                       cup::sensed_hold_factor(scenario_.cup, felt->pressure_gauge, felt->F_E)};
   }
 
   Control command(const motion::ControllerOutput& out) {

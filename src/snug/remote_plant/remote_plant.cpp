@@ -211,7 +211,7 @@ void RemotePlant::acknowledge() {
 }
 
 plant::TickReading RemotePlant::reading() const {
-  const click::RobotFeel feel = click::feel_of(link_.last_of_robot());
+  const click::RobotFeel feel = click::feel_of(link_.last_of_robot()).value_or(click::RobotFeel{});
   plant::TickReading now;
   now.time = link_.last().time;
   now.F_E = feel.F_E;

@@ -100,7 +100,7 @@ void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWa
   if (!is_let_go(plan)) return;
   if (pending_.displace || pending_.push) move_boxes(plan, course);
   if (put_and_take_objects()) {
-    settle(plan, course, true);
+    settle(plan, course, Until::BoxesRest);
     objects_.note_rest();
   }
 }
@@ -138,7 +138,7 @@ void SimulatedPlant::move_boxes(const motion::PreparedProgram& plan, plant::Moti
   (pending_.displace ? pending_.displace : pending_.push) = false;
   if (item < 0) return;
   move_aside(item, kind);
-  settle(plan, course, true);
+  settle(plan, course, Until::BoxesRest);
 }
 
 bool SimulatedPlant::put_and_take_objects() {

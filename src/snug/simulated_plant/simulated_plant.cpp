@@ -166,7 +166,7 @@ void SimulatedPlant::fail(const cell::CellTick& tick, plant::MotionWatch& course
   has_failed_ = true;
 }
 
-void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, bool until_boxes_rest) {
+void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, Until until) {
   const model::MotionGuards& guards = simulation_.scenario().motion_guards;
   const double start = simulation_.time(state_);
   cell::RestWatch rest(start);
@@ -175,7 +175,7 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWa
   };
   const bool is_fast = options_.simulation.controller == motion::ControllerKind::Fast;
   const auto has_to_wait = [&](double now) {
-    return until_boxes_rest && now < start + guards.longest_settle && !rest.is_at_rest(now);
+    return until == Until::BoxesRest && now < start + guards.longest_settle && !rest.is_at_rest(now);
   };
   while (plant::is_settling(guards, !is_fast, start, simulation_.time(state_), speed()) ||
          has_to_wait(simulation_.time(state_))) {

@@ -67,8 +67,9 @@ class SimulatedPlant final : public plant::Plant {
   };
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
                              plant::MotionWatch& course);
-  /// The tool comes to stand; and boxes to rest, which were put somewhere.
-  void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, bool until_boxes_rest = false);
+  enum class Until { ToolStands, BoxesRest };
+  /// At most `longest_settle` of the scenario's motion_guards.
+  void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, Until until = Until::ToolStands);
   void fail(const cell::CellTick& tick, plant::MotionWatch& course);
   [[nodiscard]] plant::TickReading reading() const;
   void inject(const motion::PreparedProgram& plan, plant::MotionWatch& course);
