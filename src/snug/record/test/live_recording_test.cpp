@@ -50,9 +50,12 @@ class WritingProcess {
     ::kill(child_, signal);
     ::waitpid(std::exchange(child_, 0), nullptr, 0);
   }
-  [[nodiscard]] bool wait_for(const std::filesystem::path& path) const {
-    for (int i = 0; i < 10'000 && !std::filesystem::exists(path); ++i) ::usleep(1000);
-    return std::filesystem::exists(path);
+  /// Whether there is a file of this many bytes, within 10 s.
+  [[nodiscard]] bool wait_for(const std::filesystem::path& path, std::uintmax_t size = 0) const {
+    std::error_code none;
+    const auto is_there = [&] { return std::filesystem::exists(path) && std::filesystem::file_size(path, none) >= size; };
+    for (int i = 0; i < 10'000 && !is_there(); ++i) ::usleep(1000);
+    return is_there();
   }
 
  private:
@@ -121,8 +124,7 @@ TEST_F(LiveRecording, DoesNotTouchAnEarlierOneBeforeItsEnd) {
 TEST_F(LiveRecording, LosesNothingWhenItIsKilled) {
   save_recording(folder / "run.h5", earlier);
   WritingProcess writer(folder / "run.h5", recording);
-  ASSERT_TRUE(writer.wait_for(folder / "run.h5.snug-part"));
-  ::usleep(100'000);
+  ASSERT_TRUE(writer.wait_for(folder / "run.h5.snug-part", std::uintmax_t{1} << 20U)) << "hundreds of frames";
   writer.end(SIGKILL);
   EXPECT_TRUE(load_recording(folder / "run.h5") == earlier);
   EXPECT_FALSE(load_recording(folder / "run.h5.snug-part").is_complete);
