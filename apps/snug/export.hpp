@@ -6,7 +6,7 @@
 
 #include "program_motion.hpp"
 #include "scenario_options.hpp"
-#include "snug/control/program_export.hpp"
+#include "snug/control/urscript.hpp"
 #include "snug/replay/mcap_writer.hpp"
 #include "snug/replay/replay.hpp"
 #include "verb.hpp"

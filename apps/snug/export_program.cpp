@@ -13,22 +13,16 @@
 #include "snug/cell/program_trial.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/control/program_export.hpp"
+#include "snug/control/urscript.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/motion/fast_controller.hpp"
 #include "snug/motion/fitted_limits.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "version.hpp"
 
 namespace snug::app {
 namespace {
-
-/// How far a box that is let go may be from where the simulation puts it is not looked at here: that it stays packed
-/// is.
-constexpr const char* kNotExported =
-    "not exported: the robot that follows exactly does not do what was simulated: {} (--unchecked exports it all the "
-    "same)";
 
 std::string layer_of(const ExportOptions& options) { return options.corrections == "none" ? "" : options.corrections; }
 
@@ -60,42 +54,26 @@ struct LoadedProgram {
                                                 const ExportOptions& options) const {
     const std::string layer = layer_of(options).empty() ? "" : ", corrections " + options.corrections;
     const std::string tempo = is_fast() ? fmt::format(", tempo {}", plan.settings.fast.tempo) : "";
-    const Pose& X_WE_start = simulation.scenario().controller.X_WE_start;
     return {.plan = done,
             .arm = simulation.arm()->model(),
             .q_start = simulation.arm()->start(),
             .loads = find_loads(),
-            .notes = {fmt::format("snug {}", version_text()),
-                      fmt::format("program {}, {} waypoints{}{}", options.input, plan.program.waypoints.size(), layer,
-                                  tempo),
-                      fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name,
-                                  simulation.sequence().name, simulation.arm()->model().name)},
-            .simulated_duration = is_fast() && trial ? trial->duration : motion::compute_duration(plan, X_WE_start),
-            .simulated_with = simulated_with()};
-  }
-
-  [[nodiscard]] std::string simulated_with() const {
-    return is_fast() ? "with blends, and rows and waits that end by what is felt"
-                     : "with a controller that lags behind";
+            .notes = {
+                fmt::format("snug {}", version_text()),
+                fmt::format("program {}, {} waypoints{}{}", options.input, plan.program.waypoints.size(), layer, tempo),
+                fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name,
+                            simulation.sequence().name, simulation.arm()->model().name)}};
   }
 
   /// The program for a robot that follows exactly: the same rows with speeds and accelerations of the simulated motion.
   [[nodiscard]] motion::PreparedProgram fitted() const {
     motion::PreparedProgram exact = plan;
-    const Pose& X_WE_start = simulation.scenario().controller.X_WE_start;
-    if (is_fast()) {
-      for (std::size_t i = 0; i < exact.row_limits.size(); ++i) {
-        if (trial) exact.X_WE[i] = trial->ended[i];
-        const Pose& X_WE = i > 0 ? exact.X_WE[i - 1] : X_WE_start;
-        const motion::Pace pace = motion::pace_of(exact, X_WE, static_cast<int>(i));
-        exact.row_limits[i] = {exact.row_limits[i].precision, pace.max_acceleration, pace.max_speed,
-                               pace.max_turn_speed, pace.max_turn_acceleration};
-      }
-    }
-    exact.row_limits = motion::fit_limits(exact, X_WE_start);
+    exact.row_limits = motion::fit_limits(exact, X_WE_start());
     exact.settings.kind = motion::ControllerKind::Ideal;
     return exact;
   }
+
+  [[nodiscard]] const Pose& X_WE_start() const { return simulation.scenario().controller.X_WE_start; }
 
  private:
   /// What the cup holds on the way to each row, as far as they tell; says what they do not tell.
@@ -105,8 +83,7 @@ struct LoadedProgram {
     const std::vector<motion::Waypoint>& rows = plan.program.waypoints;
     bool was_unknown = false;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      boxes.depart(plan.program, static_cast<int>(i),
-                   i > 0 ? plan.X_WE[i - 1] : simulation.scenario().controller.X_WE_start);
+      boxes.depart(plan.program, static_cast<int>(i), i > 0 ? plan.X_WE[i - 1] : X_WE_start());
       loads.emplace_back();
       if (const std::optional<cell::HeldBox>& held = boxes.held()) {
         const std::string& id = simulation.sequence().items[static_cast<std::size_t>(held->item)].parcel;
@@ -139,30 +116,39 @@ LoadedProgram load(const ExportOptions& options) {
   return {scenario, sequence, options};
 }
 
-/// Whether what is exported may be done: `done` is simulated with contact beside the program as it is simulated
-/// otherwise, and what is worse is said on stderr. True with --unchecked.
-bool is_exportable(const LoadedProgram& program, const motion::PreparedProgram& done) {
-  if (!program.trial) return true;
-  std::string worse = program.is_fast() ? cell::find_loss(*program.trial) : program.trial->failure.text;
-  if (worse.empty() && done.settings.kind == motion::ControllerKind::Ideal) {
-    const cell::Simulation& own = program.simulation;
-    cell::SimulationOptions exact = own.options();
-    exact.controller = motion::ControllerKind::Ideal;
-    const cell::Simulation follower(own.scenario(), own.sequence().name, exact);
-    worse = cell::compare_trials(*program.trial, cell::try_motion(follower, done));
+/// Says why nothing is exported, unless nothing is wrong.
+bool accept(const char* what, const std::string& wrong) {
+  if (!wrong.empty()) {
+    std::fprintf(stderr, "snug: not exported: %s: %s (--unchecked exports it all the same)\n", what, wrong.c_str());
   }
-  if (worse.empty()) return true;
-  std::fprintf(stderr, "snug: %s\n", fmt::format(fmt::runtime(kNotExported), worse).c_str());
-  return false;
+  return wrong.empty();
 }
 
-/// Runs the program through the joints and writes what `format` makes of it; nothing when the robot cannot do it.
-template <class Format>
-int write_run(const ExportOptions& options, OutputFile output, Format format) {
-  const LoadedProgram program = load(options);
+/// Whether the program, tried in the scenario's cell, does not stop there, and when fast loses no box. True with
+/// --unchecked.
+bool has_succeeded(const LoadedProgram& program) {
+  if (!program.trial) return true;
+  return accept("it does not succeed in the simulated cell",
+                program.is_fast() ? cell::find_loss(*program.trial) : program.trial->failure.text);
+}
+
+/// Whether a robot that follows the rows of `fitted` exactly does not do worse in the cell than was simulated. How far
+/// a box that is let go may be from where the simulation puts it is not looked at: that it stays packed is.
+bool is_as_good(const motion::PreparedProgram& fitted, const LoadedProgram& program) {
+  if (!program.trial) return true;
+  const cell::Simulation& own = program.simulation;
+  cell::SimulationOptions exact = own.options();
+  exact.controller = motion::ControllerKind::Ideal;
+  const cell::Simulation follower(own.scenario(), own.sequence().name, exact);
+  return accept("the robot that follows exactly does not do what was simulated",
+                cell::compare_trials(*program.trial, cell::try_motion(follower, fitted)));
+}
+
+/// The program through the joints. None, which is said on stderr, when the robot cannot do it.
+std::optional<control::JointRun> find_run(const LoadedProgram& program) {
   const cell::CellArm& arm = *program.simulation.arm();
-  if (program.is_fast() && !is_exportable(program, program.plan)) return kRunFailed;
-  const control::JointRun run =
+  if (program.is_fast() && !has_succeeded(program)) return std::nullopt;
+  control::JointRun run =
       program.is_fast() && program.trial
           ? program.trial->joints
           : control::run_joints(program.plan, arm.controller(), control::make_demonstrator_machine(), arm.start());
@@ -170,12 +156,48 @@ int write_run(const ExportOptions& options, OutputFile output, Format format) {
     const auto row = static_cast<std::size_t>(std::max(0, run.stuck_row));
     std::fprintf(stderr, "snug: the robot does not reach row %zu (%s): snug check says why\n", row + 1,
                  motion::name_of(program.plan.program.waypoints[row]).c_str());
-    return kRunFailed;
+    return std::nullopt;
   }
-  if (!program.is_fast() && !is_exportable(program, program.plan)) return kRunFailed;
-  write_file(std::move(output), format(run, arm.model(), program));
+  if (!program.is_fast() && !has_succeeded(program)) return std::nullopt;
+  return run;
+}
+
+/// Writes what `format` makes of the program through the joints; nothing when the robot cannot do it.
+template <class Format>
+int write_run(const ExportOptions& options, OutputFile output, Format format) {
+  const LoadedProgram program = load(options);
+  const std::optional<control::JointRun> run = find_run(program);
+  if (!run) return kRunFailed;
+  write_file(std::move(output), format(*run, program.simulation.arm()->model(), program));
   std::fprintf(stderr, "%s: %zu waypoints, %.1f s\n", options.output.c_str(), program.plan.program.waypoints.size(),
-               static_cast<double>(run.samples.size()) * program.plan.settings.tick);
+               static_cast<double>(run->samples.size()) * program.plan.settings.tick);
+  return kSuccess;
+}
+
+/// Rows as straight moves.
+int write_moves(const ExportOptions& options, const LoadedProgram& program, OutputFile output) {
+  const motion::PreparedProgram fitted = program.fitted();
+  control::RobotProgram robot_program = program.for_robot(fitted, options);
+  robot_program.simulated_duration = motion::compute_duration(program.plan, program.X_WE_start());
+  const control::UrScript script = control::format_urscript(robot_program, options.script);
+  if (!has_succeeded(program) || !is_as_good(fitted, program)) return kRunFailed;
+  write_file(std::move(output), script.text);
+  std::fprintf(stderr,
+               "%s: %d moves, %.1f s nominal from stop to stop; %.1f s simulated, with a controller that lags behind\n",
+               options.output.c_str(), script.moves, script.nominal_duration, script.simulated_duration);
+  return kSuccess;
+}
+
+/// Joints in time.
+int write_targets(const ExportOptions& options, const LoadedProgram& program, OutputFile output) {
+  const std::optional<control::JointRun> run = find_run(program);
+  if (!run) return kRunFailed;
+  const control::UrServoScript script =
+      control::format_servo_urscript(*run, program.for_robot(program.plan, options), options.script);
+  write_file(std::move(output), script.text);
+  std::fprintf(stderr, "%s: %zu knots, %.0f kB; %.1f s and waits for the vacuum; %.1f s simulated\n",
+               options.output.c_str(), script.knots, static_cast<double>(script.text.size()) / 1e3,
+               script.followed_duration, script.simulated_duration);
   return kSuccess;
 }
 
@@ -187,13 +209,8 @@ int write_urscript(const ExportOptions& options, OutputFile output) {
                      "another output than --vacuum-output");
   }
   const LoadedProgram program = load(options);
-  const motion::PreparedProgram fitted = program.fitted();
-  const control::UrScript script = control::format_urscript(program.for_robot(fitted, options), options.script);
-  if (!is_exportable(program, fitted)) return kRunFailed;
-  write_file(std::move(output), script.text);
-  std::fprintf(stderr, "%s: %d moves, %.1f s nominal from stop to stop; %.1f s simulated, %s\n", options.output.c_str(),
-               script.moves, script.nominal_duration, script.simulated_duration, program.simulated_with().c_str());
-  return kSuccess;
+  return program.is_fast() ? write_targets(options, program, std::move(output))
+                           : write_moves(options, program, std::move(output));
 }
 
 int write_ros_trajectory(const ExportOptions& options, OutputFile output) {

@@ -8,13 +8,6 @@
 namespace snug::cell {
 namespace {
 
-/// The row and the next are one pose: the second only switches, while the tool may still be moving.
-bool is_left_moving(const motion::PreparedProgram& plan, int row) {
-  const auto next = static_cast<std::size_t>(row) + 1;
-  return next < plan.X_WE.size() && plan.X_WE[next] == plan.X_WE[next - 1] &&
-         plan.program.waypoints[next].motion_class == motion::MotionClass::TwistDrag;
-}
-
 /// Of the states of the machine that every arm of a cell has.
 const control::StateMachine& machine_names() {
   static const control::StateMachine machine = control::make_demonstrator_machine();
@@ -47,18 +40,11 @@ CellTick advance(const Simulation& simulation, const motion::PreparedProgram& pl
 
 MotionTrial try_motion(const Simulation& simulation, const motion::PreparedProgram& plan) {
   MotionTrial trial;
-  trial.ended = plan.X_WE;
   CellState state = simulation.make_state();
   CellWorkspace work = simulation.make_workspace();
   bool has_ended = false;
   while (!has_ended && !trial.failure) {
-    const int row = state.controller.row;
     has_ended = advance(simulation, plan, state, work, trial).has_ended;
-    const bool has_left = row >= 0 && state.controller.row != row;
-    // A row that is left on the way ends where it is; the start of the next motion is not moved then.
-    if (has_left && plan.settings.kind == motion::ControllerKind::Fast && !is_left_moving(plan, row)) {
-      trial.ended[static_cast<std::size_t>(row)] = state.controller.X_WE_departure;
-    }
     if (simulation.time(state) > motion::kLongestProgram)
       trial.failure = {FailureKind::TooLong, "the program did not end within two hours"};
   }

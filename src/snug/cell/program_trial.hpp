@@ -15,8 +15,6 @@ struct MotionTrial {
   std::vector<BoxResult> boxes;  ///< of the sequence, after boxes have settled
   /// With a robot: what its joints did, until they rested.
   control::JointRun joints;
-  /// X_WE at which each row ended: its own, or where a force ended it (ControllerKind::Fast).
-  std::vector<Pose> ended;
 };
 
 /// Runs the program of `plan`, whose limits need not be the scenario's, to its end and until boxes have settled.

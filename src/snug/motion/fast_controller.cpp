@@ -135,6 +135,39 @@ Way way_to(const PreparedProgram& plan, const Pose& X_WE, int row) {
   return is_contact_row(plan, row) ? Way(X_WE, goal) : Way(X_WE, goal, plan.settings.fast.pan_axis);
 }
 
+/// What bounds the motion from X_WE to the row; the joints may bound it more.
+Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
+  const FastSettings& fast = plan.settings.fast;
+  const Waypoint& waypoint = row_of(plan, row);
+  Pace pace = waypoint.io.vacuum ? fast.held : fast.empty;
+  if (waypoint.io.vacuum) {
+    const Smoothing& smoothing = plan.held_smoothing[static_cast<std::size_t>(row)];
+    pace.window = smoothing.window;
+    pace.shaper_delay = smoothing.shaper_delay;
+  }
+  if (is_contact(waypoint.motion_class)) {
+    const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
+    pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
+            fast.contact_window};
+  }
+  if (is_insertion(waypoint)) pace = fast.insert;
+  if (is_detaching(waypoint)) pace = fast.detach;
+  if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {
+    const bool is_upright = std::abs(X_WE.R(2, 2)) > kUpright;
+    const bool is_lift = pose_of(plan, row).p.z() > X_WE.p.z();
+    if (is_upright || is_lift) pace.window = std::min(pace.window, fast.insert.window);
+    pace.shaper_delay = is_insertion(waypoint) && waypoint.swing ? 0.5 * waypoint.swing->slow : 0.0;
+    if (is_lift && !is_upright && waypoint.swing) {
+      pace.max_speed = std::min(pace.max_speed, 2.0 * std::numbers::pi / waypoint.swing->slow * fast.lift_swing);
+    }
+  }
+  pace.max_speed *= fast.tempo;
+  pace.max_turn_speed *= fast.tempo;
+  pace.max_acceleration *= fast.tempo * fast.tempo;
+  pace.max_turn_acceleration *= fast.tempo * fast.tempo;
+  return pace;
+}
+
 void begin_motion(const PreparedProgram& plan, const Pose& X_WE, ControllerState& state) {
   state.phase = ControllerPhase::Moving;
   state.phase_ticks = 0;
@@ -177,38 +210,6 @@ bool has_waited(const PreparedProgram& plan, const ControllerState& state) {
 }
 
 }  // namespace
-
-Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
-  const FastSettings& fast = plan.settings.fast;
-  const Waypoint& waypoint = row_of(plan, row);
-  Pace pace = waypoint.io.vacuum ? fast.held : fast.empty;
-  if (waypoint.io.vacuum) {
-    const Smoothing& smoothing = plan.held_smoothing[static_cast<std::size_t>(row)];
-    pace.window = smoothing.window;
-    pace.shaper_delay = smoothing.shaper_delay;
-  }
-  if (is_contact(waypoint.motion_class)) {
-    const MotionLimits& limits = plan.row_limits[static_cast<std::size_t>(row)];
-    pace = {limits.max_speed, limits.max_acceleration, limits.max_turn_speed, limits.max_turn_acceleration,
-            fast.contact_window};
-  }
-  if (is_insertion(waypoint)) pace = fast.insert;
-  if (is_detaching(waypoint)) pace = fast.detach;
-  if (waypoint.io.vacuum && is_plumb(X_WE, pose_of(plan, row))) {
-    const bool is_upright = std::abs(X_WE.R(2, 2)) > kUpright;
-    const bool is_lift = pose_of(plan, row).p.z() > X_WE.p.z();
-    if (is_upright || is_lift) pace.window = std::min(pace.window, fast.insert.window);
-    pace.shaper_delay = is_insertion(waypoint) && waypoint.swing ? 0.5 * waypoint.swing->slow : 0.0;
-    if (is_lift && !is_upright && waypoint.swing) {
-      pace.max_speed = std::min(pace.max_speed, 2.0 * std::numbers::pi / waypoint.swing->slow * fast.lift_swing);
-    }
-  }
-  pace.max_speed *= fast.tempo;
-  pace.max_turn_speed *= fast.tempo;
-  pace.max_acceleration *= fast.tempo * fast.tempo;
-  pace.max_turn_acceleration *= fast.tempo * fast.tempo;
-  return pace;
-}
 
 bool has_reached_fast(const PreparedProgram& plan, const ToolState& measured, const ControllerState& state) noexcept {
   const double t = seconds_in_phase(plan, state);

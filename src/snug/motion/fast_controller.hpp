@@ -13,8 +13,6 @@ void advance_fast(const PreparedProgram& plan, const ToolState& measured, Contro
 /// Whether the row aimed at is reached now.
 [[nodiscard]] bool has_reached_fast(const PreparedProgram& plan, const ToolState& measured,
                                     const ControllerState& state) noexcept;
-/// What bounds the motion from X_WE to the row; the joints may bound it more.
-[[nodiscard]] Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept;
 /// Throws InputError for settings out of range.
 void check_fast(const FastSettings& settings, const std::string& where);
 

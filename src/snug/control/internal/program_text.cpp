@@ -1,0 +1,81 @@
+// Parts of text that programs for real robots have in common.
+#include "snug/control/internal/program_text.hpp"
+
+#include <fmt/format.h>
+
+#include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
+#include "snug/robot/kinematics.hpp"
+
+namespace snug::control::internal {
+namespace {
+
+constexpr std::size_t kLongestNote = 200;
+
+}  // namespace
+
+Pose pose_at_zero(const robot::ArmModel& arm, const std::string& link) {
+  const int found = robot::find_link(arm, link);
+  if (found < 0) throw InputError(arm.name, "links", "no link '" + link + "'", "a URDF that has it, as those of a UR");
+  return robot::link_pose(arm, robot::forward(arm, robot::JointVector::Zero(arm.joint_count())), found);
+}
+
+std::string format_pose(const Pose& X) {
+  const Vector3 turn = log_rotation(X.R);
+  return fmt::format("p[{:.6f}, {:.6f}, {:.6f}, {:.6f}, {:.6f}, {:.6f}]", X.p.x(), X.p.y(), X.p.z(), turn.x(), turn.y(),
+                     turn.z());
+}
+
+std::string format_list(const robot::JointVector& values) {
+  std::string text = "[";
+  for (Eigen::Index i = 0; i < values.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", values[i]);
+  return text + "]";
+}
+
+std::string quotable(const std::string& text) {
+  std::string kept;
+  for (const char c : text) kept += c == '"' || c == '\\' ? '\'' : c;
+  return kept;
+}
+
+std::string format_payload(const RobotProgram& program, const std::optional<CarriedLoad>& load) {
+  const int tool0 = robot::find_link(program.arm, "tool0");
+  const SpatialInertia gripper = robot::distal_inertia(program.arm, tool0);
+  double mass = gripper.mass;
+  Vector3 moment = gripper.mass * gripper.com;
+  if (load) {
+    const Pose X_TE = program.arm.links[static_cast<std::size_t>(tool0)].X_SL.inverse() * program.arm.X_SE;
+    mass += load->mass;
+    moment += load->mass * (X_TE * load->com_E);
+  }
+  const Vector3 com = mass > 0.0 ? Vector3(moment / mass) : Vector3(Vector3::Zero());
+  return fmt::format("set_payload({:.4f}, [{:.5f}, {:.5f}, {:.5f}])\n", mass, com.x(), com.y(), com.z());
+}
+
+std::string format_tcp(const RobotProgram& program) {
+  const Pose X_WE = robot::forward_tool(program.arm, robot::JointVector::Zero(program.arm.joint_count()));
+  return format_pose(pose_at_zero(program.arm, "tool0").inverse() * X_WE);
+}
+
+std::string format_header(const RobotProgram& program, const std::string& units) {
+  std::string text;
+  for (const std::string& note : program.notes) text += "# " + printable(note, kLongestNote) + "\n";
+  text += "# units: " + units + "\n";
+  text += fmt::format("# tool: {} (TCP in tool0: position, rotation vector)\n", format_tcp(program));
+  text += "# payload table, gripper and box, centre of mass in tool0:\n";
+  const auto line = [&](const std::string& rows, const std::optional<CarriedLoad>& load) {
+    std::string words = format_payload(program, load);
+    words.pop_back();
+    text += fmt::format("#   {:<16} {}\n", rows, words);
+  };
+  line("gripper alone", std::nullopt);
+  for (std::size_t i = 0; i < program.loads.size();) {
+    std::size_t end = i + 1;
+    while (end < program.loads.size() && program.loads[end] == program.loads[i]) ++end;
+    if (program.loads[i]) line(fmt::format("rows {}-{}", i + 1, end), program.loads[i]);
+    i = end;
+  }
+  return text;
+}
+
+}  // namespace snug::control::internal
