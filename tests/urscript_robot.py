@@ -1,14 +1,17 @@
 """urscript_robot.py: runs the URScript that snug writes on a robot that moves in time, as far as that needs.
 
-The language: functions, while, if, local, halt, calls. A statement or a function that is not known here is an error.
+The language: functions, while, if, local, global, halt, calls. A statement or a function that is not known here is an
+error, and so is a variable that is given a value without having been declared.
 Semantics are those of the vendor's script manual: a waypoint whose blend overlaps that of the one before is skipped
-there, which is an error here; outputs, inputs and payload are used while the robot stands.
+there, which is an error here; outputs, inputs and payload are used while the robot stands, or on the way of servoj.
+Of servoj, the robot is where its target is at the end of the step; a target that it could not reach is an error.
 """
 import math
 import re
 import xml.etree.ElementTree as ElementTree
 
 STEP = 0.008  # s, of the controller
+MAX_ACCELERATION = 15.2  # rad/s^2: of the scenario, and what knots and printed digits may add
 NO_WAY, NO_TURN = 5e-5, 1e-4  # m, rad: a move shorter than both has no length
 
 
@@ -22,29 +25,44 @@ class Halted(Exception):
 
 def translate(text):
     """The script as Python."""
-    lines, depth = [], 0
+    everywhere = re.findall(r"^ *global (\w+) =", text, re.M)
+    lines, blocks = [], []  # of each block that is open: the names that a function declares; None: no function
     for number, line in enumerate(text.splitlines(), 1):
         code = re.sub(r'("[^"]*")|#.*', lambda match: match.group(1) or "", line).strip()
         if not code:
             continue
         code = re.sub(r"\bp\[([^\]]*)\]", r"[\1]", code)
         if code == "end":
-            depth -= 1
+            if not blocks:
+                raise ScriptError(f"line {number}: an 'end' too many")
+            blocks.pop()
             continue
-        here = depth
-        if re.fullmatch(r"(def \w+\([\w, ]*\)|while .+|if .+):", code):
-            depth += 1
+        depth = len(blocks)
+        names = next((names for names in reversed(blocks) if names is not None), set())
+        function = re.fullmatch(r"def \w+\(([\w, ]*)\):", code)
+        assignment = re.fullmatch(r"(local |global |)(\w+) = .+", code)
+        if function:
+            blocks.append({name.strip() for name in function.group(1).split(",")})
+        elif re.fullmatch(r"(while .+|if .+):", code):
+            blocks.append(None)
         elif code in ("else:",) or code.startswith("elif "):
-            here -= 1
+            depth -= 1
         elif code == "halt":
             code = "_halt()"
-        elif re.fullmatch(r"(local )?\w+ = .+", code):
-            code = code.removeprefix("local ")
+        elif assignment:
+            kind, name = assignment.group(1), assignment.group(2)
+            if kind == "local ":
+                names.add(name)
+            elif not kind and name not in names and name not in everywhere:
+                raise ScriptError(f"line {number}: not declared: {line}")
+            code = code.removeprefix(kind)
         elif not re.fullmatch(r"\w+\(.*\)", code):
             raise ScriptError(f"line {number}: not known: {line}")
-        lines.append("  " * here + code)
-    if depth != 0:
-        raise ScriptError("an 'end' too many or too few")
+        lines.append("  " * depth + code)
+        if function and everywhere:
+            lines.append("  " * len(blocks) + "global " + ", ".join(everywhere))
+    if blocks:
+        raise ScriptError("an 'end' too few")
     return "\n".join(lines)
 
 
@@ -91,7 +109,7 @@ class Arm:
     """Forward kinematics of a URDF."""
 
     def __init__(self, path):
-        self.joints = {}
+        self.joints, self.max_speeds = {}, []  # rad/s, base to tool: the order of the file
         for joint in ElementTree.parse(path).getroot().findall("joint"):
             origin = joint.find("origin")
             numbers = lambda key: [float(x) for x in (origin.get(key, "0 0 0") if origin is not None else "0 0 0").split()]
@@ -101,6 +119,8 @@ class Arm:
             self.joints[joint.find("child").get("link")] = (
                 joint.find("parent").get("link"), (rotation, numbers("xyz")), joint.get("type") != "fixed",
                 [float(x) for x in axis.get("xyz").split()] if axis is not None else [1.0, 0.0, 0.0])
+            if joint.find("limit") is not None:
+                self.max_speeds.append(float(joint.find("limit").get("velocity")))
 
     def pose(self, link, q):
         """Of a link in the root link; q of the moving joints on the way, base to tool."""
@@ -126,19 +146,29 @@ class Move:
         self.vacuum = robot.outputs.get(robot.vacuum_output, False)
 
 
-class Robot:
-    """A UR that does what a script says, move by move, from stop to stop."""
+class Target:
+    """One step of servoj."""
 
-    def __init__(self, urdf, seals=True, evacuation=0.3, vacuum_output=0, vacuum_input=0):
+    def __init__(self, robot, q):
+        self.time, self.q, self.payload = robot.time, list(q), robot.payload  # s, at the end of the step
+        self.vacuum = robot.outputs.get(robot.vacuum_output, False)
+
+
+class Robot:
+    """A UR that does what a script says: moves from stop to stop, targets of servoj step by step."""
+
+    def __init__(self, urdf, seals=True, evacuation=0.3, vacuum_output=0, vacuum_input=0, step=STEP):
         self.arm, self.seals, self.evacuation = Arm(urdf), seals, evacuation
         self.vacuum_output, self.vacuum_input = vacuum_output, vacuum_input
         self.time, self.tcp, self.pose, self.payload = 0.0, None, None, None
         self.outputs, self.switched, self.moves, self.messages = {}, {}, [], []
         self.top_speed = 0.0
+        self.step, self.q, self.qd = step, None, [0.0] * 6
+        self.targets, self.stops = [], []  # of each stop the number of targets before it
 
     def run(self, text):
-        names = ("set_tcp", "set_payload", "movej", "movel", "set_standard_digital_out", "get_standard_digital_in", "sync",
-                 "get_steptime", "sleep", "textmsg", "popup")
+        names = ("set_tcp", "set_payload", "movej", "movel", "servoj", "stopj", "set_standard_digital_out",
+                 "get_standard_digital_in", "sync", "get_steptime", "sleep", "textmsg", "popup")
         scope = {name: getattr(self, name) for name in names}
         scope.update(_halt=self._halt, __builtins__={})
         exec(translate(text), scope)  # pylint: disable=exec-used
@@ -149,6 +179,11 @@ class Robot:
     def _stand(self, what):
         if self.moves and self.moves[-1].blend > 0.0:
             raise ScriptError(f"{what} while the robot passes {self.moves[-1].goal[1]} in a blend")
+
+    def _rest(self, what):
+        self._stand(what)
+        if any(self.qd):
+            raise ScriptError(f"{what} while joints move at {self.qd} rad/s, not stopped")
 
     def set_tcp(self, pose):
         self._stand("set_tcp")
@@ -173,13 +208,14 @@ class Robot:
         return self.seals and is_on == has_changed
 
     def sync(self):
-        self.time += STEP
+        self._rest("sync")
+        self.time += self.step
 
     def get_steptime(self):
-        return STEP
+        return self.step
 
     def sleep(self, seconds):
-        self._stand("sleep")
+        self._rest("sleep")
         self.time += seconds
 
     def textmsg(self, first, second=""):
@@ -189,13 +225,36 @@ class Robot:
         del text, title, warning, error, blocking
 
     def movej(self, q, a, v):
-        self._stand("movej")
+        self._rest("movej")
         if not (a > 0.0 and v > 0.0) or self.tcp is None or self.payload is None:
             raise ScriptError("movej before set_tcp and set_payload, or without a speed")
-        base = self.arm.pose("base", q)
-        self.pose = compose(compose(inverse(base), self.arm.pose("tool0", q)), self.tcp)
+        self.q, self.pose = list(q), self.pose_at(q)
+
+    def pose_at(self, q):
+        """Of the TCP in the controller's base frame."""
+        return compose(compose(inverse(self.arm.pose("base", q)), self.arm.pose("tool0", q)), self.tcp)
+
+    def servoj(self, q, a, v, t, lookahead_time, gain):
+        if (a, v) != (0, 0) or t != self.step or not 0.03 <= lookahead_time <= 0.2 or not 100 <= gain <= 2000:
+            raise ScriptError(f"servoj({a=}, {v=}, {t=}, {lookahead_time=}, {gain=})")
+        if self.q is None:
+            raise ScriptError("servoj from nobody knows where")
+        qd = [(new - old) / t for new, old in zip(q, self.q)]
+        for joint, (speed, before, most) in enumerate(zip(qd, self.qd, self.arm.max_speeds)):
+            if abs(speed) > most or abs(speed - before) > MAX_ACCELERATION * t:
+                raise ScriptError(f"at {self.time} s: joint {joint} jumps from {before} to {speed} rad/s, may have {most}")
+        self.q, self.qd, self.time, self.pose = list(q), qd, self.time + t, None
+        self.targets.append(Target(self, q))
+
+    def stopj(self, a):
+        if max(map(abs, self.qd)) > a * self.step:
+            raise ScriptError(f"at {self.time} s: stopj at {self.qd} rad/s leads away from the last target")
+        self.qd, self.pose = [0.0] * 6, self.pose_at(self.q)
+        self.stops.append(len(self.targets))
 
     def movel(self, pose, a, v, t=0.0, r=0.0):
+        if any(self.qd):
+            raise ScriptError("movel while joints move")
         if self.pose is None:
             raise ScriptError("movel from nobody knows where")
         goal = rotation_of(pose[3:]), list(pose[:3])

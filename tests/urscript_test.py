@@ -196,6 +196,110 @@ def documents(text):
     return times, lists, outputs
 
 
+class FastUrScript(unittest.TestCase):
+    """Of a program that was packed fast: two boxes, the second is picked from its side."""
+    ORDERS = ("order,article,length_mm,width_mm,height_mm,mass_kg,count,upright_only,no_stack,max_load_kg\n"
+              "two,cup,120,110,105,0.5,1,0,0,\ntwo,tray,180,150,60,0.6,1,0,0,\n")
+    MASSES = (0.5, 0.6)  # kg
+    SETTLING = 0.12  # s, in which the script gives the robot time to arrive where it is to stand
+    TOOL = 1e-4  # m, that interpolation may put the tool beside the simulated path
+
+    def setUp(self):
+        UrScript.setUp(self)
+        self.orders, self.program = self.folder / "orders.csv", self.folder / "program.csv"
+        self.orders.write_text(self.ORDERS)
+        packed = snug("pack", CELL, "--items", self.orders, "--sequence", "two", "--samples", 0, "--decision-time", 0.02,
+                      "--plant-seed", 0, "--program", self.program)
+        self.assertEqual(packed.returncode, 0, packed.stderr)
+
+    def export(self, form="urscript", *more):
+        out = self.folder / "out"
+        result = snug("export", self.program, "--scenario", CELL, "--items", self.orders, "--sequence", "two", "--format",
+                      form, "-o", out, *more)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.stderr = result.stderr
+        return out.read_text()
+
+    run_script = UrScript.run_script
+
+    def stretches(self, robot):
+        """The targets from stop to stop, without those that repeat where the arm stands."""
+        begins = [0] + robot.stops[:-1]
+        standing = round(self.SETTLING / robot.step)
+        return [robot.targets[begin:end - standing] for begin, end in zip(begins, robot.stops)]
+
+    def test_moves_the_tool_as_the_trajectory_does_at_equal_times(self):
+        robot = self.run_script(self.export())  # raises ScriptError for what an arm cannot do
+        times, lists, outputs = documents(self.export("ros-trajectory", "--period", 0.008))
+        at_time = {round(time / 0.008): q for time, q in zip(times, lists["positions"])}
+        vacuum = [now for before, now in zip(outputs, outputs[1:]) if before[1] != now[1]]
+        ends = [time for time, *_ in vacuum] + [times[-1]]
+        stretches = self.stretches(robot)
+        self.assertEqual(len(stretches), len(ends), "it stops where the vacuum changes, and at the end")
+        compared = 0
+        for targets, end in zip(stretches, ends):
+            for before_end, target in enumerate(reversed(targets)):
+                expected = at_time[round(end / 0.008) - before_end]
+                self.assertLess(math.dist(robot.pose_at(target.q)[1], robot.pose_at(expected)[1]), self.TOOL)
+                compared += 1
+        waited = len(times) - compared
+        self.assertLess(waited * 0.008, 0.5 * len(vacuum) + 0.1)  # the scenario's longest wait at each change
+
+    def test_keeps_its_time_with_any_step_of_the_controller(self):
+        text = self.export()
+        stated = float(re.search(r"Here: ([0-9.]+) s", text).group(1))
+        for step in (0.008, 0.002, 0.003):  # CB3, e-Series, and one of which knots are no multiples
+            robot = self.run_script(text, step=step)
+            self.assertAlmostEqual(len(robot.targets) * step, stated, delta=0.06 + step * len(robot.stops))
+
+    def test_sets_the_payload_of_gripper_and_box_while_it_is_held(self):
+        robot = self.run_script(self.export())
+        held = [target.payload[0] for target in robot.targets if target.vacuum]
+        free = [target.payload[0] for target in robot.targets if not target.vacuum]
+        self.assertEqual({round(mass - GRIPPER, 3) for mass in held}, set(self.MASSES))
+        self.assertEqual({round(mass, 3) for mass in free}, {GRIPPER})
+
+    def test_waits_as_long_as_the_vacuum_takes(self):
+        text = self.export()
+        fast, slow = self.run_script(text, evacuation=0.1), self.run_script(text, evacuation=1.1)
+        self.assertAlmostEqual(slow.time - fast.time, 4.0, delta=0.05)  # two come, two go
+
+    def test_halts_before_the_box_is_lifted_when_no_vacuum_comes(self):
+        robot = Robot(URDF, seals=False)
+        with self.assertRaises(Halted) as halted:
+            robot.run(self.export("urscript", "--vacuum-timeout", 1.5))
+        self.assertIn("PostPick(ITEM000001)", str(halted.exception))
+        self.assertAlmostEqual(robot.time - robot.switched[0], 1.5, delta=0.05)
+        self.assertEqual(len(robot.stops), 1)
+
+    def test_ends_at_rest_with_everything_off(self):
+        robot = self.run_script(self.export())
+        self.assertEqual((robot.qd, robot.stops[-1]), ([0.0] * 6, len(robot.targets)))
+        self.assertFalse(any(robot.outputs.values()))
+        # Where contact has ended a row does not matter at the last one.
+        last = [float(x) for x in self.program.read_text().splitlines()[-1].split(",")[:3]]
+        self.assertLess(math.dist(robot.pose[1], last), 1e-3)
+
+    def test_says_how_large_it_is(self):
+        text = self.export()
+        knots = text.count("\n  snug_follow(")
+        self.assertIn(f"{knots} knots, {len(text) / 1e3:.0f} kB", self.stderr)
+        self.assertLess(knots, 300)
+
+    def test_what_a_robot_refuses_is_noticed(self):
+        lines = self.export().splitlines(keepends=True)
+        follow = [i for i, line in enumerate(lines) if line.startswith("  snug_follow(")]
+        with self.assertRaises(ScriptError):  # a knot is not there: too fast from the one before to the one behind
+            self.run_script("".join(lines[:follow[3]] + lines[follow[7]:]))
+        rest = next(i for i, line in enumerate(lines) if line.startswith("  snug_rest("))
+        with self.assertRaises(ScriptError):  # the arm waits without being told to stand
+            self.run_script("".join(lines[:rest] + lines[rest + 1:]))
+
+    def test_unchecked_is_what_the_joints_do_without_contact(self):
+        robot = self.run_script(self.export("urscript", "--unchecked"))
+        self.assertEqual(len(robot.stops), 5)
+
+
 class RosTrajectory(unittest.TestCase):
     setUp = UrScript.setUp
 
