@@ -286,7 +286,7 @@ class FastUrScript(unittest.TestCase):
         self.assertIn(f"{knots} knots, {len(text) / 1e3:.0f} kB", self.stderr)
         self.assertLess(knots, 300)
 
-    def test_what_a_robot_refuses_is_noticed(self):
+    def test_targets_that_a_robot_cannot_reach_are_noticed(self):
         lines = self.export().splitlines(keepends=True)
         follow = [i for i, line in enumerate(lines) if line.startswith("  snug_follow(")]
         with self.assertRaises(ScriptError):  # a knot is not there: too fast from the one before to the one behind
