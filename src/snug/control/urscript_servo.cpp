@@ -35,7 +35,7 @@ constexpr double kKnotTolerance = 1.5e-5;  ///< rad
 constexpr int kPositionDigits = 7;          ///< of rad
 constexpr int kSpeedDigits = 6;             ///< of rad/s
 constexpr double kAccelerationSlack = 0.1;  ///< rad/s^2
-constexpr double kBraking = 0.05;           ///< s, in which joints stop from 0.75 rad/s, at 15 rad/s^2
+constexpr double kBrakingSlack = 0.02;      ///< s, two ticks more than braking takes
 // The robot lags behind its targets by about the lookahead: it gets four of them to arrive where it is to stand.
 constexpr double kSettling = 0.12;  ///< s
 
@@ -115,10 +115,13 @@ KnotLimits limits_of(const JointRun& run, const robot::ArmModel& arm, double tic
 
 bool is_at_rest(const JointSample& sample) { return sample.before.qd.norm() <= kAlmostAtRest; }
 
-/// The sample from which on joints rest that stop at `from`, on the way to the same row; none: they move on.
-std::optional<std::size_t> find_rest(const std::vector<JointSample>& samples, std::size_t from) {
+/// The sample from which on joints rest that brake at `from` as hard as they may, on the way to the same row; none:
+/// they move on.
+std::optional<std::size_t> find_rest(const std::vector<JointSample>& samples, std::size_t from,
+                                     double max_acceleration) {
+  const double braking = samples[from].before.qd.cwiseAbs().maxCoeff() / max_acceleration + kBrakingSlack;
   for (std::size_t i = from; i < samples.size() && samples[i].row == samples[from].row; ++i) {
-    if (samples[i].time - samples[from].time > kBraking) break;
+    if (samples[i].time - samples[from].time > braking) break;
     if (is_at_rest(samples[i])) return i;
   }
   return std::nullopt;
@@ -164,7 +167,8 @@ class ServoWriter {
     const motion::IO before = io_.value_or(motion::IO{});
     const motion::IO& io = run_.samples[sample].io;
     const bool changes_vacuum = io.vacuum != before.vacuum;
-    const std::optional<std::size_t> stop = changes_vacuum ? find_rest(run_.samples, sample) : std::nullopt;
+    const std::optional<std::size_t> stop =
+        changes_vacuum ? find_rest(run_.samples, sample, limits_.max_acceleration) : std::nullopt;
     if (stop) follow(*stop);
     const std::size_t departure = stop ? find_end_of_rest(run_.samples, *stop) : sample;
     if (stop) rest(states_[departure]);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -174,7 +175,7 @@ UrServoScript servo_script(const Exported& exported) {
   return format_servo_urscript(exported.run, exported.for_robot(), {});
 }
 
-/// A run of these rows, two rad/s^2 of the first joint for the first half and back, 0.8 s. `row_of(sample)`.
+/// The first joint gains speed for 50 samples, brakes for 50, and stands for 10. `row_of(sample)`.
 template <class RowOf>
 JointRun run_of(const RobotProgram& program, RowOf row_of, double acceleration = 2.0) {
   JointRun run;
@@ -182,11 +183,11 @@ JointRun run_of(const RobotProgram& program, RowOf row_of, double acceleration =
   JointState joints;
   joints.q = program.q_start;
   joints.qd = joints.qdd = robot::JointVector::Zero(6);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 110; ++i) {
     JointSample sample;
     sample.time = 0.008 * i;
     sample.before = joints;
-    const double qdd = i < 50 ? acceleration : -acceleration;
+    const double qdd = i < 50 ? acceleration : i < 100 ? -acceleration : 0.0;
     joints.q[0] += 0.008 * joints.qd[0] + 0.5 * 0.008 * 0.008 * qdd;
     joints.qd[0] += 0.008 * qdd;
     sample.after = joints;
@@ -271,6 +272,19 @@ TEST(ServoUrScript, DoesNotStopForAnOutputThatChangesOnTheWay) {
   EXPECT_NEAR(next->begin, 40 * 0.008, 1e-9);
 }
 
+TEST(ServoUrScript, SwitchesAtRestWhenTheJointsBrakeForIt) {
+  Exported exported;
+  const RobotProgram program = exported.for_robot();
+  const JointRun run = run_of(program, [](int i) { return i < 50 ? 1 : 2; });  // the vacuum comes on at 0.8 rad/s
+  const std::string text = format_servo_urscript(run, program, {}).text;
+  const std::size_t output = text.find("set_standard_digital_out(0, True)");
+  EXPECT_NE(text.find("snug_wait_for_vacuum(True", output), std::string::npos) << text;
+  const std::vector<Followed> lines = followed_of(text);
+  const auto rest = std::find_if(lines.begin(), lines.end(), [](const Followed& line) { return line.rests; });
+  EXPECT_LT(rest->at, output);
+  EXPECT_NEAR(rest->to.time, 0.8, 1e-9);
+}
+
 TEST(ServoUrScript, OfAnArmThatStandsHasOneKnot) {
   Exported exported;
   const RobotProgram program = exported.for_robot();
@@ -278,7 +292,7 @@ TEST(ServoUrScript, OfAnArmThatStandsHasOneKnot) {
                                                          program, [](int) { return 0; }, 0.0),
                                                      program, {});
   EXPECT_EQ(script.knots, 1U);
-  EXPECT_NEAR(script.followed_duration, 0.8 + 0.12, 1e-9);
+  EXPECT_NEAR(script.followed_duration, 0.88 + 0.12, 1e-9);
 }
 
 TEST(ServoUrScript, OfNoSamplesGoesToTheStartOnly) {
