@@ -1053,7 +1053,7 @@ class OtherCells(unittest.TestCase):
         self.assertAlmostEqual(last, own, delta=0.2, msg="until the joints rest")
         self.assertIn(", tempo 0.8", out.read_text())
         script = self.folder / "own.script"
-        # The script is what the robot does with its own moves. Where they end at a wall: said, and nothing is written.
+        # Where the arm stops at a wall: said, and nothing is written.
         wall = "  - {name: wall, kind: static, material: workbench, shapes: [{box: [0.02, 0.9, 1.0], pose: {position: [0.1, -0.5, 0.5]}}]}\n"
         cell = self.folder / "cell.yaml"
         cell.write_text(CELL.read_text().replace("bodies:\n", "bodies:\n" + wall, 1)
