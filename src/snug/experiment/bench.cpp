@@ -15,6 +15,7 @@
 #include "snug/experiment/internal/camera_bench.hpp"
 #include "snug/experiment/internal/click_bench.hpp"
 #include "snug/experiment/internal/identification_bench.hpp"
+#include "snug/experiment/internal/motion_bench.hpp"
 #include "snug/experiment/internal/packing_bench.hpp"
 #include "snug/experiment/internal/pile_bench.hpp"
 #include "snug/experiment/internal/robot_figures.hpp"
@@ -61,6 +62,13 @@ void measure_packing(const BenchOptions& options, std::vector<Figure>& figures) 
     figures.push_back(at_most("packing.decision.median_s", decisions.median_seconds, "s", 2.0));
     figures.push_back({"packing.decision.longest_s", decisions.longest_seconds, "s", "", true});
     figures.push_back({"packing.decision.planned_percent", decisions.planned_percent, "%", "", true});
+  }
+  if (is_wanted("packing.motion")) {
+    const internal::MotionFigures motions = internal::measure_motions(model::load_scenario(options.scenario));
+    figures.push_back({"packing.motion.count", static_cast<double>(motions.count), "1", ">= 100", motions.count >= 100});
+    figures.push_back(at_most("packing.motion.median_s", motions.median_seconds, "s", 0.1));
+    figures.push_back(at_most("packing.motion.p99_s", motions.p99_seconds, "s", 0.5));
+    figures.push_back({"packing.motion.longest_s", motions.longest_seconds, "s", "", true});
   }
   if (!is_wanted("packing.load")) return;
   constexpr double kSeconds = 2.0;  // the target of 90 % is for 30 s an instance

@@ -53,6 +53,15 @@ TEST(Bench, PressesABoxBetweenTwoOthersWithinTheForcesOfTheTargets) {
   for (const Figure& figure : figures) EXPECT_TRUE(figure.ok) << figure.name << " " << figure.value;
 }
 
+TEST(Bench, PlansTheMotionsOfMostBoxesOfTheScenario) {
+  BenchOptions options;
+  options.scenario = std::string(SNUG_SOURCE_DIR) + "/scenarios/box-demonstrator.yaml";
+  options.only = "packing.motion.count";
+  const std::vector<Figure> figures = run_bench(options);
+  ASSERT_EQ(figures.size(), 1u);
+  EXPECT_TRUE(figures.front().ok) << figures.front().value;
+}
+
 TEST(Bench, SaysThatInstancesAreSkippedWhenTheyAreNotThere) {
   BenchOptions options;
   options.instances = "no such folder";
