@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "snug/core/rng.hpp"
+#include "snug/geometry/bounds.hpp"
+
 namespace snug::session {
 namespace {
 
@@ -174,6 +179,49 @@ TEST(ObstacleBodies, AreTurnedWithTheContainer) {
   EXPECT_NEAR(in_T.upper.x(), 0.5, 1e-12);
   EXPECT_NEAR(in_T.lower.y(), -0.2, 1e-12);
   EXPECT_NEAR(in_T.upper.y(), -0.1, 1e-12);
+}
+
+TEST(ObstacleBodies, LeaveEveryBoxFreeWhereverItStands) {
+  Rng rng = Rng(5).split("bodies and boxes");
+  const auto any = [&](double low, double high) {
+    return Vector3(rng.uniform(low, high), rng.uniform(low, high), rng.uniform(low, high));
+  };
+  for (int trial = 0; trial < 500; ++trial) {
+    SCOPED_TRACE(trial);
+    std::vector<Solid> boxes;
+    std::vector<geometry::Aabb> regions;
+    for (int i = 0; i < 4; ++i) {
+      const Matrix3 R = exp_rotation(Vector3(0.0, 0.0, rng.uniform(-1.0, 1.0)));
+      boxes.push_back({{R, any(-0.2, 0.2)}, any(0.05, 0.2)});
+      const Vector3 middle = any(-0.2, 0.2), half = any(0.01, 0.1);
+      regions.push_back({middle - half, middle + half});
+    }
+    for (const geometry::Aabb& body : clear_of(regions, boxes)) {
+      EXPECT_GT((body.upper - body.lower).minCoeff(), 0.0);
+      for (const Solid& box : boxes) {
+        EXPECT_FALSE(body.overlaps(geometry::bounds(geometry::Box{0.5 * box.size}, box.X_WP)));
+      }
+      EXPECT_TRUE(std::ranges::any_of(regions, [&](const geometry::Aabb& region) {
+        return (body.lower - region.lower).minCoeff() > -1e-12 && (region.upper - body.upper).minCoeff() > -1e-12;
+      })) << "never larger than what was seen";
+    }
+  }
+}
+
+TEST(ObstacleBodies, WithoutBoxesAreTheRegionsThemselves) {
+  const geometry::Aabb region{Vector3(0.0, 0.0, 0.0), Vector3(0.1, 0.1, 0.1)};
+  const auto bodies = clear_of({region}, {});
+  ASSERT_EQ(bodies.size(), 1U);
+  EXPECT_EQ(bodies[0].lower, region.lower);
+  EXPECT_EQ(bodies[0].upper, region.upper);
+  EXPECT_TRUE(clear_of({{Vector3::Zero(), Vector3(0.1, 0.1, 0.001)}}, {}).empty()) << "thinner than any body";
+}
+
+TEST(ObstacleReportWords, AreMillimetresOfTheContainer) {
+  ObstacleReport report;
+  report.low_T = Vector3(0.012, -0.040, 0.0);
+  report.high_T = Vector3(0.098, 0.025, 0.0611);
+  EXPECT_EQ(describe(report), "seen from (12, -40) to (98, 25) mm of the container, up to 61 mm over its floor");
 }
 
 }  // namespace

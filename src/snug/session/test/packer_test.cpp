@@ -2,112 +2,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <deque>
-#include <map>
 #include <numbers>
-#include <set>
 #include <utility>
 
-#include "snug/model/test/shortened.hpp"
-#include "snug/session/session.hpp"
+#include "snug/cell/drawn_scenario.hpp"
+#include "snug/session/test/scripted_plant.hpp"
 
 namespace snug::session {
 namespace {
 
 using plant::EndReason;
-
-const model::Scenario& two_boxes() {
-  static const model::Scenario one = model::test::shortened(2);  // BOX027, BOX028
-  return one;
-}
-
-/// A plant without physics: motions that hold a box end as the script says, looks show what the test puts there.
-class ScriptedPlant final : public plant::Plant {
- public:
-  std::deque<EndReason> ends;                ///< of motions with the vacuum on; when they are used up: Completed
-  std::map<std::string, Pose> visible;       ///< X_WP
-  std::set<std::string> missing;             ///< seen to be nowhere
-  std::function<void(int motion)> happens;   ///< after each of those motions, from 1; may be empty
-  std::vector<std::string> pressed;          ///< items that were pressed on from above
-  std::deque<perception::LookFault> faults;  ///< of looks; when they are used up: none
-  std::optional<Vector3> size;               ///< measured of what stands at the aligner
-  std::optional<std::vector<perception::Obstacle>> obstacles;  ///< of every look
-  Pose X_WE_let_go;                                            ///< of the last motion with the vacuum on
-  int home_count = 0;                                          ///< motions that do nothing but go home
-  std::deque<EndReason> retreat_ends;                          ///< of retreats; when they are used up: Completed
-  std::string item;                                            ///< of the last motion
-  int acknowledged = 0;
-
-  [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
-  [[nodiscard]] plant::Feedback read() override { return now_; }
-  [[nodiscard]] bool bring(const std::string&) override { return true; }
-  void acknowledge() override { ++acknowledged; }
-
-  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override {
-    const auto held = std::ranges::find_if(motion.waypoints, [](const auto& row) { return row.io.vacuum; });
-    const bool holds = held != motion.waypoints.end();
-    item = motion.item;
-    EndReason end = EndReason::Completed;
-    if (holds && !ends.empty()) {
-      end = ends.front();
-      ends.pop_front();
-    }
-    if (motion.waypoints.back().variant == "_retreat" && !retreat_ends.empty()) {
-      end = retreat_ends.front();
-      retreat_ends.pop_front();
-    }
-    for (const motion::Waypoint& row : motion.waypoints) {
-      if (row.variant == "_press" && row.motion_class == motion::MotionClass::PlaceSlow) pressed.push_back(motion.item);
-    }
-    if (motion.item.empty()) ++home_count;
-    const motion::Waypoint& last = end == EndReason::Completed || !holds ? motion.waypoints.back() : *held;
-    if (holds) X_WE_let_go = last.X_WE();
-    now_.time += 1.0;
-    now_.end = {end, 0, 0.0, 0.0, ""};
-    now_.X_WE = last.X_WE();
-    now_.io = last.io;
-    now_.pressure_gauge = last.io.vacuum && end != EndReason::NoSeal && end != EndReason::VacuumLost ? -6.0e4 : 0.0;
-    if (holds && happens) happens(++motions_);
-    return now_;
-  }
-
-  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
-    perception::Observation seen;
-    seen.obstacles = obstacles;
-    if (!faults.empty()) {
-      seen.fault = faults.front();
-      faults.pop_front();
-    }
-    for (const perception::Expectation& one : expected) {
-      if (size) {
-        seen.seen.push_back({one.item, *one.X_WP, Matrix6::Zero(), size, 0.0});
-        continue;
-      }
-      if (const auto found = visible.find(one.item); found != visible.end()) {
-        seen.seen.push_back({one.item, found->second, Matrix6::Zero(), {}, 0.0});
-        continue;
-      }
-      seen.not_seen.push_back(one.item);
-      if (missing.contains(one.item)) seen.missing.push_back(one.item);
-    }
-    return seen;
-  }
-
- private:
-  plant::Feedback now_ = [] {
-    plant::Feedback start;
-    start.X_WE = two_boxes().controller.X_WE_start;
-    return start;
-  }();
-  int motions_ = 0;
-};
-
-SessionOptions quick_options() {
-  SessionOptions options;
-  options.agent = "margin";
-  options.samples = 0;
-  return options;
-}
+using test::has;
+using test::quick_options;
+using test::ScriptedPlant;
+using test::two_boxes;
 
 SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick_options(),
                    const model::RehearsalSettings& rehearsal = {}, int most_tries = 4) {
@@ -155,11 +63,6 @@ TEST(Packer, RehearsesAnewWhatWasPickedInVain) {
   EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
   EXPECT_EQ(result.items[0].sends.size(), 2U);
   EXPECT_EQ(result.items[0].attempts, 2);
-}
-
-bool has(const ItemReport& item, Trouble trouble, Remedy remedy) {
-  return std::ranges::any_of(item.recoveries,
-                             [&](const Recovery& one) { return one.trouble == trouble && one.remedy == remedy; });
 }
 
 TEST(Packer, ReturnsABoxThatMetTooMuchForceAtTheLastTry) {

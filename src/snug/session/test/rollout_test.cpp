@@ -110,5 +110,77 @@ TEST(Rollout, FailsWhereALinkOfTheArmTouchesSomething) {
   EXPECT_EQ(rollout.run({"test", {row}}, {.arm_may_touch = true}).arm_contact, episode.text);
 }
 
+TEST(Rollout, IsTakenUpWhereTheAnchorSaysAndNowhereElse) {
+  const model::Scenario scenario = shortened(2);
+  Rollout rollout(scenario, "1", moved_by(""));
+  cell::CellAnchor anchor;
+  anchor.X_WE = scenario.controller.X_WE_start;
+  anchor.X_WE.p.z() += 0.1;
+  const Pose on_floor = model::find_container(scenario, "tote1")->X_WT * Pose{Matrix3::Identity(), {0.0, 0.0, 0.0471}};
+  anchor.boxes = {{1, on_floor}};
+  rollout.take_up(anchor, 0.3);
+  EXPECT_FALSE(rollout.pose_of(0)) << "items that are not named are not there";
+  ASSERT_TRUE(rollout.pose_of(1));
+  EXPECT_LT((rollout.pose_of(1)->p - on_floor.p).norm(), 1e-3);
+  EXPECT_EQ(rollout.state().controller.command.X_WE, anchor.X_WE);
+  EXPECT_EQ(rollout.state().controller.command.V_WE.linear.norm(), 0.0);
+  EXPECT_FALSE(rollout.is_held(1));
+  EXPECT_EQ(rollout.poses().size(), 2U);
+  Rollout other(scenario, "1", moved_by(""));
+  (void)other.run(to_and_fro());
+  other.take_up(anchor, 0.3);
+  EXPECT_EQ(other.simulation().hash(other.state()), rollout.simulation().hash(rollout.state()))
+      << "what it did before is forgotten";
+}
+
+TEST(Rollout, PickedUpABoxIsHeldAndItsCupBearsItsWeight) {
+  const model::Scenario scenario = shortened(1);
+  motion::Program program = motion::load_program(SNUG_SOURCE_DIR "/src/snug/cell/test/demo_program.csv");
+  program.waypoints.resize(3);  // to it, onto it, up
+  Rollout rollout(scenario, "1", moved_by(""));
+  const Episode episode = rollout.run(program);
+  EXPECT_TRUE(episode.is_complete()) << episode.text;
+  EXPECT_TRUE(rollout.is_held(0));
+  const double weight = 9.81 * model::find_parcel(scenario, "BOX027")->inertia.mass;
+  EXPECT_GE(episode.peak_force, weight);
+  EXPECT_NEAR(rollout.state().gripper.F_S.force.norm(), weight, 0.25 * weight) << "it still swings";
+  EXPECT_NEAR(episode.duration, rollout.time(), 1e-9);
+  Rollout weak(scenario, "1", moved_by(""));
+  const Episode broken_off = weak.run(program, {.force = 0.9 * weight});
+  EXPECT_EQ(broken_off.end, RolloutEnd::TooMuchForce);
+  EXPECT_GT(broken_off.peak_force, 0.9 * weight);
+  EXPECT_LT(broken_off.duration, episode.duration);
+  EXPECT_NE(broken_off.text.find("PostPick(BOX027)"), std::string::npos) << broken_off.text;
+}
+
+TEST(Episode, MergedKeepsTheLargerPeaksAllTheTimeAndTheFirstFailure) {
+  Episode sum;
+  merge(sum, {RolloutEnd::Completed, "", 10.0, 0.5, 2.0, ""});
+  merge(sum, {RolloutEnd::TooMuchForce, "first", 30.0, 0.2, 1.0, "a touch"});
+  merge(sum, {RolloutEnd::Failed, "second", 20.0, 0.9, 4.0, "another"});
+  EXPECT_EQ(sum.end, RolloutEnd::TooMuchForce);
+  EXPECT_EQ(sum.text, "first");
+  EXPECT_EQ(sum.arm_contact, "a touch");
+  EXPECT_EQ(sum.peak_force, 30.0);
+  EXPECT_EQ(sum.peak_torque, 0.9);
+  EXPECT_EQ(sum.duration, 7.0);
+  EXPECT_FALSE(sum.is_complete());
+}
+
+TEST(Reach, OfAWayIsThatOfEveryPartOfIt) {
+  const model::Scenario scenario = shortened(1);
+  const ToolReach reaches = make_tool_reach(scenario);
+  ASSERT_TRUE(reaches);
+  const Pose start = scenario.controller.X_WE_start;
+  Pose far = start, below = start;
+  far.p.x() += 3.0;
+  below.p += Vector3(0.1, 0.1, -0.1);
+  EXPECT_TRUE(reaches({start, start}));
+  EXPECT_TRUE(reaches({start, below}));
+  EXPECT_TRUE(reaches({below, start}));
+  EXPECT_FALSE(reaches({start, far})) << "its end";
+  EXPECT_FALSE(reaches({far, start})) << "its begin";
+}
+
 }  // namespace
 }  // namespace snug::session

@@ -36,7 +36,7 @@ const physics::BodyState& body_of(const SimulatedPlant& plant, std::size_t item)
 /// centre of mass.
 TEST(Feedback, OfABoxThatHangsStillIsItsWeight) {
   for (const char* robot : {"", "ur10"}) {
-    for (const std::uint64_t seed : {0, 3}) {
+    for (const std::uint64_t seed : {0UL, 3UL}) {
       SCOPED_TRACE(std::string(robot) + " " + std::to_string(seed));
       SimulatedPlant plant(unhurried(), "1", drawn(seed, robot));
       ASSERT_TRUE(plant.bring("BOX027"));

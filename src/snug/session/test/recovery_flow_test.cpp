@@ -1,0 +1,427 @@
+// Recoveries from end to end: what a session sends, and says of an item, after each way in which a motion can end.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "snug/cell/joint_pace.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/rng.hpp"
+#include "snug/session/packer.hpp"
+#include "snug/session/test/scripted_plant.hpp"
+
+namespace snug::session {
+namespace {
+
+using plant::EndReason;
+using test::has;
+using test::quick_options;
+using test::ScriptedPlant;
+using test::two_boxes;
+
+using Edit = std::function<void(model::Scenario&)>;
+
+SessionResult pack_items(ScriptedPlant& plant, std::size_t items, const Edit& edit = {},
+                         const SessionOptions& options = quick_options()) {
+  model::Scenario scenario = two_boxes();
+  scenario.sequences.front().items.resize(items);
+  if (edit) edit(scenario);
+  return session::pack(scenario, "1", options, plant);
+}
+
+Pose container_pose() { return model::find_container(two_boxes(), two_boxes().target)->X_WT; }
+
+/// Standing on the surface where boxes are turned.
+Pose on_bench(const std::string& id) {
+  const skills::CellLayout layout = skills::make_layout(two_boxes(), cell::find_pan_axis(two_boxes()));
+  Pose X_WP = container_pose();
+  X_WP.p = layout.flip_place->p_WF + 0.5 * model::find_parcel(two_boxes(), id)->size.z() * Vector3::UnitZ();
+  return X_WP;
+}
+
+TEST(RecoveryFlow, AStopWithABoxIsAcknowledgedAndTheRestOfTheMotionIsSent) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::ProtectiveStop};
+  plant.ends_at = motion::MotionClass::PrePlace;
+  const SessionResult result = pack_items(plant, 1);
+  EXPECT_TRUE(has(result.items[0], Trouble::ProtectiveStop, Remedy::Resume));
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed);
+  EXPECT_EQ(result.items[0].sends.size(), 1U) << "the same motion goes on";
+  EXPECT_EQ(result.items[0].sends[0].trouble, Trouble::ProtectiveStop);
+  EXPECT_EQ(plant.acknowledged, 1);
+  ASSERT_EQ(plant.motions.size(), 3U) << "the motion, its rest, home";
+  const auto& whole = plant.motions[0].waypoints;
+  const auto stopped = std::ranges::find(whole, motion::MotionClass::PrePlace, &motion::Waypoint::motion_class);
+  EXPECT_TRUE(std::ranges::equal(plant.motions[1].waypoints, std::vector(stopped, whole.end())));
+  EXPECT_EQ(plant.motions[1].guards, plant.motions[0].guards);
+}
+
+TEST(RecoveryFlow, ASecondStopLetsTheBoxGo) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::ProtectiveStop, EndReason::ProtectiveStop};
+  const SessionResult result = pack_items(plant, 1);
+  const auto& recoveries = result.items[0].recoveries;
+  ASSERT_GE(recoveries.size(), 2U);
+  EXPECT_EQ(recoveries[0].remedy, Remedy::Resume);
+  EXPECT_EQ(recoveries[1].remedy, Remedy::Release);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Gone) << "let go somewhere, and not seen";
+  EXPECT_EQ(result.stop_reason, StopReason::NoMoreItems);
+  const auto& up = plant.motions[2].waypoints;
+  EXPECT_TRUE(up.front().io.blow_off);
+  EXPECT_FALSE(up.back().io.vacuum);
+  EXPECT_GE(up.back().p_WE.z(), up.front().p_WE.z());
+}
+
+TEST(RecoveryFlow, StopsThatDoNotEndEndTheSession) {
+  ScriptedPlant plant;
+  plant.ends.assign(100, EndReason::ProtectiveStop);
+  plant.retreat_ends.assign(100, EndReason::ProtectiveStop);
+  const SessionResult result = pack_items(plant, 2);
+  EXPECT_EQ(result.stop_reason, StopReason::RobotStops);
+  EXPECT_EQ(result.stopped, "robot stops");
+  EXPECT_EQ(plant.brought, std::vector<std::string>{"BOX027"}) << "no further item";
+  EXPECT_FALSE(result.items[0].is_packed());
+  EXPECT_LT(plant.motions.size(), 30U);
+}
+
+TEST(RecoveryFlow, NeverSendsMoreMotionsForAnItemThanItMay) {
+  for (int most = 1; most <= 5; ++most) {
+    SCOPED_TRACE(most);
+    ScriptedPlant plant;
+    plant.ends.assign(100, EndReason::NoSeal);
+    const SessionResult result = pack_items(plant, 1, [&](auto& scenario) { scenario.recovery.most_tries = most; });
+    EXPECT_EQ(result.items[0].sends.size(), static_cast<std::size_t>(most));
+    EXPECT_EQ(result.items[0].end, ItemEnd::NotHeld);
+    EXPECT_EQ(result.items[0].reason, "no seal");
+    for (const Send& send : result.items[0].sends) EXPECT_EQ(send.end.reason, EndReason::NoSeal);
+  }
+}
+
+TEST(RecoveryFlow, LoadAndLatenessPutABoxDownOnTheBenchAndPickItThere) {
+  for (const EndReason reason : {EndReason::ForceGuard, EndReason::HoldGuard, EndReason::Timeout}) {
+    SCOPED_TRACE(plant::name_of(reason));
+    ScriptedPlant plant;
+    plant.ends = {reason};
+    plant.happens = [&](int motion) {
+      plant.visible.clear();
+      if (motion == 2) plant.visible["BOX027"] = on_bench("BOX027");
+    };
+    const SessionResult result = pack_items(plant, 1);
+    ASSERT_EQ(result.items[0].recoveries.size(), 1U);
+    EXPECT_EQ(result.items[0].recoveries[0].remedy, Remedy::SetDown);
+    EXPECT_EQ(result.items[0].sends.size(), 2U);
+    EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
+    const skills::CellLayout layout = skills::make_layout(two_boxes(), cell::find_pan_axis(two_boxes()));
+    const auto& down = plant.motions[1].waypoints;
+    double nearest = 10.0;
+    for (const motion::Waypoint& row : down) {
+      nearest = std::min(nearest, (row.p_WE - layout.flip_place->p_WF).head<2>().norm());
+    }
+    EXPECT_LT(nearest, 0.1) << "over the bench";
+    EXPECT_TRUE(down.front().io.vacuum);
+    EXPECT_FALSE(down.back().io.vacuum);
+  }
+}
+
+TEST(RecoveryFlow, AFaultOfThePlantEndsTheSessionAtOnce) {
+  for (const EndReason reason : {EndReason::Fault, EndReason::Refused}) {
+    ScriptedPlant plant;
+    plant.ends = {reason};
+    const SessionResult result = pack_items(plant, 2);
+    EXPECT_EQ(result.stop_reason, StopReason::PlantFault);
+    EXPECT_EQ(plant.brought.size(), 1U);
+    EXPECT_TRUE(has(result.items[0], Trouble::PlantFault, Remedy::Stop));
+    EXPECT_FALSE(result.items[0].is_packed());
+    EXPECT_TRUE(result.plan.empty());
+  }
+}
+
+TEST(RecoveryFlow, AnItemThatDoesNotComeIsNoReasonToStop) {
+  ScriptedPlant plant;
+  plant.not_brought = {"BOX027"};
+  const SessionResult result = pack_items(plant, 2);
+  ASSERT_EQ(result.items.size(), 2U);
+  EXPECT_EQ(result.items[0].end, ItemEnd::NotBrought);
+  EXPECT_TRUE(result.items[0].sends.empty());
+  EXPECT_EQ(result.items[1].end, ItemEnd::Placed);
+  EXPECT_EQ(result.stop_reason, StopReason::NoMoreItems);
+}
+
+TEST(RecoveryFlow, ARobotThatDoesNotComeHomeIsAFailureWhateverWasPacked) {
+  ScriptedPlant plant;
+  plant.home_ends = {EndReason::ProtectiveStop};
+  const SessionResult result = pack_items(plant, 1);
+  EXPECT_EQ(result.stop_reason, StopReason::AllPacked);
+  EXPECT_EQ(result.failure.kind, SessionFailureKind::NotHome);
+  EXPECT_NE(result.failure.text.find("protective stop"), std::string::npos) << result.failure.text;
+  EXPECT_NE(result.stopped.find(result.failure.text), std::string::npos);
+  EXPECT_EQ(result.plan.size(), 1U);
+}
+
+/// An insertion that load ended says that boxes are harder: from then on they are twice as stiff, four times at most.
+TEST(RecoveryFlow, LoadOnTheWayInMakesBoxesStifferInTheBeliefAndLoadElsewhereDoesNot) {
+  const auto stiffness_after = [](EndReason reason, motion::MotionClass where) {
+    ScriptedPlant plant;
+    plant.ends = {reason};
+    plant.ends_at = where;
+    model::Scenario scenario = two_boxes();
+    Packer packer(scenario, "1", quick_options(), plant);
+    packing::AgentInput input;
+    input.settings = scenario.packing;
+    const auto agent = packing::make_agent("margin", std::move(input));
+    (void)packer.bring_in(0, *agent);
+    return *packer.belief().nominal().contact_pairs.front().params.stiffness /
+           *scenario.contact_pairs.front().params.stiffness;
+  };
+  const double stiffer = two_boxes().belief.stiffer;
+  for (const EndReason reason :
+       {EndReason::ForceGuard, EndReason::HoldGuard, EndReason::VacuumLost, EndReason::ProtectiveStop}) {
+    EXPECT_NEAR(stiffness_after(reason, motion::MotionClass::Place), stiffer, 1e-9) << plant::name_of(reason);
+    EXPECT_NEAR(stiffness_after(reason, motion::MotionClass::PrePlace), 1.0, 1e-9) << plant::name_of(reason);
+  }
+  EXPECT_NEAR(stiffness_after(EndReason::Timeout, motion::MotionClass::Place), 1.0, 1e-9) << "that is no load";
+}
+
+/// All of the container is foreign: nothing has a place.
+std::vector<perception::Obstacle> full_container() {
+  const model::Container& container = *model::find_container(two_boxes(), two_boxes().target);
+  Pose X_WB = container.X_WT;
+  X_WB.p.z() += 0.5 * container.inner_size.z();
+  return {{perception::columns_of_box(X_WB, container.inner_size), 0.0005}};
+}
+
+TEST(RecoveryFlow, ItemsWithoutAPlaceAreSkippedAsManyAsMayBe) {
+  for (int skips = 0; skips <= 2; ++skips) {
+    SCOPED_TRACE(skips);
+    ScriptedPlant plant;
+    plant.obstacles = full_container();
+    SessionOptions options = quick_options();
+    options.skips = skips;
+    const SessionResult result = pack_items(plant, 2, {}, options);
+    EXPECT_EQ(result.items.size(), static_cast<std::size_t>(std::min(2, skips + 1)));
+    EXPECT_EQ(result.stop_reason, skips < 2 ? StopReason::NoPlace : StopReason::NoMoreItems);
+    for (const ItemReport& item : result.items) EXPECT_EQ(item.end, ItemEnd::NoPlace) << item.reason;
+    EXPECT_EQ(result.percent_before_skips, 0.0);
+    EXPECT_TRUE(plant.motions.empty()) << "not even home: it never left";
+    EXPECT_FALSE(result.failure);
+  }
+}
+
+TEST(RecoveryFlow, AnItemThatFitsNowhereEverUsesUpNoSkip) {
+  ScriptedPlant plant;
+  SessionOptions options = quick_options();
+  options.skips = 0;
+  const SessionResult heavy = pack_items(
+      plant, 2,
+      [](auto& scenario) {
+        const auto box = std::ranges::find(scenario.parcels, "BOX027", &model::Parcel::id);
+        box->inertia.mass = 2.0 * scenario.packing.max_item_mass;
+      },
+      options);
+  ASSERT_EQ(heavy.items.size(), 2U);
+  EXPECT_EQ(heavy.items[0].end, ItemEnd::Hopeless);
+  EXPECT_EQ(heavy.items[0].reason, packing::describe(packing::NoPlace::TooHeavy));
+  EXPECT_EQ(heavy.items[1].end, ItemEnd::Placed);
+  EXPECT_FALSE(heavy.percent_before_skips);
+  EXPECT_EQ(heavy.stop_reason, StopReason::NoMoreItems);
+}
+
+TEST(RecoveryFlow, ABoxThatFellBesideTheContainerIsPickedThere) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::VacuumLost};
+  plant.happens = [&](int motion) {
+    plant.visible.clear();
+    if (motion == 1) plant.visible["BOX027"] = on_bench("BOX027");
+  };
+  const SessionResult result = pack_items(plant, 1);
+  EXPECT_TRUE(has(result.items[0], Trouble::VacuumLost, Remedy::PickAgain));
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
+  EXPECT_EQ(result.items[0].sends.size(), 2U);
+}
+
+/// Where the only item is planned to stand.
+Pose planned_pose() {
+  ScriptedPlant plant;
+  return container_pose() * pack_items(plant, 1).items[0].planned.X_TP;
+}
+
+TEST(RecoveryFlow, ABoxThatLeansIsPressedFromAboveAndIsPlacedWhenItStandsLevelThen) {
+  ScriptedPlant plant;
+  const Pose X_WP = planned_pose();
+  const Pose leaning{exp_rotation(Vector3(0.2, 0.0, 0.0)) * X_WP.R, X_WP.p};
+  plant.happens = [&](int) { plant.visible["BOX027"] = leaning; };
+  plant.when_pressed = [&] { plant.visible["BOX027"] = X_WP; };
+  const SessionResult result = pack_items(plant, 1);
+  ASSERT_EQ(result.items[0].recoveries.size(), 1U);
+  EXPECT_EQ(result.items[0].recoveries[0].trouble, Trouble::Leaning);
+  EXPECT_EQ(result.items[0].recoveries[0].remedy, Remedy::PressLevel);
+  EXPECT_EQ(plant.pressed.size(), 1U);
+  EXPECT_EQ(result.items[0].sends.size(), 1U);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed);
+  EXPECT_NEAR(result.items[0].position_error, 0.0, 1e-9);
+  EXPECT_NEAR(result.items[0].angle_error, 0.0, 1e-6) << "as it was seen last";
+  const auto press = std::ranges::find_if(plant.motions, [](const plant::Motion& motion) {
+    return std::ranges::any_of(motion.waypoints, [](const auto& row) { return row.variant == "_press"; });
+  });
+  ASSERT_NE(press, plant.motions.end());
+  EXPECT_EQ(press->guards.force, two_boxes().skills.press.force);
+  EXPECT_FALSE(press->guards.vacuum);
+}
+
+TEST(RecoveryFlow, ABoxThatLeansForEverIsPressedOnceForEachMotionAndThenGivenUp) {
+  ScriptedPlant plant;
+  plant.happens = [&](int) {
+    Pose X_WP = container_pose();
+    X_WP.p += Vector3(0.0, 0.0, 0.06);
+    plant.visible["BOX027"] = {X_WP.R * exp_rotation(Vector3(0.2, 0.0, 0.0)), X_WP.p};
+  };
+  const SessionResult result = pack_items(plant, 1);
+  EXPECT_LE(plant.pressed.size(), result.items[0].sends.size());
+  EXPECT_LE(result.items[0].sends.size(), static_cast<std::size_t>(two_boxes().recovery.most_tries));
+  EXPECT_FALSE(result.items[0].end == ItemEnd::Placed);
+}
+
+/// Just within and just beyond the limits of 20 mm and 6 degrees.
+TEST(RecoveryFlow, ABoxIsPlacedWithinTheLimitsAndOffItsPlaceBeyondThem) {
+  const Pose X_WP = planned_pose();
+  const model::PlaceLimits& limits = two_boxes().place_limits;
+  const auto trouble_of = [&](const Vector3& shift, double yaw) {
+    ScriptedPlant plant;
+    plant.happens = [&](int) {
+      plant.visible["BOX027"] = {exp_rotation(Vector3(0.0, 0.0, yaw)) * X_WP.R, X_WP.p + shift};
+    };
+    const SessionResult result = pack_items(plant, 1);
+    EXPECT_NEAR(result.items[0].position_error, shift.head<2>().norm(), 1e-9);
+    EXPECT_NEAR(result.items[0].angle_error, std::abs(yaw), 1e-6);
+    EXPECT_EQ(result.items[0].end, result.items[0].recoveries.empty() ? ItemEnd::Placed : ItemEnd::Accepted);
+    return result.items[0].sends[0].trouble;
+  };
+  EXPECT_EQ(trouble_of(Vector3(0.99 * limits.position, 0.0, 0.0), 0.0), Trouble::None);
+  EXPECT_EQ(trouble_of(Vector3(0.0, 1.01 * limits.position, 0.0), 0.0), Trouble::OffPlace);
+  EXPECT_EQ(trouble_of(Vector3(0.0, 0.0, 0.01), 0.0), Trouble::None) << "level distance counts";
+  EXPECT_EQ(trouble_of(Vector3::Zero(), 0.99 * limits.tilt), Trouble::None);
+  EXPECT_NE(trouble_of(Vector3::Zero(), -1.01 * limits.tilt), Trouble::None);
+}
+
+// What holds of every session, whatever happens in its plant.
+
+/// Ends and sights at random: boxes lie in the container, on the bench, on the ground, lean, or are not seen.
+void make_mischief(ScriptedPlant& plant, Rng& rng) {
+  constexpr std::array kReasons{EndReason::Completed,  EndReason::ForceGuard,     EndReason::HoldGuard,
+                                EndReason::NoSeal,     EndReason::VacuumLost,     EndReason::ProtectiveStop,
+                                EndReason::Completed,  EndReason::Timeout,        EndReason::Completed,
+                                EndReason::VacuumLost, EndReason::ProtectiveStop, EndReason::Fault};
+  const auto any = [&](int count) { return kReasons[static_cast<std::size_t>(rng.index(count))]; };
+  for (int i = 0; i < 200; ++i) plant.ends.push_back(any(rng.index(8) == 0 ? 12 : 11));
+  for (int i = 0; i < 200; ++i) plant.retreat_ends.push_back(rng.index(4) == 0 ? any(8) : EndReason::Completed);
+  for (int i = 0; i < 50; ++i) {
+    plant.faults.push_back(rng.index(6) == 0 ? static_cast<perception::LookFault>(1 + rng.index(2))
+                                             : perception::LookFault::None);
+  }
+  plant.happens = [&plant, &rng](int) {
+    const Pose X_WT = container_pose();
+    for (const std::string id : {"BOX027", "BOX028"}) {
+      plant.visible.erase(id);
+      plant.missing.erase(id);
+      const double lean = rng.index(3) == 0 ? rng.uniform(-0.7, 0.7) : 0.0;
+      const Matrix3 R = X_WT.R * exp_rotation(Vector3(lean, 0.0, 0.0));
+      switch (rng.index(6)) {
+        case 0:
+          plant.visible[id] = {
+              R, X_WT.p + Vector3(rng.uniform(-0.1, 0.1), rng.uniform(-0.2, 0.2), rng.uniform(0.04, 0.3))};
+          break;
+        case 1:
+          plant.visible[id] = on_bench(id);
+          break;
+        case 2:
+          plant.visible[id] = {R, Vector3(rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0), -0.75)};
+          break;
+        case 3:
+          plant.missing.insert(id);
+          break;
+        default:
+          break;
+      }
+    }
+  };
+}
+
+void expect_sound(const SessionResult& result, const ScriptedPlant& plant, const model::Scenario& scenario) {
+  std::vector<motion::Waypoint> sent;
+  for (const plant::Motion& motion : plant.motions) {
+    sent.insert(sent.end(), motion.waypoints.begin(), motion.waypoints.end());
+    ASSERT_FALSE(motion.waypoints.empty());
+  }
+  EXPECT_EQ(result.program.waypoints, sent) << "every waypoint that was sent";
+  for (const motion::Waypoint& row : sent) EXPECT_TRUE(row.p_WE.allFinite() && row.rotation_WE.allFinite());
+  std::set<std::string> planned, packed, seen;
+  for (const packing::Placement& one : result.plan) EXPECT_TRUE(planned.insert(one.item).second) << "planned twice";
+  for (const ItemReport& item : result.items) {
+    SCOPED_TRACE(item.id + " " + describe(item));
+    EXPECT_TRUE(seen.insert(item.id).second);
+    if (item.is_packed()) packed.insert(item.id);
+    EXPECT_LE(item.sends.size(), static_cast<std::size_t>(scenario.recovery.most_tries));
+    EXPECT_NEAR(item.seconds.total(), item.done - item.begin, 1e-9);
+    EXPECT_TRUE(item.is_packed() || !item.reason.empty()) << "why not";
+    for (const Send& send : item.sends) {
+      EXPECT_GE(send.predicted_success, 0.0);
+      EXPECT_LE(send.predicted_success, 1.0);
+      EXPECT_GE(send.time, item.begin);
+      EXPECT_LE(send.time, item.done);
+      EXPECT_EQ(send.planned.item, item.id);
+    }
+    double last = item.begin;
+    for (const Recovery& one : item.recoveries) {
+      EXPECT_GE(one.time, last);
+      EXPECT_NE(one.trouble, Trouble::None);
+      EXPECT_NE(one.remedy, Remedy::None);
+      last = one.time;
+    }
+  }
+  EXPECT_EQ(planned, packed);
+  EXPECT_EQ(result.stop_reason == StopReason::AllPacked, packed.size() == 2U && result.items.size() == 2U);
+  EXPECT_FALSE(result.stopped.empty());
+  const model::Container& container = *model::find_container(scenario, scenario.target);
+  EXPECT_NEAR(result.planned_percent,
+              model::compute_filling_degree_percent(scenario, container, {packed.begin(), packed.end()}), 1e-9);
+  EXPECT_LT(plant.motions.size(), 200U) << "it ends";
+}
+
+TEST(RecoveryFlow, HoldsItsPromisesWhateverHappens) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Rng rng = Rng(seed).split("mischief");
+    ScriptedPlant plant;
+    make_mischief(plant, rng);
+    const SessionResult result = pack_items(plant, 2);
+    expect_sound(result, plant, two_boxes());
+  }
+}
+
+TEST(RecoveryFlow, TheSameHappeningsGiveTheSameSession) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    std::vector<SessionResult> results;
+    for (const int threads : {1, 2}) {
+      Rng rng = Rng(seed).split("mischief");
+      ScriptedPlant plant;
+      make_mischief(plant, rng);
+      SessionOptions options = quick_options();
+      options.threads = threads;
+      options.samples = 2;
+      results.push_back(pack_items(plant, 2, {}, options));
+    }
+    EXPECT_EQ(results[0].program.waypoints, results[1].program.waypoints) << seed;
+    EXPECT_EQ(results[0].plan, results[1].plan);
+    ASSERT_EQ(results[0].items.size(), results[1].items.size());
+    for (std::size_t i = 0; i < results[0].items.size(); ++i) {
+      EXPECT_EQ(describe(results[0].items[i]), describe(results[1].items[i]));
+      EXPECT_EQ(results[0].items[i].success_rate, results[1].items[i].success_rate);
+      EXPECT_EQ(results[0].items[i].recoveries.size(), results[1].items[i].recoveries.size());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug::session

@@ -1,0 +1,226 @@
+// Rehearsal: what it says of one way to one place, limit by limit, and how often that holds in worlds that are known.
+#include "snug/session/rehearsal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "snug/cell/joint_pace.hpp"
+#include "snug/model/test/shortened.hpp"
+
+namespace snug::session {
+namespace {
+
+/// BOX027 at the aligner, to be put down on the empty floor.
+class RehearsalOfOneBox : public testing::Test {
+ protected:
+  explicit RehearsalOfOneBox(model::Scenario scenario = model::test::shortened(2)) : scenario_(std::move(scenario)) {
+    layout_ = skills::make_layout(scenario_, cell::find_pan_axis(scenario_));
+    layout_.is_fast = true;
+    limits_ = scenario_.place_limits;
+  }
+  void believe(int samples, std::uint64_t seed = 1) {
+    BeliefSettings settings;
+    settings.samples = samples;
+    settings.seed = seed;
+    settings.simulation.controller = motion::ControllerKind::Fast;
+    belief_ = std::make_unique<Belief>(scenario_, "1", settings);
+    belief_->arrives(0);
+  }
+  [[nodiscard]] packing::Candidate candidate(const Vector3& p_TP = Vector3(0.0, 0.0, 0.047)) const {
+    packing::Candidate one;
+    one.placement.item = "BOX027";
+    const Matrix3 R_AP = scenario_.aligner->X_WA.R.transpose() * belief_->box(0)->X_WP.R;
+    one.placement.orientation = packing::nearest_orientation(R_AP);
+    one.placement.X_TP = {packing::rotation(one.placement.orientation), p_TP};
+    return one;
+  }
+  [[nodiscard]] Attempt attempt(const packing::Candidate& where, int threads = 1) {
+    plant::Feedback robot;
+    robot.X_WE = scenario_.controller.X_WE_start;
+    const ToolReach everywhere;
+    Rehearsal rehearsal(*belief_, layout_, everywhere, limits_, threads,
+                        {0, belief_->box(0)->X_WP, Location::Aligner, robot});
+    return rehearsal.attempt(where, {}, 0.0);
+  }
+
+  model::Scenario scenario_;
+  skills::CellLayout layout_;
+  model::PlaceLimits limits_;
+  std::unique_ptr<Belief> belief_;
+};
+
+TEST_F(RehearsalOfOneBox, SucceedsOnAnEmptyFloorWithForcesOfItsWeight) {
+  believe(2);
+  const Attempt one = attempt(candidate());
+  EXPECT_TRUE(one.succeeded) << one.text;
+  EXPECT_EQ(one.failure, AttemptFailure::None);
+  EXPECT_TRUE(one.text.empty());
+  EXPECT_EQ(one.samples, 2);
+  EXPECT_EQ(one.success_rate, 1.0);
+  const double weight = 9.81 * model::find_parcel(scenario_, "BOX027")->inertia.mass;
+  EXPECT_GT(one.nominal.force, weight) << "it was lifted";
+  EXPECT_LT(one.nominal.force, limits_.force);
+  EXPECT_EQ(one.nominal.displacement, 0.0) << "there is no other box";
+  ASSERT_EQ(one.ends.size(), 3U) << "world by world";
+  const Pose X_WT = model::find_container(scenario_, scenario_.target)->X_WT;
+  for (const auto& end : one.ends) {
+    ASSERT_TRUE(end[0]);
+    EXPECT_LT((X_WT.inverse() * end[0]->p - one.planned.X_TP.p).norm(), limits_.position);
+    EXPECT_FALSE(end[1]) << "it has not come";
+  }
+}
+
+/// Each limit alone set to what nothing keeps: the attempt fails for that reason and says so.
+TEST_F(RehearsalOfOneBox, FailsByEachLimitForItsOwnReason) {
+  believe(0);
+  const model::PlaceLimits usual = limits_;
+  const auto failure = [&] {
+    const Attempt one = attempt(candidate());
+    EXPECT_FALSE(one.succeeded);
+    EXPECT_FALSE(one.text.empty());
+    EXPECT_EQ(one.samples, 0) << "what fails in the nominal world is not sampled";
+    limits_ = usual;
+    return one.failure;
+  };
+  limits_.position = 0.0;
+  EXPECT_EQ(failure(), AttemptFailure::OffPlace);
+  limits_.tilt = 0.0;
+  EXPECT_EQ(failure(), AttemptFailure::Tilted);
+  limits_.force = 1.0;
+  EXPECT_EQ(failure(), AttemptFailure::Rollout);
+  limits_.hold_factor = 1e6;
+  EXPECT_EQ(failure(), AttemptFailure::HoldMargin);
+}
+
+TEST_F(RehearsalOfOneBox, ABoxThatIsLetGoOverTheRimSticksOutOrIsBeside) {
+  believe(0);
+  const Vector3 inner = model::find_container(scenario_, scenario_.target)->inner_size;
+  const Attempt beside = attempt(candidate(Vector3(0.0, 0.5 * inner.y() + 0.2, inner.z() + 0.1)));
+  EXPECT_EQ(beside.failure, AttemptFailure::SticksOut);
+  EXPECT_NE(beside.text.find("beside the container"), std::string::npos) << beside.text;
+}
+
+TEST_F(RehearsalOfOneBox, ABoxThatIsPushedAsideIsFoundAndCounted) {
+  believe(0);
+  belief_->arrives(1);
+  perception::Observation seen;
+  const Pose X_WT = model::find_container(scenario_, scenario_.target)->X_WT;
+  const packing::Candidate where = candidate();
+  seen.seen.push_back({"BOX027", belief_->box(0)->X_WP, Matrix6::Zero(), {}, 0.0});
+  Pose other = X_WT * where.placement.X_TP;
+  other.p.x() += 0.19;  // its edge lies under the place
+  seen.seen.push_back({"BOX028", other, Matrix6::Zero(), {}, 0.0});
+  belief_->see(seen);
+  limits_.displacement = 0.0;
+  limits_.position = 1.0;
+  limits_.tilt = 3.0;
+  const Attempt one = attempt(where);
+  EXPECT_FALSE(one.succeeded);
+  EXPECT_GT(one.nominal.displacement, 0.0);
+}
+
+TEST_F(RehearsalOfOneBox, ItsResultDoesNotDependOnThreads) {
+  believe(3);
+  const Attempt one = attempt(candidate(), 1), two = attempt(candidate(), 2);
+  EXPECT_EQ(one.program, two.program);
+  EXPECT_EQ(one.ends, two.ends);
+  EXPECT_EQ(one.predicted.force, two.predicted.force);
+}
+
+/// Boxes are not seen: each world has its own arrival, drawn within 12 mm, and picks where the nominal one does. So a
+/// box ends as far from its place as it stood from where it was thought to stand, and succeeds when that is within the
+/// limit: a circle in a square.
+class RehearsalOfUnseenBoxes : public RehearsalOfOneBox {
+ protected:
+  static model::Scenario unseen() {
+    model::Scenario scenario = model::test::shortened(2);
+    scenario.uncertainty = model::no_uncertainty();
+    scenario.uncertainty.position = 0.012;
+    scenario.rehearsal.least_rate = 0.0;
+    scenario.rehearsal.first_samples = 0;
+    return scenario;
+  }
+  RehearsalOfUnseenBoxes() : RehearsalOfOneBox(unseen()) {}
+};
+
+TEST_F(RehearsalOfUnseenBoxes, PredictsTheShareOfWorldsInWhichItSucceeds) {
+  constexpr int kWorlds = 16;
+  believe(kWorlds, 3);
+  limits_.position = 0.009;
+  const Attempt one = attempt(candidate());
+  ASSERT_TRUE(one.succeeded) << one.text;
+  ASSERT_EQ(one.samples, kWorlds);
+  const Pose X_WT = model::find_container(scenario_, scenario_.target)->X_WT;
+  int within = 0;
+  plant::Feedback robot;
+  robot.X_WE = scenario_.controller.X_WE_start;
+  const auto& rollouts = belief_->take_up(robot);
+  const Vector3 nominal = rollouts[0]->pose_of(0)->p;
+  for (std::size_t w = 1; w < one.ends.size(); ++w) {
+    const double off = (X_WT.inverse() * one.ends[w][0]->p - one.planned.X_TP.p).head<2>().norm();
+    const double stood_off = (rollouts[w]->pose_of(0)->p - nominal).head<2>().norm();
+    EXPECT_NEAR(off, stood_off, 0.004) << "the cup bends under a box that it holds beside its middle";
+    within += off <= limits_.position ? 1 : 0;
+  }
+  EXPECT_GT(within, 0);
+  EXPECT_LT(within, kWorlds);
+  EXPECT_NEAR(one.success_rate, static_cast<double>(within) / kWorlds, 1e-12);
+  EXPECT_EQ(one.failure, AttemptFailure::OffPlace) << "of the first that failed";
+  // pi r^2 / (2 h)^2 of the worlds; of 16 within three deviations.
+  const double chance = 3.14159265358979 * 0.009 * 0.009 / (0.024 * 0.024);
+  EXPECT_NEAR(one.success_rate, chance, 3.0 * std::sqrt(chance * (1.0 - chance) / kWorlds));
+}
+
+TEST_F(RehearsalOfUnseenBoxes, WorldsCountByTheirWeight) {
+  believe(4, 3);
+  limits_.position = 0.009;
+  const Attempt before = attempt(candidate());
+  ASSERT_TRUE(before.succeeded);
+  ASSERT_GT(before.success_rate, 0.0);
+  ASSERT_LT(before.success_rate, 1.0);
+  const Pose X_WT = model::find_container(scenario_, scenario_.target)->X_WT;
+  std::vector<bool> succeeds;
+  for (const auto& end : before.ends) {
+    const double off = (X_WT.inverse() * end[0]->p - before.planned.X_TP.p).head<2>().norm();
+    succeeds.push_back(off <= limits_.position);
+  }
+  // The box is seen where those worlds predicted it that will fail: they weigh more now.
+  Pose seen = belief_->box(0)->X_WP, wrong = seen;
+  wrong.p.x() += 0.02;
+  std::vector<std::vector<std::optional<Pose>>> predicted;
+  for (const bool one : succeeds) predicted.push_back({one ? wrong : seen, std::nullopt});
+  const auto covariance = belief_->box(0)->covariance;
+  belief_->expect(predicted);
+  perception::Observation look;
+  look.seen.push_back({"BOX027", seen, Matrix6::Zero(), {}, 0.0});
+  belief_->see(look);
+  belief_->weigh(0);
+  belief_->arrives(0);  // once more, unseen, where each world has it
+  EXPECT_EQ(belief_->box(0)->covariance, covariance);
+  const Attempt after = attempt(candidate());
+  double good = 0.0, all = 0.0;
+  for (std::size_t w = 1; w < succeeds.size(); ++w) {
+    good += succeeds[w] ? belief_->weights()[w] : 0.0;
+    all += belief_->weights()[w];
+  }
+  EXPECT_NEAR(after.success_rate, good / all, 1e-12);
+  EXPECT_LT(after.success_rate, before.success_rate);
+}
+
+TEST_F(RehearsalOfUnseenBoxes, WhatFailsInTheFirstSamplesIsNotTriedInTheRest) {
+  scenario_.rehearsal.first_samples = 2;
+  scenario_.rehearsal.least_rate = 1.0;
+  believe(6, 3);
+  limits_.position = 0.0035;  // hardly any world
+  const Attempt one = attempt(candidate());
+  ASSERT_TRUE(one.succeeded) << one.text;
+  EXPECT_EQ(one.samples, 2);
+  EXPECT_LT(one.success_rate, 0.5);
+}
+
+}  // namespace
+}  // namespace snug::session

@@ -1,0 +1,145 @@
+// ScriptedPlant: a plant without physics, and sessions that pack it: motions end as a test says, looks show what it put
+// there.
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "snug/model/test/shortened.hpp"
+#include "snug/session/session.hpp"
+
+namespace snug::session::test {
+
+/// BOX027 and BOX028.
+inline const model::Scenario& two_boxes() {
+  static const model::Scenario one = model::test::shortened(2);
+  return one;
+}
+
+/// Motions that hold a box end as the script says.
+class ScriptedPlant final : public plant::Plant {
+ public:
+  using EndReason = plant::EndReason;
+
+  std::deque<EndReason> ends;                ///< of motions with the vacuum on; when they are used up: Completed
+  std::map<std::string, Pose> visible;       ///< X_WP
+  std::set<std::string> missing;             ///< seen to be nowhere
+  std::function<void(int motion)> happens;   ///< after each of those motions, from 1; may be empty
+  std::vector<std::string> pressed;          ///< items that were pressed on from above
+  std::function<void()> when_pressed;        ///< may be empty
+  std::deque<perception::LookFault> faults;  ///< of looks; when they are used up: none
+  std::optional<Vector3> size;               ///< measured of what stands at the aligner
+  std::optional<std::vector<perception::Obstacle>> obstacles;  ///< of every look
+  Pose X_WE_let_go;                                            ///< of the last motion with the vacuum on
+  int home_count = 0;                                          ///< motions that do nothing but go home
+  std::deque<EndReason> retreat_ends;                          ///< of retreats; when they are used up: Completed
+  std::deque<EndReason> home_ends;                             ///< of motions home; the same
+  std::string item;                                            ///< of the last motion
+  int acknowledged = 0;
+  std::set<std::string> not_brought;   ///< items that do not come
+  std::vector<std::string> brought;    ///< in their order
+  std::vector<plant::Motion> motions;  ///< that were sent
+  /// Motions that do not complete end on the way to the first waypoint of this class; else at the first with vacuum.
+  std::optional<motion::MotionClass> ends_at;
+
+  [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
+  [[nodiscard]] plant::Feedback read() override { return now_; }
+  [[nodiscard]] bool bring(const std::string& id) override {
+    if (not_brought.contains(id)) return false;
+    brought.push_back(id);
+    return true;
+  }
+  void acknowledge() override { ++acknowledged; }
+
+  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override {
+    motions.push_back(motion);
+    const auto held = std::ranges::find_if(motion.waypoints, [](const auto& row) { return row.io.vacuum; });
+    const bool holds = held != motion.waypoints.end();
+    item = motion.item;
+    const bool is_retreat = motion.waypoints.back().variant == "_retreat", is_home = motion.item.empty();
+    const EndReason end = holds        ? next(ends)
+                          : is_retreat ? next(retreat_ends)
+                          : is_home    ? next(home_ends)
+                                       : EndReason{};
+    for (const motion::Waypoint& row : motion.waypoints) {
+      if (row.variant == "_press" && row.motion_class == motion::MotionClass::PlaceSlow) pressed.push_back(motion.item);
+    }
+    const bool is_press = motion.guards.force && !motion.guards.vacuum;
+    if (is_press && when_pressed) when_pressed();
+    if (is_home) ++home_count;
+    auto last = end == EndReason::Completed || !holds ? motion.waypoints.end() - 1 : held;
+    if (end != EndReason::Completed && ends_at) {
+      const auto found = std::ranges::find(motion.waypoints, *ends_at, &motion::Waypoint::motion_class);
+      if (found != motion.waypoints.end()) last = found;
+    }
+    if (holds) X_WE_let_go = last->X_WE();
+    now_.time += 1.0;
+    now_.end = {end, ends_at && end != EndReason::Completed ? static_cast<int>(last - motion.waypoints.begin()) : 0,
+                0.0, 0.0, ""};
+    now_.X_WE = last->X_WE();
+    now_.io = last->io;
+    now_.pressure_gauge = last->io.vacuum && end != EndReason::NoSeal && end != EndReason::VacuumLost ? -6.0e4 : 0.0;
+    now_.times.assign(1, {1.0, 0.0});
+    if (holds && happens) happens(++motion_count_);
+    return now_;
+  }
+
+  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
+    perception::Observation seen;
+    seen.time = now_.time;
+    seen.obstacles = obstacles;
+    if (!faults.empty()) {
+      seen.fault = faults.front();
+      faults.pop_front();
+    }
+    for (const perception::Expectation& one : expected) {
+      if (size) {
+        seen.seen.push_back({one.item, *one.X_WP, Matrix6::Zero(), size, 0.0});
+        continue;
+      }
+      if (const auto found = visible.find(one.item); found != visible.end()) {
+        seen.seen.push_back({one.item, found->second, Matrix6::Zero(), {}, 0.0});
+        continue;
+      }
+      seen.not_seen.push_back(one.item);
+      if (missing.contains(one.item)) seen.missing.push_back(one.item);
+    }
+    return seen;
+  }
+
+ private:
+  static EndReason next(std::deque<EndReason>& script) {
+    if (script.empty()) return EndReason::Completed;
+    const EndReason end = script.front();
+    script.pop_front();
+    return end;
+  }
+
+  plant::Feedback now_ = [] {
+    plant::Feedback start;
+    start.X_WE = two_boxes().controller.X_WE_start;
+    return start;
+  }();
+  int motion_count_ = 0;
+};
+
+inline SessionOptions quick_options() {
+  SessionOptions options;
+  options.agent = "margin";
+  options.samples = 0;
+  return options;
+}
+
+/// It was done about this trouble of this item.
+inline bool has(const ItemReport& item, Trouble trouble, Remedy remedy) {
+  return std::ranges::any_of(item.recoveries,
+                             [&](const Recovery& one) { return one.trouble == trouble && one.remedy == remedy; });
+}
+
+}  // namespace snug::session::test
