@@ -26,7 +26,7 @@ struct FastSettings {
   Pace held = {2.0, 5.0, 2.5, 6.0, 0.25};
   /// A held box on its way in (Place). Straight down, half of the motion comes later by half the period of its slow
   /// swing. Other rows that touch something have the scenario's limits for their names.
-  Pace insert = {0.9, 6.0, 1.5, 3.0, 0.10};
+  Pace insert = {0.75, 6.0, 1.5, 3.0, 0.10};
   /// The empty cup off a box that it let go, blowing: faster, the bellows would draw air in and the box with them.
   Pace detach = {0.4, 4.0, 1.0, 3.0, 0.04};
   /// m: so far a box that is lifted by its side swings at most when it leaves what it stood on. It tilts about its far
