@@ -5,15 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/cup/statics.hpp"
 #include "snug/cup/swing.hpp"
-#include "snug/geometry/bounds.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/motion/way.hpp"
 #include "snug/motion/waypoint_name.hpp"
-#include "snug/skills/highest_fixed_point.hpp"
 #include "snug/skills/internal/row_parts.hpp"
 #include "snug/skills/unwinding.hpp"
 
@@ -21,56 +18,6 @@ namespace snug::skills {
 namespace {
 
 using motion::MotionClass;
-
-constexpr double kLevel = 1e-3;  ///< rad
-
-/// Bounds in W of the boxes that fixed bodies are made of, where one face lies level.
-std::vector<geometry::Aabb> flat_tops(const model::Scenario& scenario) {
-  std::vector<geometry::Aabb> tops;
-  for (const model::Body& body : scenario.bodies) {
-    if (body.kind != model::BodyKind::Static) continue;
-    for (const model::PlacedShape& placed : body.shapes) {
-      const Pose X_WG = body.X_WB * placed.X_BG;
-      const bool is_level = X_WG.R.row(2).cwiseAbs().maxCoeff() > std::cos(kLevel);
-      if (is_level && std::holds_alternative<geometry::Box>(placed.shape)) {
-        tops.push_back(geometry::bounds(placed.shape, X_WG));
-      }
-    }
-  }
-  return tops;
-}
-
-/// The axis of W that is nearest to the way from `from` to `to`.
-Vector3 main_direction(const Vector3& from, const Vector3& to) {
-  const Vector3 way = to - from;
-  const int axis = std::abs(way.x()) >= std::abs(way.y()) ? 0 : 1;
-  return std::copysign(1.0, way[axis]) * Vector3::Unit(axis);
-}
-
-/// The highest surface that is large enough, near the way from aligner to container.
-std::optional<FlipPlace> find_flip_place(const std::vector<geometry::Aabb>& tops, const Vector3& from,
-                                         const Vector3& to, const model::PivotParams& params) {
-  const Vector3 middle = 0.5 * (from + to), direction = main_direction(from, to);
-  std::optional<FlipPlace> best;
-  double best_distance = 0.0;
-  for (const geometry::Aabb& top : tops) {
-    // A flipped box is let go further on in `direction` and dragged back to its place: room on that side only.
-    const Vector3 low =
-        top.lower + Vector3::Constant(params.surface_room) + params.surface_drag * (-direction).cwiseMax(0.0);
-    const Vector3 high =
-        top.upper - Vector3::Constant(params.surface_room) - params.surface_drag * direction.cwiseMax(0.0);
-    if (low.x() > high.x() || low.y() > high.y()) continue;
-    const Vector3 nearest(std::clamp(middle.x(), low.x(), high.x()), std::clamp(middle.y(), low.y(), high.y()),
-                          top.upper.z());
-    const double distance = (nearest - middle).head<2>().norm();
-    const bool is_higher = best && nearest.z() > best->p_WF.z() + 1e-6;
-    const bool is_as_high = best && std::abs(nearest.z() - best->p_WF.z()) <= 1e-6;
-    if (best && !is_higher && !(is_as_high && distance < best_distance)) continue;
-    best = FlipPlace{nearest, direction};
-    best_distance = distance;
-  }
-  return best;
-}
 
 /// How far below `bottom` [m, z in W] a held box comes on a fast way, and after which share of it.
 struct Dip {
@@ -100,23 +47,6 @@ double yaw_between(const Matrix3& R_from, const Matrix3& R_to) {
   return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
 }
 
-/// What is beside a place along one axis of the container.
-struct AxisView {
-  double low = 1.0, high = 1.0;          ///< m, gaps
-  double low_top = 0.0, high_top = 0.0;  ///< m, of the neighbours over the lower face
-  [[nodiscard]] bool low_near(const model::InsertionParams& params) const {
-    return low < params.near && low_top > params.least_neighbour;
-  }
-  [[nodiscard]] bool high_near(const model::InsertionParams& params) const {
-    return high < params.near && high_top > params.least_neighbour;
-  }
-};
-
-AxisView view(const packing::Candidate& candidate, int axis) {
-  const auto low = static_cast<std::size_t>(2 * axis), high = low + 1;
-  return {candidate.side_gap[low], candidate.side_gap[high], candidate.side_height[low], candidate.side_height[high]};
-}
-
 PickIntent pick_intent(const model::Scenario& scenario, const CellLayout& layout, const PlannedBox& box,
                        const Pose& X_WP, const Pose& X_WP_next, double travel, PickKind kind) {
   const model::PickParams& params = scenario.skills.pick;
@@ -140,18 +70,6 @@ PickIntent pick_intent(const model::Scenario& scenario, const CellLayout& layout
 
 }  // namespace
 
-const char* name_of(InsertionSkill skill) {
-  switch (skill) {
-    case InsertionSkill::TopDown:
-      return "top-down";
-    case InsertionSkill::SlideToContact:
-      return "slide to contact";
-    case InsertionSkill::Tilted:
-      return "tilted";
-  }
-  return "";
-}
-
 const char* name_of(Reorientation reorientation) {
   switch (reorientation) {
     case Reorientation::None:
@@ -164,79 +82,6 @@ const char* name_of(Reorientation reorientation) {
       return "pivot";
   }
   return "";
-}
-
-CellLayout make_layout(const model::Scenario& scenario, const std::optional<motion::PanAxis>& pan_axis) {
-  const model::Container* container = model::find_container(scenario, scenario.target);
-  if (!scenario.aligner || !scenario.tool || container == nullptr) {
-    throw InputError(scenario.source_name, "", "", "a cell with an aligner, a tool and a target container");
-  }
-  CellLayout layout;
-  layout.X_WT = container->X_WT;
-  layout.rim = container->has_walls ? container->inner_size.z() : 0.0;
-  layout.fixed_top = highest_fixed_point(scenario);
-  layout.flip_place =
-      find_flip_place(flat_tops(scenario), scenario.aligner->X_WA.p, container->X_WT.p, scenario.skills.pivot);
-  layout.pan_axis = pan_axis;
-  layout.travel = scenario.skills.travel;
-  layout.cup_growth = std::max(0.0, scenario.cup.free_length - scenario.cup.hold_length);
-  layout.neutral_yaw = motion::yaw_of(scenario.controller.X_WE_start.R).value_or(0.0);
-  return layout;
-}
-
-double travel_bottom(const CellLayout& layout, double packed_top) {
-  const double rim = layout.X_WT.p.z() + std::max(layout.rim, packed_top);
-  return std::max(rim, layout.fixed_top) + layout.travel.clearance;
-}
-
-std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
-                                         const model::InsertionParams& params) {
-  Insertion base;
-  int tight_axis = -1;
-  bool slides = false;
-  for (int axis = 0; axis < 2; ++axis) {
-    const AxisView v = view(candidate, axis);
-    if (v.low_near(params) && v.high_near(params)) {
-      if (tight_axis < 0 || view(candidate, tight_axis).low + view(candidate, tight_axis).high > v.low + v.high) {
-        tight_axis = axis;
-      }
-    } else if (v.low_near(params) && v.high > params.slide_room) {
-      base.come_from_T[axis] = std::min(params.slide_start, v.high - params.slide_margin);
-      base.overtravel_T[axis] = -params.overtravel;
-      slides = true;
-    } else if (v.high_near(params) && v.low > params.slide_room) {
-      base.come_from_T[axis] = -std::min(params.slide_start, v.low - params.slide_margin);
-      base.overtravel_T[axis] = params.overtravel;
-      slides = true;
-    }
-  }
-  base.skill = slides ? InsertionSkill::SlideToContact : InsertionSkill::TopDown;
-  std::vector<Insertion> insertions{base};
-  if (tight_axis >= 0) {
-    const AxisView v = view(candidate, tight_axis);
-    const double bottom = candidate.placement.X_TP.p.z() + lowest_corner(candidate.placement.X_TP.R, size);
-    Insertion tilted = base;
-    tilted.skill = InsertionSkill::Tilted;
-    tilted.edge_height_T = bottom + std::min(v.low_top, v.high_top);
-    const double low_side = v.low_top > v.high_top ? 1.0 : -1.0;
-    tilted.low_side_T[tight_axis] = low_side;
-    // A taller neighbour is what the box is pushed against; among equals the side that goes in first.
-    const double taller = std::abs(v.low_top - v.high_top) > params.tilted.taller ? -low_side : low_side;
-    tilted.push_T = base.overtravel_T;
-    tilted.push_T[tight_axis] = taller * params.tilted.push;
-    tilted.come_from_T[tight_axis] = -taller * params.tilted.push;
-    insertions.push_back(tilted);
-    tilted.low_side_T = -tilted.low_side_T;
-    tilted.push_T[tight_axis] = -tilted.push_T[tight_axis];
-    tilted.come_from_T[tight_axis] = -tilted.come_from_T[tight_axis];
-    insertions.push_back(tilted);
-  } else if (slides) {
-    Insertion gentle = base;
-    gentle.overtravel_T *= params.gentle;
-    gentle.gentle = true;
-    insertions.push_back(gentle);
-  }
-  return insertions;
 }
 
 PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item) {

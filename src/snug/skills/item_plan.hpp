@@ -5,36 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "snug/motion/way.hpp"
 #include "snug/motion/waypoint.hpp"
-#include "snug/packing/placement.hpp"
+#include "snug/skills/cell_layout.hpp"
+#include "snug/skills/insertion.hpp"
 #include "snug/skills/primitives.hpp"
 #include "snug/skills/side_pick.hpp"
 
 namespace snug::skills {
-
-/// The flat surface on which boxes are flipped.
-struct FlipPlace {
-  Vector3 p_WF = Vector3::Zero();        ///< m, under the middle of the box
-  Vector3 direction = Vector3::UnitX();  ///< unit, where the tool points when it lets go
-};
-
-/// What the plans of all items have in common.
-struct CellLayout {
-  Pose X_WT;                                ///< target container
-  double rim = 0.0;                         ///< m, z in T of the upper edges of its walls; 0 without walls
-  double fixed_top = 0.0;                   ///< m, z in W of the highest fixed thing that the tool passes
-  std::optional<FlipPlace> flip_place;      ///< absent: nothing flat is large enough
-  std::optional<motion::PanAxis> pan_axis;  ///< of the robot, where that is vertical
-  double neutral_yaw = 0.0;                 ///< rad, of the tool at its start: half a turn to either side of it is used
-  /// Motions are fast ones (motion::ControllerKind::Fast): tracked exactly, around the robot's first axis. A held box
-  /// turns the way round that leaves the wrist less to do, and while it travels.
-  bool is_fast = false;
-  model::TravelParams travel;
-  double cup_growth = 0.0;  ///< m, of a cup that lets go
-};
-/// Throws InputError for a scenario without aligner, tool or target container.
-[[nodiscard]] CellLayout make_layout(const model::Scenario& scenario, const std::optional<motion::PanAxis>& pan_axis);
 
 /// How another face of a box is brought up.
 enum class Reorientation {
@@ -44,28 +21,6 @@ enum class Reorientation {
   Pivot,      ///< turned over its lower edge on a flat surface, let go, picked again (report Figure 13)
 };
 [[nodiscard]] const char* name_of(Reorientation reorientation);
-
-/// How a box is brought to its place.
-enum class InsertionSkill {
-  TopDown,         ///< straight down
-  SlideToContact,  ///< beside its place, then pushed against its neighbours
-  Tilted,          ///< one side first, levelled while it is pushed
-};
-[[nodiscard]] const char* name_of(InsertionSkill skill);
-
-/// A skill and how much of it.
-struct Insertion {
-  InsertionSkill skill = InsertionSkill::TopDown;
-  Vector3 come_from_T = Vector3::Zero();   ///< m
-  Vector3 overtravel_T = Vector3::Zero();  ///< m
-  Vector3 low_side_T = Vector3::Zero();    ///< Tilted: unit
-  Vector3 push_T = Vector3::Zero();        ///< Tilted: m
-  double edge_height_T = 0.0;              ///< Tilted: m
-  bool gentle = false;
-};
-/// Insertions worth trying for a candidate, the most promising first; never empty.
-[[nodiscard]] std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
-                                                       const model::InsertionParams& params);
 
 /// A box of the plan: as the scenario has it.
 struct PlannedBox {
@@ -147,8 +102,4 @@ struct PlaceRequest {
 };
 [[nodiscard]] std::vector<motion::Waypoint> plan_place(const model::Scenario& scenario, const CellLayout& layout,
                                                        const PlaceRequest& request);
-
-/// z in W below which nothing passes that crosses the cell: over fixed things, rim and packed boxes.
-[[nodiscard]] double travel_bottom(const CellLayout& layout, double packed_top);
-
 }  // namespace snug::skills

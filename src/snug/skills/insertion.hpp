@@ -1,0 +1,33 @@
+// Insertion: the ways to bring a box to its place that what is beside it asks for.
+#pragma once
+
+#include <vector>
+
+#include "snug/model/skill_params.hpp"
+#include "snug/packing/placement.hpp"
+
+namespace snug::skills {
+
+/// How a box is brought to its place.
+enum class InsertionSkill {
+  TopDown,         ///< straight down
+  SlideToContact,  ///< beside its place, then pushed against its neighbours
+  Tilted,          ///< one side first, levelled while it is pushed
+};
+[[nodiscard]] const char* name_of(InsertionSkill skill);
+
+/// A skill and how much of it.
+struct Insertion {
+  InsertionSkill skill = InsertionSkill::TopDown;
+  Vector3 come_from_T = Vector3::Zero();   ///< m
+  Vector3 overtravel_T = Vector3::Zero();  ///< m
+  Vector3 low_side_T = Vector3::Zero();    ///< Tilted: unit
+  Vector3 push_T = Vector3::Zero();        ///< Tilted: m
+  double edge_height_T = 0.0;              ///< Tilted: m
+  bool gentle = false;
+};
+/// Insertions worth trying for a candidate, the most promising first; never empty.
+[[nodiscard]] std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
+                                                       const model::InsertionParams& params);
+
+}  // namespace snug::skills
