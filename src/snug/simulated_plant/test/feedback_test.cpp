@@ -152,6 +152,8 @@ TEST(Feedback, PeaksAreOfTheLastMotionAndAtLeastWhatIsThereInTheEnd) {
   EXPECT_LT(still.peak_force, 1.2 * held.F_E.force.norm()) << "not what was before";
   EXPECT_GE(still.peak_force, still.F_E.force.norm());
   EXPECT_GE(still.peak_torque, still.F_E.torque.norm());
+  const plant::Feedback refused = plant.submit({"BOX027", {}, {}});
+  EXPECT_GE(refused.peak_force, refused.F_E.force.norm()) << "it hangs there all the same";
 }
 
 TEST(Feedback, AGuardOfTheHoldEndsAMotionThatTheCupCouldStillBear) {
@@ -218,6 +220,23 @@ TEST(Feedback, BadMotionsAreRefusedAndChangeNothing) {
   EXPECT_EQ(plant.submit({"BOX027", {}, {}}).end.reason, EndReason::Refused);
   EXPECT_EQ(plant.simulation().hash(plant.state()), before);
   EXPECT_EQ(plant.submit(motion).end.reason, EndReason::Completed) << "and a good one goes on";
+}
+
+/// A box of a mass that no number holds any more.
+TEST(Feedback, APlantThatFailsSaysSoAndMovesNoMore) {
+  model::Scenario scenario = three_boxes();
+  std::ranges::find(scenario.parcels, "BOX027", &model::Parcel::id)->inertia.mass = 1e308;
+  SimulatedPlant plant(scenario, "1", nominal());
+  ASSERT_TRUE(plant.bring("BOX027"));
+  const plant::Feedback failed = plant.submit(pick_of("BOX027"));
+  EXPECT_EQ(failed.end.reason, EndReason::Fault);
+  EXPECT_FALSE(failed.end.where.empty());
+  EXPECT_TRUE(failed.X_WE.p.allFinite());
+  plant.acknowledge();
+  const plant::Feedback refused = plant.submit({"", {packing_of("BOX028").waypoints.front()}, {}});
+  EXPECT_EQ(refused.end.reason, EndReason::Refused);
+  EXPECT_EQ(refused.end.where, "the plant has failed");
+  EXPECT_EQ(refused.X_WE, failed.X_WE);
 }
 
 TEST(SimulatedPlantCalls, TheSameOnesGiveTheSameBytesWhateverIsReadInBetween) {

@@ -28,7 +28,9 @@ std::vector<perception::Expectation> all_items() {
 }
 
 TEST(PlantPerception, ExactIsTheTruthToTheLastBit) {
-  SimulatedPlant plant(three_boxes(), "1", seen_by(Kind::Exact, 5));
+  SimulatedPlantOptions options = seen_by(Kind::Exact, 5);
+  options.set = {{"parcel_clearance", "0.0005"}};  // what is seen is the box as it collides
+  SimulatedPlant plant(three_boxes(), "1", options);
   ASSERT_EQ(pack(plant, "BOX027").end.reason, EndReason::Completed);
   ASSERT_TRUE(plant.bring("BOX028"));
   const perception::Observation seen = plant.perceive(all_items());
