@@ -305,6 +305,25 @@ TEST(RecoveryFlow, ABoxIsPlacedWithinTheLimitsAndOffItsPlaceBeyondThem) {
   EXPECT_NE(trouble_of(Vector3::Zero(), -1.01 * limits.tilt), Trouble::None);
 }
 
+/// A packed box is found in the middle of the floor, and goes to another place.
+TEST(RecoveryFlow, TheTimeForABoxThatIsPackedAnewCountsForTheItemThatMovedIt) {
+  ScriptedPlant plant;
+  bool is_moved = false;
+  plant.happens = [&](int) {
+    if (plant.item == "BOX027") plant.visible.clear();
+    if (plant.item != "BOX028" || std::exchange(is_moved, true)) return;
+    plant.visible["BOX027"] = container_pose();
+    plant.visible["BOX027"].p.z() += 0.5 * model::find_parcel(two_boxes(), "BOX027")->size.z();
+  };
+  SessionOptions options = quick_options();
+  options.agent = "contact-aware";
+  options.decision.time = 0.02;
+  const SessionResult result = pack_items(plant, 2, {}, options);
+  ASSERT_TRUE(has(result.items[1], Trouble::NeighbourMoved, Remedy::PickAgain));
+  for (const ItemReport& item : result.items) EXPECT_NEAR(item.seconds.total(), item.done - item.begin, 1e-9);
+  EXPECT_GE(result.items[1].seconds.total(), 2.0) << "s: two motions";
+}
+
 // What holds of every session, whatever happens in its plant.
 
 /// Ends and sights at random: boxes lie in the container, on the bench, on the ground, lean, or are not seen.
