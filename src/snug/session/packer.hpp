@@ -95,7 +95,7 @@ class Packer {
   [[nodiscard]] bool send(const Attempt& attempt, const std::string& id, ItemReport& report);
   /// The box met more than it should on the way to its place.
   [[nodiscard]] bool was_stopped_by_load() const;
-  /// rad, from standing on a face in the container.
+  /// rad, from standing on a face in the container, turned about the vertical as it may be.
   [[nodiscard]] double tilt_of(int item) const;
   [[nodiscard]] Trouble assess(int item, const packing::Placement& planned,
                                const std::vector<std::optional<Pose>>& before, ItemReport& report) const;

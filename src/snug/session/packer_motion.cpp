@@ -114,7 +114,7 @@ int Packer::who_was_moved(int item, const std::vector<std::optional<Pose>>& befo
 
 double Packer::tilt_of(int item) const {
   const Matrix3 R_TP = layout_.X_WT.R.transpose() * belief_.box(item)->X_WP.R;
-  return angle_between(packing::rotation(packing::nearest_orientation(R_TP)), R_TP);
+  return std::acos(std::min(1.0, R_TP.row(2).cwiseAbs().maxCoeff()));
 }
 
 Trouble Packer::assess(int item, const packing::Placement& planned, const std::vector<std::optional<Pose>>& before,
@@ -185,8 +185,8 @@ ItemReport Packer::bring_in(int item, packing::Agent& agent) {
 
 void Packer::bring_to_place(int item, packing::Agent& agent, ItemReport& report) {
   handled_.push_back(item);
-  bool is_whole = true;
-  for (bool again = true; again && !stop_reason_;) {
+  bool is_whole = true, again = true;
+  while (again && !stop_reason_) {
     again = false;
     if (is_gone(report.id)) {
       give_up(item, Trouble::Gone, report);
@@ -216,6 +216,10 @@ void Packer::bring_to_place(int item, packing::Agent& agent, ItemReport& report)
     }
     again = recover(item, *planned, before, agent, report);
     if (robot_.end.reason == plant::EndReason::Completed) belief_.weigh(item);
+  }
+  if (again) {  // the session ends before it is planned once more
+    leave(item, report);
+    report.reason = name_of(*stop_reason_);
   }
   handled_.pop_back();
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "snug/simulated_plant/simulated_plant.hpp"
 
@@ -37,13 +38,17 @@ void SimulatedPlant::break_suction() {
 /// 30 mm to the side where it has to be lifted least, over whatever is there.
 void SimulatedPlant::move_aside(int item, FaultKind kind) {
   const cell::CellWorld& world = simulation_.world();
-  const auto pose_of = [&](std::size_t i) { return physics::pose_of(world.model, state_.world, world.parcels[i]); };
-  const auto half_of = [&](std::size_t i, const Matrix3& R) {
-    const auto& box =
-        std::get<geometry::Box>(world.model.bodies[static_cast<std::size_t>(world.parcels[i].index)].geoms[0].shape);
+  const auto pose_of = [&](physics::BodyId body) { return physics::pose_of(world.model, state_.world, body); };
+  const auto half_of = [&](physics::BodyId body, const Matrix3& R) {
+    const auto& box = std::get<geometry::Box>(world.model.bodies[static_cast<std::size_t>(body.index)].geoms[0].shape);
     return Vector3(R.cwiseAbs() * box.half);
   };
-  const auto self = static_cast<std::size_t>(item);
+  const physics::BodyId self = world.parcels[static_cast<std::size_t>(item)];
+  std::vector<physics::BodyId> others = world.parcels;
+  for (const ForeignObject& object : objects_.objects()) others.push_back(object.body);
+  std::erase_if(others, [&](physics::BodyId body) {
+    return body.index == self.index || !state_.world.bodies[static_cast<std::size_t>(body.index)].is_present;
+  });
   const Pose X_WP = pose_of(self);
   const Vector3 half = half_of(self, X_WP.R);
   Pose best = X_WP;
@@ -51,10 +56,9 @@ void SimulatedPlant::move_aside(int item, FaultKind kind) {
   for (int k = 0; k < kDirections; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / kDirections;
     Vector3 p = X_WP.p + kAside * Vector3(std::cos(angle), std::sin(angle), 0.0);
-    for (std::size_t i = 0; i < world.parcels.size(); ++i) {
-      if (i == self || !state_.world.bodies[static_cast<std::size_t>(world.parcels[i].index)].is_present) continue;
-      const Pose X_other = pose_of(i);
-      const Vector3 room = half + half_of(i, X_other.R), off = (p - X_other.p).cwiseAbs();
+    for (const physics::BodyId other : others) {
+      const Pose X_other = pose_of(other);
+      const Vector3 room = half + half_of(other, X_other.R), off = (p - X_other.p).cwiseAbs();
       const bool is_beside = off.x() < room.x() && off.y() < room.y() && off.z() < room.z();
       if (is_beside) p.z() = std::max(p.z(), X_other.p.z() + room.z() + kLowest);
     }
@@ -68,7 +72,7 @@ void SimulatedPlant::move_aside(int item, FaultKind kind) {
     best = {X_WP.R, p};
   }
   if (least >= 0.5) best.p = X_WP.p + Vector3(0.0, 0.0, kLowest);
-  physics::set_pose(world.model, state_.world, world.parcels[self], best);
+  physics::set_pose(world.model, state_.world, self, best);
   note(name_of(kind), item,
        fmt::format("moved {:.0f} mm aside and lifted {:.0f} mm", 1e3 * (best.p - X_WP.p).head<2>().norm(),
                    1e3 * (best.p.z() - X_WP.p.z())));
@@ -98,7 +102,7 @@ void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWa
     note("drop", current_, "it falls from the cup");
   }
   if (!is_let_go(plan)) return;
-  if (pending_.displace || pending_.push) move_boxes(plan, course);
+  while (pending_.displace || pending_.push) move_boxes(plan, course);
   if (put_and_take_objects()) {
     settle(plan, course, Until::BoxesRest);
     objects_.note_rest();

@@ -302,7 +302,25 @@ TEST(RecoveryFlow, ABoxIsPlacedWithinTheLimitsAndOffItsPlaceBeyondThem) {
   EXPECT_EQ(trouble_of(Vector3(0.0, 1.01 * limits.position, 0.0), 0.0), Trouble::OffPlace);
   EXPECT_EQ(trouble_of(Vector3(0.0, 0.0, 0.01), 0.0), Trouble::None) << "level distance counts";
   EXPECT_EQ(trouble_of(Vector3::Zero(), 0.99 * limits.tilt), Trouble::None);
-  EXPECT_NE(trouble_of(Vector3::Zero(), -1.01 * limits.tilt), Trouble::None);
+  EXPECT_EQ(trouble_of(Vector3::Zero(), -1.01 * limits.tilt), Trouble::OffPlace) << "it lies flat";
+}
+
+TEST(RecoveryFlow, AnItemOnTheBenchWhenTheViewIsBlockedIsNoItemWithoutAPlace) {
+  ScriptedPlant plant;
+  plant.ends = {EndReason::HoldGuard};
+  plant.happens = [&](int motion) {
+    plant.visible.clear();
+    if (motion < 2) return;
+    plant.visible["BOX027"] = on_bench("BOX027");
+    plant.faults.assign(3, perception::LookFault::ViewBlocked);
+  };
+  SessionOptions options = quick_options();
+  options.skips = 0;
+  const SessionResult result = pack_items(plant, 1, {}, options);
+  EXPECT_EQ(result.stop_reason, StopReason::ViewBlocked) << result.stopped;
+  EXPECT_EQ(result.items[0].end, ItemEnd::Left);
+  EXPECT_EQ(result.items[0].reason, "view blocked");
+  EXPECT_FALSE(result.percent_before_skips);
 }
 
 /// A packed box is found in the middle of the floor, and goes to another place.

@@ -378,5 +378,22 @@ TEST(ObjectFault, IsAtAnotherPlaceInAnotherPlantAndAtTheSameInTheSame) {
   EXPECT_NE(place(1), place(2));
 }
 
+TEST(FaultInjection, DisplaceAndPushOfOneItemBothHappen) {
+  const auto plant = packed_with("displace@2,push@2");
+  EXPECT_EQ(fault_events(*plant).size(), 2U);
+}
+
+TEST(ObjectFault, IsNotShotAwayByABoxThatAFaultMovesIntoIt) {
+  SimulatedPlant plant(three_boxes(), "1", nominal("object@1,displace@2"));
+  double fastest = 0.0;
+  plant.watch([&](const cell::CellTick&) {
+    const int body = plant.objects()[0].body.index;
+    fastest = std::max(fastest, plant.state().world.bodies[static_cast<std::size_t>(body)].velocity.norm());
+  });
+  for (const char* item : {"BOX027", "BOX028"}) (void)pack(plant, item);
+  EXPECT_LT((plant.objects()[0].X_TB.p - plant.objects()[0].X_TB_put.p).norm(), 0.005);
+  EXPECT_LT(fastest, 0.5);
+}
+
 }  // namespace
 }  // namespace snug::simulated_plant
