@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <string>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
@@ -12,28 +15,69 @@
 namespace snug::motion {
 namespace {
 
-constexpr std::string_view kKey = "tempo:";
+const std::array<std::string, 1> kKeys{"tempo"};
 constexpr double kLeast = 0.1;  ///< as FastSettings
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+std::string lower(std::string_view word) {
+  std::string text(word);
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+std::optional<double> parse_whole_number(std::string_view text) {
+  double value = 0.0;
+  const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || last != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// "WORD: VALUE" of a comment; blanks around both are left out.
+struct Setting {
+  std::string word;       ///< in small letters; empty: the comment is no setting
+  char separator = '\0';  ///< ':', '=', or none
+  std::string_view value;
+};
+
+Setting parse_comment(std::string_view comment) {
+  const auto* const end = std::ranges::find_if_not(comment, is_letter);
+  const auto length = static_cast<std::size_t>(end - comment.begin());
+  Setting setting{lower(comment.substr(0, length)), '\0', trim(comment.substr(length))};
+  if (setting.value.starts_with(':') || setting.value.starts_with('=')) {
+    setting.separator = setting.value.front();
+    setting.value = trim(setting.value.substr(1));
+  }
+  return setting;
+}
+
+/// Whether the tempo was meant, and is written as none: "tmepo: 1", "tempo = 1", "tempo 1".
+bool is_misspelt(const Setting& setting) {
+  if (!parse_whole_number(setting.value)) return false;
+  if (setting.word == kKeys[0]) return setting.separator != ':';
+  return setting.separator != '\0' && !find_nearest(setting.word, kKeys).empty();
+}
 
 }  // namespace
 
-std::string format_tempo(double tempo) { return fmt::format("# {} {}\n", kKey, tempo); }
+std::string format_tempo(double tempo) { return fmt::format("# {}: {}\n", kKeys[0], tempo); }
 
 std::optional<double> find_tempo(std::string_view text, std::string_view name) {
   std::optional<double> found;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark that spreadsheets add
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
     std::string_view row = trim(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (!row.starts_with('#')) continue;
     row = trim(row.substr(1));
-    if (!row.starts_with(kKey)) continue;
-    row = trim(row.substr(kKey.size()));
-    double tempo = 0.0;
-    const auto [last, error] = std::from_chars(row.data(), row.data() + row.size(), tempo);
-    const bool is_number = error == std::errc() && last == row.data() + row.size();
-    if (found || !is_number || !(tempo >= kLeast && tempo <= 1.0)) {
-      throw InputError(fmt::format("{}:{}", name, line), "tempo", fmt::format("'{}'", row),
+    const Setting setting = parse_comment(row);
+    const std::string place = fmt::format("{}:{}", name, line);
+    if (is_misspelt(setting)) throw InputError(place, "", fmt::format("'# {}'", row), "'# tempo: NUMBER'");
+    if (setting.word != kKeys[0] || setting.separator != ':') continue;
+    const std::optional<double> tempo = parse_whole_number(setting.value);
+    if (found || !tempo || !(*tempo >= kLeast && *tempo <= 1.0)) {
+      throw InputError(place, "tempo", fmt::format("'{}'", setting.value),
                        found ? "one tempo" : fmt::format("a number from {} to 1", kLeast));
     }
     found = tempo;

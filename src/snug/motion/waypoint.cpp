@@ -27,6 +27,8 @@ constexpr double kLargestPosition = 100.0;       // m; a cell is a few metres, s
 constexpr std::size_t kMostWaypoints = 100'000;  // hours of motion
 constexpr double kLargestRotation = 100.0;       // rad; far beyond any sensible rotation vector, still exact to 1e-14
 
+constexpr const char* kSwingEnding = "behind '~' a swing: two periods from 0.01 to 9.99 s, such as ~0.42+0.31";
+
 /// Where a field stands, for messages.
 struct Field {
   std::string_view text;
@@ -89,6 +91,7 @@ Waypoint parse_row(std::string_view text, std::string_view file, int line) {
     if (std::abs(number[i]) > kLargestRotation) field(i).fail("radians, at most 100");
   }
   Waypoint waypoint = parse_waypoint_name(read_name(field(6)));
+  if (has_malformed_swing(waypoint)) field(6).fail(kSwingEnding);
   waypoint.p_WE = {number[0], number[1], number[2]};
   waypoint.rotation_WE = {number[3], number[4], number[5]};
   waypoint.io = {parse_switch(field(7)),  parse_switch(field(8)),  parse_switch(field(9)),
@@ -107,6 +110,9 @@ void check_writable(const Program& program, std::size_t row) {
   if (name.empty() || name != trim(name) || name.find(',') != std::string::npos || !is_printable(name)) {
     throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name),
                      "a name without commas, control characters and blanks at its ends");
+  }
+  if (has_malformed_swing(parse_waypoint_name(name))) {
+    throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name), kSwingEnding);
   }
   if (!waypoint.p_WE.allFinite() || !waypoint.rotation_WE.allFinite()) {
     throw InputError(place_of(program, row), name, "a pose that is not finite", "a finite pose");

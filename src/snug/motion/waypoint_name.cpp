@@ -62,6 +62,15 @@ Tail parse_tail(std::string_view text) {
   return {std::string(text.substr(0, mark)) + std::string(fast.ptr, end), as_named(swing)};
 }
 
+/// Whether what stands behind a '~' is meant as a swing: a number, or two parts with a '+' between them.
+bool is_like_swing(std::string_view text) {
+  text = text.substr(0, text.find('_'));
+  double value = 0.0;
+  const auto number = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = number.ec != std::errc::invalid_argument && number.ptr == text.data() + text.size();
+  return is_number || text.find('+') != std::string_view::npos;
+}
+
 /// Digits of an id of the demonstrator's form, or nothing.
 std::string_view number_of(std::string_view id) noexcept {
   if (!id.starts_with("BOX") && !id.starts_with("Box")) return {};
@@ -119,6 +128,14 @@ Waypoint parse_waypoint_name(std::string_view name) {
   waypoint.item_is_id = !is_for_item || has_id;
   (waypoint.item_is_id ? waypoint.variant : waypoint.item) = std::move(tail.variant);
   return waypoint;
+}
+
+bool has_malformed_swing(const Waypoint& waypoint) {
+  const std::string_view tail = waypoint.item_is_id ? waypoint.variant : waypoint.item;  // without a swing
+  for (std::size_t mark = tail.find('~'); mark != std::string_view::npos; mark = tail.find('~', mark + 1)) {
+    if (is_like_swing(tail.substr(mark + 1))) return true;
+  }
+  return false;
 }
 
 Waypoint named_waypoint(std::string_view name, const Pose& X_WE, const IO& io) {

@@ -17,7 +17,10 @@ namespace snug::motion {
 /// last one ends it, ids may have some), or bare as the demonstrator writes it. A swing may have a variant behind it.
 /// Names that begin with no class are Other, all of them variant.
 [[nodiscard]] Waypoint parse_waypoint_name(std::string_view name);
-/// The same at a pose, with switches.
+/// Whether something behind a '~' of the name is meant as a swing, a number or with a '+', and is none: "~nan+0",
+/// "~0.42". Files may not have it.
+[[nodiscard]] bool has_malformed_swing(const Waypoint& waypoint);
+/// The same as parse_waypoint_name at a pose, with switches.
 [[nodiscard]] Waypoint named_waypoint(std::string_view name, const Pose& X_WE, const IO& io = {});
 
 /// `swing` rounded to what a file keeps. Its periods must be from 0.01 to 9.99 s (checked).

@@ -40,6 +40,33 @@ TEST(ProgramTempo, IsRefusedOutOfRangeNotANumberAndTwice) {
   }
 }
 
+TEST(ProgramTempo, IsReadInCapitalsAndWithBlanksAndBehindAByteOrderMark) {
+  for (const char* text :
+       {"# tempo : 0.6\n", "#tempo:0.6\n", "# Tempo: 0.6\n", "# TEMPO :0.6\n", "\xEF\xBB\xBF# tempo: 0.6\n"}) {
+    EXPECT_EQ(find_tempo(text + kTempoRow, "p.csv"), 0.6) << text;
+  }
+}
+
+TEST(ProgramTempo, IsRefusedMisspeltWithItsLineAndTheRightSpelling) {
+  for (const char* bad :
+       {"# tmepo: 1\n", "# temp: 0.5\n", "# Tempoo : 1\n", "# tempo = 1\n", "# tempo 0.8\n", "# tepo=1\n"}) {
+    try {
+      (void)find_tempo(kTempoRow + bad, "p.csv");
+      ADD_FAILURE() << bad;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("p.csv:2"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("'# tempo: NUMBER'"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(ProgramTempo, IsNoneInCommentsThatAreOfSomethingElse) {
+  for (const char* other : {"# boxes: 12\n", "# temp: cold\n", "# tempo of the day: slow\n", "# demo 1\n", "# 2: 1\n",
+                            "# : 1\n", "# time: 250.3\n"}) {
+    EXPECT_EQ(find_tempo(other + kTempoRow, "p.csv"), std::nullopt) << other;
+  }
+}
+
 TEST(ProgramTempo, AFileOfCommentsAloneIsNoProgram) {
   EXPECT_THROW((void)parse_program("# tempo: 1\n", "p.csv"), InputError);
 }

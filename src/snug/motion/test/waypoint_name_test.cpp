@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/core/input_error.hpp"
 #include "snug/motion/limits.hpp"
 #include "snug/motion/test/demonstrator.hpp"
 
@@ -114,6 +115,28 @@ TEST(WaypointName, SaysHowTheBoxOnTheWaySwings) {
                             "a~-1+0.3", "a~0.4+10", "a~nan+inf", "(a~0.42+0.31)", "a~+0.4+0.3", ""}) {
     EXPECT_EQ(parse_waypoint_name(other).swing, std::nullopt) << other;
     EXPECT_EQ(name_of(parse_waypoint_name(other)), other);
+  }
+}
+
+TEST(WaypointName, WithAMalformedSwingIsRefusedByFiles) {
+  for (const char* name : {"PostPick(BOX027)~nan+0", "PostPick(BOX027)~99999+-3", "PrePlace(B)~0.42",
+                           "PrePlace(B)~0.42+", "PrePlace(B)~+0.4", "PrePlace(B)~0.42+0.31x", "Place(B)~0.4+10_turn",
+                           "Place(B)_2~0+0.3", "Place027~inf+1", "home~1e999", "Place(B)~nan+0~0.42+0.31"}) {
+    SCOPED_TRACE(name);
+    EXPECT_TRUE(has_malformed_swing(parse_waypoint_name(name)));
+    const std::string row = std::string("0,0,0.5,0,3.14,0,") + name + ",0,0,0,0,0,0\n";
+    try {
+      (void)parse_program("# a comment\n" + row, "p.csv");
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("p.csv:2"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("~0.42+0.31"), std::string::npos) << error.what();
+    }
+    EXPECT_THROW((void)format_program({"p.csv", {parse_waypoint_name(name)}}), InputError);
+  }
+  for (const char* name :
+       {"PrePlace(BOX027)~0.42+0.31_turn", "Place()e~", "a~", "Place(a~1)", "Place(a~b+c)_2", "a~b"}) {
+    EXPECT_FALSE(has_malformed_swing(parse_waypoint_name(name))) << name;
   }
 }
 
