@@ -1,4 +1,4 @@
-// fit_limits: each row's profile stretched to the time and the peak speed of the simulated motion.
+// fit_limits: each row's profile stretched to the time of the simulated motion, at its peak speed where that suffices.
 #include "snug/motion/fitted_limits.hpp"
 
 #include <algorithm>
@@ -7,9 +7,10 @@
 namespace snug::motion {
 namespace {
 
-constexpr double kLongest = 7200.0;  ///< s
-constexpr double kLeastSpeed = 1e-3,
-                 kLeastAcceleration = 1e-3;  ///< m/s or rad/s, m/s^2 or rad/s^2: of what hardly moves
+constexpr double kLongest = 7200.0;          ///< s
+constexpr double kLeastSpeed = 1e-3;         ///< m/s or rad/s, of what hardly moves
+constexpr double kLeastAcceleration = 1e-3;  ///< m/s^2 or rad/s^2, likewise
+constexpr int kHalvings = 60;                ///< of an interval; more than a double has bits
 
 /// What the simulated tool did on the way to one row.
 struct RowMotion {
@@ -36,16 +37,37 @@ std::vector<RowMotion> simulate_rows(const PreparedProgram& plan, const Pose& X_
   return rows;
 }
 
-/// The acceleration with which `length` takes `duration` at no more than `speed`, at most `most`: by bisection, as the
-/// duration falls with the acceleration.
-double acceleration_for(double length, double duration, double speed, double most) {
-  if (plan_fastest_profile(length, speed, most).duration >= duration) return most;
-  double low = kLeastAcceleration, high = most;
-  for (int i = 0; i < 60; ++i) {
+/// Of a profile's speed and acceleration.
+struct ProfileLimits {
+  double speed = 0.0, acceleration = 0.0;
+};
+
+/// The value at which `duration_at` that value, falling, is `duration`, no shorter than that by rounding.
+template <class DurationAt>
+double bisect(double low, double high, double duration, DurationAt duration_at) {
+  for (int i = 0; i < kHalvings; ++i) {
     const double middle = std::sqrt(low * high);
-    (plan_fastest_profile(length, speed, middle).duration > duration ? low : high) = middle;
+    (duration_at(middle) > duration ? low : high) = middle;
   }
   return high;
+}
+
+/// With which `length` takes `duration`, no faster than the simulated `peak` where that suffices; never above `most`.
+/// What takes no longer with `most` keeps them: a row that is passed at once, since it lies within its precision, has
+/// neither a duration nor a speed that say how to go all of its way.
+ProfileLimits fit_profile(double length, double duration, double peak, const ProfileLimits& most) {
+  if (plan_fastest_profile(length, most.speed, most.acceleration).duration >= duration) return most;
+  ProfileLimits fitted{std::min(most.speed, std::max(peak, kLeastSpeed)), most.acceleration};
+  if (plan_fastest_profile(length, fitted.speed, most.acceleration).duration > duration) {  // it was left on the way
+    fitted.speed = bisect(fitted.speed, most.speed, duration, [&](double speed) {
+      return plan_fastest_profile(length, speed, most.acceleration).duration;
+    });
+    return fitted;
+  }
+  fitted.acceleration = bisect(kLeastAcceleration, most.acceleration, duration, [&](double acceleration) {
+    return plan_fastest_profile(length, fitted.speed, acceleration).duration;
+  });
+  return fitted;
 }
 
 }  // namespace
@@ -59,15 +81,17 @@ std::vector<MotionLimits> fit_limits(const PreparedProgram& plan, const Pose& X_
     const LspbSegment segment(X_WE, goal, fitted[i]);
     const RowMotion& row = simulated[i];
     MotionLimits& limits = fitted[i];
-    if (segment.translation().length > 0.0 && row.speed > kLeastSpeed) {
-      limits.max_speed = std::min(limits.max_speed, row.speed);
-      limits.max_acceleration =
-          acceleration_for(segment.translation().length, row.duration, limits.max_speed, limits.max_acceleration);
+    if (segment.translation().length > 0.0) {
+      const ProfileLimits fit = fit_profile(segment.translation().length, row.duration, row.speed,
+                                            {limits.max_speed, limits.max_acceleration});
+      limits.max_speed = fit.speed;
+      limits.max_acceleration = fit.acceleration;
     }
-    if (segment.rotation().length > 0.0 && row.turn_speed > kLeastSpeed) {
-      limits.max_turn_speed = std::min(limits.max_turn_speed, row.turn_speed);
-      limits.max_turn_acceleration = acceleration_for(segment.rotation().length, row.duration, limits.max_turn_speed,
-                                                      limits.max_turn_acceleration);
+    if (segment.rotation().length > 0.0) {
+      const ProfileLimits fit = fit_profile(segment.rotation().length, row.duration, row.turn_speed,
+                                            {limits.max_turn_speed, limits.max_turn_acceleration});
+      limits.max_turn_speed = fit.speed;
+      limits.max_turn_acceleration = fit.acceleration;
     }
     X_WE = goal;
   }

@@ -47,5 +47,31 @@ TEST(FitLimits, AreNeverAboveThoseOfThePlan) {
   }
 }
 
+TEST(FitLimits, LeaveARowThatIsPassedAtOnceItsOwnLimits) {
+  // 25 mm in a row to 50 mm: the tool that lags behind aims at the next row a tick later, having hardly moved.
+  const PreparedProgram plan = make_plan({0.025, 0.3}, 0.05);
+  const std::vector<MotionLimits> fitted = fit_limits(plan, Pose());
+  EXPECT_EQ(fitted[0].max_speed, plan.row_limits[0].max_speed);
+  EXPECT_EQ(fitted[0].max_acceleration, plan.row_limits[0].max_acceleration);
+}
+
+TEST(FitLimits, MakeNoRowSlowerThanItWasSimulatedAndThanItsOwnLimitsAllow) {
+  for (const double precision : {0.001, 0.005, 0.02, 0.05, 0.2}) {
+    for (const double length : {0.003, 0.01, 0.021, 0.025, 0.049, 0.06, 0.3}) {
+      const PreparedProgram plan = make_plan({length, 0.2}, precision);
+      const std::vector<MotionLimits> fitted = fit_limits(plan, Pose());
+      Pose X_WE;
+      for (std::size_t i = 0; i < fitted.size(); ++i) {
+        const Pose& goal = plan.X_WE[i];
+        const double own = LspbSegment(X_WE, goal, plan.row_limits[i]).duration();
+        // A row cannot have been simulated for longer than the whole program.
+        const double most = std::max(own, compute_duration(plan, Pose()));
+        EXPECT_LE(LspbSegment(X_WE, goal, fitted[i]).duration(), most * (1.0 + 1e-9)) << precision << " " << length;
+        X_WE = goal;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace snug::motion
