@@ -157,8 +157,10 @@ class Target:
 class Robot:
     """A UR that does what a script says: moves from stop to stop, targets of servoj step by step."""
 
-    def __init__(self, urdf, seals=True, evacuation=0.3, vacuum_output=0, vacuum_input=0, step=STEP):
+    def __init__(self, urdf, seals=True, evacuation=0.3, vacuum_output=0, vacuum_input=0, step=STEP, stalls_at=math.inf,
+                 offset=(0.0,) * 6):
         self.arm, self.seals, self.evacuation = Arm(urdf), seals, evacuation
+        self.stalls_at, self.stalled, self.offset = stalls_at, None, offset  # s of servoj, then where; rad of each joint
         self.vacuum_output, self.vacuum_input = vacuum_output, vacuum_input
         self.time, self.tcp, self.pose, self.payload = 0.0, None, None, None
         self.outputs, self.switched, self.moves, self.messages = {}, {}, [], []
@@ -168,7 +170,8 @@ class Robot:
 
     def run(self, text):
         names = ("set_tcp", "set_payload", "movej", "movel", "servoj", "stopj", "set_standard_digital_out",
-                 "get_standard_digital_in", "sync", "get_steptime", "sleep", "textmsg", "popup")
+                 "get_standard_digital_in", "get_actual_joint_positions", "sync", "get_steptime", "sleep", "textmsg",
+                 "popup")
         scope = {name: getattr(self, name) for name in names}
         scope.update(_halt=self._halt, __builtins__={})
         exec(translate(text), scope)  # pylint: disable=exec-used
@@ -214,6 +217,10 @@ class Robot:
     def get_steptime(self):
         return self.step
 
+    def get_actual_joint_positions(self):
+        """Of the arm, which has stopped in front of something from `stalls_at` on; else off its target by `offset`."""
+        return list(self.stalled or (q + off for q, off in zip(self.q, self.offset)))
+
     def sleep(self, seconds):
         self._rest("sleep")
         self.time += seconds
@@ -244,6 +251,8 @@ class Robot:
             if abs(speed) > most or abs(speed - before) > MAX_ACCELERATION * t:
                 raise ScriptError(f"at {self.time} s: joint {joint} jumps from {before} to {speed} rad/s, may have {most}")
         self.q, self.qd, self.time, self.pose = list(q), qd, self.time + t, None
+        if self.stalled is None and self.time >= self.stalls_at:
+            self.stalled = list(q)
         self.targets.append(Target(self, q))
 
     def stopj(self, a):

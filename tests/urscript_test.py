@@ -26,8 +26,8 @@ PROGRAM = (row(-0.469, -0.422, 0.37, "PrePick027") + row(-0.494, -0.43, 0.06, "B
            + row(-0.494, -0.43, 0.366, "PostPick027", 1) + row(-0.464, -0.43, 0.366, "midpoint", 1)
            + row(-0.434, -0.44, 0.366, "midpoint", 1) + row(-0.404, -0.43, 0.37, "midpoint", 1)
            + row(-0.404, -0.43, 0.37, "midpoint", 1) + row(-0.25, -0.55, 0.36, "midpoint", 1)
-           + row(0.3, -0.6, 0.3, "PrePlace027", 1) + row(0.3, -0.6, 0.2, "Place027", 1)
-           + row(0.3, -0.6, 0.2, "Place027", 0, 1) + row(0.3, -0.6, 0.35, "PostPlace027") + row(-0.146, -0.69, 0.206, "home"))
+           + row(0.505, -0.35, 0.2, "PrePlace027", 1) + row(0.505, -0.35, -0.115, "Place027", 1)
+           + row(0.505, -0.35, -0.115, "Place027", 0, 1) + row(0.505, -0.35, 0.2, "PostPlace027") + row(-0.146, -0.69, 0.206, "home"))
 PRECISION = {"PostPick": 0.05, "midpoint": 0.2}  # of the scenario, where it is large
 
 
@@ -148,8 +148,18 @@ class UrScript(unittest.TestCase):
         self.assertIn(f"{simulated:.1f} s simulated", self.stderr)
 
     def test_a_box_that_no_name_tells_is_said(self):
-        self.export(PROGRAM.replace("027", "999"))
+        self.export(PROGRAM.replace("027", "999"), "--unchecked")  # in the cell no such box comes
         self.assertIn("payload of the gripper alone", self.stderr)
+
+    def test_a_row_that_is_passed_at_once_is_no_crawl(self):
+        # From 25 mm beside it the row is within its precision of 200 mm at once.
+        text = self.export(row(-0.146, -0.69, 0.256, "home") + row(-0.146, -0.665, 0.256, "midpoint")
+                           + row(-0.146, -0.5, 0.256, "midpoint") + row(-0.146, -0.69, 0.206, "home"))
+        speeds = [float(v) for v in re.findall(r"movel\(.*v=([0-9.]+)", text)]
+        self.assertEqual(len(speeds), 4)
+        self.assertGreater(min(speeds), 0.05)
+        robot = self.run_script(text)
+        self.assertLess(max(move.duration for move in robot.moves), 2.0)
 
     @unittest.skipUnless(REAL.exists(), f"no {REAL}")
     def test_runs_a_whole_program_of_the_demonstrator(self):
@@ -271,6 +281,29 @@ class FastUrScript(unittest.TestCase):
         self.assertIn("PostPick(ITEM000001)", str(halted.exception))
         self.assertAlmostEqual(robot.time - robot.switched[0], 1.5, delta=0.05)
         self.assertEqual(len(robot.stops), 1)
+
+    def test_halts_before_outputs_switch_where_the_arm_did_not_arrive(self):
+        text = self.export()
+        free = self.run_script(text)
+        for settings in ({"stalls_at": 0.3}, {"offset": (0, 0, 0, 0.021, 0, 0)}, {"offset": (0, -0.021, 0, 0, 0, 0)}):
+            robot = Robot(URDF, **settings)
+            with self.assertRaises(Halted):
+                robot.run(text)
+            self.assertTrue(any("the arm did not arrive" in message for message in robot.messages), robot.messages)
+            self.assertEqual((len(robot.stops), robot.outputs.get(0)), (1, False))
+        # What an arm that holds its targets is off by: nothing is said.
+        robot = self.run_script(text, offset=(0.019, -0.019, 0.019, -0.019, 0.019, -0.019))
+        self.assertEqual((len(robot.stops), robot.messages), (len(free.stops), []))
+
+    def test_halts_at_the_next_stop_when_the_arm_stalls_with_a_box(self):
+        text = self.export()
+        free = self.run_script(text)
+        lifted = next(target.time for target in free.targets if target.vacuum) + 0.5
+        robot = Robot(URDF, stalls_at=lifted)
+        with self.assertRaises(Halted):
+            robot.run(text)
+        self.assertTrue(robot.outputs[0], "the box is not let go where the arm stalled")
+        self.assertEqual(len(robot.stops), 2)
 
     def test_ends_at_rest_with_everything_off(self):
         robot = self.run_script(self.export())

@@ -42,7 +42,8 @@ struct UrServoScript {
 /// cubic polynomials between knots that pass every sample within 15 microradians: the tool within 0.1 mm. There is a
 /// knot where a row ends. Outputs change where they do in the run. Where the vacuum changes and the joints rest, the
 /// script waits until its input says so, sets the payload, and goes on with the sample at which the joints leave; where
-/// they move, it sets outputs and payload on the way. Nothing is felt. Throws InputError for an arm that is no UR, and
+/// they move, it sets outputs and payload on the way. Wherever it stands, it halts unless each joint is within 0.02 rad
+/// of its target. Nothing else is felt. Throws InputError for an arm that is no UR, and
 /// for joints that are not finite.
 [[nodiscard]] UrServoScript format_servo_urscript(const JointRun& run, const RobotProgram& program,
                                                   const UrScriptOptions& options);
