@@ -1,11 +1,14 @@
 // export: what may be said after the verb.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <memory>
 
 #include "export.hpp"
 #include "options.hpp"
 #include "ranges.hpp"
 #include "report.hpp"
+#include "snug/core/input_error.hpp"
 
 namespace snug::app {
 namespace {
@@ -18,6 +21,47 @@ Examples:
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format ros-trajectory -o program.yaml
 A program that was packed with fast motions is exported with its own timing, as it is simulated in the scenario's cell.)";
+
+constexpr const char* kPrograms = "urscript ros-trajectory mc-rtc-csv mc-rtc-flat";
+
+/// Options that some formats have no use for, and the formats that have. Of a recording: those that choose its frames.
+struct OptionFormats {
+  const char* option;
+  const char* formats;
+};
+constexpr std::array kOptionFormats = {
+    OptionFormats{"--from", "mcap csv"},
+    OptionFormats{"--to", "mcap csv"},
+    OptionFormats{"--every", "mcap csv"},
+    OptionFormats{"--compression", "mcap"},
+    OptionFormats{"--urdf", "mcap"},
+    OptionFormats{"--scenario", kPrograms},
+    OptionFormats{"--items", kPrograms},
+    OptionFormats{"--container", kPrograms},
+    OptionFormats{"--pallet", kPrograms},
+    OptionFormats{"--set", kPrograms},
+    OptionFormats{"--sequence", kPrograms},
+    OptionFormats{"--corrections", kPrograms},
+    OptionFormats{"--controller", kPrograms},
+    OptionFormats{"--tempo", kPrograms},
+    OptionFormats{"--unchecked", kPrograms},
+    OptionFormats{"--period", "ros-trajectory"},
+    OptionFormats{"--vacuum-output", "urscript"},
+    OptionFormats{"--blow-off-output", "urscript"},
+    OptionFormats{"--vacuum-input", "urscript"},
+    OptionFormats{"--vacuum-timeout", "urscript"},
+};
+
+/// Throws InputError for an option that was given and means nothing to the format.
+void refuse_without_effect(const CLI::App& verb, const std::string& format) {
+  for (const OptionFormats& entry : kOptionFormats) {
+    if (verb.get_option(entry.option)->count() == 0) continue;
+    const std::vector<std::string> formats = CLI::detail::split(entry.formats, ' ');
+    if (std::ranges::find(formats, format) != formats.end()) continue;
+    throw InputError("command line", entry.option, "with --format " + format,
+                     "--format " + CLI::detail::join(formats, " or "));
+  }
+}
 
 }  // namespace
 
@@ -47,7 +91,8 @@ void add_export(CLI::App& app, Action& action) {
   add_scenario_changes(verb, options->changes);
   verb.add_option(
           "--sequence", options->sequence,
-          "of a program: item sequence that it packs: which boxes it carries, and their masses (default: the first)")
+          "of a program: item sequence that it packs: which boxes it carries, and their masses; refused where it picks "
+          "others (default: the first)")
       ->type_name("NAME");
   verb.add_option("--corrections", options->corrections, "of a program: a layer of the scenario, or none")
       ->type_name("LAYER")
@@ -62,8 +107,8 @@ void add_export(CLI::App& app, Action& action) {
       ->type_name("FRACTION");
   verb.add_flag(
       "--unchecked", options->is_unchecked,
-      "of a program: write it without simulating it first; otherwise it is refused where the robot stops or a box "
-      "is lost");
+      "of a program: write it without simulating it first; otherwise it is refused where the robot stops, no box is "
+      "sealed or a box is lost");
   verb.add_option("--period", options->period, "of ros-trajectory: time between points")
       ->check(within(1e-3, 100.0))
       ->type_name("SECONDS")
@@ -83,14 +128,15 @@ void add_export(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb.add_option("--vacuum-timeout", options->script.vacuum_timeout,
                   "of urscript: the program halts when the vacuum has not changed by then")
-      ->check(positive())
+      ->check(within(0.1, 600.0))
       ->type_name("SECONDS")
       ->capture_default_str();
   verb.add_option("--urdf", options->urdf,
-                  "of a recording: how the robot in it looks (default: the file that its scenario names)")
+                  "of mcap: how the robot in it looks (default: the file that its scenario names)")
       ->type_name("FILE.urdf");
   verb.footer(footer + kExportExamples);
-  verb.callback([options, compression, &action] {
+  verb.callback([options, compression, &verb, &action] {
+    refuse_without_effect(verb, options->format);
     action = [options, compression] {
       options->compression = *compression == "none" ? replay::McapCompression::None : replay::McapCompression::Zstd;
       return run_export(*options);

@@ -112,7 +112,7 @@ LoadedProgram load(const ExportOptions& options) {
   print_robot_warnings(scenario);
   std::string sequence = options.sequence;
   if (sequence.empty() && !scenario.sequences.empty()) sequence = scenario.sequences.front().name;
-  warn_misfit(scenario, sequence, motion::load_program(options.input));
+  require_fit(scenario, sequence, motion::load_program(options.input));
   return {scenario, sequence, options};
 }
 
@@ -124,12 +124,11 @@ bool accept(const char* what, const std::string& wrong) {
   return wrong.empty();
 }
 
-/// Whether the program, tried in the scenario's cell, does not stop there, and when fast loses no box. True with
+/// Whether the program, tried in the scenario's cell, does not stop there, and packs every box that it picks. True with
 /// --unchecked.
 bool has_succeeded(const LoadedProgram& program) {
   if (!program.trial) return true;
-  return accept("it does not succeed in the simulated cell",
-                program.is_fast() ? cell::find_loss(*program.trial) : program.trial->failure.text);
+  return accept("it does not succeed in the simulated cell", cell::find_loss(*program.trial));
 }
 
 /// Whether a robot that follows the rows of `fitted` exactly does not do worse in the cell than was simulated. How far

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "snug/core/input_error.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
 namespace snug::app {
@@ -37,37 +38,61 @@ std::vector<std::string> picks_of(const model::Scenario& scenario, const motion:
   return picks;
 }
 
+/// Why the picks are none of this sequence; empty when they are.
+std::string find_misfit(const model::Sequence& sequence, const std::vector<std::string>& picks) {
+  std::vector<std::string> strangers;
+  std::size_t next = 0;
+  std::string late;
+  for (const std::string& pick : picks) {
+    const auto item = std::ranges::find(sequence.items, pick, &model::Item::parcel);
+    if (item == sequence.items.end()) {
+      strangers.push_back(pick);
+      continue;
+    }
+    const auto place = static_cast<std::size_t>(item - sequence.items.begin());
+    if (place < next && late.empty()) late = pick;
+    next = std::max(next, place + 1);
+  }
+  if (!strangers.empty()) {
+    return fmt::format("{} of the {} boxes that it picks are not in it ({} first)", strangers.size(), picks.size(),
+                       strangers.front());
+  }
+  return late.empty() ? "" : fmt::format("it picks {} after a box that comes later", late);
+}
+
+constexpr std::size_t kMostNamed = 5;  // sequences in a message
+
+/// "--sequence 2", "one of 2, 4", or what else would do.
+std::string describe_fitting(const model::Scenario& scenario, const std::vector<std::string>& picks) {
+  std::string names;
+  std::size_t count = 0;
+  for (const model::Sequence& sequence : scenario.sequences) {
+    if (!find_misfit(sequence, picks).empty()) continue;
+    if (++count <= kMostNamed) names += (count > 1 ? ", " : "") + sequence.name;
+  }
+  if (count == 0) return "a sequence with its boxes in the order of its picks; the scenario has none";
+  return (count > 1 ? "one that fits: " : "") + names + (count > kMostNamed ? ", ..." : "");
+}
+
 }  // namespace
 
 void warn_misfit(const model::Scenario& scenario, const std::string& sequence_name, const motion::Program& program) {
   const model::Sequence* sequence = model::find_sequence(scenario, sequence_name);
   if (sequence == nullptr) return;  // refused elsewhere
+  const std::string misfit = find_misfit(*sequence, picks_of(scenario, program));
+  if (misfit.empty()) return;
+  std::fprintf(stderr, "snug: warning: %s does not fit sequence %s: %s: another sequence?\n", program.name.c_str(),
+               sequence_name.c_str(), misfit.c_str());
+}
+
+void require_fit(const model::Scenario& scenario, const std::string& sequence_name, const motion::Program& program) {
+  const model::Sequence* sequence = model::find_sequence(scenario, sequence_name);
+  if (sequence == nullptr) return;  // refused elsewhere
   const std::vector<std::string> picks = picks_of(scenario, program);
-  std::vector<std::string> strangers;
-  std::size_t next = 0;
-  std::string late;
-  for (const std::string& pick : picks) {
-    const auto item = std::ranges::find(sequence->items, pick, &model::Item::parcel);
-    if (item == sequence->items.end()) {
-      strangers.push_back(pick);
-      continue;
-    }
-    const auto place = static_cast<std::size_t>(item - sequence->items.begin());
-    if (place < next && late.empty()) late = pick;
-    next = std::max(next, place + 1);
-  }
-  if (!strangers.empty()) {
-    std::fprintf(
-        stderr,
-        "snug: warning: %s does not fit sequence %s: %zu of the %zu boxes that it picks are not in it (%s first): "
-        "another sequence?\n",
-        program.name.c_str(), sequence_name.c_str(), strangers.size(), picks.size(), strangers.front().c_str());
-  } else if (!late.empty()) {
-    std::fprintf(stderr,
-                 "snug: warning: %s does not fit sequence %s: it picks %s after a box that comes later: another "
-                 "sequence?\n",
-                 program.name.c_str(), sequence_name.c_str(), late.c_str());
-  }
+  const std::string misfit = find_misfit(*sequence, picks);
+  if (misfit.empty()) return;
+  throw InputError(program.name, "--sequence", fmt::format("{}, which it does not fit: {}", sequence_name, misfit),
+                   describe_fitting(scenario, picks));
 }
 
 }  // namespace snug::app
