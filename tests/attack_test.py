@@ -422,6 +422,7 @@ class Options(Attack):
             (("export", "x", "--format", "urscript", "-o", "x"), "--vacuum-output", "0 to 7"),
             (("export", "x", "--format", "urscript", "-o", "x"), "--blow-off-output", "0 to 7"),
             (("export", "x", "--format", "ros-trajectory", "-o", "x"), "--period", "0.001 to 100"),
+            (("export", "x", "--format", "urscript", "-o", "x"), "--vacuum-timeout", "0.1 to 600"),
             (("simulate", DROP), "--dt", "1e-06 to 0.1"),
         ]
         for words, option, allowed in cases:

@@ -252,6 +252,45 @@ class Robot(unittest.TestCase):
         self.assertFalse(out.exists())
 
 
+    PICK = ("-0.469,-0.422,0.37,0,3.14159,0,PrePick027,0,0,0,0,0,0\n-0.494,-0.43,{z},0,3.14159,0,Box027,0,0,0,0,0,0\n"
+            "-0.494,-0.43,0.366,0,3.14159,0,PostPick027,1,0,0,0,0,0\n0.505,-0.35,0.2,0,3.14159,0,PrePlace027,{carry},0,0,0,0,0\n"
+            "0.505,-0.35,-0.115,0,3.14159,0,Place027,{carry},0,0,0,0,0\n0.505,-0.35,0.2,0,3.14159,0,PostPlace027,0,0,0,0,0,0\n")
+
+    def test_export_refuses_a_pick_that_does_not_seal_and_a_box_that_is_lost_on_the_way(self):
+        out = self.folder / "out"
+        for name, program, reason in (("high", self.PICK.format(z=0.11, carry=1), "no seal toward PostPick027"),
+                                      ("dropped", self.PICK.format(z=0.06, carry=0), "BOX027 is dropped, not packed")):
+            for head in ("", "# tempo: 1\n"):
+                path = self.write(f"{name}.csv", head + program)
+                for form in ("urscript", "ros-trajectory"):
+                    with self.subTest(name, head=head, form=form):
+                        words = ("export", path, "--scenario", CELL, "--sequence", "1", "--format", form, "-o", out)
+                        result = snug(*words)
+                        self.assertEqual(result.returncode, 1, result.stderr)
+                        self.assertIn(reason, result.stderr)
+                        self.assertFalse(out.exists())
+        self.assertEqual(snug(*words, "--unchecked").returncode, 0)
+
+    def test_export_refuses_options_that_mean_nothing_to_the_format(self):
+        path = self.write("near.csv", self.NEAR)
+        for form, option, value, right in (("urscript", "--period", 0.1, "ros-trajectory"), ("urscript", "--every", 3, "mcap or csv"),
+                                           ("ros-trajectory", "--vacuum-output", 3, "urscript"), ("mc-rtc-csv", "--period", 0.04, "ros-trajectory"),
+                                           ("mcap", "--sequence", 1, "mc-rtc-flat"), ("csv", "--compression", "none", "mcap"),
+                                           ("csv", "--urdf", "x.urdf", "mcap")):
+            with self.subTest(form, option=option):
+                scenario = () if form in ("mcap", "csv") else ("--scenario", CELL)
+                result = snug("export", path, "--format", form, *scenario, option, value, "-o", self.folder / "x")
+                self.assert_refused(result, option, f"with --format {form}", right)
+
+    def test_export_refuses_a_vacuum_timeout_out_of_range_and_a_tempo_or_a_swing_that_is_misspelt(self):
+        export = ("export", self.write("near.csv", self.NEAR), "--scenario", CELL, "--format", "urscript", "-o", self.folder / "x")
+        for seconds in (0.0001, 601, 1e300, "nan"):
+            self.assert_refused(snug(*export, "--vacuum-timeout", seconds), "--vacuum-timeout", "0.1 to 600")
+        self.write("near.csv", "# tmepo: 1\n" + self.NEAR)
+        self.assert_refused(snug(*export), "near.csv:1", "'# tempo: NUMBER'")
+        self.write("near.csv", self.NEAR.replace("home", "PostPick(BOX027)~nan+0"))
+        self.assert_refused(snug(*export), "near.csv:1", "~0.42+0.31")
+
     def test_a_urdf_without_efforts_is_used_with_a_warning(self):
         urdf = (ROOT / "scenarios" / "robots" / "ur10.urdf").read_text()
         line = next(n for n, text in enumerate(urdf.splitlines(), 1) if 'effort="330"' in text)
@@ -290,6 +329,11 @@ class Robot(unittest.TestCase):
                 with self.subTest(words[0]):
                     self.assertIn("program.csv does not fit sequence 2:", snug(*words, "--sequence", "2").stderr)
                     self.assertNotIn("does not fit", snug(*words, "--sequence", "1").stderr)
+            for form in ("ros-trajectory", "urscript"):
+                export = ("export", path, "--scenario", CELL, "--format", form, "--unchecked", "-o", out)
+                self.assert_refused(snug(*export, "--sequence", "2"), "--sequence", "got 2", "expected 1")
+                self.assertFalse(out.exists())
+            self.assertEqual(snug(*export, "--sequence", "1").returncode, 0)
 
 
 class Cup(unittest.TestCase):
