@@ -56,14 +56,6 @@ class SealWatch {
   std::size_t first_event_ = 0;    ///< since the vacuum came on
 };
 
-/// Whether the box was picked, and last set down by the program: where it came from, if it waits.
-bool was_returned(const BoxResult& box) {
-  const auto last = std::ranges::find_if(box.events.rbegin(), box.events.rend(), [](const record::Event& event) {
-    return event.kind == "release" || event.kind == "lost";
-  });
-  return last != box.events.rend() && last->kind == "release";
-}
-
 /// Boxes that rows pick and that wait.
 std::vector<std::string> find_left_waiting(const model::Sequence& sequence, const motion::Program& program,
                                            const std::vector<BoxResult>& boxes) {
@@ -73,7 +65,7 @@ std::vector<std::string> find_left_waiting(const model::Sequence& sequence, cons
       const int item = waypoint.motion_class == motion::MotionClass::Pick ? find_item(sequence, waypoint) : -1;
       return item >= 0 && sequence.items[static_cast<std::size_t>(item)].parcel == box.id;
     });
-    if (box.state == BoxState::Waiting && is_picked && !was_returned(box)) left.push_back(box.id);
+    if (box.state == BoxState::Waiting && is_picked) left.push_back(box.id);
   }
   return left;
 }

@@ -13,8 +13,7 @@ struct MotionTrial {
   double duration = 0.0;         ///< s
   Failure failure;               ///< why it had to stop
   std::vector<BoxResult> boxes;  ///< of the sequence, after boxes have settled
-  /// Boxes that rows of the program pick by their names (Box...), and that wait at the aligner all the same, without
-  /// having been returned there.
+  /// Boxes that rows of the program pick by their names (Box...), and that wait at the aligner all the same.
   std::vector<std::string> left_waiting;
   /// Where the vacuum came on and went off again without a box: "PostPick(BOX027): the face is out of reach".
   std::vector<std::string> missed_seals;

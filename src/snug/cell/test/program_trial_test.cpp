@@ -63,19 +63,6 @@ TEST(FindLoss, LetsABoxWaitThatNoRowPicks) {
   EXPECT_EQ(find_loss(trial), "");
 }
 
-TEST(FindLoss, LetsABoxWaitThatIsReturnedToTheAlignerBeforeTheNextComes) {
-  motion::Program program = motion::load_program(kSource / "src/snug/cell/test/demo_program.csv");
-  std::vector<motion::Waypoint>& rows = program.waypoints;
-  rows.resize(9);
-  const motion::Waypoint above = rows[2];
-  for (std::size_t i : {3U, 4U, 5U, 6U}) rows[i].set_pose(rows[1].X_WE());
-  rows[7].set_pose(above.X_WE());
-  const MotionTrial trial = tried(program);
-  ASSERT_EQ(trial.boxes.size(), 2U);
-  EXPECT_EQ(trial.boxes[0].state, BoxState::Waiting);
-  EXPECT_EQ(find_loss(trial), "");
-}
-
 TEST(FindLoss, NamesABoxThatIsLetGoOnTheWay) {
   motion::Program program = one_box();
   program.waypoints[3].io.vacuum = program.waypoints[4].io.vacuum = program.waypoints[5].io.vacuum = false;
