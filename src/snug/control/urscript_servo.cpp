@@ -247,8 +247,9 @@ UrServoScript format_servo_urscript(const JointRun& run, const RobotProgram& pro
   script.simulated_duration = static_cast<double>(run.samples.size()) * program.plan.settings.tick;
   std::string text = format_header(program, "rad, rad/s, s; payloads in kg and m");
   text +=
-      "# The joints of a simulation, in time. Nothing is felt on the way: rows in contact end where they ended there,\n"
-      "# and the waits for the vacuum alone ask a sensor. At a force the robot stops by its own safety limits only.\n"
+      "# The joints of a simulation, in time: run it with the speed slider at 100 %. Rows in contact end where they\n"
+      "# ended there. Waits for the vacuum ask its sensor, stops ask where the joints are; nothing else is felt: at a\n"
+      "# force the robot stops by its own safety limits only.\n"
       "def snug_program():\n";
   text += fmt::format(
       "  # Simulated: {:.1f} s. Here: {:.1f} s on polynomials between {} knots, and waits for the vacuum.\n",
