@@ -16,7 +16,24 @@ namespace {
 
 constexpr double kLevel = 1e-3;  ///< rad
 
-/// Bounds in W of the boxes that fixed bodies are made of, where one face lies level.
+/// The bounds in W of a level box, shrunk to a rectangle that lies wholly on its upper face when it is turned about the
+/// vertical.
+geometry::Aabb upper_face(const geometry::Box& box, const Pose& X_WG) {
+  geometry::Aabb top = geometry::bounds(box, X_WG);
+  const Vector3 half = 0.5 * (top.upper - top.lower);
+  double share = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3 direction = X_WG.R.col(axis).cwiseAbs();
+    if (direction.z() > 0.5) continue;
+    share = std::min(share, box.half[axis] / direction.head<2>().dot(half.head<2>()));
+  }
+  const Eigen::Vector2d less = (1.0 - share) * half.head<2>();
+  top.lower.head<2>() += less;
+  top.upper.head<2>() -= less;
+  return top;
+}
+
+/// In W, of the boxes that fixed bodies are made of, where one face lies level.
 std::vector<geometry::Aabb> flat_tops(const model::Scenario& scenario) {
   std::vector<geometry::Aabb> tops;
   for (const model::Body& body : scenario.bodies) {
@@ -24,9 +41,8 @@ std::vector<geometry::Aabb> flat_tops(const model::Scenario& scenario) {
     for (const model::PlacedShape& placed : body.shapes) {
       const Pose X_WG = body.X_WB * placed.X_BG;
       const bool is_level = X_WG.R.row(2).cwiseAbs().maxCoeff() > std::cos(kLevel);
-      if (is_level && std::holds_alternative<geometry::Box>(placed.shape)) {
-        tops.push_back(geometry::bounds(placed.shape, X_WG));
-      }
+      const auto* box = std::get_if<geometry::Box>(&placed.shape);
+      if (is_level && box != nullptr) tops.push_back(upper_face(*box, X_WG));
     }
   }
   return tops;

@@ -52,11 +52,11 @@ std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, co
         tight_axis = axis;
       }
     } else if (v.low_near(params) && v.high > params.slide_room) {
-      base.come_from_T[axis] = std::min(params.slide_start, v.high - params.slide_margin);
+      base.come_from_T[axis] = std::clamp(v.high - params.slide_margin, 0.0, params.slide_start);
       base.overtravel_T[axis] = -params.overtravel;
       slides = true;
     } else if (v.high_near(params) && v.low > params.slide_room) {
-      base.come_from_T[axis] = -std::min(params.slide_start, v.low - params.slide_margin);
+      base.come_from_T[axis] = -std::clamp(v.low - params.slide_margin, 0.0, params.slide_start);
       base.overtravel_T[axis] = params.overtravel;
       slides = true;
     }

@@ -270,7 +270,8 @@ ToolFor make_tool_for(const model::Scenario& scenario, const PlannedBox& box, co
   load.gravity_W = scenario.gravity;
   const Pose X_ES_rest{Matrix3::Identity(), Vector3(0.0, 0.0, params.hold_length)};
   return [load, X_PS, X_ES_rest](const Pose& X_WP) {
-    // The sag depends on how the tool is turned, and that on the sag: a few rounds settle it to below 0.01 degrees.
+    // The sag depends on how the tool is turned, and that on the sag: a few rounds settle it to below 0.02 degrees
+    // with a centre of mass and a cup within 20 mm of the middle, to 0.06 degrees within 50 mm.
     Pose X_ES = X_ES_rest;
     for (int i = 0; i < 4; ++i) {
       cup::HeldLoad turned = load;

@@ -47,13 +47,18 @@ class Rows {
   std::vector<motion::Waypoint> rows_;
 };
 
+/// m, from the middle of a box to the farthest it reaches along `direction`, a unit vector in W.
+double half_along(const Matrix3& R_WP, const Vector3& size, const Vector3& direction) {
+  return 0.5 * (R_WP.transpose() * direction).cwiseAbs().dot(size);
+}
+
 /// The box of `intent`, tilted so that its low side leads, with its lowest corner at height `z`, shifted by `by`.
 Pose tilted_pose(const PlaceIntent& intent, const TiltedEntry& entry, double z, const Vector3& by) {
   const Vector3 axis = Vector3::UnitZ().cross(entry.low_side);  // takes low_side down
   const double angle = intent.params.tilted.angle;
   Pose X_WP{turn(axis, angle) * intent.X_WP.R, intent.X_WP.p};
   // The corner that leads stays where it will be when the box is level.
-  const double breadth = 0.5 * (intent.X_WP.R.cwiseAbs() * intent.size).dot(entry.low_side.cwiseAbs());
+  const double breadth = half_along(intent.X_WP.R, intent.size, entry.low_side);
   const double height = -lowest_corner(intent.X_WP.R, intent.size);
   const Vector3 corner = breadth * entry.low_side - height * Vector3::UnitZ();
   X_WP.p += corner - turn(axis, angle) * corner;
@@ -155,12 +160,12 @@ std::vector<motion::Waypoint> flip_rows(const FlipIntent& intent) {
   SNUG_CHECK(std::abs(intent.direction.z()) < 1e-9, "a flip goes about a level edge");
   const model::PivotParams& params = intent.params;
   const Vector3 axis = -Vector3::UnitZ().cross(intent.direction);  // turns down toward `direction`
-  const Vector3 half = 0.5 * (intent.R_WP.cwiseAbs() * intent.size);
-  const double along = half.dot(intent.direction.cwiseAbs());
+  const double half_height = half_along(intent.R_WP, intent.size, Vector3::UnitZ());
+  const double along = half_along(intent.R_WP, intent.size, intent.direction);
   // The edge about which the box turns, from the middle of the box: below, on the side away from `direction`.
-  const Vector3 edge = -along * intent.direction - half.z() * Vector3::UnitZ();
+  const Vector3 edge = -along * intent.direction - half_height * Vector3::UnitZ();
   // Where that edge lies before the box is dragged.
-  const Vector3 p_WEdge = intent.p_WF + (half.z() + params.dragged) * intent.direction;
+  const Vector3 p_WEdge = intent.p_WF + (half_height + params.dragged) * intent.direction;
   const auto tool = [&](double angle, double height) {
     const Matrix3 R = turn(axis, angle);
     return intent.tool_for({R * intent.R_WP, p_WEdge + Vector3(0.0, 0.0, height) - R * edge});
@@ -180,7 +185,7 @@ std::vector<motion::Waypoint> flip_rows(const FlipIntent& intent) {
   rows.add(MotionClass::TwistDrag, X_WE_back, kHold);
   rows.add(MotionClass::TwistDrag, X_WE_back, kRelease);
   // Up and upright again before the cup comes over the box.
-  const double over = intent.p_WF.z() + 2.0 * along + (intent.X_PE.p.norm() - half.z()) + params.retreat;
+  const double over = intent.p_WF.z() + 2.0 * along + (intent.X_PE.p.norm() - half_height) + params.retreat;
   rows.add(MotionClass::PreTwist, {intent.R_WP * intent.X_PE.R, Vector3(X_WE_back.p.x(), X_WE_back.p.y(), over)}, {},
            "_back");
   return rows.take();

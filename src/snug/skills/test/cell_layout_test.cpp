@@ -67,6 +67,26 @@ TEST(FlipPlace, NeedsTheRoomOfTheDragOnTheSideOfTheContainerAlone) {
   EXPECT_NEAR((0.5 + along) - place->p_WF.x(), params.surface_room + params.surface_drag, 1e-5) << "before";
 }
 
+TEST(FlipPlace, LiesOnATurnedBenchWithTheRoomOfTheDrag) {
+  const model::PivotParams params = demonstrator().skills.pivot;
+  int found = 0;
+  for (int i = 0; i < 36; ++i) {
+    SCOPED_TRACE(i);
+    const Vector3 half(0.45, 0.65, 0.05);
+    model::Body turned = bench(half, Vector3(0.5, 0.6, 0.0));
+    turned.X_WB.R = exp_rotation(Vector3(0.0, 0.0, 0.0873 * i));
+    const auto place = flip_place(cell_with({turned}));
+    if (!place) continue;
+    ++found;
+    for (const double drag : {0.0, params.surface_drag}) {
+      const Vector3 p_B = turned.X_WB.inverse() * (place->p_WF + drag * place->direction);
+      EXPECT_LE(std::abs(p_B.x()), half.x() + 1e-12);
+      EXPECT_LE(std::abs(p_B.y()), half.y() + 1e-12);
+    }
+  }
+  EXPECT_GT(found, 18);
+}
+
 TEST(FlipPlace, IsNotOnWhatMovesLeansOrIsRound) {
   const Vector3 half(0.4, 0.4, 0.05), p(0.5, 0.0, 0.0);
   EXPECT_TRUE(flip_place(cell_with({bench(half, p)})));

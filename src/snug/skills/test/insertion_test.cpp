@@ -122,6 +122,19 @@ TEST(ChooseInsertions, NeverComeFromBeyondTheGapAndPushOnlyAgainstWhatIsNear) {
   EXPECT_GT(slides, 500);
 }
 
+TEST(ChooseInsertions, ComeDownBesideNothingWhereTheMarginTakesAllTheRoom) {
+  model::InsertionParams params = kParams;
+  params.slide_margin = 3.0 * params.slide_room;
+  Rng rng(23);
+  for (int i = 0; i < 500; ++i) {
+    const packing::Candidate candidate = random_candidate(rng);
+    for (const Insertion& one : choose_insertions(candidate, kSize, params)) {
+      if (one.skill != InsertionSkill::SlideToContact) continue;
+      for (const int axis : {0, 1}) EXPECT_LE(one.come_from_T[axis] * one.overtravel_T[axis], 0.0) << i;
+    }
+  }
+}
+
 TEST(ChooseInsertions, GoStraightDownWhereNothingIsNear) {
   const auto insertions = insertions_of(free_place());
   ASSERT_EQ(insertions.size(), 1U);
