@@ -6,22 +6,13 @@
 #include <cmath>
 #include <sstream>
 
+#include "snug/core/csv_fields.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 
 namespace snug {
 namespace {
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream parts(line + ",");
-  for (std::string cell; std::getline(parts, cell, ',');) {
-    const auto begin = cell.find_first_not_of(" \t\r\"");
-    cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, cell.find_last_not_of(" \t\r\"") - begin + 1));
-  }
-  return cells;
-}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -62,13 +53,14 @@ Table parse_table(const std::string& text, const std::string& name, const std::v
   Table table{name, columns, {}, {}};
   std::vector<std::size_t> places;
   std::size_t width = 0;
-  std::istringstream lines(text);
+  std::istringstream lines{std::string(without_byte_order_mark(text))};
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
     if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
-    const std::vector<std::string> cells = split(line);
     const std::string where = name + ":" + std::to_string(number);
+    if (places.empty()) refuse_semicolons(line, where);
+    const std::vector<std::string> cells = split_csv(line, where);
     if (places.empty()) {
       for (const std::string& column : optional)
         if (std::find(cells.begin(), cells.end(), column) != cells.end()) table.columns.push_back(column);

@@ -18,9 +18,10 @@ struct Table {
   [[nodiscard]] std::string where(std::size_t row) const { return name + ":" + std::to_string(lines[row]); }
 };
 
-/// Reads a CSV: separator comma, first line the column names, lines that start with # and empty lines left out. The
-/// columns named must be there, in any order; those of `optional` may; others are ignored. Returned in the order of
-/// `columns`, then of those optional ones that are there.
+/// Reads a CSV: separator comma, fields in double quotes if need be, a byte-order mark passed over, first line the
+/// column names, lines that start with # and empty lines left out. The columns named must be there, in any order; those
+/// of `optional` may; others are ignored. Returned in the order of `columns`, then of those optional ones that are
+/// there.
 [[nodiscard]] Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns,
                                const std::vector<std::string>& optional = {});
 [[nodiscard]] Table parse_table(const std::string& text, const std::string& name,

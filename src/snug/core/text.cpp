@@ -100,6 +100,8 @@ std::size_t find_not_utf8(std::string_view text) {
 void check_utf8(std::string_view text, std::string_view name) {
   const std::size_t at = find_not_utf8(text);
   if (at == std::string_view::npos) return;
+  if (text.starts_with("\x89HDF\r\n\x1a\n"))
+    throw InputError(std::string(name), "", "an HDF5 file, such as a recording", "text in UTF-8");
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
   throw InputError(std::string(name) + ":" + std::to_string(line), "",
                    "the byte " + escaped("0x%02x", static_cast<unsigned char>(text[at])), "text in UTF-8");

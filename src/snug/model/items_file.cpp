@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "snug/core/csv_fields.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/core/units.hpp"
@@ -39,23 +40,10 @@ std::string read_text(const std::filesystem::path& path) {
   return read_file(path, "orders (.csv, .json) or items (.yaml)");
 }
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t start = 0;;) {
-    const std::size_t comma = line.find(',', start);
-    std::string_view field = line.substr(start, comma == std::string_view::npos ? comma : comma - start);
-    while (!field.empty() && (field.front() == ' ' || field.front() == '\t')) field.remove_prefix(1);
-    while (!field.empty() && (field.back() == ' ' || field.back() == '\t')) field.remove_suffix(1);
-    fields.push_back(field);
-    if (comma == std::string_view::npos) return fields;
-    start = comma + 1;
-  }
-}
-
 /// One line of a CSV under its header.
 class Row {
  public:
-  Row(const std::vector<std::string>& header, std::vector<std::string_view> fields, std::string where)
+  Row(const std::vector<std::string>& header, std::vector<std::string> fields, std::string where)
       : header_(header), fields_(std::move(fields)), where_(std::move(where)) {
     if (fields_.size() != header_.size()) {
       throw InputError(where_, "", std::to_string(fields_.size()) + " fields",
@@ -64,7 +52,8 @@ class Row {
   }
   [[nodiscard]] std::string_view text(const std::string& key) const {
     const auto found = std::find(header_.begin(), header_.end(), key);
-    return found == header_.end() ? std::string_view{} : fields_[static_cast<std::size_t>(found - header_.begin())];
+    if (found == header_.end()) return {};
+    return fields_[static_cast<std::size_t>(found - header_.begin())];
   }
   [[nodiscard]] double number(const std::string& key, double low, double high, double otherwise) const {
     const std::string_view field = text(key);
@@ -88,7 +77,7 @@ class Row {
 
  private:
   const std::vector<std::string>& header_;
-  std::vector<std::string_view> fields_;
+  std::vector<std::string> fields_;
   std::string where_;
 };
 
@@ -110,8 +99,8 @@ OrderLine read_row(const Row& row, const std::string& name, int line) {
 
 std::vector<std::string> read_header(std::string_view text, const std::string& name) {
   std::vector<std::string> header;
-  for (const std::string_view field : split(text)) {
-    std::string key(field);
+  refuse_semicolons(text, name + ":1");
+  for (std::string& key : split_csv(text, name + ":1")) {
     if (std::find(kColumns.begin(), kColumns.end(), key) == kColumns.end()) {
       std::string known;
       for (const std::string& column : kColumns) known += (known.empty() ? "" : ", ") + column;
@@ -212,6 +201,7 @@ std::vector<OrderLine> parse_orders_csv(std::string_view text, const std::string
   std::vector<OrderLine> lines;
   std::size_t boxes = 0;
   check_utf8(text, name);
+  text = without_byte_order_mark(text);
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
@@ -220,12 +210,12 @@ std::vector<OrderLine> parse_orders_csv(std::string_view text, const std::string
     if (number == 1) {
       header = read_header(line, name);
     } else if (line.find_first_not_of(" \t") != std::string_view::npos) {
-      const Row row(header, split(line), name + ":" + std::to_string(number));
+      const std::string where = name + ":" + std::to_string(number);
+      const Row row(header, split_csv(line, where), where);
       lines.push_back(read_row(row, std::filesystem::path(name).stem().string(), number));
       boxes += static_cast<std::size_t>(lines.back().count);
       if (boxes > kMostBoxes) {
-        throw InputError(name + ":" + std::to_string(number), "", "more than " + std::to_string(kMostBoxes) + " boxes",
-                         "fewer");
+        throw InputError(where, "", "more than " + std::to_string(kMostBoxes) + " boxes", "fewer");
       }
     }
   }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "snug/core/csv_fields.hpp"
 #include "snug/model/internal/side_file.hpp"
 
 namespace snug::model {
@@ -150,7 +151,7 @@ Pose pose_at(const PosePath& path, double time) {
 }
 
 PosePath parse_pose_path(std::string_view text, std::string_view name, const Pose& X_WF) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark that spreadsheets add
+  text = without_byte_order_mark(text);
   PosePath path;
   std::vector<Column> columns;
   for (int line = 1; !text.empty(); ++line) {

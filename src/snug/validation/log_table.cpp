@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "snug/core/csv_cell.hpp"
+#include "snug/core/csv_fields.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
@@ -74,7 +75,7 @@ class LogReader {
   ArchiveRecording read() {
     const std::string text = read_file(path_, "a table of measurements (CSV)", kLargestLog);
     check_utf8(text, path_.string());
-    std::string_view rest = text;
+    std::string_view rest = without_byte_order_mark(text);
     const std::string_view names = next_line(rest);
     if (names.empty()) throw InputError(path_.string(), "", "an empty file", "a row of column names");
     separator_ = names.find(';') != std::string_view::npos ? ';' : ',';

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "snug/cell/result_json.hpp"
+#include "snug/core/csv_fields.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
@@ -203,8 +204,9 @@ Validation validate(const SimulatedRun& run, std::vector<Measurement> repetition
 }
 
 std::vector<Window> load_windows(const std::filesystem::path& path, const SimulatedRun& run) {
-  std::istringstream file(read_file(path, "windows (CSV: body,start_s,end_s)"));
-  check_utf8(file.view(), path.string());
+  const std::string whole = read_file(path, "windows (CSV: body,start_s,end_s)");
+  check_utf8(whole, path.string());
+  std::istringstream file{std::string(without_byte_order_mark(whole))};
   int line_number = 0;
   const auto fail = [&](const std::string& key, const std::string& got, const std::string& expected) {
     throw InputError(path.string() + ":" + std::to_string(line_number), key, got, expected);

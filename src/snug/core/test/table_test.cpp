@@ -22,6 +22,10 @@ TEST(Table, ReadsColumnsInAnyOrderAndRefusesWhatIsBroken) {
   const Table table = parse_table("# touches\n\nb, c,a\n1,2,3\n+4,5e-1,6\n", "t.csv", {"a", "b"});
   EXPECT_EQ(table.rows, (std::vector<std::vector<double>>{{3, 1}, {6, 4}}));
   EXPECT_EQ(table.where(1), "t.csv:5");
+  const Table quoted = parse_table("\xEF\xBB\xBF\"a\",note\n\"1\",\"x, y\"\n", "t.csv", {"a"});
+  EXPECT_EQ(quoted.rows, (std::vector<std::vector<double>>{{1}})) << "as spreadsheets write it";
+  expect_refused([] { (void)parse_table("a;b\n1;2\n", "t.csv", {"a"}); }, "t.csv:1: got semicolons");
+  expect_refused([] { (void)parse_table("a,b\n\"1,2\n", "t.csv", {"a"}); }, "t.csv:2: got a quote");
   expect_refused([] { (void)parse_table("", "t.csv", {"a"}); }, "no header");
   expect_refused([] { (void)parse_table("a,b\n1,2\n", "t.csv", {"a", "c"}); }, "column 'c'");
   expect_refused([] { (void)parse_table("a,a\n1,2\n", "t.csv", {"a"}); }, "twice");

@@ -39,6 +39,12 @@ TEST(Utf8, IsRefusedWithTheLine) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "x.csv:2: got the byte 0xff; expected text in UTF-8");
   }
+  try {
+    check_utf8("\x89HDF\r\n\x1a\n\x02", "run.h5");
+    ADD_FAILURE() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "run.h5: got an HDF5 file, such as a recording; expected text in UTF-8");
+  }
 }
 
 TEST(Printable, EscapesWhatATerminalWouldObey) {

@@ -60,6 +60,31 @@ TEST(OrdersCsv, NamesLineAndColumnOfWhatIsWrong) {
   EXPECT_EQ(where_of_error(more + "2,0.5,100,200,50,1\n"), "orders.csv:2 no_stack");
 }
 
+TEST(OrdersCsv, ReadsWhatSpreadsheetsWrite) {
+  const auto lines = parse_orders_csv(
+      "\xEF\xBB\xBFlength_mm,width_mm,height_mm,mass_kg,article\r\n"
+      "200,150,100,0.5,\"tea, 5\"\" tin\"\r\n\"300\",150,100,1.5,coffee\r\n",
+      "orders.csv");
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].article, "tea, 5\" tin");
+  EXPECT_EQ(lines[1].size.x(), 0.3);
+}
+
+TEST(OrdersCsv, RefusesSemicolonsAndQuotesThatAreNotClosed) {
+  const auto refusal = [](const std::string& csv) -> std::string {
+    try {
+      (void)parse_orders_csv(csv, "orders.csv");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string said = refusal("length_mm;width_mm;height_mm;mass_kg\n100;100;100;1\n");
+  EXPECT_EQ(said.find("orders.csv:1: got semicolons between columns; expected commas"), 0U) << said;
+  const std::string open = refusal("article,length_mm,width_mm,height_mm,mass_kg\n\"a,100,100,100,1\n");
+  EXPECT_EQ(open.find("orders.csv:2: got a quote that is not closed"), 0U) << open;
+}
+
 TEST(OrdersJson, ReadsItemsInTheOrderOfTheirNumbers) {
   const auto lines = parse_orders_json(
       R"({"7": {"item_sequence": {"10": {"id": "b", "length/mm": 100, "width/mm": 80, "height/mm": 60, "weight/kg": 1},
