@@ -101,11 +101,11 @@ int run_row(const std::vector<std::string>& words, int threads) {
 
 int run_study(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);
+  study::RunSettings settings;
+  if (options.chunks) std::tie(settings.first_chunk, settings.last_chunk) = parse_chunks(*options.chunks, study);
   const study::Folder folder(study, folder_of(options), true);
   if (options.slurm) return submit_array(options, study, folder);
-  study::RunSettings settings;
   settings.processes = options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  if (options.chunks) std::tie(settings.first_chunk, settings.last_chunk) = parse_chunks(*options.chunks, study);
   settings.progress = progress_line();
   const auto start = std::chrono::steady_clock::now();
   const study::RunSummary summary = study::run_study(

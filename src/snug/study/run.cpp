@@ -143,14 +143,7 @@ class Runner {
     return summary_;
   }
 
-  ~Runner() {
-    for (const Job& job : jobs_) {
-      ::kill(job.process, SIGKILL);
-      ::waitpid(job.process, nullptr, 0);
-      if (job.out >= 0) ::close(job.out);
-      if (job.error >= 0) ::close(job.error);
-    }
-  }
+  ~Runner() { abandon(); }
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
@@ -251,9 +244,13 @@ class Runner {
       result.values = values_of(study_, job.output);
     }
     if (is_stopped_) return tell(result, job.words);
-    if (result.exit_code == 2 && job.row == 0)
+    if (result.exit_code == 2 && job.row == 0) {
+      job.chunk.reset();
+      abandon();
+      if (folder_ != nullptr) folder_->remove_if_new();
       throw InputError(study_.source, "row 0", result.error,
                        "rows that can be run: " + command_of(study_, row_of(study_, 0)));
+    }
     if (job.chunk->table) job.chunk->table->append(result);
     close(*job.chunk);
     ++summary_.done;
@@ -279,6 +276,18 @@ class Runner {
     waiting_.clear();
     next_chunk_ = end_;
     for (const Job& job : jobs_) ::kill(job.process, SIGTERM);
+  }
+
+  /// Rows under way are killed and tables closed.
+  void abandon() {
+    for (const Job& job : jobs_) {
+      ::kill(job.process, SIGKILL);
+      ::waitpid(job.process, nullptr, 0);
+      if (job.out >= 0) ::close(job.out);
+      if (job.error >= 0) ::close(job.error);
+    }
+    jobs_.clear();
+    waiting_.clear();
   }
 
   static void close(Chunk& chunk) {

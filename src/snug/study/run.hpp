@@ -38,8 +38,8 @@ struct RunSummary {
 
 /// Runs what the tables of `folder` lack. A row whose process somebody ends (SIGKILL, SIGTERM, SIGINT, SIGHUP) is tried
 /// three times and then left for another call; any other end is its result. When the very first row of a study cannot
-/// be used (exit code 2) nothing is written and InputError says what the row said. Throws OutputError when a table
-/// cannot be written.
+/// be used (exit code 2), the study's files are removed where `folder` began it, and InputError says what the row said.
+/// Throws OutputError when a table cannot be written.
 [[nodiscard]] RunSummary run_study(const Study& study, const Folder& folder, const Verb& verb,
                                    const RunSettings& settings);
 /// The same without tables: every row is run and told.

@@ -143,10 +143,11 @@ Folder::Folder(const Study& study, std::filesystem::path path, bool may_make) : 
     const bool is_begun = std::filesystem::exists(copy.string() + ".snug-part", error);  // by another, at this moment
     if (!is_begun && std::filesystem::exists(path_, error) && !std::filesystem::is_empty(path_, error))
       throw InputError(path_.string(), "", "a folder with other things", "a folder of its own for the study");
-    std::filesystem::create_directories(path_, error);
+    has_made_folder_ = std::filesystem::create_directories(path_, error);
     if (error) throw InputError(path_.string(), "", error.message(), "a folder that can be made");
     try {
       write_file(OutputFile(copy), study.text);
+      has_begun_ = true;
     } catch (const InputError&) {  // begun by several at once: one of them writes it
       for (int i = 0; i < 100 && !std::filesystem::exists(copy, error); ++i) ::usleep(50'000);
     }
@@ -183,6 +184,21 @@ std::map<std::uint64_t, RowResult> Folder::read(std::uint64_t chunk) const {
                          " and " + std::to_string(result->exit_code) + ")");
   }
   return rows;
+}
+
+void Folder::remove_if_new() const {
+  if (!has_begun_) return;
+  const std::vector<std::filesystem::path> all = files();
+  std::vector<TableWriter> locks;
+  for (const std::filesystem::path& file : all) {
+    if (file.filename() == kCopy) continue;
+    std::optional<TableWriter> lock = TableWriter::open(file);
+    if (!lock) return;
+    locks.push_back(std::move(*lock));
+  }
+  std::error_code ignored;  // what stays is found by who begins the study again
+  for (const std::filesystem::path& file : all) std::filesystem::remove(file, ignored);
+  if (has_made_folder_) std::filesystem::remove(path_, ignored);
 }
 
 TableWriter::TableWriter(TableWriter&& other) noexcept

@@ -51,10 +51,14 @@ class Folder {
   /// Every row that is done, by index; lines that are not whole are passed over, equal ones count once. Throws
   /// InputError when a row was done twice with different results: then it is no function of its index.
   [[nodiscard]] std::map<std::uint64_t, RowResult> read(std::uint64_t chunk) const;
+  /// Removes the study's files where this object began it and nobody else writes a table, and the folder where it made
+  /// that: a study that cannot be run at all was not begun.
+  void remove_if_new() const;
 
  private:
   const Study& study_;
   std::filesystem::path path_;
+  bool has_made_folder_ = false, has_begun_ = false;
 };
 
 /// Appends to the table of a chunk. Others are kept from the same chunk while this lives, where the file system knows

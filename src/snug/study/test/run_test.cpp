@@ -112,6 +112,41 @@ TEST(RunStudy, FailuresAreResultsAndSayWhy) {
   EXPECT_EQ(run_study(study, folder, verb, settings).done, 0U);
 }
 
+TEST(RunStudy, LeavesNothingWhereTheFirstRowCannotBeUsedAndOthersEndedBeforeIt) {
+  const test::ScratchFolder scratch;
+  const Study study = test::grid(5, 1, 2);
+  const std::filesystem::path made = scratch / "made", given = scratch / "given";
+  std::filesystem::create_directory(given);
+  const Verb verb = [](const std::vector<std::string>& words) {
+    if (words[2] != "0") return test::fake(words);
+    ::usleep(300'000);
+    return 2;
+  };
+  RunSettings settings;
+  settings.processes = 4;
+  for (const std::filesystem::path& path : {made, given}) {
+    const Folder folder(study, path, true);
+    EXPECT_THROW((void)run_study(study, folder, verb, settings), InputError);
+  }
+  EXPECT_FALSE(std::filesystem::exists(made));
+  EXPECT_TRUE(std::filesystem::is_empty(given)) << "a folder that was there stays";
+  const Study corrected = test::grid(4, 1, 2);
+  const Folder folder(corrected, made, true);
+  EXPECT_EQ(run_study(corrected, folder, test::fake, settings).failed, 0U);
+}
+
+TEST(RunStudy, RemovesNothingOfAStudyThatWasBegunBefore) {
+  const test::ScratchFolder scratch;
+  const Study study = test::grid(5, 1, 2);
+  RunSettings later;
+  later.first_chunk = 1;
+  (void)run_study(study, Folder(study, scratch / "f", true), test::fake, later);
+  const Verb refused = [](const std::vector<std::string>&) { return 2; };
+  const Folder folder(study, scratch / "f", true);
+  EXPECT_THROW((void)run_study(study, folder, refused, {}), InputError);
+  EXPECT_EQ(status_of(study, folder).done, study.rows() - 2);
+}
+
 TEST(RunStudy, ARowWhoseProcessIsKilledIsTriedAgainAndNeverAResult) {
   const test::ScratchFolder scratch;
   const Study study = test::grid(3, 1, 100);
