@@ -361,7 +361,7 @@ class Click(unittest.TestCase):
             program.write_text("-0.6,0.1,0.3,0,3.14159,0,home,0,0,0,0,0,0")
             result = subprocess.run([SNUG, "control", str(program), "--click", f"ipc://{folder}/nobody", "--timeout", "0.2"],
                                     capture_output=True, text=True, check=False, timeout=60)
-        self.assertEqual(result.returncode, 1)
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
         self.assertIn("nobody answers", result.stderr)
 
 

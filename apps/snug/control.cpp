@@ -83,6 +83,8 @@ int run_control(const ControlOptions& options) {
                                         options.sequence ? &sequence : nullptr};
   click::Client client(options.endpoint, options.patience);
   const click::ProgramClientResult result = click::run_program(client, scenario, arm, plan, settings);
+  if (!result.has_begun)
+    throw InputError("command line", "--click", result.failure, "the address of a simulator of this robot");
   print(options.json ? as_json(result) : as_table(result));
   if (result.failure.empty()) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());

@@ -34,7 +34,8 @@ class ProgramClient {
   ProgramClientResult run() {
     const auto start = std::chrono::steady_clock::now();
     result_.failure = link_.connect(arm_.controller().settings().tick);
-    if (result_.failure.empty()) result_.failure = work();
+    result_.has_begun = result_.failure.empty();
+    if (result_.has_begun) result_.failure = work();
     result_.last = link_.last();
     result_.simulated = result_.last.time;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;

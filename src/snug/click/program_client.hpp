@@ -20,6 +20,7 @@ struct ProgramClientSettings {
 
 struct ProgramClientResult {
   std::string failure;     ///< empty: the program was done
+  bool has_begun = false;  ///< there was a simulator of such joints and steps
   double duration = 0.0;   ///< s, simulated, until the last waypoint was reached
   double simulated = 0.0;  ///< s, with the second in which boxes come to rest
   double wall = 0.0;       ///< s
