@@ -101,10 +101,23 @@ def answerer(agent: Any) -> Callable[[str], str]:
     return answer
 
 
+class _NotFound(Exception):
+    """There is no such module or class: nothing of the agent has run that a traceback could tell of."""
+
+
 def _find(words: str) -> Any:
     module, _, name = words.partition(":")
-    found: Any = importlib.import_module(module)
+    if not module:
+        raise _NotFound("no module before the colon")
+    try:
+        found: Any = importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name is None or not f"{module}.".startswith(f"{error.name}."):
+            raise  # of what the module imports
+        raise _NotFound(str(error)) from error
     for part in name.split("."):
+        if not hasattr(found, part):
+            raise _NotFound(f"{getattr(found, '__name__', module)} has no {part!r}")
         found = getattr(found, part)
     return found() if isinstance(found, type) else found
 
@@ -121,6 +134,9 @@ def _serve(words: str) -> int:
 
     try:
         answer = answerer(_find(words))
+    except _NotFound as error:
+        say(json.dumps({"error": str(error)}))
+        return 1
     except BaseException as error:  # pylint: disable=broad-except
         traceback.print_exc()
         say(json.dumps({"error": f"{type(error).__name__}: {error}"}))
