@@ -58,6 +58,21 @@ class CommandLine(unittest.TestCase):
     def test_misspelt_verb_gets_a_suggestion(self):
         self.assert_refused(snug("simulat"), "did you mean simulate?")
 
+    def test_misspelt_options_and_verbs_behind_others_get_a_suggestion(self):
+        pack = ("pack", CELL)
+        for words, part in (((*pack, "--sequnce", 1), "--sequnce: got an unknown option; expected one of `snug pack --help`; "
+                                                      "did you mean --sequence?"),
+                            ((*pack, "--sequence", 1, "--samlpes", 0), "did you mean --samples?"),
+                            ((*pack, "--sequence", 1, "--samlpes=0"), "--samlpes: got"),
+                            (("simulate", DROP, "--unitl", "x"), "did you mean --until?"),
+                            (("identify", "scene", "x.yaml", "--thraeds", 1), "did you mean --threads?"),
+                            (("identify", "stifness", "x.json"), "did you mean stiffness?"),
+                            (("items",), "verb after items: got nothing; expected one of reduce, sequence"),
+                            (("simulate", DROP, "--set", "contacts.pairs.box/flor.friction=0.1"), "nearest is 'box/floor'"),
+                            ((*pack, "--sequence", 1, "--set", "contacts.pairs.box/cup.friction=0.1"), "box/gripper, box/lip")):
+            with self.subTest(words=words):
+                self.assert_refused(snug(*words), part)
+
 
 DROP = ROOT / "scenarios" / "drop.yaml"
 CELL = ROOT / "scenarios" / "box-demonstrator.yaml"
@@ -573,6 +588,25 @@ class Views(unittest.TestCase):
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertTrue(result.stderr.startswith("snug: error: "), result.stderr)
         self.assertEqual([p.name for p in self.path.iterdir() if "x.mcap" in p.name], [])
+
+    def test_times_that_are_none_are_refused_everywhere(self):
+        for words in (("export", "--format", "csv"), ("export", "--format", "mcap"), ("plot",), ("report",),
+                      ("picture", "--video", self.path / "v")):
+            for option in (["--from", "nan"], ["--to", "nan"], ["--from=-inf"], ["--to", "inf"]):
+                with self.subTest(words=words, option=option):
+                    output = () if "--video" in words else ("-o", self.path / "x.out")
+                    result = snug(words[0], self.recording, *words[1:], *option, *output)
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assertIn("expected a finite number", result.stderr)
+        self.assertEqual([path.name for path in self.path.iterdir()], ["drop.h5"])
+
+    def test_an_instant_that_was_not_recorded_is_refused_alike(self):
+        for verb in ("picture", "camera"):
+            for time_s in ("1e9", "-5"):
+                result = snug(verb, self.recording, "--time", time_s, "-o", self.path / "x.png")
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn("expected an instant of", result.stderr)
+            self.assertIn("finite", snug(verb, self.recording, "--time", "nan", "-o", self.path / "x.png").stderr)
 
     def test_picture_refuses_words_it_does_not_know(self):
         for words in (["--camera", "sied"], ["--size", "12"], ["--show", "names,ghosts"], ["--time", "nan"]):
@@ -1197,6 +1231,17 @@ class OtherCells(unittest.TestCase):
                              (["--samples", 65], ["--samples", "0 to 64"])):
             with self.subTest(words=words):
                 self.assert_refused(snug("pack", CELL, "--sequence", "1", *words), *parts)
+
+    def test_load_takes_a_container_as_pack_does(self):
+        orders = ROOT / "scenarios" / "orders-example.csv"
+        load = lambda *words: snug("load", *words, "--time", 0.1)
+        three = load(orders, "--container", 600, 400, 300)
+        self.assertEqual(three.returncode, 0, three.stderr)
+        for words in ((orders, "--container", "600x400x300"), ("--container", "600x400x300", orders),
+                      ("--container", 600, 400, 300, orders)):
+            self.assertEqual(load(*words).stdout, three.stdout)
+        for sizes in ("600x400", "600x400x300x2", "600xax300"):
+            self.assert_refused(load(orders, "--container", sizes), "--container")
 
     def test_random_sequences_are_compared_with_their_mean(self):
         small = ("--container", "220x220x120")

@@ -117,6 +117,16 @@ class Study(Scratch):
         failed = [row for row in csv.DictReader(self.merged().splitlines()) if row["exit"] != "0"]
         self.assertTrue(all("seed" in row["error"] for row in failed))
 
+    def test_a_study_whose_first_row_cannot_be_run_leaves_nothing_and_can_be_corrected(self):
+        right = (self.folder / self.write()).read_text()
+        for wrong in (right.replace("set: gravity", "set: gravty"), right.replace("set: seed", "option: --sede")):
+            (self.folder / "study.yaml").write_text(wrong)
+            self.assertIn("row 0", self.snug("study", "study.yaml", "--threads", "3", code=2).stderr)
+            self.snug("study", "study.yaml", "--chunks", "9", code=2)
+            self.assertEqual([path.name for path in self.folder.iterdir()], ["study.yaml"])
+        (self.folder / "study.yaml").write_text(right)
+        self.assertEqual(json.loads(self.snug("study", "study.yaml", "--json").stdout)["failed"], 0)
+
     def test_what_cannot_be_run_is_refused_with_the_reason(self):
         for change, word in ((("verb: simulate", "verb: simulat"), "simulat"), (("--until", "--untill"), "untill"),
                              (("design: grid", "design: cube"), "cube"), (("chunk: 4", "chunk: 0"), "chunk")):
@@ -163,7 +173,9 @@ class Study(Scratch):
         self.assertEqual([row["agent"] for row in rows["rows"]], ["margin", "mine:Lowest"])
         self.assertIn("ValueError", self.snug("pack", scenario, "--sequence", "1", "--agent", "mine:Broken", *words, code=1).stderr)
         for agent, word in (("mine:None_", "None_"), ("nowhere:X", "nowhere"), ("margn", "margin")):
-            self.assertIn(word, self.snug("pack", scenario, "--sequence", "1", "--agent", agent, *words, code=2).stderr)
+            said = self.snug("pack", scenario, "--sequence", "1", "--agent", agent, *words, code=2).stderr
+            self.assertIn(word, said)
+            self.assertNotIn("Traceback", said)
 
 
 class Rows(Scratch):
@@ -226,6 +238,34 @@ class Rows(Scratch):
         rows = list(csv.DictReader((head + first + rest).splitlines()))
         self.assertTrue(0 < len(rows) < 8)
         self.assertTrue(all(row["boxes_per_hour"] for row in rows))
+
+    def test_sessions_that_were_interrupted_are_shown_and_not_counted(self):
+        table = self.folder / "table.json"
+        with table.open("w") as out:
+            process = subprocess.Popen([SNUG, *map(str, self.COMPARE), "--json", "--threads", "2", "-o", "page.html"], text=True,
+                                       cwd=self.folder, stdout=out, stderr=subprocess.PIPE)
+            while "agent" not in table.read_text() and process.poll() is None:
+                time.sleep(0.01)
+            process.send_signal(signal.SIGINT)
+            said = process.communicate(timeout=100)[1]
+        self.assertEqual(process.returncode, 1)
+        self.assertEqual(said.count("interrupted"), 1, said)
+        told = json.loads(table.read_text())
+        whole = [row for row in told["rows"] if row["stop_reason"] != "interrupted"]
+        self.assertEqual(told["interrupted"], len(told["rows"]) - len(whole))
+        self.assertEqual(sum(mean["runs"] for mean in told["means"]), len(whole))
+        self.assertIn(f"{len(whole)} sessions compared", (self.folder / "page.html").read_text())
+
+    def test_session_that_is_interrupted_ends_with_exit_code_1_and_says_so(self):
+        process = subprocess.Popen([SNUG, "pack", self.CELL, "--sequence", "1", *self.QUICK, "--program", "p.csv"], text=True,
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        while "box" not in process.stdout.readline().lower():  # the head of the table
+            pass
+        process.send_signal(signal.SIGINT)
+        out, said = process.communicate(timeout=100)
+        self.assertEqual(process.returncode, 1, out)
+        self.assertRegex(said, r"^snug: interrupted after \d+ items\n")
+        self.assertIn("interrupted", out)
 
     def test_what_no_session_can_use_is_said_before_the_first(self):
         for words, reason in ((("--agents", "margin,nowhere:X"), "nowhere"), (("--fault", "fire@3"), "fire"),

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "choose_camera.hpp"
 #include "outputs.hpp"
+#include "recorded_instant.hpp"
 #include "snug/camera/frame_file.hpp"
 #include "snug/camera/render.hpp"
 #include "snug/core/input_error.hpp"
@@ -72,8 +72,6 @@ int run_camera(const CameraOptions& options) {
   const std::string ending = output.extension().string();
   if (ending != ".png" && ending != ".ply" && ending != ".h5")
     throw InputError("command line", "-o", options.output, "a name that ends in .png, .ply or .h5");
-  if (options.time && !std::isfinite(*options.time))
-    throw InputError("command line", "--time", fmt::format("{}", *options.time), "a finite number of seconds");
   NamedFiles inputs = {{"the recording", options.recording}}, outputs = {{"-o", options.output}};
   add_file(inputs, "--scenario", options.scenario);
   const std::vector<std::string> sides = side_files(output);
@@ -81,8 +79,7 @@ int run_camera(const CameraOptions& options) {
   expect_distinct(inputs, outputs);
 
   record::RecordingReader reader(options.recording);
-  if (reader.frame_count() == 0)
-    throw InputError(options.recording, "", "a recording without frames", "at least one frame");
+  expect_recorded(reader, options.recording, options.time);
   const model::Scenario scenario =
       options.scenario ? model::load_scenario(*options.scenario)
                        : model::parse_scenario(reader.header().scenario_text, "scenario of " + options.recording);

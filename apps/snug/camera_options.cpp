@@ -29,7 +29,7 @@ void add_camera(CLI::App& app, Action& action) {
   verb.add_option("-o,--output", options->output, "the frame to write: .png, .ply or .h5")
       ->required()
       ->type_name("FILE");
-  verb.add_option("--time", options->time, "of the instant; without it the end")->type_name("SECONDS");
+  verb.add_option("--time", options->time, "of the instant; without it the end")->check(finite())->type_name("SECONDS");
   verb.add_option("--camera", options->camera, "name in the scenario; without it the first")->type_name("NAME");
   verb.add_option("--scenario", options->scenario, "with the camera, where the recording's own has none")
       ->type_name("FILE.yaml");

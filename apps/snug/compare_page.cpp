@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "dot_chart.hpp"
@@ -73,6 +74,14 @@ std::vector<Group> group_by(const std::vector<CompareSession>& sessions, const L
   return groups;
 }
 
+/// What is measured of a session that was interrupted says nothing about its agent.
+std::vector<CompareSession> whole_sessions(const std::vector<CompareSession>& sessions) {
+  std::vector<CompareSession> whole;
+  std::ranges::copy_if(sessions, std::back_inserter(whole),
+                       [](const CompareSession& session) { return !session.row.is_interrupted(); });
+  return whole;
+}
+
 /// Every measure of these groups, in two columns.
 std::string charts(const char* title, const std::vector<Group>& groups) {
   std::string text = fmt::format("<h2>{}</h2><div class=\"charts\">", title);
@@ -97,7 +106,7 @@ bool has_plants_of_their_own(const std::vector<CompareSession>& sessions) {
       if (one.row.plant_seed == other.row.plant_seed && one.row.sequence != other.row.sequence) return false;
     }
   }
-  return sessions.front().row.sequence != sessions.back().row.sequence;
+  return !sessions.empty() && sessions.front().row.sequence != sessions.back().row.sequence;
 }
 
 /// The container's floor plan, y of T upwards; higher boxes are lighter and drawn later.
@@ -180,20 +189,25 @@ std::vector<BoxOutline> outline_boxes(const model::Scenario& scenario, const std
 
 std::string format_compare_page(const model::Scenario& scenario, const std::vector<CompareSession>& sessions,
                                 const std::filesystem::path& page) {
+  const std::vector<CompareSession> whole = whole_sessions(sessions);
   std::string text = fmt::format(
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: "
       "comparison</title><style>{1}{2}</style>"
       "</head><body><h1>{0}: {3} sessions compared</h1><p>Each dot is a session: an agent packs a sequence in a plant "
       "of its own, and what is true of the plant counts. Bars are means.</p>",
-      escape_markup(scenario.name), kStyle, kDotChartStyle, sessions.size());
-  text += charts("By agent", group_by(sessions, [](const CompareRow& row) { return row.agent; }));
+      escape_markup(scenario.name), kStyle, kDotChartStyle, whole.size());
+  if (whole.size() < sessions.size()) {
+    text += fmt::format("<p>{} more were interrupted: they are shown below and not in the charts.</p>",
+                        sessions.size() - whole.size());
+  }
+  text += charts("By agent", group_by(whole, [](const CompareRow& row) { return row.agent; }));
   std::vector<Group> groups =
-      group_by(sessions, [](const CompareRow& row) { return fmt::format("{}: {}", row.sequence, row.agent); });
+      group_by(whole, [](const CompareRow& row) { return fmt::format("{}: {}", row.sequence, row.agent); });
   std::ranges::stable_sort(groups, {}, [](const Group& group) { return group.rows.front()->sequence; });
   text += charts("By sequence", groups);
-  if (!has_plants_of_their_own(sessions)) {
-    groups = group_by(sessions,
-                      [](const CompareRow& row) { return fmt::format("plant {}: {}", row.plant_seed, row.agent); });
+  if (!has_plants_of_their_own(whole)) {
+    groups =
+        group_by(whole, [](const CompareRow& row) { return fmt::format("plant {}: {}", row.plant_seed, row.agent); });
     std::ranges::stable_sort(groups, {}, [](const Group& group) { return group.rows.front()->plant_seed; });
     text += charts("By seed of the plant", groups);
   }

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "calibration_json.hpp"
 #include "snug/core/csv_cell.hpp"
 #include "snug/model/reported_agent.hpp"
+#include "snug/session/session.hpp"
 
 namespace snug::app {
 namespace {
@@ -133,8 +135,9 @@ std::string calibration_lines(const std::string& agent, const study::Calibration
   return text;
 }
 
+/// `rows`: those that count; `interrupted`: how many do not.
 std::string format_table_end(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
-                             bool with_references) {
+                             std::size_t interrupted, bool with_references) {
   std::string text =
       "\nexecuted filling, %        runs     mean      sd           range   sent as planned  lost recoveries  "
       "boxes/h\n";
@@ -152,6 +155,7 @@ std::string format_table_end(const model::Scenario& scenario, const std::vector<
       text += fmt::format("{:<25}       {:7.2f} before the first item was skipped\n", "", all.before_skips);
     }
   }
+  if (interrupted > 0) text += fmt::format("not counted: {} that were interrupted\n", interrupted);
   std::string lines;
   for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
     lines += calibration_lines(agent, summarize(rows, agent).calibration);
@@ -189,7 +193,7 @@ Json as_json(const CompareRow& row) {
           {"failure", row.failure}};
 }
 
-std::string format_json_end(const std::vector<CompareRow>& rows) {
+std::string format_json_end(const std::vector<CompareRow>& rows, std::size_t interrupted) {
   Json means = Json::array();
   for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
     const Summary all = summarize(rows, agent);
@@ -210,10 +214,12 @@ std::string format_json_end(const std::vector<CompareRow>& rows) {
                      {"decision_seconds_median", all.seconds},
                      {"calibration", calibration_json(all.calibration)}});
   }
-  return "\n],\n\"means\": " + means.dump(2) + "}\n";
+  return fmt::format("\n],\n\"interrupted\": {},\n\"means\": {}}}\n", interrupted, means.dump(2));
 }
 
 }  // namespace
+
+bool CompareRow::is_interrupted() const { return stop_reason == session::name_of(session::StopReason::Interrupted); }
 
 std::string format_compare_head(CompareForm form) {
   if (form == CompareForm::Json) return "{\"rows\": [";
@@ -244,8 +250,11 @@ std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_
 
 std::string format_compare_end(CompareForm form, const model::Scenario& scenario, const std::vector<CompareRow>& rows,
                                bool with_references) {
-  if (form == CompareForm::Json) return format_json_end(rows);
-  return form == CompareForm::Csv ? std::string() : format_table_end(scenario, rows, with_references);
+  std::vector<CompareRow> whole;
+  std::ranges::copy_if(rows, std::back_inserter(whole), [](const CompareRow& row) { return !row.is_interrupted(); });
+  const std::size_t interrupted = rows.size() - whole.size();
+  if (form == CompareForm::Json) return format_json_end(whole, interrupted);
+  return form == CompareForm::Csv ? std::string() : format_table_end(scenario, whole, interrupted, with_references);
 }
 
 }  // namespace snug::app

@@ -23,12 +23,16 @@ struct CompareRow {
   study::Calibration calibration;
   std::string stop_reason;
   std::string failure;  ///< empty, or why the robot did not come home, or the session broke off
+
+  /// By who started it: what it has packed is less than its agent would have.
+  [[nodiscard]] bool is_interrupted() const;
 };
 
 /// The text in pieces: what was printed when a run is killed is whole rows.
 [[nodiscard]] std::string format_compare_head(CompareForm form);
 [[nodiscard]] std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_first);
-/// Mean, standard deviation and range of each agent; in tables what the report counted, where the sequences are its own
+/// Mean, standard deviation and range of each agent, over sessions that were not interrupted; in tables what the report
+/// counted, where the sequences are its own
 /// (`with_references`).
 [[nodiscard]] std::string format_compare_end(CompareForm form, const model::Scenario& scenario,
                                              const std::vector<CompareRow>& rows, bool with_references);

@@ -49,7 +49,7 @@ struct IdentifySceneOptions {
   std::optional<std::string> log;                             ///< of points tried
   std::optional<std::string> output;                          ///< the task with the values found
   std::optional<std::string> scenario;                        ///< the scenario with the values found
-  std::uint64_t threads = 0;
+  std::optional<int> threads;                                 ///< absent: all cores
   bool json = false;
 };
 

@@ -145,9 +145,9 @@ void add_scene(CLI::App& verb, Action& action) {
   part.add_option("--seed", options->seed, "of the searches")->check(whole(0));
   part.add_option("--log", options->log, "points tried are added to it; what is in it already is not computed again")
       ->type_name("FILE.csv");
-  part.add_option("--threads", options->threads, "0: one for each core; the result does not depend on it")
-      ->check(whole(0, kMostThreads))
-      ->capture_default_str();
+  part.add_option("--threads", options->threads, "threads; the result does not depend on it (default: all cores)")
+      ->check(whole(1, kMostThreads))
+      ->type_name("N");
   part.add_option("-o,--output", options->output, "the task with the values found")->type_name("TASK.yaml");
   part.add_option("--scenario", options->scenario, "the scenario with the values found")->type_name("SCENARIO.yaml");
   part.add_flag("--json", options->json, "the result as one JSON object on stdout");

@@ -9,11 +9,11 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "identify.hpp"
 #include "outputs.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/identification/scene_fit.hpp"
 
@@ -166,8 +166,7 @@ int run_identify_scene(const IdentifySceneOptions& options) {
   expect_distinct(inputs, outputs);
   std::optional<OutputFile> output = reserve(options.output), scenario = reserve(options.scenario);
   apply(options, task.search);
-  const int threads = options.threads > 0 ? static_cast<int>(options.threads)
-                                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = options.threads.value_or(core_count());
   std::vector<identification::RecordedMotion> motions = identification::load_motions(task, task.recordings);
   const SceneExperiment experiment(std::move(task), std::move(motions), threads);
   if (options.evaluate || options.floor) return evaluate(experiment, options.floor, options.json);

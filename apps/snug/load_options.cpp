@@ -18,8 +18,8 @@ FILE is one of
 The time is turned into a fixed amount of work: the same input gives the same load, on any machine and any number of threads.
 Examples:
   snug load scenarios/examples/containers.txt --time 2
-  snug load scenarios/orders-example.csv --container 600 400 300 --time 2
-  snug load scenarios/examples/orders.json --container 1200 800 1450 --json -o loads.json)";
+  snug load scenarios/orders-example.csv --container 600x400x300 --time 2
+  snug load scenarios/examples/orders.json --container 1200x800x1450 --json -o loads.json)";
 
 }  // namespace
 
@@ -27,8 +27,11 @@ void add_load(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("load", "fill a container from a list of boxes, by geometry alone");
   const auto options = std::make_shared<LoadOptions>();
   verb.add_option("file", options->file, "instances or orders")->required()->type_name("FILE");
-  verb.add_option("--container", options->container_mm, "inner length, width and height of the container of orders")
+  verb.add_option("--container", options->container_mm,
+                  "inner length, width and height of the container of orders, as 600x400x300 or 600 400 300")
+      ->delimiter('x')
       ->expected(3)
+      ->allow_extra_args(false)
       ->check(within(1.0, 1e5))
       ->type_name("MM");
   verb.add_option("--time", options->time, "seconds on one core of 2.5 GHz for each problem")
@@ -36,7 +39,7 @@ void add_load(CLI::App& app, Action& action) {
       ->check(within(0.0, 86400.0))
       ->type_name("S");
   verb.add_option("--first", options->first, "only the first N problems")->check(whole(1, kMostThings))->type_name("N");
-  verb.add_option("--threads", options->threads, "")
+  verb.add_option("--threads", options->threads, "threads; the load does not depend on it")
       ->capture_default_str()
       ->check(whole(1, kMostThreads))
       ->type_name("N");

@@ -3,7 +3,6 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "command_line.hpp"
+#include "command_words.hpp"
 #include "outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
@@ -36,20 +36,6 @@ Exit codes:
      on the way home; with --monte-carlo and in compare in any of the runs), check or bench said no
   2  the input cannot be used, or an output cannot be written, is an input or is being written by another run)";
 
-/// A misspelt verb deserves a better answer than "unexpected argument".
-void check_verb(const CLI::App& app, int argc, char** argv) {
-  const auto word = std::find_if(argv + 1, argv + argc, [](const char* text) { return text[0] != '-'; });
-  if (word == argv + argc) return;
-  std::vector<std::string> names;
-  for (const CLI::App* verb : app.get_subcommands({})) names.push_back(verb->get_name());
-  if (std::find(names.begin(), names.end(), *word) != names.end()) return;
-  std::string expected = "one of";
-  for (const std::string& name : names) expected += (name == names.front() ? " " : ", ") + name;
-  const std::string_view nearest = snug::find_nearest(*word, names);
-  if (!nearest.empty()) expected += "; did you mean " + std::string(nearest) + "?";
-  throw snug::InputError("command line", "verb", std::string("'") + *word + "'", expected);
-}
-
 /// Words become names in JSON and HDF5, which take UTF-8 only.
 void check_words(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
@@ -66,7 +52,8 @@ int run(int argc, char** argv) {
   Action action;
   snug::app::add_verbs(app, action);
   check_words(argc, argv);
-  check_verb(app, argc, argv);
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  snug::app::check_verbs(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
@@ -75,6 +62,7 @@ int run(int argc, char** argv) {
     snug::app::print(text.str());
     return code;
   } catch (const CLI::ParseError& error) {
+    snug::app::refuse_words(app, words);
     constexpr std::size_t kRoomForWord = 250;
     throw snug::InputError("command line", snug::printable(error.what(), kRoomForWord) + " (see --help)", "", "");
   }

@@ -69,6 +69,17 @@ CLI::Validator positive() {
       "");
 }
 
+CLI::Validator finite() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0.0;
+        const std::string_view digits = std::string_view(text).substr(text.starts_with('+') ? 1 : 0);
+        const bool fits = reads_as(digits, value) && std::isfinite(value);
+        return fits ? std::string() : "got '" + text + "'; expected a finite number";
+      },
+      "");
+}
+
 CLI::Validator whole(std::uint64_t least) {
   return CLI::Validator(
       [least](const std::string& text) {

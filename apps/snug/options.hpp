@@ -16,6 +16,8 @@ namespace snug::app {
 [[nodiscard]] std::vector<std::string> choices_of(CLI::Option& option);
 /// A finite number above zero.
 [[nodiscard]] CLI::Validator positive();
+/// A number that is none of inf and nan, such as an instant.
+[[nodiscard]] CLI::Validator finite();
 /// A whole number that fits into 64 bits, `least` or more.
 [[nodiscard]] CLI::Validator whole(std::uint64_t least);
 /// A whole number from `least` to `most`.

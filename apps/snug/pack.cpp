@@ -194,9 +194,11 @@ int run_pack(const PackOptions& options) {
   if (failure.empty() && !has_program && (options.program || options.record)) {
     failure = "nothing was packed: no program, no recording";
   }
-  if (failure.empty()) return kSuccess;
-  std::fprintf(stderr, "snug: failed: %s\n", failure.c_str());
-  return kRunFailed;
+  if (result.stop_reason == session::StopReason::Interrupted) {
+    std::fprintf(stderr, "snug: interrupted after %zu items\n", result.items.size());
+  }
+  if (!failure.empty()) std::fprintf(stderr, "snug: failed: %s\n", failure.c_str());
+  return failure.empty() && result.stop_reason != session::StopReason::Interrupted ? kSuccess : kRunFailed;
 }
 
 }  // namespace snug::app

@@ -19,6 +19,7 @@
 
 #include "browser.hpp"
 #include "outputs.hpp"
+#include "recorded_instant.hpp"
 #include "robot_files.hpp"
 #include "snug/core/descriptor.hpp"
 #include "snug/core/input_error.hpp"
@@ -112,20 +113,6 @@ class Studio {
   Browser browser_;
 };
 
-void expect_finite(const char* option, const std::optional<double>& value) {
-  if (!value || std::isfinite(*value)) return;
-  throw InputError("command line", option, fmt::format("{}", *value), "a finite number of seconds");
-}
-
-/// A picture of an instant that was not recorded would show another.
-void expect_recorded(const PictureOptions& options, const record::RecordingReader& reader) {
-  const double first = reader.times().front(), last = reader.times().back();
-  constexpr double kRounding = 1e-6;  // s, of times as people write them
-  if (!options.time || (*options.time >= first - kRounding && *options.time <= last + kRounding)) return;
-  throw InputError("command line", "--time", fmt::format("{}", *options.time),
-                   fmt::format("an instant of {}: {:.3f} s to {:.3f} s", options.recording, first, last));
-}
-
 /// Instants of the frames of a video.
 std::vector<double> video_times(const PictureOptions& options, const record::RecordingReader& reader) {
   const std::vector<double>& times = reader.times();
@@ -195,18 +182,12 @@ int run_picture(const PictureOptions& options) {
   expect_one_of("--theme", options.theme, std::array{"light", "dark"});
   expect_parts("--show", options.show);
   expect_parts("--hide", options.hide);
-  expect_finite("--time", options.time);
-  expect_finite("--from", options.from);
-  expect_finite("--to", options.to);
   std::optional<OutputFile> output;
   NamedFiles inputs = {{"the recording", options.recording}};
   add_file(inputs, "--urdf", options.urdf);
   if (!options.output.empty()) output = reserve(inputs, options.output);
   record::RecordingReader reader(options.recording);
-  if (reader.frame_count() == 0) {
-    throw InputError(options.recording, "", "a recording without frames", "at least one frame");
-  }
-  expect_recorded(options, reader);
+  expect_recorded(reader, options.recording, options.time);
   heed_interruption();
   try {
     if (!options.video.empty()) {

@@ -51,7 +51,7 @@ void add_picture(CLI::App& app, Action& action) {
   const auto size = std::make_shared<std::string>("1280x800");
   verb.add_option("recording", options->recording, "what to draw")->required()->type_name("FILE.h5");
   verb.add_option("-o,--output", options->output, "the picture to write")->type_name("FILE.png");
-  verb.add_option("--time", options->time, "of the instant; without it the end")->type_name("SECONDS");
+  verb.add_option("--time", options->time, "of the instant; without it the end")->check(finite())->type_name("SECONDS");
   verb.add_option("--video", options->video, "instead of one picture: frame-000000.png ... in this new or empty folder")
       ->type_name("DIR");
   verb.add_option("--fps", options->fps, "pictures a second of the video")
@@ -62,8 +62,12 @@ void add_picture(CLI::App& app, Action& action) {
       ->check(within(kSlowest, kFastest))
       ->type_name("FACTOR")
       ->capture_default_str();
-  verb.add_option("--from", options->from, "where the video begins; without it the first frame")->type_name("SECONDS");
-  verb.add_option("--to", options->to, "where the video ends; without it the last frame")->type_name("SECONDS");
+  verb.add_option("--from", options->from, "where the video begins; without it the first frame")
+      ->check(finite())
+      ->type_name("SECONDS");
+  verb.add_option("--to", options->to, "where the video ends; without it the last frame")
+      ->check(finite())
+      ->type_name("SECONDS");
   verb.add_option("--size", *size, "in pixels")->type_name("WxH")->capture_default_str();
   verb.add_option("--camera", options->camera, "cell, top, side (both of the container) or tool")
       ->type_name("NAME")

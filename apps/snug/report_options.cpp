@@ -17,8 +17,10 @@ constexpr const char* kReportExamples = R"(Examples:
 }  // namespace
 
 void add_selection_options(CLI::App& verb, replay::Selection& selection) {
-  verb.add_option("--from", selection.from, "leave out what was before this time")->type_name("SECONDS");
-  verb.add_option("--to", selection.to, "leave out what was after this time")->type_name("SECONDS");
+  verb.add_option("--from", selection.from, "leave out what was before this time")
+      ->check(finite())
+      ->type_name("SECONDS");
+  verb.add_option("--to", selection.to, "leave out what was after this time")->check(finite())->type_name("SECONDS");
   verb.add_option("--every", selection.every,
                   "take every Nth frame only (default: all; in a page as many as it can hold)")
       ->check(whole(1, kMostThings))

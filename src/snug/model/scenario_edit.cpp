@@ -7,12 +7,26 @@
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 #include "snug/model/internal/key_path.hpp"
 #include "snug/model/internal/scenario_text.hpp"
+#include "snug/model/internal/value.hpp"
 #include "snug/model/yaml_limits.hpp"
 
 namespace snug::model {
 namespace {
+
+constexpr std::size_t kMostName = 30;  ///< characters of a name in a message
+
+/// The names of a list's entries where they are few.
+std::string describe_entries(const YAML::Node& list) {
+  constexpr std::size_t kMostShown = 12;
+  const std::vector<std::string> names = internal::entry_names(list);
+  if (names.empty() || names.size() > kMostShown) return "an entry's name or id";
+  std::string text = "one of";
+  for (const std::string& name : names) text += (&name == &names.front() ? " " : ", ") + printable(name, kMostName);
+  return text;
+}
 
 class Editor {
  public:
@@ -47,7 +61,8 @@ class Editor {
   [[nodiscard]] YAML::Node changed_list(const YAML::Node& here, const std::string& step, std::size_t depth) const {
     const std::optional<std::size_t> index = internal::find_entry(here, step);
     if (!index) {
-      refuse("'" + step + "'", "an entry's name or id, or an index below " + std::to_string(here.size()));
+      refuse("'" + step + "'", describe_entries(here) + ", or an index below " + std::to_string(here.size()) +
+                                   internal::nearest_hint(step, internal::entry_names(here)));
     }
     YAML::Node copy(YAML::NodeType::Sequence);
     for (std::size_t i = 0; i < here.size(); ++i) copy.push_back(i == *index ? changed(here[i], depth + 1) : here[i]);
