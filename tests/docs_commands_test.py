@@ -26,7 +26,7 @@ LONG_COMMANDS = re.compile(r"snug (bench|view|compare|study examples|identify (d
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
 # `--slurm` submits jobs to a scheduler, which a test of studies has of its own; the rest is not of this program.
 LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|--slurm|\\| man |\.\.\./")
-PREPARED = ("program.csv", "run.h5", "again.h5", "measured.h5")
+PREPARED = ("program.csv", "plan.json", "run.h5", "again.h5", "measured.h5")
 MAY_FAIL = re.compile(r"snug (check|bench|export .*--format (urscript|ros-trajectory))")  # what they say no to is a result (exit code 1)
 
 
@@ -73,7 +73,7 @@ class Commands(unittest.TestCase):
             shutil.copytree(ROOT / shipped, cls.path / shipped)
         cell = "scenarios/box-demonstrator.yaml"
         simulate = ["simulate", cell, "--program", "program.csv", "--sequence", "1"]
-        for words in (["pack", cell, "--sequence", "1", "--plant-seed", "7", "--samples", "0", "--program", "program.csv"],
+        for words in (["pack", cell, "--sequence", "1", "--plant-seed", "7", "--samples", "0", "--program", "program.csv", "--plan", "plan.json"],
                       [*simulate, "--robot", "ur10", "-o", "run.h5"], [*simulate, "-o", "again.h5"],
                       ["measure", "run.h5", "--sensors", "scenarios/sensors/demonstrator.yaml", "--repetitions", "2", "-o", "measured.h5"]):
             result = subprocess.run([SNUG, *words], cwd=cls.path, capture_output=True, text=True, check=False)
@@ -144,7 +144,7 @@ class Commands(unittest.TestCase):
             for line in lines:
                 with self.subTest(command=line):
                     for word in shlex.split(line):  # outputs replace a copy, here only; a command cut short leaves it
-                        if (folder / word).is_symlink() and word in PREPARED and re.search(rf"(-o|--record|pack .*--program) {word}", line):
+                        if (folder / word).is_symlink() and word in PREPARED and re.search(rf"(-o|--record|pack .*--program|--plan) {word}", line):
                             (folder / word).unlink()
                             shutil.copy(self.path / word, folder / word)
                     self.run_command(line, folder)

@@ -16,13 +16,14 @@ the errors that its camera states.
 FRAME is a PNG (16-bit grey), a PLY (ascii or binary little endian) or an HDF5 of `snug camera`. Files of `snug camera` say where the
 camera is; for others the scenario's camera is used, its intrinsics replaced by --intrinsics.
 EXPECT is a list of placements as `snug pack --plan` writes it: which box is believed to be where in the container. A box that is
-elsewhere is looked for.
+elsewhere is looked for: leave out boxes that are not in the container yet.
 Exit code 1: the frame itself cannot be used (too few points, or something stands in the view).
 Examples:
-  snug camera run.h5 --time 20 -o frame.png
-  snug perceive frame.png --scenario scenarios/box-demonstrator.yaml --expect scenarios/demo-placements.yaml --json
-  snug camera run.h5 --time 20 -o frame.ply
-  snug perceive frame.ply --scenario scenarios/box-demonstrator.yaml --expect scenarios/demo-placements.yaml -o boxes.json
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plan plan.json -o run.h5
+  snug camera run.h5 -o frame.png
+  snug perceive frame.png --scenario scenarios/box-demonstrator.yaml --expect plan.json --json
+  snug camera run.h5 -o frame.ply
+  snug perceive frame.ply --scenario scenarios/box-demonstrator.yaml --expect plan.json -o boxes.json
 Frames of other cameras: a PNG with --intrinsics FX FY CX CY and --depth-unit METRES, a PLY with --points-in-camera if need be.)";
 
 }  // namespace
