@@ -33,7 +33,8 @@ constexpr const char* kExamples = R"(Examples:
 Exit codes:
   0  done; boxes that were not packed, with their reasons, are a result too
   1  the run failed: an output could not be written, a simulation could not go on (a protective stop of the robot, also
-     on the way home; with --monte-carlo and in compare in any of the runs), check or bench said no
+     on the way home; with --monte-carlo and in compare in any of the runs), pack or compare was interrupted, check or bench
+     said no
   2  the input cannot be used, or an output cannot be written, is an input or is being written by another run)";
 
 /// Words become names in JSON and HDF5, which take UTF-8 only.
