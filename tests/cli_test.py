@@ -364,7 +364,7 @@ class Cup(unittest.TestCase):
         return json.loads((CUP_DATA / name).read_text())["cases"]
 
     def test_cup_alone_asks_for_a_part(self):
-        self.assert_refused(snug("cup"), "subcommand")
+        self.assert_refused(snug("cup"), "nothing; expected one of evaluate, settle")
 
     def test_cup_help_has_examples(self):
         for part in ("evaluate", "settle"):
