@@ -65,7 +65,8 @@ void measure_packing(const BenchOptions& options, std::vector<Figure>& figures) 
   }
   if (is_wanted("packing.motion")) {
     const internal::MotionFigures motions = internal::measure_motions(model::load_scenario(options.scenario));
-    figures.push_back({"packing.motion.count", static_cast<double>(motions.count), "1", ">= 100", motions.count >= 100});
+    figures.push_back(
+        {"packing.motion.count", static_cast<double>(motions.count), "1", ">= 100", motions.count >= 100});
     figures.push_back(at_most("packing.motion.median_s", motions.median_seconds, "s", 0.1));
     figures.push_back(at_most("packing.motion.p99_s", motions.p99_seconds, "s", 0.5));
     figures.push_back({"packing.motion.longest_s", motions.longest_seconds, "s", "", true});

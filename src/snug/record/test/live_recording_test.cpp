@@ -53,7 +53,9 @@ class WritingProcess {
   /// Whether there is a file of this many bytes, within 10 s.
   [[nodiscard]] bool wait_for(const std::filesystem::path& path, std::uintmax_t size = 0) const {
     std::error_code none;
-    const auto is_there = [&] { return std::filesystem::exists(path) && std::filesystem::file_size(path, none) >= size; };
+    const auto is_there = [&] {
+      return std::filesystem::exists(path) && std::filesystem::file_size(path, none) >= size;
+    };
     for (int i = 0; i < 10'000 && !is_there(); ++i) ::usleep(1000);
     return is_there();
   }
