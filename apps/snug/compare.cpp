@@ -102,7 +102,7 @@ class Printer {
 
   void add(const CompareRow& row, const std::string& said) {
     if (is_terminal_) std::fputs("\r\033[K", stderr);
-    if (!row.is_interrupted()) std::fputs(said.c_str(), stderr);  // else it says so of itself, and say_end() of all
+    if (!row.is_interrupted()) std::fputs(said.c_str(), stderr);  // else it says only that, as say_end() will
     print_now(format_compare_row(form_, row, count_ == 0));
     ++count_;
     if (is_terminal_ && count_ < sessions_) std::fprintf(stderr, "%zu of %zu sessions", count_, sessions_);

@@ -32,8 +32,7 @@ struct CompareRow {
 [[nodiscard]] std::string format_compare_head(CompareForm form);
 [[nodiscard]] std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_first);
 /// Mean, standard deviation and range of each agent, over sessions that were not interrupted; in tables what the report
-/// counted, where the sequences are its own
-/// (`with_references`).
+/// counted, where the sequences are its own (`with_references`).
 [[nodiscard]] std::string format_compare_end(CompareForm form, const model::Scenario& scenario,
                                              const std::vector<CompareRow>& rows, bool with_references);
 

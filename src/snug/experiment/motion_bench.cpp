@@ -15,6 +15,7 @@
 #include "snug/motion/controller.hpp"
 #include "snug/packing/agent.hpp"
 #include "snug/session/reach.hpp"
+#include "snug/session/rollout.hpp"
 #include "snug/skills/item_plan.hpp"
 #include "snug/skills/surroundings.hpp"
 
@@ -23,17 +24,10 @@ namespace {
 
 constexpr std::size_t kPlaces = 4;  ///< of every decision
 
-using Rows = std::vector<motion::Waypoint>;
-
 double top_of(const packing::ContainerState& state) {
   double top = 0.0;
   for (const packing::PlacedBox& box : state.boxes) top = std::max(top, packing::bounding_extent(box).high.z());
   return top;
-}
-
-Rows joined(Rows rows, const Rows& more) {
-  for (const motion::Waypoint& row : more) rows.push_back(motion::rounded(row));
-  return rows;
 }
 
 /// Plans motions of the items of one sequence, from the intent to the timed motion.
@@ -55,48 +49,45 @@ class MotionPlanner {
     const skills::PlannedBox box = skills::make_planned_box(scenario_, sequence_, item);
     const Pose X_WP = cell::pose_at_aligner(scenario_, sequence_.items[index], 0);
     const double top = top_of(state);
-    Pose X_WE_held;
-    motion::Swing swing;
-    Rows rows = pick(box, X_WP, candidate.placement.X_TP.R, travel_bottom(layout_, top), X_WE_held, swing);
-    if (rows.empty()) return std::nullopt;
-    const Pose X_EP = X_WE_held.inverse() * X_WP;
+    const motion::Waypoint home = motion::make_waypoint(motion::MotionClass::Home, {}, scenario_.controller.X_WE_start);
+    const std::optional<Pick> pick = plan_pick_of(box, X_WP, candidate.placement.X_TP.R, travel_bottom(layout_, top));
+    if (!pick) return std::nullopt;
+    motion::Program program{.name = "motion", .waypoints = {}};
+    session::append(program, drivable(layout_, home, pick->rows, pick->swing));
+    const Pose X_EP = pick->X_WE.inverse() * X_WP;
     const Pose X_PS = X_EP.inverse() * Pose{Matrix3::Identity(), scenario_.cup.hold_length * Vector3::UnitZ()};
     const packing::Candidate placed =
         skills::measured(state, candidate, box.size, scenario_.parcel_clearance, scenario_.skills.insertion);
     const skills::Insertion insertion = skills::choose_insertions(placed, box.size, scenario_.skills.insertion).front();
-    const motion::Waypoint held = rows.back();
+    const motion::Waypoint held = program.waypoints.back();
     const skills::PlaceRequest request{box, X_PS, placed.placement.X_TP, insertion, top, held.X_WE(), X_EP};
-    rows = joined(std::move(rows), drivable(layout_, held, plan_place(scenario_, layout_, request), swing));
-    if (!can_follow(rows)) return std::nullopt;
-    const motion::PreparedProgram motion = simulation_.prepare({.name = "motion", .waypoints = std::move(rows)});
-    return motion::compute_duration(motion, scenario_.controller.X_WE_start);
+    session::append(program, drivable(layout_, held, plan_place(scenario_, layout_, request), pick->swing));
+    if (!session::can_follow(reaches_, layout_, home, program.waypoints)) return std::nullopt;
+    const motion::PreparedProgram prepared = simulation_.prepare(std::move(program));
+    return motion::compute_duration(prepared, scenario_.controller.X_WE_start);
   }
 
  private:
-  /// Picked from above, or by the side that is to be up; empty when neither brings the box to stand like R_TP.
-  [[nodiscard]] Rows pick(const skills::PlannedBox& box, const Pose& X_WP, const Matrix3& R_TP, double travel,
-                          Pose& X_WE_held, motion::Swing& swing) const {
+  struct Pick {
+    std::vector<motion::Waypoint> rows;
+    Pose X_WE;  ///< where the vacuum comes on
+    motion::Swing swing;
+  };
+
+  /// From above, or by the side that is to be up; none when neither brings the box to stand like R_TP.
+  [[nodiscard]] std::optional<Pick> plan_pick_of(const skills::PlannedBox& box, const Pose& X_WP, const Matrix3& R_TP,
+                                                 double travel) const {
     const Pose X_next = layout_.X_WT * Pose{R_TP, Vector3::Zero()};
     const Vector3 face_W = X_WP.R * X_next.R.row(2).transpose();  // this face is to be up
-    Rows rows = face_W.z() > 0.5 ? plan_pick(scenario_, layout_, box, X_WP, X_next, travel, skills::PickKind::First)
-                : std::abs(face_W.z()) < 0.5
-                    ? plan_side_pick(scenario_, layout_, box, X_WP, face_W, X_next, travel, false)
-                    : Rows();
-    const auto held = std::ranges::find_if(rows, [](const motion::Waypoint& row) { return row.io.vacuum; });
-    if (held == rows.begin() || held == rows.end()) return {};
-    X_WE_held = std::prev(held)->X_WE();  // the vacuum comes on there
-    swing = skills::swing_of(scenario_, box, X_WP.R.transpose() * face_W);
-    const auto home = motion::make_waypoint(motion::MotionClass::Home, {}, scenario_.controller.X_WE_start);
-    return joined({}, drivable(layout_, home, rows, swing));
-  }
-
-  [[nodiscard]] bool can_follow(const Rows& rows) const {
-    if (!reaches_) return true;
-    Pose X_WE = scenario_.controller.X_WE_start;
-    return std::ranges::all_of(rows, [&](const motion::Waypoint& row) {
-      const Pose X_WE_before = std::exchange(X_WE, row.X_WE());
-      return motion::is_contact(row.motion_class) || reaches_({X_WE_before, X_WE, layout_.pan_axis});
-    });
+    if (face_W.z() < -0.5) return std::nullopt;
+    Pick pick;
+    pick.rows = face_W.z() > 0.5 ? plan_pick(scenario_, layout_, box, X_WP, X_next, travel, skills::PickKind::First)
+                                 : plan_side_pick(scenario_, layout_, box, X_WP, face_W, X_next, travel, false);
+    const auto held = std::ranges::find_if(pick.rows, [](const motion::Waypoint& row) { return row.io.vacuum; });
+    if (held == pick.rows.begin() || held == pick.rows.end()) return std::nullopt;
+    pick.X_WE = std::prev(held)->X_WE();
+    pick.swing = skills::swing_of(scenario_, box, X_WP.R.transpose() * face_W);
+    return pick;
   }
 
   const model::Scenario& scenario_;

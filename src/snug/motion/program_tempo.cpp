@@ -8,6 +8,7 @@
 #include <charconv>
 #include <string>
 
+#include "snug/core/csv_fields.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
@@ -26,7 +27,7 @@ std::string lower(std::string_view word) {
   return text;
 }
 
-std::optional<double> parse_whole_number(std::string_view text) {
+std::optional<double> parse_number(std::string_view text) {
   double value = 0.0;
   const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || last != text.data() + text.size()) return std::nullopt;
@@ -53,7 +54,7 @@ Setting parse_comment(std::string_view comment) {
 
 /// Whether the tempo was meant, and is written as none: "tmepo: 1", "tempo = 1", "tempo 1".
 bool is_misspelt(const Setting& setting) {
-  if (!parse_whole_number(setting.value)) return false;
+  if (!parse_number(setting.value)) return false;
   if (setting.word == kKeys[0]) return setting.separator != ':';
   return setting.separator != '\0' && !find_nearest(setting.word, kKeys).empty();
 }
@@ -64,7 +65,7 @@ std::string format_tempo(double tempo) { return fmt::format("# {}: {}\n", kKeys[
 
 std::optional<double> find_tempo(std::string_view text, std::string_view name) {
   std::optional<double> found;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark that spreadsheets add
+  text = without_byte_order_mark(text);
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
     std::string_view row = trim(text.substr(0, end));
@@ -75,7 +76,7 @@ std::optional<double> find_tempo(std::string_view text, std::string_view name) {
     const std::string place = fmt::format("{}:{}", name, line);
     if (is_misspelt(setting)) throw InputError(place, "", fmt::format("'# {}'", row), "'# tempo: NUMBER'");
     if (setting.word != kKeys[0] || setting.separator != ':') continue;
-    const std::optional<double> tempo = parse_whole_number(setting.value);
+    const std::optional<double> tempo = parse_number(setting.value);
     if (found || !tempo || !(*tempo >= kLeast && *tempo <= 1.0)) {
       throw InputError(place, "tempo", fmt::format("'{}'", setting.value),
                        found ? "one tempo" : fmt::format("a number from {} to 1", kLeast));

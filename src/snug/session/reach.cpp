@@ -1,6 +1,7 @@
 // Reach: whether the scenario's robot can bring a box to a place, by its joints alone.
 #include "snug/session/reach.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -67,6 +68,16 @@ ToolReach make_tool_reach(const model::Scenario& scenario) {
     }
     return true;
   };
+}
+
+bool can_follow(const ToolReach& reaches, const skills::CellLayout& layout, const motion::Waypoint& before,
+                std::span<const motion::Waypoint> rows) {
+  if (!layout.is_fast || !reaches) return true;
+  Pose X_WE = before.X_WE();
+  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) {
+    const Pose X_WE_before = std::exchange(X_WE, row.X_WE());
+    return motion::is_contact(row.motion_class) || reaches({X_WE_before, X_WE, layout.pan_axis});
+  });
 }
 
 std::function<bool(const packing::Placement&)> make_reach(const model::Scenario& scenario,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "snug/motion/way.hpp"
 #include "snug/skills/item_plan.hpp"
@@ -13,6 +14,11 @@ namespace snug::session {
 using ToolReach = std::function<bool(const motion::Way&)>;
 /// Empty without a robot, and where its file is not there.
 [[nodiscard]] ToolReach make_tool_reach(const model::Scenario& scenario);
+
+/// Of fast motions: every way to rows that touch nothing can be followed from where the one before ends, the first from
+/// `before`. Of others nothing is asked.
+[[nodiscard]] bool can_follow(const ToolReach& reaches, const skills::CellLayout& layout,
+                              const motion::Waypoint& before, std::span<const motion::Waypoint> rows);
 
 /// Says of a placement whether the tool poses over it, where the box is let go and where it is carried in, have a
 /// branch of the arm's inverse within its joint limits. The tool is asked for at the layout's neutral yaw: it never is

@@ -93,15 +93,6 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
   return outcome;
 }
 
-bool Rehearsal::can_follow(const motion::Waypoint& before, std::span<const motion::Waypoint> rows) const {
-  if (!layout_.is_fast || !reaches_) return true;
-  Pose X_WE = before.X_WE();
-  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) {
-    const Pose X_WE_before = std::exchange(X_WE, row.X_WE());
-    return motion::is_contact(row.motion_class) || reaches_({X_WE_before, X_WE, layout_.pan_axis});
-  });
-}
-
 const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double packed_top) {
   for (const Grasp& known : grasps_) {
     if (known.orientation == placement.orientation) return known;
@@ -178,7 +169,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   const skills::PlaceRequest request{box_,        grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
                                      last.X_WE(), grasp.X_EP};
   const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
-  if (!can_follow(last, rows)) {
+  if (!can_follow(reaches_, layout_, last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;
     attempt.text = "the robot cannot follow the way to its place";
     return attempt;

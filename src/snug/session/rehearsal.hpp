@@ -83,8 +83,6 @@ class Rehearsal {
     RolloutEnd end = RolloutEnd::Completed;
     AttemptForces forces;
   };
-  /// Of fast motions: every way to rows that touch nothing can be followed from where the one before ends.
-  [[nodiscard]] bool can_follow(const motion::Waypoint& before, std::span<const motion::Waypoint> rows) const;
   const Grasp& grasp_for(const packing::Placement& placement, double packed_top);
   [[nodiscard]] Outcome judge(const Rollout& rollout, const std::vector<std::optional<Pose>>& before,
                               const Pose& X_TP) const;
