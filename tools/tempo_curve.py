@@ -28,7 +28,9 @@ def row_of(tempo, sessions):
     parts = [sum(item["seconds"][part] for item in items) / len(items)
              for part in ("travel", "carry", "regrasp", "insert", "push", "wait")]
     planned = sum(one["items_as_planned"] for one in sessions)
+    waited = sum(item["planning_wait"] for one in sessions for item in one["items"])
     return [f"{tempo:g}" if tempo else "lag", f"{statistics.mean(cycles):.1f}" if cycles else "-", f"{3600 * boxes / seconds:.0f}",
+            f"{3600 * boxes / (seconds + waited):.0f}",
             *[f"{part:.1f}" for part in parts], f"{min(holds):.1f}" if holds else "-", f"{planned} of {len(items)}"]
 
 
@@ -45,8 +47,8 @@ def main():
     words = [options.snug, "pack", options.scenario, "--plant-seed", options.plant_seed, "--samples", options.samples]
     for change in options.set:
         words += ["--set", change]
-    print("| tempo | unturned cycle, s | boxes an hour | travel, s a box | carry | regrasp | insert | push | wait | least hold factor | as planned |")
-    print("|---|---|---|---|---|---|---|---|---|---|---|")
+    print("| tempo | unturned cycle, s | boxes an hour | with waits for plans | travel, s a box | carry | regrasp | insert | push | wait | least hold factor | as planned |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|---|")
     for tempo in (float(text) for text in options.tempos.split(",")):
         sessions = [pack(words, tempo, sequence) for sequence in options.sequences.split(",")]
         print("| " + " | ".join(row_of(tempo, sessions)) + " |", flush=True)

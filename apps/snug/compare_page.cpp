@@ -52,6 +52,8 @@ constexpr Measure kMeasures[] = {
     {"items that end as planned, %",
      [](const CompareRow& row) { return row.items_sent > 0 ? 100.0 * row.items_as_planned / row.items_sent : kNone; }},
     {"boxes an hour of the plant's time", [](const CompareRow& row) { return row.boxes_per_hour; }},
+    {"boxes an hour, the robot's waits for a plan included",
+     [](const CompareRow& row) { return row.boxes_per_hour_with_planning; }},
     {"time to decide and rehearse an item, median, s",
      [](const CompareRow& row) { return row.decision_seconds_median; }},
 };

@@ -22,8 +22,8 @@ using Json = nlohmann::ordered_json;
 struct Summary {
   int count = 0, sent = 0, as_planned = 0, lost = 0, recoveries = 0;
   double planned = 0.0, executed = 0.0, deviation = 0.0, lowest = 0.0, highest = 0.0, before_skips = 0.0;
-  double seconds = 0.0;         ///< mean of the medians
-  double boxes_per_hour = 0.0;  ///< mean
+  double seconds = 0.0;                                             ///< mean of the medians
+  double boxes_per_hour = 0.0, boxes_per_hour_with_planning = 0.0;  ///< means
   study::Calibration calibration;
 };
 
@@ -45,6 +45,7 @@ Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent,
     square += row.executed_percent * row.executed_percent;
     all.seconds += row.decision_seconds_median;
     all.boxes_per_hour += row.boxes_per_hour;
+    all.boxes_per_hour_with_planning += row.boxes_per_hour_with_planning;
     all.calibration.add(row.calibration);
   }
   if (all.count == 0) return all;
@@ -54,6 +55,7 @@ Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent,
   all.before_skips /= count;
   all.seconds /= count;
   all.boxes_per_hour /= count;
+  all.boxes_per_hour_with_planning /= count;
   // Of the sample: divided by one less than there are.
   if (all.count > 1)
     all.deviation = std::sqrt(std::max(0.0, (square - count * all.executed * all.executed) / (count - 1.0)));
@@ -115,12 +117,12 @@ std::string reporter_line(const model::Scenario& scenario, const std::vector<std
 }
 
 constexpr const char* kRow =
-    "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7}  {:>7}  {}\n";
+    "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7} {:>9}  {:>7}  {}\n";
 
 std::string summary_line(const std::string& label, const Summary& all) {
-  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:>11} {:5} {:10}  {:7.0f}\n", label,
+  return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:>11} {:5} {:10}  {:7.0f} {:9.0f}\n", label,
                      all.count, all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
-                     all.recoveries, all.boxes_per_hour);
+                     all.recoveries, all.boxes_per_hour, all.boxes_per_hour_with_planning);
 }
 
 /// Predicted success beside what happened.
@@ -140,7 +142,7 @@ std::string format_table_end(const model::Scenario& scenario, const std::vector<
                              std::size_t interrupted, bool with_references) {
   std::string text =
       "\nexecuted filling, %        runs     mean      sd           range   sent as planned  lost recoveries  "
-      "boxes/h\n";
+      "boxes/h  with plan\n";
   const std::vector<std::string> sequences = distinct(rows, [](const CompareRow& row) { return row.sequence; });
   for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
     const Summary all = summarize(rows, agent);
@@ -189,6 +191,7 @@ Json as_json(const CompareRow& row) {
           {"boxes_lost", row.boxes_lost},
           {"recoveries", row.recoveries},
           {"boxes_per_hour", row.boxes_per_hour},
+          {"boxes_per_hour_with_planning", row.boxes_per_hour_with_planning},
           {"stop_reason", row.stop_reason},
           {"failure", row.failure}};
 }
@@ -211,6 +214,7 @@ std::string format_json_end(const std::vector<CompareRow>& rows, std::size_t int
                      {"boxes_lost", all.lost},
                      {"recoveries", all.recoveries},
                      {"boxes_per_hour", all.boxes_per_hour},
+                     {"boxes_per_hour_with_planning", all.boxes_per_hour_with_planning},
                      {"decision_seconds_median", all.seconds},
                      {"calibration", calibration_json(all.calibration)}});
   }
@@ -226,25 +230,27 @@ std::string format_compare_head(CompareForm form) {
   if (form == CompareForm::Csv) {
     return "agent,sequence,planned_boxes,planned_percent,executed_boxes,executed_percent,decision_seconds_median,seed,"
            "plant_seed,items_sent,items_as_planned,boxes_lost,recoveries,percent_before_skips,stop_reason,boxes_per_"
-           "hour,failure\n";
+           "hour,failure,boxes_per_hour_with_planning\n";
   }
   return fmt::format(fmt::runtime(kRow), "agent", "sequence", "seed", "plant", "plan", "%", "exec", "%", "sent",
-                     "as planned", "lost", "recoveries", "boxes/h", "dec., s", "stopped");
+                     "as planned", "lost", "recoveries", "boxes/h", "with plan", "dec., s", "stopped");
 }
 
 std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_first) {
   if (form == CompareForm::Json) return (is_first ? "\n" : ",\n") + as_json(row).dump();
   if (form == CompareForm::Csv) {
-    return fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{},{},{:.4f},{},{:.1f},{}\n", csv_cell(row.agent),
-                       csv_cell(row.sequence), row.planned_boxes, row.planned_percent, row.executed_boxes,
-                       row.executed_percent, row.decision_seconds_median, row.seed, row.plant_seed, row.items_sent,
-                       row.items_as_planned, row.boxes_lost, row.recoveries, row.percent_before_skips,
-                       csv_cell(row.stop_reason), row.boxes_per_hour, csv_cell(row.failure));
+    return fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{},{},{:.4f},{},{:.1f},{},{:.1f}\n",
+                       csv_cell(row.agent), csv_cell(row.sequence), row.planned_boxes, row.planned_percent,
+                       row.executed_boxes, row.executed_percent, row.decision_seconds_median, row.seed, row.plant_seed,
+                       row.items_sent, row.items_as_planned, row.boxes_lost, row.recoveries, row.percent_before_skips,
+                       csv_cell(row.stop_reason), row.boxes_per_hour, csv_cell(row.failure),
+                       row.boxes_per_hour_with_planning);
   }
   return fmt::format(fmt::runtime(kRow), row.agent, row.sequence, row.seed, row.plant_seed, row.planned_boxes,
                      fmt::format("{:.2f}", row.planned_percent), row.executed_boxes,
                      fmt::format("{:.2f}", row.executed_percent), row.items_sent, row.items_as_planned, row.boxes_lost,
                      row.recoveries, fmt::format("{:.0f}", row.boxes_per_hour),
+                     fmt::format("{:.0f}", row.boxes_per_hour_with_planning),
                      fmt::format("{:.2f}", row.decision_seconds_median), row.stop_reason);
 }
 

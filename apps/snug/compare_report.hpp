@@ -18,7 +18,7 @@ struct CompareRow {
   int planned_boxes = 0, executed_boxes = 0;
   double planned_percent = 0.0, executed_percent = 0.0, percent_before_skips = 0.0;
   double decision_seconds_median = 0.0;
-  double boxes_per_hour = 0.0;
+  double boxes_per_hour = 0.0, boxes_per_hour_with_planning = 0.0;
   int items_sent = 0, items_as_planned = 0, boxes_lost = 0, recoveries = 0;
   study::Calibration calibration;
   std::string stop_reason;

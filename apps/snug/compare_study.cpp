@@ -71,11 +71,22 @@ study::Study make_compare_study(const CompareOptions& options, std::uint64_t see
   document["factors"] = {{{"option", "--agent"}}, {{"option", "--sequence"}}, {{"option", "--plant-seed"}}};
   if (options.random > 0) document["factors"].push_back({{"option", "--random-seed"}});
   if (options.runs) document["factors"].push_back({{"option", "--record"}});
-  document["outputs"] = {"executed_percent",     "executed_boxes", "planned_percent",
-                         "planned_boxes",        "items_sent",     "items_as_planned",
-                         "percent_before_skips", "boxes_lost",     "recoveries",
-                         "boxes_per_hour",       "stop_reason",    "failure",
-                         "calibration",          "boxes",          "decision_seconds_median"};
+  document["outputs"] = {"executed_percent",
+                         "executed_boxes",
+                         "planned_percent",
+                         "planned_boxes",
+                         "items_sent",
+                         "items_as_planned",
+                         "percent_before_skips",
+                         "boxes_lost",
+                         "recoveries",
+                         "boxes_per_hour",
+                         "stop_reason",
+                         "failure",
+                         "calibration",
+                         "boxes",
+                         "decision_seconds_median",
+                         "boxes_per_hour_with_planning"};
   std::string text = document.dump(2);
   text.erase(text.size() - 2);  // "\n}": the points follow, a line each
   text += ",\n  \"points\": [";
@@ -105,6 +116,7 @@ CompareSession read_session(const model::Scenario& scenario, const study::Study&
   row.percent_before_skips = values.number("percent_before_skips", row.executed_percent);
   row.decision_seconds_median = values.number("decision_seconds_median");
   row.boxes_per_hour = values.number("boxes_per_hour");
+  row.boxes_per_hour_with_planning = values.number("boxes_per_hour_with_planning");
   row.items_sent = values.count("items_sent");
   row.items_as_planned = values.count("items_as_planned");
   row.boxes_lost = values.count("boxes_lost");

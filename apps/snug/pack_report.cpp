@@ -128,6 +128,7 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
   json["protective_stops"] = item.stops;
   json["decision_seconds"] = item.decision_seconds;
   json["rehearsal_seconds"] = item.rehearsal_seconds;
+  json["planning_wait"] = item.planning_wait;
   return json;
 }
 
@@ -281,7 +282,8 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
   text += fmt::format("decision           {:.2f} s an item (median), agent {}\n", result.decision_seconds_median,
                       result.agent);
   text += fmt::format("plant              {:.1f} s, {} waypoints\n", result.duration, result.program.waypoints.size());
-  text += fmt::format("speed              {:.0f} boxes an hour, {}\n", trial.boxes_per_hour, how_fast(trial));
+  text += fmt::format("speed              {:.0f} boxes an hour, {:.0f} with the waits for a plan, {}\n",
+                      trial.boxes_per_hour, trial.boxes_per_hour_with_planning, how_fast(trial));
   text += describe_hold(trial);
   if (!trial.is_elsewhere) text += fmt::format("state hash         {:016x}\n", trial.state_hash);
   if (repeated.count == 0) return text;
@@ -328,6 +330,7 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
       {"tempo",
        trial.plant.simulation.controller == motion::ControllerKind::Fast ? Json(trial.plant.simulation.tempo) : Json()},
       {"boxes_per_hour", trial.boxes_per_hour},
+      {"boxes_per_hour_with_planning", trial.boxes_per_hour_with_planning},
       {"unturned_cycle_seconds", trial.unturned_cycle > 0.0 ? Json(trial.unturned_cycle) : Json()},
       {"seconds", as_json(sum_of_seconds(result))},
       {"state_hash", trial.is_elsewhere ? Json() : Json(fmt::format("{:016x}", trial.state_hash))}};

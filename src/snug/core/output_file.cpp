@@ -89,7 +89,12 @@ class SignalsHeld {
     for (const int signal : kEnding) ::sigaddset(&held, signal);
     ::pthread_sigmask(SIG_BLOCK, &held, &before_);
   }
-  ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  /// Where the handler runs in another thread it does not return: a thread that went on could write a file anew that is
+  /// removed already.
+  ~SignalsHeld() {
+    while (g_is_ending) ::pause();
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
   SignalsHeld(const SignalsHeld&) = delete;
   SignalsHeld& operator=(const SignalsHeld&) = delete;
 

@@ -81,8 +81,9 @@ struct RehearsalSettings {
   double prior_rate = 0.97;
   double prior_count = 4.0;  ///< how many rollouts that is worth; from the same sessions
   /// Percent of the container, fast motions alone: taken off what a place is expected to fill when the box has to be
-  /// reoriented for it.
-  double reorientation_cost = 0.5;
+  /// set down for it to be turned, and when it has to be picked by a side.
+  double reorientation_cost = 1.5;
+  double side_grasp_cost = 0.5;
 
   template <class Archive>
   void fields(Archive& a) {
@@ -97,6 +98,7 @@ struct RehearsalSettings {
     a("prior_rate", prior_rate, Range::Fraction);
     a("prior_count", prior_count, Within{0.0, 10000.0});
     a("reorientation_cost", reorientation_cost, Within{0.0, 100.0});
+    a("side_grasp_cost", side_grasp_cost, Within{0.0, 100.0});
   }
   bool operator==(const RehearsalSettings&) const = default;
 };

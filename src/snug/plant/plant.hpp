@@ -1,6 +1,7 @@
 // Plant: the cell that is packed, as an interface: motions go in, sensor readings come out, nothing can be undone.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,6 +31,12 @@ struct Motion {
   std::vector<motion::Waypoint> waypoints;
   Guards guards;
   bool operator==(const Motion&) const = default;
+};
+
+/// What is done while the tool moves on.
+struct OnPassing {
+  int waypoint = -1;          ///< of the motion, before its last
+  std::function<void()> act;  ///< called once, when the tool has left the waypoint for the next; may be empty
 };
 
 enum class EndReason {
@@ -100,8 +107,10 @@ class Plant {
   /// came before.
   [[nodiscard]] virtual bool bring(const std::string& item) = 0;
   /// Follows the waypoints until the last is reached and the tool stands, or until something ends the motion before.
-  [[nodiscard]] virtual Feedback submit(const Motion& motion) = 0;
-  /// One look, the tool standing. The only way to learn where boxes are.
+  /// What `passing` does may perceive and bring, and nothing else; it is not done where the motion ends before.
+  [[nodiscard]] virtual Feedback submit(const Motion& motion, const OnPassing& passing) = 0;
+  [[nodiscard]] Feedback submit(const Motion& motion) { return submit(motion, {}); }
+  /// One look. The only way to learn where boxes are.
   [[nodiscard]] virtual perception::Observation perceive(std::span<const perception::Expectation> expected) = 0;
   /// Releases a protective stop. Without one nothing happens.
   virtual void acknowledge() = 0;

@@ -192,13 +192,17 @@ bool RemotePlant::bring(const std::string& item) {
   const auto found = std::ranges::find(sequence_.items, item, &model::Item::parcel);
   const auto index = static_cast<std::size_t>(found - sequence_.items.begin());
   if (found == sequence_.items.end() || was_brought_[index] || !failure_.empty()) return false;
-  click::Control control = make_control();
-  click::Named<bool>& events = control.objects[names_[index]].events;
   const int quarter = quarter_of(*found);
-  events[click::kFeedEvent] = true;
-  events[click::kQuarterTurnEvent] = quarter % 2 == 1;
-  events[click::kHalfTurnEvent] = quarter >= 2;
+  const click::Named<bool> events{
+      {click::kFeedEvent, true}, {click::kQuarterTurnEvent, quarter % 2 == 1}, {click::kHalfTurnEvent, quarter >= 2}};
   was_brought_[index] = true;
+  if (tick_) {  // a Control is a tick of the motion: this one too
+    fed_ = {names_[index], events};
+    tick_();
+    if (!std::exchange(fed_, std::nullopt)) return failure_.empty();
+  }
+  click::Control control = make_control();
+  control.objects[names_[index]].events = events;
   return send(control);
 }
 
@@ -250,6 +254,8 @@ plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
   const control::MachineTick tick = arm_->tick(plan, program_, state_, work_);
   click::Control control = make_control();
   link_.command(state_.machine.joints, tick.program.io, control);
+  if (fed_) control.objects[fed_->first].events = fed_->second;
+  fed_.reset();
   const double start = link_.last().time;
   std::string trouble = link_.send(control);
   const double length = link_.last().time - start;
@@ -285,10 +291,11 @@ bool RemotePlant::advance(const plant::Motion& motion, const motion::PreparedPro
 }
 
 /// The tool comes to stand, boxes come to rest.
-void RemotePlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
+void RemotePlant::settle(const motion::PreparedProgram& plan, bool was_passed, plant::MotionWatch& course) {
   const double start = link_.last().time;
   const bool is_fast = options_.motions.controller == motion::ControllerKind::Fast;
-  while (plant::is_settling(scenario_.motion_guards, !is_fast, start, link_.last().time,
+  const double at_least = plant::least_settle(scenario_.motion_guards, !is_fast, was_passed);
+  while (plant::is_settling(scenario_.motion_guards, at_least, start, link_.last().time,
                             state_.machine.tool.V_WE.linear.norm())) {
     if (step(plan).reason != plant::EndReason::Completed) break;
   }
@@ -318,7 +325,7 @@ void RemotePlant::stand() {
   program_.command.V_WE = Twist{};
 }
 
-plant::Feedback RemotePlant::submit(const plant::Motion& motion) {
+plant::Feedback RemotePlant::submit(const plant::Motion& motion, const plant::OnPassing& passing) {
   const auto refuse_motion = [&](const std::string& why) {
     read_sensors({}, {plant::EndReason::Refused, -1, 0.0, 0.0, why});
     return feedback_;
@@ -338,11 +345,17 @@ plant::Feedback RemotePlant::submit(const plant::Motion& motion) {
   plant::MotionWatch course;
   course.settings = scenario_.motion_guards;
   course.begin(reading(), is_active(link_.last_of_robot(), click::kHoldingSensor));
-  while (advance(motion, plan, course)) {
+  bool was_passed = false, goes_on = true;
+  while (goes_on && advance(motion, plan, course)) {
+    if (!passing.act || was_passed || course.row <= passing.waypoint) continue;
+    was_passed = true;
+    tick_ = [&] { goes_on = goes_on && advance(motion, plan, course); };
+    passing.act();
+    tick_ = nullptr;
   }
   if (course.end.reason == plant::EndReason::Completed) {
     course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
-    settle(plan, course);
+    settle(plan, was_passed, course);
   }
   stand();
   if (!failure_.empty()) course.end = {plant::EndReason::Fault, course.end.waypoint, 0.0, 0.0, failure_};

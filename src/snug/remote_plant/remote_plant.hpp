@@ -1,9 +1,11 @@
 // RemotePlant: a cell that another program serves over CLICK, behind the interface of a plant.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "snug/cell/simulation.hpp"
@@ -36,7 +38,8 @@ class RemotePlant final : public plant::Plant {
   [[nodiscard]] plant::Description describe() const override;
   [[nodiscard]] plant::Feedback read() override { return feedback_; }
   [[nodiscard]] bool bring(const std::string& item) override;
-  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override;
+  using plant::Plant::submit;
+  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion, const plant::OnPassing& passing) override;
   [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override;
   void acknowledge() override;
 
@@ -56,7 +59,7 @@ class RemotePlant final : public plant::Plant {
   [[nodiscard]] plant::End step(const motion::PreparedProgram& plan);
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
                              plant::MotionWatch& course);
-  void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course);
+  void settle(const motion::PreparedProgram& plan, bool was_passed, plant::MotionWatch& course);
   void begin_motion();
   void stand();
   void fail(std::string why);
@@ -79,6 +82,9 @@ class RemotePlant final : public plant::Plant {
   plant::Feedback feedback_;
   std::vector<std::string> names_;  ///< of the items' objects
   std::vector<bool> was_brought_;
+  /// Object and its events, of an item that is brought with the next tick of the motion under way.
+  std::optional<std::pair<std::string, click::Named<bool>>> fed_;
+  std::function<void()> tick_;  ///< of the motion under way: the next one; empty while the robot stands
   bool has_commanded_ = false;
   bool is_stopped_ = false;
   std::string failure_;  ///< why no motion can follow

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/core/check.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/skills/side_pick.hpp"
@@ -40,11 +41,14 @@ packing::Orientation mirrored(const packing::Orientation& orientation, const Vec
   return best;
 }
 
+constexpr double kThere = 0.02;        ///< m
+constexpr double kTurnedThere = 0.05;  ///< rad
+
 class GraspPlanner {
  public:
   GraspPlanner(const GraspRequest& request, const packing::Orientation& orientation)
       : request_(request),
-        nominal_(*request.rollouts[0]),
+        nominal_(request.rollouts.empty() ? nullptr : request.rollouts[0].get()),
         travel_(travel_bottom(request.layout, request.packed_top)),
         X_WP_(request.X_WP) {
     grasp_.orientation = grasp_.held_as = orientation;
@@ -60,7 +64,7 @@ class GraspPlanner {
                          : reorientation == skills::Reorientation::SideGrasp ? pick_side_where_it_stands()
                          : reorientation == skills::Reorientation::Regrasp   ? regrasp()
                                                                              : pivot();
-    if (!applies) return false;
+    if (!applies || nominal_ == nullptr) return applies;
     if (is_fine() && !grasp_.episodes[0].is_complete()) grasp_.problem = GraspProblem::Rollout;
     if (is_fine()) run_samples();
     return true;
@@ -85,23 +89,29 @@ class GraspPlanner {
     return grasp_.program.waypoints.empty() ? request_.from : grasp_.program.waypoints.back();
   }
 
-  void execute(const std::vector<motion::Waypoint>& rows) {
+  /// The first row is left out where the tool is there already.
+  void execute(std::vector<motion::Waypoint> rows) {
+    const bool is_there = grasp_.program.waypoints.empty() && rows.size() > 1 &&
+                          (rows[0].p_WE - last().p_WE).norm() < kThere &&
+                          angle_between(rows[0].X_WE().R, last().X_WE().R) < kTurnedThere;
+    if (is_there && request_.layout.is_fast && nominal_ != nullptr) rows.erase(rows.begin());
     append(grasp_.program, drivable(request_.layout, last(), rows, grasp_.swing));
-    merge(grasp_.episodes[0], nominal_.run(grasp_.program));
+    if (nominal_ != nullptr) merge(grasp_.episodes[0], nominal_->run(grasp_.program));
   }
 
   /// Whether it hangs from the cup now.
   bool holds() {
+    if (nominal_ == nullptr) return false;
     if (!grasp_.episodes[0].is_complete()) {
       grasp_.problem = GraspProblem::Rollout;
       return false;
     }
-    if (!nominal_.is_held(request_.box.item)) {
+    if (!nominal_->is_held(request_.box.item)) {
       grasp_.problem = GraspProblem::NotHeld;
       return false;
     }
-    grasp_.X_PS = nominal_.state().gripper.cup.X_PS;
-    grasp_.X_EP = grasp_.program.waypoints.back().X_WE().inverse() * *nominal_.pose_of(request_.box.item);
+    grasp_.X_PS = nominal_->state().gripper.cup.X_PS;
+    grasp_.X_EP = grasp_.program.waypoints.back().X_WE().inverse() * *nominal_->pose_of(request_.box.item);
     return true;
   }
 
@@ -189,7 +199,7 @@ class GraspPlanner {
 
   /// The box was let go on the way: there it has to be looked for before the plan goes on.
   void look() {
-    if (const std::optional<Pose> seen = nominal_.pose_of(request_.box.item)) X_WP_ = *seen;
+    if (const std::optional<Pose> seen = nominal_->pose_of(request_.box.item)) X_WP_ = *seen;
     grasp_.looks.push_back(grasp_.program.waypoints.size());
     grasp_.seen.push_back(X_WP_);
     if (!is_upright(X_WP_.R, max_lean())) grasp_.problem = GraspProblem::DoesNotStand;
@@ -291,11 +301,19 @@ class GraspPlanner {
   }
 
   const GraspRequest& request_;
-  Rollout& nominal_;
+  Rollout* nominal_;  ///< null: nothing is rehearsed
   double travel_;
   Pose X_WP_;  ///< of the box where it stands, as believed or as the nominal rollout has it
   Grasp grasp_;
 };
+
+/// In the order in which they are tried.
+std::vector<skills::Reorientation> ways_to(const GraspRequest& request, const packing::Orientation& orientation) {
+  const GraspPlanner planner(request, orientation);
+  if (planner.stands()) return {skills::Reorientation::None};
+  if (planner.is_upside_down()) return {skills::Reorientation::Pivot};
+  return {skills::Reorientation::SideGrasp, skills::Reorientation::Regrasp, skills::Reorientation::Pivot};
+}
 
 }  // namespace
 
@@ -335,12 +353,23 @@ const char* describe(GraspProblem problem) {
 
 bool is_upright(const Matrix3& R_WP, double max_lean) { return R_WP.row(2).cwiseAbs().maxCoeff() > std::cos(max_lean); }
 
+std::optional<GraspOutline> outline_grasp(const GraspRequest& request, const packing::Orientation& orientation) {
+  SNUG_CHECK(request.rollouts.empty(), "nothing is rehearsed");
+  for (const skills::Reorientation way : ways_to(request, orientation)) {
+    GraspPlanner planner(request, orientation);
+    if (!planner.make(way)) continue;
+    const Grasp grasp = planner.take();
+    const auto& rows = grasp.program.waypoints;
+    const auto first = std::ranges::find_if(rows, [](const motion::Waypoint& row) {
+      return row.motion_class == motion::MotionClass::PrePick || row.motion_class == motion::MotionClass::PreRePick;
+    });
+    if (first != rows.end()) return GraspOutline{way, first->X_WE()};
+  }
+  return std::nullopt;
+}
+
 Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation) {
-  const GraspPlanner first(request, orientation);
-  std::vector<skills::Reorientation> ways{skills::Reorientation::SideGrasp, skills::Reorientation::Regrasp,
-                                          skills::Reorientation::Pivot};
-  if (first.stands()) ways = {skills::Reorientation::None};
-  if (first.is_upside_down()) ways = {skills::Reorientation::Pivot};
+  const std::vector<skills::Reorientation> ways = ways_to(request, orientation);
   Grasp best;
   best.orientation = orientation;
   best.problem = GraspProblem::NoSurface;

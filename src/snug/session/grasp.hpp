@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,7 +60,7 @@ struct Grasp {
 struct GraspRequest {
   const model::Scenario& scenario;  ///< nominal
   const skills::CellLayout& layout;
-  std::span<const std::unique_ptr<Rollout>> rollouts;  ///< the first is the nominal one
+  std::span<const std::unique_ptr<Rollout>> rollouts;  ///< the first is the nominal one; none: see outline_grasp
   std::span<const cell::CellState> states;             ///< rollout by rollout: from here
   std::span<const double> weights;                     ///< rollout by rollout; the first is not used
   motion::Waypoint from;                               ///< where the tool is
@@ -72,6 +73,15 @@ struct GraspRequest {
 };
 /// The first reorientation with which the box is held in every rollout, or the one that does so in most.
 [[nodiscard]] Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation);
+
+/// How a grasp begins, nothing rehearsed.
+struct GraspOutline {
+  skills::Reorientation reorientation = skills::Reorientation::None;
+  Pose X_WE;  ///< where the tool comes to before it goes down to the box
+};
+/// Of the way that is tried first; none: it cannot be picked so. Without rollouts, states and weights in the request.
+[[nodiscard]] std::optional<GraspOutline> outline_grasp(const GraspRequest& request,
+                                                        const packing::Orientation& orientation);
 
 /// Standing on one of its faces, or leaning by at most `max_lean` [rad], so that it can be picked from above.
 [[nodiscard]] bool is_upright(const Matrix3& R_WP, double max_lean);

@@ -11,6 +11,7 @@
 #include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/stopwatch.hpp"
+#include "snug/motion/tool_yaw.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/skills/primitives.hpp"
 #include "snug/skills/surroundings.hpp"
@@ -154,16 +155,9 @@ double Packer::size_off(int item) const {
       .maxCoeff();
 }
 
-void Packer::look(ItemReport& report, bool stays) {
-  const std::vector<perception::Expectation> expected = belief_.expectations();
-  perception::Observation seen = take_picture(expected, stays, report);
-  if (!seen.missing.empty() || belief_.has_new_obstacle(seen)) {  // one picture may be bad
-    const perception::Observation before = std::move(seen);
-    seen = take_picture(expected, stays, report);
-    std::erase_if(seen.missing,
-                  [&](const std::string& id) { return std::ranges::find(before.missing, id) == before.missing.end(); });
-    belief_.drop_unconfirmed(seen, before);
-  }
+bool Packer::is_wrong(int item) const { return belief_.box(item) && size_off(item) > scenario_.recovery.wrong_size; }
+
+void Packer::take_in(const perception::Observation& seen, const ItemReport& report) {
   const std::size_t known = belief_.obstacles().reports().size();
   belief_.see(seen);
   // It is not seen, and something that was not there stands higher over its place: that is the box, or lies on it.
@@ -178,6 +172,19 @@ void Packer::look(ItemReport& report, bool stays) {
       items_[i].size = model::find_parcel(belief_.nominal(), items_[i].id)->size;
     }
   }
+}
+
+void Packer::look(ItemReport& report, bool stays) {
+  const std::vector<perception::Expectation> expected = belief_.expectations();
+  perception::Observation seen = take_picture(expected, stays, report);
+  if (!seen.missing.empty() || belief_.has_new_obstacle(seen)) {  // one picture may be bad
+    const perception::Observation before = std::move(seen);
+    seen = take_picture(expected, stays, report);
+    std::erase_if(seen.missing,
+                  [&](const std::string& id) { return std::ranges::find(before.missing, id) == before.missing.end(); });
+    belief_.drop_unconfirmed(seen, before);
+  }
+  take_in(seen, report);
 }
 
 Location Packer::locate(int item) const {
@@ -219,10 +226,48 @@ bool Packer::can_be_picked(int item) const {
 
 /// Percent in the end, on average, when this share of the worlds goes well and the others end here, less what turning
 /// the box costs.
-double Packer::utility_of(const packing::Candidate& candidate, double rate) const {
-  double expected = candidate.expected_percent > 0.0 ? candidate.expected_percent : 100.0;
-  if (layout_.is_fast && candidate.placement.flips > 0) expected -= scenario_.rehearsal.reorientation_cost;
+double Packer::utility_of(const packing::Candidate& candidate, double rate, double cost) const {
+  const double expected = (candidate.expected_percent > 0.0 ? candidate.expected_percent : 100.0) - cost;
   return rate * expected + (1.0 - rate) * packing::filling_percent(container_state());
+}
+
+std::optional<GraspOutline> Packer::outline_of(const Standing& box, const packing::Orientation& orientation) const {
+  const skills::PlannedBox planned = skills::make_planned_box(belief_.nominal(), belief_.sequence(), box.item);
+  const Pose X_WE_over{motion::upright_tool(layout_.neutral_yaw), layout_.X_WT.p};
+  const motion::Waypoint from = motion::make_waypoint(motion::MotionClass::PostPlace, {}, X_WE_over);
+  return outline_grasp({belief_.nominal(),
+                        layout_,
+                        {},
+                        {},
+                        {},
+                        from,
+                        planned,
+                        box.X_WP,
+                        box.location,
+                        obstacle_top(box.item),
+                        options_.threads,
+                        reaches_},
+                       orientation);
+}
+
+double Packer::cost_of(const Standing& box, const packing::Placement& placement) const {
+  if (!layout_.is_fast || placement.flips == 0) return 0.0;
+  const model::RehearsalSettings& settings = scenario_.rehearsal;
+  if (settings.side_grasp_cost == settings.reorientation_cost) return settings.reorientation_cost;
+  const auto outline = outline_of(box, placement.orientation);
+  const bool is_by_side = outline && outline->reorientation == skills::Reorientation::SideGrasp;
+  return is_by_side ? settings.side_grasp_cost : settings.reorientation_cost;
+}
+
+void Packer::sort(const Standing& box, std::vector<packing::Candidate>& candidates) const {
+  if (!layout_.is_fast) return;  // they are in the agent's order
+  std::vector<std::pair<double, packing::Candidate>> ordered;
+  for (packing::Candidate& one : candidates) {
+    const double utility = utility_of(one, 1.0, cost_of(box, one.placement));
+    ordered.emplace_back(utility, std::move(one));
+  }
+  std::ranges::stable_sort(ordered, std::greater(), [](const auto& one) { return one.first; });
+  std::ranges::transform(ordered, candidates.begin(), [](auto& one) { return std::move(one.second); });
 }
 
 bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
@@ -232,20 +277,21 @@ bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
          (attempts >= settings.max_attempts && rate >= settings.good_rate);
 }
 
-std::optional<Attempt> Packer::best_attempt(int item, Location location, std::vector<packing::Candidate> candidates,
-                                            double least_percent, ItemReport& report) {
-  if (layout_.is_fast && scenario_.rehearsal.reorientation_cost > 0.0)  // else they are in the agent's order
-    std::ranges::stable_sort(candidates, std::greater(), [this](const auto& one) { return utility_of(one, 1.0); });
+std::optional<Attempt> Packer::best_attempt(const AttemptQuestion& question, std::vector<packing::Candidate> candidates,
+                                            ItemReport& report) {
+  const int item = question.task.item;
+  const Standing standing{item, question.task.X_WP, question.task.location};
+  sort(standing, candidates);
   const packing::ContainerState state = state_without(item);
   const double top = obstacle_top(item);
-  Rehearsal rehearsal(belief_, layout_, reaches_, limits_, options_.threads,
-                      {item, belief_.box(item)->X_WP, location, robot_});
+  Rehearsal rehearsal(belief_, layout_, reaches_, limits_, options_.threads, question.task);
   std::optional<Attempt> best;
-  double best_utility = least_percent;
+  double best_utility = question.least_percent;
   const double clearance = belief_.nominal().parcel_clearance;
   const int before = report.attempts;  // when it was planned before
   for (const packing::Candidate& candidate : candidates) {
-    if (best_utility >= utility_of(candidate, 1.0)) break;
+    const double cost = cost_of(standing, candidate.placement);
+    if (best_utility >= utility_of(candidate, 1.0, cost)) break;
     const packing::Candidate placed = skills::measured(state, candidate, items_[static_cast<std::size_t>(item)].size,
                                                        clearance, scenario_.skills.insertion);
     for (const skills::Insertion& insertion :
@@ -261,7 +307,7 @@ std::optional<Attempt> Packer::best_attempt(int item, Location location, std::ve
             {attempt.planned, attempt.skill, attempt.failure, attempt.succeeded, attempt.success_rate, attempt.text});
       }
       if (!attempt.succeeded) continue;
-      const double utility = utility_of(placed, attempt.success_rate);
+      const double utility = utility_of(placed, attempt.success_rate, cost);
       if (utility <= best_utility + 1e-9) continue;
       best_utility = utility;
       best = std::move(attempt);
@@ -298,31 +344,35 @@ double Packer::gain_elsewhere(int item, packing::Agent& agent) const {
   return decision ? decision->candidates.front().expected_percent - *here : 0.0;
 }
 
-std::optional<Packer::Planned> Packer::plan(int item, packing::Agent& agent, ItemReport& report) {
+Packer::PlanResult Packer::plan(int item, packing::Agent& agent, const plant::Feedback& robot, ItemReport& report) {
   packing::Item& one = items_[static_cast<std::size_t>(item)];
   one = item_as_it_stands(item);
   const packing::ContainerState state = state_without(item);
-  const Location location = locate(item);
   auto start = std::chrono::steady_clock::now();
   const std::optional<double> here = expected_percent(item, agent);
   const double least = here ? *here + scenario_.recovery.gain_elsewhere : 0.0;
   const auto decision = agent.decide(state, one);
-  report.decision_seconds += seconds_since(start);
   if (!decision) {
+    report.decision_seconds += seconds_since(start);
     report.reason = packing::describe(decision.error());
     report.end = packing::is_hopeless(decision.error()) ? ItemEnd::Hopeless : ItemEnd::NoPlace;
     return std::nullopt;
   }
+  RehearsalTask task{item, belief_.box(item)->X_WP, locate(item), robot, {}};
+  std::vector<packing::Candidate> candidates = decision->candidates;
+  sort({item, task.X_WP, task.location}, candidates);
+  task.X_WE_after = tool_after(item, packing::with_candidate(state, one, candidates.front()));
+  report.decision_seconds += seconds_since(start);
   start = std::chrono::steady_clock::now();
   report.reason.clear();
-  std::optional<Attempt> best = best_attempt(item, location, decision->candidates, least, report);
+  std::optional<Attempt> best = best_attempt({task, least}, std::move(candidates), report);
   report.rehearsal_seconds += seconds_since(start);
   if (!best && !decision->is_pressed) {
     start = std::chrono::steady_clock::now();
     const auto pressed = agent.decide_pressed(state, one);
     report.decision_seconds += seconds_since(start);
     start = std::chrono::steady_clock::now();
-    if (pressed) best = best_attempt(item, location, pressed->candidates, least, report);
+    if (pressed) best = best_attempt({task, least}, pressed->candidates, report);
     report.rehearsal_seconds += seconds_since(start);
   }
   if (!best) {

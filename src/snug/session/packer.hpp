@@ -1,6 +1,7 @@
 // Packer: brings one item in: look, plan, rehearse, send, look, and what is done when that goes wrong.
 #pragma once
 
+#include <future>
 #include <optional>
 #include <set>
 #include <span>
@@ -16,6 +17,12 @@ namespace snug::session {
 struct Repacked {
   packing::Placement planned;
   Pose X_TP;  ///< where it was seen (or is believed to be) then
+};
+
+/// An item and who decides where it goes.
+struct ComingItem {
+  int item = 0;
+  packing::Agent* agent = nullptr;  ///< asked while the tool moves, in a thread of its own
 };
 
 class Packer {
@@ -36,6 +43,9 @@ class Packer {
   [[nodiscard]] bool is_gone(const std::string& id) const { return !belief_.box(index_of(id)); }
   /// It was packed before and was returned to the aligner.
   [[nodiscard]] bool was_returned(const std::string& id) const { return returned_.contains(index_of(id)); }
+  /// The items that bring_in will be called with, one after the other. While the tool leaves an item that came to its
+  /// place as planned, the one that follows is brought, seen and planned.
+  void expect(std::vector<ComingItem> coming) { coming_ = std::move(coming); }
   /// Everything for one item, from its arrival to what became of it.
   [[nodiscard]] ItemReport bring_in(int item, packing::Agent& agent);
   /// The tool back at its start, or why it did not get there.
@@ -56,6 +66,33 @@ class Packer {
     Attempt attempt;
     skills::PlannedBox box;
   };
+  /// What a plan came to; no value: no place.
+  using PlanResult = std::optional<Planned>;
+  /// The next item: brought while the tool left the one before.
+  struct Ahead {
+    int item = 0;
+    ItemReport report;
+    plant::Feedback robot;  ///< where it will stand
+    double since = 0.0;     ///< s, of the plant
+    bool is_seen = false;   ///< as what was to come
+    std::future<PlanResult> planning;
+    std::optional<PlanResult> planned;
+  };
+  /// The item that was sent comes to its place as planned: the next one is brought, looked at, and its planning begun.
+  void look_ahead(int item, const Attempt& attempt, const std::vector<std::optional<Pose>>& before, ItemReport& report);
+  /// The motion has ended.
+  void finish_planning_ahead();
+  /// None where it is not known, or the item is not to be followed by another.
+  [[nodiscard]] const ComingItem* follower_of(int item) const;
+  /// Where the tool goes when the item is at its place: there the next one, as it is expected, would be picked if the
+  /// container were `state` then. None: it stays over the box.
+  [[nodiscard]] std::optional<Pose> tool_after(int item, const packing::ContainerState& state) const;
+  /// What one look told.
+  void take_in(const perception::Observation& seen, const ItemReport& report);
+  /// Another one came, by its size.
+  [[nodiscard]] bool is_wrong(int item) const;
+  /// Then the report says so.
+  void refuse(int item, ItemReport& report) const;
   [[nodiscard]] int index_of(const std::string& id) const;
   /// `stays`: the tool does not leave for a picture that something blocks.
   void look(ItemReport& report, bool stays = false);
@@ -75,10 +112,15 @@ class Packer {
   /// all), those that were left outside too: what is carried passes over it.
   [[nodiscard]] double obstacle_top(int item) const;
   [[nodiscard]] cell::ContainerFit fit_of(int item, const Pose& X_WP) const;
-  [[nodiscard]] std::optional<Planned> plan(int item, packing::Agent& agent, ItemReport& report);
-  [[nodiscard]] std::optional<Attempt> best_attempt(int item, Location location,
-                                                    std::vector<packing::Candidate> candidates, double least_percent,
-                                                    ItemReport& report);
+  /// `robot`: where the tool will be.
+  [[nodiscard]] PlanResult plan(int item, packing::Agent& agent, const plant::Feedback& robot, ItemReport& report);
+  /// What it is about, and what is known of it.
+  struct AttemptQuestion {
+    const RehearsalTask& task;
+    double least_percent = 0.0;
+  };
+  [[nodiscard]] std::optional<Attempt> best_attempt(const AttemptQuestion& question,
+                                                    std::vector<packing::Candidate> candidates, ItemReport& report);
   /// In the end, when the item stays where it lies in the container; nothing: the agent does not know, or it may not.
   [[nodiscard]] std::optional<double> expected_percent(int item, packing::Agent& agent) const;
   /// Percent of the container that is expected more with the item in the best other place; 0 where that is not known.
@@ -87,12 +129,24 @@ class Packer {
   [[nodiscard]] packing::ContainerState state_without(int item) const;
   /// How it stands now, as the agent counts.
   [[nodiscard]] packing::Item item_as_it_stands(int item) const;
-  [[nodiscard]] double utility_of(const packing::Candidate& candidate, double rate) const;
+  /// A box that stands somewhere, to be brought to a place.
+  struct Standing {
+    int item = 0;
+    Pose X_WP;
+    Location location = Location::Aligner;
+  };
+  [[nodiscard]] std::optional<GraspOutline> outline_of(const Standing& box,
+                                                       const packing::Orientation& orientation) const;
+  /// Percent of the container that turning the box for a place costs.
+  [[nodiscard]] double cost_of(const Standing& box, const packing::Placement& placement) const;
+  /// In the order in which they are tried.
+  void sort(const Standing& box, std::vector<packing::Candidate>& candidates) const;
+  [[nodiscard]] double utility_of(const packing::Candidate& candidate, double rate, double cost) const;
   [[nodiscard]] bool is_enough(const std::optional<Attempt>& best, int attempts) const;
   void submit(const std::string& id, std::vector<motion::Waypoint> waypoints, const plant::Guards& guards,
-              ItemReport& report);
+              ItemReport& report, const plant::OnPassing& passing = {});
   /// Stage by stage. False when the box was let go on the way and does not stand where the plan needs it.
-  [[nodiscard]] bool send(const Attempt& attempt, const std::string& id, ItemReport& report);
+  [[nodiscard]] bool send(const Attempt& attempt, const std::vector<std::optional<Pose>>& before, ItemReport& report);
   /// The box met more than it should on the way to its place.
   [[nodiscard]] bool was_stopped_by_load() const;
   /// rad, from standing on a face in the container, turned about the vertical as it may be.
@@ -145,8 +199,8 @@ class Packer {
   bool repack(int item, packing::Agent& agent, ItemReport& report);
   [[nodiscard]] std::optional<Pose> pose_of(int item) const;  ///< X_WP, as believed
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;
-  /// Plan, send, look, recover, until it is packed or given up.
-  void bring_to_place(int item, packing::Agent& agent, ItemReport& report);
+  /// Plan, send, look, recover, until it is packed or given up. `planned`: done already.
+  void bring_to_place(int item, packing::Agent& agent, std::optional<PlanResult> planned, ItemReport& report);
   [[nodiscard]] bool is_handled(int item) const;
   void give_up(int item, Trouble trouble, ItemReport& report);
   /// No motion is planned for it any more: one that was moved before stays where it lies.
@@ -168,6 +222,8 @@ class Packer {
   std::vector<int> handled_;  ///< under way now: the item that came, and boxes that are packed anew because of it
   std::set<int> returned_;    ///< packed before, and returned to the aligner
   int let_go_ = -1;           ///< item that fell, or was let go, before its motion ended: to be found at the next look
+  std::vector<ComingItem> coming_;
+  std::optional<Ahead> ahead_;
   plant::Feedback robot_;
   motion::Program sent_;
   std::vector<motion::Waypoint> last_;  ///< motion

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "snug/core/stopwatch.hpp"
 #include "snug/session/packer.hpp"
 
 namespace snug::session {
@@ -30,10 +32,11 @@ std::vector<std::optional<Pose>> Packer::believed_poses() const {
 }
 
 void Packer::submit(const std::string& id, std::vector<motion::Waypoint> waypoints, const plant::Guards& guards,
-                    ItemReport& report) {
+                    ItemReport& report, const plant::OnPassing& passing) {
   last_ = std::move(waypoints);
   sent_.waypoints.insert(sent_.waypoints.end(), last_.begin(), last_.end());
-  robot_ = plant_.submit({id, last_, guards});
+  robot_ = plant_.submit({id, last_, guards}, passing);
+  finish_planning_ahead();
   report.seconds += split_seconds(last_, robot_.times);
   report.happened.force = std::max(report.happened.force, robot_.peak_force);
   report.happened.torque = std::max(report.happened.torque, robot_.peak_torque);
@@ -48,21 +51,25 @@ bool Packer::was_stopped_by_load() const {
   return at == MotionClass::Place || at == MotionClass::PlaceSlow;
 }
 
-bool Packer::send(const Attempt& attempt, const std::string& id, ItemReport& report) {
+bool Packer::send(const Attempt& attempt, const std::vector<std::optional<Pose>>& before, ItemReport& report) {
   const auto& all = attempt.program.waypoints;
-  const int item = index_of(id);
+  const int item = index_of(report.id);
   std::size_t begin = 0;
   for (std::size_t stage = 0; stage <= attempt.looks.size(); ++stage) {
     const bool is_last = stage == attempt.looks.size();
     const std::size_t end = is_last ? all.size() : attempt.looks[stage];
+    plant::OnPassing passing;
     if (is_last) {
       belief_.expect(attempt.ends);
+      if (attempt.leaves) {
+        passing = {static_cast<int>(*attempt.leaves - begin), [&] { look_ahead(item, attempt, before, report); }};
+      }
     } else {
       belief_.expect_on_the_way(item, attempt.looked[stage]);
     }
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
-    submit(id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)}, {limits_.force, true, limits_.hold_guard},
-           report);
+    submit(report.id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)},
+           {limits_.force, true, limits_.hold_guard}, report, passing);
     if (was_stopped_by_load()) belief_.stiffen();
     if (robot_.end.reason != plant::EndReason::Completed || is_last) return true;
     look(report, true);
@@ -144,12 +151,27 @@ bool Packer::is_holding() const {
          robot_.pressure_gauge < scenario_.motion_guards.needed_vacuum * scenario_.cup.vacuum.pressure_gauge_hold;
 }
 
+void Packer::refuse(int item, ItemReport& report) const {
+  report.recoveries.push_back({robot_.time, report.id, Trouble::WrongItem,
+                               choose_remedy({.trouble = Trouble::WrongItem}, scenario_.recovery),
+                               fmt::format("edges differ by up to {:.0f} mm", 1e3 * size_off(item))});
+  report.end = ItemEnd::WrongItem;
+  report.reason = report.recoveries.back().detail;
+}
+
 ItemReport Packer::bring_in(int item, packing::Agent& agent) {
   ItemReport report;
   report.id = items_[static_cast<std::size_t>(item)].id;
+  std::optional<PlanResult> planned;
+  std::optional<Ahead> ahead = std::exchange(ahead_, std::nullopt);
+  if (ahead && ahead->item != item) ahead.reset();
   robot_ = plant_.read();
+  if (ahead) {
+    report = std::move(ahead->report);
+    planned = std::move(ahead->planned);
+  }
   report.begin = robot_.time;
-  if (!plant_.bring(report.id)) {
+  if (!ahead && !plant_.bring(report.id)) {
     report.end = ItemEnd::NotBrought;
     report.reason = "the plant does not bring it";
     const plant::End end = plant_.read().end;
@@ -159,20 +181,16 @@ ItemReport Packer::bring_in(int item, packing::Agent& agent) {
     }
     return report;
   }
-  belief_.arrives(item);
-  look(report);
+  if (!ahead) belief_.arrives(item);
+  if (!ahead || !ahead->is_seen) look(report);
   if (stop_reason_) {
     report.end = ItemEnd::NotHeld;
     report.reason = name_of(*stop_reason_);
-  } else if (!is_gone(report.id) && size_off(item) > scenario_.recovery.wrong_size) {
-    report.recoveries.push_back({robot_.time, report.id, Trouble::WrongItem,
-                                 choose_remedy({.trouble = Trouble::WrongItem}, scenario_.recovery),
-                                 fmt::format("edges differ by up to {:.0f} mm", 1e3 * size_off(item))});
-    report.end = ItemEnd::WrongItem;
-    report.reason = report.recoveries.back().detail;
+  } else if (is_wrong(item)) {
+    refuse(item, report);
   }
   const bool is_refused = report.end == ItemEnd::WrongItem;
-  if (!is_refused) bring_to_place(item, agent, report);
+  if (!is_refused) bring_to_place(item, agent, std::move(planned), report);
   const bool is_taken_away = report.end == ItemEnd::NoPlace || report.end == ItemEnd::Hopeless ||
                              report.end == ItemEnd::NotHeld || report.end == ItemEnd::Returned;
   if (is_taken_away || is_refused || report.end == ItemEnd::Gone)
@@ -183,7 +201,7 @@ ItemReport Packer::bring_in(int item, packing::Agent& agent) {
   return report;
 }
 
-void Packer::bring_to_place(int item, packing::Agent& agent, ItemReport& report) {
+void Packer::bring_to_place(int item, packing::Agent& agent, std::optional<PlanResult> ready, ItemReport& report) {
   handled_.push_back(item);
   bool is_whole = true, again = true;
   while (again && !stop_reason_) {
@@ -192,7 +210,12 @@ void Packer::bring_to_place(int item, packing::Agent& agent, ItemReport& report)
       give_up(item, Trouble::Gone, report);
       break;
     }
-    const std::optional<Planned> planned = plan(item, agent, report);
+    if (!ready) {
+      const auto start = std::chrono::steady_clock::now();
+      ready = plan(item, agent, robot_, report);
+      report.planning_wait += seconds_since(start);
+    }
+    const PlanResult planned = std::move(*std::exchange(ready, std::nullopt));
     if (!planned) {
       leave(item, report);
       if (report.end == ItemEnd::Left && can_return(item)) {
@@ -205,13 +228,17 @@ void Packer::bring_to_place(int item, packing::Agent& agent, ItemReport& report)
     if (std::ranges::find(order_, item) == order_.end()) order_.push_back(item);
     if (!is_whole) report.sends.pop_back();  // this one takes its place
     report.sends.push_back({robot_.time, report.predicted_success, planned->attempt.planned, {}, Trouble::None});
-    is_whole = send(planned->attempt, report.id, report);
+    is_whole = send(planned->attempt, before, report);
     report.sends.back().end = robot_.end;
     if (!is_whole) {  // planned anew from where the box stands: the loop closed, nothing went wrong
       again = report.attempts < 3 * scenario_.rehearsal.most_attempts;
       if (again) continue;
       report.reason = "it does not come to stand as it was rehearsed";
       leave(item, report);
+      break;
+    }
+    if (ahead_ && robot_.end.reason == plant::EndReason::Completed) {
+      report.end = ItemEnd::Placed;
       break;
     }
     again = recover(item, *planned, before, agent, report);

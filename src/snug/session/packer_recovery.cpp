@@ -200,8 +200,9 @@ bool Packer::repack(int item, packing::Agent& agent, ItemReport& report) {
   ItemReport own;
   own.id = items_[static_cast<std::size_t>(item)].id;
   const double begin = robot_.time;
-  bring_to_place(item, agent, own);
+  bring_to_place(item, agent, {}, own);
   report.attempts += own.attempts;
+  report.planning_wait += own.planning_wait;
   report.seconds += own.seconds;
   report.recoveries.insert(report.recoveries.end(), own.recoveries.begin(), own.recoveries.end());
   if (robot_.end.reason != plant::EndReason::Completed) retreat(own.id, report);
@@ -235,7 +236,7 @@ bool Packer::recover(int item, const Planned& planned, std::vector<std::optional
       at.lies_on_others = was_lifted(culprit, before);
     }
     at.stops = stops;
-    at.can_return = returns < kMostReturns && can_return(culprit);
+    at.can_return = returns < kMostReturns && !ahead_ && can_return(culprit);
     at.was_pressed = was_pressed || (belief_.box(culprit) && is_under_obstacle(culprit));
     const Remedy remedy = choose_remedy(at, scenario_.recovery);
     const bool is_of_motion = trouble_of(robot_.end.reason) == trouble;

@@ -143,6 +143,16 @@ void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Att
   }
 }
 
+/// Rows to RehearsalTask::X_WE_after; none where the robot cannot follow them.
+std::vector<motion::Waypoint> Rehearsal::way_to_next(const motion::Waypoint& last) const {
+  if (!task_.X_WE_after) return {};
+  const motion::Waypoint away =
+      motion::make_waypoint(motion::MotionClass::PostPlace, box_.id, *task_.X_WE_after, {}, "_away");
+  auto rows = drivable(layout_, last, {away});
+  if (!can_follow(reaches_, layout_, last, rows)) rows.clear();
+  return rows;
+}
+
 Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::Insertion& insertion, double packed_top) {
   Attempt attempt;
   attempt.planned = candidate.placement;
@@ -168,11 +178,15 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   const motion::Waypoint& last = attempt.program.waypoints.back();
   const skills::PlaceRequest request{box_,        grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
                                      last.X_WE(), grasp.X_EP};
-  const auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
+  auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
   if (!can_follow(reaches_, layout_, last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;
     attempt.text = "the robot cannot follow the way to its place";
     return attempt;
+  }
+  if (const auto away = way_to_next(rows.back()); !away.empty()) {
+    attempt.leaves = attempt.program.waypoints.size() + rows.size() - 1;
+    rows.insert(rows.end(), away.begin(), away.end());
   }
   append(attempt.program, rows);
   attempt.ends.resize(rollouts_.size());
@@ -207,6 +221,9 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   attempt.succeeded = nominal.failure == AttemptFailure::None;
   attempt.was_stopped = nominal.end == RolloutEnd::ProtectiveStop;
   attempt.nominal = nominal.forces;
+  if (const auto& arm = rollouts_[0]->state().arm) {
+    attempt.q_end.assign(arm->machine.joints.q.begin(), arm->machine.joints.q.end());
+  }
   if (attempt.succeeded) rehearse_samples(execute, attempt);
   return attempt;
 }

@@ -51,9 +51,12 @@ struct Attempt {
   AttemptForces predicted;  ///< largest of the samples
   AttemptForces nominal;
   motion::Program program;
-  std::vector<std::size_t> looks;                      ///< as Grasp::looks
-  std::vector<Pose> looked;                            ///< as Grasp::seen
-  Pose X_PS;                                           ///< lip on the held box, nominal
+  std::vector<std::size_t> looks;  ///< as Grasp::looks
+  std::vector<Pose> looked;        ///< as Grasp::seen
+  Pose X_PS;                       ///< lip on the held box, nominal
+  /// Waypoint over the box that was let go, from which the tool leaves for where it waits (RehearsalTask::X_WE_after).
+  std::optional<std::size_t> leaves;
+  std::vector<double> q_end;                           ///< rad, nominal
   std::optional<motion::Swing> swing;                  ///< as Grasp::swing
   std::vector<std::vector<std::optional<Pose>>> ends;  ///< world by world, X_WP of all items when boxes rest
 };
@@ -64,6 +67,7 @@ struct RehearsalTask {
   Pose X_WP;  ///< where it is believed to be
   Location location = Location::Aligner;
   plant::Feedback robot;
+  std::optional<Pose> X_WE_after;  ///< where the tool goes on to when the box is at its place
 };
 
 class Rehearsal {
@@ -86,6 +90,7 @@ class Rehearsal {
   const Grasp& grasp_for(const packing::Placement& placement, double packed_top);
   [[nodiscard]] Outcome judge(const Rollout& rollout, const std::vector<std::optional<Pose>>& before,
                               const Pose& X_TP) const;
+  [[nodiscard]] std::vector<motion::Waypoint> way_to_next(const motion::Waypoint& last) const;
   void rehearse_samples(const std::function<Outcome(int)>& execute, Attempt& attempt) const;
 
   const Belief& belief_;

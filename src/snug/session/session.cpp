@@ -65,6 +65,9 @@ class Session {
     const std::unique_ptr<packing::Agent> agent = packing::make_agent(options_.agent, std::move(input));
     if (plans_on_paper(options_)) return execute(plan_on_paper(*agent));
     const int count = static_cast<int>(packer_.items().size());
+    std::vector<ComingItem> coming;
+    for (int i = 0; i < count; ++i) coming.push_back({i, agent.get()});
+    packer_.expect(std::move(coming));
     for (int i = 0; i < count && !is_over(); ++i) {
       ItemReport report = packer_.bring_in(i, *agent);
       const bool has_no_place = report.end == ItemEnd::NoPlace;
@@ -79,17 +82,21 @@ class Session {
 
   /// Every box of the plan; one that does not come to its place is left out.
   SessionResult execute(const std::vector<packing::Placement>& plan) {
-    int done = 0;
-    for (const packing::Placement& placement : plan) {
+    std::vector<ChosenPlace> agents(plan.begin(), plan.end());
+    std::vector<ComingItem> coming;
+    for (std::size_t i = 0; i < plan.size(); ++i) {
       const auto& items = packer_.items();
-      const auto item = std::ranges::find(items, placement.item, &packing::Item::id);
+      const auto item = std::ranges::find(items, plan[i].item, &packing::Item::id);
       if (item == items.end()) {
-        throw InputError("plan", "item", placement.item, "an item of sequence " + result_.sequence);
+        throw InputError("plan", "item", plan[i].item, "an item of sequence " + result_.sequence);
       }
+      coming.push_back({static_cast<int>(item - items.begin()), &agents[i]});
+    }
+    packer_.expect(coming);
+    int done = 0;
+    for (const ComingItem& one : coming) {
       if (is_over()) break;
-      ChosenPlace agent(placement);
-      finish_item(packer_.bring_in(static_cast<int>(item - items.begin()), agent), ++done,
-                  static_cast<int>(plan.size()));
+      finish_item(packer_.bring_in(one.item, *one.agent), ++done, static_cast<int>(plan.size()));
     }
     return finish();
   }

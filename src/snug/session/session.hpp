@@ -100,6 +100,7 @@ struct ItemReport {
   std::vector<Recovery> recoveries;
   double decision_seconds = 0.0;  ///< wall clock, of the agent alone
   double rehearsal_seconds = 0.0;
+  double planning_wait = 0.0;      ///< of both, while the robot stood: the rest passed while it left the item before
   double begin = 0.0, done = 0.0;  ///< s, of the plant
   ItemSeconds seconds;             ///< of all its motions, recoveries included: done - begin
   [[nodiscard]] bool is_packed() const { return end == ItemEnd::Placed || end == ItemEnd::Accepted; }

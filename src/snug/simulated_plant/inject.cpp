@@ -112,13 +112,15 @@ void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWa
 bool SimulatedPlant::is_let_go(const motion::PreparedProgram& plan) const {
   const cell::CellWorld& world = simulation_.world();
   const physics::BodyId body = world.parcels[static_cast<std::size_t>(current_)];
-  // The last motion of an item ends with the box let go and the tool over it.
+  // The last motion of an item ends with the box let go and the tool over it, or leaves from there.
   const model::Container* container = model::find_container(simulation_.scenario(), simulation_.scenario().target);
   if (container == nullptr || !state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) return false;
   const Vector3 p_TP = container->X_WT.inverse() * physics::pose_of(world.model, state_.world, body).p;
   const bool is_in = p_TP.z() > 0.0 && (p_TP.cwiseAbs() - 0.5 * container->inner_size).head<2>().maxCoeff() < 0.0;
   return is_in && plan.program.waypoints.back().motion_class == motion::MotionClass::PostPlace &&
-         state_.gripper.cup.body != body.index && state_.controller.phase == motion::ControllerPhase::Finished;
+         state_.gripper.cup.body != body.index &&
+         (state_.controller.phase == motion::ControllerPhase::Finished ||
+          (passed_ && state_.controller.row > *passed_));
 }
 
 void SimulatedPlant::move_boxes(const motion::PreparedProgram& plan, plant::MotionWatch& course) {

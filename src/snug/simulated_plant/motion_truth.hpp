@@ -41,8 +41,9 @@ class MotionWitness {
   MotionTruth truth_;
   robot::JointVector last_speed_;
   bool is_inserting_ = false, has_touched_ = false;
-  Matrix3 R_EP_;                               ///< where the way in began
-  Vector3 low_, high_, turn_low_, turn_high_;  ///< in E
+  Matrix3 R_EP_ = Matrix3::Identity();  ///< where the way in began
+  Vector3 low_ = Vector3::Zero(), high_ = Vector3::Zero(), turn_low_ = Vector3::Zero(),
+          turn_high_ = Vector3::Zero();  ///< in E
 };
 
 }  // namespace snug::simulated_plant

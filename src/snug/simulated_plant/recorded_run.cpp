@@ -65,6 +65,22 @@ motion::Program program_of(const std::vector<Call>& calls) {
 
 }  // namespace
 
+void repeat(SimulatedPlant& plant, const std::vector<Call>& calls, const std::function<void(const Call&)>& before) {
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const Call& call = calls[i];
+    if (before) before(call);
+    if (call.kind == Call::Kind::Bring && call.passed < 0) (void)plant.bring(call.item);
+    if (call.kind == Call::Kind::Acknowledge) plant.acknowledge();
+    if (call.kind != Call::Kind::Submit) continue;
+    const auto bring = [&plant, &calls, i] {
+      for (std::size_t k = i + 1; k < calls.size() && calls[k].kind == Call::Kind::Bring && calls[k].passed >= 0; ++k) {
+        (void)plant.bring(calls[k].item);
+      }
+    };
+    (void)(call.passed < 0 ? plant.submit(call.motion) : plant.submit(call.motion, {call.passed, bring}));
+  }
+}
+
 cell::RunResult record(const model::Scenario& scenario, const std::string& sequence,
                        const SimulatedPlantOptions& options, const std::vector<Call>& calls,
                        const RecordedRunOptions& recorded) {
@@ -84,13 +100,10 @@ cell::RunResult record(const model::Scenario& scenario, const std::string& seque
   }
   Course course(plant, recorded, setup);
   int rows = 0;
-  for (const Call& call : calls) {
+  repeat(plant, calls, [&](const Call& call) {
     course.begin(rows);
     rows += static_cast<int>(call.motion.waypoints.size());
-    if (call.kind == Call::Kind::Bring) (void)plant.bring(call.item);
-    if (call.kind == Call::Kind::Submit) (void)plant.submit(call.motion);
-    if (call.kind == Call::Kind::Acknowledge) plant.acknowledge();
-  }
+  });
   cell::RunResult result;
   result.duration = plant.simulation().time(plant.state());
   result.boxes = plant.boxes();

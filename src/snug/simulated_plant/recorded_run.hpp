@@ -1,6 +1,7 @@
 // RecordedRun: a plant's course once more, call by call, written to a recording: what was sent is known by then.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,10 @@ struct RecordedRunOptions {
   std::function<std::string(const cell::RunResult&)> describe;  ///< JSON to keep in the recording, or none
 };
 
-/// Runs the calls on a new plant of the same seed: it comes to the same state. Throws InputError for a recording that
+/// The calls of a plant once more, on a new one of the same seed: it comes to the same state. `before`: called before
+/// each; may be empty.
+void repeat(SimulatedPlant& plant, const std::vector<Call>& calls, const std::function<void(const Call&)>& before = {});
+/// The same on a new plant: it comes to the same state. Throws InputError for a recording that
 /// cannot be written; OutputError when writing it fails.
 cell::RunResult record(const model::Scenario& scenario, const std::string& sequence,
                        const SimulatedPlantOptions& options, const std::vector<Call>& calls,

@@ -59,12 +59,22 @@ int SimulatedPlant::item_of(const std::string& id) const {
 bool SimulatedPlant::bring(const std::string& item) {
   const int index = item_of(item);
   if (index < 0 || was_brought_[static_cast<std::size_t>(index)]) return false;
-  calls_.push_back({Call::Kind::Bring, item, {}});
+  calls_.push_back({Call::Kind::Bring, item, {}, is_moving_ ? *passed_ : -1});
   was_brought_[static_cast<std::size_t>(index)] = true;
   simulation_.bring(index, state_);
+  if (is_moving_) {
+    arrived_ = index;
+  } else {
+    begin_item(index);
+  }
+  return true;
+}
+
+void SimulatedPlant::begin_item(int index) {
   state_.gripper.least_hold_factor = std::numeric_limits<double>::infinity();
   witness_.begin();
   current_ = index;
+  arrived_ = -1;
   pending_ = {};
   ++brought_count_;
   for (const Fault& fault : options_.faults) {
@@ -77,11 +87,10 @@ bool SimulatedPlant::bring(const std::string& item) {
     objects_due_ += fault.kind == FaultKind::Object ? 1 : 0;
     clear_is_due_ |= fault.kind == FaultKind::Clear;
   }
-  return true;
 }
 
 void SimulatedPlant::acknowledge() {
-  calls_.push_back({Call::Kind::Acknowledge, {}, {}});
+  calls_.push_back({Call::Kind::Acknowledge, {}, {}, -1});
   if (is_stopped_) simulation_.acknowledge(work_, state_);
   is_stopped_ = false;
 }
@@ -177,7 +186,8 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWa
   const auto has_to_wait = [&](double now) {
     return until == Until::BoxesRest && now < start + guards.longest_settle && !rest.is_at_rest(now);
   };
-  while (plant::is_settling(guards, !is_fast, start, simulation_.time(state_), speed()) ||
+  const double at_least = plant::least_settle(guards, !is_fast, was_passed_ && until == Until::ToolStands);
+  while (plant::is_settling(guards, at_least, start, simulation_.time(state_), speed()) ||
          has_to_wait(simulation_.time(state_))) {
     const cell::CellTick tick = simulation_.advance(plan, state_, work_);
     rest.follow(simulation_, state_);
@@ -191,8 +201,8 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWa
   course.rest(simulation_.time(state_));
 }
 
-plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
-  calls_.push_back({Call::Kind::Submit, {}, motion});
+plant::Feedback SimulatedPlant::submit(const plant::Motion& motion, const plant::OnPassing& passing) {
+  calls_.push_back({Call::Kind::Submit, {}, motion, passing.act ? passing.waypoint : -1});
   const auto refuse = [&](const std::string& why) {
     read_sensors({}, {plant::EndReason::Refused, -1, 0.0, 0.0, why});
     return feedback_;
@@ -207,13 +217,22 @@ plant::Feedback SimulatedPlant::submit(const plant::Motion& motion) {
   } catch (const InputError& error) {
     return refuse(error.what());
   }
+  if (arrived_ >= 0) begin_item(arrived_);
   simulation_.begin_motion(state_);
   witness_.stand();
   plant::MotionWatch course;
   course.settings = simulation_.scenario().motion_guards;
   course.begin(reading(), state_.gripper.cup.body >= 0);
+  passed_ = passing.act ? std::optional(passing.waypoint) : std::nullopt;
+  was_passed_ = false;
   while (advance(motion, plan, course)) {
+    if (!passed_ || was_passed_ || course.row <= *passed_) continue;
+    was_passed_ = true;
+    is_moving_ = true;
+    passing.act();
+    is_moving_ = false;
   }
+  passed_.reset();
   if (course.end.reason == plant::EndReason::Completed) {
     course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
     settle(plan, course);

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct Call {
   enum class Kind { Bring, Submit, Acknowledge } kind = Kind::Submit;
   std::string item;
   plant::Motion motion;
+  int passed = -1;  ///< OnPassing::waypoint of a Submit, and of the Brings then, which follow it; -1: none
 };
 
 /// The cell that a seed stands for.
@@ -44,7 +46,8 @@ class SimulatedPlant final : public plant::Plant {
   [[nodiscard]] plant::Description describe() const override;
   [[nodiscard]] plant::Feedback read() override { return feedback_; }
   [[nodiscard]] bool bring(const std::string& item) override;
-  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override;
+  using plant::Plant::submit;
+  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion, const plant::OnPassing& passing) override;
   [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override;
   void acknowledge() override;
 
@@ -53,7 +56,7 @@ class SimulatedPlant final : public plant::Plant {
   [[nodiscard]] const cell::CellState& state() const { return state_; }
   [[nodiscard]] const cell::CellWorkspace& work() const { return work_; }
   [[nodiscard]] std::vector<cell::BoxResult> boxes() const { return simulation_.boxes(state_); }
-  /// Of the item brought last.
+  /// Of the item brought last, from its first motion on where it was brought during one.
   [[nodiscard]] const MotionTruth& motion_truth() const { return witness_.truth(); }
   /// Those that faults asked for.
   [[nodiscard]] const std::vector<ForeignObject>& objects() const { return objects_.objects(); }
@@ -67,6 +70,8 @@ class SimulatedPlant final : public plant::Plant {
   };
   [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
                              plant::MotionWatch& course);
+  /// What is kept of an item begins anew.
+  void begin_item(int index);
   enum class Until { ToolStands, BoxesRest };
   /// At most `longest_settle` of the scenario's motion_guards.
   void settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, Until until = Until::ToolStands);
@@ -94,7 +99,11 @@ class SimulatedPlant final : public plant::Plant {
   plant::Feedback feedback_;
   std::vector<bool> was_brought_;
   int brought_count_ = 0;
-  int current_ = -1;     ///< item brought last
+  int current_ = -1;           ///< item brought last, or the one before while that moves
+  int arrived_ = -1;           ///< item brought while that moved
+  std::optional<int> passed_;  ///< waypoint that the motion under way is asked to pass
+  bool was_passed_ = false;    ///< it has done so
+  bool is_moving_ = false;     ///< is doing so
   ItemFaults pending_;   ///< of that item
   int objects_due_ = 0;  ///< to be put in when an item is let go in the container
   bool clear_is_due_ = false;

@@ -108,6 +108,11 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
   return pick_rows(pick_intent(scenario, layout, box, X_WP, X_WP_next, travel, kind));
 }
 
+Pose tool_before_pick(const model::Scenario& scenario, const CellLayout& layout, const PlannedBox& box,
+                      const Pose& X_WP, double travel) {
+  return plan_pick(scenario, layout, box, X_WP, X_WP, travel, PickKind::First).front().X_WE();
+}
+
 std::vector<motion::Waypoint> plan_leaning_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                 const PlannedBox& box, const Pose& X_WP, const Pose& X_WP_next,
                                                 double travel) {

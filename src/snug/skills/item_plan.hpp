@@ -53,6 +53,10 @@ enum class PickKind {
 [[nodiscard]] std::vector<motion::Waypoint> plan_leaning_pick(const model::Scenario& scenario, const CellLayout& layout,
                                                               const PlannedBox& box, const Pose& X_WP,
                                                               const Pose& X_WP_next, double travel_bottom);
+/// Where the tool waits for a box that will stand at the aligner like X_WP and whose place is not yet known: over it,
+/// at the neutral yaw.
+[[nodiscard]] Pose tool_before_pick(const model::Scenario& scenario, const CellLayout& layout, const PlannedBox& box,
+                                    const Pose& X_WP, double travel_bottom);
 /// Of the box that hangs from the face that looks along `up_P` (P axis), within TravelParams.
 [[nodiscard]] motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
 /// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.

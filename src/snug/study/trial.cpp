@@ -23,7 +23,7 @@ class Scorer {
     TrueItem item;
     item.id = report.id;
     item.was_sent = !report.sends.empty();
-    if (witness_.motion) item.motion = witness_.motion();
+    if (witness_.motion && item.was_sent) item.motion = witness_.motion();
     const TruePoses now = witness_.poses();
     if (item.was_sent) judge(report, now, item);
     for (std::size_t i = 0; i < report.sends.size(); ++i) {
@@ -57,6 +57,9 @@ class Scorer {
   static void count_time(Trial& trial) {
     const double duration = trial.session.duration;
     trial.boxes_per_hour = duration > 0.0 ? 3600.0 * trial.executed_boxes / duration : 0.0;
+    double waited = 0.0;
+    for (const session::ItemReport& item : trial.session.items) waited += item.planning_wait;
+    trial.boxes_per_hour_with_planning = duration > 0.0 ? 3600.0 * trial.executed_boxes / (duration + waited) : 0.0;
     double seconds = 0.0;
     int count = 0;
     for (const session::ItemReport& item : trial.session.items) {

@@ -35,6 +35,8 @@ struct Trial {
   int boxes_lost = 0;  ///< that were picked and are not in the container in the end
   int recoveries = 0;
   double boxes_per_hour = 0.0;  ///< packed, by the plant's clock: robot and vacuum, neither planning nor looks
+  /// The same with the time in which the robot stood and waited for a plan, as long as that took on this machine.
+  double boxes_per_hour_with_planning = 0.0;
   double unturned_cycle = 0.0;  ///< s, mean of the items that were placed at once without turning them; 0: none
   std::vector<TrueItem> items;
   std::vector<cell::BoxResult> boxes;

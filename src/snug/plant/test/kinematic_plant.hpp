@@ -20,7 +20,8 @@ class KinematicPlant final : public Plant {
   }
   void acknowledge() override {}
 
-  [[nodiscard]] Feedback submit(const Motion& motion) override {
+  using Plant::submit;
+  [[nodiscard]] Feedback submit(const Motion& motion, const OnPassing& passing) override {
     now_.peak_force = now_.peak_torque = 0.0;
     now_.end = {EndReason::Refused, -1, 0.0, 0.0, ""};
     now_.times.clear();
@@ -30,6 +31,7 @@ class KinematicPlant final : public Plant {
     now_.times.resize(motion.waypoints.size());
     for (std::size_t i = 0; i < motion.waypoints.size(); ++i) {
       if (!follow(motion.waypoints[i], static_cast<int>(i), motion.guards)) break;
+      if (passing.act && static_cast<int>(i) == passing.waypoint && i + 1 < motion.waypoints.size()) passing.act();
     }
     return now_;
   }

@@ -91,11 +91,15 @@ TEST(MotionWatch, ANewRowHasPatienceOfItsOwn) {
 
 TEST(Settling, EndsWhenTheToolStandsButNotBeforeAndNotNever) {
   const model::MotionGuards settings;
-  EXPECT_TRUE(is_settling(settings, true, 10.0, 10.2, 0.0));
-  EXPECT_FALSE(is_settling(settings, true, 10.0, 10.31, 0.0));
-  EXPECT_FALSE(is_settling(settings, false, 10.0, 10.11, 0.0));
-  EXPECT_TRUE(is_settling(settings, true, 10.0, 11.9, 0.1));
-  EXPECT_FALSE(is_settling(settings, true, 10.0, 12.0, 0.1));
+  const double lagged = least_settle(settings, true, false), exact = least_settle(settings, false, false);
+  EXPECT_TRUE(is_settling(settings, lagged, 10.0, 10.2, 0.0));
+  EXPECT_FALSE(is_settling(settings, lagged, 10.0, 10.31, 0.0));
+  EXPECT_TRUE(is_settling(settings, exact, 10.0, 10.09, 0.0));
+  EXPECT_FALSE(is_settling(settings, exact, 10.0, 10.11, 0.0));
+  EXPECT_TRUE(is_settling(settings, lagged, 10.0, 11.9, 0.1));
+  EXPECT_FALSE(is_settling(settings, lagged, 10.0, 12.0, 0.1));
+  EXPECT_FALSE(is_settling(settings, least_settle(settings, false, true), 10.0, 10.01, 0.0)) << "they were looked at";
+  EXPECT_EQ(least_settle(settings, true, true), lagged) << "the tool still comes in";
 }
 
 TEST(MotionWatch, SumsWhatEachWaypointTook) {

@@ -83,7 +83,10 @@ class WithServer final : public plant::Plant {
   [[nodiscard]] plant::Description describe() const override { return plant_.describe(); }
   [[nodiscard]] plant::Feedback read() override { return plant_.read(); }
   [[nodiscard]] bool bring(const std::string& item) override { return plant_.bring(item); }
-  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override { return plant_.submit(motion); }
+  using plant::Plant::submit;
+  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion, const plant::OnPassing& passing) override {
+    return plant_.submit(motion, passing);
+  }
   [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
     return plant_.perceive(expected);
   }

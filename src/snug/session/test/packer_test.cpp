@@ -148,7 +148,7 @@ TEST(Packer, AFastRobotTurnsABoxOnlyWhereThatIsWorthIt) {
   const auto flips = [&](double reorientation_cost) {
     ScriptedPlant plant;
     model::RehearsalSettings rehearsal;
-    rehearsal.reorientation_cost = reorientation_cost;
+    rehearsal.reorientation_cost = rehearsal.side_grasp_cost = reorientation_cost;
     const SessionResult result = pack(plant, 1, options, rehearsal);
     EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
     return result.items[0].flips;
@@ -157,6 +157,19 @@ TEST(Packer, AFastRobotTurnsABoxOnlyWhereThatIsWorthIt) {
   EXPECT_EQ(flips(100.0), 0);
   options.simulation.controller = motion::ControllerKind::Faithful;
   EXPECT_GT(flips(100.0), 0) << "with the lag it costs nothing";
+}
+
+TEST(Packer, WhatASideGraspCostsCountsWhereOneWillDo) {
+  const auto turned = [&](double reorientation_cost, double side_grasp_cost) {
+    ScriptedPlant plant;
+    model::RehearsalSettings rehearsal;
+    rehearsal.reorientation_cost = reorientation_cost;
+    rehearsal.side_grasp_cost = side_grasp_cost;
+    return pack(plant, 1, foresighted_options(), rehearsal).items[0].reorientation;
+  };
+  EXPECT_EQ(turned(100.0, 0.0), skills::Reorientation::SideGrasp);
+  EXPECT_EQ(turned(100.0, 100.0), skills::Reorientation::None);
+  EXPECT_NE(turned(0.0, 100.0), skills::Reorientation::SideGrasp);
 }
 
 /// 25 mm from both plates, on a face that the box does not arrive on: its middle is farther from where it arrived.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "snug/model/test/shortened.hpp"
@@ -42,8 +43,12 @@ class ScriptedPlant final : public plant::Plant {
   std::deque<EndReason> home_ends;                             ///< of motions home; the same
   std::string item;                                            ///< of the last motion
   int acknowledged = 0;
-  std::set<std::string> not_brought;   ///< items that do not come
-  std::vector<std::string> brought;    ///< in their order
+  std::set<std::string> not_brought;            ///< items that do not come
+  std::vector<std::string> brought;             ///< in their order
+  std::vector<std::string> brought_on_the_way;  ///< those of them that came while a motion passed a waypoint
+  bool passes = false;                          ///< does what motions are to do on passing, where they complete
+  /// Ends the motion then, though what was to be done on passing was done; once.
+  std::optional<EndReason> ends_after_passing;
   std::vector<plant::Motion> motions;  ///< that were sent
   /// Motions that do not complete end on the way to the first waypoint of this class; else at the first with vacuum.
   std::optional<motion::MotionClass> ends_at;
@@ -53,11 +58,13 @@ class ScriptedPlant final : public plant::Plant {
   [[nodiscard]] bool bring(const std::string& id) override {
     if (not_brought.contains(id)) return false;
     brought.push_back(id);
+    if (is_passing_) brought_on_the_way.push_back(id);
     return true;
   }
   void acknowledge() override { ++acknowledged; }
 
-  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion) override {
+  using Plant::submit;
+  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion, const plant::OnPassing& passing) override {
     motions.push_back(motion);
     const auto held = std::ranges::find_if(motion.waypoints, [](const auto& row) { return row.io.vacuum; });
     const bool holds = held != motion.waypoints.end();
@@ -87,6 +94,12 @@ class ScriptedPlant final : public plant::Plant {
     now_.pressure_gauge = last->io.vacuum && end != EndReason::NoSeal && end != EndReason::VacuumLost ? -6.0e4 : 0.0;
     now_.times.assign(1, {1.0, 0.0});
     if (holds && happens) happens(++motion_count_);
+    if (passes && end == EndReason::Completed && passing.act) {
+      is_passing_ = true;
+      passing.act();
+      is_passing_ = false;
+      if (ends_after_passing) now_.end = {*std::exchange(ends_after_passing, std::nullopt), 0, 0.0, 0.0, ""};
+    }
     return now_;
   }
 
@@ -127,6 +140,7 @@ class ScriptedPlant final : public plant::Plant {
     return start;
   }();
   int motion_count_ = 0;
+  bool is_passing_ = false;
 };
 
 inline SessionOptions quick_options() {

@@ -172,6 +172,42 @@ TEST_P(PlantContract, PicksAndFeelsTheVacuumAndTheWeight) {
   EXPECT_GE(held.peak_force, held.F_E.force.norm());
 }
 
+TEST_P(PlantContract, BringsAndPerceivesWhileItPassesAWaypoint) {
+  const std::vector<motion::Waypoint> way{GetParam().free_waypoint, GetParam().pick.front(), GetParam().free_waypoint};
+  int calls = 0;
+  const Feedback start = plant_->read();
+  double seen_at = 0.0;
+  const Feedback there =
+      plant_->submit({GetParam().item, way, {}}, {0, [&] {
+                                                    ++calls;
+                                                    EXPECT_TRUE(plant_->bring(GetParam().item));
+                                                    const perception::Observation seen = plant_->perceive(item_alone());
+                                                    seen_at = seen.time;
+                                                    EXPECT_NE(perception::find(seen, GetParam().item), nullptr);
+                                                  }});
+  EXPECT_EQ(there.end.reason, EndReason::Completed) << describe(there.end, way);
+  EXPECT_EQ(there.end.waypoint, 2);
+  EXPECT_EQ(calls, 1);
+  EXPECT_GT(seen_at, start.time);
+  EXPECT_LT(seen_at, there.time) << "it moves on";
+  EXPECT_FALSE(plant_->bring(GetParam().item)) << "it has come";
+  double sum = 0.0;
+  for (const WaypointTime& one : there.times) sum += one.moving + one.waiting;
+  EXPECT_NEAR(sum, there.time - start.time, 1e-9) << "rounding of sums";
+}
+
+TEST_P(PlantContract, WhatIsToBeDoneOnPassingIsNotDoneBeforeOrInVain) {
+  int calls = 0;
+  const auto passing = [&](int waypoint) { return OnPassing{waypoint, [&calls] { ++calls; }}; };
+  const motion::Waypoint& free = GetParam().free_waypoint;
+  motion::Waypoint sucking = free;
+  sucking.io.vacuum = true;
+  EXPECT_EQ(plant_->submit({GetParam().item, {}, {}}, passing(0)).end.reason, EndReason::Refused);
+  EXPECT_EQ(plant_->submit({GetParam().item, {free, sucking, free}, {}}, passing(1)).end.reason, EndReason::NoSeal);
+  EXPECT_EQ(plant_->submit({GetParam().item, {free, free}, {}}, passing(1)).end.reason, EndReason::Completed);
+  EXPECT_EQ(calls, 0) << "refused, ended before, and the last waypoint, which is not passed";
+}
+
 TEST_P(PlantContract, StopsAtAForce) {
   ASSERT_TRUE(plant_->bring(GetParam().item));
   const double limit = 10.0;
