@@ -114,7 +114,7 @@ TEST(PackerAhead, AnItemThatDoesNotComeIsSaidWhenItIsItsTurn) {
 
 TEST(PackerAhead, AnotherItemThanExpectedIsRefusedUnplanned) {
   ScriptedPlant plant;
-  plant.happens = [&](int) { plant.size = Vector3::Constant(0.3); };
+  plant.sizes["BOX028"] = Vector3::Constant(0.3);
   const SessionResult result = pack(plant);
   EXPECT_EQ(plant.brought_on_the_way, Names{"BOX028"});
   EXPECT_EQ(result.items[1].end, ItemEnd::WrongItem);

@@ -43,7 +43,7 @@ class RehearsalOfOneBox : public testing::Test {
     robot.X_WE = scenario_.controller.X_WE_start;
     const ToolReach everywhere;
     Rehearsal rehearsal(*belief_, layout_, everywhere, limits_, threads,
-                        {0, belief_->box(0)->X_WP, Location::Aligner, robot});
+                        {0, belief_->box(0)->X_WP, Location::Aligner, robot, {}});
     return rehearsal.attempt(where, {}, 0.0);
   }
 

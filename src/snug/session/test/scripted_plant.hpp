@@ -36,6 +36,7 @@ class ScriptedPlant final : public plant::Plant {
   std::function<void()> when_pressed;        ///< may be empty
   std::deque<perception::LookFault> faults;  ///< of looks; when they are used up: none
   std::optional<Vector3> size;               ///< measured of what stands at the aligner
+  std::map<std::string, Vector3> sizes;      ///< the same of single items
   std::optional<std::vector<perception::Obstacle>> obstacles;  ///< of every look
   Pose X_WE_let_go;                                            ///< of the last motion with the vacuum on
   int home_count = 0;                                          ///< motions that do nothing but go home
@@ -112,8 +113,9 @@ class ScriptedPlant final : public plant::Plant {
       faults.pop_front();
     }
     for (const perception::Expectation& one : expected) {
-      if (size) {
-        seen.seen.push_back({one.item, *one.X_WP, Matrix6::Zero(), size, 0.0});
+      const auto own = sizes.find(one.item);
+      if (size || own != sizes.end()) {
+        seen.seen.push_back({one.item, *one.X_WP, Matrix6::Zero(), own != sizes.end() ? own->second : size, 0.0});
         continue;
       }
       if (const auto found = visible.find(one.item); found != visible.end()) {
