@@ -1175,7 +1175,7 @@ class OtherCells(unittest.TestCase):
         page, runs = self.folder / "compare.html", self.folder / "the runs"
         snug("compare", CELL, "--sequences", "1", "--agents", "margin", "--plants", 2, *self.QUICK, "-o", page, "--runs", runs)
         text = page.read_text(encoding="utf-8")
-        self.assertEqual(text.count('class="mean"'), 4 * (1 + 1 + 2), "four measures of one agent, one sequence, two plants")
+        self.assertEqual(text.count('class="mean"'), 5 * (1 + 1 + 2), "five measures of one agent, one sequence, two plants")
         links = re.findall(r'<a href="(.*?)">open this run</a>', text)
         self.assertEqual(len(links), 2)
         for link in links:
@@ -1190,7 +1190,7 @@ class OtherCells(unittest.TestCase):
         words = ("compare", CELL, "--container", "220x220x120", "--random", 2, "--random-seed", 3, "--agents", "margin", *self.QUICK)
         rows = json.loads(snug(*words, "--json", "-o", page).stdout)["rows"]
         text = page.read_text(encoding="utf-8")
-        self.assertEqual(text.count('class="mean"'), 4 * (1 + 2), "each in a plant of its own: lines by plant would repeat them")
+        self.assertEqual(text.count('class="mean"'), 5 * (1 + 2), "each in a plant of its own: lines by plant would repeat them")
         codes = re.findall(r"<code>(.*?) -o run.h5<br>", text)
         self.assertEqual(len(codes), 2)
         for row, code in zip(rows, codes):

@@ -89,12 +89,12 @@ class GraspPlanner {
     return grasp_.program.waypoints.empty() ? request_.from : grasp_.program.waypoints.back();
   }
 
-  /// The first row is left out where the tool is there already.
+  /// Where the tool is near the first row already it does not move to it.
   void execute(std::vector<motion::Waypoint> rows) {
     const bool is_there = grasp_.program.waypoints.empty() && rows.size() > 1 &&
                           (rows[0].p_WE - last().p_WE).norm() < kThere &&
                           angle_between(rows[0].X_WE().R, last().X_WE().R) < kTurnedThere;
-    if (is_there && request_.layout.is_fast && nominal_ != nullptr) rows.erase(rows.begin());
+    if (is_there && request_.layout.is_fast && nominal_ != nullptr) rows[0].set_pose(last().X_WE());
     append(grasp_.program, drivable(request_.layout, last(), rows, grasp_.swing));
     if (nominal_ != nullptr) merge(grasp_.episodes[0], nominal_->run(grasp_.program));
   }

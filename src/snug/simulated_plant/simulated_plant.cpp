@@ -59,14 +59,15 @@ int SimulatedPlant::item_of(const std::string& id) const {
 bool SimulatedPlant::bring(const std::string& item) {
   const int index = item_of(item);
   if (index < 0 || was_brought_[static_cast<std::size_t>(index)]) return false;
-  calls_.push_back({Call::Kind::Bring, item, {}, is_moving_ ? *passed_ : -1});
+  calls_.push_back({Call::Kind::Bring, item, {}, tick_ ? *passed_ : -1});
   was_brought_[static_cast<std::size_t>(index)] = true;
   simulation_.bring(index, state_);
-  if (is_moving_) {
-    arrived_ = index;
-  } else {
+  if (!tick_) {
     begin_item(index);
+    return true;
   }
+  arrived_ = index;
+  tick_();
   return true;
 }
 
@@ -225,12 +226,13 @@ plant::Feedback SimulatedPlant::submit(const plant::Motion& motion, const plant:
   course.begin(reading(), state_.gripper.cup.body >= 0);
   passed_ = passing.act ? std::optional(passing.waypoint) : std::nullopt;
   was_passed_ = false;
-  while (advance(motion, plan, course)) {
+  bool goes_on = true;
+  while (goes_on && advance(motion, plan, course)) {
     if (!passed_ || was_passed_ || course.row <= *passed_) continue;
     was_passed_ = true;
-    is_moving_ = true;
+    tick_ = [&] { goes_on = goes_on && advance(motion, plan, course); };
     passing.act();
-    is_moving_ = false;
+    tick_ = nullptr;
   }
   passed_.reset();
   if (course.end.reason == plant::EndReason::Completed) {

@@ -99,13 +99,13 @@ class SimulatedPlant final : public plant::Plant {
   plant::Feedback feedback_;
   std::vector<bool> was_brought_;
   int brought_count_ = 0;
-  int current_ = -1;           ///< item brought last, or the one before while that moves
-  int arrived_ = -1;           ///< item brought while that moved
-  std::optional<int> passed_;  ///< waypoint that the motion under way is asked to pass
-  bool was_passed_ = false;    ///< it has done so
-  bool is_moving_ = false;     ///< is doing so
-  ItemFaults pending_;   ///< of that item
-  int objects_due_ = 0;  ///< to be put in when an item is let go in the container
+  int current_ = -1;            ///< item brought last, or the one before while that moves
+  int arrived_ = -1;            ///< item brought while that moved
+  std::optional<int> passed_;   ///< waypoint that the motion under way is asked to pass
+  bool was_passed_ = false;     ///< it has done so
+  std::function<void()> tick_;  ///< of the motion, while it is asked to do something: an item comes with a tick
+  ItemFaults pending_;          ///< of that item
+  int objects_due_ = 0;         ///< to be put in when an item is let go in the container
   bool clear_is_due_ = false;
   bool is_stopped_ = false;
   bool has_failed_ = false;
