@@ -60,7 +60,7 @@ void add_sequence(CLI::App& parent, Action& action) {
   verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
   verb.add_option("--fill", options->fill_percent, "volume of the boxes, of the target container's")
       ->capture_default_str()
-      ->check(positive())
+      ->check(within(1e-3, 1000.0))
       ->type_name("PERCENT");
   CLI::Option* all = verb.add_flag("--all", options->all,
                                    "every box of the scenario once, whatever they fill: the sequences that compare "

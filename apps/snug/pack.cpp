@@ -36,6 +36,7 @@ void record(const model::Scenario& scenario, const study::Trial& trial, OutputFi
   recorded.version = version_text();
   recorded.events = study::events_of(trial.session);
   recorded.warnings = study::warnings_of(trial.session);
+  recorded.is_interrupted = trial.session.stop_reason == session::StopReason::Interrupted;
   const std::string& robot = trial.plant.simulation.robot;
   recorded.settings_json = nlohmann::ordered_json{
       {"cup", "phases"},

@@ -13,10 +13,11 @@
 namespace snug::app {
 namespace {
 
-/// The parcel of the scenario that a waypoint picks at the aligner, or nothing.
-std::string picked_parcel(const model::Scenario& scenario, const motion::Waypoint& waypoint) {
+/// The parcel of the scenario that a waypoint of this class is for, or nothing.
+std::string parcel_of(const model::Scenario& scenario, const motion::Waypoint& waypoint,
+                      motion::MotionClass motion_class) {
   std::string best;
-  if (waypoint.motion_class != motion::MotionClass::Pick) return best;
+  if (waypoint.motion_class != motion_class) return best;
   std::size_t most = 0;
   for (const model::Parcel& parcel : scenario.parcels) {
     const std::size_t fit = motion::fit_of(waypoint, parcel.id);
@@ -28,14 +29,30 @@ std::string picked_parcel(const model::Scenario& scenario, const motion::Waypoin
   return best;
 }
 
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
 /// Boxes that are picked where they arrive, in order, each once.
 std::vector<std::string> picks_of(const model::Scenario& scenario, const motion::Program& program) {
   std::vector<std::string> picks;
   for (const motion::Waypoint& waypoint : program.waypoints) {
-    const std::string parcel = picked_parcel(scenario, waypoint);
-    if (!parcel.empty() && std::ranges::find(picks, parcel) == picks.end()) picks.push_back(parcel);
+    const std::string parcel = parcel_of(scenario, waypoint, motion::MotionClass::Pick);
+    if (!parcel.empty() && !has(picks, parcel)) picks.push_back(parcel);
   }
   return picks;
+}
+
+/// Boxes that are picked at the aligner before a row PrePick of theirs, at which boxes come, each once.
+std::vector<std::string> never_come(const model::Scenario& scenario, const motion::Program& program) {
+  std::vector<std::string> come, missing;
+  for (const motion::Waypoint& waypoint : program.waypoints) {
+    const std::string coming = parcel_of(scenario, waypoint, motion::MotionClass::PrePick);
+    const std::string picked = parcel_of(scenario, waypoint, motion::MotionClass::Pick);
+    if (!coming.empty()) come.push_back(coming);
+    if (!picked.empty() && !has(come, picked) && !has(missing, picked)) missing.push_back(picked);
+  }
+  return missing;
 }
 
 /// Why the picks are none of this sequence; empty when they are.
@@ -79,6 +96,12 @@ std::string describe_fitting(const model::Scenario& scenario, const std::vector<
 void warn_misfit(const model::Scenario& scenario, const std::string& sequence_name, const motion::Program& program) {
   const model::Sequence* sequence = model::find_sequence(scenario, sequence_name);
   if (sequence == nullptr) return;  // refused elsewhere
+  const std::vector<std::string> missing = never_come(scenario, program);
+  if (!missing.empty()) {
+    std::fprintf(stderr, "snug: warning: %s picks %zu %s before a row PrePick lets %s come: %s\n", program.name.c_str(),
+                 missing.size(), missing.size() == 1 ? "box" : "boxes", missing.size() == 1 ? "it" : "them",
+                 missing.front().c_str());
+  }
   const std::string misfit = find_misfit(*sequence, picks_of(scenario, program));
   if (misfit.empty()) return;
   std::fprintf(stderr, "snug: warning: %s does not fit sequence %s: %s: another sequence?\n", program.name.c_str(),

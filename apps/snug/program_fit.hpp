@@ -6,8 +6,8 @@
 
 namespace snug::app {
 
-/// Says on stderr when the boxes that the rows of a program name are not those of the sequence, or come in another
-/// order. Of rows that name no box of the scenario nothing is said.
+/// Says on stderr when the boxes that the rows of a program name are not those of the sequence, come in another order,
+/// or are picked though no row lets them come. Of rows that name no box of the scenario nothing is said.
 void warn_misfit(const model::Scenario& scenario, const std::string& sequence, const motion::Program& program);
 /// Throws InputError in the same cases, which names the sequences that fit.
 void require_fit(const model::Scenario& scenario, const std::string& sequence, const motion::Program& program);

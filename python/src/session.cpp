@@ -91,6 +91,7 @@ void save_recording(const model::Scenario& scenario, const study::Trial& trial, 
   recorded.version = SNUG_VERSION;
   recorded.events = study::events_of(trial.session);
   recorded.warnings = study::warnings_of(trial.session);
+  recorded.is_interrupted = trial.session.stop_reason == session::StopReason::Interrupted;
   const std::string& robot = trial.plant.simulation.robot;
   recorded.settings_json = nlohmann::json{
       {"cup", "phases"},

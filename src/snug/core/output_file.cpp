@@ -77,7 +77,12 @@ void remove_drafts(int signal) {
     for (int i = 0; i < kMoments && slot.state == DraftSlot::Busy; ++i) ::nanosleep(&kMoment, nullptr);
     if (slot.state == DraftSlot::Ready) ::unlink(slot.path.data());
   }
-  ::raise(signal);  // SA_RESETHAND: now it ends the program
+  ::signal(signal, SIG_DFL);
+  sigset_t own;
+  ::sigemptyset(&own);
+  ::sigaddset(&own, signal);
+  ::pthread_sigmask(SIG_UNBLOCK, &own, nullptr);
+  ::raise(signal);  // now it ends the program
 }
 
 /// Holds back the signals that remove drafts from this thread, while it is busy with one.
@@ -273,7 +278,7 @@ void remove_drafts_when_interrupted() {
     struct sigaction before = {}, action = {};
     if (::sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) continue;  // nohup, background jobs
     action.sa_handler = remove_drafts;
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+    for (const int other : kEnding) ::sigaddset(&action.sa_mask, other);  // a second one does not come in between
     ::sigaction(signal, &action, nullptr);
   }
 }

@@ -19,9 +19,9 @@ class Course {
   }
   /// Rows of the motions before this one.
   void begin(int rows) { rows_ = rows; }
-  void close(const std::string& result) {
+  void close(const std::string& result, bool is_interrupted) {
     add_events();
-    recorder_.close(result, false);
+    recorder_.close(result, is_interrupted);
   }
   [[nodiscard]] const std::vector<record::Event>& events() const { return events_; }
 
@@ -119,8 +119,9 @@ cell::RunResult record(const model::Scenario& scenario, const std::string& seque
   result.solver = plant.work().solver.summary(plant.simulation().world());
   result.lost = plant.work().lost;
   result.warnings = recorded.warnings;
+  result.is_interrupted = recorded.is_interrupted;
   result.state_hash = plant.simulation().hash(plant.state());
-  course.close(recorded.describe ? recorded.describe(result) : "");
+  course.close(recorded.describe ? recorded.describe(result) : "", recorded.is_interrupted);
   return result;
 }
 

@@ -15,6 +15,7 @@ struct RecordedRunOptions {
   std::string version;                ///< for the recording
   std::vector<record::Event> events;  ///< what who packed has to say, ordered by time
   std::vector<std::string> warnings;  ///< of the result, by who packed
+  bool is_interrupted = false;        ///< who packed was, and ended early
   std::string settings_json = "{}";
   std::function<std::string(const cell::RunResult&)> describe;  ///< JSON to keep in the recording, or none
 };

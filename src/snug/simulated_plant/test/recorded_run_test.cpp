@@ -80,6 +80,42 @@ TEST_F(RecordedRunTest, TheFileHasAFrameForEachTickAndEventsInTheOrderOfTime) {
   EXPECT_EQ(result.events.size(), recording.events.size());
 }
 
+TEST_F(RecordedRunTest, OneThatWasInterruptedSaysSo) {
+  RecordedRunOptions options;
+  options.is_interrupted = true;
+  EXPECT_TRUE(record_to("run.h5", options).is_interrupted);
+  const record::RecordingReader reader(folder / "run.h5");
+  EXPECT_FALSE(reader.is_complete());
+  EXPECT_TRUE(reader.is_interrupted());
+}
+
+/// The second box comes, and the first is moved aside by a fault, while the tool leaves the first.
+TEST_F(RecordedRunTest, WhatHappenedWhileTheToolPassedAWaypointHappensAgain) {
+  SimulatedPlantOptions options = nominal("displace@1");
+  options.seed = 4;
+  SimulatedPlant moving(three_boxes(), "1", options);
+  ASSERT_TRUE(moving.bring("BOX027"));
+  plant::Motion motion = packing_of("BOX027");
+  const int over = static_cast<int>(motion.waypoints.size()) - 1;
+  motion::Waypoint away = motion.waypoints.front();
+  away.motion_class = motion::MotionClass::PostPlace;
+  motion.waypoints.push_back(away);
+  int faults = 0;
+  (void)moving.submit(motion, {over, [&] {
+                                 const auto& events = moving.state().event_log.events();
+                                 faults = static_cast<int>(std::ranges::count(events, "fault", &record::Event::kind));
+                                 EXPECT_TRUE(moving.bring("BOX028"));
+                               }});
+  EXPECT_EQ(faults, 1) << "what a fault does to a box that was let go is done before it is looked at";
+  ASSERT_EQ(moving.calls().size(), 3U);
+  EXPECT_EQ(moving.calls()[1].passed, over);
+  EXPECT_EQ(moving.calls()[2].passed, over);
+  SimulatedPlant again(three_boxes(), "1", options);
+  repeat(again, moving.calls());
+  EXPECT_EQ(again.simulation().hash(again.state()), moving.simulation().hash(moving.state()));
+  EXPECT_EQ(again.read().time, moving.read().time);
+}
+
 TEST_F(RecordedRunTest, RunsTwiceToTheSameFile) {
   (void)record_to("one.h5");
   (void)record_to("two.h5");
