@@ -37,6 +37,7 @@ void HeldBoxes::depart(const motion::Program& program, int row, const Pose& X_WE
   if (!vacuum) {
     if (!held_) return;
     X_WP_released_ = X_WE * held_->X_EP;
+    standing_.push_back({held_->item, held_->size, {upright(X_WP_released_.R), X_WP_released_.p}});
     released_ = held_;
     held_.reset();
     return;
@@ -55,6 +56,7 @@ void HeldBoxes::depart(const motion::Program& program, int row, const Pose& X_WE
   } else {
     return;
   }
+  std::erase_if(standing_, [this](const StandingBox& box) { return box.item == held_->item; });
   held_->X_EP = hanging(X_WE.inverse() * X_WP, held_->size, scenario_->cup.hold_length);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
@@ -14,6 +15,12 @@ struct HeldBox {
   Pose X_EP;                       ///< held stiffly, its face where the lip is under vacuum
 };
 
+struct StandingBox {
+  int item = -1;
+  Vector3 size = Vector3::Zero();  ///< m
+  Pose X_WP;                       ///< where it was let go, set upright
+};
+
 /// Follows a program row by row. A box is picked where it stands at the aligner; one that is picked up again stands on
 /// the face nearest to the one it was let go on. Where a name tells of no box of the sequence, none is held.
 class HeldBoxes {
@@ -24,6 +31,8 @@ class HeldBoxes {
   /// The switches of `row` act, with the tool at X_WE. To be called for every row in order.
   void depart(const motion::Program& program, int row, const Pose& X_WE);
   [[nodiscard]] const std::optional<HeldBox>& held() const { return held_; }
+  /// Let go, and not picked again.
+  [[nodiscard]] const std::vector<StandingBox>& standing() const { return standing_; }
   /// The vacuum is on, but no name tells what it holds.
   [[nodiscard]] bool is_unknown() const { return vacuum_ && !held_; }
 
@@ -34,6 +43,7 @@ class HeldBoxes {
   std::optional<HeldBox> held_;
   std::optional<HeldBox> released_;
   Pose X_WP_released_;
+  std::vector<StandingBox> standing_;
 };
 
 }  // namespace snug::cell

@@ -7,11 +7,13 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "snug/cell/held_boxes.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/cup/phases.hpp"
 #include "snug/geometry/manifold.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/spatial/matrix6.hpp"
@@ -102,11 +104,16 @@ class Check {
       const motion::ControllerOutput& out = tick.program;
       row_ = std::max(0, out.reached >= 0 ? out.reached : out.row);
       const double way = (tool.X_WE.p - X_WE_last.p).norm() + kRadian * angle_between(tool.X_WE.R, X_WE_last.R);
+      look_at_hold(tool);
       if (i == 0 || out.reached >= 0 || way >= options_.path_step) {
         look(q, tool, out.X_WE_reference);
         X_WE_last = tool.X_WE;
       }
-      if (out.departed >= 0) boxes_.depart(plan_.program, out.departed, tool.X_WE);
+      if (out.departed >= 0) {
+        boxes_.depart(plan_.program, out.departed, tool.X_WE);
+        V_WE_last_.reset();
+        find_packed();
+      }
       if (out.finished_now) break;
       if (tick.outcome != control::Outcome::Stuck) continue;
       miss(tick, state.tool.X_WE);
@@ -201,6 +208,44 @@ class Check {
     }
   }
 
+  /// Of a box that hangs still from the cup and touches nothing: what its weight and the tool's acceleration ask of it.
+  void look_at_hold(const motion::ToolState& tool) {
+    const std::optional<Twist> before = std::exchange(V_WE_last_, tool.V_WE);
+    if (!before || !boxes_.held() || options_.sequence.empty()) return;
+    const model::Scenario& scenario = simulation_.scenario();
+    const HeldBox& held = *boxes_.held();
+    const std::string& name = simulation_.sequence().items[static_cast<std::size_t>(held.item)].parcel;
+    const SpatialInertia& inertia = model::find_parcel(scenario, name)->inertia;
+    const double dt = plan_.settings.tick;
+    const Vector3 alpha = (tool.V_WE.angular - before->angular) / dt, omega = tool.V_WE.angular;
+    const Matrix3 R_WP = tool.X_WE.R * held.X_EP.R;
+    const Vector3 p_EC = tool.X_WE.R * (held.X_EP * inertia.com);  // in W
+    const Vector3 a = (tool.V_WE.linear - before->linear) / dt + alpha.cross(p_EC) + omega.cross(omega.cross(p_EC));
+    const Matrix3 I_W = R_WP * inertia.inertia * R_WP.transpose();
+    const Vector3 p_ES = tool.X_WE.R * Vector3(0.0, 0.0, scenario.cup.hold_length);
+    Wrench F_S;
+    const Vector3 f_W = inertia.mass * (a - scenario.gravity);
+    F_S.force = tool.X_WE.R.transpose() * f_W;
+    F_S.torque = tool.X_WE.R.transpose() * (I_W * alpha + omega.cross(I_W * omega) + (p_EC - p_ES).cross(f_W));
+    const double factor = cup::find_hold_factor(scenario.cup, scenario.cup.vacuum.pressure_gauge_hold, F_S);
+    if (std::isfinite(factor)) note(CheckKind::Hold, name, factor - 1.0, "times");
+  }
+
+  /// Boxes that were let go over the container.
+  void find_packed() {
+    packed_.clear();
+    const model::Scenario& scenario = simulation_.scenario();
+    const model::Container* container = model::find_container(scenario, scenario.target);
+    if (container == nullptr || options_.sequence.empty()) return;
+    for (const StandingBox& box : boxes_.standing()) {
+      const Vector3 p_TP = container->X_WT.inverse() * box.X_WP.p;
+      if ((p_TP.cwiseAbs() - 0.5 * container->inner_size).head<2>().maxCoeff() > 0.0) continue;
+      const geometry::Box shape{0.5 * box.size};
+      packed_.push_back({simulation_.sequence().items[static_cast<std::size_t>(box.item)].parcel, shape, box.X_WP,
+                         geometry::bounds(shape, box.X_WP)});
+    }
+  }
+
   void look_at_distances(const robot::ArmPose& at) {
     const control::Clearance& clearance = simulation_.arm()->controller().clearance();
     for (int i = 0; i < static_cast<int>(clearance.pairs().size()); ++i) {
@@ -209,18 +254,27 @@ class Check {
       note(CheckKind::SelfCollision, clearance.name_of(i),
            nearest.distance - clearance.pairs()[static_cast<std::size_t>(i)].safety, "m", true, kDamperSlack);
     }
-    for (const Mover& mover : movers_) look_at_obstacles(mover, at.X_WS[static_cast<std::size_t>(mover.segment)]);
+    for (const Mover& mover : movers_) {
+      look_at_all(mover, at.X_WS[static_cast<std::size_t>(mover.segment)]);
+    }
     if (!boxes_.held() || options_.sequence.empty()) return;
     const HeldBox& held = *boxes_.held();
     const std::string& name = simulation_.sequence().items[static_cast<std::size_t>(held.item)].parcel;
-    look_at_obstacles({name, 0, {{geometry::Box{0.5 * held.size}, held.X_EP}}, options_.allowance}, at.X_WE);
+    const Mover box{name, 0, {{geometry::Box{0.5 * held.size}, held.X_EP}}, options_.allowance};
+    look_at_all(box, at.X_WE);
   }
 
-  void look_at_obstacles(const Mover& mover, const Pose& X_WS) {
+  void look_at_all(const Mover& mover, const Pose& X_WS) {
+    look_at_obstacles(mover, X_WS, obstacles_, mover.allowance);
+    look_at_obstacles(mover, X_WS, packed_, mover.allowance > 0.0 ? options_.packed_allowance : 0.0);
+  }
+
+  void look_at_obstacles(const Mover& mover, const Pose& X_WS, const std::vector<Obstacle>& obstacles,
+                         double allowance) {
     for (const model::PlacedShape& placed : mover.shapes) {
       const Pose X_WG = X_WS * placed.X_BG;
       const geometry::Aabb bounds = geometry::bounds(placed.shape, X_WG).inflated(options_.range);
-      for (const Obstacle& obstacle : obstacles_) {
+      for (const Obstacle& obstacle : obstacles) {
         if (!bounds.overlaps(obstacle.bounds)) continue;
         geometry::PairCache cache;
         geometry::Manifold manifold;
@@ -230,7 +284,7 @@ class Check {
           distance = std::min(distance, manifold.points[static_cast<std::size_t>(i)].phi);
         }
         if (distance < options_.range) {
-          note(CheckKind::Collision, mover.name + " - " + obstacle.name, distance, "m", true, mover.allowance);
+          note(CheckKind::Collision, mover.name + " - " + obstacle.name, distance, "m", true, allowance);
         }
       }
     }
@@ -239,10 +293,12 @@ class Check {
   CheckOptions options_;
   Simulation simulation_;
   motion::PreparedProgram plan_;
-  std::vector<Obstacle> obstacles_;
+  std::vector<Obstacle> obstacles_;  ///< that do not move
+  std::vector<Obstacle> packed_;     ///< boxes
   std::vector<Mover> movers_;
   control::StateMachine machine_;
   HeldBoxes boxes_;
+  std::optional<Twist> V_WE_last_;  ///< a tick before
   int row_ = 0;
   double time_ = 0.0;
   CheckResult result_;
@@ -262,6 +318,8 @@ const char* name_of(CheckKind kind) {
       return "singularity";
     case CheckKind::Collision:
       return "collision";
+    case CheckKind::Hold:
+      return "hold";
     case CheckKind::SelfCollision:
       break;
   }

@@ -3,13 +3,18 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
 #include <utility>
 
+#include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/program_check.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cell/test/robot_rows.hpp"
+#include "snug/cup/phases.hpp"
+#include "snug/motion/tool_yaw.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::cell {
 namespace {
@@ -203,6 +208,83 @@ TEST(Check, LooksAtTheHeldBox) {
   };
   EXPECT_TRUE(hits_tote(with_box));
   EXPECT_FALSE(hits_tote(without));
+}
+
+constexpr double kYawThere =
+    -0.5 * std::numbers::pi;  ///< rad, of the tool over the container: the wrist has room there
+
+/// The item picked at the aligner, and where asked let go over the middle of the container, one millimetre over its
+/// floor.
+std::vector<motion::Waypoint> pick(const model::Scenario& scenario, int item, bool is_placed) {
+  const model::Sequence& sequence = scenario.sequences.front();
+  const model::Item& fed = sequence.items[static_cast<std::size_t>(item)];
+  const Pose X_WP = pose_at_aligner(scenario, fed, 0);
+  const Vector3 half = 0.5 * (X_WP.R.cwiseAbs() * model::find_parcel(scenario, fed.parcel)->size);
+  const double held = scenario.cup.hold_length;
+  const auto row = [&](const std::string& word, const Vector3& p, bool vacuum, double yaw = std::numbers::pi) {
+    return motion::named_waypoint(word + "(" + fed.parcel + ")", {motion::upright_tool(yaw), p}, {.vacuum = vacuum});
+  };
+  const Vector3 top = X_WP.p + Vector3(0.0, 0.0, half.z()), up(0.0, 0.0, 0.35);
+  std::vector<motion::Waypoint> rows{row("PrePick", top + up, false), row("Box", top + Vector3(0.0, 0.0, held), false),
+                                     row("PostPick", top + up, true)};
+  if (!is_placed) return rows;
+  const Vector3 place =
+      model::find_container(scenario, scenario.target)->X_WT.p + Vector3(0.0, 0.0, 2.0 * half.z() + held + 0.001);
+  rows.push_back(row("PrePlace", place + up, true, kYawThere));
+  rows.push_back(row("Place", place, true, kYawThere));
+  rows.push_back(row("Place", place, false, kYawThere));
+  rows.push_back(row("PostPlace", place + up, false, kYawThere));
+  return rows;
+}
+
+double least_hold(double mass_factor) {
+  model::Scenario scenario = demonstrator();
+  for (model::Parcel& parcel : scenario.parcels) {
+    parcel.inertia.mass *= mass_factor;
+    parcel.inertia.inertia *= mass_factor;
+  }
+  CheckOptions options;
+  options.sequence = scenario.sequences.front().name;
+  const CheckResult result = check_program(scenario, {"test", pick(scenario, 0, false)}, options);
+  const CheckFinding* hold = find(result.margins, CheckKind::Hold);
+  EXPECT_NE(hold, nullptr);
+  if (hold == nullptr) return 0.0;
+  EXPECT_EQ(result.is_ok, hold->margin > 0.0);
+  EXPECT_EQ(find(result.findings, CheckKind::Hold) == nullptr, hold->margin > 0.0);
+  return hold->margin + 1.0;
+}
+
+TEST(Check, TheHoldFallsWithTheMassOfTheBox) {
+  const double one = least_hold(1.0);
+  EXPECT_GT(one, 2.0);
+  EXPECT_NEAR(least_hold(2.0), 0.5 * one, 1e-9 * one) << "of the same motion: forces are in proportion";
+  EXPECT_LT(least_hold(2.0 * one), 1.0) << "it would be lost, and that is an error";
+}
+
+TEST(Check, TheHoldAtRestIsThatOfTheWeight) {
+  const model::Scenario& scenario = demonstrator();
+  const model::Parcel& parcel = *model::find_parcel(scenario, scenario.sequences.front().items.front().parcel);
+  Wrench F_S;  // pulled straight down: at least that much of it is asked
+  F_S.force.z() = -parcel.inertia.mass * scenario.gravity.norm();
+  const double straight = cup::find_hold_factor(scenario.cup, scenario.cup.vacuum.pressure_gauge_hold, F_S);
+  EXPECT_LT(least_hold(1.0), straight) << "its centre is beside the cup, and the tool accelerates";
+  EXPECT_GT(least_hold(1.0), 0.1 * straight);
+}
+
+TEST(Check, SeesBoxesThatAreBroughtToTheSamePlace) {
+  const model::Scenario& scenario = demonstrator();
+  std::vector<motion::Waypoint> rows = pick(scenario, 0, true);
+  const std::string first = scenario.sequences.front().items[0].parcel,
+                    second = scenario.sequences.front().items[1].parcel;
+  const auto collides = [&](const CheckResult& result) {
+    return std::ranges::any_of(result.findings, [&](const CheckFinding& one) {
+      return one.kind == CheckKind::Collision && one.what == second + " - " + first && one.is_error;
+    });
+  };
+  EXPECT_FALSE(collides(check(rows)));
+  for (motion::Waypoint& row : pick(scenario, 1, true)) rows.push_back(row);
+  for (const auto& f : check(rows).findings) EXPECT_TRUE(collides(check(rows)));
+  EXPECT_FALSE(collides(check(rows, ""))) << "boxes are not looked at";
 }
 
 }  // namespace
