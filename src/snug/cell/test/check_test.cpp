@@ -283,6 +283,7 @@ TEST(Check, SeesBoxesThatAreBroughtToTheSamePlace) {
   };
   EXPECT_FALSE(collides(check(rows)));
   for (motion::Waypoint& row : pick(scenario, 1, true)) rows.push_back(row);
+  EXPECT_TRUE(collides(check(rows)));
   EXPECT_FALSE(collides(check(rows, ""))) << "boxes are not looked at";
 }
 
