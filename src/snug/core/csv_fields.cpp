@@ -37,6 +37,9 @@ std::string_view without_byte_order_mark(std::string_view text) {
 std::vector<std::string> split_csv(std::string_view line, const std::string& where) {
   std::vector<std::string> fields;
   while (true) {
+    if (fields.size() == kMostCsvFields)
+      throw InputError(where, "", "more than " + std::to_string(kMostCsvFields) + " fields",
+                       std::to_string(kMostCsvFields) + " fields or fewer");
     line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
     const bool is_quoted = line.starts_with('"');
     if (is_quoted) fields.push_back(take_quoted(line, where));

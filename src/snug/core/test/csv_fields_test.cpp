@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/test/peak_memory.hpp"
 
 namespace snug {
 namespace {
@@ -28,6 +29,20 @@ TEST(SplitCsv, RefusesQuotesThatAreNotClosedAndTextBehindThem) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "f:3: got a quote that is not closed: \"a; expected a quote at the field's end, too");
   }
+}
+
+TEST(SplitCsv, RefusesALineWithTooManyFieldsAndNamesTheLimit) {
+  EXPECT_EQ(split_csv(std::string(kMostCsvFields - 1, ','), "f:1").size(), kMostCsvFields);
+  try {
+    (void)split_csv(std::string(kMostCsvFields, ','), "f:7");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "f:7: got more than 10000 fields; expected 10000 fields or fewer");
+  }
+  const auto peak =
+      test::peak_memory([] { EXPECT_THROW((void)split_csv(std::string(5'000'000, ','), "f:1"), InputError); });
+  ASSERT_TRUE(peak.has_value());
+  EXPECT_LT(*peak, std::size_t{20'000'000});
 }
 
 TEST(RefuseSemicolons, RefusesAHeaderThatHasNothingElse) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "snug/core/csv_fields.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug {
@@ -26,6 +27,9 @@ TEST(Table, ReadsColumnsInAnyOrderAndRefusesWhatIsBroken) {
   EXPECT_EQ(quoted.rows, (std::vector<std::vector<double>>{{1}})) << "as spreadsheets write it";
   expect_refused([] { (void)parse_table("a;b\n1;2\n", "t.csv", {"a"}); }, "t.csv:1: got semicolons");
   expect_refused([] { (void)parse_table("a,b\n\"1,2\n", "t.csv", {"a"}); }, "t.csv:2: got a quote");
+  const std::string commas(kMostCsvFields, ',');
+  expect_refused([&] { (void)parse_table(commas, "t.csv", {"a"}); }, "t.csv:1: got more than 10000 fields");
+  expect_refused([&] { (void)parse_table("a\n" + commas, "t.csv", {"a"}); }, "t.csv:2: got more than 10000 fields");
   expect_refused([] { (void)parse_table("", "t.csv", {"a"}); }, "no header");
   expect_refused([] { (void)parse_table("a,b\n1,2\n", "t.csv", {"a", "c"}); }, "column 'c'");
   expect_refused([] { (void)parse_table("a,a\n1,2\n", "t.csv", {"a"}); }, "twice");

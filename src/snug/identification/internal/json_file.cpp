@@ -14,7 +14,52 @@ constexpr double kUnitTolerance = 1e-3;      // of a quaternion's length, as for
 constexpr double kRotationTolerance = 1e-6;  // of R^T R: a rotation that was printed with seven digits passes
 constexpr double kSymmetryTolerance = 1e-9;  // relative to the largest entry
 
+/// Takes the events of the library's parser and keeps nothing: the limits are known before any value takes memory.
+class LimitCheck : public nlohmann::json_sax<json> {
+ public:
+  explicit LimitCheck(const std::string& name) : name_(name) {}
+
+  bool null() override { return add(); }
+  bool boolean(bool) override { return add(); }
+  bool number_integer(json::number_integer_t) override { return add(); }
+  bool number_unsigned(json::number_unsigned_t) override { return add(); }
+  bool number_float(json::number_float_t, const std::string&) override { return add(); }
+  bool string(std::string&) override { return add(); }
+  bool binary(json::binary_t&) override { return add(); }
+  bool key(std::string&) override { return true; }
+  bool start_object(std::size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool start_array(std::size_t) override { return open(); }
+  bool end_array() override { return close(); }
+  /// Told by the parser that makes the values.
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
+
+ private:
+  bool add(std::size_t count = 1) {
+    values_ += count;
+    if (values_ > kMostJsonValues)
+      throw InputError(name_, "", "more than " + std::to_string(kMostJsonValues) + " values",
+                       std::to_string(kMostJsonValues) + " or fewer, a list or object counted as two");
+    return true;
+  }
+  bool open() {
+    if (++depth_ > kDeepestJson)
+      throw InputError(name_, "", "lists and objects within each other, more than " + std::to_string(kDeepestJson),
+                       std::to_string(kDeepestJson) + " or fewer");
+    return add(2);
+  }
+  bool close() {
+    --depth_;
+    return true;
+  }
+
+  const std::string& name_;
+  std::size_t values_ = 0, depth_ = 0;
+};
+
 json parse_json(std::string_view text, const std::string& name) {
+  LimitCheck check(name);
+  (void)json::sax_parse(text, &check);
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {

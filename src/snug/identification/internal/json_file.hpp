@@ -10,7 +10,14 @@
 
 namespace snug::identification::internal {
 
-/// Throws InputError "file:line" when the text is no JSON document, or ends too early.
+/// Values of a document, a list or object counted as two: it takes up to 200 bytes, be it written with two. A record of
+/// measurements has some dozens.
+inline constexpr std::size_t kMostJsonValues = 1'000'000;
+/// Lists and objects within each other; records have five.
+inline constexpr std::size_t kDeepestJson = 100;
+
+/// Throws InputError "file:line" when the text is no JSON document, or ends too early; with the file when it has more
+/// than kMostJsonValues values or is deeper than kDeepestJson.
 [[nodiscard]] nlohmann::json parse_json(std::string_view text, const std::string& name);
 
 /// Every getter throws InputError with the file and the path (records[3].mass) when the value is missing, misshapen,

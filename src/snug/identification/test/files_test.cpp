@@ -25,6 +25,13 @@ json pose_record() {
 
 json pose_file() { return {{"records", {pose_record(), pose_record()}}}; }
 
+/// A document that counts as two values for each record, two for itself and two for the list.
+std::string many_empty_records(std::size_t count) {
+  std::string text = "{\"records\": [{}";
+  for (std::size_t i = 1; i < count; ++i) text += ",{}";
+  return text + "]}";
+}
+
 void expect_poses_refused(const json& document, const std::string& part) {
   test::expect_refused([&] { (void)parse_static_poses_json(document.dump(), "poses.json"); }, part);
 }
@@ -75,6 +82,12 @@ TEST(StaticPoses, ThatCannotBeUsedAreRefusedWithFileAndPath) {
   expect_poses_refused(json{{"records", json::array()}}, "records");
   expect_poses_refused(json::array(), "an object");
   const std::string text = pose_file().dump();
+  test::expect_refused([&] { (void)parse_static_poses_json(many_empty_records(499'999), "poses.json"); },
+                       "poses.json: got more than 1000000 values");
+  test::expect_refused([&] { (void)parse_static_poses_json(many_empty_records(499'998), "poses.json"); },
+                       "poses.json: records[0]");
+  const std::string deep = "{\"records\": " + std::string(500'000, '[') + std::string(500'000, ']') + "}";
+  test::expect_refused([&] { (void)parse_static_poses_json(deep, "poses.json"); }, "more than 100;");
   for (std::size_t size = 0; size < text.size(); ++size)
     test::expect_refused([&] { (void)parse_static_poses_json(text.substr(0, size), "cut.json"); }, "cut.json");
 }
