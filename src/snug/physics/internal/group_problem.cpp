@@ -41,8 +41,8 @@ struct Care {
 };
 constexpr Care kQuick{0.1, 3, 150, 0.3};
 constexpr Care kThorough{0.01, 6, 300, 0.0};  ///< where that fails
-constexpr Care kLast{0.001, 12, 300, 0.0};    ///< where that ends near the tolerance
-constexpr double kNear = 10.0;                ///< of the tolerance
+constexpr Care kLast{0.001, 20, 1000, 0.0};   ///< where that ends near the tolerance
+constexpr double kNear = 100.0;               ///< of the tolerance
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
