@@ -2,6 +2,9 @@
 #include "snug/geometry/convex_hull.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -22,13 +25,15 @@ struct Triangle {
   std::array<int, 3> v{};
   Vector3 n = Vector3::Zero();  ///< outward, unit
   double area = 0.0;            ///< twice the area
+  double reach = 0.0;           ///< height of the farthest point above the plane
+  int farthest = -1;            ///< the first point so high; -1 where none is above the tolerance
 };
 
 Triangle make_triangle(const std::vector<Vector3>& p, int a, int b, int c) {
   const auto at = [&](int i) { return p[static_cast<std::size_t>(i)]; };
   const Vector3 cross = (at(b) - at(a)).cross(at(c) - at(a));
   const double area = cross.norm();
-  return {{a, b, c}, area > 0.0 ? Vector3(cross / area) : Vector3::Zero(), area};
+  return {{a, b, c}, area > 0.0 ? Vector3(cross / area) : Vector3::Zero(), area, 0.0, -1};
 }
 
 double height(const std::vector<Vector3>& p, const Triangle& t, int q) {
@@ -45,12 +50,70 @@ double size_of(std::span<const Vector3> points) {
   return (high - low).norm();
 }
 
+/// Points of a cloud by the cubes that they lie in, hashed: finds those near a place without looking at all.
+class NearPoints {
+ public:
+  /// For `count` points above `low`; near means within `tolerance`, which is above 0.
+  NearPoints(std::size_t count, const Vector3& low, double tolerance)
+      : low_(low), tolerance_(tolerance), first_(std::bit_ceil(count + 1), -1) {}
+
+  /// Is one of `points`, which were all added, near p?
+  [[nodiscard]] bool has_near(const std::vector<Vector3>& points, const Vector3& p) const {
+    const Vector3 margin = Vector3::Constant(1.01 * tolerance_);  // more than rounding
+    const Cube from = cube_of(p - low_ - margin), to = cube_of(p - low_ + margin);
+    for (std::int64_t x = from[0]; x <= to[0]; ++x) {
+      for (std::int64_t y = from[1]; y <= to[1]; ++y) {
+        for (std::int64_t z = from[2]; z <= to[2]; ++z) {
+          for (int i = first_[bucket({x, y, z})]; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
+            if ((p - points[static_cast<std::size_t>(i)]).norm() <= tolerance_) return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+  /// The next point, numbered from 0.
+  void add(const Vector3& p) {
+    int& first = first_[bucket(cube_of(p - low_))];
+    next_.push_back(std::exchange(first, static_cast<int>(next_.size())));
+  }
+
+ private:
+  using Cube = std::array<std::int64_t, 3>;
+
+  [[nodiscard]] Cube cube_of(const Vector3& above) const {
+    Cube cube{};
+    for (int k = 0; k < 3; ++k) {
+      cube[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(above[k] / (4.0 * tolerance_)));
+    }
+    return cube;
+  }
+  [[nodiscard]] std::size_t bucket(const Cube& cube) const {
+    std::uint64_t hash = 0;
+    for (const std::int64_t k : cube) {
+      hash = (hash ^ static_cast<std::uint64_t>(k)) * 0x9E3779B97F4A7C15U;
+      hash ^= hash >> 32U;
+    }
+    return static_cast<std::size_t>(hash) & (first_.size() - 1);
+  }
+
+  Vector3 low_;
+  double tolerance_;
+  std::vector<int> first_;  ///< of each bucket, -1 for none
+  std::vector<int> next_;   ///< in the bucket, for each point
+};
+
+/// Without the points that are within the tolerance of one before them.
 std::vector<Vector3> distinct(std::span<const Vector3> points, double tolerance) {
+  if (!(tolerance > 0.0 && std::isfinite(tolerance))) return {points.front()};  // no extent, or beyond all numbers
+  Vector3 low = points.front();
+  for (const Vector3& p : points) low = low.cwiseMin(p);
   std::vector<Vector3> result;
+  NearPoints near(points.size(), low, tolerance);
   for (const Vector3& p : points) {
-    const bool is_new =
-        std::none_of(result.begin(), result.end(), [&](const Vector3& q) { return (p - q).norm() <= tolerance; });
-    if (is_new) result.push_back(p);
+    if (near.has_near(result, p)) continue;
+    near.add(p);
+    result.push_back(p);
   }
   return result;
 }
@@ -82,8 +145,27 @@ std::vector<Triangle> first_tetrahedron(const std::vector<Vector3>& p, double si
           make_triangle(p, c_out, d, a)};
 }
 
+/// Finds the farthest point above each of these triangles.
+void find_farthest(const std::vector<Vector3>& p, double tolerance, std::span<Triangle> triangles) {
+  for (Triangle& t : triangles) t.reach = tolerance;
+  // In blocks that stay in the cache for all triangles.
+  constexpr int kBlock = 512;
+  const int count = static_cast<int>(p.size());
+  for (int begin = 0; begin < count; begin += kBlock) {
+    const int end = std::min(begin + kBlock, count);
+    for (Triangle& t : triangles) {
+      for (int q = begin; q < end; ++q) {
+        const double h = height(p, t, q);
+        if (h <= t.reach) continue;
+        t.reach = h;
+        t.farthest = q;
+      }
+    }
+  }
+}
+
 /// Replaces what `q` sees by a cone of triangles from the horizon to `q`.
-void add_point(const std::vector<Vector3>& p, int q, std::vector<Triangle>& triangles) {
+void add_point(const std::vector<Vector3>& p, int q, double tolerance, std::vector<Triangle>& triangles) {
   std::vector<Triangle> kept;
   std::vector<Edge> seen;
   for (const Triangle& t : triangles) {
@@ -93,28 +175,28 @@ void add_point(const std::vector<Vector3>& p, int q, std::vector<Triangle>& tria
     }
     for (std::size_t k = 0; k < 3; ++k) seen.emplace_back(t.v[k], t.v[(k + 1) % 3]);
   }
+  const std::size_t old = kept.size();
   for (const Edge& e : seen) {
     const bool is_horizon = std::find(seen.begin(), seen.end(), Edge{e.second, e.first}) == seen.end();
     if (is_horizon) kept.push_back(make_triangle(p, e.first, e.second, q));
   }
+  find_farthest(p, tolerance, std::span(kept).subspan(old));
   triangles = std::move(kept);
 }
 
-/// Adds the farthest point until none is farther out than `tolerance`.
+/// Adds the farthest point until none is farther out than `tolerance`; of two as far the first.
 bool grow(const std::vector<Vector3>& p, double tolerance, std::vector<Triangle>& triangles) {
+  find_farthest(p, tolerance, triangles);
   for (int round = 0; round < 4 * kMaxHullVertices; ++round) {
     int farthest = -1;
     double most = tolerance;
-    for (int q = 0; q < static_cast<int>(p.size()); ++q) {
-      for (const Triangle& t : triangles) {
-        const double h = height(p, t, q);
-        if (h <= most) continue;
-        most = h;
-        farthest = q;
-      }
+    for (const Triangle& t : triangles) {
+      if (t.farthest < 0 || t.reach < most || (t.reach == most && t.farthest > farthest)) continue;
+      most = t.reach;
+      farthest = t.farthest;
     }
     if (farthest < 0) return true;
-    add_point(p, farthest, triangles);
+    add_point(p, farthest, tolerance, triangles);
   }
   return false;
 }

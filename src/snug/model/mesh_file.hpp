@@ -14,8 +14,9 @@
 namespace snug::model {
 
 /// Points of each part (mesh) of a file, with the transforms of the file's nodes, in the file's own axes. STL, OBJ or
-/// DAE of at most kLargestMesh bytes. On failure: why, and no parts.
-inline constexpr std::size_t kLargestMesh = std::size_t{32} << 20U;
+/// DAE of at most kLargestMesh bytes, that takes at most some 20 times its size and 100 MB to read. In files above 1 MB
+/// points may be there several times. On failure: why, and no parts.
+inline constexpr std::size_t kLargestMesh = std::size_t{64} << 20U;
 struct MeshParts {
   std::vector<std::vector<Vector3>> parts;
   std::string error;
@@ -23,12 +24,14 @@ struct MeshParts {
 [[nodiscard]] MeshParts read_mesh_parts(const std::filesystem::path& path);
 
 /// A part of a mesh file as it is drawn: triangles between vertices, m, in the file's own axes.
+inline constexpr std::size_t kLargestDrawn = std::size_t{32} << 20U;
 struct DrawnMesh {
   std::vector<Vector3> vertices;
   std::vector<std::array<int, 3>> triangles;
   std::optional<std::array<double, 4>> rgba;  ///< of its material, 0 .. 1
 };
-/// The parts of a mesh file that is held in memory; `ending`: .stl, .obj or .dae, in any case. Empty for what cannot be
+/// The parts of a mesh file of at most kLargestDrawn bytes that is held in memory; `ending`: .stl, .obj or .dae, in any
+/// case. Empty for what cannot be
 /// read: a look is worth no failed run.
 [[nodiscard]] std::vector<DrawnMesh> parse_drawn_meshes(std::string_view bytes, const std::string& ending);
 

@@ -61,13 +61,12 @@ geometry::Shape read_cylinder(const Value& value) {
 
 /// The convex hull of each part of a mesh file.
 std::vector<geometry::Shape> read_mesh(const Value& value) {
-  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
   constexpr std::size_t kMostParts = 64;
   const std::string expected = "a mesh file (STL, OBJ, DAE)";
   const MapReader map = value.map("mesh", {"file", "scale"});
   const Value file = map.require("file");
   const std::filesystem::path path = find_side_file(file, expected);
-  check_side_file(path, kMostBytes, expected);
+  check_side_file(path, kLargestMesh, expected);
   const auto given = map.find("scale");
   const double scale = given ? given->number_within(1e-6, 1e6, "a factor") : 1.0;
   MeshParts mesh = read_mesh_parts(path);
