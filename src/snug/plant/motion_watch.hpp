@@ -44,8 +44,8 @@ struct MotionWatch {
 /// s, at least, that a motion goes on after its end so that boxes come to rest. `is_lagged`: the tool comes in with a
 /// lag. `was_passed`: OnPassing was called; they were looked at then.
 [[nodiscard]] double least_settle(const model::MotionGuards& settings, bool is_lagged, bool was_passed);
-/// Whether a motion that came to its end at `start` s goes on at `now`, for `at_least` s and so that the tool, at `speed`
-/// m/s, comes to stand.
+/// Whether a motion that came to its end at `start` s goes on at `now`, for `at_least` s and so that the tool, at
+/// `speed` m/s, comes to stand.
 [[nodiscard]] bool is_settling(const model::MotionGuards& settings, double at_least, double start, double now,
                                double speed);
 

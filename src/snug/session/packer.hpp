@@ -70,7 +70,8 @@ class Packer {
   using PlanResult = std::optional<Planned>;
   /// The next item: brought while the tool left the one before.
   struct Ahead {
-    int item = 0;
+    Ahead(int which, const std::string& id) : item(which) { report.id = id; }
+    int item;
     ItemReport report;
     plant::Feedback robot;  ///< where it will stand
     double since = 0.0;     ///< s, of the plant

@@ -61,9 +61,7 @@ void Packer::look_ahead(int item, const Attempt& attempt, const std::vector<std:
   if (!plant_.bring(id)) return;
   belief_.weigh(item);
   belief_.arrives(next->item);
-  Ahead& ahead = ahead_.emplace();
-  ahead.item = next->item;
-  ahead.report.id = id;
+  Ahead& ahead = ahead_.emplace(next->item, id);
   ahead.is_seen = look_plainly(ahead.report);
   if (!ahead.is_seen || is_gone(id) || is_wrong(next->item)) return;
   ahead.since = plant_.read().time;
