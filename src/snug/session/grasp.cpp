@@ -41,8 +41,8 @@ packing::Orientation mirrored(const packing::Orientation& orientation, const Vec
   return best;
 }
 
-constexpr double kThere = 0.02;        ///< m
-constexpr double kTurnedThere = 0.05;  ///< rad
+constexpr double kThere = 0.02;        ///< m, more than boxes arrive off the place where they are expected
+constexpr double kTurnedThere = 0.05;  ///< rad, the same
 
 class GraspPlanner {
  public:

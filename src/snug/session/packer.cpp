@@ -253,7 +253,6 @@ std::optional<GraspOutline> Packer::outline_of(const Standing& box, const packin
 double Packer::cost_of(const Standing& box, const packing::Placement& placement) const {
   if (!layout_.is_fast || placement.flips == 0) return 0.0;
   const model::RehearsalSettings& settings = scenario_.rehearsal;
-  if (settings.side_grasp_cost == settings.reorientation_cost) return settings.reorientation_cost;
   const auto outline = outline_of(box, placement.orientation);
   const bool is_by_side = outline && outline->reorientation == skills::Reorientation::SideGrasp;
   return is_by_side ? settings.side_grasp_cost : settings.reorientation_cost;
@@ -277,20 +276,18 @@ bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
          (attempts >= settings.max_attempts && rate >= settings.good_rate);
 }
 
-std::optional<Attempt> Packer::best_attempt(const AttemptQuestion& question, std::vector<packing::Candidate> candidates,
-                                            ItemReport& report) {
-  const int item = question.task.item;
-  const Standing standing{item, question.task.X_WP, question.task.location};
-  sort(standing, candidates);
+std::optional<Attempt> Packer::best_attempt(const RehearsalTask& task, double least_percent,
+                                            const std::vector<packing::Candidate>& candidates, ItemReport& report) {
+  const int item = task.item;
   const packing::ContainerState state = state_without(item);
   const double top = obstacle_top(item);
-  Rehearsal rehearsal(belief_, layout_, reaches_, limits_, options_.threads, question.task);
+  Rehearsal rehearsal(belief_, layout_, reaches_, limits_, options_.threads, task);
   std::optional<Attempt> best;
-  double best_utility = question.least_percent;
+  double best_utility = least_percent;
   const double clearance = belief_.nominal().parcel_clearance;
   const int before = report.attempts;  // when it was planned before
   for (const packing::Candidate& candidate : candidates) {
-    const double cost = cost_of(standing, candidate.placement);
+    const double cost = cost_of({item, task.X_WP, task.location}, candidate.placement);
     if (best_utility >= utility_of(candidate, 1.0, cost)) break;
     const packing::Candidate placed = skills::measured(state, candidate, items_[static_cast<std::size_t>(item)].size,
                                                        clearance, scenario_.skills.insertion);
@@ -360,19 +357,23 @@ Packer::PlanResult Packer::plan(int item, packing::Agent& agent, const plant::Fe
   }
   RehearsalTask task{item, belief_.box(item)->X_WP, locate(item), robot, {}};
   std::vector<packing::Candidate> candidates = decision->candidates;
-  sort({item, task.X_WP, task.location}, candidates);
+  const Standing standing{item, task.X_WP, task.location};
+  sort(standing, candidates);
   task.X_WE_after = tool_after(item, packing::with_candidate(state, one, candidates.front()));
   report.decision_seconds += seconds_since(start);
   start = std::chrono::steady_clock::now();
   report.reason.clear();
-  std::optional<Attempt> best = best_attempt({task, least}, std::move(candidates), report);
+  std::optional<Attempt> best = best_attempt(task, least, candidates, report);
   report.rehearsal_seconds += seconds_since(start);
   if (!best && !decision->is_pressed) {
     start = std::chrono::steady_clock::now();
-    const auto pressed = agent.decide_pressed(state, one);
+    auto pressed = agent.decide_pressed(state, one);
     report.decision_seconds += seconds_since(start);
     start = std::chrono::steady_clock::now();
-    if (pressed) best = best_attempt({task, least}, pressed->candidates, report);
+    if (pressed) {
+      sort(standing, pressed->candidates);
+      best = best_attempt(task, least, pressed->candidates, report);
+    }
     report.rehearsal_seconds += seconds_since(start);
   }
   if (!best) {

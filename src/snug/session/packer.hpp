@@ -115,13 +115,10 @@ class Packer {
   [[nodiscard]] cell::ContainerFit fit_of(int item, const Pose& X_WP) const;
   /// `robot`: where the tool will be.
   [[nodiscard]] PlanResult plan(int item, packing::Agent& agent, const plant::Feedback& robot, ItemReport& report);
-  /// What it is about, and what is known of it.
-  struct AttemptQuestion {
-    const RehearsalTask& task;
-    double least_percent = 0.0;
-  };
-  [[nodiscard]] std::optional<Attempt> best_attempt(const AttemptQuestion& question,
-                                                    std::vector<packing::Candidate> candidates, ItemReport& report);
+  /// `candidates`: in the order in which they are tried.
+  [[nodiscard]] std::optional<Attempt> best_attempt(const RehearsalTask& task, double least_percent,
+                                                    const std::vector<packing::Candidate>& candidates,
+                                                    ItemReport& report);
   /// In the end, when the item stays where it lies in the container; nothing: the agent does not know, or it may not.
   [[nodiscard]] std::optional<double> expected_percent(int item, packing::Agent& agent) const;
   /// Percent of the container that is expected more with the item in the best other place; 0 where that is not known.
@@ -140,7 +137,7 @@ class Packer {
                                                        const packing::Orientation& orientation) const;
   /// Percent of the container that turning the box for a place costs.
   [[nodiscard]] double cost_of(const Standing& box, const packing::Placement& placement) const;
-  /// In the order in which they are tried.
+  /// By what is expected of them, less what turning the box costs.
   void sort(const Standing& box, std::vector<packing::Candidate>& candidates) const;
   [[nodiscard]] double utility_of(const packing::Candidate& candidate, double rate, double cost) const;
   [[nodiscard]] bool is_enough(const std::optional<Attempt>& best, int attempts) const;
@@ -200,8 +197,8 @@ class Packer {
   bool repack(int item, packing::Agent& agent, ItemReport& report);
   [[nodiscard]] std::optional<Pose> pose_of(int item) const;  ///< X_WP, as believed
   [[nodiscard]] std::vector<std::optional<Pose>> believed_poses() const;
-  /// Plan, send, look, recover, until it is packed or given up. `planned`: done already.
-  void bring_to_place(int item, packing::Agent& agent, std::optional<PlanResult> planned, ItemReport& report);
+  /// Plan, send, look, recover, until it is packed or given up. `ready`: a plan that is made already.
+  void bring_to_place(int item, packing::Agent& agent, std::optional<PlanResult> ready, ItemReport& report);
   [[nodiscard]] bool is_handled(int item) const;
   void give_up(int item, Trouble trouble, ItemReport& report);
   /// No motion is planned for it any more: one that was moved before stays where it lies.

@@ -10,12 +10,13 @@ namespace snug::session {
 namespace {
 
 constexpr double kSamePosition = 0.001;  ///< m, of the tool: where it was planned from
-constexpr double kSameJoint = 0.002;     ///< rad
+constexpr double kSameAngle = 0.002;     ///< rad, of the tool and of joints
 
 bool stands_as(const plant::Feedback& robot, const plant::Feedback& expected) {
   if ((robot.X_WE.p - expected.X_WE.p).norm() > kSamePosition) return false;
+  if (angle_between(robot.X_WE.R, expected.X_WE.R) > kSameAngle) return false;
   return std::ranges::equal(robot.q, expected.q,
-                            [](double is, double was) { return std::abs(is - was) <= kSameJoint; });
+                            [](double is, double was) { return std::abs(is - was) <= kSameAngle; });
 }
 
 }  // namespace
