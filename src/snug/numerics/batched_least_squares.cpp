@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "snug/core/check.hpp"
 #include "snug/numerics/dense.hpp"
@@ -47,9 +48,8 @@ std::vector<std::vector<Eigen::Index>> unknowns_apart(const BatchedProblem::Term
 struct Batch {
   const BatchedProblem& problem;
   bool secants = false;
-  BatchedDerivatives found;
-  bool has_jacobians = false;
-  BatchedDerivatives last;  ///< with derivatives
+  std::shared_ptr<const BatchedDerivatives> found;  ///< without derivatives, where only the cost was asked for
+  std::shared_ptr<const BatchedDerivatives> last;   ///< with derivatives
 };
 
 /// Rows that Ceres gets of a term: of many residuals only as many as have the same sum of squares and slopes.
@@ -112,27 +112,27 @@ std::vector<Eigen::VectorXd> own_parts(const BatchedProblem& problem, const Eige
   return own;
 }
 
-/// Slopes along the way from `before` become those that the residuals had on it (Broyden, 1965).
+/// Slopes along the way from `before` become those that the residuals had on it (Broyden, 1965); those of own unknowns
+/// stay.
 void follow_secant(const BatchedProblem& problem, const BatchedDerivatives& before, BatchedDerivatives& found) {
   const Eigen::Index n = found.shared.size();
   const Eigen::VectorXd way = (found.shared - before.shared).cwiseQuotient(problem.step);
   for (std::size_t i = 0; i < found.jacobians.size(); ++i) {
     Eigen::MatrixXd& J = found.jacobians[i];
     const Eigen::MatrixXd& J_before = before.jacobians[i];
-    if (J.rows() != J_before.rows() || J.cols() == 0) {
+    if (found.residuals[i].size() != J_before.rows()) {
       J.resize(0, 0);
       continue;
     }
-    J.leftCols(n) = J_before.leftCols(n);
+    J = J_before;
     if (way.squaredNorm() == 0.0) continue;
     Eigen::VectorXd missed = found.residuals[i] - before.residuals[i] - J.leftCols(n) * (found.shared - before.shared);
-    if (J.cols() > n)
-      missed -= 0.5 * (J.rightCols(J.cols() - n) + J_before.rightCols(J.cols() - n)) * (found.own[i] - before.own[i]);
+    if (J.cols() > n) missed -= J.rightCols(J.cols() - n) * (found.own[i] - before.own[i]);
     J.leftCols(n) += missed * way.cwiseQuotient(problem.step).transpose() / way.squaredNorm();
   }
 }
 
-/// `before`: shared unknowns are not moved, their columns follow from those there.
+/// `before`: no unknown is moved, the columns follow from those there.
 BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen::VectorXd& shared,
                                       const std::vector<Eigen::VectorXd>& own, const BatchedDerivatives* before) {
   const Eigen::Index n = shared.size();
@@ -159,7 +159,7 @@ BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen
       jobs.push_back(std::move(minus));
     }
   }
-  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
+  for (std::size_t i = 0; i < problem.terms.size() && before == nullptr; ++i) {
     for (const std::vector<Eigen::Index>& together : unknowns_apart(problem.terms[i])) {
       BatchedProblem::Job plus{i, shared, own[i]}, minus = plus;
       for (const Eigen::Index j : together) {
@@ -178,8 +178,9 @@ BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen
   BatchedDerivatives found;
   found.shared = shared;
   found.own = own;
-  for (std::size_t i = 0; i < problem.terms.size(); ++i)
-    found.jacobians.push_back(Eigen::MatrixXd::Zero(values[i].size(), n + own[i].size()));
+  found.jacobians.resize(problem.terms.size());
+  for (std::size_t i = 0; i < problem.terms.size() && before == nullptr; ++i)
+    found.jacobians[i] = Eigen::MatrixXd::Zero(values[i].size(), n + own[i].size());
   for (const Column& column : columns) {
     const Eigen::VectorXd &plus = values[column.plus], &minus = values[column.minus];
     Eigen::MatrixXd& J = found.jacobians[column.term];
@@ -208,23 +209,39 @@ class Prepare final : public ceres::EvaluationCallback {
  public:
   Prepare(Batch& batch, const Eigen::VectorXd& unknowns) : batch_(batch), unknowns_(unknowns) {}
   void PrepareForEvaluation(bool with_jacobians, bool is_new_point) override {
-    if (!is_new_point && (batch_.has_jacobians || !with_jacobians)) return;
+    if (!is_new_point && batch_.found && (!with_jacobians || !batch_.found->jacobians.empty())) return;
     const Eigen::VectorXd shared = unknowns_.head(batch_.problem.start.size());
     const std::vector<Eigen::VectorXd> own = own_parts(batch_.problem, unknowns_);
-    if (with_jacobians) {
-      const bool has_last = batch_.secants && !batch_.last.jacobians.empty();
-      batch_.found = differentiate_from(batch_.problem, shared, own, has_last ? &batch_.last : nullptr);
-      if (batch_.secants) batch_.last = batch_.found;
-    } else {
-      batch_.found = {};
-      batch_.found.residuals = evaluate_at(batch_.problem, shared, own);
+    if (batch_.last && batch_.last->shared == shared && batch_.last->own == own) {
+      batch_.found = batch_.last;
+      return;
     }
-    batch_.has_jacobians = with_jacobians;
+    if (with_jacobians) {
+      batch_.found = std::make_shared<const BatchedDerivatives>(
+          differentiate_from(batch_.problem, shared, own, batch_.secants ? batch_.last.get() : nullptr));
+      batch_.last = batch_.found;
+    } else {
+      BatchedDerivatives at;
+      at.residuals = evaluate_at(batch_.problem, shared, own);
+      batch_.found = std::make_shared<const BatchedDerivatives>(std::move(at));
+    }
   }
 
  private:
   Batch& batch_;
   const Eigen::VectorXd& unknowns_;  ///< where Ceres keeps them
+};
+
+/// Derivatives that only follow secants may be at their end: two steps in a row that make nothing better are enough.
+class StopWithoutGain final : public ceres::IterationCallback {
+ public:
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    failures_ = summary.step_is_successful ? 0 : failures_ + 1;
+    return failures_ < 2 ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+
+ private:
+  int failures_ = 0;
 };
 
 class BatchedTermCost final : public ceres::CostFunction {
@@ -237,7 +254,7 @@ class BatchedTermCost final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
-    const Eigen::VectorXd& r = batch_.found.residuals[term_];
+    const Eigen::VectorXd& r = batch_.found->residuals[term_];
     if (r.size() != batch_.problem.terms[term_].residuals || !r.allFinite()) return false;
     Eigen::Map<Eigen::VectorXd> given(residuals, num_residuals());
     if (jacobians == nullptr) {  // what counts is the sum of squares
@@ -245,7 +262,7 @@ class BatchedTermCost final : public ceres::CostFunction {
       given[0] = r.norm();
       return true;
     }
-    const Eigen::MatrixXd& R = batch_.found.reduced[term_];
+    const Eigen::MatrixXd& R = batch_.found->reduced[term_];
     if (R.rows() != given.size()) return false;
     given = R.col(R.cols() - 1);
     const Eigen::Index n = batch_.problem.start.size(), own = R.cols() - 1 - n;
@@ -281,11 +298,11 @@ class RisingSquares {
     double found = 0.0;   ///< of the sum of squares
     double square = 0.0;  ///< of the way, in deviations
   };
-  /// At these lengths along the axes, there and back: 2 k and 2 k + 1 are those of axis k.
-  [[nodiscard]] std::vector<Rise> rises(const Eigen::VectorXd& length) const {
+  /// At these lengths along some of the axes, there and back: 2 i and 2 i + 1 are those of axis along[i].
+  [[nodiscard]] std::vector<Rise> rises(const std::vector<Eigen::Index>& along, const Eigen::VectorXd& length) const {
     std::vector<Rise> result;
     std::vector<BatchedProblem::Job> jobs;
-    for (Eigen::Index k = 0; k < length.size(); ++k) {
+    for (const Eigen::Index k : along) {
       for (const double sign : {1.0, -1.0}) {
         const Eigen::VectorXd way = sign * length[k] * directions_.col(k);
         const Eigen::VectorXd there = (at_.start + way).cwiseMax(at_.lower).cwiseMin(at_.upper);
@@ -343,35 +360,44 @@ Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n)
 
 Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found) {
   // At two deviations along each axis the sum of squares has to have risen by four. Where it rises by less than half of
-  // that the axis is longer. What it strays from its parabola (root mean square q over axes and sides; of a cliff a
-  // hundred) it strays at its minimum, too: a point as good by chance may be sqrt(q) deviations away. Then it is looked
-  // at from there.
-  constexpr int kRounds = 4;
+  // that the axis is longer, and is looked at again from there. What it strays from its parabola (root mean square q
+  // over axes and sides; of a cliff a hundred) it strays at its minimum, too: a point as good by chance may be sqrt(q)
+  // deviations away.
+  constexpr int kRounds = 6;
   constexpr double kMost = 4.0;     // times as far as in the round before
+  constexpr double kRough = 8.0;    // times as far, by what all axes stray alone: looked at again, too
+  constexpr double kLeast = 0.01;   // of the steps of differences, to start from: nothing nearer was looked at
   constexpr double kCliff = 100.0;  // ten deviations: no chance makes such a point as good
   const RisingSquares squares(at, found);
   const Eigen::VectorXd first = squares.deviation();
-  Eigen::VectorXd length = first, share = Eigen::VectorXd::Ones(first.size()), deviation = first;
-  for (int round = 0; round < kRounds && first.size() > 0; ++round) {
-    const std::vector<RisingSquares::Rise> rises = squares.rises(2.0 * length);
-    double strayed = 0.0;
-    for (Eigen::Index k = 0; k < first.size(); ++k) {
-      const auto &there = rises[2 * static_cast<std::size_t>(k)], &back = rises[2 * static_cast<std::size_t>(k) + 1];
+  const auto n = first.size();
+  Eigen::VectorXd length = first.cwiseMax(kLeast), share = Eigen::VectorXd::Ones(n), deviation = first,
+                  strayed = Eigen::VectorXd::Zero(n);
+  std::vector<Eigen::Index> open(static_cast<std::size_t>(n));
+  std::iota(open.begin(), open.end(), Eigen::Index{0});
+  for (int round = 0; round < kRounds && !open.empty(); ++round) {
+    const std::vector<RisingSquares::Rise> rises = squares.rises(open, 2.0 * length);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const Eigen::Index k = open[i];
+      const auto &there = rises[2 * i], &back = rises[2 * i + 1];
       const double of_parabola = (there.found + back.found) / std::max(there.square + back.square, 1e-12);
-      share[k] = of_parabola < 0.5 ? std::max(of_parabola, share[k] / (kMost * kMost)) : 1.0;
+      share[k] = of_parabola < 0.5 ? std::max(of_parabola, std::pow(first[k] / (kMost * length[k]), 2)) : 1.0;
+      strayed[k] = 0.0;
       for (const RisingSquares::Rise& rise : {there, back})
-        strayed += std::pow(std::min(std::abs(rise.found - share[k] * rise.square), kCliff), 2);
+        strayed[k] += std::pow(std::min(std::abs(rise.found - share[k] * rise.square), kCliff), 2);
     }
-    const double q = std::sqrt(strayed / static_cast<double>(2 * first.size()));
+    const double q = std::sqrt(strayed.sum() / static_cast<double>(2 * n));
     deviation = first.cwiseProduct(((1.0 + q) * share.cwiseInverse()).cwiseSqrt());
-    if ((deviation.array() <= 2.0 * length.array()).all()) break;
-    length = deviation.cwiseMin(kMost * length);
+    open.clear();
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (deviation[k] > (share[k] < 1.0 ? 2.0 : kRough) * length[k]) open.push_back(k);
+    for (const Eigen::Index k : open) length[k] = std::min(deviation[k], kMost * length[k]);
   }
   return squares.directions() * deviation.cwiseAbs2().asDiagonal() * squares.directions().transpose();
 }
 
 BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& options) {
-  Batch batch{given, options.secants, {}, false, {}};
+  Batch batch{given, options.secants, {}, {}};
   // In one run of memory, as Ceres sorts unknowns by their addresses.
   Eigen::Index count = given.start.size();
   for (const BatchedProblem::Term& term : given.terms) count += term.own.size();
@@ -408,6 +434,11 @@ BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& o
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.tolerance;
   solver.parameter_tolerance = options.tolerance;
+  StopWithoutGain stop;
+  if (options.secants) {
+    solver.callbacks.push_back(&stop);
+    solver.max_num_line_search_step_size_iterations = 1;
+  }
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
   BatchedResult result;
@@ -418,8 +449,9 @@ BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& o
   result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   result.message = summary.message;
   if (!summary.IsSolutionUsable()) return result;
-  const bool has_last = options.secants && !batch.last.jacobians.empty();
-  result.at = differentiate_from(given, result.x, result.own, has_last ? &batch.last : nullptr);
+  const bool is_known = batch.last && batch.last->shared == result.x && batch.last->own == result.own;
+  result.at = is_known ? *batch.last
+                       : differentiate_from(given, result.x, result.own, options.secants ? batch.last.get() : nullptr);
   for (const Eigen::VectorXd& r : result.at.residuals) result.cost += r.squaredNorm();
   result.information = shared_information(result.at, given.start.size());
   return result;

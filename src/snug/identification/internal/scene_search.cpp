@@ -219,20 +219,23 @@ std::string SceneSearch::search_distance() {
 
 double SceneSearch::chi2_per_dof(const std::vector<MotionError>& errors) const {
   const RowCounts& rows = result_ ? result_->straight : fitted_rows_;
+  const RowWeights weights = result_ ? result_->weights : equal_weights(experiment_, fitted_);
   double sum = 0.0;
   for (std::size_t i = 0; i < fitted_.size(); ++i) {
     const MotionError& error = errors[fitted_[i]];
     if (!error.failure.empty()) return std::numeric_limits<double>::infinity();
     Eigen::VectorXd r = error.residuals;
-    keep_rows(experiment_, fitted_[i], rows[i], r);
+    weigh(experiment_, fitted_[i], rows[i], weights[i], r);
     sum += r.squaredNorm();
   }
-  return sum / std::max(1.0, total(rows) - static_cast<double>(free_.size()));
+  return sum / std::max(1.0, total(experiment_, fitted_, rows, weights) - static_cast<double>(free_.size()));
 }
 
 SplitErrors SceneSearch::errors_at(const Eigen::VectorXd& values) const {
-  std::vector<MotionError> errors = evaluate_all(experiment_, values);
-  if (result_ && values == best_) {  // what they have of their own was fitted to the rows that can be predicted
+  const bool is_fitted = result_ && values == best_;
+  std::vector<MotionError> errors(experiment_.motions().size());
+  if (!is_fitted || !held_.empty()) errors = evaluate_all(experiment_, values);
+  if (is_fitted) {  // what they have of their own was fitted to the rows that can be predicted
     std::vector<SceneExperiment::Job> jobs;
     for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], result_->own[i]});
     std::vector<MotionError> fitted = experiment_.evaluate(std::vector<Eigen::VectorXd>{values}, jobs);

@@ -62,6 +62,8 @@ class SceneSearch {
     std::vector<Eigen::VectorXd> own;
     RowCounts rows;      ///< that are fitted
     RowCounts straight;  ///< that can be predicted
+    RowWeights weights;
+    double misfit = 1.0;  ///< sum of squares of a row, at least 1
     numerics::BatchedDerivatives derivatives;
     std::string message;
     bool is_solved = false;
@@ -80,6 +82,11 @@ class SceneSearch {
   void take(const Eigen::VectorXd& free_values, double cost, const char* phase);
   /// Recording by recording as far as simulation follows, over longer and longer parts of the time.
   [[nodiscard]] Fitted least_squares_from(const Eigen::VectorXd& start) const;
+  /// Least squares of at.rows. Rows that were not fitted `before` and stay unexplained are taken out again: a body that
+  /// goes another way says nothing of the parameters.
+  [[nodiscard]] numerics::BatchedResult solve_explained(double until, const Eigen::VectorXd& prior,
+                                                        const numerics::BatchedOptions& options,
+                                                        const std::optional<RowCounts>& before, Fitted& at) const;
   bool solve_stage(double horizon, bool is_last, Eigen::MatrixXd& covariance, Fitted& at) const;
   [[nodiscard]] Neighbourhood look_around(const Fitted& at, double until) const;
   /// Along some of the parameters.
@@ -87,6 +94,7 @@ class SceneSearch {
   struct Straight {
     Neighbourhood around;
     RowCounts rows;  ///< that can be predicted
+    RowWeights weights;
   };
   /// `may_widen`: at.step becomes larger where small steps show only roughness.
   [[nodiscard]] Straight find_straight_rows(double until, const RowCounts& within, bool may_widen, Fitted& at) const;

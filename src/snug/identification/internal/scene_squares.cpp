@@ -10,18 +10,18 @@
 namespace snug::identification::internal {
 namespace {
 
-constexpr int kRescuePoints = 20;                           // scattered for each free parameter when a fit fails
-constexpr std::array kHorizons = {0.125, 0.25, 0.5, 0.75};  // of a recording, fitted before all of it
-constexpr int kRounds = 4;                                  // over all of it, at most
-constexpr double kSettled = 1.0, kSettledLast = 0.1;        // of a sum of squares, where a search ends
-constexpr double kStepDeviations = 3.0;                     // of differences, in standard errors
-constexpr double kLeastStep = 1e-3;                         // of the step that a task names
-constexpr double kMostStep = 0.05;                          // of the span
-constexpr double kMoreRows = 1.02;                          // of those of the last round, for another one
-constexpr double kLarger = 6.0;                             // steps, where what they do is rough
-constexpr double kLongSimulation = 1000.0;                  // s, for one difference of each parameter: then secants
-constexpr int kSecantSteps = 10;                            // of a search with secants, a simulation each
-constexpr double kGoodEnough = 1.2;                         // misfit, for no other start to be tried
+constexpr int kRescuePoints = 20;                                  // scattered for each free parameter when a fit fails
+constexpr std::array kHorizons = {0.125, 0.25, 0.375, 0.5, 0.75};  // of a recording, fitted before all of it
+constexpr int kRounds = 2;                                         // of a stage, at most
+constexpr double kFiner = 0.2;                                     // of a step: derivatives are computed anew
+constexpr double kSettled = 1.0, kSettledLast = 0.1;               // of a sum of squares, where a search ends
+constexpr double kStepDeviations = 3.0;                            // of differences, in standard errors
+constexpr double kLeastStep = 0.4;                                 // of the step that a task names
+constexpr double kMostStep = 0.05;                                 // of the span
+constexpr double kLarger = 6.0;                                    // steps, where what they do is rough
+constexpr double kLongSimulation = 100.0;  // s, for one difference of each parameter: then secants
+constexpr int kSecantSteps = 10;           // of a search with secants, a simulation each
+constexpr double kGoodEnough = 1.2;        // misfit, for no other start to be tried
 
 }  // namespace
 
@@ -31,6 +31,7 @@ SceneSearch::Fitted SceneSearch::unfitted(const Eigen::VectorXd& start) const {
   at.step = step_;
   for (const std::size_t m : fitted_) at.own.push_back(experiment_.term_of(m).own);
   at.rows = at.straight = fitted_rows_;
+  at.weights = equal_weights(experiment_, fitted_);
   return at;
 }
 
@@ -43,7 +44,7 @@ numerics::BatchedProblem SceneSearch::problem(const Fitted& at, double until, co
     problem.terms.back().own = at.own[i];
   }
   if (prior.size() > 0) problem.terms.push_back({prior.size(), {}, {}, {}});
-  problem.evaluate = [this, until, prior, rows = at.rows,
+  problem.evaluate = [this, until, prior, rows = at.rows, weights = at.weights,
                       start = at.x](const std::vector<numerics::BatchedProblem::Job>& batch) {
     std::vector<Eigen::VectorXd> points;
     std::vector<SceneExperiment::Job> jobs;
@@ -69,7 +70,7 @@ numerics::BatchedProblem SceneSearch::problem(const Fitted& at, double until, co
         continue;
       }
       Eigen::VectorXd& r = errors[next++].residuals;
-      keep_rows(experiment_, fitted_[job.term], rows[job.term], r);
+      weigh(experiment_, fitted_[job.term], rows[job.term], weights[job.term], r);
       residuals.push_back(std::move(r));
     }
     return residuals;
@@ -123,10 +124,10 @@ void SceneSearch::look(const Fitted& at, double until, const std::vector<std::si
 
 SceneSearch::Straight SceneSearch::find_straight_rows(double until, const RowCounts& within, bool may_widen,
                                                       Fitted& at) const {
-  Straight found{look_around(at, until), within};
+  Straight found{look_around(at, until), within, at.weights};
   if (std::ranges::any_of(found.around.middle, [](const Eigen::VectorXd& r) { return r.size() == 0; })) return found;
   std::vector<bool> is_bent;
-  found.rows = find_straight(experiment_, fitted_, found.around, within, is_bent);
+  found.rows = find_straight(experiment_, fitted_, found.around, within, is_bent, found.weights);
   if (!may_widen) return found;
   // What is rough from near may be straight at large.
   Fitted wider = at;
@@ -141,15 +142,18 @@ SceneSearch::Straight SceneSearch::find_straight_rows(double until, const RowCou
   if (along.empty()) return found;
   Neighbourhood wide = found.around;
   look(wider, until, along, wide);
-  const RowCounts rows = find_straight(experiment_, fitted_, wide, within, is_bent);
-  if (total(rows) <= total(found.rows)) return found;
+  Straight at_large{std::move(wide), within, at.weights};
+  at_large.rows = find_straight(experiment_, fitted_, at_large.around, within, is_bent, at_large.weights);
+  if (total(at_large.rows) <= total(found.rows)) return found;
   at.step = wider.step;
-  return {std::move(wide), rows};
+  return at_large;
 }
 
 SceneSearch::Derivatives SceneSearch::differentiate() const {
   Fitted start = unfitted(free_of(best_));
-  start.rows = find_straight_rows(kAlways, fitted_rows_, false, start).rows;
+  Straight straight = find_straight_rows(kAlways, fitted_rows_, false, start);
+  start.rows = std::move(straight.rows);
+  start.weights = std::move(straight.weights);
   const numerics::BatchedDerivatives found = numerics::differentiate(problem(start, kAlways, {}), start.x, start.own);
   const Eigen::Index n = start.x.size();
   Derivatives result{numerics::shared_information(found, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
@@ -174,16 +178,32 @@ SceneSearch::Derivatives SceneSearch::differentiate() const {
   return result;
 }
 
+numerics::BatchedResult SceneSearch::solve_explained(double until, const Eigen::VectorXd& prior,
+                                                     const numerics::BatchedOptions& options,
+                                                     const std::optional<RowCounts>& before, Fitted& at) const {
+  constexpr int kAttempts = 4;
+  for (int attempt = 1;; ++attempt) {
+    numerics::BatchedResult found = numerics::solve_batched(problem(at, until, prior), options);
+    if (!before || found.information.size() == 0 || attempt == kAttempts) return found;
+    const RowCounts explained = find_explained(experiment_, fitted_, found.at.residuals, at.misfit);
+    const RowCounts kept = fewer(at.rows, more(explained, *before));
+    if (kept == at.rows) return found;
+    at.rows = kept;
+  }
+}
+
 bool SceneSearch::solve_stage(double horizon, bool is_last, Eigen::MatrixXd& covariance, Fitted& at) const {
+  const std::optional<RowCounts> before = covariance.size() > 0 ? std::optional(at.rows) : std::nullopt;
   std::vector<double> ends;
   for (const std::size_t m : fitted_) {
     const std::vector<double>& times = experiment_.motions()[m].times;
     ends.push_back(is_last ? kAlways : times.front() + horizon * (times.back() - times.front()));
   }
   const double until = *std::max_element(ends.begin(), ends.end());
-  const auto [around, straight] =
-      find_straight_rows(until, fewer(fitted_rows_, rows_until(experiment_, fitted_, ends)), true, at);
+  const auto [around, straight, weights] = find_straight_rows(
+      until, fewer(fitted_rows_, rows_until(experiment_, fitted_, ends)), covariance.size() == 0, at);
   at.straight = straight;
+  at.weights = weights;
   if (std::ranges::any_of(around.middle, [](const Eigen::VectorXd& r) { return r.size() == 0; })) return false;
   // What nothing is known of yet may be far off and still come near.
   at.rows =
@@ -192,19 +212,19 @@ bool SceneSearch::solve_stage(double horizon, bool is_last, Eigen::MatrixXd& cov
   numerics::BatchedOptions options;
   const auto each = static_cast<int>(2 * free_.size() + 1);
   options.max_iterations = std::max(1, experiment_.task().search.local / each);
-  options.tolerance = (is_last ? kSettledLast : kSettled) / std::max(1.0, total(at.rows));
+  options.tolerance =
+      (is_last ? kSettledLast : kSettled) / std::max(1.0, total(experiment_, fitted_, at.rows, at.weights));
   options.secants = each * std::min(until, experiment_.longest()) > kLongSimulation;
   if (options.secants) options.max_iterations = std::max(options.max_iterations, kSecantSteps);
-  const numerics::BatchedProblem from = problem(at, until, prior);
-  const numerics::BatchedResult found = numerics::solve_batched(from, options);
+  const numerics::BatchedResult found = solve_explained(until, prior, options, before, at);
   at.message = found.message;
   if (found.information.size() == 0) return false;
   at.x = found.x;
   at.own.assign(found.own.begin(), found.own.begin() + static_cast<std::ptrdiff_t>(fitted_.size()));
   at.derivatives = found.at;
-  const double misfit = std::max(1.0, found.cost / std::max(1.0, total(at.rows)));
+  at.misfit = std::max(1.0, found.cost / std::max(1.0, total(experiment_, fitted_, at.rows, at.weights)));
   const auto scale = step_.asDiagonal();  // units differ by orders
-  covariance = misfit * (scale * numerics::invert_symmetric(scale * found.information * scale) * scale);
+  covariance = at.misfit * (scale * numerics::invert_symmetric(scale * found.information * scale) * scale);
   const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   at.step = (kStepDeviations * deviation)
                 .cwiseMax(kLeastStep * step_)
@@ -216,18 +236,23 @@ bool SceneSearch::solve_stage(double horizon, bool is_last, Eigen::MatrixXd& cov
 SceneSearch::Fitted SceneSearch::least_squares_from(const Eigen::VectorXd& start) const {
   Fitted at = unfitted(start);
   Eigen::MatrixXd covariance;
+  // A stage is fitted again where it ends further away, or knows its parameters much better, than derivatives were for.
+  const auto fit = [&](double horizon, bool is_last, int rounds) {
+    for (int round = 0; round < rounds; ++round) {
+      const Eigen::VectorXd x = at.x, step = at.step;
+      if (!solve_stage(horizon, is_last, covariance, at)) return false;
+      const bool is_near = ((at.x - x).cwiseAbs().array() <= at.step.array()).all();
+      if (is_near && (at.step.array() >= kFiner * step.array()).all()) break;
+    }
+    return true;
+  };
   if (!experiment_.task().only_final_state) {
     for (const double horizon : kHorizons)
-      if (!solve_stage(horizon, false, covariance, at)) return at;
+      if (!fit(horizon, false, kRounds)) return at;
   }
-  // More rows count as parameters come nearer, and steps are as small as what they are known to.
-  for (int round = 0; round < kRounds; ++round) {
-    const double before = total(at.rows);
-    if (!solve_stage(1.0, true, covariance, at)) return at;
-    if (round > 0 && total(at.rows) <= kMoreRows * before) break;
-  }
-  const auto [around, straight] = find_straight_rows(kAlways, fitted_rows_, false, at);
-  at.straight = excused(experiment_, fitted_, around, fewer(at.rows, straight), fitted_rows_);
+  if (!fit(1.0, true, kRounds)) return at;
+  // That a few rows are not what all others say is told (unpredictable); that most are not is a misfit.
+  if (2.0 * total(at.rows) >= total(at.straight)) at.straight = at.rows;
   return at;
 }
 
@@ -240,10 +265,10 @@ double SceneSearch::bounded_misfit(const Fitted& at) const {
   double sum = 0.0;
   for (std::size_t i = 0; i < fitted_.size(); ++i) {
     if (!errors[i].failure.empty()) return std::numeric_limits<double>::infinity();
-    keep_rows(experiment_, fitted_[i], at.straight[i], errors[i].residuals);
+    weigh(experiment_, fitted_[i], at.straight[i], at.weights[i], errors[i].residuals);
     sum += errors[i].residuals.cwiseAbs2().cwiseMin(kMost).sum();
   }
-  return sum / std::max(1.0, total(at.straight));
+  return sum / std::max(1.0, total(experiment_, fitted_, at.straight, at.weights));
 }
 
 std::string SceneSearch::search_squares(double rescue) {

@@ -368,14 +368,49 @@ TEST_F(SceneFitTest, RowsEndWhereWhatOppositeStepsDoIsNoLongerOpposite) {
   for (auto* side : {&around.up, &around.down}) (*side)[1][0].tail(samples - good).setConstant(1000.0);
   const internal::RowCounts all = {{samples}};
   std::vector<bool> is_bent;
-  const internal::RowCounts straight = internal::find_straight(experiment, {0}, around, all, is_bent);
-  EXPECT_EQ(straight, internal::RowCounts{{good}});
+  internal::RowWeights weights = internal::equal_weights(experiment, {0});
+  EXPECT_EQ(internal::find_straight(experiment, {0}, around, all, is_bent, weights), (internal::RowCounts{{good}}));
   EXPECT_EQ(is_bent, (std::vector<bool>{false, true}));
-  EXPECT_EQ(internal::excused(experiment, {0}, around, straight, all), straight);
-  // Where the recording is ten times further off than steps move the box, they are no excuse.
-  for (auto* all_of : {&around.up[0], &around.up[1], &around.down[0], &around.down[1], &around.middle})
-    (*all_of)[0].tail(samples - good).array() += 1e4;
-  EXPECT_EQ(internal::excused(experiment, {0}, around, straight, all), all);
+  EXPECT_EQ(weights[0].head(good), Eigen::VectorXd(Eigen::VectorXd::Ones(good)));
+}
+
+TEST_F(SceneFitTest, RowsThatAreBentSayNoMoreThanOneNumberOfThatVariance) {
+  const SceneExperiment experiment(task(kTwo), {record({}, 5)}, 1);
+  const Eigen::Index samples = experiment.samples_of(0);
+  // Each row moves by 10 with the parameter, and both ways by 0.3: together 0.09 for each of them.
+  internal::Neighbourhood around;
+  around.middle = {Eigen::VectorXd::Zero(samples)};
+  around.is_between = {true};
+  around.up = {{Eigen::VectorXd::Constant(samples, 10.3)}};
+  around.down = {{Eigen::VectorXd::Constant(samples, -9.7)}};
+  const internal::RowCounts all = {{samples}};
+  std::vector<bool> is_bent;
+  internal::RowWeights weights = internal::equal_weights(experiment, {0});
+  EXPECT_EQ(internal::find_straight(experiment, {0}, around, all, is_bent, weights), all);
+  const Eigen::Index each = experiment.rows_of(0).front().each;
+  const double at_end = 1.0 / std::sqrt(1.0 + 0.09 * static_cast<double>(samples));
+  EXPECT_NEAR(weights[0][samples - 1], at_end, 1e-12);
+  EXPECT_NEAR(weights[0][0], 1.0 / std::sqrt(1.0 + 0.09 * static_cast<double>(each)), 1e-12);
+  // However long the body lies there: the sum of all weights grows with the logarithm of the rows alone.
+  EXPECT_LT(internal::total(experiment, {0}, all, weights),
+            std::log1p(0.09 * static_cast<double>(samples)) / 0.09 + 1.0);
+  Eigen::VectorXd residuals = Eigen::VectorXd::Ones(samples);
+  internal::weigh(experiment, 0, {samples - each}, weights[0], residuals);
+  EXPECT_EQ(residuals[0], weights[0][0]);
+  EXPECT_EQ(residuals[samples - 1], 0.0);
+}
+
+TEST_F(SceneFitTest, RowsThatAFitDoesNotExplainEndWhereTheyBeginToStayAway) {
+  const SceneExperiment experiment(task(kTwo), {record({}, 5)}, 1);
+  const Eigen::Index samples = experiment.samples_of(0), each = experiment.rows_of(0).front().each;
+  const Eigen::Index away = 20 * each;
+  Eigen::VectorXd residuals = Eigen::VectorXd::Ones(samples);
+  residuals.segment(5 * each, each).setConstant(100.0);  // for a moment
+  EXPECT_EQ(internal::find_explained(experiment, {0}, {residuals}, 1.0), (internal::RowCounts{{samples}}));
+  residuals.tail(samples - away).setConstant(10.0);
+  EXPECT_EQ(internal::find_explained(experiment, {0}, {residuals}, 1.0), (internal::RowCounts{{away}}));
+  // Where what was fitted before is as far off, it is no other.
+  EXPECT_EQ(internal::find_explained(experiment, {0}, {residuals}, 100.0), (internal::RowCounts{{samples}}));
 }
 
 TEST(FreeFlight, IsFoundFromPosesOfATumblingBody) {
