@@ -18,8 +18,9 @@
 namespace snug::experiment::internal {
 namespace {
 
-constexpr double kDelay = 5e-4;  // s, of what clocks are found to
-constexpr int kRepetitions = 3;  // recordings, as archives have of a sequence
+constexpr double kDelay = 5e-4;   // s, of what clocks are found to
+constexpr double kWhole = 400.0;  // s, more than the sequence takes
+constexpr int kRepetitions = 3;   // recordings, as archives have of a sequence
 
 /// A number that is planted, how far off the search starts, and how near it has to come back.
 struct Planted {
@@ -31,6 +32,8 @@ struct PlantedExperiment {
   std::string name;
   double clip = 20.0;     ///< s, from the beginning of the program
   std::size_t boxes = 1;  ///< the first so many are tracked
+  bool is_corrected =
+      true;  ///< site corrections, made for a cup that holds; else a cup with phases, and no corrections
   std::vector<Planted> numbers;
   double seconds = 60.0;             ///< that it may take
   std::vector<std::uint64_t> seeds;  ///< of the sensors: a set of recordings each
@@ -42,22 +45,30 @@ Planted planted(const std::string& name, const std::string& path, double start, 
 }
 
 std::vector<PlantedExperiment> planted_experiments(const std::vector<std::string>& boxes) {
-  return {{"held",
-           20.0,
-           1,
-           {planted("cup_bend", "cup.stiffness.bend", 5.0, 2.0, 10.0, 0.1, 5.9, 0.05 * 5.9),
-            planted("cup_lateral", "cup.stiffness.lateral", 2500.0, 1500.0, 5000.0, 50.0, 2900.0, 0.05 * 2900.0),
-            planted("com_x", "parcels." + boxes[0] + ".com[0]", 0.0, -0.03, 0.03, 0.0005, 0.008, 0.002)},
-           60.0,
-           {1, 2, 3}},
-          {"packed",
+  const Planted bend = planted("cup_bend", "cup.stiffness.bend", 5.0, 2.0, 10.0, 0.1, 5.9, 0.05 * 5.9);
+  const Planted lateral =
+      planted("cup_lateral", "cup.stiffness.lateral", 2500.0, 1500.0, 5000.0, 50.0, 2900.0, 0.05 * 2900.0);
+  const Planted axial =
+      planted("cup_axial", "cup.stiffness.axial", 6000.0, 4000.0, 10000.0, 100.0, 6900.0, 0.05 * 6900.0);
+  const Planted torsion = planted("cup_torsion", "cup.stiffness.torsion", 3.0, 2.0, 6.0, 0.05, 3.4, 0.05 * 3.4);
+  const Planted com_x = planted("com_x", "parcels." + boxes[0] + ".com[0]", 0.0, -0.03, 0.03, 0.0005, 0.008, 0.002);
+  const Planted friction = planted("friction", "contacts.pairs[1].friction", 0.24, 0.1, 0.5, 0.005, 0.31, 0.01);
+  const Planted bench_friction =
+      planted("bench_friction", "contacts.pairs[2].friction", 0.15, 0.05, 0.4, 0.005, 0.19, 0.01);
+  const Planted restitution = planted("restitution", "contacts.pairs[2].restitution", 0.1, 0.0, 0.6, 0.01, 0.2, 0.03);
+  const Planted clearance = planted("clearance", "parcel_clearance", 0.002, 0.0, 0.005, 5e-5, 0.0028, 3e-4);
+  const Planted push = planted("release_push", "cup.release_push", 0.7, 0.3, 1.0, 0.01, 0.8, 0.05 * 0.8);
+  const Planted vent = planted("vent_time", "cup.vacuum.vent_time", 0.03, 0.01, 0.1, 0.001, 0.045, 0.05 * 0.045);
+  return {{"held", 20.0, 1, true, {bend, lateral, com_x}, 60.0, {1, 2, 3}},
+          {"packed", 120.0, 5, true, {friction, restitution, clearance}, 120.0, {1, 2, 3}},
+          {"released", 80.0, 4, false, {push, vent, clearance}, 120.0, {1, 2, 3}},
+          {"whole",
+           kWhole,
+           boxes.size(),
+           false,
+           {lateral, axial, bend, torsion, com_x, friction, bench_friction, restitution, clearance, push},
            120.0,
-           5,
-           {planted("friction", "contacts.pairs[1].friction", 0.24, 0.1, 0.5, 0.005, 0.31, 0.01),
-            planted("restitution", "contacts.pairs[2].restitution", 0.1, 0.0, 0.6, 0.01, 0.2, 0.03),
-            planted("clearance", "parcel_clearance", 0.002, 0.0, 0.005, 5e-5, 0.0028, 3e-4)},
-           120.0,
-           {1, 2, 3}}};
+           {1}}};
 }
 
 class PlantedBench {
@@ -77,13 +88,17 @@ class PlantedBench {
  private:
   static constexpr const char* kSequence = "1";
 
-  [[nodiscard]] record::Recording run_clip(const model::Scenario& scenario, double clip) const {
+  [[nodiscard]] std::string corrections_of(const PlantedExperiment& experiment) const {
+    return experiment.is_corrected ? options_.corrections : std::string();
+  }
+
+  [[nodiscard]] record::Recording run_clip(const model::Scenario& scenario, const PlantedExperiment& experiment) const {
     cell::RunCapture capture;
     cell::RunOptions run;
     run.program = motion::load_program(options_.program);
     run.sequence = kSequence;
-    run.corrections = options_.corrections;
-    run.until = clip;
+    run.corrections = corrections_of(experiment);
+    run.until = experiment.clip;
     run.observer = &capture;
     (void)cell::run(scenario, run);
     return std::move(capture.recording);
@@ -93,7 +108,7 @@ class PlantedBench {
     const model::MotionCaptureParams& camera = sensors_.motion_capture;
     model::SceneTask task;
     task.path = task.scenario = options_.scenario;
-    task.program = model::TaskProgram{options_.program, kSequence, options_.corrections, {}};
+    task.program = model::TaskProgram{options_.program, kSequence, corrections_of(experiment), {}};
     task.simulation_time = experiment.clip;
     for (std::size_t i = 0; i < experiment.boxes; ++i) task.tracked.push_back({boxes_[i], {}, {}, {}});
     task.start.from = model::StartFrom::Scenario;
@@ -114,9 +129,9 @@ class PlantedBench {
     const model::SceneTask task = make_task(experiment);
     std::vector<model::NumberEdit> edits;
     for (const Planted& number : experiment.numbers) edits.push_back({number.parameter.paths.front(), number.truth});
-    const record::Recording start = run_clip(base_, experiment.clip);
+    const record::Recording start = run_clip(base_, experiment);
     const validation::SimulatedRun truth =
-        validation::make_run(run_clip(model::with_numbers(base_, edits), experiment.clip), "truth");
+        validation::make_run(run_clip(model::with_numbers(base_, edits), experiment), "truth");
     std::vector<double> error(experiment.numbers.size(), 0.0), over_its_error = error;
     double chi2 = 0.0, seconds = 0.0;
     for (const std::uint64_t seed : experiment.seeds) {
