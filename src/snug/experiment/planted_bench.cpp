@@ -66,7 +66,7 @@ std::vector<PlantedExperiment> planted_experiments(const std::vector<std::string
            kWhole,
            boxes.size(),
            false,
-           {lateral, axial, bend, torsion, com_x, friction, bench_friction, restitution, clearance, push},
+           {lateral, axial, bend, torsion, com_x, friction, bench_friction, clearance, push, vent},
            120.0,
            {1}}};
 }

@@ -47,7 +47,7 @@ std::vector<std::vector<Eigen::Index>> unknowns_apart(const BatchedProblem::Term
 /// What the batch found at the unknowns of last time.
 struct Batch {
   const BatchedProblem& problem;
-  bool secants = false;
+  bool fixed_slopes = false;
   std::shared_ptr<const BatchedDerivatives> found;  ///< without derivatives, where only the cost was asked for
   std::shared_ptr<const BatchedDerivatives> last;   ///< with derivatives
 };
@@ -112,29 +112,32 @@ std::vector<Eigen::VectorXd> own_parts(const BatchedProblem& problem, const Eige
   return own;
 }
 
-/// Slopes along the way from `before` become those that the residuals had on it (Broyden, 1965); those of own unknowns
-/// stay.
-void follow_secant(const BatchedProblem& problem, const BatchedDerivatives& before, BatchedDerivatives& found) {
-  const Eigen::Index n = found.shared.size();
-  const Eigen::VectorXd way = (found.shared - before.shared).cwiseQuotient(problem.step);
-  for (std::size_t i = 0; i < found.jacobians.size(); ++i) {
-    Eigen::MatrixXd& J = found.jacobians[i];
-    const Eigen::MatrixXd& J_before = before.jacobians[i];
-    if (found.residuals[i].size() != J_before.rows()) {
-      J.resize(0, 0);
-      continue;
-    }
-    J = J_before;
-    if (way.squaredNorm() == 0.0) continue;
-    Eigen::VectorXd missed = found.residuals[i] - before.residuals[i] - J.leftCols(n) * (found.shared - before.shared);
-    if (J.cols() > n) missed -= J.rightCols(J.cols() - n) * (found.own[i] - before.own[i]);
-    J.leftCols(n) += missed * way.cwiseQuotient(problem.step).transpose() / way.squaredNorm();
+void reduce_all(const BatchedProblem& problem, BatchedDerivatives& at) {
+  at.reduced.resize(problem.terms.size());
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
+    const Eigen::VectorXd& r = at.residuals[i];
+    const Eigen::MatrixXd& J = at.jacobians[i];
+    if (r.size() == problem.terms[i].residuals && J.rows() == r.size() && J.allFinite() && r.allFinite())
+      at.reduced[i] = reduce(problem.terms[i], J, r);
   }
 }
 
-/// `before`: no unknown is moved, the columns follow from those there.
-BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen::VectorXd& shared,
-                                      const std::vector<Eigen::VectorXd>& own, const BatchedDerivatives* before) {
+/// Residuals there, with slopes of elsewhere.
+BatchedDerivatives with_slopes_of(const BatchedProblem& problem, const BatchedDerivatives& slopes,
+                                  const Eigen::VectorXd& shared, const std::vector<Eigen::VectorXd>& own) {
+  BatchedDerivatives found;
+  found.residuals = evaluate_at(problem, shared, own);
+  found.jacobians = slopes.jacobians;
+  found.shared = shared;
+  found.own = own;
+  reduce_all(problem, found);
+  return found;
+}
+
+}  // namespace
+
+BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
+                                 const std::vector<Eigen::VectorXd>& own) {
   const Eigen::Index n = shared.size();
   for (const BatchedProblem::Term& term : problem.terms)
     SNUG_CHECK(term.own_rows.empty() || term.own_rows.size() == static_cast<std::size_t>(term.own.size()),
@@ -150,7 +153,7 @@ BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen
   for (std::size_t i = 0; i < problem.terms.size(); ++i) jobs.push_back({i, shared, own[i]});
   const Eigen::VectorXd up = (shared + problem.step).cwiseMin(problem.upper);
   const Eigen::VectorXd down = (shared - problem.step).cwiseMax(problem.lower);
-  for (Eigen::Index j = 0; j < n && before == nullptr; ++j) {
+  for (Eigen::Index j = 0; j < n; ++j) {
     for (std::size_t i = 0; i < problem.terms.size(); ++i) {
       BatchedProblem::Job plus{i, shared, own[i]}, minus = plus;
       plus.shared[j] = up[j], minus.shared[j] = down[j];
@@ -159,7 +162,7 @@ BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen
       jobs.push_back(std::move(minus));
     }
   }
-  for (std::size_t i = 0; i < problem.terms.size() && before == nullptr; ++i) {
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
     for (const std::vector<Eigen::Index>& together : unknowns_apart(problem.terms[i])) {
       BatchedProblem::Job plus{i, shared, own[i]}, minus = plus;
       for (const Eigen::Index j : together) {
@@ -178,9 +181,8 @@ BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen
   BatchedDerivatives found;
   found.shared = shared;
   found.own = own;
-  found.jacobians.resize(problem.terms.size());
-  for (std::size_t i = 0; i < problem.terms.size() && before == nullptr; ++i)
-    found.jacobians[i] = Eigen::MatrixXd::Zero(values[i].size(), n + own[i].size());
+  for (std::size_t i = 0; i < problem.terms.size(); ++i)
+    found.jacobians.push_back(Eigen::MatrixXd::Zero(values[i].size(), n + own[i].size()));
   for (const Column& column : columns) {
     const Eigen::VectorXd &plus = values[column.plus], &minus = values[column.minus];
     Eigen::MatrixXd& J = found.jacobians[column.term];
@@ -193,16 +195,11 @@ BatchedDerivatives differentiate_from(const BatchedProblem& problem, const Eigen
   }
   values.resize(problem.terms.size());
   found.residuals = std::move(values);
-  if (before != nullptr) follow_secant(problem, *before, found);
-  found.reduced.resize(problem.terms.size());
-  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
-    const Eigen::VectorXd& r = found.residuals[i];
-    const Eigen::MatrixXd& J = found.jacobians[i];
-    if (r.size() == problem.terms[i].residuals && J.rows() == r.size() && J.allFinite() && r.allFinite())
-      found.reduced[i] = reduce(problem.terms[i], J, r);
-  }
+  reduce_all(problem, found);
   return found;
 }
+
+namespace {
 
 /// Ceres asks for residuals and derivatives term by term; before it does, this computes all of them at once.
 class Prepare final : public ceres::EvaluationCallback {
@@ -218,7 +215,8 @@ class Prepare final : public ceres::EvaluationCallback {
     }
     if (with_jacobians) {
       batch_.found = std::make_shared<const BatchedDerivatives>(
-          differentiate_from(batch_.problem, shared, own, batch_.secants ? batch_.last.get() : nullptr));
+          batch_.fixed_slopes && batch_.last ? with_slopes_of(batch_.problem, *batch_.last, shared, own)
+                                             : differentiate(batch_.problem, shared, own));
       batch_.last = batch_.found;
     } else {
       BatchedDerivatives at;
@@ -232,7 +230,7 @@ class Prepare final : public ceres::EvaluationCallback {
   const Eigen::VectorXd& unknowns_;  ///< where Ceres keeps them
 };
 
-/// Derivatives that only follow secants may be at their end: two steps in a row that make nothing better are enough.
+/// Slopes that stay may be at their end: two steps in a row that make nothing better are enough.
 class StopWithoutGain final : public ceres::IterationCallback {
  public:
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
@@ -338,11 +336,6 @@ class RisingSquares {
 
 }  // namespace
 
-BatchedDerivatives differentiate(const BatchedProblem& problem, const Eigen::VectorXd& shared,
-                                 const std::vector<Eigen::VectorXd>& own) {
-  return differentiate_from(problem, shared, own, nullptr);
-}
-
 Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
   for (const Eigen::MatrixXd& R : at.reduced) {
@@ -397,7 +390,7 @@ Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDeriva
 }
 
 BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& options) {
-  Batch batch{given, options.secants, {}, {}};
+  Batch batch{given, options.fixed_slopes, {}, {}};
   // In one run of memory, as Ceres sorts unknowns by their addresses.
   Eigen::Index count = given.start.size();
   for (const BatchedProblem::Term& term : given.terms) count += term.own.size();
@@ -435,9 +428,9 @@ BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& o
   solver.function_tolerance = options.tolerance;
   solver.parameter_tolerance = options.tolerance;
   StopWithoutGain stop;
-  if (options.secants) {
+  if (options.fixed_slopes) {
     solver.callbacks.push_back(&stop);
-    solver.max_num_line_search_step_size_iterations = 1;
+    solver.max_num_line_search_step_size_iterations = 3;
   }
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
@@ -450,8 +443,12 @@ BatchedResult solve_batched(const BatchedProblem& given, const BatchedOptions& o
   result.message = summary.message;
   if (!summary.IsSolutionUsable()) return result;
   const bool is_known = batch.last && batch.last->shared == result.x && batch.last->own == result.own;
-  result.at = is_known ? *batch.last
-                       : differentiate_from(given, result.x, result.own, options.secants ? batch.last.get() : nullptr);
+  if (is_known)
+    result.at = *batch.last;
+  else if (options.fixed_slopes && batch.last)
+    result.at = with_slopes_of(given, *batch.last, result.x, result.own);
+  else
+    result.at = differentiate(given, result.x, result.own);
   for (const Eigen::VectorXd& r : result.at.residuals) result.cost += r.squaredNorm();
   result.information = shared_information(result.at, given.start.size());
   return result;

@@ -32,9 +32,9 @@ struct BatchedProblem {
 struct BatchedOptions {
   double tolerance = 1e-8;  ///< relative, of cost and unknowns: differences know no more
   int max_iterations = 30;
-  /// Derivatives by the shared unknowns are computed at the start alone, then follow what residuals do from step to
-  /// step (Broyden): for simulations that take long.
-  bool secants = false;
+  /// Derivatives are computed at the start alone, for simulations that take long: then the search is over after two
+  /// steps in a row that make nothing better. Those in the result are of the start, too.
+  bool fixed_slopes = false;
   double loss_scale = 0.0;  ///< residuals of a term whose norm is larger weigh less and less; 0: plain squares
 };
 

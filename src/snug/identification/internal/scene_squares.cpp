@@ -19,8 +19,8 @@ constexpr double kStepDeviations = 3.0;                            // of differe
 constexpr double kLeastStep = 0.4;                                 // of the step that a task names
 constexpr double kMostStep = 0.05;                                 // of the span
 constexpr double kLarger = 6.0;                                    // steps, where what they do is rough
-constexpr double kLongSimulation = 100.0;  // s, for one difference of each parameter: then secants
-constexpr int kSecantSteps = 10;           // of a search with secants, a simulation each
+constexpr double kLongSimulation = 100.0;  // s, for one difference of each parameter: then its slopes stay
+constexpr int kFixedSlopeSteps = 10;       // of a search with these, a simulation each
 constexpr double kGoodEnough = 1.2;        // misfit, for no other start to be tried
 
 }  // namespace
@@ -214,8 +214,8 @@ bool SceneSearch::solve_stage(double horizon, bool is_last, Eigen::MatrixXd& cov
   options.max_iterations = std::max(1, experiment_.task().search.local / each);
   options.tolerance =
       (is_last ? kSettledLast : kSettled) / std::max(1.0, total(experiment_, fitted_, at.rows, at.weights));
-  options.secants = each * std::min(until, experiment_.longest()) > kLongSimulation;
-  if (options.secants) options.max_iterations = std::max(options.max_iterations, kSecantSteps);
+  options.fixed_slopes = each * std::min(until, experiment_.longest()) > kLongSimulation;
+  if (options.fixed_slopes) options.max_iterations = std::max(options.max_iterations, kFixedSlopeSteps);
   const numerics::BatchedResult found = solve_explained(until, prior, options, before, at);
   at.message = found.message;
   if (found.information.size() == 0) return false;
@@ -250,7 +250,7 @@ SceneSearch::Fitted SceneSearch::least_squares_from(const Eigen::VectorXd& start
     for (const double horizon : kHorizons)
       if (!fit(horizon, false, kRounds)) return at;
   }
-  if (!fit(1.0, true, kRounds)) return at;
+  if (!fit(1.0, true, 2 * kRounds)) return at;
   // That a few rows are not what all others say is told (unpredictable); that most are not is a misfit.
   if (2.0 * total(at.rows) >= total(at.straight)) at.straight = at.rows;
   return at;

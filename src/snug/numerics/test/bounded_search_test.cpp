@@ -78,11 +78,11 @@ TEST(BatchedLeastSquares, FindsSharedAndOwnUnknowns) {
   EXPECT_LT(found.information(0, 0), alone(0, 0));
 }
 
-TEST(BatchedLeastSquares, SecantsFindTheSameWithFewerSimulations) {
+TEST(BatchedLeastSquares, FixedSlopesFindTheSameWithFewerSimulations) {
   std::size_t count = 0;
-  const auto solve = [&](bool secants) {
+  const auto solve = [&](bool fixed_slopes) {
     BatchedProblem problem = decays(two(2.0, 1.3));
-    problem.start = two(1.9, 1.2);  // near: what secants are for
+    problem.start = two(1.9, 1.2);  // near: what fixed slopes are for
     const auto evaluate = problem.evaluate;
     problem.evaluate = [&count, evaluate](const std::vector<BatchedProblem::Job>& jobs) {
       count += jobs.size();
@@ -90,7 +90,7 @@ TEST(BatchedLeastSquares, SecantsFindTheSameWithFewerSimulations) {
     };
     count = 0;
     BatchedOptions options;
-    options.secants = secants;
+    options.fixed_slopes = fixed_slopes;
     return solve_batched(problem, options).x;
   };
   EXPECT_LT((solve(false) - two(2.0, 1.3)).norm(), 1e-6);
