@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "identify.hpp"
@@ -108,9 +109,19 @@ std::string as_text(const SceneFit& fit) {
   if (fit.held_back.recordings > 0) text += fmt::format("held back: {}\n", as_text(fit.held_back));
   if (std::isfinite(fit.held_back_error)) text += fmt::format("held-back error: {:.4f} mm\n", fit.held_back_error);
   text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task\n", fit.chi2_per_dof);
-  for (const identification::Unpredictable& one : fit.unpredictable)
-    text += fmt::format("left out: {} of {} from {:.2f} s on hangs on less than the parameters are known to\n",
-                        one.body, one.recording, one.from);
+  struct LeftOut {
+    double from = 0.0;  // s, the earliest
+    int recordings = 0;
+  };
+  std::map<std::string, LeftOut> left_out;  // by body
+  for (const identification::Unpredictable& one : fit.unpredictable) {
+    LeftOut& of_body = left_out[one.body];
+    of_body.from = of_body.recordings == 0 ? one.from : std::min(of_body.from, one.from);
+    ++of_body.recordings;
+  }
+  for (const auto& [body, one] : left_out)
+    text += fmt::format("left out: {} from {:.2f} s on, in {} recordings: its motion cannot be predicted from there\n",
+                        body, one.from, one.recordings);
   if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
   for (const identification::Parameter& parameter : fit.parameters) {
     text += fmt::format("  {:<20} {:>12.6g} +- {:<9.2g} {}\n", parameter.name, parameter.value,
