@@ -351,7 +351,7 @@ Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n)
   return information;
 }
 
-Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found) {
+Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found, double excess) {
   // At two deviations along each axis the sum of squares has to have risen by four. Where it rises by less than half of
   // that the axis is longer, and is looked at again from there. What it strays from its parabola (root mean square q
   // over axes and sides; of a cliff a hundred) it strays at its minimum, too: a point as good by chance may be sqrt(q)
@@ -361,6 +361,7 @@ Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDeriva
   constexpr double kRough = 8.0;    // times as far, by what all axes stray alone: looked at again, too
   constexpr double kLeast = 0.01;   // of the steps of differences, to start from: nothing nearer was looked at
   constexpr double kCliff = 100.0;  // ten deviations: no chance makes such a point as good
+  constexpr double kMostExcess = 400.0;
   const RisingSquares squares(at, found);
   const Eigen::VectorXd first = squares.deviation();
   const auto n = first.size();
@@ -379,7 +380,8 @@ Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDeriva
       for (const RisingSquares::Rise& rise : {there, back})
         strayed[k] += std::pow(std::min(std::abs(rise.found - share[k] * rise.square), kCliff), 2);
     }
-    const double q = std::sqrt(strayed.sum() / static_cast<double>(2 * n));
+    double q = std::sqrt(strayed.sum() / static_cast<double>(2 * n));
+    if (q > 1.0) q += std::clamp(excess, 0.0, kMostExcess);  // a search ends between teeth
     deviation = first.cwiseProduct(((1.0 + q) * share.cwiseInverse()).cwiseSqrt());
     open.clear();
     for (Eigen::Index k = 0; k < n; ++k)

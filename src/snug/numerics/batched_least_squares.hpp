@@ -68,7 +68,10 @@ struct BatchedResult {
 [[nodiscard]] Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index shared);
 /// Of the shared unknowns at the start of a problem, which is a minimum, residuals in units of their noise: the inverse
 /// of shared_information, larger where the sum of squares rises by less than that says or strays from a parabola, as it
-/// does where residuals jump. Own unknowns follow by their slopes. `found`: derivatives at the start.
-[[nodiscard]] Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found);
+/// does where residuals jump. `excess`: of the sum of squares at the start over what noise explains; where the sum is
+/// rough (it strays by more than one) the least of it may be as far away, at most twenty deviations. Own unknowns
+/// follow by their slopes. `found`: derivatives at the start.
+[[nodiscard]] Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found,
+                                                 double excess = 0.0);
 
 }  // namespace snug::numerics

@@ -292,9 +292,11 @@ Eigen::MatrixXd SceneSearch::covariance() {
     const Fitted at = result_ ? *result_ : unfitted(free_of(best_));
     const double chi2 = errors_at(best_).chi2_per_dof;
     const numerics::BatchedProblem there = problem(at, kAlways, {});
-    of_free =
-        numerics::squares_covariance(there, result_ ? at.derivatives : numerics::differentiate(there, at.x, at.own)) *
-        std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
+    const double counted = total(experiment_, fitted_, at.straight, at.weights);
+    const double excess = (chi2 - 1.0) * counted - 2.0 * std::sqrt(2.0 * counted);  // more than chance, twice
+    of_free = numerics::squares_covariance(
+                  there, result_ ? at.derivatives : numerics::differentiate(there, at.x, at.own), excess) *
+              std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
   }
   const auto all = static_cast<Eigen::Index>(experiment_.task().parameters.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);

@@ -182,5 +182,29 @@ TEST(BatchedLeastSquares, TheCovarianceIsThatOfTheWayAtLargeWhereResidualsJump) 
   EXPECT_NEAR(std::sqrt(squares_covariance(problem, at)(0, 0)), 1.0, 0.1);
 }
 
+TEST(BatchedLeastSquares, TheCovarianceOfASearchThatEndedBetweenTeethIsLargerByWhatItIsOff) {
+  BatchedProblem problem;
+  problem.start = VectorXd::Zero(1);
+  problem.lower = VectorXd::Constant(1, -1e3);
+  problem.upper = VectorXd::Constant(1, 1e3);
+  problem.step = VectorXd::Constant(1, 1.0);
+  problem.terms.push_back({1, {}, {}});
+  double tooth = 0.0;  // of the sum of squares, at two deviations
+  problem.evaluate = [&](const std::vector<BatchedProblem::Job>& jobs) {
+    std::vector<VectorXd> residuals;
+    for (const BatchedProblem::Job& job : jobs) {
+      const double x = job.shared[0];
+      residuals.emplace_back(VectorXd::Constant(1, std::abs(x) < 1.5 ? x : std::copysign(std::sqrt(x * x + tooth), x)));
+    }
+    return residuals;
+  };
+  const BatchedDerivatives at = differentiate(problem, problem.start, {VectorXd()});
+  EXPECT_NEAR(squares_covariance(problem, at, 24.0)(0, 0), 1.0, 1e-9);  // smooth: nothing is near that is better
+  tooth = 3.0;
+  EXPECT_NEAR(squares_covariance(problem, at)(0, 0), 1.0 + 3.0, 1e-9);
+  EXPECT_NEAR(squares_covariance(problem, at, 24.0)(0, 0), 1.0 + 3.0 + 24.0, 1e-9);
+  EXPECT_NEAR(squares_covariance(problem, at, -5.0)(0, 0), 1.0 + 3.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace snug::numerics
