@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRescuePoints = 20;                                  // scattered for each free parameter when a fit fails
 constexpr std::array kHorizons = {0.125, 0.25, 0.375, 0.5, 0.75};  // of a recording, fitted before all of it
-constexpr int kRounds = 2;                                         // of a stage, at most
+constexpr int kRounds = 2;                                         // of a stage, at most; of the last twice as many
 constexpr double kFiner = 0.2;                                     // of a step: derivatives are computed anew
 constexpr double kSettled = 1.0, kSettledLast = 0.1;               // of a sum of squares, where a search ends
 constexpr double kStepDeviations = 3.0;                            // of differences, in standard errors
