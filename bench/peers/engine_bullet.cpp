@@ -100,6 +100,11 @@ class BulletEngine final : public Engine {
     btVector3 inertia(0, 0, 0);
     if (box.mass > 0) shapes_.back()->calculateLocalInertia(box.mass, inertia);
     inertia *= box.inertia_factor;
+    if (box.middle != Vector3::Zero()) {
+      auto aside = std::make_unique<btCompoundShape>();
+      aside->addChildShape(btTransform(btQuaternion::getIdentity(), to_bullet(box.middle)), shapes_.back().get());
+      shapes_.push_back(std::move(aside));
+    }
     bodies_.push_back(std::make_unique<btRigidBody>(box.mass, nullptr, shapes_.back().get(), inertia));
     btRigidBody& body = *bodies_.back();
     body.setWorldTransform(to_bullet(box.X_WB));

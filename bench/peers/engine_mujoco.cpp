@@ -33,8 +33,9 @@ std::string geom_xml(const BoxBody& box, const Scene& scene) {
     const Vector3 moments = Vector3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()) *
                             box.inertia_factor * box.mass / 12.0;
     return fmt::format(
-        "<body {}><freejoint/><inertial pos=\"0 0 0\" mass=\"{}\" diaginertia=\"{} {} {}\"/><geom {}/></body>\n", place,
-        box.mass, moments.x(), moments.y(), moments.z(), geom);
+        "<body {}><freejoint/><inertial pos=\"0 0 0\" mass=\"{}\" diaginertia=\"{} {} {}\"/><geom {} pos=\"{} {} "
+        "{}\"/></body>\n",
+        place, box.mass, moments.x(), moments.y(), moments.z(), geom, box.middle.x(), box.middle.y(), box.middle.z());
   }
   return fmt::format("<body {}><freejoint/><geom {} mass=\"{}\"/></body>\n", place, geom, box.mass);
 }

@@ -121,7 +121,8 @@ class SnugEngine final : public Engine {
                               box.inertia_factor * box.mass / 12.0)
                                  .asDiagonal();
     }
-    body.geoms = {{geometry::Box{box.half}, Pose{}, box.mass > 0.0 ? kBox : kFixed, true}};
+    body.geoms = {
+        {geometry::Box{box.half}, Pose{Matrix3::Identity(), box.middle}, box.mass > 0.0 ? kBox : kFixed, true}};
     body.X_WB = box.X_WB;
     return body;
   }

@@ -26,6 +26,7 @@ struct BoxBody {
   Pose X_WB{};                             ///< at the start, at rest
   bool is_present = true;                  ///< false: enters with Engine::insert
   double inertia_factor = 1.0;             ///< of the moments of a solid box
+  Vector3 middle = Vector3::Zero();        ///< m, of the box from its centre of mass, which is the body's frame
 };
 
 /// Boxes, optionally on a plane. Fixed things (mass 0 and the plane) are the container, the others are boxes.

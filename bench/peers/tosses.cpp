@@ -2,9 +2,11 @@
 #include "peers/tosses.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <thread>
 
 #include "snug/core/parallel.hpp"
@@ -23,13 +25,25 @@ constexpr double kStep = 1e-3;                                     // s
 constexpr std::size_t kHeldBack = 5;                               // each fifth toss
 constexpr double kRight = std::numbers::pi / 6.0;                  // rad, at the end
 
-/// Unknowns, and what an engine makes of them.
-struct Numbers {
-  static constexpr int kCount = 6;
-  static Eigen::VectorXd lower() { return (Eigen::VectorXd(kCount) << 0.05, 0.0, 0.0, 0.95, 0.7, -0.005).finished(); }
-  static Eigen::VectorXd upper() { return (Eigen::VectorXd(kCount) << 0.40, 1.0, 1.0, 1.02, 1.5, 0.005).finished(); }
-  static Eigen::VectorXd start() { return (Eigen::VectorXd(kCount) << 0.18, 0.5, 0.3, 0.99, 1.1, 0.0).finished(); }
+/// An unknown, and where it is looked for.
+struct Number {
+  const char* name;
+  double lower, upper, start;
 };
+constexpr std::array kNumbers{
+    Number{"friction", 0.05, 0.40, 0.18},    Number{"softness", 0.0, 1.0, 0.5}, Number{"damping", 0.0, 1.0, 0.3},
+    Number{"edge", 0.95, 1.02, 0.99},        Number{"moments", 0.7, 1.5, 1.1},  Number{"height_m", -0.005, 0.005, 0.0},
+    Number{"mass_z_m", -0.015, 0.015, 0.0},   // its centre, in the frame that was tracked
+    Number{"middle_z_m", -0.015, 0.015, 0.0}  // of the cube, in the same frame
+};
+
+Eigen::VectorXd all_of(double Number::*value) {
+  Eigen::VectorXd all(static_cast<Eigen::Index>(kNumbers.size()));
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) all[static_cast<Eigen::Index>(i)] = kNumbers[i].*value;
+  return all;
+}
+
+Vector3 centre_of_mass(const Eigen::VectorXd& x) { return {0.0, 0.0, x[6]}; }
 
 Scene scene_of(const Eigen::VectorXd& x) {
   Scene scene;
@@ -48,6 +62,7 @@ Scene scene_of(const Eigen::VectorXd& x) {
   BoxBody cube{"cube", Vector3::Constant(0.5 * kEdge * x[3]), kMass, {}};
   const double solid = kMass * std::pow(kEdge * x[3], 2) / 6.0;
   cube.inertia_factor = x[4] * kMoment / solid;
+  cube.middle = Vector3(0.0, 0.0, x[7]) - centre_of_mass(x);
   cube.X_WB.p.z() = 1.0;
   scene.bodies.push_back(cube);
   return scene;
@@ -55,8 +70,8 @@ Scene scene_of(const Eigen::VectorXd& x) {
 
 struct Toss {
   std::vector<double> times;
-  std::vector<Pose> poses;
-  identification::FlightStart start;
+  std::vector<record::PoseSample> poses;  ///< of the tracked frame
+  std::size_t flight = 3;                 ///< samples before the first touch
 };
 
 std::size_t count_flight(const identification::RecordedBody& body) {
@@ -77,18 +92,13 @@ std::vector<Toss> load(const std::filesystem::path& file) {
   model::SceneTask task;
   task.recording_column = "toss";
   task.tracked = {{"cube", {"x", "y", "z", "qw", "qx", "qy", "qz"}, {}, {}}};
-  const SpatialInertia inertia{kMass, Vector3::Zero(), Matrix3(kMoment * Matrix3::Identity())};
   std::vector<Toss> tosses;
   for (const identification::RecordedMotion& motion : identification::load_motions(task, {file})) {
     Toss& toss = tosses.emplace_back();
     const identification::RecordedBody& body = motion.tracked.front();
-    for (std::size_t k = 0; k < motion.times.size(); ++k) {
-      toss.times.push_back(motion.times[k] - motion.times.front());
-      toss.poses.push_back(body.poses[k].pose());
-    }
-    const std::size_t flight = std::max<std::size_t>(3, count_flight(body));
-    toss.start = identification::fit_free_flight(std::span(motion.times).first(flight),
-                                                 std::span(body.poses).first(flight), inertia, {0.0, 0.0, -9.81});
+    for (const double time : motion.times) toss.times.push_back(time - motion.times.front());
+    toss.poses = body.poses;
+    toss.flight = std::max<std::size_t>(3, count_flight(body));
   }
   return tosses;
 }
@@ -98,8 +108,13 @@ struct Error {
   bool is_right = false;
 };
 
-Error predict(Engine& engine, const Toss& toss) {
-  engine.set_motion(0, toss.start.X_WB, toss.start.V_WB);
+Error predict(Engine& engine, const Toss& toss, const Vector3& com) {
+  const SpatialInertia inertia{kMass, com, Matrix3(kMoment * Matrix3::Identity())};
+  const identification::FlightStart start = identification::fit_free_flight(
+      std::span(toss.times).first(toss.flight), std::span(toss.poses).first(toss.flight), inertia, {0.0, 0.0, -9.81});
+  const Pose X_BC{Matrix3::Identity(), com}, X_CB{Matrix3::Identity(), -com};
+  engine.set_motion(0, start.X_WB * X_BC,
+                    {start.V_WB.linear + start.V_WB.angular.cross(start.X_WB.R * com), start.V_WB.angular});
   Error error{0.0, 0.0, false};
   Pose before = engine.pose(0), now = before;
   double angle = 0.0;
@@ -113,10 +128,11 @@ Error predict(Engine& engine, const Toss& toss) {
       ++steps;
     }
     const double share = 1.0 - (steps * kStep - toss.times[k]) / kStep;
-    const Vector3 p = before.p + share * (now.p - before.p);
-    const Matrix3 R = before.R * exp_rotation(share * log_rotation(before.R.transpose() * now.R));
-    angle = angle_between(R, toss.poses[k].R);
-    error.position += (p - toss.poses[k].p).norm();
+    const Pose X_WC{before.R * exp_rotation(share * log_rotation(before.R.transpose() * now.R)),
+                    before.p + share * (now.p - before.p)};
+    const Pose X_WB = X_WC * X_CB, measured = toss.poses[k].pose();
+    angle = angle_between(X_WB.R, measured.R);
+    error.position += (X_WB.p - measured.p).norm();
     error.rotation += angle;
   }
   const auto count = static_cast<double>(toss.times.size() - 1);
@@ -142,7 +158,8 @@ std::vector<Result> measure_tosses(const std::function<std::unique_ptr<Engine>()
     parallel_for(static_cast<int>(which.size()), threads, [&](int i, int) {
       const std::unique_ptr<Engine> engine = make();
       engine->build(scene, kStep);
-      errors[static_cast<std::size_t>(i)] = predict(*engine, tosses[which[static_cast<std::size_t>(i)]]);
+      errors[static_cast<std::size_t>(i)] =
+          predict(*engine, tosses[which[static_cast<std::size_t>(i)]], centre_of_mass(x));
     });
     return errors;
   };
@@ -154,7 +171,7 @@ std::vector<Result> measure_tosses(const std::function<std::unique_ptr<Engine>()
   numerics::SearchOptions search;
   search.evaluations = options.evaluations;
   const numerics::SearchResult found =
-      numerics::minimize_bounded(cost, Numbers::start(), Numbers::lower(), Numbers::upper(), search);
+      numerics::minimize_bounded(cost, all_of(&Number::start), all_of(&Number::lower), all_of(&Number::upper), search);
   std::vector<Result> results;
   const auto add = [&](const std::string& name, const std::vector<std::size_t>& which) {
     double position = 0.0, rotation = 0.0, right = 0.0;
@@ -168,9 +185,8 @@ std::vector<Result> measure_tosses(const std::function<std::unique_ptr<Engine>()
   };
   add("all", all);
   add("held_back", held);
-  const char* names[] = {"friction", "softness", "damping", "edge", "moments", "height_m"};
-  for (int i = 0; i < Numbers::kCount; ++i)
-    results.push_back({std::string("tosses.found.") + names[i], found.x[i], "1"});
+  for (std::size_t i = 0; i < kNumbers.size(); ++i)
+    results.push_back({std::string("tosses.found.") + kNumbers[i].name, found.x[static_cast<Eigen::Index>(i)], "1"});
   return results;
 }
 
