@@ -32,9 +32,9 @@ struct BatchedProblem {
 struct BatchedOptions {
   double tolerance = 1e-8;  ///< relative, of cost and unknowns: differences know no more
   int max_iterations = 30;
-  /// Derivatives are computed at the start alone, for simulations that take long: then the search is over after two
-  /// steps in a row that make nothing better. Those in the result are of the start, too.
-  bool fixed_slopes = false;
+  /// The Jacobian is computed at the start alone (chord method), for simulations that take long: the search is over
+  /// after two steps in a row that lower nothing. That in the result is of the start, too.
+  bool fixed_jacobian = false;
   double loss_scale = 0.0;  ///< residuals of a term whose norm is larger weigh less and less; 0: plain squares
 };
 

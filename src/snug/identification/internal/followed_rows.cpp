@@ -34,6 +34,14 @@ std::vector<Eigen::Index> walk(const SceneExperiment& experiment, std::size_t mo
   return rows;
 }
 
+template <class Choose>
+RowCounts combined(const RowCounts& a, const RowCounts& b, const Choose& choose) {
+  RowCounts result = a;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 0; k < a[i].size(); ++k) result[i][k] = choose(a[i][k], b[i][k]);
+  return result;
+}
+
 }  // namespace
 
 RowCounts rows_until(const SceneExperiment& experiment, const std::vector<std::size_t>& motions,
@@ -50,17 +58,11 @@ RowCounts rows_until(const SceneExperiment& experiment, const std::vector<std::s
 }
 
 RowCounts fewer(const RowCounts& a, const RowCounts& b) {
-  RowCounts result = a;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t k = 0; k < a[i].size(); ++k) result[i][k] = std::min(a[i][k], b[i][k]);
-  return result;
+  return combined(a, b, [](Eigen::Index one, Eigen::Index other) { return std::min(one, other); });
 }
 
 RowCounts more(const RowCounts& a, const RowCounts& b) {
-  RowCounts result = a;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t k = 0; k < a[i].size(); ++k) result[i][k] = std::max(a[i][k], b[i][k]);
-  return result;
+  return combined(a, b, [](Eigen::Index one, Eigen::Index other) { return std::max(one, other); });
 }
 
 double total(const RowCounts& rows) {

@@ -19,8 +19,8 @@ constexpr double kStepDeviations = 3.0;                            // of differe
 constexpr double kLeastStep = 0.4;                                 // of the step that a task names
 constexpr double kMostStep = 0.05;                                 // of the span
 constexpr double kLarger = 6.0;                                    // steps, where what they do is rough
-constexpr double kLongSimulation = 100.0;  // s, for one difference of each parameter: then its slopes stay
-constexpr int kFixedSlopeSteps = 10;       // of a search with these, a simulation each
+constexpr double kLongSimulation = 100.0;  // s, for one difference of each parameter: then the Jacobian stays
+constexpr int kFixedJacobianSteps = 10;    // of a search with it, a simulation each
 constexpr double kGoodEnough = 1.2;        // misfit, for no other start to be tried
 
 }  // namespace
@@ -214,8 +214,8 @@ bool SceneSearch::solve_stage(double horizon, bool is_last, Eigen::MatrixXd& cov
   options.max_iterations = std::max(1, experiment_.task().search.local / each);
   options.tolerance =
       (is_last ? kSettledLast : kSettled) / std::max(1.0, total(experiment_, fitted_, at.rows, at.weights));
-  options.fixed_slopes = each * std::min(until, experiment_.longest()) > kLongSimulation;
-  if (options.fixed_slopes) options.max_iterations = std::max(options.max_iterations, kFixedSlopeSteps);
+  options.fixed_jacobian = each * std::min(until, experiment_.longest()) > kLongSimulation;
+  if (options.fixed_jacobian) options.max_iterations = std::max(options.max_iterations, kFixedJacobianSteps);
   const numerics::BatchedResult found = solve_explained(until, prior, options, before, at);
   at.message = found.message;
   if (found.information.size() == 0) return false;

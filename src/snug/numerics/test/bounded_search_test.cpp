@@ -78,11 +78,11 @@ TEST(BatchedLeastSquares, FindsSharedAndOwnUnknowns) {
   EXPECT_LT(found.information(0, 0), alone(0, 0));
 }
 
-TEST(BatchedLeastSquares, FixedSlopesFindTheSameWithFewerSimulations) {
+TEST(BatchedLeastSquares, AFixedJacobianFindsTheSameWithFewerSimulations) {
   std::size_t count = 0;
-  const auto solve = [&](bool fixed_slopes) {
+  const auto solve = [&](bool fixed_jacobian) {
     BatchedProblem problem = decays(two(2.0, 1.3));
-    problem.start = two(1.9, 1.2);  // near: what fixed slopes are for
+    problem.start = two(1.9, 1.2);  // near: what a fixed Jacobian is for
     const auto evaluate = problem.evaluate;
     problem.evaluate = [&count, evaluate](const std::vector<BatchedProblem::Job>& jobs) {
       count += jobs.size();
@@ -90,7 +90,7 @@ TEST(BatchedLeastSquares, FixedSlopesFindTheSameWithFewerSimulations) {
     };
     count = 0;
     BatchedOptions options;
-    options.fixed_slopes = fixed_slopes;
+    options.fixed_jacobian = fixed_jacobian;
     return solve_batched(problem, options).x;
   };
   EXPECT_LT((solve(false) - two(2.0, 1.3)).norm(), 1e-6);
@@ -182,25 +182,25 @@ TEST(BatchedLeastSquares, TheCovarianceIsThatOfTheWayAtLargeWhereResidualsJump) 
   EXPECT_NEAR(std::sqrt(squares_covariance(problem, at)(0, 0)), 1.0, 0.1);
 }
 
-TEST(BatchedLeastSquares, TheCovarianceOfASearchThatEndedBetweenTeethIsLargerByWhatItIsOff) {
+TEST(BatchedLeastSquares, TheCovarianceOfASearchThatEndedInALocalMinimumIsLargerByItsExcess) {
   BatchedProblem problem;
   problem.start = VectorXd::Zero(1);
   problem.lower = VectorXd::Constant(1, -1e3);
   problem.upper = VectorXd::Constant(1, 1e3);
   problem.step = VectorXd::Constant(1, 1.0);
   problem.terms.push_back({1, {}, {}});
-  double tooth = 0.0;  // of the sum of squares, at two deviations
+  double jump = 0.0;  // of the sum of squares, before two deviations
   problem.evaluate = [&](const std::vector<BatchedProblem::Job>& jobs) {
     std::vector<VectorXd> residuals;
     for (const BatchedProblem::Job& job : jobs) {
       const double x = job.shared[0];
-      residuals.emplace_back(VectorXd::Constant(1, std::abs(x) < 1.5 ? x : std::copysign(std::sqrt(x * x + tooth), x)));
+      residuals.emplace_back(VectorXd::Constant(1, std::abs(x) < 1.5 ? x : std::copysign(std::sqrt(x * x + jump), x)));
     }
     return residuals;
   };
   const BatchedDerivatives at = differentiate(problem, problem.start, {VectorXd()});
   EXPECT_NEAR(squares_covariance(problem, at, 24.0)(0, 0), 1.0, 1e-9);  // smooth: nothing is near that is better
-  tooth = 3.0;
+  jump = 3.0;
   EXPECT_NEAR(squares_covariance(problem, at)(0, 0), 1.0 + 3.0, 1e-9);
   EXPECT_NEAR(squares_covariance(problem, at, 24.0)(0, 0), 1.0 + 3.0 + 24.0, 1e-9);
   EXPECT_NEAR(squares_covariance(problem, at, -5.0)(0, 0), 1.0 + 3.0, 1e-9);
