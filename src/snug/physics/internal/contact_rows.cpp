@@ -7,6 +7,8 @@
 namespace snug::physics::internal {
 namespace {
 
+constexpr double kNever = -1e6;  ///< m/s, approach that nothing has: asks a contact for no impulse
+
 /// How a body enters the rows of a patch: whitened J of axis i at arm r is sign (L_i, G_i r), G_i a 3 x 3 matrix.
 struct Side {
   int active = -1;
@@ -66,6 +68,29 @@ void add_bias(const BodyWork& body, const Patch& patch, const Vector3& arm, doub
   row.bias[2] += patch.t2.dot(v);
 }
 
+/// Large piles do not fit into the caches near the core: asks for a row before it is needed.
+void prefetch(const Row* row) {
+  constexpr std::size_t kLine = 64;
+  const char* bytes = reinterpret_cast<const char*>(row);
+  for (std::size_t i = 0; i < sizeof(Row); i += kLine) __builtin_prefetch(bytes + i, 1);
+}
+
+/// J of a contact, index in Scratch::contacts, and what moving kinematic bodies and belts bring in.
+void fill_contact_row(const Scratch& work, const Patch& patch, const BodyWork& a, const BodyWork& b, const Side& side_a,
+                      const Side& side_b, int index, Row& row) {
+  const Vector3& p_WQ = work.contacts[static_cast<std::size_t>(index)].p_WQ;
+  row.ia = a.active;
+  row.ib = b.active;
+  row.contact = index;
+  row.kind = RowKind::Contact;
+  std::fill_n(row.bias, 3, 0.0);
+  if (a.active >= 0) fill_side(side_a, patch, p_WQ, 0, row);
+  if (b.active >= 0) fill_side(side_b, patch, p_WQ, 6, row);
+  if (a.active < 0 && a.is_moving) add_bias(a, patch, p_WQ - a.p_WBcm - patch.way_a, -1.0, row);
+  if (b.active < 0 && b.is_moving) add_bias(b, patch, p_WQ - b.p_WBcm - patch.way_b, 1.0, row);
+  if (patch.has_belt) row.bias[1] += patch.t1.dot(patch.belt_W), row.bias[2] += patch.t2.dot(patch.belt_W);
+}
+
 /// Normal speed for an impulse, 1/kg: of the contact alone, or of the bodies without turning.
 double normal_mobility(const Row& row, bool turns) {
   double sum = 0.0;
@@ -76,24 +101,42 @@ double normal_mobility(const Row& row, bool turns) {
   return sum;
 }
 
+/// Fraction of the step at which a contact closes by the velocities without contacts. 0: is closed; 1: stays open.
+double closing_fraction(const Contact& contact, double free_velocity, double dt) {
+  if (contact.phi <= 0.0) return 0.0;
+  const double mean = 0.5 * (contact.approach + free_velocity);
+  return contact.phi + dt * mean > 0.0 ? 1.0 : std::clamp(-contact.phi / (dt * mean), 0.0, 1.0);
+}
+
 /// A spring at the middle of the step and a damper between there and its end, so placed that a body that bounces on its
-/// face decays as d says at any time step: docs/theory/contact.md, section 3.
-void fill_compliant_law(const ContactLaw& law, double dt, const Patch& patch, const Contact& contact, Row& row) {
+/// face decays as d says at any time step; both from where the contact closes. bearing: contacts of the patch that are
+/// closed in this step. docs/theory/contact.md, section 3.
+void fill_compliant_law(const ContactLaw& law, double dt, const Patch& patch, const Contact& contact,
+                        double free_velocity, int bearing, Row& row) {
   const bool is_beyond = law.travel > 0.0 && -contact.phi > law.travel;
   const double whole = patch.share * (is_beyond ? law.stiffness_beyond : law.stiffness);
-  const double k = whole / patch.contact_count, d = patch.share * law.damping / patch.contact_count;
+  const double k = whole / bearing, d = patch.share * law.damping / bearing;
   // A spring of this stiffness that bears what it bears at this depth starts here.
   const double phi = contact.phi + (is_beyond ? law.travel * (1.0 - law.stiffness / law.stiffness_beyond) : 0.0);
   const double x = whole * dt * dt * normal_mobility(row, false), y = d * dt * normal_mobility(row, true);
   const double theta = y > 1e-3 ? 1.0 / -std::expm1(-y) - 1.0 / y : 0.5 + y / 12.0;
   const double fitted = d * (1.0 + 0.25 * x * std::min(1.0, 4.0 * x / (y * y)));
-  const double to_end = 0.25 * k * dt + theta * fitted, to_start = 0.25 * k * dt + (1.0 - theta) * fitted;
+  const double closed = 1.0 - closing_fraction(contact, free_velocity, dt);
+  if (closed <= 0.0) {
+    row.target = kNever;
+    return;
+  }
+  const double to_end = closed * (0.25 * k * dt + theta * fitted);
+  const double to_start = closed * (0.25 * k * dt + (1.0 - theta) * fitted);
   row.gamma = 1.0 / (dt * to_end);
-  row.target = -(k * phi + to_start * contact.approach) / to_end;
+  // Until the end of the step a contact that closes in it is deeper by half of what the end shows.
+  const double deep = contact.phi > 0.0 ? 0.5 * closed * k * phi : k * phi;
+  row.target = -(deep + to_start * contact.approach) / to_end;
 }
 
 /// The law of one contact in this step: docs/theory/contact.md, section 3.
-void fill_law(const WorldModel& model, const Patch& patch, const Contact& contact, double free_velocity, Row& row) {
+void fill_law(const WorldModel& model, const Patch& patch, const Contact& contact, double free_velocity, int bearing,
+              Row& row) {
   const double dt = model.settings.dt;
   const double mean = 0.5 * (contact.approach + free_velocity);
   const ContactLaw& law = model.laws[patch.law];
@@ -103,7 +146,7 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
   row.is_bounce = false;
   row.is_rigid = law.stiffness <= 0.0;
   if (!row.is_rigid) {
-    fill_compliant_law(law, dt, patch, contact, row);
+    fill_compliant_law(law, dt, patch, contact, free_velocity, bearing, row);
     return;
   }
   if (contact.phi + dt * mean > 0.0) {  // does not close by itself: may be pushed as far as closing
@@ -111,7 +154,7 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
     return;
   }
   // Closes at the fraction theta of the step, with this speed.
-  const double theta = contact.phi > 0.0 ? std::clamp(-contact.phi / (dt * mean), 0.0, 1.0) : 0.0;
+  const double theta = closing_fraction(contact, free_velocity, dt);
   const double impact = contact.approach + theta * (free_velocity - contact.approach);
   row.target = 0.0;
   if (law.restitution > 0.0 && impact < -model.settings.restitution_threshold) {
@@ -120,6 +163,18 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
     row.gap_end = std::max(0.0, (1.0 - theta) * dt * (-law.restitution * impact + 0.5 * rest));
     row.is_bounce = true;
   }
+}
+
+/// Contacts of a patch, rows from `first` on, that are closed in this step, at least one: they share its stiffness.
+int count_bearing(const WorldModel& model, const Scratch& work, const Patch& patch, const Row* first) {
+  if (model.laws[patch.law].stiffness <= 0.0) return 1;
+  int count = 0;
+  for (int i = 0; i < patch.contact_count; ++i) {
+    const Contact& contact = work.contacts[static_cast<std::size_t>(patch.first_contact + i)];
+    const double velocity = relative_velocity(first[i], 0, work.u.data());
+    if (closing_fraction(contact, velocity, model.settings.dt) < 1.0) ++count;
+  }
+  return std::max(1, count);
 }
 
 /// The impulses of the step before, cut to the cone of this one.
@@ -134,13 +189,6 @@ void cut_to_cone(Row& row) {
   row.lambda[2] *= scale;
 }
 
-/// Large piles do not fit into the caches near the core: asks for a row before it is needed.
-void prefetch(const Row* row) {
-  constexpr std::size_t kLine = 64;
-  const char* bytes = reinterpret_cast<const char*>(row);
-  for (std::size_t i = 0; i < sizeof(Row); i += kLine) __builtin_prefetch(bytes + i, 1);
-}
-
 }  // namespace
 
 void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first) {
@@ -153,25 +201,18 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
     const bool is_kept = patch.is_kept && a.is_steady && b.is_steady && row->contact == patch.first_contact &&
                          row->kind == RowKind::Contact &&
                          row_index + static_cast<std::size_t>(patch.row_count) <= work.last_rows;
-    Side side_a, side_b;
-    if (!is_kept)
-      side_a = side_of(work, a, patch, patch.way_a, -1.0), side_b = side_of(work, b, patch, patch.way_b, 1.0);
-    for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
-      prefetch(row + 4);
-      const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
-      if (!is_kept) {
-        row->ia = a.active;
-        row->ib = b.active;
-        row->contact = k;
-        row->kind = RowKind::Contact;
-        std::fill_n(row->bias, 3, 0.0);
-        if (a.active >= 0) fill_side(side_a, patch, contact.p_WQ, 0, *row);
-        if (b.active >= 0) fill_side(side_b, patch, contact.p_WQ, 6, *row);
-        if (a.active < 0 && a.is_moving) add_bias(a, patch, contact.p_WQ - a.p_WBcm - patch.way_a, -1.0, *row);
-        if (b.active < 0 && b.is_moving) add_bias(b, patch, contact.p_WQ - b.p_WBcm - patch.way_b, 1.0, *row);
-        if (patch.has_belt) row->bias[1] += patch.t1.dot(patch.belt_W), row->bias[2] += patch.t2.dot(patch.belt_W);
+    if (!is_kept) {
+      Side side_a = side_of(work, a, patch, patch.way_a, -1.0), side_b = side_of(work, b, patch, patch.way_b, 1.0);
+      for (int k = 0; k < patch.contact_count; ++k) {
+        prefetch(row + k + 4);
+        fill_contact_row(work, patch, a, b, side_a, side_b, patch.first_contact + k, row[k]);
       }
-      fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), *row);
+    }
+    const int bearing = count_bearing(model, work, patch, row);
+    for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k, ++row) {
+      if (is_kept) prefetch(row + 4);
+      const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
+      fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), bearing, *row);
       if (!is_kept) finish_row(*row);
       if (!is_first) continue;
       if (patch.is_swept) {

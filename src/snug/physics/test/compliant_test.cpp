@@ -112,6 +112,52 @@ TEST(CompliantContact, DoesNotRingWhenItsDampingIsFarBeyondTheStep) {
   }
 }
 
+TEST(CompliantContact, ReboundsAsASpringWithADamperDoesWhereverInTheStepItTouches) {
+  // What lands with v on a spring and a damper that do not pull leaves them with v exp(-tan(f) (pi - 2 f)), sin(f) the
+  // damping ratio.
+  struct Impact {
+    double stiffness, damping, mass, tolerance;
+  };
+  const Impact impacts[] = {{1e4, 50.0, 0.37, 0.003}, {1.5e4, 50.0, 2.0, 0.003}, {3e4, 30.0, 0.2, 0.016}};
+  for (const Impact& impact : impacts) {
+    SCOPED_TRACE(impact.stiffness);
+    const double f = std::asin(0.5 * impact.damping / std::sqrt(impact.stiffness * impact.mass));
+    const double expected = std::exp(-std::tan(f) * (M_PI - 2.0 * f));
+    for (const double dt : {1e-3, 5e-4, 2e-4}) {
+      for (const double part : {0.05, 0.35, 0.65, 0.95}) {
+        SCOPED_TRACE(part);
+        WorldModel model = on_plane({0.2, 0.0, impact.stiffness, impact.damping}, {});
+        model.bodies.push_back(box({0.1, 0.1, 0.1}, impact.mass, {0.0, 0.0, 0.05 + (5.0 + part) * dt}));
+        model.settings.dt = dt;
+        model.gravity.setZero();
+        model.finalize();
+        Simulation run(model);
+        set_twist(model, run.state, BodyId{1}, {{0.0, 0.0, -1.0}, Vector3::Zero()});
+        run.steps(5);
+        ASSERT_NEAR(run.body(1).velocity.z(), -1.0, 1e-12);  // nothing is felt before it touches
+        run.steps(static_cast<int>(0.05 / dt));
+        EXPECT_NEAR(run.body(1).velocity.z(), expected, impact.tolerance * std::pow(dt / 1e-3, 1.5));
+      }
+    }
+  }
+}
+
+TEST(CompliantContact, IsAsStiffHoweverFastAnythingElseMoves) {
+  // A box that lands on an edge, alone and with another that flies by far away.
+  const ContactLaw law{0.2, 0.0, 1e4, 30.0};
+  const auto end_with = [&law](double speed) {
+    BodyModel tilted = box({0.1, 0.1, 0.1}, 0.5, {0.0, 0.0, 0.0});
+    tilted.X_WB.R = exp_rotation({0.0, 0.03, 0.01});
+    tilted.X_WB.p.z() = 0.0525;
+    WorldModel model = on_plane(law, {tilted, box({0.1, 0.1, 0.1}, 0.5, {5.0, 0.0, 1.0})});
+    Simulation run(model);
+    set_twist(model, run.state, BodyId{2}, {{speed, 0.0, 0.0}, Vector3::Zero()});
+    run.steps(60);
+    return run.body(1).p_WBcm;
+  };
+  EXPECT_LT((end_with(0.0) - end_with(4.0)).norm(), 1e-7);
+}
+
 /// Soft for 1 mm, then ten times as stiff.
 ContactLaw stiffening() {
   ContactLaw law{0.2, 0.0, 2e4, 400.0};
