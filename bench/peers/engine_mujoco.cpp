@@ -46,7 +46,8 @@ std::string scene_xml(const Scene& scene, const MujocoSettings& settings, double
   if (scene.has_plane) {
     const Contact& contact = scene.box_container;
     const std::string soft = contact.time_constant > 0.0
-                                 ? fmt::format("solref=\"{} {}\"", contact.time_constant, contact.damping_ratio)
+                                 ? fmt::format("solref=\"{} {}\" solimp=\"{} {} 0.001\"", contact.time_constant,
+                                               contact.damping_ratio, contact.impedance, settings.impedance_max)
                                  : "";
     bodies +=
         fmt::format(R"(<geom type="plane" size="5 5 1" pos="0 0 {}" friction="{} 0.005 0.0001" priority="1" {}/>)",

@@ -29,7 +29,9 @@ class SnugEngine final : public Engine {
     model_.material_count = 2;
     const physics::ContactLaw box_box{scene.box_box.friction, scene.box_box.restitution, 0.0, 0.0};
     const Contact& fixed = scene.box_container;
-    const physics::ContactLaw box_fixed{fixed.friction, fixed.restitution, fixed.stiffness, fixed.damping};
+    physics::ContactLaw box_fixed{fixed.friction, fixed.restitution, fixed.stiffness, 0.0};
+    box_fixed.damping_ratio = fixed.ratio;
+    box_fixed.edge_friction = fixed.edge_friction;
     model_.laws = {box_box, box_fixed, box_fixed, box_fixed};
     for (const BoxBody& box : scene.bodies) model_.bodies.push_back(body_of(box));
     plane_ = static_cast<int>(model_.bodies.size());

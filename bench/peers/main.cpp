@@ -36,7 +36,7 @@ std::vector<Candidate> candidates() {
 
 constexpr const char* kUsage =
     R"(usage: bench_peers [--json] [--engine NAME]... [--scene s1|...|s6|pile100|pile300|pile1000]...
-       bench_peers --tosses FILE.csv [--evaluations N] [--json] [--engine NAME]...
+       bench_peers --tosses FILE.csv [--evaluations N] [--starts N] [--json] [--engine NAME]...
 Runs the scenes in the engines named (default: s1 to s6 in all) and prints the figures that bench/README.md explains.
   bench_peers --scene s1 --engine bullet-si50
   bench_peers --scene pile300 --engine snug --engine bullet-si50
@@ -71,6 +71,9 @@ std::string parse(int argc, char** argv, Options& options) {
     } else if (word == "--evaluations" && i + 1 < argc) {
       options.tosses.evaluations = std::atoi(argv[++i]);
       if (options.tosses.evaluations < 1) return fmt::format("--evaluations '{}': expected a number above 0", argv[i]);
+    } else if (word == "--starts" && i + 1 < argc) {
+      options.tosses.starts = std::atoi(argv[++i]);
+      if (options.tosses.starts < 1) return fmt::format("--starts '{}': expected a number above 0", argv[i]);
     } else {
       return fmt::format("unknown or incomplete argument '{}'", word);
     }

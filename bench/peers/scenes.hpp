@@ -1,6 +1,7 @@
 // Scenes S1 to S6 and piles: the work that every engine is given, as plain data that no engine had a say in.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,13 @@ namespace snug::peers {
 struct Contact {
   double friction = 0.2;
   double restitution = 0.05;
-  /// Softness, as far as an engine has it; 0: its default. Snug: N/m and N s/m of a patch; Bullet: of a point.
-  double stiffness = 0.0, damping = 0.0;
+  /// Softness, as far as an engine has it; 0: its default. Stiffness: N/m, of a patch (snug) or a point (Bullet);
+  /// damping: Bullet's, N s/m of a point; ratio: snug's, over the critical damping of a point.
+  double stiffness = 0.0, damping = 0.0, ratio = 0.0;
   /// The same for MuJoCo, whose contacts are springs by their time constant, s (solref).
   double time_constant = 0.0, damping_ratio = 1.0;
+  double impedance = 0.95;  ///< MuJoCo's, where a contact begins (solimp[0]), with a time constant
+  std::optional<double> edge_friction = std::nullopt;  ///< snug's, of edges and corners; absent: friction
 };
 
 /// A solid box of uniform density; the body frame is at its centre.

@@ -60,7 +60,9 @@ void draw_contacts(const model::Uncertainty& half_width, const Rng& rng, model::
   stiffen(scenario, stiffness.factor(half_width.contact_stiffness));
   const double farther = travel.factor(half_width.contact_travel);
   const auto draw = [&](model::ContactParams& params) {
-    params.friction *= friction.factor(half_width.friction);
+    const double rougher = friction.factor(half_width.friction);
+    params.friction *= rougher;
+    if (params.edge_friction) *params.edge_friction *= rougher;
     if (params.travel) *params.travel *= farther;
   };
   for (model::ContactPair& pair : scenario.contact_pairs) draw(pair.params);

@@ -28,6 +28,8 @@ physics::ContactLaw law_of(const model::Scenario& scenario, int a, int b) {
   law.edge_share = params->edge_share.value_or(law.edge_share);
   law.rolling_resistance = params->rolling_resistance;
   law.torsional_friction = params->torsional_friction;
+  law.damping_ratio = params->damping_ratio.value_or(0.0);
+  law.edge_friction = params->edge_friction;
   return law;
 }
 

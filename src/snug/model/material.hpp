@@ -35,6 +35,10 @@ struct ContactParams {
   /// What rolls or spins on a point comes to rest: moments per normal force.
   double rolling_resistance = 0.0;  ///< m, about the axes in the plane of the contact
   double torsional_friction = 0.0;  ///< m, about its normal, beside what the friction of several points does
+  /// Damping over the critical one of each point by itself, beside `damping`. Absent: 0. Only with a stiffness.
+  std::optional<double> damping_ratio = std::nullopt;
+  /// Coulomb coefficient where one or two points bear: corners, edges, balls. Absent: `friction`.
+  std::optional<double> edge_friction = std::nullopt;
 
   template <class Archive>
   void fields(Archive& a) {
@@ -48,6 +52,8 @@ struct ContactParams {
     a("edge_share", edge_share, Range::Positive);
     a("rolling_resistance", rolling_resistance, Range::NotNegative);
     a("torsional_friction", torsional_friction, Range::NotNegative);
+    a("damping_ratio", damping_ratio, Range::NotNegative);
+    a("edge_friction", edge_friction, Range::NotNegative);
   }
   bool operator==(const ContactParams&) const = default;
 };

@@ -54,7 +54,7 @@ double end_of(const HolderMove& move) {
 void check_softness(const MapReader& map, const ContactParams& params) {
   if (params.damping && !params.stiffness)
     map.require("damping").fail("damping without stiffness", "a stiffness too: a rigid contact has no damping");
-  for (const char* key : {"travel", "full_area"})
+  for (const char* key : {"travel", "full_area", "damping_ratio"})
     if (map.has(key) && !params.stiffness)
       map.require(key).fail(std::string(key) + " without stiffness",
                             "a stiffness too: a rigid contact does not give way");

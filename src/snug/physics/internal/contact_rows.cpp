@@ -7,6 +7,7 @@
 namespace snug::physics::internal {
 namespace {
 
+constexpr int kEdgePoints = 2;    ///< as many contacts of a patch, or fewer, are an edge or a corner
 constexpr double kNever = -1e6;  ///< m/s, approach that nothing has: asks a contact for no impulse
 
 /// How a body enters the rows of a patch: whitened J of axis i at arm r is sign (L_i, G_i r), G_i a 3 x 3 matrix.
@@ -115,17 +116,19 @@ void fill_compliant_law(const ContactLaw& law, double dt, const Patch& patch, co
                         double free_velocity, int bearing, Row& row) {
   const bool is_beyond = law.travel > 0.0 && -contact.phi > law.travel;
   const double whole = patch.share * (is_beyond ? law.stiffness_beyond : law.stiffness);
-  const double k = whole / bearing, d = patch.share * law.damping / bearing;
+  const double k = whole / bearing;
   // A spring of this stiffness that bears what it bears at this depth starts here.
   const double phi = contact.phi + (is_beyond ? law.travel * (1.0 - law.stiffness / law.stiffness_beyond) : 0.0);
-  const double x = whole * dt * dt * normal_mobility(row, false), y = d * dt * normal_mobility(row, true);
-  const double theta = y > 1e-3 ? 1.0 / -std::expm1(-y) - 1.0 / y : 0.5 + y / 12.0;
-  const double fitted = d * (1.0 + 0.25 * x * std::min(1.0, 4.0 * x / (y * y)));
   const double closed = 1.0 - closing_fraction(contact, free_velocity, dt);
   if (closed <= 0.0) {
     row.target = kNever;
     return;
   }
+  const double ratio = 2.0 * law.damping_ratio * std::sqrt(k / normal_mobility(row, true));
+  const double d = patch.share * law.damping / bearing + ratio;
+  const double x = whole * dt * dt * normal_mobility(row, false), y = d * dt * normal_mobility(row, true);
+  const double theta = y > 1e-3 ? 1.0 / -std::expm1(-y) - 1.0 / y : 0.5 + y / 12.0;
+  const double fitted = d * (1.0 + 0.25 * x * std::min(1.0, 4.0 * x / (y * y)));
   const double to_end = closed * (0.25 * k * dt + theta * fitted);
   const double to_start = closed * (0.25 * k * dt + (1.0 - theta) * fitted);
   row.gamma = 1.0 / (dt * to_end);
@@ -140,7 +143,7 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
   const double dt = model.settings.dt;
   const double mean = 0.5 * (contact.approach + free_velocity);
   const ContactLaw& law = model.laws[patch.law];
-  row.mu = law.friction;
+  row.mu = bearing <= kEdgePoints ? law.edge_friction.value_or(law.friction) : law.friction;
   row.gamma = 0.0;
   row.gap_end = 0.0;
   row.is_bounce = false;
@@ -165,9 +168,11 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
   }
 }
 
-/// Contacts of a patch, rows from `first` on, that are closed in this step, at least one: they share its stiffness.
+/// Contacts of a patch, rows from `first` on, that are closed in this step, at least one: they share its stiffness, and
+/// say whether it is an edge. 1 where the law asks for neither.
 int count_bearing(const WorldModel& model, const Scratch& work, const Patch& patch, const Row* first) {
-  if (model.laws[patch.law].stiffness <= 0.0) return 1;
+  const ContactLaw& law = model.laws[patch.law];
+  if (law.stiffness <= 0.0 && !law.edge_friction) return 1;
   int count = 0;
   for (int i = 0; i < patch.contact_count; ++i) {
     const Contact& contact = work.contacts[static_cast<std::size_t>(patch.first_contact + i)];

@@ -142,6 +142,38 @@ TEST(CompliantContact, ReboundsAsASpringWithADamperDoesWhereverInTheStepItTouche
   }
 }
 
+TEST(CompliantContact, ReboundsFromACornerByItsDampingRatioWhateverTheMassAndTheLever) {
+  // One point without friction: its effective mass is that of body and lever, and the closed form above has the ratio.
+  const double speed = 0.05;  // m/s: it hardly turns while it touches
+  const Vector3 corner = Vector3::Constant(-0.05);
+  for (const double ratio : {0.2, 0.5}) {
+    const double f = std::asin(ratio), rebound = std::exp(-std::tan(f) * (M_PI - 2.0 * f));
+    for (const double mass : {0.3, 3.0}) {
+      for (const double turn : {0.0, 0.2, 0.4}) {
+        SCOPED_TRACE(turn);
+        ContactLaw law{0.0, 0.0, 1e5 * mass, 0.0};
+        law.damping_ratio = ratio;
+        BodyModel cube = box({0.1, 0.1, 0.1}, mass, Vector3::Zero());
+        cube.X_WB.R = exp_rotation({turn, 0.0, 0.0}) *
+                      Eigen::Quaterniond::FromTwoVectors(corner, -Vector3::UnitZ()).toRotationMatrix();
+        const Vector3 lever = cube.X_WB.R * corner;
+        cube.X_WB.p.z() = 2e-5 - lever.z();
+        WorldModel model = on_plane(law, {cube});
+        model.gravity.setZero();
+        model.settings.dt = 2e-4;
+        model.finalize();
+        Simulation run(model);
+        set_twist(model, run.state, BodyId{1}, {{0.0, 0.0, -speed}, Vector3::Zero()});
+        run.steps(75);
+        const double moment = mass * 0.01 / 6.0;
+        const double effective = 1.0 / (1.0 / mass + lever.head<2>().squaredNorm() / moment);
+        const double push = mass * (run.body(1).velocity.z() + speed);
+        EXPECT_NEAR(push / (effective * speed) - 1.0, rebound, 0.01);
+      }
+    }
+  }
+}
+
 TEST(CompliantContact, IsAsStiffHoweverFastAnythingElseMoves) {
   // A box that lands on an edge, alone and with another that flies by far away.
   const ContactLaw law{0.2, 0.0, 1e4, 30.0};

@@ -27,6 +27,35 @@ WorldModel world_of(const Spin& spin) {
 const Spin kSpins[] = {
     {{0.2, 0.2, 0.097}, 0.55, 0.2, 10.0}, {{0.3, 0.1, 0.05}, 1.7, 0.5, -15.0}, {{0.05, 0.05, 0.2}, 0.1, 0.05, 3.0}};
 
+TEST(EdgeFriction, SlowsWhatSlidesOnAnEdgeOrACornerAndNotWhatLiesOnAFace) {
+  const double half = 0.05, speed = 1.0;
+  struct Slide {
+    Vector3 rotation;  ///< rad
+    double height, friction;
+  };
+  const Matrix3 on_corner = Eigen::Quaterniond::FromTwoVectors(Vector3(1.0, 1.0, 1.0), Vector3::UnitZ()).matrix();
+  const Slide slides[] = {{Vector3::Zero(), half, 0.3},
+                          {{0.25 * std::numbers::pi, 0.0, 0.0}, half * std::sqrt(2.0), 0.1},
+                          {log_rotation(on_corner), half * std::sqrt(3.0), 0.1}};
+  for (const double stiffness : {0.0, 2e4}) {
+    SCOPED_TRACE(stiffness);
+    for (const Slide& slide : slides) {
+      SCOPED_TRACE(slide.height);
+      ContactLaw law{0.3, 0.0, stiffness, 0.0};
+      law.edge_friction = 0.1;
+      BodyModel cube = box(Vector3::Constant(2.0 * half), 1.0, {0.0, 0.0, slide.height});
+      if (stiffness > 0.0) cube.X_WB.p.z() -= kGravity / stiffness;  // in balance
+      cube.X_WB.R = exp_rotation(slide.rotation);
+      cube.inertia.inertia = 1e6 * Matrix3::Identity();  // does not tip
+      const WorldModel model = on_plane(law, {cube});
+      Simulation run(model);
+      set_twist(model, run.state, BodyId{1}, {{speed, 0.0, 0.0}, Vector3::Zero()});
+      run.steps(200);
+      EXPECT_NEAR(run.body(1).velocity.x(), speed - slide.friction * kGravity * 200 * model.settings.dt, 1e-5);
+    }
+  }
+}
+
 TEST(TorsionalFriction, SlowsASpinningBoxAsItsFourCornersSay) {
   for (const Spin& spin : kSpins) {
     SCOPED_TRACE(spin.size.transpose());
