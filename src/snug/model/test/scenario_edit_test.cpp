@@ -72,6 +72,9 @@ TEST(ScenarioEdit, RefusesWhatTheReaderRefusesAndNamesTheKey) {
   const std::string rigid = "contacts.pairs.box/workbench.", soft = "contacts.pairs.box/gripper.";
   EXPECT_NE(refusal_of(rigid + "travel", "0.001").find("travel without stiffness"), std::string::npos);
   EXPECT_NE(refusal_of(rigid + "full_area", "0.005").find("full_area without stiffness"), std::string::npos);
+  EXPECT_NE(refusal_of(rigid + "damping_ratio", "0.5").find("damping_ratio without stiffness"), std::string::npos);
+  EXPECT_NE(refusal_of(rigid + "edge_friction", "-0.1").find("edge_friction"), std::string::npos);
+  EXPECT_EQ(refusal_of(rigid + "edge_friction", "0.1"), "");
   EXPECT_NE(refusal_of(soft + "travel", "0.001").find("both, or neither"), std::string::npos);
   EXPECT_NE(refusal_of(soft + "stiffness_beyond", "1e5").find("both, or neither"), std::string::npos);
   EXPECT_NE(refusal_of(soft + "edge_share", "0.1").find("full_area"), std::string::npos);

@@ -7,7 +7,7 @@
 namespace snug::physics::internal {
 namespace {
 
-constexpr int kEdgePoints = 2;    ///< as many contacts of a patch, or fewer, are an edge or a corner
+constexpr int kEdgePoints = 2;   ///< as many contacts of a patch, or fewer, are an edge or a corner
 constexpr double kNever = -1e6;  ///< m/s, approach that nothing has: asks a contact for no impulse
 
 /// How a body enters the rows of a patch: whitened J of axis i at arm r is sign (L_i, G_i r), G_i a 3 x 3 matrix.
