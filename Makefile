@@ -92,8 +92,9 @@ cover: setup-test ## which lines the tests reach, by module
 bench: build ## how fast and how accurate the physics is, beside its targets
 	@build/snug bench
 
-bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run
-	@$(call configure-build,bench) && build-bench/bench_peers
+bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run; TOSSES=FILE.csv for tosses, an hour
+	@$(call configure-build,bench) && build-bench/bench_peers \
+	  $(if $(TOSSES),--tosses $(TOSSES) --engine snug --engine bullet-si10 --engine mujoco-elliptic-stiff)
 
 docs: setup-docs ## check every link of the documents, build the documentation site: build/site/index.html
 	@python3 tools/check_docs.py . && python3 tools/build_site.py build/site

@@ -939,6 +939,7 @@ class Identify(unittest.TestCase):
         floor = json.loads(snug("identify", "scene", self.TOSSES, "--floor", "--json").stdout)
         self.assertLess(floor["position_mm"], 4.0)
 
+    FRICTION = 0.21934  # of the task, and of its example
     planted = None
 
     def small_task(self, low=0.05):
@@ -952,7 +953,8 @@ class Identify(unittest.TestCase):
         text = self.TOSSES.read_text().replace("cube.yaml", str(cell))
         lines = text.replace("[example.csv]", f"[{self.TOSSES.parent / 'example.csv'}]").splitlines()
         kept = [line for line in lines if "{name:" not in line or "name: friction" in line or "name: damping_ratio" in line]
-        task.write_text("\n".join(kept).replace("value: 0.21934, bounds: [0.05", f"value: 0.3, bounds: [{low}") + "\n")
+        task.write_text("\n".join(kept).replace(f"value: {self.FRICTION}, bounds: [0.05", f"value: 0.3, bounds: [{low}") + "\n")
+        self.assertIn("value: 0.3,", task.read_text())
         return task
 
     def test_scene_finds_a_planted_friction_and_writes_task_and_scenario(self):
@@ -965,7 +967,7 @@ class Identify(unittest.TestCase):
             self.assertIsInstance(fit[key], float)
         friction = fit["parameters"][0]
         self.assertEqual(set(friction) - {"record_instead"}, {"name", "value", "standard_error", "verdict"})
-        self.assertAlmostEqual(friction["value"], 0.21934, delta=0.02)
+        self.assertAlmostEqual(friction["value"], self.FRICTION, delta=0.02)
         self.assertEqual([row["name"] for row in fit["sensitivity"]], ["friction", "damping_ratio"])
         again = snug("identify", "scene", found, "--evaluate", "--json")
         self.assertAlmostEqual(json.loads(again.stdout)["cost"], (8 * fit["cost"] + 2 * fit["held_back_error"]) / 10, delta=0.5)

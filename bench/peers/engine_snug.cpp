@@ -30,7 +30,7 @@ class SnugEngine final : public Engine {
     const physics::ContactLaw box_box{scene.box_box.friction, scene.box_box.restitution, 0.0, 0.0};
     const Contact& fixed = scene.box_container;
     physics::ContactLaw box_fixed{fixed.friction, fixed.restitution, fixed.stiffness, 0.0};
-    box_fixed.damping_ratio = fixed.ratio;
+    box_fixed.damping_ratio = fixed.snug_damping_ratio;
     box_fixed.edge_friction = fixed.edge_friction;
     model_.laws = {box_box, box_fixed, box_fixed, box_fixed};
     for (const BoxBody& box : scene.bodies) model_.bodies.push_back(body_of(box));

@@ -14,8 +14,8 @@ struct Contact {
   double friction = 0.2;
   double restitution = 0.05;
   /// Softness, as far as an engine has it; 0: its default. Stiffness: N/m, of a patch (snug) or a point (Bullet);
-  /// damping: Bullet's, N s/m of a point; ratio: snug's, over the critical damping of a point.
-  double stiffness = 0.0, damping = 0.0, ratio = 0.0;
+  /// damping: Bullet's, N s/m of a point, and snug's, over the critical one of a point.
+  double stiffness = 0.0, damping = 0.0, snug_damping_ratio = 0.0;
   /// The same for MuJoCo, whose contacts are springs by their time constant, s (solref).
   double time_constant = 0.0, damping_ratio = 1.0;
   double impedance = 0.95;  ///< MuJoCo's, where a contact begins (solimp[0]), with a time constant

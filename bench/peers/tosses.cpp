@@ -79,7 +79,7 @@ Scene scene_of(const Eigen::VectorXd& x, const Flights& flights) {
   contact.restitution = 1e-9 + 0.3 * x[6];         // Bullet's own; it divides by it
   contact.stiffness = 2e3 * std::pow(30.0, x[1]);  // 2 to 60 kN/m
   contact.damping = 200.0 * x[2];                  // Ns/m
-  contact.ratio = x[2];
+  contact.snug_damping_ratio = x[2];
   contact.time_constant = 0.02 * std::pow(0.1, x[1]);  // 20 to 2 ms
   contact.damping_ratio = 0.1 + 1.9 * x[2];
   contact.edge_friction = (1.0 - 0.5 * x[6]) * x[0];  // snug's own
@@ -99,6 +99,8 @@ struct Toss {
   std::vector<double> times;
   std::vector<record::PoseSample> poses;  ///< of the tracked frame
   std::size_t flight = 3;                 ///< samples before the first touch
+  Pose X_WC;                              ///< at the start, of the centre of mass, by the flight
+  Twist V_WC;
 };
 
 std::size_t count_flight(const identification::RecordedBody& body) {
@@ -161,14 +163,17 @@ struct Error {
   bool is_right = false;
 };
 
-Error predict(Engine& engine, const Toss& toss, const Flights& flights) {
-  const Vector3& com = flights.com;
-  const SpatialInertia inertia{kMass, com, Matrix3(kMoment * Matrix3::Identity())};
+void fill_start(const Flights& flights, Toss& toss) {
+  const SpatialInertia inertia{kMass, flights.com, Matrix3(kMoment * Matrix3::Identity())};
   const identification::FlightStart start = identification::fit_free_flight(
       std::span(toss.times).first(toss.flight), std::span(toss.poses).first(toss.flight), inertia, flights.gravity);
-  const Pose X_BC{Matrix3::Identity(), com}, X_CB{Matrix3::Identity(), -com};
-  engine.set_motion(0, start.X_WB * X_BC,
-                    {start.V_WB.linear + start.V_WB.angular.cross(start.X_WB.R * com), start.V_WB.angular});
+  toss.X_WC = start.X_WB * Pose{Matrix3::Identity(), flights.com};
+  toss.V_WC = {start.V_WB.linear + start.V_WB.angular.cross(start.X_WB.R * flights.com), start.V_WB.angular};
+}
+
+Error predict(Engine& engine, const Toss& toss, const Vector3& com) {
+  const Pose X_CB{Matrix3::Identity(), -com};
+  engine.set_motion(0, toss.X_WC, toss.V_WC);
   Error error{0.0, 0.0, false};
   Pose before = engine.pose(0), now = before;
   double angle = 0.0;
@@ -199,7 +204,7 @@ Error predict(Engine& engine, const Toss& toss, const Flights& flights) {
 }  // namespace
 
 std::vector<Result> measure_tosses(const std::function<std::unique_ptr<Engine>()>& make, const TossOptions& options) {
-  const std::vector<Toss> tosses = load(options.file);
+  std::vector<Toss> tosses = load(options.file);
   std::vector<std::size_t> all(tosses.size()), fitted, held;
   for (std::size_t i = 0; i < tosses.size(); ++i) {
     all[i] = i;
@@ -209,13 +214,14 @@ std::vector<Result> measure_tosses(const std::function<std::unique_ptr<Engine>()
   std::vector<Toss> known;
   for (const std::size_t i : fitted) known.push_back(tosses[i]);
   const Flights flights = fit_flights(known);
+  for (Toss& toss : tosses) fill_start(flights, toss);
   const auto predict_all = [&](const Eigen::VectorXd& x, const std::vector<std::size_t>& which) {
     const Scene scene = scene_of(x, flights);
     std::vector<Error> errors(which.size());
     parallel_for(static_cast<int>(which.size()), threads, [&](int i, int) {
       const std::unique_ptr<Engine> engine = make();
       engine->build(scene, kStep);
-      errors[static_cast<std::size_t>(i)] = predict(*engine, tosses[which[static_cast<std::size_t>(i)]], flights);
+      errors[static_cast<std::size_t>(i)] = predict(*engine, tosses[which[static_cast<std::size_t>(i)]], flights.com);
     });
     return errors;
   };

@@ -57,10 +57,10 @@ struct ContactLaw {
   double edge_share = 0.02;         ///< share of them that edges and corners have at least, above 0
   double rolling_resistance = 0.0;  ///< m, largest moment about axes in the contact plane per normal force
   double torsional_friction = 0.0;  ///< m, the same about the normal
-  /// Coulomb coefficient where one or two points of the patch bear: corners, edges, balls. Absent: `friction`.
   /// Damping over the critical one of each point by itself, beside `damping`, with stiffness only: the rebound from a
   /// point is the same for any mass.
   double damping_ratio = 0.0;
+  /// Coulomb coefficient where one or two points of the patch bear: corners, edges, balls. Absent: `friction`.
   std::optional<double> edge_friction = std::nullopt;
   [[nodiscard]] bool resists_turning() const { return rolling_resistance > 0.0 || torsional_friction > 0.0; }
   bool operator==(const ContactLaw&) const = default;

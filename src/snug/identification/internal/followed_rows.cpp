@@ -42,6 +42,25 @@ RowCounts combined(const RowCounts& a, const RowCounts& b, const Choose& choose)
   return result;
 }
 
+/// Samples of a body, one after the other, that are far off.
+class FarSamples {
+ public:
+  /// The next sample of a body, the mean of `count`; how many of the latest to leave out once they are far for 0.3 s,
+  /// else -1.
+  Eigen::Index add(const RecordedMotion& motion, std::size_t sample, double count, bool is_first, bool is_far) {
+    if (is_first || !is_far) samples_ = 0;
+    if (!is_far) return -1;
+    const double half = 0.5 * count * motion.period;
+    if (samples_ == 0) since_ = motion.times[sample] - half;
+    ++samples_;
+    return motion.times[sample] + half - since_ >= kFarFor ? samples_ - 1 : -1;
+  }
+
+ private:
+  Eigen::Index samples_ = 0;
+  double since_ = 0.0;  // s
+};
+
 }  // namespace
 
 RowCounts rows_until(const SceneExperiment& experiment, const std::vector<std::size_t>& motions,
@@ -130,25 +149,6 @@ RowCounts find_straight(const SceneExperiment& experiment, const std::vector<std
   }
   return result;
 }
-
-/// Samples of a body, one after the other, that are far off.
-class FarSamples {
- public:
-  /// The next sample of a body, the mean of `count`; how many of the latest to leave out once they are far for 0.3 s,
-  /// else -1.
-  Eigen::Index add(const RecordedMotion& motion, std::size_t sample, double count, bool is_first, bool is_far) {
-    if (is_first || !is_far) samples_ = 0;
-    if (!is_far) return -1;
-    const double half = 0.5 * count * motion.period;
-    if (samples_ == 0) since_ = motion.times[sample] - half;
-    ++samples_;
-    return motion.times[sample] + half - since_ >= kFarFor ? samples_ - 1 : -1;
-  }
-
- private:
-  Eigen::Index samples_ = 0;
-  double since_ = 0.0;  // s
-};
 
 RowCounts find_followed(const SceneExperiment& experiment, const std::vector<std::size_t>& motions,
                         const Neighbourhood& at, const Eigen::MatrixXd& covariance) {

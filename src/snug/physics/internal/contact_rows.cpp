@@ -124,15 +124,15 @@ void fill_compliant_law(const ContactLaw& law, double dt, const Patch& patch, co
     row.target = kNever;
     return;
   }
-  const double ratio = 2.0 * law.damping_ratio * std::sqrt(k / normal_mobility(row, true));
-  const double d = patch.share * law.damping / bearing + ratio;
-  const double x = whole * dt * dt * normal_mobility(row, false), y = d * dt * normal_mobility(row, true);
+  const double mobility = normal_mobility(row, true), critical = 2.0 * std::sqrt(k / mobility);
+  const double d = patch.share * law.damping / bearing + law.damping_ratio * critical;
+  const double x = whole * dt * dt * normal_mobility(row, false), y = d * dt * mobility;
   const double theta = y > 1e-3 ? 1.0 / -std::expm1(-y) - 1.0 / y : 0.5 + y / 12.0;
   const double fitted = d * (1.0 + 0.25 * x * std::min(1.0, 4.0 * x / (y * y)));
   const double to_end = closed * (0.25 * k * dt + theta * fitted);
   const double to_start = closed * (0.25 * k * dt + (1.0 - theta) * fitted);
   row.gamma = 1.0 / (dt * to_end);
-  // Until the end of the step a contact that closes in it is deeper by half of what the end shows.
+  // A contact that closes in the step has, while it is closed, half the depth of the end on average.
   const double deep = contact.phi > 0.0 ? 0.5 * closed * k * phi : k * phi;
   row.target = -(deep + to_start * contact.approach) / to_end;
 }

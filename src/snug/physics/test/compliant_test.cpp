@@ -116,9 +116,9 @@ TEST(CompliantContact, ReboundsAsASpringWithADamperDoesWhereverInTheStepItTouche
   // What lands with v on a spring and a damper that do not pull leaves them with v exp(-tan(f) (pi - 2 f)), sin(f) the
   // damping ratio.
   struct Impact {
-    double stiffness, damping, mass, tolerance;
+    double stiffness, damping, mass;
   };
-  const Impact impacts[] = {{1e4, 50.0, 0.37, 0.003}, {1.5e4, 50.0, 2.0, 0.003}, {3e4, 30.0, 0.2, 0.016}};
+  const Impact impacts[] = {{1e4, 50.0, 0.37}, {1.5e4, 50.0, 2.0}, {3e4, 30.0, 0.2}};
   for (const Impact& impact : impacts) {
     SCOPED_TRACE(impact.stiffness);
     const double f = std::asin(0.5 * impact.damping / std::sqrt(impact.stiffness * impact.mass));
@@ -136,7 +136,10 @@ TEST(CompliantContact, ReboundsAsASpringWithADamperDoesWhereverInTheStepItTouche
         run.steps(5);
         ASSERT_NEAR(run.body(1).velocity.z(), -1.0, 1e-12);  // nothing is felt before it touches
         run.steps(static_cast<int>(0.05 / dt));
-        EXPECT_NEAR(run.body(1).velocity.z(), expected, impact.tolerance * std::pow(dt / 1e-3, 1.5));
+        // The step in which it leaves may lose what the spring still holds half a step from its end, k (v dt/2)^2 / 2,
+        // which is (w dt)^2 / 8 of the speed; that in which it touches is as exact.
+        const double per_step = dt * dt * impact.stiffness / impact.mass;
+        EXPECT_NEAR(run.body(1).velocity.z(), expected, 0.125 * per_step);
       }
     }
   }
@@ -168,7 +171,7 @@ TEST(CompliantContact, ReboundsFromACornerByItsDampingRatioWhateverTheMassAndThe
         const double moment = mass * 0.01 / 6.0;
         const double effective = 1.0 / (1.0 / mass + lever.head<2>().squaredNorm() / moment);
         const double push = mass * (run.body(1).velocity.z() + speed);
-        EXPECT_NEAR(push / (effective * speed) - 1.0, rebound, 0.01);
+        EXPECT_NEAR(push / (effective * speed) - 1.0, rebound, 0.01);  // it turns by 0.005 rad: 0.005 of the lever
       }
     }
   }
@@ -187,7 +190,7 @@ TEST(CompliantContact, IsAsStiffHoweverFastAnythingElseMoves) {
     run.steps(60);
     return run.body(1).p_WBcm;
   };
-  EXPECT_LT((end_with(0.0) - end_with(4.0)).norm(), 1e-7);
+  EXPECT_LT((end_with(0.0) - end_with(4.0)).norm(), 1e-7);  // what the solver leaves in 60 steps is 6e-9 m
 }
 
 /// Soft for 1 mm, then ten times as stiff.
