@@ -32,7 +32,7 @@ endfunction()
 
 function(snug_embed_viewer target source)
   add_library(snug_viewer_embedded OBJECT ${source})
-  target_include_directories(snug_viewer_embedded PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_include_directories(snug_viewer_embedded PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
   snug_compile_options(snug_viewer_embedded)
   # A compiler cache does not see the page behind the assembler's .incbin: it would bring back an old one.
   set_target_properties(snug_viewer_embedded PROPERTIES CXX_COMPILER_LAUNCHER "")

@@ -17,8 +17,19 @@ SOUND = {
     "src/snug/middle/middle.hpp": '#include "snug/low/low.hpp"\n',
     "src/snug/high/CMakeLists.txt": "snug_module(high HEADERS high.hpp DEPENDS middle)\n",
     "src/snug/high/high.hpp": '#include "snug/middle/middle.hpp"\n#include "snug/low/low.hpp"\n',
-    "apps/tool/main.cpp": '#include "beside.hpp"\n#include "snug/high/high.hpp"\n',
-    "apps/tool/beside.hpp": "// Beside.\n",
+    "apps/count/CMakeLists.txt": "snug_app_library(count SOURCES count.cpp DEPENDS middle)\n",
+    "apps/count/count.hpp": '#include "snug/low/low.hpp"\n',
+    "apps/count/internal/secret.hpp": "// Secret.\n",
+    "apps/snug/CMakeLists.txt": "add_executable(snug main.cpp)\n",
+    "apps/snug/main.cpp": '#include "apps/snug/send/send.hpp"\n#include "snug/low/low.hpp"\n',
+    "apps/snug/words/CMakeLists.txt": "snug_verb(words SOURCES words.cpp DEPENDS low)\n",
+    "apps/snug/words/words.hpp": '#include "snug/low/low.hpp"\n',
+    "apps/snug/send/CMakeLists.txt": "snug_verb(send\n  SOURCES send.cpp\n  USES words\n  DEPENDS high count)\n",
+    "apps/snug/send/send.hpp": '#include "apps/snug/words/words.hpp"\n#include "apps/count/count.hpp"\n',
+    "apps/snug/send/send.cpp": '#include "apps/snug/send/send.hpp"\n#include "snug/high/high.hpp"\n',
+    "python/CMakeLists.txt": "add_library(core)\ntarget_link_libraries(core PRIVATE snug::middle fmt::fmt)\n",
+    "python/src/module.cpp": '#include "handles.hpp"\n#include "snug/middle/middle.hpp"\n',
+    "python/src/handles.hpp": "// Handles.\n",
     "bench/peers/main.cpp": '#include "peers/engine.hpp"\n',
     "bench/peers/engine.hpp": "// Engine.\n",
 }
@@ -42,7 +53,7 @@ class CheckModules(unittest.TestCase):
 
     def test_accepts_declared_and_transitive_includes(self):
         status, output = self.run_on({})
-        self.assertEqual((status, output), (0, "9 includes follow the declared modules\n"))
+        self.assertEqual((status, output), (0, "17 includes follow the declared modules\n"))
 
     def test_refuses_an_undeclared_module(self):
         self.assert_refused({"src/snug/low/low.cpp": '// Low.\n\n#include "snug/high/high.hpp"\n'},
@@ -67,7 +78,9 @@ class CheckModules(unittest.TestCase):
     def test_refuses_internal_headers_of_another_module(self):
         self.assert_refused({"src/snug/high/high.cpp": '#include "snug/low/internal/secret.hpp"\n'},
                             "high.cpp:1:", "internal headers are for module 'low' only")
-        self.assert_refused({"apps/tool/main.cpp": '#include "snug/low/internal/secret.hpp"\n'}, "main.cpp:1:")
+        self.assert_refused({"apps/snug/main.cpp": '#include "snug/low/internal/secret.hpp"\n'}, "main.cpp:1:")
+        self.assert_refused({"apps/snug/send/send.cpp": '#include "apps/count/internal/secret.hpp"\n'},
+                            "send.cpp:1:", "internal headers are for module 'count' only")
 
     def test_refuses_relative_ways_into_another_module(self):
         self.assert_refused({"src/snug/low/low.cpp": '#include "../high/high.hpp"\n'}, "low.cpp:1:", "leaves module")
@@ -80,6 +93,28 @@ class CheckModules(unittest.TestCase):
 
     def test_refuses_a_folder_without_a_module(self):
         self.assert_refused({"src/snug/stray/stray.cpp": "// Stray.\n"}, "stray.cpp:1:", "declares no module")
+        self.assert_refused({"apps/other/main.cpp": "// Stray.\n"}, "main.cpp:1:", "declares no module")
+
+    def test_refuses_a_module_that_a_verb_does_not_declare(self):
+        self.assert_refused({"apps/snug/words/words.cpp": '// Words.\n#include "snug/high/high.hpp"\n'},
+                            "words.cpp:2:", "module 'apps/snug/words' does not declare 'high' (it may use low)")
+
+    def test_refuses_a_verb_s_folder_that_another_does_not_declare(self):
+        self.assert_refused({"apps/snug/words/words.cpp": '#include "apps/snug/send/send.hpp"\n'},
+                            "words.cpp:1:", "module 'apps/snug/words' does not declare 'apps/snug/send'")
+
+    def test_refuses_verbs_that_use_each_other(self):
+        self.assert_refused({"apps/snug/words/CMakeLists.txt": "snug_verb(words USES send DEPENDS low)\n"},
+                            "CMakeLists.txt:1:", "circular modules: ")
+
+    def test_refuses_the_program_s_headers_in_a_module_and_in_python(self):
+        for place in ("src/snug/high/high.cpp", "python/src/module.cpp"):
+            self.assert_refused({place: '#include "apps/snug/send/send.hpp"\n'}, ".cpp:1:", "does not declare 'apps/snug/send'")
+            self.assert_refused({place: '\n#include "../../apps/snug/send/send.hpp"\n'}, ".cpp:2:")
+
+    def test_refuses_a_module_that_python_does_not_link(self):
+        self.assert_refused({"python/src/module.cpp": '// Module.\n\n#include "snug/high/high.hpp"\n'},
+                            "module.cpp:3:", "module 'python' does not declare 'high' (it may use low, middle)")
 
 
 class Planner(unittest.TestCase):
@@ -94,7 +129,7 @@ class Planner(unittest.TestCase):
         self.check_modules = check_modules
 
     def test_no_chain_of_modules_leads_from_the_session_to_a_plant_s_truth(self):
-        modules = self.check_modules.declared_modules(self.ROOT / "src" / "snug")
+        modules = self.check_modules.declared_units(self.ROOT)
         problems = []
         reachable = self.check_modules.check_declarations(modules, problems)
         self.assertEqual(problems, [])

@@ -40,7 +40,7 @@ def module_of(path):
         return None
     if parts[:2] == ("src", "snug"):
         return parts[2]
-    return "apps/snug" if parts[:1] == ("apps",) else None
+    return "/".join(parts[:2]) if parts[:1] == ("apps",) else None
 
 
 def main(arguments):

@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
-#include "command_words.hpp"
-#include "outputs.hpp"
+#include "apps/snug/command_line/command_line.hpp"
+#include "apps/snug/command_line/command_words.hpp"
+#include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/verb.hpp"
+#include "apps/snug/command_line/version.hpp"
+#include "apps/snug/verbs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
-#include "verb.hpp"
-#include "verbs.hpp"
-#include "version.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // add_verbs: every verb that this program offers, in the order of --help.
 #pragma once
 
-#include "verb.hpp"
+#include "apps/snug/command_line/verb.hpp"
 
 namespace snug::app {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "apps/bench/drawn_scenes.hpp"
 #include "snug/core/rng.hpp"
-#include "snug/experiment/drawn_scenes.hpp"
 
 namespace snug::peers {
 
@@ -209,7 +209,7 @@ HeldScene gap_scene(GapVariant variant) {
 }
 
 Scene pile_scene(int count, int side, unsigned seed) {
-  const model::Scenario scenario = experiment::drawn_pile({count, side, seed});
+  const model::Scenario scenario = bench::drawn_pile({count, side, seed});
   Scene scene{.name = "pile", .box_box = {0.4, 0.1}, .box_container = {0.4, 0.1}};
   for (const model::Body& body : scenario.bodies) {
     scene.bodies.push_back({.name = body.name,

@@ -87,7 +87,7 @@ enum class GapVariant { A, B, C };
 /// S6: one B4 pressed between two others.
 [[nodiscard]] HeldScene gap_scene(GapVariant variant);
 
-/// Boxes that fall into a tote in layers of side x side: experiment::drawn_pile, as `snug bench piles` has it.
+/// Boxes that fall into a tote in layers of side x side: bench::drawn_pile, as `snug bench piles` has it.
 [[nodiscard]] Scene pile_scene(int count, int side, unsigned seed);
 
 /// Inside of the container, half sizes [m]; the floor's top is at z = 0.

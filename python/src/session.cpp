@@ -3,8 +3,6 @@
 
 #include "core.hpp"
 #include "handles.hpp"
-#include "pack_report.hpp"
-#include "run_report.hpp"
 #include "snug/cell/result_json.hpp"
 #include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
@@ -17,6 +15,7 @@
 #include "snug/robot/load_arm.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "snug/study/trial.hpp"
+#include "snug/study/trial_report.hpp"
 
 namespace snug::python {
 namespace {
@@ -146,7 +145,7 @@ py::tuple pack(const ScenarioHandle& handle, const PackWords& words) {
   {
     const py::gil_scoped_release release;
     trial = study::run_trial(scenario, words.sequence, session, plant, progress);
-    json = app::format_json(trial, repeated(scenario, trial, session, words.monte_carlo));
+    json = study::format_json(trial, repeated(scenario, trial, session, words.monte_carlo));
     program = std::make_shared<Held<motion::Program>>(trial.session.program);
   }
   if (!words.record.empty() && !trial.session.program.waypoints.empty()) {

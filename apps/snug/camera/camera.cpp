@@ -1,0 +1,123 @@
+// camera: a recording's bodies in the camera's picture, written with what is true of it.
+#include "apps/snug/camera/camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/common/choose_camera.hpp"
+#include "apps/snug/common/recorded_instant.hpp"
+#include "snug/camera/frame_file.hpp"
+#include "snug/camera/render.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
+#include "snug/record/reader.hpp"
+
+namespace snug::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+ordered_json as_json(const Pose& X) {
+  const Quaternion quat(X.R);
+  return {{"position_m", {X.p.x(), X.p.y(), X.p.z()}}, {"quat_wxyz", {quat.w(), quat.x(), quat.y(), quat.z()}}};
+}
+
+ordered_json describe(const camera::RenderedFrame& shot, double time) {
+  std::vector<int> pixels(shot.truth.names.size(), 0), points = pixels;
+  int all = 0;
+  for (std::size_t i = 0; i < shot.truth.label.values().size(); ++i) {
+    const std::int16_t label = shot.truth.label.values()[i];
+    const int has_point = shot.frame.depth.values()[i] > 0.0F ? 1 : 0;
+    all += has_point;
+    if (label < 0) continue;
+    ++pixels[static_cast<std::size_t>(label)];
+    points[static_cast<std::size_t>(label)] += has_point;
+  }
+  ordered_json json = {{"time_s", time},
+                       {"camera", ordered_json::parse(camera::format_camera(shot.frame.camera))},
+                       {"true_camera_pose", as_json(shot.truth.X_WC)},
+                       {"points", all},
+                       {"bodies", ordered_json::array()}};
+  for (std::size_t i = 0; i < shot.truth.names.size(); ++i) {
+    ordered_json body = {{"label", i}, {"name", shot.truth.names[i]}};
+    body.update(as_json(shot.truth.X_WB[i]));
+    body["pixels"] = pixels[i];
+    body["points"] = points[i];
+    json["bodies"].push_back(body);
+  }
+  return json;
+}
+
+/// "frame" and "-truth.json" to the file beside the output.
+std::string beside(const fs::path& output, const std::string& ending) {
+  return (output.parent_path() / (output.stem().string() + ending)).string();
+}
+
+std::vector<std::string> side_files(const fs::path& output) {
+  if (output.extension() == ".png")
+    return {beside(output, "-intensity.png"), beside(output, "-labels.png"), beside(output, "-truth.json")};
+  if (output.extension() == ".ply") return {beside(output, "-truth.json")};
+  return {};
+}
+
+}  // namespace
+
+int run_camera(const CameraOptions& options) {
+  const fs::path output = options.output;
+  const std::string ending = output.extension().string();
+  if (ending != ".png" && ending != ".ply" && ending != ".h5")
+    throw InputError("command line", "-o", options.output, "a name that ends in .png, .ply or .h5");
+  NamedFiles inputs = {{"the recording", options.recording}}, outputs = {{"-o", options.output}};
+  add_file(inputs, "--scenario", options.scenario);
+  const std::vector<std::string> sides = side_files(output);
+  for (const std::string& path : sides) outputs.push_back({"beside -o", path});
+  expect_distinct(inputs, outputs);
+
+  record::RecordingReader reader(options.recording);
+  expect_recorded(reader, options.recording, options.time);
+  const model::Scenario scenario =
+      options.scenario ? model::load_scenario(*options.scenario)
+                       : model::parse_scenario(reader.header().scenario_text, "scenario of " + options.recording);
+  model::CameraParams params = choose_camera(scenario, options.camera, options.scenario.value_or(options.recording));
+  camera::CameraDraw draw;
+  if (options.exact) {
+    params.errors = model::make_camera("ideal").errors;
+    params.p_CL = Vector3::Zero();
+  } else {
+    draw = camera::draw_camera(params, options.seed.value_or(reader.header().seed));
+  }
+  OutputFile file(output);
+  std::vector<OutputFile> side;
+  for (const std::string& path : sides) side.emplace_back(path);
+
+  record::Frame instant;
+  reader.read_frame(reader.find_frame(options.time.value_or(reader.times().back())), instant);
+  const camera::Scene scene = camera::make_scene(reader.header(), instant, options.recording);
+  const camera::RenderedFrame shot = camera::render(scene, params, draw, options.shot, options.threads);
+  const ordered_json truth = describe(shot, instant.time);
+  if (ending == ".h5") {
+    camera::write_h5(file, shot.frame, &shot.truth);
+    file.publish();
+  } else if (ending == ".ply") {
+    write_file(std::move(file), camera::format_ply(shot.frame, &shot.truth));
+    write_file(std::move(side[0]), truth.dump(1) + "\n");
+  } else {
+    write_file(std::move(file), camera::format_png(shot.frame));
+    write_file(std::move(side[0]), camera::format_intensity_png(shot.frame));
+    write_file(std::move(side[1]), camera::format_label_png(shot.truth));
+    write_file(std::move(side[2]), truth.dump(1) + "\n");
+  }
+  if (options.json)
+    print(truth.dump(2) + "\n");
+  else
+    print(fmt::format("{}: {} points of {} pixels at {:.3f} s, {}\n", options.output, truth["points"].get<int>(),
+                      params.width * params.height, instant.time, params.name));
+  return kSuccess;
+}
+
+}  // namespace snug::app

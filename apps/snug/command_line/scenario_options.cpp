@@ -1,0 +1,70 @@
+// The words with which several verbs change a scenario: more boxes, another container, a pallet, single keys.
+#include "apps/snug/command_line/scenario_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/snug/command_line/shipped.hpp"
+#include "snug/model/items_file.hpp"
+#include "snug/model/other_container.hpp"
+#include "snug/model/scenario_edit.hpp"
+#include "snug/robot/load_arm.hpp"
+
+namespace snug::app {
+
+void add_scenario_changes(CLI::App& verb, ScenarioChanges& changes) {
+  verb.add_option("--items", changes.items, "more boxes and sequences: orders (.csv, .json) or items (.yaml)")
+      ->type_name("FILE");
+  CLI::Option* container =
+      verb.add_option("--container", changes.container,
+                      "what is packed: another container of the scenario, or an open box of these inner sizes in mm "
+                      "in the place of its target")
+          ->type_name("NAME|LxWxH");
+  verb.add_option("--pallet", changes.pallet,
+                  "pack a slab without walls, sizes in mm, boxes up to H high (default: the depth of the target)")
+      ->type_name("LxW[xH]")
+      ->excludes(container);
+  verb.add_option("--set", changes.set,
+                  "a key of the scenario file with another value, such as cup.lip_radius=0.03 or "
+                  "contacts.pairs.box/container.friction=0.1; may be given several times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+OptionWords words_of(const ScenarioChanges& changes) {
+  OptionWords words;
+  for (const std::string& file : changes.items) words.emplace_back("--items", file);
+  if (changes.container) words.emplace_back("--container", *changes.container);
+  if (changes.pallet) words.emplace_back("--pallet", *changes.pallet);
+  for (const std::string& change : changes.set) words.emplace_back("--set", change);
+  return words;
+}
+
+NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, const model::Scenario& scenario) {
+  NamedFiles files = {{"the scenario", find_shipped(file)}};
+  for (const std::string& items : changes.items) files.push_back({"--items", find_shipped(items)});
+  if (scenario.robot) files.push_back({"the robot's URDF", robot::urdf_path(scenario)});
+  for (const std::filesystem::path& side : scenario.side_files) files.push_back({"a file of the scenario", side});
+  return files;
+}
+
+SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes) {
+  SourcedScenario loaded{model::load_scenario(find_shipped(file)), {}};
+  model::Scenario& scenario = loaded.scenario;
+  std::vector<model::KeyValue> values;
+  for (const std::string& words : changes.set) values.push_back(model::parse_key_value(words, "--set"));
+  scenario = model::with_values(scenario, values, "--set");
+  if (changes.container) scenario = model::with_container(scenario, *changes.container);
+  if (changes.pallet) scenario = model::with_pallet(scenario, *changes.pallet);
+  loaded.ends.push_back(scenario.parcels.size());
+  for (const std::string& items : changes.items) {
+    model::add_items(scenario, find_shipped(items));
+    loaded.ends.push_back(scenario.parcels.size());
+  }
+  return loaded;
+}
+
+model::Scenario load_changed(const std::string& file, const ScenarioChanges& changes) {
+  return load_with_sources(file, changes).scenario;
+}
+
+}  // namespace snug::app

@@ -1,0 +1,37 @@
+// StopSignal: Ctrl-C as a call from a thread of its own, so that what goes on ends in order.
+#include "apps/snug/command_line/stop_signal.hpp"
+
+#include <semaphore.h>
+#include <signal.h>
+
+#include <utility>
+
+namespace snug::app {
+namespace {
+
+sem_t g_stop;  ///< posted by the handler: one of the few things that a handler may do
+
+constexpr int kSignals[] = {SIGINT, SIGTERM};
+
+}  // namespace
+
+StopSignal::StopSignal(std::function<void()> stop) {
+  ::sem_init(&g_stop, 0, 0);
+  struct sigaction action {};
+  action.sa_handler = [](int) { ::sem_post(&g_stop); };
+  action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
+  for (const int signal : kSignals) ::sigaction(signal, &action, nullptr);
+  thread_ = std::thread([stop = std::move(stop)] {
+    while (::sem_wait(&g_stop) != 0) continue;  // another signal woke it up
+    stop();
+  });
+}
+
+StopSignal::~StopSignal() {
+  for (const int signal : kSignals) ::signal(signal, SIG_DFL);
+  ::sem_post(&g_stop);  // harmless when the thread has ended
+  thread_.join();
+  ::sem_destroy(&g_stop);
+}
+
+}  // namespace snug::app

@@ -1,0 +1,94 @@
+// control: a program through the joints of a CLICK simulator, with snug's joint controller.
+#include "apps/snug/control/control.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/common/program_fit.hpp"
+#include "apps/snug/common/robot_warnings.hpp"
+#include "snug/cell/corrected.hpp"
+#include "snug/cell/joint_pace.hpp"
+#include "snug/click/program_client.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+
+namespace snug::app {
+namespace {
+
+std::string as_json(const click::ProgramClientResult& result) {
+  nlohmann::ordered_json document = {{"duration_s", result.duration},
+                                     {"simulated_s", result.simulated},
+                                     {"wall_s", result.wall},
+                                     {"real_time_factor", result.simulated / result.wall},
+                                     {"ticks", result.ticks},
+                                     {"row", result.row},
+                                     {"objects", nlohmann::ordered_json::object()}};
+  for (const auto& [name, object] : result.last.objects) {
+    for (const click::SensorValue& value : object.object) {
+      if (value.type != click::ValueType::Position) continue;
+      document["objects"][name] = {{"position_m", {value.vector.x(), value.vector.y(), value.vector.z()}}};
+    }
+  }
+  document["failure"] = result.failure;
+  return document.dump(2) + "\n";
+}
+
+std::string as_table(const click::ProgramClientResult& result) {
+  constexpr double kMm = 1e3;
+  std::string text = fmt::format("{:<16} {:>9} {:>9} {:>9}\n", "object", "x_W mm", "y_W mm", "z_W mm");
+  for (const auto& [name, object] : result.last.objects) {
+    for (const click::SensorValue& value : object.object) {
+      if (value.type != click::ValueType::Position) continue;
+      const Vector3 p = kMm * value.vector;
+      text += fmt::format("{:<16} {:>9.2f} {:>9.2f} {:>9.2f}\n", name, p.x(), p.y(), p.z());
+    }
+  }
+  text += fmt::format("\nprogram            {:.2f} s, {} ticks in {:.2f} s, real-time factor {:.0f}\n", result.duration,
+                      result.ticks, result.wall, result.simulated / result.wall);
+  if (!result.failure.empty())
+    text += fmt::format("failed             toward row {}: {}\n", result.row + 1, result.failure);
+  return text;
+}
+
+}  // namespace
+
+int run_control(const ControlOptions& options) {
+  const model::Scenario scenario = load_changed(options.scenario, {});
+  if (!scenario.robot || (options.robot && *options.robot != scenario.robot->name)) {
+    throw InputError(
+        scenario.source_name, "--robot", "'" + options.robot.value_or("") + "'",
+        scenario.robot ? "'" + scenario.robot->name + "', the robot of the scenario" : "a scenario with a robot");
+  }
+  print_robot_warnings(scenario);
+  model::Sequence none;
+  const model::Sequence& sequence = options.sequence ? cell::require_sequence(scenario, *options.sequence) : none;
+  cell::SimulationOptions how;
+  const std::string text = read_file(options.program, "a program file (CSV)");
+  choose_motion(options.motion, text, options.program, how);
+  const motion::Program program = motion::parse_program(text, options.program);
+  if (options.sequence) warn_misfit(scenario, *options.sequence, program);
+  const std::string corrections = options.corrections == "none" ? "" : options.corrections;
+  motion::PreparedProgram plan =
+      cell::prepare(scenario, sequence, how, cell::corrected(scenario, program, corrections));
+  std::unique_ptr<const cell::JointPace> pace;
+  if (how.controller == motion::ControllerKind::Fast) pace = cell::make_joint_pace(scenario, how.tempo);
+  plan.path_limits = pace.get();
+  const cell::CellArm arm(scenario, plan.settings.task_stiffness);
+  click::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
+                                        options.sequence ? &sequence : nullptr};
+  click::Client client(options.endpoint, options.patience);
+  const click::ProgramClientResult result = click::run_program(client, scenario, arm, plan, settings);
+  if (!result.has_begun)
+    throw InputError("command line", "--click", result.failure, "the address of a simulator of this robot");
+  print(options.json ? as_json(result) : as_table(result));
+  if (result.failure.empty()) return kSuccess;
+  std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());
+  return kRunFailed;
+}
+
+}  // namespace snug::app

@@ -1,0 +1,45 @@
+// export: what snug has in its own formats, for other programs.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "apps/snug/command_line/program_motion.hpp"
+#include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/verb.hpp"
+#include "snug/control/urscript.hpp"
+#include "snug/replay/mcap_writer.hpp"
+#include "snug/replay/replay.hpp"
+
+namespace snug::app {
+
+struct ExportOptions {
+  std::string input;   ///< a recording, or what else the format is made from
+  std::string format;  ///< name in export_formats()
+  std::string output;
+  replay::Selection selection;
+  replay::McapCompression compression = replay::McapCompression::Zstd;
+  std::optional<std::string> urdf;  ///< of the robot in a recording; absent: looked for
+  // of programs
+  std::string scenario;  ///< its robot, limits and gains
+  ScenarioChanges changes;
+  std::string sequence;              ///< whose gain; empty: the first
+  std::string corrections = "none";  ///< layer of the scenario
+  MotionWords motion;                ///< absent: as the program was packed
+  double period = 0.04;              ///< s, between the points of a trajectory
+  bool is_unchecked = false;         ///< not simulated before it is written
+  control::UrScriptOptions script;
+};
+
+/// One format that can be asked for.
+struct ExportFormat {
+  const char* name;
+  const char* description;  ///< for --help: what it is made from and who reads it
+  int (*write)(const ExportOptions&, OutputFile);
+};
+[[nodiscard]] std::span<const ExportFormat> export_formats();
+
+void add_export(CLI::App& app, Action& action);
+[[nodiscard]] int run_export(const ExportOptions& options);
+
+}  // namespace snug::app

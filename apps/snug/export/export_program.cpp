@@ -1,0 +1,238 @@
+// export of programs: for the controllers of real robots.
+#include "apps/snug/export/export_program.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "apps/snug/command_line/version.hpp"
+#include "apps/snug/common/program_fit.hpp"
+#include "apps/snug/common/robot_warnings.hpp"
+#include "snug/cell/corrected.hpp"
+#include "snug/cell/held_boxes.hpp"
+#include "snug/cell/program_trial.hpp"
+#include "snug/cell/simulation.hpp"
+#include "snug/control/program_export.hpp"
+#include "snug/control/urscript.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/write_file.hpp"
+#include "snug/motion/fitted_limits.hpp"
+#include "snug/motion/waypoint_name.hpp"
+
+namespace snug::app {
+namespace {
+
+std::string layer_of(const ExportOptions& options) { return options.corrections == "none" ? "" : options.corrections; }
+
+cell::SimulationOptions simulation_for(const model::Scenario& scenario, const ExportOptions& options) {
+  cell::SimulationOptions simulation;
+  simulation.cup = cell::cup_for(scenario, layer_of(options));
+  simulation.robot = scenario.robot->name;
+  choose_motion(options.motion, read_file(options.input, "a program file (CSV)"), options.input, simulation);
+  return simulation;
+}
+
+/// A program and the robot that is to do it.
+struct LoadedProgram {
+  cell::Simulation simulation;
+  motion::PreparedProgram plan;  ///< as it is simulated: with the tool that lags behind, or fast
+  /// Done in the cell, with contact: of a fast program what is written, since contact ends its rows and its waits.
+  std::optional<cell::MotionTrial> trial;
+
+  LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
+      : simulation(scenario, sequence, simulation_for(scenario, options)),
+        plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input), layer_of(options)))) {
+    if (!options.is_unchecked) trial = cell::try_motion(simulation, plan);
+  }
+
+  [[nodiscard]] bool is_fast() const { return plan.settings.kind == motion::ControllerKind::Fast; }
+
+  /// `done`: the motion that is written, as simulated or fitted to that.
+  [[nodiscard]] control::RobotProgram for_robot(const motion::PreparedProgram& done,
+                                                const ExportOptions& options) const {
+    const std::string layer = layer_of(options).empty() ? "" : ", corrections " + options.corrections;
+    const std::string tempo = is_fast() ? fmt::format(", tempo {}", plan.settings.fast.tempo) : "";
+    return {.plan = done,
+            .arm = simulation.arm()->model(),
+            .q_start = simulation.arm()->start(),
+            .loads = find_loads(),
+            .notes = {
+                fmt::format("snug {}", version_text()),
+                fmt::format("program {}, {} waypoints{}{}", options.input, plan.program.waypoints.size(), layer, tempo),
+                fmt::format("scenario {}, sequence {}, robot {}", simulation.scenario().name,
+                            simulation.sequence().name, simulation.arm()->model().name)}};
+  }
+
+  /// The program for a robot that follows exactly: the same rows with speeds and accelerations of the simulated motion.
+  [[nodiscard]] motion::PreparedProgram fitted() const {
+    motion::PreparedProgram exact = plan;
+    exact.row_limits = motion::fit_limits(exact, X_WE_start());
+    exact.settings.kind = motion::ControllerKind::Ideal;
+    return exact;
+  }
+
+  [[nodiscard]] const Pose& X_WE_start() const { return simulation.scenario().controller.X_WE_start; }
+
+ private:
+  /// What the cup holds on the way to each row, as far as they tell; says what they do not tell.
+  [[nodiscard]] std::vector<std::optional<control::CarriedLoad>> find_loads() const {
+    std::vector<std::optional<control::CarriedLoad>> loads;
+    cell::HeldBoxes boxes(simulation.scenario(), simulation.sequence());
+    const std::vector<motion::Waypoint>& rows = plan.program.waypoints;
+    bool was_unknown = false;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      boxes.depart(plan.program, static_cast<int>(i), i > 0 ? plan.X_WE[i - 1] : X_WE_start());
+      loads.emplace_back();
+      if (const std::optional<cell::HeldBox>& held = boxes.held()) {
+        const std::string& id = simulation.sequence().items[static_cast<std::size_t>(held->item)].parcel;
+        const SpatialInertia& inertia = model::find_parcel(simulation.scenario(), id)->inertia;
+        loads.back() = {inertia.mass, held->X_EP * inertia.com};
+      }
+      if (boxes.is_unknown() && !was_unknown) {
+        std::fprintf(
+            stderr,
+            "snug: warning: row %zu (%s): no box of sequence %s is known to be held: payload of the gripper alone\n",
+            i + 1, motion::name_of(rows[i]).c_str(), simulation.sequence().name.c_str());
+      }
+      was_unknown = boxes.is_unknown();
+    }
+    return loads;
+  }
+};
+
+LoadedProgram load(const ExportOptions& options) {
+  if (options.scenario.empty()) {
+    throw InputError("command line", "--scenario", "nothing", "the scenario file with the robot that does the program");
+  }
+  const model::Scenario scenario = load_changed(options.scenario, options.changes);
+  if (!scenario.robot) throw InputError(options.scenario, "robot", "", "a scenario with a robot");
+  expect_distinct(files_of(options.scenario, options.changes, scenario), {{"-o", options.output}});
+  print_robot_warnings(scenario);
+  std::string sequence = options.sequence;
+  if (sequence.empty() && !scenario.sequences.empty()) sequence = scenario.sequences.front().name;
+  require_fit(scenario, sequence, motion::load_program(options.input));
+  return {scenario, sequence, options};
+}
+
+/// Says why nothing is exported, unless nothing is wrong.
+bool accept(const char* what, const std::string& wrong) {
+  if (!wrong.empty()) {
+    std::fprintf(stderr, "snug: not exported: %s: %s (--unchecked exports it all the same)\n", what, wrong.c_str());
+  }
+  return wrong.empty();
+}
+
+/// Whether the program, tried in the scenario's cell, does not stop there, and packs every box that it picks. True with
+/// --unchecked.
+bool has_succeeded(const LoadedProgram& program) {
+  if (!program.trial) return true;
+  return accept("it does not succeed in the simulated cell", cell::find_loss(*program.trial));
+}
+
+/// Whether a robot that follows the rows of `fitted` exactly does not do worse in the cell than was simulated. How far
+/// a box that is let go may be from where the simulation puts it is not looked at: that it stays packed is.
+bool is_as_good(const motion::PreparedProgram& fitted, const LoadedProgram& program) {
+  if (!program.trial) return true;
+  const cell::Simulation& own = program.simulation;
+  cell::SimulationOptions exact = own.options();
+  exact.controller = motion::ControllerKind::Ideal;
+  const cell::Simulation follower(own.scenario(), own.sequence().name, exact);
+  return accept("the robot that follows exactly does not do what was simulated",
+                cell::compare_trials(*program.trial, cell::try_motion(follower, fitted)));
+}
+
+/// The program through the joints. None, which is said on stderr, when the robot cannot do it.
+std::optional<control::JointRun> find_run(const LoadedProgram& program) {
+  const cell::CellArm& arm = *program.simulation.arm();
+  if (program.is_fast() && !has_succeeded(program)) return std::nullopt;
+  control::JointRun run =
+      program.is_fast() && program.trial
+          ? program.trial->joints
+          : control::run_joints(program.plan, arm.controller(), control::make_demonstrator_machine(), arm.start());
+  if (!run.is_complete) {
+    const auto row = static_cast<std::size_t>(std::max(0, run.stuck_row));
+    std::fprintf(stderr, "snug: the robot does not reach row %zu (%s): snug check says why\n", row + 1,
+                 motion::name_of(program.plan.program.waypoints[row]).c_str());
+    return std::nullopt;
+  }
+  if (!program.is_fast() && !has_succeeded(program)) return std::nullopt;
+  return run;
+}
+
+/// Writes what `format` makes of the program through the joints; nothing when the robot cannot do it.
+template <class Format>
+int write_run(const ExportOptions& options, OutputFile output, Format format) {
+  const LoadedProgram program = load(options);
+  const std::optional<control::JointRun> run = find_run(program);
+  if (!run) return kRunFailed;
+  write_file(std::move(output), format(*run, program.simulation.arm()->model(), program));
+  std::fprintf(stderr, "%s: %zu waypoints, %.1f s\n", options.output.c_str(), program.plan.program.waypoints.size(),
+               static_cast<double>(run->samples.size()) * program.plan.settings.tick);
+  return kSuccess;
+}
+
+/// Rows as straight moves.
+int write_moves(const ExportOptions& options, const LoadedProgram& program, OutputFile output) {
+  const motion::PreparedProgram fitted = program.fitted();
+  control::RobotProgram robot_program = program.for_robot(fitted, options);
+  robot_program.simulated_duration = motion::compute_duration(program.plan, program.X_WE_start());
+  const control::UrScript script = control::format_urscript(robot_program, options.script);
+  if (!has_succeeded(program) || !is_as_good(fitted, program)) return kRunFailed;
+  write_file(std::move(output), script.text);
+  std::fprintf(stderr,
+               "%s: %d moves, %.1f s nominal from stop to stop; %.1f s simulated, with a controller that lags behind\n",
+               options.output.c_str(), script.moves, script.nominal_duration, script.simulated_duration);
+  return kSuccess;
+}
+
+/// Joints in time.
+int write_targets(const ExportOptions& options, const LoadedProgram& program, OutputFile output) {
+  const std::optional<control::JointRun> run = find_run(program);
+  if (!run) return kRunFailed;
+  const control::UrServoScript script =
+      control::format_servo_urscript(*run, program.for_robot(program.plan, options), options.script);
+  write_file(std::move(output), script.text);
+  std::fprintf(stderr, "%s: %zu knots, %.0f kB; %.1f s and waits for the vacuum; %.1f s simulated\n",
+               options.output.c_str(), script.knots, static_cast<double>(script.text.size()) / 1e3,
+               script.followed_duration, script.simulated_duration);
+  return kSuccess;
+}
+
+}  // namespace
+
+int write_urscript(const ExportOptions& options, OutputFile output) {
+  if (options.script.vacuum_output == options.script.blow_off_output) {
+    throw InputError("command line", "--blow-off-output", std::to_string(options.script.blow_off_output),
+                     "another output than --vacuum-output");
+  }
+  const LoadedProgram program = load(options);
+  return program.is_fast() ? write_targets(options, program, std::move(output))
+                           : write_moves(options, program, std::move(output));
+}
+
+int write_ros_trajectory(const ExportOptions& options, OutputFile output) {
+  return write_run(options, std::move(output),
+                   [&](const control::JointRun& run, const robot::ArmModel&, const LoadedProgram& program) {
+                     return control::format_ros_trajectory(run, program.for_robot(program.plan, options),
+                                                           options.period);
+                   });
+}
+
+int write_mc_rtc_csv(const ExportOptions& options, OutputFile output) {
+  return write_run(options, std::move(output),
+                   [](const control::JointRun& run, const robot::ArmModel& arm, const LoadedProgram& program) {
+                     return control::format_log_csv(control::make_log(run, arm, program.simulation.scenario().gravity));
+                   });
+}
+
+int write_mc_rtc_flat(const ExportOptions& options, OutputFile output) {
+  return write_run(
+      options, std::move(output),
+      [](const control::JointRun& run, const robot::ArmModel& arm, const LoadedProgram& program) {
+        return control::format_log_flat(control::make_log(run, arm, program.simulation.scenario().gravity));
+      });
+}
+
+}  // namespace snug::app

@@ -1,0 +1,56 @@
+// init: copies a shipped scenario to begin with and says what to do next.
+#include "apps/snug/init/init.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shipped.hpp"
+#include "snug/core/check.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/write_file.hpp"
+
+namespace snug::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kKinds = {
+    InitKind{"cell", "a packing cell: tote, aligner, tool with suction cup, boxes in a sequence",
+             "snug pack cell.yaml --sequence first --program program.csv -o run.h5\n"
+             "snug report run.h5 -o run.html\n"},
+    InitKind{"pallet", "the same with a pallet in the place of the tote: boxes stand free, layer on layer",
+             "snug pack pallet.yaml --sequence first --program program.csv -o run.h5\n"
+             "snug report run.h5 -o run.html\n"},
+    InitKind{"scene", "bodies, contacts and forces alone, without robot or packing",
+             "snug simulate scene.yaml -o run.h5\n"
+             "snug report run.h5 -o run.html\n"},
+};
+
+}  // namespace
+
+std::span<const InitKind> init_kinds() { return kKinds; }
+
+int run_init(const InitOptions& options) {
+  const auto kind = std::ranges::find_if(kKinds, [&](const InitKind& known) { return options.kind == known.name; });
+  SNUG_CHECK(kind != kKinds.end(), "a kind that the parser let pass");
+  const std::string name = options.kind + ".yaml";
+  const std::string text = read_file(shipped_folder() / "scenarios/init" / name, "a scenario to begin with");
+  const fs::path folder = options.folder;
+  make_folder("folder", folder);
+  const fs::path file = folder / name;
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(file, error))) {
+    throw InputError(file.string(), "", "a file that is there already: not overwritten", "another folder");
+  }
+  write_file(OutputFile(file), text);
+  print(fmt::format("{} is written. Next:\n\ncd {}\n{}\nEvery key: docs/scenario.md\n", file.string(), folder.string(),
+                    kind->next));
+  return kSuccess;
+}
+
+}  // namespace snug::app

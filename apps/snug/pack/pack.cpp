@@ -1,0 +1,205 @@
+// pack: packs a plant with a sequence, item by item, and says how that went.
+#include "apps/snug/pack/pack.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "apps/snug/command_line/interrupt.hpp"
+#include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/program_motion.hpp"
+#include "apps/snug/command_line/version.hpp"
+#include "apps/snug/common/robot_warnings.hpp"
+#include "apps/snug/common/run_report.hpp"
+#include "apps/snug/pack/python_agent.hpp"
+#include "snug/cell/result_json.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
+#include "snug/core/write_file.hpp"
+#include "snug/packing/representatives.hpp"
+#include "snug/robot/load_arm.hpp"
+#include "snug/study/monte_carlo.hpp"
+#include "snug/study/trial_report.hpp"
+
+namespace snug::app {
+namespace {
+
+/// The plant's course once more, recorded.
+void record(const model::Scenario& scenario, const study::Trial& trial, OutputFile& file) {
+  simulated_plant::RecordedRunOptions recorded;
+  recorded.file = &file;
+  recorded.version = version_text();
+  recorded.events = study::events_of(trial.session);
+  recorded.warnings = study::warnings_of(trial.session);
+  recorded.is_interrupted = trial.session.stop_reason == session::StopReason::Interrupted;
+  const std::string& robot = trial.plant.simulation.robot;
+  recorded.settings_json = nlohmann::ordered_json{
+      {"cup", "phases"},
+      {"controller", motion::name_of(trial.plant.simulation.controller)},
+      {"corrections", "none"},
+      {"robot", robot.empty() ? "none" : robot},
+      {"plant_seed", trial.plant_seed},
+      {"agent", trial.session.agent},
+      {"ended",
+       trial.session.stopped}}.dump();
+  recorded.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
+  (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
+}
+
+/// The robot that moves the tool: what was asked for, or the scenario's, where its file is there.
+std::string choose_robot(const PackOptions& options, const model::Scenario& scenario) {
+  if (options.robot) return *options.robot == "none" ? std::string() : *options.robot;
+  std::error_code error;
+  const bool is_there = scenario.robot && std::filesystem::exists(robot::urdf_path(scenario), error);
+  return is_there ? scenario.robot->name : std::string();
+}
+
+/// Any parcel of the files that the sequence's boxes come from.
+packing::FutureModel own_future(const SourcedScenario& loaded, const std::string& name) {
+  packing::FutureModel future;
+  const model::Sequence* sequence = model::find_sequence(loaded.scenario, name);
+  if (sequence == nullptr) return future;  // refused later, with the names that there are
+  std::size_t begin = 0;
+  for (const std::size_t end : loaded.ends) {
+    const auto parcels = std::span(loaded.scenario.parcels).subspan(begin, end - begin);
+    begin = end;
+    const bool is_source = std::ranges::any_of(sequence->items, [&](const model::Item& item) {
+      return std::ranges::find(parcels, item.parcel, &model::Parcel::id) != parcels.end();
+    });
+    if (!is_source) continue;
+    packing::FutureModel part = packing::make_future_model(loaded.scenario, parcels);
+    std::ranges::move(part.kinds, std::back_inserter(future.kinds));
+    std::ranges::move(part.weights, std::back_inserter(future.weights));
+    future.comes_once = part.comes_once;
+  }
+  return future;
+}
+/// The files that were asked for, reserved before the work begins.
+struct PackFiles {
+  std::optional<OutputFile> program, plan, record;
+
+  PackFiles(const PackOptions& options, const model::Scenario& scenario) {
+    NamedFiles outputs;
+    add_file(outputs, "--program", options.program);
+    add_file(outputs, "--plan", options.plan);
+    add_file(outputs, "-o", options.record);
+    expect_distinct(files_of(options.scenario, options.changes, scenario), outputs);
+    program = reserve(options.program);
+    plan = reserve(options.plan);
+    record = reserve_recording(options.record);
+  }
+};
+
+}  // namespace
+
+model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed) {
+  if (model::find_sequence(scenario, name) != nullptr) {
+    throw InputError("command line", "random order", "a scenario with a sequence " + name, "a name of its own");
+  }
+  packing::SequenceSettings settings;
+  settings.repeat = 0.0;
+  settings.all = true;
+  return packing::draw_sequence(scenario, name, settings, Rng(seed).split("sequence " + name));
+}
+
+session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
+                                             const std::string& sequence) {
+  session::SessionOptions session;
+  session.agent = options.agent;
+  if (is_python_agent(options.agent)) session.ask = start_python_agent(options.agent);
+  session.decision.seed = options.seed.value_or(loaded.scenario.seed);
+  if (options.future == "own") session.future = own_future(loaded, sequence);
+  session.decision.time = options.decision_time;
+  session.threads = options.threads.value_or(core_count());
+  session.decision.threads = session.threads;
+  session.samples = options.samples;
+  session.skips = options.skips;
+  session.simulation.robot = choose_robot(options, loaded.scenario);
+  refuse_tempo_without_fast(options.tempo, options.controller);
+  session.simulation.controller = motion::controller_kind_of(options.controller, "command line");
+  session.simulation.tempo = options.tempo.value_or(session.simulation.tempo);
+  session.is_interrupted = is_interrupted;
+  if (options.robot && *options.robot != "none") print_robot_warnings(loaded.scenario);
+  return session;
+}
+
+simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
+                                                          const session::SessionOptions& session) {
+  simulated_plant::SimulatedPlantOptions plant;
+  plant.seed = options.plant_seed;
+  plant.perception = perception::kind_of(options.perception);
+  plant.faults = simulated_plant::parse_faults(options.fault);
+  for (const std::string& words : options.plant_set) plant.set.push_back(model::parse_key_value(words, "--plant-set"));
+  plant.simulation = session.simulation;
+  return plant;
+}
+
+study::TrialProgress make_progress_line(const std::string& label) {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [label](const study::Trial& so_far, int item, int items) {
+    const std::string line = fmt::format("{}: item {} of {}, {} packed, {:.1f} %", label, item, items,
+                                         so_far.executed_boxes, so_far.executed_percent);
+    std::fprintf(stderr, "\r%-78s%s", line.c_str(), item == items ? "\r\033[K" : "");
+    std::fflush(stderr);
+  };
+}
+
+int run_pack(const PackOptions& options) {
+  SourcedScenario loaded = load_with_sources(options.scenario, options.changes);
+  model::Scenario& scenario = loaded.scenario;
+  if (options.random_seed) {
+    scenario.sequences.push_back(draw_order(scenario, options.sequence, *options.random_seed));
+  }
+  const session::SessionOptions session = make_session_options(options, loaded, options.sequence);
+  const simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
+  const bool is_served = options.plant != "simulated";
+  PackFiles files(options, scenario);
+  catch_interrupts();
+  const study::TrialProgress line = make_progress_line("sequence " + options.sequence);
+  const bool is_known = model::find_sequence(scenario, options.sequence) != nullptr;  // else the trial says so
+  if (!options.json && is_known) {
+    print_now(study::format_pack_head(options.sequence, session, plant, is_served ? options.plant : std::string()));
+  }
+  const auto progress = [&](const study::Trial& so_far, int item, int items) {
+    if (!options.json) print_now(study::format_item(so_far.session.items.back(), so_far.items.back()));
+    if (options.json && line) line(so_far, item, items);
+  };
+  const study::Trial trial = is_served ? run_served_trial(options, scenario, session, progress)
+                                       : study::run_trial(scenario, options.sequence, session, plant, progress);
+  const session::SessionResult& result = trial.session;
+  study::MonteCarloResult repeated;
+  if (options.monte_carlo) {
+    study::MonteCarloOptions monte_carlo;
+    monte_carlo.count = *options.monte_carlo;
+    monte_carlo.seed = session.decision.seed;
+    monte_carlo.threads = session.threads;
+    monte_carlo.simulation = session.simulation;
+    repeated = study::repeat(scenario, options.sequence, result.program, result.plan, monte_carlo);
+  }
+  const bool has_program = !result.program.waypoints.empty();
+  if (files.program && has_program) {
+    write_file(std::move(*files.program), motion::format_program(result.program));
+  }
+  if (files.plan) write_file(std::move(*files.plan), study::format_plan(result));
+  if (files.record && has_program) record(scenario, trial, *files.record);
+  print(options.json ? study::format_json(trial, repeated) : study::format_summary(trial, repeated));
+  std::string failure = result.failure.text;
+  if (failure.empty() && repeated.failed > 0) {
+    failure = fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
+  }
+  if (failure.empty() && !has_program && (options.program || options.record)) {
+    failure = "nothing was packed: no program, no recording";
+  }
+  if (result.stop_reason == session::StopReason::Interrupted) {
+    std::fprintf(stderr, "snug: interrupted after %zu items\n", result.items.size());
+  }
+  if (!failure.empty()) std::fprintf(stderr, "snug: failed: %s\n", failure.c_str());
+  return failure.empty() && result.stop_reason != session::StopReason::Interrupted ? kSuccess : kRunFailed;
+}
+
+}  // namespace snug::app

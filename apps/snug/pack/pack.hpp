@@ -1,0 +1,62 @@
+// pack: packs a plant with a sequence, item by item, and says how that went.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/verb.hpp"
+#include "snug/study/trial.hpp"
+
+namespace snug::app {
+
+/// The words of `snug pack`.
+struct PackOptions {
+  std::string scenario;
+  std::string sequence;
+  ScenarioChanges changes;
+  std::string agent = "contact-aware";
+  std::optional<std::uint64_t> seed;
+  std::optional<std::uint64_t> random_seed;  ///< the sequence is drawn: every box of the scenario, in random order
+  std::string plant = "simulated";           ///< or where one is served: click://HOST:PORT, click+ipc://PATH
+  double patience = 10.0;                    ///< s, for its answers
+  std::uint64_t plant_seed = 1;
+  double decision_time = packing::DecisionRun{}.time;  ///< s
+  std::optional<int> threads;                          ///< absent: all cores
+  int samples = session::SessionOptions{}.samples;
+  std::optional<int> skips;
+  std::string controller = "fast";  ///< or faithful
+  std::optional<double> tempo;      ///< only with fast; absent: 1
+  std::string future = "own";
+  std::string perception = "exact";
+  std::vector<std::string> plant_set;  ///< "KEY=VALUE", of the plant's scenario alone
+  std::string fault;                   ///< "drop@3,noseal@5"
+  std::optional<std::string> robot;    ///< absent: the scenario's, where its file is there; "none"
+  std::optional<int> monte_carlo;
+  std::optional<std::string> program, plan, record;
+  bool json = false;
+};
+
+void add_pack(CLI::App& app, Action& action);
+/// What `pack` and `compare` have in common.
+void add_packing_options(CLI::App& verb, PackOptions& options);
+/// Every box of the scenario in an order drawn by seed and name. Throws InputError where a sequence has this name.
+[[nodiscard]] model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed);
+[[nodiscard]] session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
+                                                           const std::string& sequence);
+/// Throws InputError for words that say nothing.
+[[nodiscard]] simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
+                                                                        const session::SessionOptions& session);
+/// Packs the plant that is served at `options.plant`, scored by its object sensors. Throws InputError where it cannot
+/// be had.
+[[nodiscard]] study::Trial run_served_trial(const PackOptions& options, const model::Scenario& scenario,
+                                            const session::SessionOptions& session,
+                                            const study::TrialProgress& progress);
+/// A line on a terminal that is written over again, or nothing.
+[[nodiscard]] study::TrialProgress make_progress_line(const std::string& label);
+
+/// Throws InputError for input that cannot be used.
+[[nodiscard]] int run_pack(const PackOptions& options);
+
+}  // namespace snug::app

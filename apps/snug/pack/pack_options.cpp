@@ -1,0 +1,142 @@
+// pack: what may be said after the verb.
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apps/snug/command_line/options.hpp"
+#include "apps/snug/command_line/ranges.hpp"
+#include "apps/snug/pack/pack.hpp"
+#include "snug/packing/agent.hpp"
+
+namespace snug::app {
+namespace {
+
+constexpr const char* kPackExamples = R"(Examples:
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 7
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --robot none --json
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 2 --tempo 0.8
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --fault drop@3,noseal@5,displace@7,stop@9 -o run.h5
+  snug pack scenarios/box-demonstrator.yaml --sequence 3 --agent margin --perception noisy
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-set contacts.pairs.box/container.friction=0.15
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --agent examples.python.03_agent:Lowest
+  snug pack scenarios/box-demonstrator.yaml --sequence random-1 --random-seed 7
+  snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant click://127.0.0.1:5555
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
+  snug pack scenarios/box-demonstrator.yaml --sequence 2 --program out.csv --plan out.json --monte-carlo 10
+  snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1
+Programs of such a run need the same --items, --container and --pallet in simulate, check and export; recordings hold them.)";
+
+}  // namespace
+
+void add_packing_options(CLI::App& verb, PackOptions& options) {
+  add_scenario_changes(verb, options.changes);
+  verb.add_option("--seed", options.seed, "seed of the planner: roll-outs and sampled worlds (default: the scenario's)")
+      ->check(whole(0))
+      ->type_name("N");
+  verb.add_option(
+          "--plant-seed", options.plant_seed,
+          "seed of the simulated plant: the cell that is packed, drawn from the scenario's `uncertainty`; 0: the "
+          "cell is exactly what the scenario says. A served plant has its own: snug serve --plant-seed")
+      ->check(whole(0))
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--plant-set", options.plant_set,
+                  "a key of the plant's scenario with another value than the planner has, such as "
+                  "contacts.pairs.box/container.friction=0.15; may be given several times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  verb.add_option("--perception", options.perception,
+                  "what is seen of boxes: exact poses and sizes, noisy ones (2 mm, 20 mrad), none (dead-reckoning), or "
+                  "what the "
+                  "scenario's camera over the container tells (docs/camera.md)")
+      ->check(one_of({"exact", "noisy", "dead-reckoning", "camera"}))
+      ->type_name("HOW")
+      ->capture_default_str();
+  verb.add_option(
+          "--robot", options.robot,
+          "the scenario's robot, such as ur10, whose joints move the tool in the plant, or none: the tool moves "
+          "by itself (default: the scenario's robot)")
+      ->type_name("NAME");
+  verb.add_option(
+          "--controller", options.controller,
+          "fast: exactly on paths of bounded jerk, blended where nothing is switched, waypoints in contact and waits "
+          "for the vacuum end by what is felt; faithful: with the demonstrator's timing and lag")
+      ->check(one_of({"fast", "faithful"}))
+      ->type_name("KIND")
+      ->capture_default_str();
+  verb.add_option("--tempo", options.tempo, "fraction of the speeds, with fast (default: 1)")
+      ->check(within(0.5, 1.0))
+      ->type_name("FRACTION");
+  verb.add_option("--fault", options.fault,
+                  "what goes wrong in the plant: noseal@N, drop@N, stop@N, displace@N, push@N of the N-th item, "
+                  "object@N (a foreign "
+                  "box is put into the container after it), clear@N (and taken out), "
+                  "separated by commas")
+      ->type_name("FAULTS");
+  verb.add_option("--decision-time", options.decision_time, "for deciding where an item goes, on one core")
+      ->check(within(0.0, 3600.0))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  verb.add_option("--threads", options.threads, "threads; the result does not depend on it (default: all cores)")
+      ->check(whole(1, kMostThreads))
+      ->type_name("N");
+  verb.add_option("--samples", options.samples,
+                  "sampled worlds in which every motion is rehearsed beside the nominal one, at most 64; 0: none")
+      ->check(whole(0, 64))
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--skips", options.skips,
+                  "items without a place that are skipped before the session ends (default: the scenario's "
+                  "recovery.skips)")
+      ->check(whole(0, 1000))
+      ->type_name("N");
+  verb.add_option("--future", options.future,
+                  "what an item is expected to be followed by: boxes of the files that the sequence's come from (own), "
+                  "or all boxes of the scenario and of --items")
+      ->check(one_of({"own", "all"}))
+      ->type_name("WHICH")
+      ->capture_default_str();
+}
+
+void add_pack(CLI::App& app, Action& action) {
+  CLI::App& verb = *app.add_subcommand(
+      "pack", "pack a simulated plant: decide where each box goes, rehearse, send, perceive, recover");
+  const auto options = std::make_shared<PackOptions>();
+  verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("--sequence", options->sequence, "item sequence of the scenario")->required()->type_name("NAME");
+  verb.add_option("--random-seed", options->random_seed,
+                  "the sequence is every box of the scenario in an order drawn by this seed and the name: random-1, "
+                  "random-2, ... are those of compare --random")
+      ->check(whole(0))
+      ->type_name("N");
+  verb.add_option("--agent", options->agent,
+                  "who decides: a built-in agent, or a class written in Python (docs/python.md)")
+      ->check(one_of(packing::agent_names(), "module:Class"))
+      ->type_name("NAME|MODULE:CLASS")
+      ->capture_default_str();
+  verb.add_option(
+          "--plant", options->plant,
+          "what is packed: simulated, in this program, or a cell that `snug serve` serves in another one, here or "
+          "elsewhere: click://HOST:PORT, click+ipc://PATH (docs/click.md)")
+      ->type_name("simulated|ADDRESS")
+      ->capture_default_str();
+  verb.add_option("--plant-timeout", options->patience, "how long to wait for an answer of a served plant")
+      ->check(within(0.01, 1e5))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  add_packing_options(verb, *options);
+  verb.add_option("--monte-carlo", options->monte_carlo,
+                  "repeat the finished program N times, open loop, in cells drawn from the scenario's `uncertainty`")
+      ->check(whole(1, kMostRuns))
+      ->type_name("N");
+  verb.add_option("--program", options->program, "write the waypoint program")->type_name("FILE.csv");
+  verb.add_option("--plan", options->plan, "write the placements as JSON")->type_name("FILE.json");
+  verb.add_option("-o,--record", options->record, "write a recording of what happened in the plant")
+      ->type_name("FILE.h5");
+  verb.add_flag("--json", options->json, "print the result as JSON");
+  verb.footer(kPackExamples);
+  verb.callback([options, &action] { action = [options] { return run_pack(*options); }; });
+}
+
+}  // namespace snug::app

@@ -1,0 +1,42 @@
+// serve: the cell as a CLICK simulator that controllers in other programs drive.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/snug/command_line/scenario_options.hpp"
+#include "apps/snug/command_line/verb.hpp"
+#include "snug/click/server.hpp"
+#include "snug/serve/server.hpp"
+
+namespace snug::app {
+
+struct ServeOptions {
+  std::string scenario;
+  ScenarioChanges changes;
+  std::optional<std::string> sequence;  ///< absent: the first
+  std::optional<std::string> robot;     ///< absent: the scenario's
+  std::optional<std::string> cup;       ///< holding | phases
+  std::optional<std::uint64_t> seed;
+  std::optional<std::uint64_t> plant_seed;  ///< the cell is a plant that is packed
+  std::optional<double> dt;                 ///< s
+  std::optional<double> record_period;      ///< s
+  std::string rpy = "xyz";
+  std::vector<std::string> controls = {"velocity"};
+  click::ServedCellSettings cell;
+  click::ServerSettings server;
+  std::optional<double> batch;        ///< s, simulated
+  bool once = false;                  ///< ends after the first run
+  std::optional<std::string> record;  ///< HDF5 file; of further runs: with their number before the ending
+  bool json = false;
+  bool shows = false;  ///< a page with the run
+  bool opens_browser = true;
+  serve::ServerSettings page;
+};
+
+void add_serve(CLI::App& app, Action& action);
+/// Serves until Ctrl-C, or with `once` until the first run is over.
+[[nodiscard]] int run_serve(const ServeOptions& options);
+
+}  // namespace snug::app

@@ -1,0 +1,188 @@
+// study: rows are the program's own verbs, each in a process that is split off; tables and pages are the module's.
+#include "apps/snug/study/study.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "apps/snug/command_line/command_line.hpp"
+#include "apps/snug/command_line/outputs.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/write_file.hpp"
+#include "snug/study/effects.hpp"
+#include "snug/study/run.hpp"
+#include "snug/study/slurm.hpp"
+
+namespace snug::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const StudyOptions& options) {
+  if (options.dir) return *options.dir;
+  return fs::path(options.file).stem().string() + ".study";
+}
+
+/// What a study reads, and what it has found.
+NamedFiles files_of(const StudyOptions& options, const study::Study& study, const study::Folder& folder) {
+  NamedFiles files{{"the study", options.file}};
+  if (!study.scenario.empty()) files.push_back({"the study's scenario", study.scenario});
+  for (const fs::path& file : folder.files()) files.push_back({"a file of the study's folder", file});
+  return files;
+}
+
+/// "12" or "3-7".
+std::pair<std::uint64_t, std::uint64_t> parse_chunks(const std::string& words, const study::Study& study) {
+  const char* const end = words.data() + words.size();
+  std::uint64_t first = 0, last = 0;
+  auto [at, error] = std::from_chars(words.data(), end, first);
+  last = first;
+  if (error == std::errc{} && at != end && *at == '-') {
+    const auto rest = std::from_chars(at + 1, end, last);
+    at = rest.ptr;
+    error = rest.ec;
+  }
+  if (error != std::errc{} || at != end || first > last || last >= study.chunks())
+    throw InputError("command line", "--chunks", "'" + words + "'",
+                     fmt::format("A or A-B, from 0 to {}", study.chunks() - 1));
+  return {first, last};
+}
+
+int submit_array(const StudyOptions& options, const study::Study& study, const study::Folder& folder) {
+  const study::ArrayPlan plan = study::plan_array(study, folder);
+  if (plan.tasks.empty()) {
+    std::fprintf(stderr, "every row is done\n");
+    return kSuccess;
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) throw std::runtime_error("where this program is cannot be told: " + error.message());
+  const fs::path script = folder.path() / "array.sh";
+  write_file(OutputFile(script), study::array_script(study, folder, plan, program.string(), options.file));
+  if (options.dry_run) {
+    print(script.string() + "\n");
+    return kSuccess;
+  }
+  print(study::submit(script) + "\n");
+  return kSuccess;
+}
+
+std::function<void(std::uint64_t, std::uint64_t)> progress_line() {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [](std::uint64_t done, std::uint64_t wanted) {
+    std::fprintf(stderr, "\r%llu of %llu rows of the chunks under way%s", static_cast<unsigned long long>(done),
+                 static_cast<unsigned long long>(wanted), done == wanted ? "\r\033[K" : "");
+    std::fflush(stderr);
+  };
+}
+
+}  // namespace
+
+// Rows share the machine: a verb that would take every core for itself gets its part.
+int run_row(const std::vector<std::string>& words, int threads) {
+  std::vector<std::string> all = {"snug"};
+  all.insert(all.end(), words.begin(), words.end());
+  const bool takes_all = words.front() == "pack" || words.front() == "compare" || words.front() == "simulate";
+  if (takes_all && std::ranges::find(words, "--threads") == words.end())
+    all.insert(all.end(), {"--threads", std::to_string(threads)});
+  std::vector<char*> argv;
+  for (std::string& word : all) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const int code = run_command_line(static_cast<int>(all.size()), argv.data());
+  return flush_stdout() ? code : std::max<int>(code, kRunFailed);
+}
+
+int run_study(const StudyOptions& options) {
+  const study::Study study = study::load_study(options.file);
+  study::RunSettings settings;
+  if (options.chunks) std::tie(settings.first_chunk, settings.last_chunk) = parse_chunks(*options.chunks, study);
+  const study::Folder folder(study, folder_of(options), true);
+  if (options.slurm) return submit_array(options, study, folder);
+  settings.processes = options.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  settings.progress = progress_line();
+  const auto start = std::chrono::steady_clock::now();
+  const study::RunSummary summary = study::run_study(
+      study, folder, [](const std::vector<std::string>& words) { return run_row(words); }, settings);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const double busy = wall.count() * std::min<double>(settings.processes,
+                                                      static_cast<double>(std::max<std::uint64_t>(1, summary.done)));
+  const double overhead = summary.row_seconds > 0.0 ? 100.0 * (busy - summary.row_seconds) / summary.row_seconds : 0.0;
+  if (options.json) {
+    const nlohmann::ordered_json json{{"study", study.name},          {"folder", folder.path().string()},
+                                      {"done", summary.done},         {"failed", summary.failed},
+                                      {"left_out", summary.left_out}, {"row_seconds", summary.row_seconds},
+                                      {"wall_seconds", wall.count()}, {"overhead_percent", overhead}};
+    print(json.dump(2) + "\n");
+  } else {
+    print(fmt::format(
+        "rows done now      {}, {} failed\nfolder             {}\nwall clock         {:.1f} s, {:.1f} s in rows\n",
+        summary.done, summary.failed, folder.path().string(), wall.count(), summary.row_seconds));
+  }
+  if (summary.left_out == 0) return kSuccess;
+  std::fprintf(stderr,
+               "snug: failed: %llu rows were left out: others are at work on them, or their processes were killed\n",
+               static_cast<unsigned long long>(summary.left_out));
+  return kRunFailed;
+}
+
+int run_study_status(const StudyOptions& options) {
+  const study::Study study = study::load_study(options.file);
+  const study::Folder folder(study, folder_of(options), false);
+  const study::Status status = study::status_of(study, folder);
+  const double left = status.mean_seconds * static_cast<double>(status.rows - status.done);
+  if (options.json) {
+    const nlohmann::ordered_json json{{"study", study.name},
+                                      {"rows", status.rows},
+                                      {"done", status.done},
+                                      {"failed", status.failed},
+                                      {"chunks", status.chunks},
+                                      {"chunks_done", status.chunks_done},
+                                      {"mean_seconds", status.mean_seconds},
+                                      {"seconds_left_on_one_core", left}};
+    print(json.dump(2) + "\n");
+    return kSuccess;
+  }
+  print(fmt::format(
+      "rows               {} of {} done, {} failed\nchunks             {} of {} done\n"
+      "a row              {:.2f} s on average, {:.0f} s left on one core\n",
+      status.done, status.rows, status.failed, status.chunks_done, status.chunks, status.mean_seconds, left));
+  return kSuccess;
+}
+
+int run_study_merge(const StudyOptions& options) {
+  const study::Study study = study::load_study(options.file);
+  const study::Folder folder(study, folder_of(options), false);
+  OutputFile file = reserve(files_of(options, study, folder), *options.output);
+  const std::string ending = fs::path(*options.output).extension().string();
+  if (ending == ".csv") {
+    study::write_csv(study, folder, std::move(file));
+  } else if (ending == ".h5" || ending == ".hdf5") {
+    study::write_hdf5(study, folder, std::move(file));
+  } else {
+    throw InputError("command line", "-o", "'" + *options.output + "'", "a name that ends in .csv or .h5");
+  }
+  const study::Status status = study::status_of(study, folder);
+  if (status.done < status.rows)
+    std::fprintf(stderr, "%llu of %llu rows are not done yet\n",
+                 static_cast<unsigned long long>(status.rows - status.done),
+                 static_cast<unsigned long long>(status.rows));
+  return kSuccess;
+}
+
+int run_study_report(const StudyOptions& options) {
+  const study::Study study = study::load_study(options.file);
+  const study::Folder folder(study, folder_of(options), false);
+  OutputFile file = reserve(files_of(options, study, folder), *options.output);
+  const auto effects = study::find_effects(study, folder, static_cast<std::size_t>(options.worst));
+  write_file(std::move(file), study::make_page(study, study::status_of(study, folder), effects));
+  return kSuccess;
+}
+
+}  // namespace snug::app

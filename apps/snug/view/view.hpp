@@ -1,0 +1,33 @@
+// view: the page of the report, served on this machine: for recordings, or for a simulation that goes on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/snug/command_line/verb.hpp"
+#include "apps/snug/simulate/simulate.hpp"
+#include "snug/replay/replay.hpp"
+#include "snug/serve/server.hpp"
+
+namespace snug::app {
+
+struct ViewOptions {
+  std::vector<std::string> recordings;  ///< one, or one and a second to lay over it; none with a run
+  SimulateOptions run;                  ///< shown while it goes on, if it has a scenario
+  std::optional<std::string> click;     ///< address at which the live run is served: it is looked at, not simulated
+  double patience = 10.0;               ///< s, for an answer from there
+  double speed = 1.0;                   ///< of the run, simulated seconds a second; 0: as fast as it goes
+  bool is_paused = false;               ///< before its first step
+  bool opens_browser = true;
+  serve::ServerSettings server;
+  replay::Selection selection;
+  std::optional<std::string> urdf;  ///< of the robot in a recording; absent: looked for
+};
+
+void add_view(CLI::App& app, Action& action);
+/// Says on stderr where the page is, and opens it.
+void announce(const serve::Server& server, bool opens_browser);
+/// Serves until the program is told to stop (Ctrl-C).
+[[nodiscard]] int run_view(const ViewOptions& options);
+
+}  // namespace snug::app
