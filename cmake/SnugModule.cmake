@@ -1,9 +1,9 @@
 # snug_module(name [COLD] [ALONE] HEADERS ... SOURCES ... COLD_SOURCES ... DEPENDS modules... LINK libraries... TESTS files...
-#   SLOW_TESTS files...)
+#   SLOW_TESTS files... TEST_DEPENDS modules...)
 #
 # COLD says it of all sources, COLD_SOURCES of some: no run spends its time in them (see snug_compile_options).
 # Makes the static library snug::<name> from the folder it is called in and builds the module's tests. DEPENDS lists the modules
-# it may include; tools/check_modules.py holds it to that.
+# it may include, TEST_DEPENDS those that only its tests may; tools/check_modules.py holds it to that.
 # Tests are no part of the target `all`: `make test` builds the target `tests`, `make test MODULE=<name>` `<name>_tests`.
 
 include(SnugDependencies)
@@ -152,7 +152,7 @@ function(snug_compile_library target)
 endfunction()
 
 function(snug_module name)
-  cmake_parse_arguments(ARG "ALONE;COLD" "" "HEADERS;SOURCES;COLD_SOURCES;DEPENDS;LINK;TESTS;SLOW_TESTS" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE;COLD" "" "HEADERS;SOURCES;COLD_SOURCES;DEPENDS;LINK;TESTS;SLOW_TESTS;TEST_DEPENDS" ${ARGN})
   set(needs)
   foreach(module IN LISTS ARG_DEPENDS)
     snug_add_module(${module})
@@ -191,13 +191,17 @@ function(snug_module name)
   endif()
   if(SNUG_TESTS)
     add_custom_target(${name}_tests)  # what `make test MODULE=<name>` builds
+    foreach(module IN LISTS ARG_TEST_DEPENDS)
+      snug_add_module(${module})
+    endforeach()
+    list(TRANSFORM ARG_TEST_DEPENDS PREPEND snug::)
   endif()
   if(SNUG_TESTS AND ARG_TESTS)
-    snug_test(${name}_test SOURCES ${ARG_TESTS} LINK snug::${name} ${ARG_LINK} LABELS "${name}")
+    snug_test(${name}_test SOURCES ${ARG_TESTS} LINK snug::${name} ${ARG_TEST_DEPENDS} ${ARG_LINK} LABELS "${name}")
     add_dependencies(${name}_tests ${name}_test)
   endif()
   if(SNUG_TESTS AND ARG_SLOW_TESTS)
-    snug_test(${name}_slow_test SOURCES ${ARG_SLOW_TESTS} LINK snug::${name} ${ARG_LINK} LABELS "${name};slow")
+    snug_test(${name}_slow_test SOURCES ${ARG_SLOW_TESTS} LINK snug::${name} ${ARG_TEST_DEPENDS} ${ARG_LINK} LABELS "${name};slow")
     add_dependencies(${name}_tests ${name}_slow_test)
   endif()
 endfunction()

@@ -63,6 +63,14 @@ class CheckModules(unittest.TestCase):
         self.assert_refused({"src/snug/low/test/low_test.cpp": '#  include "snug/middle/middle.hpp"\n'},
                             "low_test.cpp:1:", "does not declare 'middle'")
 
+    def test_lets_tests_alone_include_what_only_they_declare(self):
+        declared = {"src/snug/low/CMakeLists.txt": "snug_module(low HEADERS low.hpp\n  TESTS test/a.cpp TEST_DEPENDS high)\n"}
+        include = '// Low.\n#include "snug/high/high.hpp"\n'
+        self.assertEqual(self.run_on({**declared, "src/snug/low/test/a.cpp": include})[0], 0)
+        self.assert_refused({**declared, "src/snug/low/low.cpp": include}, "low.cpp:2:", "does not declare 'high'")
+        self.assert_refused({"src/snug/low/CMakeLists.txt": "snug_module(low HEADERS low.hpp TEST_DEPENDS moon)\n"},
+                            "CMakeLists.txt:1:", "the tests of 'low' depend on 'moon'")
+
     def test_refuses_angle_brackets_as_a_way_around(self):
         self.assert_refused({"src/snug/low/low.cpp": "#include <snug/high/high.hpp>\n"},
                             "low.cpp:1:", "in quotes", "does not declare 'high'")

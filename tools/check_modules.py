@@ -2,7 +2,7 @@
 """check_modules.py [ROOT]: holds every #include to the dependencies that the CMakeLists.txt files declare.
 
 What declares its dependencies is a unit:
-  src/snug/<module>     snug_module(<module> ... DEPENDS modules...)
+  src/snug/<module>     snug_module(<module> ... DEPENDS modules... TEST_DEPENDS modules that only its tests may include)
   apps/<library>        snug_app_library(<library> ... DEPENDS modules...)
   apps/snug/<folder>    snug_verb(<folder> ... USES folders beside it... DEPENDS modules and libraries...)
   python                target_link_libraries(... snug::<module>...) in python/CMakeLists.txt
@@ -30,6 +30,7 @@ class Unit:
     path: Path
     line: int
     depends: list = field(default_factory=list)
+    test_depends: list = field(default_factory=list)
 
 
 def words_after(words, keyword):
@@ -60,7 +61,8 @@ def declared_units(root):
         for function, words, line in calls_of(path):
             modules = words_after(words[1:], "DEPENDS")
             if function == "snug_module":
-                units[words[0]] = Unit(words[0], folder, f"snug/{words[0]}", path, line, modules)
+                units[words[0]] = Unit(words[0], folder, f"snug/{words[0]}", path, line, modules,
+                                       words_after(words[1:], "TEST_DEPENDS"))
             elif function == "snug_app_library":
                 units[words[0]] = Unit(words[0], folder, place, path, line, modules)
             elif function == "snug_verb":
@@ -89,6 +91,9 @@ def check_declarations(units, problems):
         if name in reachable:
             return reachable[name]
         found = {name}
+        for other in unit.test_depends:
+            if other not in units:
+                problems.append(f"{unit.path}:{unit.line}: the tests of '{name}' depend on '{other}', which no folder declares")
         for other in unit.depends:
             if other not in units:
                 problems.append(f"{unit.path}:{unit.line}: module '{name}' depends on '{other}', which no folder declares")
@@ -123,6 +128,12 @@ class Checker:
                 return unit
         return None
 
+    def allowed_of(self, path, unit):
+        allowed = self.allowed[unit.name]
+        if unit.folder / "test" in path.parents:
+            allowed = allowed.union(*(self.allowed.get(name, set()) for name in unit.test_depends))
+        return allowed
+
     def check_file(self, path):
         unit = self.unit_of_file(path)
         if unit is None and path.relative_to(self.root).parts[0] not in OUTSIDE:
@@ -151,8 +162,8 @@ class Checker:
             yield f'"{target}": no such file'
         if other is not unit and "internal" in parts:
             yield f"\"{target}\": internal headers are for module '{other.name}' only"
-        if unit and other.name not in self.allowed[unit.name]:
-            may = ", ".join(sorted(self.allowed[unit.name] - {unit.name})) or "no other module"
+        if unit and other.name not in self.allowed_of(path, unit):
+            may = ", ".join(sorted(self.allowed_of(path, unit) - {unit.name})) or "no other module"
             yield f"\"{target}\": module '{unit.name}' does not declare '{other.name}' (it may use {may})"
 
     def check_beside(self, path, unit, target):

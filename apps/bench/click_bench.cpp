@@ -9,8 +9,8 @@
 
 #include "apps/bench/internal/click_bench.hpp"
 #include "snug/click/client.hpp"
-#include "snug/click/server.hpp"
 #include "snug/core/check.hpp"
+#include "snug/served_cell/server.hpp"
 
 namespace snug::bench::internal {
 namespace {
@@ -24,10 +24,10 @@ struct RoundTrips {
 };
 
 RoundTrips measure(const cell::Simulation& simulation, const std::string& robot, const std::string& endpoint) {
-  click::Simulator simulator(simulation, {});
-  click::ServerSettings settings;
+  served_cell::Simulator simulator(simulation, {});
+  served_cell::ServerSettings settings;
   settings.endpoint = endpoint;
-  click::Server server(simulator, settings);
+  served_cell::Server server(simulator, settings);
   std::thread serving([&] { server.run(); });
   click::Client client(server.endpoint());
   const auto handshake = client.shake_hands();

@@ -13,14 +13,14 @@
 #include "apps/snug/common/robot_warnings.hpp"
 #include "snug/cell/corrected.hpp"
 #include "snug/cell/joint_pace.hpp"
-#include "snug/click/program_client.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/remote_plant/program_client.hpp"
 
 namespace snug::app {
 namespace {
 
-std::string as_json(const click::ProgramClientResult& result) {
+std::string as_json(const remote_plant::ProgramClientResult& result) {
   nlohmann::ordered_json document = {{"duration_s", result.duration},
                                      {"simulated_s", result.simulated},
                                      {"wall_s", result.wall},
@@ -38,7 +38,7 @@ std::string as_json(const click::ProgramClientResult& result) {
   return document.dump(2) + "\n";
 }
 
-std::string as_table(const click::ProgramClientResult& result) {
+std::string as_table(const remote_plant::ProgramClientResult& result) {
   constexpr double kMm = 1e3;
   std::string text = fmt::format("{:<16} {:>9} {:>9} {:>9}\n", "object", "x_W mm", "y_W mm", "z_W mm");
   for (const auto& [name, object] : result.last.objects) {
@@ -79,10 +79,10 @@ int run_control(const ControlOptions& options) {
   if (how.controller == motion::ControllerKind::Fast) pace = cell::make_joint_pace(scenario, how.tempo);
   plan.path_limits = pace.get();
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
-  click::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
-                                        options.sequence ? &sequence : nullptr};
+  remote_plant::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
+                                               options.sequence ? &sequence : nullptr};
   click::Client client(options.endpoint, options.patience);
-  const click::ProgramClientResult result = click::run_program(client, scenario, arm, plan, settings);
+  const remote_plant::ProgramClientResult result = remote_plant::run_program(client, scenario, arm, plan, settings);
   if (!result.has_begun)
     throw InputError("command line", "--click", result.failure, "the address of a simulator of this robot");
   print(options.json ? as_json(result) : as_table(result));

@@ -97,7 +97,7 @@ class StepLines {
       const std::string line = text_.substr(0, end);
       text_.erase(0, end + 1);
       if (line == "c") return -1;
-      if (line == "r") return click::kReset;
+      if (line == "r") return served_cell::kReset;
       steps += steps_of(line);
     }
     if (text_.size() > 4096) text_.clear();
@@ -126,7 +126,7 @@ class Serving {
       expect_distinct(files_of(options.scenario, options.changes, scenario_), {{"-o", *options.record}});
       record_ = reserve_recording(options.record);
     }
-    click::SimulatorSettings settings;
+    served_cell::SimulatorSettings settings;
     settings.cell = options.cell;
     settings.cell.controls.clear();
     for (const std::string& word : options.controls) settings.cell.controls.push_back(kind_of(word));
@@ -137,7 +137,7 @@ class Serving {
     settings.begin_run = [this](int run) { return begin(run); };
     settings.end_run = [this](int run, const cell::RunResult& result) { end(run, result); };
     simulator_.emplace(simulation_, std::move(settings));
-    click::ServerSettings server = options.server;
+    served_cell::ServerSettings server = options.server;
     server.log = [](const std::string& line) { std::fprintf(stderr, "snug: %s\n", line.c_str()); };
     server.steps_fd = STDIN_FILENO;
     server.read_steps = [this] { return lines_.read(); };
@@ -206,14 +206,14 @@ class Serving {
 
   void report() const {
     constexpr double kUs = 1e6;
-    const click::ServerTimes& times = server_->times();
-    const click::SimulatorCounts& counts = simulator_->counts();
+    const served_cell::ServerTimes& times = server_->times();
+    const served_cell::SimulatorCounts& counts = simulator_->counts();
     std::fprintf(
         stderr,
         "snug: %lld steps, %lld answers, %lld of them errors; median of an answer %.0f us, %.0f us without the cell\n",
         static_cast<long long>(counts.steps), static_cast<long long>(counts.replies),
         static_cast<long long>(counts.errors), kUs * times.service.quantile(0.5), kUs * times.own.quantile(0.5));
-    const click::Histogram& late = server_->pacer().lateness();
+    const served_cell::Histogram& late = server_->pacer().lateness();
     if (late.count() == 0) return;
     std::fprintf(stderr,
                  "snug: real time: %lld steps; late by %.0f us (median), %.0f us (99 %%), %.0f us (worst); %lld by "
@@ -231,8 +231,8 @@ class Serving {
   std::optional<serve::Server> page_;
   StepLines lines_;
   bool has_failed_ = false;
-  std::optional<click::Simulator> simulator_;
-  std::optional<click::Server> server_;
+  std::optional<served_cell::Simulator> simulator_;
+  std::optional<served_cell::Server> server_;
 };
 
 }  // namespace

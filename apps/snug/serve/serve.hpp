@@ -7,8 +7,8 @@
 
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
-#include "snug/click/server.hpp"
 #include "snug/serve/server.hpp"
+#include "snug/served_cell/server.hpp"
 
 namespace snug::app {
 
@@ -24,8 +24,8 @@ struct ServeOptions {
   std::optional<double> record_period;      ///< s
   std::string rpy = "xyz";
   std::vector<std::string> controls = {"velocity"};
-  click::ServedCellSettings cell;
-  click::ServerSettings server;
+  served_cell::ServedCellSettings cell;
+  served_cell::ServerSettings server;
   std::optional<double> batch;        ///< s, simulated
   bool once = false;                  ///< ends after the first run
   std::optional<std::string> record;  ///< HDF5 file; of further runs: with their number before the ending

@@ -3,14 +3,15 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <zmq.h>
 
 #include <atomic>
 #include <utility>
 
 #include "snug/click/internal/sensor_reader.hpp"
-#include "snug/click/internal/socket.hpp"
-#include "snug/click/internal/spin_wait.hpp"
-#include "snug/click/simulator.hpp"
+#include "snug/click/names.hpp"
+#include "snug/click/socket.hpp"
+#include "snug/click/spin_wait.hpp"
 
 namespace snug::click {
 namespace {
@@ -35,16 +36,16 @@ Expected<T, std::string> expect(Expected<Message, std::string> answer, const cha
 struct Client::Impl {
   Impl(const std::string& address, double seconds, const std::string& routing_id)
       : endpoint(address), patience(seconds) {
-    internal::check_endpoint(endpoint);
-    socket = internal::make_socket(context.get(), ZMQ_REQ, kLinger);
+    wire::check_endpoint(endpoint);
+    socket = wire::make_socket(context.get(), ZMQ_REQ, kLinger);
     if (!routing_id.empty()) {
       (void)zmq_setsockopt(socket.get(), ZMQ_ROUTING_ID, routing_id.data(), routing_id.size());
     }
-    internal::set(socket.get(), ZMQ_MAXMSGSIZE, kLongestAnswer);
-    internal::set(socket.get(), ZMQ_IPV6, endpoint.starts_with("tcp://[") ? 1 : 0);
+    wire::set(socket.get(), ZMQ_MAXMSGSIZE, kLongestAnswer);
+    wire::set(socket.get(), ZMQ_IPV6, endpoint.starts_with("tcp://[") ? 1 : 0);
     const int milliseconds = static_cast<int>(1e3 * patience);
-    internal::set(socket.get(), ZMQ_RCVTIMEO, milliseconds);
-    internal::set(socket.get(), ZMQ_SNDTIMEO, milliseconds);
+    wire::set(socket.get(), ZMQ_RCVTIMEO, milliseconds);
+    wire::set(socket.get(), ZMQ_SNDTIMEO, milliseconds);
     if (zmq_connect(socket.get(), endpoint.c_str()) != 0) {
       // check_endpoint said yes: what is left is a host that cannot be.
       throw std::runtime_error(endpoint + ": " + zmq_strerror(errno));
@@ -53,10 +54,10 @@ struct Client::Impl {
 
   std::string endpoint;
   double patience;
-  internal::Context context = internal::make_context();
-  internal::Socket socket;
+  wire::Context context = wire::make_context();
+  wire::Socket socket;
 
-  internal::SpinWait spin;
+  wire::SpinWait spin;
   internal::SensorReader sensors;
 
   /// The bytes of the answer to a message.
@@ -69,7 +70,7 @@ struct Client::Impl {
       is_there = zmq_msg_recv(&answer, socket.get(), ZMQ_DONTWAIT) >= 0;
       return is_there || errno != EAGAIN;
     };
-    if (spin.wait(has_ended, internal::SpinWait::Clock::now())) return is_there;
+    if (spin.wait(has_ended, wire::SpinWait::Clock::now())) return is_there;
     return zmq_msg_recv(&answer, socket.get(), 0) >= 0;
   }
 };

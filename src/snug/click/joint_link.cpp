@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "snug/click/names.hpp"
 #include "snug/click/rpy.hpp"
-#include "snug/click/served_cell.hpp"
 
 namespace snug::click {
 namespace {

@@ -14,7 +14,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "snug/click/internal/sensor_writer.hpp"
+#include "snug/click/sensor_writer.hpp"
 #include "snug/core/check.hpp"
 
 namespace snug::click {
@@ -137,7 +137,7 @@ std::string encode_one(const T& message) {
   return bytes;
 }
 
-std::string encode_one(const Sensor& sensor) { return internal::write_sensor(sensor); }
+std::string encode_one(const Sensor& sensor) { return wire::write_sensor(sensor); }
 
 // ---- what is received
 
@@ -314,7 +314,7 @@ Decoded decode_handshake(std::string_view frame) {
 
 }  // namespace
 
-Expected<ObjectSensors, std::string> internal::decode_object(std::string_view bytes) {
+Expected<ObjectSensors, std::string> wire::decode_object(std::string_view bytes) {
   Room room;
   auto& in = *room.make<wire::SensorMessage_Object>();
   if (!parse(bytes, in)) return Reason(kGarbled);

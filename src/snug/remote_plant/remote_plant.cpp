@@ -10,7 +10,7 @@
 
 #include "snug/camera_perception/camera_perception.hpp"
 #include "snug/cell/drawn_scenario.hpp"
-#include "snug/click/served_cell.hpp"
+#include "snug/click/names.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/phases.hpp"
 #include "snug/record/csv.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "snug/click/served_cell.hpp"
+#include "snug/click/names.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/csv.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "snug/click/internal/sensor_writer.hpp"
+#include "snug/click/sensor_writer.hpp"
 
 namespace snug::click::internal {
 namespace {

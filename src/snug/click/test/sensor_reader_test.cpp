@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "snug/click/internal/sensor_writer.hpp"
+#include "snug/click/sensor_writer.hpp"
 #include "snug/core/rng.hpp"
 
 namespace snug::click::internal {

@@ -9,12 +9,12 @@
 #include <thread>
 
 #include "snug/cell/drawn_scenario.hpp"
-#include "snug/click/server.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/model/test/shortened.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
 #include "snug/remote_plant/watched_cell.hpp"
+#include "snug/served_cell/server.hpp"
 
 namespace snug::remote_plant {
 namespace {
@@ -47,15 +47,15 @@ class Served {
   [[nodiscard]] const std::vector<cell::RunResult>& runs() const { return runs_; }
 
  private:
-  click::SimulatorSettings settings_of(bool is_plant) {
-    click::SimulatorSettings settings;
+  served_cell::SimulatorSettings settings_of(bool is_plant) {
+    served_cell::SimulatorSettings settings;
     settings.cell.is_plant = is_plant;
     settings.end_run = [this](int, const cell::RunResult& result) { runs_.push_back(result); };
     return settings;
   }
-  static click::ServerSettings server_settings() {
+  static served_cell::ServerSettings server_settings() {
     static int count = 0;
-    click::ServerSettings settings;
+    served_cell::ServerSettings settings;
     settings.endpoint = "ipc://" + (std::filesystem::temp_directory_path() /
                                     ("snug_remote_" + std::to_string(::getpid()) + "_" + std::to_string(++count)))
                                        .string();
@@ -63,8 +63,8 @@ class Served {
   }
   cell::Simulation simulation_;
   std::vector<cell::RunResult> runs_;
-  click::Simulator simulator_;
-  click::Server server_;
+  served_cell::Simulator simulator_;
+  served_cell::Server server_;
   std::thread thread_;
 };
 

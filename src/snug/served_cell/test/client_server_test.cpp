@@ -1,21 +1,27 @@
 // Client and Server over real sockets: a program through the wire is the program in the cell; peers come and go.
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <zmq.h>
 
 #include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "cell.hpp"
-#include "snug/click/internal/socket.hpp"
-#include "snug/click/program_client.hpp"
-#include "snug/click/server.hpp"
+#include "snug/click/socket.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/test/scratch_folder.hpp"
-#include "snug/motion/waypoint_name.hpp"
+#include "snug/served_cell/server.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
+
+namespace wire = click::wire;
+using click::Client;
+using click::encode;
+using click::HandshakeInit;
+using click::Message;
+using click::Reset;
 
 using test::control_of;
 using test::demonstrator_cell;
@@ -91,40 +97,6 @@ TEST(ClientServer, TheFileOfAnAddressGoesWithItsServer) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-TEST(ClientServer, DoAProgramBitByBitAsTheCellDoes) {
-  const cell::Simulation& simulation = demonstrator_cell();
-  motion::Program program{"test", {}};
-  for (const char* name : {"home", "PrePick027", "Box027", "PostPick027"}) {
-    motion::Waypoint row = motion::named_waypoint(name, simulation.scenario().controller.X_WE_start);
-    row.p_WE += Vector3(0.0, 0.02 * static_cast<double>(program.waypoints.size()), 0.02);
-    row.io.vacuum = program.waypoints.size() == 3;
-    program.waypoints.push_back(row);
-  }
-  const motion::PreparedProgram plan = simulation.prepare(program);
-  cell::CellState state = simulation.make_state();
-  cell::CellWorkspace work = simulation.make_workspace();
-  while (!simulation.advance(plan, state, work).has_ended) continue;
-  const double settled = simulation.time(state) + 1.0;
-  while (simulation.time(state) < settled) (void)simulation.advance(plan, state, work);
-
-  for (const bool by_position : {false, true}) {
-    SimulatorSettings settings;
-    if (by_position) settings.cell.controls = {control::DriveKind::Position};
-    Served served(settings);
-    Client client(served.endpoint());
-    ProgramClientSettings controller;
-    controller.sequence = &simulation.sequence();
-    const ProgramClientResult result = run_program(client, simulation.scenario(), *simulation.arm(), plan, controller);
-    EXPECT_EQ(result.failure, "");
-    served.stop();
-    ASSERT_EQ(served.runs.size(), 1u);
-    EXPECT_EQ(served.runs[0].ended_by, "reset by the controller");
-    if (by_position) continue;  // the same way, not the same bits: positions leave the speeds within a tick open
-    EXPECT_EQ(served.runs[0].state_hash, simulation.hash(state));
-    EXPECT_EQ(served.runs[0].duration, simulation.time(state));
-  }
-}
-
 TEST(ClientServer, GiveTheCellToTheNextControllerWhenOneDies) {
   Served served;
   {
@@ -150,14 +122,14 @@ TEST(ClientServer, GiveTheCellToTheNextControllerWhenOneDies) {
 /// A peer that says something and does not wait for the answer.
 class Impolite {
  public:
-  explicit Impolite(const std::string& endpoint) : socket_(internal::make_socket(context_.get(), ZMQ_DEALER, 10000)) {
+  explicit Impolite(const std::string& endpoint) : socket_(wire::make_socket(context_.get(), ZMQ_DEALER, 10000)) {
     EXPECT_EQ(zmq_connect(socket_.get(), endpoint.c_str()), 0);
   }
-  void say(const Message& message) { EXPECT_TRUE(internal::send(socket_.get(), encode(message), false)); }
+  void say(const Message& message) { EXPECT_TRUE(wire::send(socket_.get(), encode(message), false)); }
 
  private:
-  internal::Context context_ = internal::make_context();  // ends when all is sent
-  internal::Socket socket_;
+  wire::Context context_ = wire::make_context();  // ends when all is sent
+  wire::Socket socket_;
 };
 
 TEST(ClientServer, PeerThatIsGoneBeforeItIsReadDoesNotKeepTheCell) {
@@ -222,4 +194,4 @@ TEST(Server, RefusesAddressesThatAreNoneOrNotForEverybody) {
 }
 
 }  // namespace
-}  // namespace snug::click
+}  // namespace snug::served_cell

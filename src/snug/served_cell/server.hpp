@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
-#include "snug/click/pacer.hpp"
-#include "snug/click/simulator.hpp"
+#include "snug/served_cell/pacer.hpp"
+#include "snug/served_cell/simulator.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 
 struct ServerSettings {
   std::string endpoint = "tcp://127.0.0.1:5555";  ///< or ipc://PATH; port * is any that is free
@@ -54,4 +54,4 @@ class Server {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

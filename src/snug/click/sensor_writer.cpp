@@ -1,5 +1,5 @@
 // write_sensor: from the last byte to the first, so that the length of a part is known when it has to be written.
-#include "snug/click/internal/sensor_writer.hpp"
+#include "snug/click/sensor_writer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "snug/core/check.hpp"
 
-namespace snug::click::internal {
+namespace snug::click::wire {
 namespace {
 
 /// Field numbers, as in click.proto; all fit into tags of one byte.
@@ -180,4 +180,4 @@ std::string write_sensor(const Sensor& sensor) {
   return frame += end_sensor(sensor.time);
 }
 
-}  // namespace snug::click::internal
+}  // namespace snug::click::wire

@@ -1,5 +1,5 @@
 // Server: a simulator at an address: messages in, answers out, steps in time.
-#include "snug/click/server.hpp"
+#include "snug/served_cell/server.hpp"
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
+#include <zmq.h>
 
 #include <algorithm>
 #include <array>
@@ -17,15 +18,17 @@
 #include <utility>
 #include <vector>
 
-#include "snug/click/internal/connections.hpp"
-#include "snug/click/internal/socket.hpp"
-#include "snug/click/internal/spin_wait.hpp"
+#include "snug/click/socket.hpp"
+#include "snug/click/spin_wait.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/stopwatch.hpp"
+#include "snug/served_cell/internal/connections.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
+
+namespace wire = click::wire;
 
 using Clock = Pacer::Clock;
 
@@ -41,7 +44,7 @@ constexpr const char* kMonitor = "inproc://events";
 
 /// ZeroMQ removes a file that is in the way: only a socket that nobody listens at may be.
 void check_file(const std::string& endpoint) {
-  const std::string path = internal::path_of(endpoint);
+  const std::string path = wire::path_of(endpoint);
   struct stat status = {};
   if (path.empty() || ::lstat(path.c_str(), &status) != 0) return;
   if (!S_ISSOCK(status.st_mode)) {
@@ -87,7 +90,7 @@ struct Server::Impl {
   Impl(Simulator& to_serve, ServerSettings server_settings);
   ~Impl() {
     // ZeroMQ leaves the file of ipc:// behind. It is still ours: nobody else can listen at it before the socket closes.
-    if (const std::string file = internal::path_of(endpoint); !file.empty()) ::unlink(file.c_str());
+    if (const std::string file = wire::path_of(endpoint); !file.empty()) ::unlink(file.c_str());
     if (stop_fd >= 0) ::close(stop_fd);
   }
   Impl(const Impl&) = delete;
@@ -114,8 +117,8 @@ struct Server::Impl {
   ServerSettings settings;
   Pacer pacer;
   ServerTimes times;
-  internal::Context context = internal::make_context();
-  internal::Socket socket, monitor;
+  wire::Context context = wire::make_context();
+  wire::Socket socket, monitor;
   std::string endpoint;
   int stop_fd = -1;
   std::atomic<bool> is_stopping = false;
@@ -125,15 +128,15 @@ struct Server::Impl {
   std::vector<Request> kept;
   int steps_allowed = 0;  ///< step by step; -1: all
   Clock::time_point next_due = Clock::time_point::max(), last_message;
-  internal::SpinWait spin;
+  wire::SpinWait spin;
 };
 
 Server::Impl::Impl(Simulator& to_serve, ServerSettings server_settings)
     : simulator(to_serve),
       settings(std::move(server_settings)),
       pacer(to_serve.handshake().time_step / settings.speed.value_or(1.0)) {
-  internal::check_endpoint(settings.endpoint);
-  if (!settings.allows_remote && !internal::is_local(settings.endpoint)) {
+  wire::check_endpoint(settings.endpoint);
+  if (!settings.allows_remote && !wire::is_local(settings.endpoint)) {
     throw InputError("command line", "--click", "'" + settings.endpoint + "', which other machines can reach",
                      "an address such as tcp://127.0.0.1:5555, or --remote");
   }
@@ -144,15 +147,15 @@ Server::Impl::Impl(Simulator& to_serve, ServerSettings server_settings)
 }
 
 void Server::Impl::bind() {
-  socket = internal::make_socket(context.get(), ZMQ_ROUTER, 200);
-  internal::set(socket.get(), ZMQ_ROUTER_MANDATORY, 1);
-  internal::set(socket.get(), ZMQ_MAXMSGSIZE, kMostBytes);
-  internal::set(socket.get(), ZMQ_RCVHWM, kMostWaiting);
-  internal::set(socket.get(), ZMQ_SNDHWM, kMostUnread);
-  internal::set(socket.get(), ZMQ_IPV6, settings.endpoint.starts_with("tcp://[") ? 1 : 0);
-  internal::set(socket.get(), ZMQ_TCP_KEEPALIVE, 1);
+  socket = wire::make_socket(context.get(), ZMQ_ROUTER, 200);
+  wire::set(socket.get(), ZMQ_ROUTER_MANDATORY, 1);
+  wire::set(socket.get(), ZMQ_MAXMSGSIZE, kMostBytes);
+  wire::set(socket.get(), ZMQ_RCVHWM, kMostWaiting);
+  wire::set(socket.get(), ZMQ_SNDHWM, kMostUnread);
+  wire::set(socket.get(), ZMQ_IPV6, settings.endpoint.starts_with("tcp://[") ? 1 : 0);
+  wire::set(socket.get(), ZMQ_TCP_KEEPALIVE, 1);
   SNUG_CHECK(zmq_socket_monitor(socket.get(), kMonitor, ZMQ_EVENT_DISCONNECTED) == 0, "a socket can be watched");
-  monitor = internal::make_socket(context.get(), ZMQ_PAIR);
+  monitor = wire::make_socket(context.get(), ZMQ_PAIR);
   SNUG_CHECK(zmq_connect(monitor.get(), kMonitor) == 0, "a monitor can be read");
   std::string address = settings.endpoint;
   constexpr std::string_view kHere = "tcp://localhost:";  // a name that ZeroMQ binds to nothing
@@ -170,9 +173,9 @@ void Server::Impl::bind() {
 
 /// News that a connection was closed: which one, the kernel knows better.
 void Server::Impl::read_monitor() {
-  internal::Parts event;
+  wire::Parts event;
   bool is_told = false;
-  while (internal::receive(monitor.get(), event)) is_told = true;
+  while (wire::receive(monitor.get(), event)) is_told = true;
   if (!is_told) return;
   connections.forget_closed();
   next_look = Clock::now();
@@ -201,8 +204,8 @@ void Server::Impl::look_for_controller() {
 
 bool Server::Impl::read_message() {
   read_monitor();
-  internal::Parts message;
-  if (!internal::receive(socket.get(), message)) return false;
+  wire::Parts message;
+  if (!wire::receive(socket.get(), message)) return false;
   if (message.parts.size() < 2) return true;  // a peer that says nothing
   Request request;
   request.received = last_message = Clock::now();
@@ -253,9 +256,9 @@ void Server::Impl::serve(const Request& request) {
   bool is_sent = true;
   if (reply) {
     if (!had_controller) (void)is_readable(socket.get());  // makes ZeroMQ see who has left: then sending fails
-    is_sent = internal::send(socket.get(), request.peer, true);
-    for (const std::string& part : request.envelope) is_sent = is_sent && internal::send(socket.get(), part, true);
-    is_sent = is_sent && internal::send(socket.get(), *reply, false);
+    is_sent = wire::send(socket.get(), request.peer, true);
+    for (const std::string& part : request.envelope) is_sent = is_sent && wire::send(socket.get(), part, true);
+    is_sent = is_sent && wire::send(socket.get(), *reply, false);
   }
   const double service = seconds_since(start);
   times.service.add(service);
@@ -358,4 +361,4 @@ void Server::stop() noexcept {
   (void)!::write(impl_->stop_fd, &one, sizeof one);
 }
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

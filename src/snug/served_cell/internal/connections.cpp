@@ -1,11 +1,11 @@
 // Connections: which peers are still there, whatever ZeroMQ's news of them says and when.
-#include "snug/click/internal/connections.hpp"
+#include "snug/served_cell/internal/connections.hpp"
 
 #include <sys/stat.h>
 
 #include <cstdint>
 
-namespace snug::click::internal {
+namespace snug::served_cell::internal {
 namespace {
 
 constexpr Connection kUnknown = {-1, 1};
@@ -70,4 +70,4 @@ void Connections::forget_closed() {
                 [this](const auto& entry) { return entry.second != kUnknown && !peers_.contains(entry.second); });
 }
 
-}  // namespace snug::click::internal
+}  // namespace snug::served_cell::internal

@@ -1,6 +1,8 @@
 // Socket: what the server and the client need of ZeroMQ, with errors as exceptions and addresses that are checked
 // first.
-#include "snug/click/internal/socket.hpp"
+#include "snug/click/socket.hpp"
+
+#include <zmq.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -8,7 +10,7 @@
 
 #include "snug/core/input_error.hpp"
 
-namespace snug::click::internal {
+namespace snug::click::wire {
 namespace {
 
 [[noreturn]] void fail(const char* what) { throw std::runtime_error(std::string(what) + ": " + zmq_strerror(errno)); }
@@ -32,6 +34,9 @@ class Frame {
 };
 
 }  // namespace
+
+void CloseContext::operator()(void* context) const { zmq_ctx_term(context); }
+void CloseSocket::operator()(void* socket) const { zmq_close(socket); }
 
 Context make_context() {
   Context context(zmq_ctx_new());
@@ -110,4 +115,4 @@ bool send(void* socket, std::string_view part, bool has_more) {
   return false;
 }
 
-}  // namespace snug::click::internal
+}  // namespace snug::click::wire

@@ -8,7 +8,7 @@
 #include "snug/cell/simulation.hpp"
 #include "snug/click/client.hpp"
 
-namespace snug::click {
+namespace snug::remote_plant {
 
 struct ProgramClientSettings {
   std::string object = {};  ///< of the simulator; empty: the one that has all joints of the arm
@@ -25,14 +25,14 @@ struct ProgramClientResult {
   double simulated = 0.0;  ///< s, with the second in which boxes come to rest
   double wall = 0.0;       ///< s
   std::int64_t ticks = 0;
-  int row = -1;  ///< of the program, aimed at last
-  Sensor last;   ///< what the simulator sensed last
+  int row = -1;        ///< of the program, aimed at last
+  click::Sensor last;  ///< what the simulator sensed last
 };
 
 /// Connects, does the program from where the joints are, waits until boxes have come to rest, resets. `arm`: with its
 /// limits and gains, as the scenario has it. What the simulator says or lacks is a failure, never an exception.
-[[nodiscard]] ProgramClientResult run_program(Client& client, const model::Scenario& scenario, const cell::CellArm& arm,
-                                              const motion::PreparedProgram& plan,
+[[nodiscard]] ProgramClientResult run_program(click::Client& client, const model::Scenario& scenario,
+                                              const cell::CellArm& arm, const motion::PreparedProgram& plan,
                                               const ProgramClientSettings& settings);
 
-}  // namespace snug::click
+}  // namespace snug::remote_plant

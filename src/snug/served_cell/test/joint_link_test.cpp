@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <zmq.h>
 
 #include <atomic>
 #include <functional>
@@ -10,10 +11,18 @@
 #include <thread>
 
 #include "cell.hpp"
-#include "snug/click/internal/socket.hpp"
+#include "snug/click/socket.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
+
+namespace wire = click::wire;
+using click::Client;
+using click::encode;
+using click::Handshake;
+using click::JointLink;
+using click::Message;
+using click::Sensor;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -36,17 +45,17 @@ class Relay {
   void run() {
     while (!is_stopping_) {
       zmq_pollitem_t item = {socket_.get(), 0, ZMQ_POLLIN, 0};
-      internal::Parts heard;
-      if (zmq_poll(&item, 1, 20) <= 0 || !internal::receive(socket_.get(), heard)) continue;
+      wire::Parts heard;
+      if (zmq_poll(&item, 1, 20) <= 0 || !wire::receive(socket_.get(), heard)) continue;
       Message answer = talk_.hear(heard.parts.front());
       change_(answer);
-      (void)internal::send(socket_.get(), encode(answer), false);
+      (void)wire::send(socket_.get(), encode(answer), false);
     }
   }
   std::function<void(Message&)> change_;
   std::string endpoint_;
-  internal::Context context_ = internal::make_context();
-  internal::Socket socket_ = internal::make_socket(context_.get(), ZMQ_REP);
+  wire::Context context_ = wire::make_context();
+  wire::Socket socket_ = wire::make_socket(context_.get(), ZMQ_REP);
   test::Talk talk_;
   std::atomic<bool> is_stopping_ = false;
   std::thread thread_;
@@ -75,4 +84,4 @@ TEST(JointLink, RefusesTimesThatAreNoNumbers) {
 }
 
 }  // namespace
-}  // namespace snug::click
+}  // namespace snug::served_cell

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace snug::click {
+namespace snug::served_cell {
 
 /// Numbers of any size in a fixed room: counted in bins that grow by 5 %, from 0.1 us to 100 s.
 class Histogram {
@@ -50,4 +50,4 @@ class Pacer {
   std::int64_t missed_ = 0;
 };
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

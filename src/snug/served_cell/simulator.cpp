@@ -1,13 +1,23 @@
 // Simulator: the answering side of CLICK: which message is answered by what, and what it does to the cell.
-#include "snug/click/simulator.hpp"
+#include "snug/served_cell/simulator.hpp"
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <utility>
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
+
+using click::Control;
+using click::decode;
+using click::encode;
+using click::Error;
+using click::HandshakeInit;
+using click::kVersion;
+using click::Message;
+using click::Reset;
+using click::SensorRequest;
 
 constexpr const char* kBusy = "another controller drives this cell; it has room for one at a time";
 
@@ -218,4 +228,4 @@ void Simulator::clear() {
   command_.reset();
 }
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

@@ -1,9 +1,9 @@
 // Pacer: steps are due at whole periods, and lateness is counted.
-#include "snug/click/pacer.hpp"
+#include "snug/served_cell/pacer.hpp"
 
 #include <gtest/gtest.h>
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
 
 using std::chrono::microseconds;
@@ -40,4 +40,4 @@ TEST(Pacer, DoesNotHurryAfterALongPause) {
 }
 
 }  // namespace
-}  // namespace snug::click
+}  // namespace snug::served_cell

@@ -3,7 +3,7 @@
 
 #include "snug/cell/simulation.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 
 /// The next item of the sequence comes when the one before has been taken, and nothing (tool, another box) is where it
 /// would stand.
@@ -18,4 +18,4 @@ class Feeder {
   int next_ = 0;
 };
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

@@ -1,5 +1,5 @@
 // Connections: descriptors that are used again name nobody who had them before.
-#include "snug/click/internal/connections.hpp"
+#include "snug/served_cell/internal/connections.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace snug::click::internal {
+namespace snug::served_cell::internal {
 namespace {
 
 using Sender = Connections::Sender;
@@ -109,4 +109,4 @@ TEST(Connections, DescriptorsThatAreNoneOfASocketAreNobodys) {
 }
 
 }  // namespace
-}  // namespace snug::click::internal
+}  // namespace snug::served_cell::internal

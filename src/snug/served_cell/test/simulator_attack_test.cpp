@@ -4,11 +4,26 @@
 #include <cstdlib>
 
 #include "cell.hpp"
-#include "snug/click/simulator.hpp"
 #include "snug/core/rng.hpp"
+#include "snug/served_cell/simulator.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
+
+using click::CommandList;
+using click::Control;
+using click::decode;
+using click::encode;
+using click::Error;
+using click::Handshake;
+using click::HandshakeInit;
+using click::kAcknowledgeEvent;
+using click::kFeedEvent;
+using click::kHalfTurnEvent;
+using click::kStandEvent;
+using click::Reset;
+using click::Sensor;
+using click::SensorRequest;
 
 using test::control_of;
 using test::kStill;
@@ -68,7 +83,7 @@ int count_from(const char* variable, int few) {
   return text == nullptr ? few : std::atoi(text);
 }
 
-// The full numbers: SNUG_MUTATED_FRAMES=1000000 SNUG_MUTATED_SESSIONS=10000 build/src/snug/click/click_test
+// The full numbers: SNUG_MUTATED_FRAMES=1000000 SNUG_MUTATED_SESSIONS=10000 build/src/snug/served_cell/served_cell_test
 // --gtest_filter=*Mutated*
 TEST(Simulator, IsNotMovedByMutatedFramesOfStrangers) {
   Talk talk;
@@ -117,4 +132,4 @@ TEST(Simulator, OutlivesMutatedSessions) {
 }
 
 }  // namespace
-}  // namespace snug::click
+}  // namespace snug::served_cell

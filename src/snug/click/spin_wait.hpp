@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace snug::click::internal {
+namespace snug::click::wire {
 
 class SpinWait {
  public:
@@ -45,4 +45,4 @@ class SpinWait {
   int left_out_ = 0;
 };
 
-}  // namespace snug::click::internal
+}  // namespace snug::click::wire

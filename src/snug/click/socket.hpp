@@ -2,20 +2,19 @@
 // first.
 #pragma once
 
-#include <zmq.h>
-
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace snug::click::internal {
+namespace snug::click::wire {
 
+/// Contexts and sockets are those of zmq.h, which files that set options include themselves.
 struct CloseContext {
-  void operator()(void* context) const { zmq_ctx_term(context); }
+  void operator()(void* context) const;
 };
 struct CloseSocket {
-  void operator()(void* socket) const { zmq_close(socket); }
+  void operator()(void* socket) const;
 };
 using Context = std::unique_ptr<void, CloseContext>;
 using Socket = std::unique_ptr<void, CloseSocket>;
@@ -43,4 +42,4 @@ struct Parts {
 /// False when it cannot be sent now.
 bool send(void* socket, std::string_view part, bool has_more);
 
-}  // namespace snug::click::internal
+}  // namespace snug::click::wire

@@ -1,11 +1,11 @@
 // Feeder: brings the boxes of the sequence to the aligner, one after the other, for controllers that do not.
-#include "snug/click/feeder.hpp"
+#include "snug/served_cell/feeder.hpp"
 
 #include <optional>
 
 #include "snug/cell/aligner_feed.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
 
 constexpr double kToolRoom = 0.25;  ///< m, around E: gripper and cup
@@ -33,4 +33,4 @@ int Feeder::next(const cell::Simulation& simulation, const cell::CellState& stat
   return next_;
 }
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

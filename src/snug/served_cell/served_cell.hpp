@@ -10,30 +10,7 @@
 #include "snug/click/message.hpp"
 #include "snug/click/rpy.hpp"
 
-namespace snug::click {
-
-/// Switches of a box: it comes to the aligner when `feed` is switched on, turned by the quarter turns of the other two.
-inline constexpr const char* kFeedEvent = "feed";
-inline constexpr const char* kQuarterTurnEvent = "quarter_turn";
-inline constexpr const char* kHalfTurnEvent = "half_turn";
-/// Sensors: of the robot the tool frame E, and whether the cup holds something; of a box whether it is in the cell.
-inline constexpr const char* kToolSensor = "tool";
-inline constexpr const char* kHoldingSensor = "holding";
-inline constexpr const char* kPresentSensor = "present";
-/// For who packs the cell. Switches of the robot: its joints stand from now on, brakes closed; a protective stop is
-/// released. They act when a Control names them on; one without values for the joints makes no step.
-inline constexpr const char* kStandEvent = "stand";
-inline constexpr const char* kAcknowledgeEvent = "acknowledge";
-/// Sensors of the robot: whether it stopped for protection in the last step; pressure in the cup, gauge, as a force on
-/// a square metre; the load on the tool, about Eo in E (Simulation::tool_load); what the robot's own controller
-/// accelerates the tool by for an error of 1 m.
-inline constexpr const char* kStoppedSensor = "stopped";
-inline constexpr const char* kPressureSensor = "pressure";
-inline constexpr const char* kLoadSensor = "load";
-inline constexpr const char* kTrackingSensor = "tracking";
-/// Sensors of a box: its axes Px, Py, Pz in W, to the last bit; its edges along them.
-inline constexpr const char* kAxesSensor = "axes";
-inline constexpr const char* kSizeSensor = "size";
+namespace snug::served_cell {
 
 struct ServedCellSettings {
   std::string robot_object = {};                                           ///< empty: the name of the scenario's robot
@@ -41,7 +18,7 @@ struct ServedCellSettings {
   std::string force_sensor = "UR10FTSensor";  ///< as the demonstrator's controller calls it
   std::string vacuum_event = "vacuum";        ///< switch of the robot
   std::string blow_off_event = "blow_off";
-  RpyOrder rpy;
+  click::RpyOrder rpy;
   bool velocities = false;    ///< boxes tell their velocities, too
   bool joint_forces = false;  ///< joints tell the forces in them
   /// The cell is a plant that is packed: boxes tell their axes and sizes, the robot how it tracks.
@@ -88,19 +65,20 @@ class ServedCell {
   ServedCell(const cell::Simulation& simulation, const ServedCellSettings& settings);
 
   [[nodiscard]] const cell::Simulation& simulation() const { return simulation_; }
-  [[nodiscard]] const Handshake& handshake() const { return handshake_; }
+  [[nodiscard]] const click::Handshake& handshake() const { return handshake_; }
   [[nodiscard]] Switches make_switches() const;
 
   /// What the command means, given how the switches stand and where the boxes are; or why it means nothing: an unknown
   /// object or switch, another number of values than joints, a value that is not finite, a list of another type than
   /// the handshake gave, a box that cannot come, no values though neither a box is to come nor the robot to stand.
   /// Changes nothing.
-  [[nodiscard]] Expected<Order, std::string> understand(const Control& control, const Switches& switches,
+  [[nodiscard]] Expected<Order, std::string> understand(const click::Control& control, const Switches& switches,
                                                         const cell::CellState& state) const;
   /// All joints brake and stand.
   [[nodiscard]] cell::OutsideCommand stand(const cup::CupCommand& cup) const;
   /// `load`: on the tool, Simulation::tool_load.
-  [[nodiscard]] Sensor sense(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load) const;
+  [[nodiscard]] click::Sensor sense(const cell::CellState& state, const cell::ArmReading& reading,
+                                    const Wrench& load) const;
   /// encode(sense(...)), with less work. `written` is of this cell, or empty.
   [[nodiscard]] std::string write_sensor(const cell::CellState& state, const cell::ArmReading& reading,
                                          const Wrench& load, WrittenBodies& written) const;
@@ -114,12 +92,13 @@ class ServedCell {
   };
   void describe_robot(const ServedCellSettings& settings);
   void describe_bodies(const ServedCellSettings& settings);
-  [[nodiscard]] std::string take_joints(const ObjectControl& object, cell::OutsideCommand& command) const;
-  [[nodiscard]] std::string take_events(const std::string& name, const ObjectControl& object, Order& order) const;
+  [[nodiscard]] std::string take_joints(const click::ObjectControl& object, cell::OutsideCommand& command) const;
+  [[nodiscard]] std::string take_events(const std::string& name, const click::ObjectControl& object,
+                                        Order& order) const;
   [[nodiscard]] std::string take_feeding(const Switches& before, const cell::CellState& state, Order& order) const;
-  [[nodiscard]] ObjectSensors sense_robot(const cell::CellState& state, const cell::ArmReading& reading,
-                                          const Wrench& load) const;
-  [[nodiscard]] ObjectSensors sense_body(const Body& body, const cell::CellState& state) const;
+  [[nodiscard]] click::ObjectSensors sense_robot(const cell::CellState& state, const cell::ArmReading& reading,
+                                                 const Wrench& load) const;
+  [[nodiscard]] click::ObjectSensors sense_body(const Body& body, const cell::CellState& state) const;
   /// The bytes of a body as the state has it; written again only where it moved.
   [[nodiscard]] const std::string& write_body(const Body& body, const cell::CellState& state,
                                               WrittenBodies::Body& written) const;
@@ -129,7 +108,7 @@ class ServedCell {
   ServedCellSettings settings_;
   std::vector<control::DriveKind> kinds_;  ///< one for each joint
   std::vector<Body> bodies_;  ///< boxes of the sequence and others that move by themselves, in the order of names
-  Handshake handshake_;
+  click::Handshake handshake_;
 };
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

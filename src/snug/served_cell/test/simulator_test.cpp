@@ -1,5 +1,5 @@
 // Simulator: every allowed pair of messages, and whoever sends anything else moves nothing.
-#include "snug/click/simulator.hpp"
+#include "snug/served_cell/simulator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,33 @@
 #include "cell.hpp"
 #include "snug/core/rng.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
+
+using click::CommandList;
+using click::Control;
+using click::encode;
+using click::Error;
+using click::Handshake;
+using click::HandshakeInit;
+using click::kAcknowledgeEvent;
+using click::kAxesSensor;
+using click::kFeedEvent;
+using click::kPresentSensor;
+using click::kQuarterTurnEvent;
+using click::kSizeSensor;
+using click::kStandEvent;
+using click::kTrackingSensor;
+using click::kVersion;
+using click::kWatcher;
+using click::Message;
+using click::ObjectDescription;
+using click::ObjectSensors;
+using click::Reset;
+using click::Sensor;
+using click::SensorRequest;
+using click::SensorValue;
+using click::ValueType;
 
 using test::control_of;
 using test::kStill;
@@ -403,4 +428,4 @@ TEST(Simulator, GivesTheSameAnswersToTheSameFrames) {
 }
 
 }  // namespace
-}  // namespace snug::click
+}  // namespace snug::served_cell

@@ -1,5 +1,5 @@
 // ServedCell: the simulated cell in the words of CLICK: its objects, what they sense, what a command to them means.
-#include "snug/click/served_cell.hpp"
+#include "snug/served_cell/served_cell.hpp"
 
 #include <fmt/format.h>
 
@@ -7,14 +7,40 @@
 #include <cmath>
 #include <cstring>
 
-#include "snug/click/internal/sensor_writer.hpp"
+#include "snug/click/sensor_writer.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/csv.hpp"
 #include "snug/robot/dynamics.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
+
+namespace wire = click::wire;
+using click::CommandList;
+using click::Control;
+using click::kAcknowledgeEvent;
+using click::kAxesSensor;
+using click::kFeedEvent;
+using click::kHalfTurnEvent;
+using click::kHoldingSensor;
+using click::kLoadSensor;
+using click::kPresentSensor;
+using click::kPressureSensor;
+using click::kQuarterTurnEvent;
+using click::kSizeSensor;
+using click::kStandEvent;
+using click::kStoppedSensor;
+using click::kToolSensor;
+using click::kTrackingSensor;
+using click::Named;
+using click::ObjectControl;
+using click::ObjectDescription;
+using click::ObjectSensors;
+using click::rpy_of;
+using click::Sensor;
+using click::SensorValue;
+using click::ValueType;
 
 using control::DriveKind;
 using Reason = Unexpected<std::string>;
@@ -258,10 +284,10 @@ Sensor ServedCell::sense(const cell::CellState& state, const cell::ArmReading& r
 std::string ServedCell::write_sensor(const cell::CellState& state, const cell::ArmReading& reading, const Wrench& load,
                                      WrittenBodies& written) const {
   written.bodies.resize(bodies_.size());
-  std::string frame = internal::begin_sensor();
+  std::string frame = wire::begin_sensor();
   bool has_robot = false;
   const auto write_robot = [&] {
-    frame += internal::write_object(settings_.robot_object, sense_robot(state, reading, load));
+    frame += wire::write_object(settings_.robot_object, sense_robot(state, reading, load));
     has_robot = true;
   };
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -269,7 +295,7 @@ std::string ServedCell::write_sensor(const cell::CellState& state, const cell::A
     frame += write_body(bodies_[i], state, written.bodies[i]);
   }
   if (!has_robot) write_robot();
-  return frame += internal::end_sensor(simulation_.time(state));
+  return frame += wire::end_sensor(simulation_.time(state));
 }
 
 const std::string& ServedCell::write_body(const Body& body, const cell::CellState& state,
@@ -283,7 +309,7 @@ const std::string& ServedCell::write_body(const Body& body, const cell::CellStat
                                      v[0], v[1], v[2], w[0], w[1], w[2], now.is_present ? 1.0 : 0.0};
   if (written.bytes.empty() || std::memcmp(written.state.data(), bits.data(), sizeof bits) != 0) {
     written.state = bits;
-    written.bytes = internal::write_object(body.name, sense_body(body, state));
+    written.bytes = wire::write_object(body.name, sense_body(body, state));
   }
   return written.bytes;
 }
@@ -339,4 +365,4 @@ ObjectSensors ServedCell::sense_body(const Body& body, const cell::CellState& st
   return object;
 }
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

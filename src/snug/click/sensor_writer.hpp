@@ -5,7 +5,7 @@
 
 #include "snug/click/message.hpp"
 
-namespace snug::click::internal {
+namespace snug::click::wire {
 
 /// Field numbers of click.proto, for which SensorReader looks too.
 enum EntryField : unsigned { kEntryKey = 1, kEntryValue = 2 };
@@ -25,4 +25,4 @@ inline constexpr std::size_t kSensorType = 3;  ///< of a message
 /// What one object's part of a Sensor says (in message.cpp, as the rest of decoding); the reason why it cannot be read.
 [[nodiscard]] Expected<ObjectSensors, std::string> decode_object(std::string_view bytes);
 
-}  // namespace snug::click::internal
+}  // namespace snug::click::wire

@@ -1,10 +1,10 @@
 // Pacer: when the next step is due by a monotonic clock, and how late the steps were.
-#include "snug/click/pacer.hpp"
+#include "snug/served_cell/pacer.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace snug::click {
+namespace snug::served_cell {
 namespace {
 
 constexpr double kSmallest = 1e-7;  ///< s, upper edge of the first bin
@@ -49,4 +49,4 @@ void Pacer::step(Clock::time_point now) {
   ++steps_;
 }
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

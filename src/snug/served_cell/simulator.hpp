@@ -8,10 +8,10 @@
 #include <string>
 #include <string_view>
 
-#include "snug/click/feeder.hpp"
-#include "snug/click/served_cell.hpp"
+#include "snug/served_cell/feeder.hpp"
+#include "snug/served_cell/served_cell.hpp"
 
-namespace snug::click {
+namespace snug::served_cell {
 
 /// Frames beyond are answered by an Error without being read, bytes.
 inline constexpr std::size_t kLargestFrame = std::size_t{1} << 20U;
@@ -25,9 +25,6 @@ struct SimulatorSettings {
   std::function<cell::OutsideRunOptions(int run)> begin_run = {};
   std::function<void(int run, const cell::RunResult& result)> end_run = {};
 };
-
-/// Routing ids that begin so are those of peers that only look: they get their answers beside a controller.
-inline constexpr std::string_view kWatcher = "watch";
 
 /// What the simulator answered so far.
 struct SimulatorCounts {
@@ -60,7 +57,7 @@ class Simulator {
   [[nodiscard]] bool is_step(const Peer& peer, std::string_view frame) const;
   [[nodiscard]] static bool is_handshake(std::string_view frame);
   /// A peer that says by its name that it only looks.
-  [[nodiscard]] static bool is_watcher(const Peer& peer) { return peer.starts_with(kWatcher); }
+  [[nodiscard]] static bool is_watcher(const Peer& peer) { return peer.starts_with(click::kWatcher); }
   /// The peer is gone. True: it was the controller.
   bool leave(const Peer& peer);
   /// The user resets: the controller's next message is answered so.
@@ -73,7 +70,7 @@ class Simulator {
   /// Async: one step with what was commanded last; where that is older than `kPatience` the joints brake.
   void step();
 
-  [[nodiscard]] const Handshake& handshake() const { return cell_.handshake(); }
+  [[nodiscard]] const click::Handshake& handshake() const { return cell_.handshake(); }
   [[nodiscard]] bool has_controller() const { return controller_.has_value(); }
   [[nodiscard]] bool is_controller(const Peer& peer) const { return controller_ == peer; }
   [[nodiscard]] double time() const;
@@ -91,12 +88,12 @@ class Simulator {
     std::string frame;
     bool is_error = false;
   };
-  [[nodiscard]] static Reply reply(const Message& message);
+  [[nodiscard]] static Reply reply(const click::Message& message);
   [[nodiscard]] std::optional<Reply> respond(const Peer& peer, std::string_view frame);
   /// To a peer that looks: it never becomes the controller and changes nothing.
-  [[nodiscard]] Reply show(const Message& message);
-  [[nodiscard]] Reply shake_hands(const Peer& peer, const HandshakeInit& init);
-  [[nodiscard]] Reply control(const Control& control);
+  [[nodiscard]] Reply show(const click::Message& message);
+  [[nodiscard]] Reply shake_hands(const Peer& peer, const click::HandshakeInit& init);
+  [[nodiscard]] Reply control(const click::Control& control);
   void begin_run();
   void advance(const cell::OutsideCommand& command);
   /// What of the order takes no time: a box comes, the robot stands, a stop is released.
@@ -123,4 +120,4 @@ class Simulator {
   double step_seconds_ = 0.0;
 };
 
-}  // namespace snug::click
+}  // namespace snug::served_cell

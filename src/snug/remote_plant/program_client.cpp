@@ -1,5 +1,5 @@
 // ProgramClient: snug's own joint controller as a client of CLICK: a program through the joints of any simulator.
-#include "snug/click/program_client.hpp"
+#include "snug/remote_plant/program_client.hpp"
 
 #include <fmt/format.h>
 
@@ -10,13 +10,24 @@
 
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/click/joint_link.hpp"
-#include "snug/click/served_cell.hpp"
+#include "snug/click/names.hpp"
 #include "snug/cup/phases.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/record/csv.hpp"
 
-namespace snug::click {
+namespace snug::remote_plant {
 namespace {
+
+using click::Client;
+using click::Control;
+using click::feel_of;
+using click::JointLink;
+using click::kFeedEvent;
+using click::kHalfTurnEvent;
+using click::kPresentSensor;
+using click::kQuarterTurnEvent;
+using click::Named;
+using click::RobotFeel;
 
 class ProgramClient {
  public:
@@ -154,4 +165,4 @@ ProgramClientResult run_program(Client& client, const model::Scenario& scenario,
   return ProgramClient(client, scenario, arm, plan, settings).run();
 }
 
-}  // namespace snug::click
+}  // namespace snug::remote_plant

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-namespace snug::click::internal {
+namespace snug::served_cell::internal {
 
 /// A connection as the kernel knows it: a descriptor is used again at once by who comes next, the number of a socket is
 /// not.
@@ -40,4 +40,4 @@ class Connections {
   std::map<Connection, std::string> peers_;
 };
 
-}  // namespace snug::click::internal
+}  // namespace snug::served_cell::internal
