@@ -52,10 +52,10 @@ double ErrorModel::wave_covariance(double dcol, double drow) const {
   return part(waves.local, waves.local_length) + part(waves.global, waves.global_length);
 }
 
-perception::CommonError ErrorModel::common_error(const Vector3& p_CP) const {
+camera::CommonError ErrorModel::common_error(const Vector3& p_CP) const {
   const model::HandEye& eye = camera_.errors.hand_eye;
   const model::Trueness& trueness = camera_.errors.trueness;
-  perception::CommonError error = perception::CommonError::Zero();
+  camera::CommonError error = camera::CommonError::Zero();
   error.topLeftCorner<3, 3>() = -eye.rotation * skew(p_CP);  // of the camera about its own axes
   error.bottomLeftCorner<3, 3>() = eye.rotation * Matrix3::Identity();
   error.block<3, 3>(0, 3) = std::hypot(eye.position, trueness.position) * Matrix3::Identity();

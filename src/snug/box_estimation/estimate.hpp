@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "snug/camera/common_error.hpp"
 #include "snug/camera/frame.hpp"
 #include "snug/camera/scene.hpp"
-#include "snug/perception/observation.hpp"
+#include "snug/geometry/column.hpp"
 
 namespace snug::box_estimation {
 
@@ -53,7 +54,7 @@ struct BoxEstimate {
   /// belief.
   Matrix6 covariance = Matrix6::Zero();
   /// What part of the error comes from the camera's own place and scale, which all boxes of its frames share.
-  perception::CommonError common = perception::CommonError::Zero();
+  camera::CommonError common = camera::CommonError::Zero();
   int points = 0;             ///< that lie on it
   double visible_part = 0.0;  ///< of the points that it would have alone in the frame, 0 .. 1
   double rms = 0.0;           ///< m, of its points from its faces
@@ -64,16 +65,16 @@ struct BoxEstimate {
 struct Obstacle {
   Vector3 low = Vector3::Zero();  ///< m, W: extent of its points
   Vector3 high = Vector3::Zero();
-  int points = 0;                           ///< those at its rim left out
-  std::vector<perception::Column> columns;  ///< its height map
-  double deviation = 0.0;                   ///< m, standard deviation of its tops and edges
+  int points = 0;                         ///< those at its rim left out
+  std::vector<geometry::Column> columns;  ///< its height map
+  double deviation = 0.0;                 ///< m, standard deviation of its tops and edges
 };
 
 /// Highest point seen over each cell of a level grid, over the region; NaN where nothing was seen.
 struct HeightMap {
-  double cell = perception::kColumnSide;  ///< m
-  Eigen::Vector2d origin = {0.0, 0.0};    ///< m, W: corner of cell (0, 0), whole cells from the origin of W
-  camera::Grid2<float> height;            ///< m, W; rows along y, columns along x
+  double cell = geometry::kColumnSide;  ///< m
+  Eigen::Vector2d origin = {0.0, 0.0};  ///< m, W: corner of cell (0, 0), whole cells from the origin of W
+  camera::Grid2<float> height;          ///< m, W; rows along y, columns along x
 };
 
 enum class FrameFault {

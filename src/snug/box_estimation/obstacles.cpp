@@ -82,7 +82,7 @@ class Gathering {
   void add(const Vector3& p) {
     obstacle_.low = obstacle_.low.cwiseMin(p);
     obstacle_.high = obstacle_.high.cwiseMax(p);
-    const auto [at, is_new] = tops_.try_emplace({perception::column_of(p.y()), perception::column_of(p.x())}, p.z());
+    const auto [at, is_new] = tops_.try_emplace({geometry::column_of(p.y()), geometry::column_of(p.x())}, p.z());
     if (!is_new) at->second = std::max(at->second, p.z());
   }
   [[nodiscard]] bool is_empty() const { return tops_.empty(); }
@@ -146,17 +146,17 @@ HeightMap make_height_map(const camera::Frame& frame, const EstimateInput& input
   HeightMap map;
   const Vector3 size = input.region_high - input.region_low;
   if (!(size.head<2>().maxCoeff() < kLargestMap * map.cell)) return map;  // no region was given
-  const int x = perception::column_of(input.region_low.x()), y = perception::column_of(input.region_low.y());
+  const int x = geometry::column_of(input.region_low.x()), y = geometry::column_of(input.region_low.y());
   map.origin = {x * map.cell, y * map.cell};
-  map.height = camera::Grid2<float>(perception::column_of(input.region_high.y()) - y + 1,
-                                    perception::column_of(input.region_high.x()) - x + 1,
-                                    std::numeric_limits<float>::quiet_NaN());
+  map.height =
+      camera::Grid2<float>(geometry::column_of(input.region_high.y()) - y + 1,
+                           geometry::column_of(input.region_high.x()) - x + 1, std::numeric_limits<float>::quiet_NaN());
   for (int r = range.first_row; r < range.end_row; ++r)
     for (int c = range.first_col; c < range.end_col; ++c) {
       if (frame.depth(r, c) == 0.0F) continue;
       const Vector3 p = point_at(frame, r, c);
       if (!is_inside(input, p)) continue;
-      const int row = perception::column_of(p.y()) - y, col = perception::column_of(p.x()) - x;
+      const int row = geometry::column_of(p.y()) - y, col = geometry::column_of(p.x()) - x;
       if (!map.height.is_inside(row, col)) continue;
       float& height = map.height(row, col);
       if (!(height > static_cast<float>(p.z()))) height = static_cast<float>(p.z());

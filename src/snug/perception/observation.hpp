@@ -5,14 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "snug/camera/common_error.hpp"
 #include "snug/perception/obstacle.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::perception {
 
-/// How an error (6, as in `covariance`) depends on what all poses of a sensor have in common: seven standard normals
-/// that stay the same from look to look, such as where the sensor really is (6) and its scale.
-using CommonError = Eigen::Matrix<double, 6, 7>;
+using camera::CommonError;
 
 /// One box as it was seen.
 struct PoseEstimate {

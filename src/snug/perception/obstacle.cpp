@@ -82,8 +82,6 @@ std::optional<double> HeightMap::at(int column_x, int column_y) const {
   return value == kUnseen ? std::nullopt : std::optional<double>(value);
 }
 
-int column_of(double coordinate) { return static_cast<int>(std::floor(coordinate / kColumnSide)); }
-
 std::vector<Column> columns_of_box(const Pose& X_WP, const Vector3& size) {
   const geometry::Aabb around = geometry::bounds(geometry::Box{0.5 * size}, X_WP);
   const Pose X_PW = X_WP.inverse();

@@ -6,19 +6,14 @@
 #include <vector>
 
 #include "snug/geometry/bounds.hpp"
+#include "snug/geometry/column.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::perception {
 
-/// m, side of the columns; column (0, 0) of the grid has its lower corner at the origin of W.
-inline constexpr double kColumnSide = 0.005;
-
-/// A column of the grid and the highest point that was seen over it.
-struct Column {
-  int x = 0, y = 0;  ///< of the grid, along Wx and Wy
-  double top = 0.0;  ///< m, z in W
-  bool operator==(const Column&) const = default;
-};
+using geometry::Column;
+using geometry::column_of;
+using geometry::kColumnSide;
 
 /// What is seen of something that is neither surroundings nor an expected box. What is under its columns is not seen.
 struct Obstacle {
@@ -38,8 +33,6 @@ struct HeightMap {
   bool operator==(const HeightMap&) const = default;
 };
 
-/// Index of the column in which a coordinate lies, m.
-[[nodiscard]] int column_of(double coordinate);
 /// The columns that a box touches, each as high as the box is there.
 [[nodiscard]] std::vector<Column> columns_of_box(const Pose& X_WP, const Vector3& size);
 /// Smallest box around columns: upper.z is the highest top, lower.z the lowest.

@@ -14,7 +14,7 @@ enum class Kind {
   Exact,          ///< poses and sizes as they are
   Noisy,          ///< with noise, its covariance stated
   DeadReckoning,  ///< nothing is seen: boxes are believed to be where they were meant to be
-  Camera,         ///< a depth camera over the container: camera_perception makes it
+  Camera,         ///< a depth camera over the container: camera_perception.hpp makes it
 };
 [[nodiscard]] const char* name_of(Kind kind);
 /// Throws InputError for a word that is none of `name_of`.

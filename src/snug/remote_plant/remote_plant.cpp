@@ -8,11 +8,11 @@
 #include <numbers>
 #include <utility>
 
-#include "snug/camera_perception/camera_perception.hpp"
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/click/names.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/phases.hpp"
+#include "snug/perception/camera_perception.hpp"
 #include "snug/record/csv.hpp"
 #include "snug/robot/load_arm.hpp"
 
@@ -59,7 +59,7 @@ RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& seq
       model_(robot::load_arm(scenario_)),
       client_(endpoint_of(options.address), options.patience),
       link_(client_, model_, {}),
-      perception_(camera_perception::make_perception(options.perception, options.seed, scenario)),
+      perception_(perception::make_perception(options.perception, options.seed, scenario)),
       was_brought_(sequence_.items.size(), false) {
   for (const model::Item& item : sequence_.items) names_.push_back(record::log_name(item.parcel));
   std::string trouble = link_.connect(scenario_.controller.tick);

@@ -8,11 +8,11 @@
 #include <limits>
 #include <utility>
 
-#include "snug/camera_perception/camera_perception.hpp"
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/cell/rest_watch.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/phases.hpp"
+#include "snug/perception/camera_perception.hpp"
 
 namespace snug::simulated_plant {
 
@@ -31,7 +31,7 @@ SimulatedPlant::SimulatedPlant(const model::Scenario& scenario, const std::strin
       state_(simulation_.make_state()),
       work_(simulation_.make_workspace()),
       objects_(simulation_, options.faults, options.seed),
-      perception_(camera_perception::make_perception(options.perception, options.seed, scenario)),
+      perception_(perception::make_perception(options.perception, options.seed, scenario)),
       was_brought_(simulation_.sequence().items.size(), false) {
   read_sensors({}, {});
 }

@@ -1,8 +1,8 @@
 // ErrorModel: what the camera's stated errors mean for planes and edges that are fitted to its points.
 #pragma once
 
+#include "snug/camera/common_error.hpp"
 #include "snug/model/camera_params.hpp"
-#include "snug/perception/observation.hpp"
 
 namespace snug::box_estimation::internal {
 
@@ -25,7 +25,7 @@ class ErrorModel {
   [[nodiscard]] double edge_variance() const { return edge_variance_; }
   /// Error [translation; rotation] in C of a pose at p_CP that comes from the camera's own place and scale: times seven
   /// standard normals, the same for all poses.
-  [[nodiscard]] perception::CommonError common_error(const Vector3& p_CP) const;
+  [[nodiscard]] camera::CommonError common_error(const Vector3& p_CP) const;
 
  private:
   model::CameraParams camera_;

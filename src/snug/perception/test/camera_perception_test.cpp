@@ -1,6 +1,6 @@
 // CameraPerception: what a frame of known boxes tells: seen ones near the truth, covered ones not, empty places as
 // such.
-#include "snug/camera_perception/camera_perception.hpp"
+#include "snug/perception/camera_perception.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,8 @@
 
 #include "snug/core/input_error.hpp"
 
-namespace snug::camera_perception {
+namespace snug::perception {
 namespace {
-
-using perception::Kind;
 
 const Vector3 kSize(0.2, 0.15, 0.1);  ///< m
 
@@ -27,25 +25,25 @@ Pose in_container(double x, double y, double z) {
   return container.X_WT * Pose{Matrix3::Identity(), Vector3(x, y, z)};
 }
 
-std::vector<perception::Expectation> expectations(const std::vector<perception::SceneBox>& boxes) {
-  std::vector<perception::Expectation> expected;
-  for (const perception::SceneBox& box : boxes) expected.push_back({box.item, box.size, box.X_WP});
+std::vector<Expectation> expectations(const std::vector<SceneBox>& boxes) {
+  std::vector<Expectation> expected;
+  for (const SceneBox& box : boxes) expected.push_back({box.item, box.size, box.X_WP});
   return expected;
 }
 
 TEST(CameraPerception, MeasuresBoxesInTheContainerAndStatesItsError) {
-  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize},
-                                                   {"B", in_container(-0.04, -0.13, 0.05), kSize}};
+  const std::vector<SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize},
+                                       {"B", in_container(-0.04, -0.13, 0.05), kSize}};
   const auto camera = make_perception(Kind::Camera, 7, scenario());
   EXPECT_EQ(camera->name(), "camera");
-  std::vector<perception::Expectation> expected = expectations(boxes);
+  std::vector<Expectation> expected = expectations(boxes);
   expected[0].X_WP->p += Vector3(0.006, -0.004, 0.003);
-  const perception::Observation seen = camera->perceive({1.5, Pose{}, boxes}, expected);
+  const Observation seen = camera->perceive({1.5, Pose{}, boxes}, expected);
   EXPECT_EQ(seen.time, 1.5);
   EXPECT_TRUE(seen.not_seen.empty());
   EXPECT_TRUE(seen.missing.empty());
-  for (const perception::SceneBox& box : boxes) {
-    const perception::PoseEstimate* estimate = perception::find(seen, box.item);
+  for (const SceneBox& box : boxes) {
+    const PoseEstimate* estimate = find(seen, box.item);
     ASSERT_NE(estimate, nullptr) << box.item;
     // docs/camera.md: 95 % within 2.5 mm and 0.7 degrees.
     EXPECT_LT((estimate->X_WP.p - box.X_WP.p).norm(), 0.0035);
@@ -61,81 +59,81 @@ TEST(CameraPerception, MeasuresBoxesInTheContainerAndStatesItsError) {
 }
 
 TEST(CameraPerception, WhatIsCoveredIsNotSeenAndNotMissing) {
-  const std::vector<perception::SceneBox> boxes = {{"under", in_container(0.0, 0.0, 0.05), Vector3(0.12, 0.1, 0.1)},
-                                                   {"over", in_container(0.0, 0.0, 0.15), kSize}};
+  const std::vector<SceneBox> boxes = {{"under", in_container(0.0, 0.0, 0.05), Vector3(0.12, 0.1, 0.1)},
+                                       {"over", in_container(0.0, 0.0, 0.15), kSize}};
   const auto seen = make_perception(Kind::Camera, 7, scenario())->perceive({0.0, Pose{}, boxes}, expectations(boxes));
-  EXPECT_NE(perception::find(seen, "over"), nullptr);
+  EXPECT_NE(find(seen, "over"), nullptr);
   EXPECT_EQ(seen.not_seen, (std::vector<std::string>{"under"}));
   EXPECT_TRUE(seen.missing.empty());
 }
 
 TEST(CameraPerception, AnEmptyPlaceIsMissingAndAMovedBoxIsFound) {
-  const std::vector<perception::SceneBox> boxes = {{"there", in_container(0.05, 0.15, 0.05), kSize}};
-  std::vector<perception::Expectation> expected = expectations(boxes);
+  const std::vector<SceneBox> boxes = {{"there", in_container(0.05, 0.15, 0.05), kSize}};
+  std::vector<Expectation> expected = expectations(boxes);
   expected.push_back({"taken", Vector3(0.1, 0.12, 0.14), in_container(-0.10, -0.10, 0.07)});
   const auto camera = make_perception(Kind::Camera, 7, scenario());
-  const perception::Observation seen = camera->perceive({0.0, Pose{}, boxes}, expected);
+  const Observation seen = camera->perceive({0.0, Pose{}, boxes}, expected);
   EXPECT_EQ(seen.missing, (std::vector<std::string>{"taken"}));
   EXPECT_EQ(seen.not_seen, seen.missing);
   expected = {expected[0]};
   expected[0].X_WP = in_container(-0.05, -0.15, 0.05);
-  const perception::Observation moved = camera->perceive({0.0, Pose{}, boxes}, expected);
-  const perception::PoseEstimate* found = perception::find(moved, "there");
+  const Observation moved = camera->perceive({0.0, Pose{}, boxes}, expected);
+  const PoseEstimate* found = find(moved, "there");
   ASSERT_NE(found, nullptr);
   EXPECT_LT((found->X_WP.p - boxes[0].X_WP.p).norm(), 0.005);
 }
 
 TEST(CameraPerception, ReportsAForeignObjectWithItsHeightsAndForgetsNothingByItself) {
-  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
+  const std::vector<SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
   const Vector3 size(0.09, 0.07, 0.06);
-  const perception::SceneBox object{"stranger", in_container(-0.05, -0.12, 0.03), size};
+  const SceneBox object{"stranger", in_container(-0.05, -0.12, 0.03), size};
   const auto camera = make_perception(Kind::Camera, 7, scenario());
-  const perception::Observation with = camera->perceive({0.0, Pose{}, boxes, {object}}, expectations(boxes));
+  const Observation with = camera->perceive({0.0, Pose{}, boxes, {object}}, expectations(boxes));
   ASSERT_TRUE(with.obstacles);
   ASSERT_EQ(with.obstacles->size(), 1U);
-  const perception::Obstacle& one = with.obstacles->front();
+  const Obstacle& one = with.obstacles->front();
   EXPECT_GT(one.deviation, 1e-4);
   EXPECT_LT(one.deviation, 2e-3);
-  const geometry::Aabb seen = perception::bounds_of(one.columns);
+  const geometry::Aabb seen = bounds_of(one.columns);
   const Vector3 low = object.X_WP.p - 0.5 * size, high = object.X_WP.p + 0.5 * size;
   EXPECT_NEAR(seen.upper.z(), high.z(), 0.002);
   for (int axis = 0; axis < 2; ++axis) {  // whole columns; edges lose a few points
-    EXPECT_NEAR(seen.lower[axis], low[axis], perception::kColumnSide + 0.002);
-    EXPECT_NEAR(seen.upper[axis], high[axis], perception::kColumnSide + 0.002);
+    EXPECT_NEAR(seen.lower[axis], low[axis], kColumnSide + 0.002);
+    EXPECT_NEAR(seen.upper[axis], high[axis], kColumnSide + 0.002);
   }
   ASSERT_TRUE(with.heights);
-  const int x = perception::column_of(object.X_WP.p.x()), y = perception::column_of(object.X_WP.p.y());
+  const int x = column_of(object.X_WP.p.x()), y = column_of(object.X_WP.p.y());
   EXPECT_NEAR(with.heights->at(x, y).value_or(9.0), high.z(), 0.002);
-  const perception::Observation without = camera->perceive({0.0, Pose{}, boxes, {}}, expectations(boxes));
+  const Observation without = camera->perceive({0.0, Pose{}, boxes, {}}, expectations(boxes));
   EXPECT_TRUE(without.obstacles->empty());
   EXPECT_NEAR(without.heights->at(x, y).value_or(9.0), in_container(0.0, 0.0, 0.0).p.z(), 0.003);
 }
 
 TEST(CameraPerception, SaysThatAPictureTellsNothingAndWhy) {
-  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
-  const perception::SceneBox arm{"arm", in_container(0.0, 0.1, 0.6), Vector3(0.4, 0.3, 0.1)};
+  const std::vector<SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
+  const SceneBox arm{"arm", in_container(0.0, 0.1, 0.6), Vector3(0.4, 0.3, 0.1)};
   const auto camera = make_perception(Kind::Camera, 7, scenario());
-  const perception::Observation blocked = camera->perceive({0.0, Pose{}, boxes, {arm}}, expectations(boxes));
-  EXPECT_EQ(blocked.fault, perception::LookFault::ViewBlocked);
+  const Observation blocked = camera->perceive({0.0, Pose{}, boxes, {arm}}, expectations(boxes));
+  EXPECT_EQ(blocked.fault, LookFault::ViewBlocked);
   model::Scenario dirty_cell = scenario();
   dirty_cell.cameras.front().errors.loss.random = 0.7;
-  const perception::Observation dirty =
+  const Observation dirty =
       make_perception(Kind::Camera, 7, dirty_cell)->perceive({0.0, Pose{}, boxes}, expectations(boxes));
-  EXPECT_EQ(dirty.fault, perception::LookFault::TooFewPoints);
-  for (const perception::Observation& one : {blocked, dirty}) {
+  EXPECT_EQ(dirty.fault, LookFault::TooFewPoints);
+  for (const Observation& one : {blocked, dirty}) {
     EXPECT_FALSE(one.obstacles) << "neither there nor gone";
     EXPECT_TRUE(one.missing.empty());
     EXPECT_EQ(one.not_seen, (std::vector<std::string>{"A"}));
   }
-  EXPECT_EQ(camera->perceive({0.0, Pose{}, boxes}, expectations(boxes)).fault, perception::LookFault::None);
+  EXPECT_EQ(camera->perceive({0.0, Pose{}, boxes}, expectations(boxes)).fault, LookFault::None);
 }
 
 TEST(CameraPerception, StationsMeasureOutsideTheContainerWithSize) {
-  const std::vector<perception::SceneBox> boxes = {{"new", scenario().aligner->X_WA, kSize}};
+  const std::vector<SceneBox> boxes = {{"new", scenario().aligner->X_WA, kSize}};
   const auto camera = make_perception(Kind::Camera, 7, scenario());
   double worst = 0.0;
   for (int i = 0; i < 8; ++i) {
-    const perception::Observation seen = camera->perceive({0.0, Pose{}, boxes}, {});
+    const Observation seen = camera->perceive({0.0, Pose{}, boxes}, {});
     ASSERT_EQ(seen.seen.size(), 1U);
     ASSERT_TRUE(seen.seen[0].size.has_value());
     EXPECT_LE((*seen.seen[0].size - kSize).cwiseAbs().maxCoeff(), kStationNoise.size);
@@ -146,7 +144,7 @@ TEST(CameraPerception, StationsMeasureOutsideTheContainerWithSize) {
 }
 
 TEST(CameraPerception, TheSameSeedSeesTheSame) {
-  const std::vector<perception::SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
+  const std::vector<SceneBox> boxes = {{"A", in_container(0.05, 0.15, 0.05), kSize}};
   const auto look = [&](std::uint64_t seed) {
     const auto camera = make_perception(Kind::Camera, seed, scenario());
     (void)camera->perceive({0.0, Pose{}, boxes}, expectations(boxes));
@@ -164,4 +162,4 @@ TEST(CameraPerception, NeedsACamera) {
 }
 
 }  // namespace
-}  // namespace snug::camera_perception
+}  // namespace snug::perception

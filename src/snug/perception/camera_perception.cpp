@@ -1,5 +1,5 @@
 // CameraPerception: boxes as a depth camera over the container tells them, behind the interface of perception.
-#include "snug/camera_perception/camera_perception.hpp"
+#include "snug/perception/camera_perception.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,8 @@
 #include "snug/camera/render.hpp"
 #include "snug/core/input_error.hpp"
 
-namespace snug::camera_perception {
+namespace snug::perception {
 namespace {
-
-using perception::Observation;
 
 constexpr double kBeyondWall = 0.05;  ///< m, a middle so far beyond the walls is outside the container
 
@@ -27,16 +25,16 @@ const model::Container& container_of(const model::Scenario& scenario) {
   return *container;
 }
 
-perception::LookFault fault_of(box_estimation::FrameFault fault) {
+LookFault fault_of(box_estimation::FrameFault fault) {
   switch (fault) {
     case box_estimation::FrameFault::None:
-      return perception::LookFault::None;
+      return LookFault::None;
     case box_estimation::FrameFault::TooFewPoints:
-      return perception::LookFault::TooFewPoints;
+      return LookFault::TooFewPoints;
     case box_estimation::FrameFault::ViewBlocked:
-      return perception::LookFault::ViewBlocked;
+      return LookFault::ViewBlocked;
   }
-  return perception::LookFault::None;
+  return LookFault::None;
 }
 
 void report_obstacles(const box_estimation::Estimate& estimate, Observation& observation) {
@@ -45,32 +43,31 @@ void report_obstacles(const box_estimation::Estimate& estimate, Observation& obs
     observation.obstacles->push_back({one.columns, one.deviation});
   }
   const box_estimation::HeightMap& seen = estimate.heights;
-  perception::HeightMap& map = observation.heights.emplace();
-  const auto index = [](double corner) { return static_cast<int>(std::lround(corner / perception::kColumnSide)); };
+  HeightMap& map = observation.heights.emplace();
+  const auto index = [](double corner) { return static_cast<int>(std::lround(corner / kColumnSide)); };
   map.x = index(seen.origin.x());
   map.y = index(seen.origin.y());
   map.cols = seen.height.cols();
   map.rows = seen.height.rows();
-  for (const float z : seen.height.values()) map.height.push_back(std::isnan(z) ? perception::HeightMap::kUnseen : z);
+  for (const float z : seen.height.values()) map.height.push_back(std::isnan(z) ? HeightMap::kUnseen : z);
 }
 
-class Camera final : public perception::Perception {
+class Camera final : public Perception {
  public:
   Camera(std::uint64_t seed, const model::Scenario& scenario)
       : container_(container_of(scenario)),
         params_(scenario.cameras.front()),
         draw_(camera::draw_camera(params_, seed)),
         known_(box_estimation::make_input(scenario, container_)),
-        station_(perception::make_perception(perception::Kind::Noisy, seed, kStationNoise)) {}
+        station_(make_perception(Kind::Noisy, seed, kStationNoise)) {}
 
-  [[nodiscard]] std::string_view name() const override { return perception::name_of(perception::Kind::Camera); }
+  [[nodiscard]] std::string_view name() const override { return name_of(Kind::Camera); }
 
-  [[nodiscard]] Observation perceive(const perception::Scene& scene,
-                                     std::span<const perception::Expectation> expected) override {
+  [[nodiscard]] Observation perceive(const Scene& scene, std::span<const Expectation> expected) override {
     Observation observation = station_->perceive(outside_of(scene), {});
     box_estimation::EstimateInput input = known_;
-    for (const perception::Expectation& one : expected) {
-      if (one.X_WP && perception::find(observation, one.item) == nullptr) {
+    for (const Expectation& one : expected) {
+      if (one.X_WP && find(observation, one.item) == nullptr) {
         input.boxes.push_back({one.item, one.size, *one.X_WP});
       }
     }
@@ -83,26 +80,26 @@ class Camera final : public perception::Perception {
     }
     observation.obstacles.reset();  // the stations' tell nothing of the container
     observation.fault = fault_of(estimate.fault);
-    if (observation.fault == perception::LookFault::None) report_obstacles(estimate, observation);
-    for (const perception::Expectation& one : expected) {
-      if (perception::find(observation, one.item) == nullptr) observation.not_seen.push_back(one.item);
+    if (observation.fault == LookFault::None) report_obstacles(estimate, observation);
+    for (const Expectation& one : expected) {
+      if (find(observation, one.item) == nullptr) observation.not_seen.push_back(one.item);
     }
     return observation;
   }
 
  private:
-  [[nodiscard]] camera::Scene view_of(const perception::Scene& scene) const {
+  [[nodiscard]] camera::Scene view_of(const Scene& scene) const {
     camera::Scene view = known_.surroundings;
-    for (const perception::SceneBox& box : scene.boxes) camera::add_box(view, box.item, box.X_WP, box.size);
-    for (const perception::SceneBox& one : scene.objects) camera::add_box(view, one.item, one.X_WP, one.size);
+    for (const SceneBox& box : scene.boxes) camera::add_box(view, box.item, box.X_WP, box.size);
+    for (const SceneBox& one : scene.objects) camera::add_box(view, one.item, one.X_WP, one.size);
     return view;
   }
 
-  [[nodiscard]] perception::Scene outside_of(const perception::Scene& scene) const {
-    perception::Scene outside = scene;
+  [[nodiscard]] Scene outside_of(const Scene& scene) const {
+    Scene outside = scene;
     outside.objects.clear();
     const Vector3 half = 0.5 * container_.inner_size + Vector3::Constant(kBeyondWall);
-    std::erase_if(outside.boxes, [&](const perception::SceneBox& box) {
+    std::erase_if(outside.boxes, [&](const SceneBox& box) {
       const Vector3 p_TP = container_.X_WT.inverse() * box.X_WP.p;
       return std::abs(p_TP.x()) < half.x() && std::abs(p_TP.y()) < half.y();
     });
@@ -113,16 +110,15 @@ class Camera final : public perception::Perception {
   model::CameraParams params_;
   camera::CameraDraw draw_;
   box_estimation::EstimateInput known_;  ///< no boxes in it
-  std::unique_ptr<perception::Perception> station_;
+  std::unique_ptr<Perception> station_;
   std::uint64_t shot_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<perception::Perception> make_perception(perception::Kind kind, std::uint64_t seed,
-                                                        const model::Scenario& scenario) {
-  if (kind == perception::Kind::Camera) return std::make_unique<Camera>(seed, scenario);
-  return perception::make_perception(kind, seed);
+std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const model::Scenario& scenario) {
+  if (kind == Kind::Camera) return std::make_unique<Camera>(seed, scenario);
+  return make_perception(kind, seed);
 }
 
-}  // namespace snug::camera_perception
+}  // namespace snug::perception

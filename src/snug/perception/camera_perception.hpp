@@ -7,17 +7,17 @@
 #include "snug/model/scenario.hpp"
 #include "snug/perception/perception.hpp"
 
-namespace snug::camera_perception {
+namespace snug::perception {
 
 /// Of the stations that measure boxes outside the container (at the aligner, on the bench): half widths of uniform
 /// draws, and so the root mean squares of errors of position and turn. A camera of the demonstrator's class has 0.81 mm
 /// and 2.4 mrad of one box alone in the container (`camera.alone` of `snug bench camera`). Edges: an assumption.
-inline constexpr perception::NoiseLevels kStationNoise{0.0009, 0.003, 0.0005};
+inline constexpr NoiseLevels kStationNoise{0.0009, 0.003, 0.0005};
 
-/// As perception::make_perception, with Kind::Camera as well: one shot of the scenario's first camera each time, arm
+/// As make_perception, with Kind::Camera as well: one shot of the scenario's first camera each time, arm
 /// out of the view, and the estimate from its depth. `scenario`: what is known of the cell, not how it was drawn.
 /// `seed`: of the camera's errors and of noise. Throws InputError for Kind::Camera without a camera or a container.
-[[nodiscard]] std::unique_ptr<perception::Perception> make_perception(perception::Kind kind, std::uint64_t seed,
-                                                                      const model::Scenario& scenario);
+[[nodiscard]] std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed,
+                                                          const model::Scenario& scenario);
 
-}  // namespace snug::camera_perception
+}  // namespace snug::perception
