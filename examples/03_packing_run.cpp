@@ -1,9 +1,9 @@
 // 03: a list of placements becomes a program, the demonstrator's cell runs it, and every box is accounted for.
 #include <cstdio>
 
-#include "snug/cell/run.hpp"
 #include "snug/model/placements.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/runs/run.hpp"
 #include "snug/session/task.hpp"
 
 using namespace snug;
@@ -21,10 +21,10 @@ int main(int argc, char** argv) {
     return 1;
   }
 
-  cell::RunOptions options;
+  runs::RunOptions options;
   options.program = *program;
   options.sequence = "1";
-  const cell::RunResult result = cell::run(scenario, options);
+  const runs::RunResult result = runs::run(scenario, options);
   for (const cell::BoxResult& box : result.boxes) {
     std::printf("%s  %-8s at (%.3f, %.3f, %.3f) m in the tote\n", box.id.c_str(), cell::name_of(box.state),
                 box.X_TP.p.x(), box.X_TP.p.y(), box.X_TP.p.z());

@@ -19,8 +19,8 @@
 #include "apps/bench/internal/robot_figures.hpp"
 #include "apps/bench/internal/scene_bench.hpp"
 #include "apps/bench/internal/validation_bench.hpp"
-#include "snug/cell/run.hpp"
 #include "snug/core/units.hpp"
+#include "snug/runs/run.hpp"
 
 namespace snug::bench {
 namespace {
@@ -30,11 +30,11 @@ using internal::at_most;
 void measure_program(const BenchOptions& options, std::vector<Figure>& figures) {
   if (!std::filesystem::exists(options.program)) return;
   const model::Scenario scenario = model::load_scenario(options.scenario);
-  cell::RunOptions run;
+  runs::RunOptions run;
   run.program = motion::load_program(options.program);
   run.sequence = "1";
   run.corrections = options.corrections;
-  const cell::RunResult result = cell::run(scenario, run);
+  const runs::RunResult result = runs::run(scenario, run);
   figures.push_back(
       {"program.real_time_factor", result.real_time_factor, "1", ">= 100", result.real_time_factor >= 100.0});
   const auto packed = std::count_if(result.boxes.begin(), result.boxes.end(),

@@ -10,10 +10,10 @@
 #include "apps/bench/drawn_scenes.hpp"
 #include "apps/bench/internal/cpu_time.hpp"
 #include "apps/bench/internal/scene_bench.hpp"
-#include "snug/cell/run.hpp"
 #include "snug/cell/scene.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/units.hpp"
+#include "snug/runs/run.hpp"
 
 namespace snug::bench::internal {
 namespace {
@@ -154,7 +154,7 @@ void measure_hard_scenes(const BenchOptions& options, std::vector<Figure>& figur
     const std::string name = fmt::format("scenes.{}.unconverged_steps", file.stem().string());
     if (!is_wanted(options, name) && !is_wanted(options, "scenes.unsaid_limits")) continue;
     const model::Scenario scenario = model::load_scenario(file);
-    const cell::RunResult result = cell::run(scenario, {});
+    const runs::RunResult result = runs::run(scenario, {});
     const bool has_failed = static_cast<bool>(result.failure);
     const auto count = static_cast<double>(result.solver.not_converged);
     figures.push_back({name, count, "steps", "0 or failed", count == 0.0 || has_failed});

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "apps/bench/internal/scene_bench.hpp"
-#include "snug/cell/run.hpp"
 #include "snug/identification/scene_fit.hpp"
 #include "snug/model/number_edit.hpp"
 #include "snug/model/sensors.hpp"
+#include "snug/runs/run.hpp"
 #include "snug/validation/measure.hpp"
 
 namespace snug::bench::internal {
@@ -93,14 +93,14 @@ class PlantedBench {
   }
 
   [[nodiscard]] record::Recording run_clip(const model::Scenario& scenario, const PlantedExperiment& experiment) const {
-    cell::RunCapture capture;
-    cell::RunOptions run;
+    runs::RunCapture capture;
+    runs::RunOptions run;
     run.program = motion::load_program(options_.program);
     run.sequence = kSequence;
     run.corrections = corrections_of(experiment);
     run.until = experiment.clip;
     run.observer = &capture;
-    (void)cell::run(scenario, run);
+    (void)runs::run(scenario, run);
     return std::move(capture.recording);
   }
 

@@ -7,9 +7,9 @@
 
 #include "apps/bench/internal/cpu_time.hpp"
 #include "apps/bench/internal/validation_bench.hpp"
-#include "snug/cell/run.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/model/sensors.hpp"
+#include "snug/runs/run.hpp"
 #include "snug/validation/measure.hpp"
 #include "snug/validation/page.hpp"
 
@@ -38,12 +38,12 @@ class ScratchFolder {
 };
 
 validation::SimulatedRun simulate(const model::Scenario& scenario, const BenchOptions& options, const fs::path& path) {
-  cell::RunOptions run;
+  runs::RunOptions run;
   run.program = motion::load_program(options.program);
   run.sequence = "1";
   run.corrections = options.corrections;
   run.record_path = path;
-  (void)cell::run(scenario, run);
+  (void)runs::run(scenario, run);
   return validation::load_run(path);
 }
 

@@ -3,8 +3,6 @@
 
 #include "core.hpp"
 #include "handles.hpp"
-#include "snug/cell/result_json.hpp"
-#include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
@@ -13,6 +11,8 @@
 #include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
 #include "snug/robot/load_arm.hpp"
+#include "snug/runs/result_json.hpp"
+#include "snug/runs/run.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "snug/study/trial.hpp"
 #include "snug/study/trial_report.hpp"
@@ -101,7 +101,7 @@ void save_recording(const model::Scenario& scenario, const study::Trial& trial, 
       {"agent", trial.session.agent},
       {"ended",
        trial.session.stopped}}.dump();
-  recorded.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
+  recorded.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
 }
 
@@ -116,13 +116,13 @@ study::MonteCarloResult repeated(const model::Scenario& scenario, const study::T
   return study::repeat(scenario, trial.session.sequence, trial.session.program, trial.session.plan, options);
 }
 
-cell::RunOptions run_options(const motion::Program& program, const std::string& sequence) {
-  cell::RunOptions run;
+runs::RunOptions run_options(const motion::Program& program, const std::string& sequence) {
+  runs::RunOptions run;
   run.program = program;
   run.program_text = motion::format_program(program);
   run.sequence = sequence;
   run.version = SNUG_VERSION;
-  run.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
+  run.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   return run;
 }
 
@@ -159,10 +159,10 @@ py::object simulate(const ScenarioHandle& scenario, const ProgramHandle& program
                     const std::string& corrections, const std::string& robot, const std::string& cup,
                     const std::string& controller, const std::optional<double>& until,
                     const std::filesystem::path& record) {
-  cell::RunOptions run;
+  runs::RunOptions run;
   if (program) run = run_options(**program, sequence);
   run.version = SNUG_VERSION;
-  run.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
+  run.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   run.corrections = corrections;
   run.simulation.robot = robot;
   if (!cup.empty()) run.simulation.cup = cup::cup_mode_of(cup, "argument");
@@ -179,10 +179,10 @@ py::object simulate(const ScenarioHandle& scenario, const ProgramHandle& program
   std::string json;
   if (record.empty()) {
     const py::gil_scoped_release release;
-    json = cell::format_result(cell::run(**scenario, run));
+    json = runs::format_result(runs::run(**scenario, run));
   } else {
     const HdfUse use;
-    json = cell::format_result(cell::run(**scenario, run));
+    json = runs::format_result(runs::run(**scenario, run));
   }
   return from_json(json);
 }

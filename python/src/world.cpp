@@ -1,10 +1,10 @@
 // World and Cell: bodies alone, and the robot's cell with a program; stepped from Python, kept as snapshots.
 #include "bodies.hpp"
 #include "handles.hpp"
-#include "snug/cell/corrected.hpp"
 #include "snug/cell/scene.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/runs/corrected.hpp"
 
 namespace snug::python {
 
@@ -129,7 +129,7 @@ cell::SimulationOptions options_of(const model::Scenario& scenario, const std::s
   cell::SimulationOptions options;
   if (controller != "faithful" && controller != "ideal")
     throw InputError("argument", "controller", "'" + controller + "'", "faithful or ideal");
-  options.cup = cup.empty() ? cell::cup_for(scenario, corrections) : cup::cup_mode_of(cup, "argument");
+  options.cup = cup.empty() ? runs::cup_for(scenario, corrections) : cup::cup_mode_of(cup, "argument");
   options.controller = controller == "ideal" ? motion::ControllerKind::Ideal : motion::ControllerKind::Faithful;
   options.robot = robot;
   return options;
@@ -142,7 +142,7 @@ class Cell {
       : scenario_(std::move(scenario)),
         program_(std::move(program)),
         simulation_(**scenario_, sequence, options_of(**scenario_, cup, controller, robot, corrections)),
-        plan_(simulation_.prepare(cell::corrected(**scenario_, **program_, corrections))),
+        plan_(simulation_.prepare(runs::corrected(**scenario_, **program_, corrections))),
         state_(simulation_.make_state()),
         bodies_(bodies_of(simulation_.world())),
         work_(simulation_.make_workspace()) {}

@@ -7,9 +7,9 @@
 #include <chrono>
 
 #include "apps/bench/internal/scene_bench.hpp"
-#include "snug/cell/corrected.hpp"
-#include "snug/cell/program_check.hpp"
-#include "snug/cell/run.hpp"
+#include "snug/runs/corrected.hpp"
+#include "snug/runs/program_check.hpp"
+#include "snug/runs/run.hpp"
 
 namespace snug::bench::internal {
 namespace {
@@ -40,21 +40,21 @@ void measure_robot(const BenchOptions& options, std::vector<Figure>& figures) {
   if (!std::filesystem::exists(options.program)) return;
   const model::Scenario scenario = model::load_scenario(options.scenario);
   if (!scenario.robot) return;
-  cell::RunOptions run;
+  runs::RunOptions run;
   run.program = motion::load_program(options.program);
   run.sequence = "1";
   run.corrections = options.corrections;
   run.simulation.robot = scenario.robot->name;
-  const motion::Program program = cell::corrected(scenario, *run.program, options.corrections);
+  const motion::Program program = runs::corrected(scenario, *run.program, options.corrections);
   measure_ticks(scenario, program, figures);
 
-  cell::CheckOptions check_options;
+  runs::CheckOptions check_options;
   check_options.sequence = "1";
-  const cell::CheckResult check = cell::check_program(scenario, program, check_options);
+  const runs::CheckResult check = runs::check_program(scenario, program, check_options);
   const double per_hundred = check.wall * 100.0 / static_cast<double>(program.waypoints.size());
   figures.push_back(at_most("robot.check_100_rows", per_hundred, "s", 0.5));
 
-  const cell::RunResult result = cell::run(scenario, run);
+  const runs::RunResult result = runs::run(scenario, run);
   figures.push_back({"robot.real_time_factor", result.real_time_factor, "1", ">= 50", result.real_time_factor >= 50.0});
   const auto packed = std::count_if(result.boxes.begin(), result.boxes.end(),
                                     [](const cell::BoxResult& box) { return box.state == cell::BoxState::Packed; });

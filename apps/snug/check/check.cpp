@@ -9,16 +9,16 @@
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/common/program_fit.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
-#include "snug/cell/corrected.hpp"
-#include "snug/cell/program_check.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/runs/corrected.hpp"
+#include "snug/runs/program_check.hpp"
 
 namespace snug::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json as_json(const cell::CheckFinding& finding) {
+Json as_json(const runs::CheckFinding& finding) {
   return {{"kind", cell::name_of(finding.kind)},
           {"severity", finding.is_error ? "error" : "warning"},
           {"row", finding.row + 1},
@@ -30,18 +30,18 @@ Json as_json(const cell::CheckFinding& finding) {
           {"time_s", finding.time}};
 }
 
-std::string format_json(const cell::CheckResult& result) {
+std::string format_json(const runs::CheckResult& result) {
   Json document = {{"ok", result.is_ok},      {"duration_s", result.duration}, {"wall_s", result.wall},
                    {"looks", result.looks},   {"findings", Json::array()},     {"groups", Json::array()},
                    {"margins", Json::array()}};
-  for (const cell::CheckFinding& finding : result.findings) document["findings"].push_back(as_json(finding));
-  for (const cell::CheckGroup& group : cell::group(result.findings)) {
+  for (const runs::CheckFinding& finding : result.findings) document["findings"].push_back(as_json(finding));
+  for (const runs::CheckGroup& group : runs::group(result.findings)) {
     Json entry = as_json(group.worst);
     entry["rows"] = Json::array();
     for (const int row : group.rows) entry["rows"].push_back(row + 1);
     document["groups"].push_back(std::move(entry));
   }
-  for (const cell::CheckFinding& margin : result.margins) {
+  for (const runs::CheckFinding& margin : result.margins) {
     Json entry = as_json(margin);
     entry.erase("severity");
     document["margins"].push_back(std::move(entry));
@@ -66,7 +66,7 @@ std::string rows_of(const std::vector<int>& rows) {
 }
 
 /// One finding as a line; `rows`: all rows that have it, or only its own.
-std::string line_of(const cell::CheckFinding& finding, const std::vector<int>& rows) {
+std::string line_of(const runs::CheckFinding& finding, const std::vector<int>& rows) {
   std::string text =
       fmt::format("{:<15} {:<36} {:>9.4f} {:<6} {:>4} {:<20} {:>8.2f}", cell::name_of(finding.kind), finding.what,
                   finding.margin, finding.unit, finding.row + 1, finding.waypoint, finding.time);
@@ -75,20 +75,20 @@ std::string line_of(const cell::CheckFinding& finding, const std::vector<int>& r
   return text + "\n";
 }
 
-std::string format_table(const cell::CheckResult& result) {
+std::string format_table(const runs::CheckResult& result) {
   const std::string head = fmt::format("{:<15} {:<36} {:>9} {:<6} {:>4} {:<20} {:>8}\n", "", "what", "margin", "",
                                        "row", "waypoint", "time s");
   std::string text;
-  const std::vector<cell::CheckGroup> groups = cell::group(result.findings);
+  const std::vector<runs::CheckGroup> groups = runs::group(result.findings);
   for (const bool is_error : {true, false}) {
     std::string lines;
-    for (const cell::CheckGroup& group : groups) {
+    for (const runs::CheckGroup& group : groups) {
       if (group.worst.is_error == is_error) lines += line_of(group.worst, group.rows);
     }
     if (!lines.empty()) text += (is_error ? "In the way\n" : "Slower than planned\n") + head + lines + "\n";
   }
   text += "Smallest margins\n" + head;
-  for (const cell::CheckFinding& margin : result.margins) text += line_of(margin, {});
+  for (const runs::CheckFinding& margin : result.margins) text += line_of(margin, {});
   return text + fmt::format("\n{}: {:.1f} s of program, {} poses, in {:.3f} s\n",
                             result.is_ok ? "nothing in the way" : "cannot be done like this", result.duration,
                             result.looks, result.wall);
@@ -98,7 +98,7 @@ std::string format_table(const cell::CheckResult& result) {
 
 int run_check(const CheckOptions& options) {
   const model::Scenario scenario = load_changed(options.scenario, options.changes);
-  cell::CheckOptions check;
+  runs::CheckOptions check;
   if (options.sequence) check.sequence = *options.sequence;
   if (options.robot) check.robot = *options.robot;
   const std::string text = read_file(options.program, "a program file (CSV)");
@@ -110,8 +110,8 @@ int run_check(const CheckOptions& options) {
   const motion::Program read = motion::parse_program(text, options.program);
   if (options.sequence) warn_misfit(scenario, *options.sequence, read);
   const motion::Program program =
-      cell::corrected(scenario, read, options.corrections == "none" ? "" : options.corrections);
-  const cell::CheckResult result = cell::check_program(scenario, program, check);
+      runs::corrected(scenario, read, options.corrections == "none" ? "" : options.corrections);
+  const runs::CheckResult result = runs::check_program(scenario, program, check);
   print(options.json ? format_json(result) : format_table(result));
   return result.is_ok ? kSuccess : kRunFailed;
 }

@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "snug/cell/run.hpp"
+#include "snug/runs/run.hpp"
 
 namespace snug::app {
 
 /// Boxes (or bodies), how each got there, and the figures of the run. Lengths in mm.
-[[nodiscard]] std::string format_table(const cell::RunResult& result);
+[[nodiscard]] std::string format_table(const runs::RunResult& result);
 
 }  // namespace snug::app

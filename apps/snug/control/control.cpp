@@ -11,11 +11,11 @@
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/common/program_fit.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
-#include "snug/cell/corrected.hpp"
 #include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/remote_plant/program_client.hpp"
+#include "snug/runs/corrected.hpp"
 
 namespace snug::app {
 namespace {
@@ -74,7 +74,7 @@ int run_control(const ControlOptions& options) {
   if (options.sequence) warn_misfit(scenario, *options.sequence, program);
   const std::string corrections = options.corrections == "none" ? "" : options.corrections;
   motion::PreparedProgram plan =
-      cell::prepare(scenario, sequence, how, cell::corrected(scenario, program, corrections));
+      cell::prepare(scenario, sequence, how, runs::corrected(scenario, program, corrections));
   std::unique_ptr<const cell::JointPace> pace;
   if (how.controller == motion::ControllerKind::Fast) pace = cell::make_joint_pace(scenario, how.tempo);
   plan.path_limits = pace.get();

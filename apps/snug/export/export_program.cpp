@@ -9,9 +9,7 @@
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/common/program_fit.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
-#include "snug/cell/corrected.hpp"
 #include "snug/cell/held_boxes.hpp"
-#include "snug/cell/program_trial.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/control/program_export.hpp"
 #include "snug/control/urscript.hpp"
@@ -20,6 +18,8 @@
 #include "snug/core/write_file.hpp"
 #include "snug/motion/fitted_limits.hpp"
 #include "snug/motion/waypoint_name.hpp"
+#include "snug/runs/corrected.hpp"
+#include "snug/runs/program_trial.hpp"
 
 namespace snug::app {
 namespace {
@@ -28,7 +28,7 @@ std::string layer_of(const ExportOptions& options) { return options.corrections 
 
 cell::SimulationOptions simulation_for(const model::Scenario& scenario, const ExportOptions& options) {
   cell::SimulationOptions simulation;
-  simulation.cup = cell::cup_for(scenario, layer_of(options));
+  simulation.cup = runs::cup_for(scenario, layer_of(options));
   simulation.robot = scenario.robot->name;
   choose_motion(options.motion, read_file(options.input, "a program file (CSV)"), options.input, simulation);
   return simulation;
@@ -39,12 +39,12 @@ struct LoadedProgram {
   cell::Simulation simulation;
   motion::PreparedProgram plan;  ///< as it is simulated: with the tool that lags behind, or fast
   /// Done in the cell, with contact: of a fast program what is written, since contact ends its rows and its waits.
-  std::optional<cell::MotionTrial> trial;
+  std::optional<runs::MotionTrial> trial;
 
   LoadedProgram(const model::Scenario& scenario, const std::string& sequence, const ExportOptions& options)
       : simulation(scenario, sequence, simulation_for(scenario, options)),
-        plan(simulation.prepare(cell::corrected(scenario, motion::load_program(options.input), layer_of(options)))) {
-    if (!options.is_unchecked) trial = cell::try_motion(simulation, plan);
+        plan(simulation.prepare(runs::corrected(scenario, motion::load_program(options.input), layer_of(options)))) {
+    if (!options.is_unchecked) trial = runs::try_motion(simulation, plan);
   }
 
   [[nodiscard]] bool is_fast() const { return plan.settings.kind == motion::ControllerKind::Fast; }
@@ -128,7 +128,7 @@ bool accept(const char* what, const std::string& wrong) {
 /// --unchecked.
 bool has_succeeded(const LoadedProgram& program) {
   if (!program.trial) return true;
-  return accept("it does not succeed in the simulated cell", cell::find_loss(*program.trial));
+  return accept("it does not succeed in the simulated cell", runs::find_loss(*program.trial));
 }
 
 /// Whether a robot that follows the rows of `fitted` exactly does not do worse in the cell than was simulated. How far
@@ -140,7 +140,7 @@ bool is_as_good(const motion::PreparedProgram& fitted, const LoadedProgram& prog
   exact.controller = motion::ControllerKind::Ideal;
   const cell::Simulation follower(own.scenario(), own.sequence().name, exact);
   return accept("the robot that follows exactly does not do what was simulated",
-                cell::compare_trials(*program.trial, cell::try_motion(follower, fitted)));
+                runs::compare_trials(*program.trial, runs::try_motion(follower, fitted)));
 }
 
 /// The program through the joints. None, which is said on stderr, when the robot cannot do it.

@@ -17,12 +17,12 @@
 #include "apps/snug/common/robot_warnings.hpp"
 #include "apps/snug/common/run_report.hpp"
 #include "apps/snug/pack/python_agent.hpp"
-#include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/packing/representatives.hpp"
 #include "snug/robot/load_arm.hpp"
+#include "snug/runs/result_json.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "snug/study/trial_report.hpp"
 
@@ -47,7 +47,7 @@ void record(const model::Scenario& scenario, const study::Trial& trial, OutputFi
       {"agent", trial.session.agent},
       {"ended",
        trial.session.stopped}}.dump();
-  recorded.describe = [](const cell::RunResult& one) { return cell::format_result(one); };
+  recorded.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
 }
 

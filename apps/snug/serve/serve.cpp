@@ -17,9 +17,9 @@
 #include "apps/snug/common/robot_warnings.hpp"
 #include "apps/snug/common/run_report.hpp"
 #include "apps/snug/view/view.hpp"
-#include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/writer.hpp"
+#include "snug/runs/result_json.hpp"
 #include "snug/simulated_plant/simulated_plant.hpp"
 
 namespace snug::app {
@@ -64,7 +64,7 @@ std::string name_of_run(const std::string& path, int run) {
 }
 
 /// Shows one run after the other; lets them go on when there is nobody, or no room, to show them any more.
-class ShownRun : public cell::RunObserver {
+class ShownRun : public runs::RunObserver {
  public:
   explicit ShownRun(serve::LiveRun& live) : live_(live) {}
   void begin(const record::RecordingHeader& header) override {
@@ -135,7 +135,7 @@ class Serving {
     settings.is_async = options.server.is_async;
     settings.batch = options.batch;
     settings.begin_run = [this](int run) { return begin(run); };
-    settings.end_run = [this](int run, const cell::RunResult& result) { end(run, result); };
+    settings.end_run = [this](int run, const runs::RunResult& result) { end(run, result); };
     simulator_.emplace(simulation_, std::move(settings));
     served_cell::ServerSettings server = options.server;
     server.log = [](const std::string& line) { std::fprintf(stderr, "snug: %s\n", line.c_str()); };
@@ -179,10 +179,10 @@ class Serving {
     server_->stop();
   }
 
-  cell::OutsideRunOptions begin(int run) {
-    cell::OutsideRunOptions run_options;
+  runs::OutsideRunOptions begin(int run) {
+    runs::OutsideRunOptions run_options;
     run_options.version = version_text();
-    run_options.describe = [](const cell::RunResult& result) { return cell::format_result(result); };
+    run_options.describe = [](const runs::RunResult& result) { return runs::format_result(result); };
     if (options_.record) {
       if (run > 1) record_ = record::reserve_recording(name_of_run(*options_.record, run));
       run_options.record_file = &*record_;
@@ -191,8 +191,8 @@ class Serving {
     return run_options;
   }
 
-  void end(int run, const cell::RunResult& result) {
-    const std::string json = cell::format_result(result);
+  void end(int run, const runs::RunResult& result) {
+    const std::string json = runs::format_result(result);
     if (options_.json) {
       print(nlohmann::ordered_json::parse(json).dump() + "\n");
     } else {

@@ -10,20 +10,20 @@
 #include "apps/snug/common/robot_warnings.hpp"
 #include "apps/snug/common/run_report.hpp"
 #include "apps/snug/simulate/repeated_runs.hpp"
-#include "snug/cell/result_json.hpp"
-#include "snug/cell/run.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
+#include "snug/runs/result_json.hpp"
+#include "snug/runs/run.hpp"
 
 namespace snug::app {
 namespace {
 
 /// Writes the table of a run while it goes on.
-class TableWriter : public cell::RunObserver {
+class TableWriter : public runs::RunObserver {
  public:
   explicit TableWriter(OutputFile file) : file_(std::move(file)) {}
   void begin(const record::RecordingHeader& header) override { writer_.emplace(std::move(file_), header); }
@@ -59,8 +59,8 @@ model::Scenario load_with_overrides(const SimulateOptions& options) {
   return scenario;
 }
 
-cell::RunOptions make_run_options(const SimulateOptions& options, const model::Scenario& scenario) {
-  cell::RunOptions run;
+runs::RunOptions make_run_options(const SimulateOptions& options, const model::Scenario& scenario) {
+  runs::RunOptions run;
   if (options.program) {
     run.program_text = read_file(*options.program, "a program file (CSV)");
     run.program = motion::parse_program(run.program_text, *options.program);
@@ -82,7 +82,7 @@ cell::RunOptions make_run_options(const SimulateOptions& options, const model::S
   run.until = options.until;
   run.threads = options.threads.value_or(core_count());
   run.version = version_text();
-  run.describe = [](const cell::RunResult& result) { return cell::format_result(result); };
+  run.describe = [](const runs::RunResult& result) { return runs::format_result(result); };
   return run;
 }
 
@@ -111,7 +111,7 @@ int run_repeatedly(const SimulateOptions& options, const model::Scenario& scenar
 
 int run_simulate(const SimulateOptions& options) {
   model::Scenario scenario = load_with_overrides(options);
-  cell::RunOptions run_options = make_run_options(options, scenario);
+  runs::RunOptions run_options = make_run_options(options, scenario);
   for (const auto& [is_given, option] :
        {std::pair(options.monte_carlo.has_value(), "--monte-carlo"), std::pair(options.draw.has_value(), "--draw")}) {
     if (is_given && !run_options.program) throw InputError("command line", option, "no --program", "a program to run");
@@ -126,9 +126,9 @@ int run_simulate(const SimulateOptions& options) {
   if (record) run_options.record_file = &*record;
   std::optional<TableWriter> table;
   if (options.csv) run_options.observer = &table.emplace(OutputFile(*options.csv));
-  const cell::RunResult result = cell::run(scenario, run_options);
+  const runs::RunResult result = runs::run(scenario, run_options);
   if (table) table->close();
-  print(options.json ? cell::format_result(result) : format_table(result));
+  print(options.json ? runs::format_result(result) : format_table(result));
   if (!result.failure) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", result.failure.text.c_str());
   return kRunFailed;

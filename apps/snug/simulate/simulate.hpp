@@ -8,8 +8,8 @@
 #include "apps/snug/command_line/program_motion.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
 #include "apps/snug/command_line/verb.hpp"
-#include "snug/cell/run.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/runs/run.hpp"
 
 namespace snug::app {
 
@@ -44,7 +44,7 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options);
 
 /// The scenario that the options name, with what they change in it.
 [[nodiscard]] model::Scenario load_with_overrides(const SimulateOptions& options);
-[[nodiscard]] cell::RunOptions make_run_options(const SimulateOptions& options, const model::Scenario& scenario);
+[[nodiscard]] runs::RunOptions make_run_options(const SimulateOptions& options, const model::Scenario& scenario);
 
 /// What both read.
 [[nodiscard]] NamedFiles files_of(const SimulateOptions& options, const model::Scenario& scenario);

@@ -16,7 +16,7 @@
 #include "apps/snug/common/robot_files.hpp"
 #include "apps/snug/common/run_report.hpp"
 #include "apps/snug/view/view_served.hpp"
-#include "snug/cell/result_json.hpp"
+#include "snug/runs/result_json.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
@@ -50,8 +50,8 @@ int view_recordings(const ViewOptions& options) {
 }
 
 /// The result without how long it took: a run that is watched waits for its watchers.
-std::string describe_watched(const cell::RunResult& result) {
-  auto json = nlohmann::ordered_json::parse(cell::format_result(result));
+std::string describe_watched(const runs::RunResult& result) {
+  auto json = nlohmann::ordered_json::parse(runs::format_result(result));
   json.erase("wall_s");
   json.erase("real_time_factor");
   return json.dump(2) + "\n";
@@ -72,7 +72,7 @@ class LiveSimulation {
   void start(std::function<void()> on_trouble) {
     thread_ = std::thread([this, on_trouble = std::move(on_trouble)] {
       try {
-        result_ = cell::run(scenario_, run_options_);
+        result_ = runs::run(scenario_, run_options_);
         live_.finish(describe_watched(*result_), result_->failure.text, result_->is_interrupted);
       } catch (const std::exception& error) {
         trouble_ = std::current_exception();
@@ -85,7 +85,7 @@ class LiveSimulation {
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
 
-  [[nodiscard]] const cell::RunResult& result() {
+  [[nodiscard]] const runs::RunResult& result() {
     join();
     if (trouble_) std::rethrow_exception(trouble_);
     return *result_;
@@ -99,9 +99,9 @@ class LiveSimulation {
 
   serve::LiveRun& live_;
   model::Scenario scenario_;
-  cell::RunOptions run_options_;
+  runs::RunOptions run_options_;
   std::optional<OutputFile> record_;
-  std::optional<cell::RunResult> result_;
+  std::optional<runs::RunResult> result_;
   std::exception_ptr trouble_;
   std::thread thread_;
 };
@@ -119,7 +119,7 @@ int view_live(const ViewOptions& options) {
   while (!live.wait_for(0, std::chrono::milliseconds(200)) && !live.is_over()) continue;  // bad input shows here
   if (!live.is_over() || live.whole_form()) announce(server, options.opens_browser);
   server.run();
-  const cell::RunResult& result = simulation.result();
+  const runs::RunResult& result = simulation.result();
   print(format_table(result));
   if (!result.failure) return kSuccess;
   std::fprintf(stderr, "snug: failed: %s\n", result.failure.text.c_str());

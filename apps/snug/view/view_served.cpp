@@ -9,9 +9,9 @@
 #include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
-#include "snug/cell/recorder.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/remote_plant/watched_cell.hpp"
+#include "snug/runs/recorder.hpp"
 
 namespace snug::app {
 namespace {
@@ -41,7 +41,7 @@ class Watch {
  private:
   void begin() {
     const cell::Simulation& simulation = cell_.simulation();
-    cell::RecorderSetup setup;
+    runs::RecorderSetup setup;
     setup.observer = &live_;
     setup.period = simulation.scenario().controller.tick;
     setup.sequence = simulation.sequence().name;
@@ -59,7 +59,7 @@ class Watch {
     last_ = cell_.time();
     const cell::Simulation& simulation = cell_.simulation();
     const cell::CellState state = cell_.state();
-    cell::FrameInput input;
+    runs::FrameInput input;
     input.X_WE = input.X_WE_command = state.arm->machine.tool.X_WE;
     if (!recorder_->add_frame(simulation.world(), state.world, work_.physics, {}, input)) finish("");
   }
@@ -74,7 +74,7 @@ class Watch {
   remote_plant::WatchedCell& cell_;
   serve::LiveRun& live_;
   cell::CellWorkspace work_ = cell_.simulation().make_workspace();
-  std::optional<cell::Recorder> recorder_;
+  std::optional<runs::Recorder> recorder_;
   double last_ = 0.0;  ///< s, simulated
   std::atomic<bool> is_stopped_ = false;
 };

@@ -17,7 +17,7 @@ namespace snug::cell {
 
 struct SimulationOptions {
   motion::ControllerKind controller = motion::ControllerKind::Faithful;
-  /// Absent: with phases, in `run` as the corrections were made for (cell::cup_for; docs/decisions/0040).
+  /// Absent: with phases, in `run` as the corrections were made for (runs::cup_for; docs/decisions/0040).
   std::optional<cup::CupMode> cup = {};
   std::string robot = {};  ///< name of the scenario's robot that moves the tool; empty: the tool moves by itself
   double tempo = 1.0;      ///< motion::FastSettings::tempo

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "snug/cell/result_json.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/model/reported_agent.hpp"
@@ -15,6 +14,7 @@
 #include "snug/replay/internal/robot_look.hpp"
 #include "snug/replay/limits.hpp"
 #include "snug/replay/replay.hpp"
+#include "snug/runs/result_json.hpp"
 
 namespace snug::replay {
 namespace {
@@ -187,7 +187,7 @@ Json program_as_json(const record::RecordingHeader& header) {
   return {{"name", header.program_name}, {"names", std::move(names)}};
 }
 
-Json speed_as_json(const std::optional<cell::RunResult>& result) {
+Json speed_as_json(const std::optional<runs::RunResult>& result) {
   if (!result || (result->duration <= 0.0 && result->wall <= 0.0)) return nullptr;
   return {{"duration_s", result->duration}, {"wall_s", result->wall}, {"real_time_factor", result->real_time_factor}};
 }
@@ -234,7 +234,7 @@ Json events_as_json(const std::vector<record::Event>& events) {
 }
 
 /// Boxes as the result tells, for a run that ended.
-Json boxes_from_result(const cell::RunResult& result) {
+Json boxes_from_result(const runs::RunResult& result) {
   Json list = Json::array();
   for (const cell::BoxResult& box : result.boxes) {
     Json events = Json::array();
@@ -266,7 +266,7 @@ Json boxes_from_events(const std::vector<record::Event>& events) {
   return list;
 }
 
-Json result_as_json(const HeaderInput& input, const std::optional<cell::RunResult>& result,
+Json result_as_json(const HeaderInput& input, const std::optional<runs::RunResult>& result,
                     const std::optional<model::Scenario>& scenario) {
   Json boxes = result ? boxes_from_result(*result) : boxes_from_events(input.events);
   if (boxes.empty() && !result) return nullptr;
@@ -302,7 +302,7 @@ std::string make_header_json(const HeaderInput& input) {
                {"scenario", {{"name", scenario ? scenario->name : ""}, {"text", header.scenario_text}}},
                {"program", program_as_json(header)},
                {"settings", settings.is_object() ? settings : Json::object()}};
-  const std::optional<cell::RunResult> result = cell::read_result(input.result_json);
+  const std::optional<runs::RunResult> result = runs::read_result(input.result_json);
   json["speed"] = speed_as_json(result);
   json["result"] = result_as_json(input, result, scenario);
   json["bodies"] = bodies_as_json(header);

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "snug/cell/recorder.hpp"
 #include "snug/replay/frame_coder.hpp"
+#include "snug/runs/recorder.hpp"
 
 namespace snug::serve {
 
@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxLogBytes = std::size_t{256} << 20U;
 ///
 /// Watchers read a log of server-sent events from its beginning, so it does not matter when they come. A begin() after
 /// a finish() is another run: it takes the place of the one before.
-class LiveRun : public cell::RunObserver {
+class LiveRun : public runs::RunObserver {
  public:
   /// `speed`: simulated seconds per second, 0 for as fast as it goes. The result of the run does not depend on it.
   LiveRun(std::string name, double speed);

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "snug/cell/outside_run.hpp"
 #include "snug/click/message.hpp"
 #include "snug/click/rpy.hpp"
+#include "snug/runs/outside_run.hpp"
 
 namespace snug::served_cell {
 

@@ -165,8 +165,8 @@ void Simulator::take_at_once(const Order& order) {
 
 void Simulator::begin_run() {
   ++counts_.runs;
-  run_ = std::make_unique<cell::OutsideRun>(
-      cell_.simulation(), settings_.begin_run ? settings_.begin_run(counts_.runs) : cell::OutsideRunOptions{});
+  run_ = std::make_unique<runs::OutsideRun>(
+      cell_.simulation(), settings_.begin_run ? settings_.begin_run(counts_.runs) : runs::OutsideRunOptions{});
 }
 
 void Simulator::advance(const cell::OutsideCommand& command) {
@@ -215,7 +215,7 @@ void Simulator::reset(const std::string& why) {
 void Simulator::end(const std::string& why) {
   if (!run_ || is_ended_) return;
   is_ended_ = true;
-  const cell::RunResult result = run_->finish(why);
+  const runs::RunResult result = run_->finish(why);
   if (settings_.end_run) settings_.end_run(counts_.runs, result);
 }
 

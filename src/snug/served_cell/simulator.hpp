@@ -22,8 +22,8 @@ struct SimulatorSettings {
   bool is_async = false;
   std::optional<double> batch;  ///< s, simulated, after which the simulator resets itself
   /// What is to be done with each run, from 1; asked for when it begins.
-  std::function<cell::OutsideRunOptions(int run)> begin_run = {};
-  std::function<void(int run, const cell::RunResult& result)> end_run = {};
+  std::function<runs::OutsideRunOptions(int run)> begin_run = {};
+  std::function<void(int run, const runs::RunResult& result)> end_run = {};
 };
 
 /// What the simulator answered so far.
@@ -107,7 +107,7 @@ class Simulator {
   const cell::CellState initial_;
   const cell::ArmReading initial_reading_;
   std::optional<Peer> controller_;
-  std::unique_ptr<cell::OutsideRun> run_;  ///< none before the first Control
+  std::unique_ptr<runs::OutsideRun> run_;  ///< none before the first Control
   bool is_ended_ = false;                  ///< run_ is kept to be looked at
   std::string failure_;                    ///< why it ended by itself, or stopped
   bool is_reset_ = false;                  ///< by the simulator; the controller is still to be told

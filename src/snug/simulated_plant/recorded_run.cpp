@@ -11,7 +11,7 @@ namespace {
 /// Frames and events in the order of time.
 class Course {
  public:
-  Course(SimulatedPlant& plant, const RecordedRunOptions& recorded, const cell::RecorderSetup& setup)
+  Course(SimulatedPlant& plant, const RecordedRunOptions& recorded, const runs::RecorderSetup& setup)
       : plant_(plant),
         said_(recorded.events),
         recorder_(plant.simulation().scenario(), plant.simulation().world(), setup) {
@@ -35,7 +35,7 @@ class Course {
   }
   void add(const cell::CellTick& tick) {
     add_events();
-    const cell::FrameInput input{tick.tool.X_WE,
+    const runs::FrameInput input{tick.tool.X_WE,
                                  tick.tool.V_WE,
                                  tick.X_WE_reference,
                                  rows_ + tick.row,
@@ -48,7 +48,7 @@ class Course {
 
   SimulatedPlant& plant_;
   const std::vector<record::Event>& said_;
-  cell::Recorder recorder_;
+  runs::Recorder recorder_;
   std::vector<record::Event> events_;
   std::size_t own_ = 0, next_ = 0;
   int rows_ = 0;
@@ -81,11 +81,11 @@ void repeat(SimulatedPlant& plant, const std::vector<Call>& calls, const std::fu
   }
 }
 
-cell::RunResult record(const model::Scenario& scenario, const std::string& sequence,
+runs::RunResult record(const model::Scenario& scenario, const std::string& sequence,
                        const SimulatedPlantOptions& options, const std::vector<Call>& calls,
                        const RecordedRunOptions& recorded) {
   SimulatedPlant plant(scenario, sequence, options);
-  cell::RecorderSetup setup;
+  runs::RecorderSetup setup;
   setup.file = recorded.file;
   setup.period = scenario.controller.tick;
   setup.program_name = "pack";
@@ -104,7 +104,7 @@ cell::RunResult record(const model::Scenario& scenario, const std::string& seque
     course.begin(rows);
     rows += static_cast<int>(call.motion.waypoints.size());
   });
-  cell::RunResult result;
+  runs::RunResult result;
   result.duration = plant.simulation().time(plant.state());
   result.boxes = plant.boxes();
   std::vector<std::string> packed;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "snug/cell/run.hpp"
+#include "snug/runs/run.hpp"
 #include "snug/simulated_plant/simulated_plant.hpp"
 
 namespace snug::simulated_plant {
@@ -17,7 +17,7 @@ struct RecordedRunOptions {
   std::vector<std::string> warnings;  ///< of the result, by who packed
   bool is_interrupted = false;        ///< who packed was, and ended early
   std::string settings_json = "{}";
-  std::function<std::string(const cell::RunResult&)> describe;  ///< JSON to keep in the recording, or none
+  std::function<std::string(const runs::RunResult&)> describe;  ///< JSON to keep in the recording, or none
 };
 
 /// The calls of a plant once more, on a new one of the same seed: it comes to the same state. `before`: called before
@@ -25,7 +25,7 @@ struct RecordedRunOptions {
 void repeat(SimulatedPlant& plant, const std::vector<Call>& calls, const std::function<void(const Call&)>& before = {});
 /// The same on a new plant: it comes to the same state. Throws InputError for a recording that
 /// cannot be written; OutputError when writing it fails.
-cell::RunResult record(const model::Scenario& scenario, const std::string& sequence,
+runs::RunResult record(const model::Scenario& scenario, const std::string& sequence,
                        const SimulatedPlantOptions& options, const std::vector<Call>& calls,
                        const RecordedRunOptions& recorded);
 

@@ -7,12 +7,12 @@
 #include <sstream>
 #include <utility>
 
-#include "snug/cell/result_json.hpp"
 #include "snug/core/csv_fields.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/core/units.hpp"
+#include "snug/runs/result_json.hpp"
 #include "snug/validation/log_table.hpp"
 #include "snug/validation/reported.hpp"
 
@@ -57,13 +57,13 @@ Window presence_of(const SimulatedRun& run, std::size_t body) {
   return window;
 }
 
-std::string simulated_state(const std::optional<cell::RunResult>& result, const std::string& body) {
+std::string simulated_state(const std::optional<runs::RunResult>& result, const std::string& body) {
   if (!result) return "not known";
   const auto box = std::ranges::find(result->boxes, body, &cell::BoxResult::id);
   return box != result->boxes.end() ? cell::name_of(box->state) : "not known";
 }
 
-std::string protective_stop(const std::optional<cell::RunResult>& result) {
+std::string protective_stop(const std::optional<runs::RunResult>& result) {
   if (!result || !result->stop) return "";
   return std::string(cell::name_of(result->stop->cause)) + " of " + result->stop->where;
 }
@@ -179,7 +179,7 @@ std::vector<Window> find_windows(const SimulatedRun& run) {
 
 Validation validate(const SimulatedRun& run, std::vector<Measurement> repetitions, std::vector<Window> windows) {
   if (windows.empty()) windows = find_windows(run);
-  const std::optional<cell::RunResult> result = cell::read_result(run.result);
+  const std::optional<runs::RunResult> result = runs::read_result(run.result);
   Validation validation;
   validation.simulated = run.name;
   validation.sequence = run.header.sequence;

@@ -1,5 +1,5 @@
 // What becomes of a run, as `snug simulate --json` prints it and recordings keep it (docs/formats.md, Result).
-// Written by the test ResultJson.IsWhatTheViewerReads; the keys stand in cell/internal/result_fields.hpp.
+// Written by the test ResultJson.IsWhatTheViewerReads; the keys stand in runs/internal/result_fields.hpp.
 
 export interface ResultEvent {
   time_s: number;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "snug/cell/run.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/archive.hpp"
+#include "snug/runs/run.hpp"
 #include "snug/validation/simulated_run.hpp"
 
 namespace snug::identification::internal {
@@ -15,20 +15,20 @@ namespace {
 
 constexpr double kTail = 0.1;  // s, of simulation after what is compared
 
-cell::RunResult run_observed(const model::Scenario& scenario, const model::TaskProgram& program,
-                             std::optional<double> until, cell::RunObserver& observer) {
-  cell::RunOptions options;
+runs::RunResult run_observed(const model::Scenario& scenario, const model::TaskProgram& program,
+                             std::optional<double> until, runs::RunObserver& observer) {
+  runs::RunOptions options;
   options.program = motion::load_program(program.file);
   options.sequence = program.sequence;
   options.corrections = program.corrections;
   options.until = until;
   options.observer = &observer;
   if (program.with_phases) options.simulation.cup = *program.with_phases ? cup::CupMode::Phases : cup::CupMode::Holding;
-  return cell::run(scenario, options);
+  return runs::run(scenario, options);
 }
 
 /// Keeps of a run where its tracked bodies are.
-class PoseCapture final : public cell::RunObserver {
+class PoseCapture final : public runs::RunObserver {
  public:
   explicit PoseCapture(const model::SceneTask& task) : task_(task), tracks(task.tracked.size()) {}
   void begin(const record::RecordingHeader& header) override {
@@ -68,8 +68,8 @@ bool is_same(const record::PoseSample& a, const record::PoseSample& b) {
 
 CapturedRun capture_program(const model::Scenario& scenario, const model::TaskProgram& program,
                             std::optional<double> until) {
-  cell::RunCapture capture;
-  const cell::RunResult result = run_observed(scenario, program, until, capture);
+  runs::RunCapture capture;
+  const runs::RunResult result = run_observed(scenario, program, until, capture);
   return {std::move(capture.recording), result.failure.text};
 }
 
@@ -85,7 +85,7 @@ void Track::add(double time, const record::PoseSample& pose) {
 
 ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& task, double until) {
   PoseCapture capture(task);
-  const cell::RunResult result = run_observed(scenario, *task.program, until, capture);
+  const runs::RunResult result = run_observed(scenario, *task.program, until, capture);
   ProgramRun run;
   run.tracks = std::move(capture.tracks);
   run.until = until;

@@ -33,11 +33,11 @@ class Served {
     if (thread_.joinable()) thread_.join();
   }
   [[nodiscard]] const std::string& endpoint() const { return server_.endpoint(); }
-  std::vector<cell::RunResult> runs;
+  std::vector<runs::RunResult> runs;
 
  private:
   served_cell::SimulatorSettings with_log(served_cell::SimulatorSettings settings) {
-    settings.end_run = [this](int, const cell::RunResult& result) { runs.push_back(result); };
+    settings.end_run = [this](int, const runs::RunResult& result) { runs.push_back(result); };
     return settings;
   }
   static served_cell::ServerSettings at_an_address() {

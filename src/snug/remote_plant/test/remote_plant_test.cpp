@@ -44,13 +44,13 @@ class Served {
     simulator_.end("the server was stopped");
   }
   [[nodiscard]] std::string address() const { return "click+" + server_.endpoint(); }
-  [[nodiscard]] const std::vector<cell::RunResult>& runs() const { return runs_; }
+  [[nodiscard]] const std::vector<runs::RunResult>& runs() const { return runs_; }
 
  private:
   served_cell::SimulatorSettings settings_of(bool is_plant) {
     served_cell::SimulatorSettings settings;
     settings.cell.is_plant = is_plant;
-    settings.end_run = [this](int, const cell::RunResult& result) { runs_.push_back(result); };
+    settings.end_run = [this](int, const runs::RunResult& result) { runs_.push_back(result); };
     return settings;
   }
   static served_cell::ServerSettings server_settings() {
@@ -62,7 +62,7 @@ class Served {
     return settings;
   }
   cell::Simulation simulation_;
-  std::vector<cell::RunResult> runs_;
+  std::vector<runs::RunResult> runs_;
   served_cell::Simulator simulator_;
   served_cell::Server server_;
   std::thread thread_;

@@ -50,11 +50,11 @@ class Served {
     if (thread_.joinable()) thread_.join();
   }
   [[nodiscard]] const std::string& endpoint() const { return server_.endpoint(); }
-  std::vector<cell::RunResult> runs;
+  std::vector<runs::RunResult> runs;
 
  private:
   SimulatorSettings with_log(SimulatorSettings settings) {
-    settings.end_run = [this](int, const cell::RunResult& result) { runs.push_back(result); };
+    settings.end_run = [this](int, const runs::RunResult& result) { runs.push_back(result); };
     return settings;
   }
   static ServerSettings settings_of(const std::string& endpoint) {
@@ -168,7 +168,7 @@ TEST(ClientServer, ComingAndGoingOfManyLeavesTheControllerAlone) {
     }
     served.stop();
     EXPECT_GE(served.runs.size(), 19u) << "of the last one the end may come too late";
-    for (const cell::RunResult& result : served.runs) EXPECT_NEAR(result.duration, 0.04, 1e-12);
+    for (const runs::RunResult& result : served.runs) EXPECT_NEAR(result.duration, 0.04, 1e-12);
   }
 }
 

@@ -66,7 +66,7 @@ TEST(ServedCell, WritesOnlyWhatMovedAndStillAllOfIt) {
     ServedCellSettings settings;
     settings.velocities = settings.is_plant = is_plant;
     const ServedCell cell(simulation, settings);
-    cell::OutsideRun run(simulation, {});
+    runs::OutsideRun run(simulation, {});
     WrittenBodies written;
     for (int i = 0; i < 120; ++i) {  // boxes come, fall the last millimetre, and come to rest
       if (i % 20 == 10) (void)run.feed(i / 20, i % 4);
@@ -151,7 +151,7 @@ TEST(Simulator, TellsItsOwnResetOnceAndNeverToAHandshake) {
   SimulatorSettings settings;
   settings.batch = 0.04;
   std::vector<std::string> ends;
-  settings.end_run = [&](int, const cell::RunResult& result) { ends.push_back(result.ended_by); };
+  settings.end_run = [&](int, const runs::RunResult& result) { ends.push_back(result.ended_by); };
   Talk talk(settings);
   (void)talk.say(HandshakeInit{});
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(std::holds_alternative<Sensor>(talk.say(control_of(kStill)))) << i;
@@ -250,7 +250,7 @@ TEST(Simulator, AnswersWhoOnlyLooksBesideTheController) {
 TEST(Simulator, EndsTheRunWithAReason) {
   std::vector<std::string> ends;
   SimulatorSettings settings;
-  settings.end_run = [&](int, const cell::RunResult& result) { ends.push_back(result.ended_by); };
+  settings.end_run = [&](int, const runs::RunResult& result) { ends.push_back(result.ended_by); };
   Talk talk(settings);
   const auto run = [&] {
     (void)talk.say(HandshakeInit{});
@@ -285,7 +285,7 @@ TEST(Simulator, AStopOfAPlantMayBeAcknowledged) {
   settings.cell.is_plant = true;
   settings.cell.controls = {control::DriveKind::Torque};
   int ended = 0;
-  settings.end_run = [&](int, const cell::RunResult&) { ++ended; };
+  settings.end_run = [&](int, const runs::RunResult&) { ++ended; };
   Talk talk(settings);
   (void)talk.say(HandshakeInit{});
   EXPECT_NE(talk.error(control_of({1e4, 0, 0, 0, 0, 0})).find("protective stop"), std::string::npos);

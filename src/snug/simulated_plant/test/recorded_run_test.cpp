@@ -34,7 +34,7 @@ void live(SimulatedPlant& plant) {
 
 struct RecordedRunTest : testing::Test {
   RecordedRunTest() { live(plant); }
-  [[nodiscard]] cell::RunResult record_to(const std::string& name, RecordedRunOptions options = {}) const {
+  [[nodiscard]] runs::RunResult record_to(const std::string& name, RecordedRunOptions options = {}) const {
     OutputFile file(folder / name);
     options.file = &file;
     return record(three_boxes(), "1", eventful(), plant.calls(), options);
@@ -44,7 +44,7 @@ struct RecordedRunTest : testing::Test {
 };
 
 TEST_F(RecordedRunTest, ComesToTheSameStateAsThePlant) {
-  const cell::RunResult result = record_to("run.h5");
+  const runs::RunResult result = record_to("run.h5");
   EXPECT_EQ(result.state_hash, plant.simulation().hash(plant.state()));
   EXPECT_EQ(result.duration, plant.read().time);
   ASSERT_EQ(result.boxes.size(), plant.boxes().size());
@@ -61,8 +61,8 @@ TEST_F(RecordedRunTest, TheFileHasAFrameForEachTickAndEventsInTheOrderOfTime) {
   RecordedRunOptions options;
   options.version = "test";
   options.events = {{0.5, "send", "BOX027", "first", {}}, {3.0, "note", "", "second", {}}};
-  options.describe = [](const cell::RunResult& one) { return "{\"boxes\": " + std::to_string(one.boxes.size()) + "}"; };
-  const cell::RunResult result = record_to("run.h5", options);
+  options.describe = [](const runs::RunResult& one) { return "{\"boxes\": " + std::to_string(one.boxes.size()) + "}"; };
+  const runs::RunResult result = record_to("run.h5", options);
   const record::Recording recording = record::load_recording(folder / "run.h5");
   EXPECT_TRUE(recording.is_complete);
   const double tick = three_boxes().controller.tick;
@@ -129,7 +129,7 @@ TEST_F(RecordedRunTest, WithoutCallsIsAnEmptyCell) {
   OutputFile file(folder / "empty.h5");
   RecordedRunOptions options;
   options.file = &file;
-  const cell::RunResult result = record(three_boxes(), "1", eventful(), {}, options);
+  const runs::RunResult result = record(three_boxes(), "1", eventful(), {}, options);
   EXPECT_EQ(result.duration, 0.0);
   EXPECT_TRUE(result.boxes.empty());
   EXPECT_EQ(result.filling_degree_percent, 0.0);
