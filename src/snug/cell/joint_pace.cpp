@@ -65,7 +65,7 @@ void JointPace::limit(const motion::Way& way, std::span<double> rates, std::span
 
 std::optional<motion::PanAxis> find_pan_axis(const model::Scenario& scenario) {
   if (!scenario.robot || std::abs(scenario.robot->X_WB.R(2, 2)) < kUpright) return std::nullopt;
-  const model::TravelParams& travel = scenario.skills.travel;
+  const settings::TravelParams& travel = scenario.skills.travel;
   return motion::PanAxis{scenario.robot->X_WB.p, travel.least_pan, travel.least_radius};
 }
 

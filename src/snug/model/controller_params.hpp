@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "snug/core/field.hpp"
 #include "snug/model/body.hpp"
-#include "snug/model/field.hpp"
 #include "snug/model/material.hpp"
 #include "snug/spatial/pose.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "snug/model/field.hpp"
+#include "snug/core/field.hpp"
 
 namespace snug::model {
 

@@ -1,24 +1,14 @@
 // Reading by what rules boxes are packed: skills, limits, settings of sessions.
 #include "snug/model/internal/fields.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
+#include "snug/settings/contradiction.hpp"
 
 namespace snug::model::internal {
 namespace {
 
-void check(const Value& at, const SkillParams& skills) {
-  if (!(skills.pivot.dragged <= skills.pivot.drag))
-    at.fail("pivot.dragged " + to_text(skills.pivot.dragged), "no more than pivot.drag");
-  if (!(skills.travel.shortest_swing <= skills.travel.longest_swing))
-    at.fail("travel.shortest_swing " + to_text(skills.travel.shortest_swing), "no more than travel.longest_swing");
-  if (!(skills.travel.near_base <= skills.travel.base_radius))
-    at.fail("travel.near_base " + to_text(skills.travel.near_base), "no more than travel.base_radius");
-}
-
-void check(const Value& at, const RehearsalSettings& rehearsal) {
-  if (!(rehearsal.least_rate <= rehearsal.good_rate && rehearsal.good_rate <= rehearsal.accepted_rate))
-    at.fail("rates in another order", "least_rate <= good_rate <= accepted_rate");
-  if (!(rehearsal.max_attempts <= rehearsal.most_attempts))
-    at.fail("max_attempts " + std::to_string(rehearsal.max_attempts), "no more than most_attempts");
+template <class Settings>
+void check(const Value& at, const Settings& read) {
+  if (const auto found = settings::find_contradiction(read)) at.fail(found->got, found->expected);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "snug/model/field.hpp"
+#include "snug/core/field.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::model {

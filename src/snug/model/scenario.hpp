@@ -15,9 +15,9 @@
 #include "snug/model/material.hpp"
 #include "snug/model/parcel.hpp"
 #include "snug/model/robot_params.hpp"
-#include "snug/model/session_settings.hpp"
-#include "snug/model/skill_params.hpp"
 #include "snug/model/uncertainty.hpp"
+#include "snug/settings/session_settings.hpp"
+#include "snug/settings/skill_params.hpp"
 
 namespace snug::model {
 
@@ -121,13 +121,13 @@ struct Scenario {
   std::vector<CameraParams> cameras;
   std::vector<Sequence> sequences;
   Uncertainty uncertainty;  ///< of all of the above
-  SkillParams skills;
-  PackingSettings packing;
-  PlaceLimits place_limits;
-  RehearsalSettings rehearsal;
-  BeliefParams belief;
-  RecoverySettings recovery;
-  MotionGuards motion_guards;
+  settings::SkillParams skills;
+  settings::PackingSettings packing;
+  settings::PlaceLimits place_limits;
+  settings::RehearsalSettings rehearsal;
+  settings::BeliefParams belief;
+  settings::RecoverySettings recovery;
+  settings::MotionGuards motion_guards;
   std::vector<Spring> springs;
   std::vector<AppliedWrench> wrenches;
   std::optional<Drops> drops;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "snug/model/field.hpp"
+#include "snug/core/field.hpp"
 
 namespace snug::model {
 

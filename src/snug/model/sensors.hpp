@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "snug/model/field.hpp"
+#include "snug/core/field.hpp"
 
 namespace snug::model {
 

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "snug/model/field.hpp"
+#include "snug/core/field.hpp"
 
 namespace snug::model {
 

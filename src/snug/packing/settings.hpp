@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
-#include "snug/model/session_settings.hpp"
+#include "snug/settings/session_settings.hpp"
 
 namespace snug::packing {
 
-using model::PackingSettings;
+using settings::PackingSettings;
 
 /// What belongs to a run, not to the cell.
 struct DecisionRun {

@@ -51,11 +51,11 @@ void MotionWatch::check(const Guards& guards, double pressure_needed, const Tick
     stop(EndReason::Timeout, now.time - row_since_, settings.waypoint_patience);
 }
 
-double least_settle(const model::MotionGuards& settings, bool is_lagged, bool was_passed) {
+double least_settle(const settings::MotionGuards& settings, bool is_lagged, bool was_passed) {
   return is_lagged ? settings.lagged_settle : was_passed ? 0.0 : settings.exact_settle;
 }
 
-bool is_settling(const model::MotionGuards& settings, double at_least, double start, double now, double speed) {
+bool is_settling(const settings::MotionGuards& settings, double at_least, double start, double now, double speed) {
   return now < start + settings.longest_settle && (now <= start + at_least || speed >= settings.still_speed);
 }
 

@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "snug/model/session_settings.hpp"
 #include "snug/plant/plant.hpp"
+#include "snug/settings/session_settings.hpp"
 
 namespace snug::plant {
 
@@ -19,7 +19,7 @@ struct TickReading {
 
 /// One motion under way: how it ends, and its peaks.
 struct MotionWatch {
-  model::MotionGuards settings;
+  settings::MotionGuards settings;
   End end;
   int row = -1;  ///< of the motion, aimed at
   double peak_force = 0.0, peak_torque = 0.0;
@@ -43,10 +43,10 @@ struct MotionWatch {
 
 /// s, at least, that a motion goes on after its end so that boxes come to rest. `is_lagged`: the tool comes in with a
 /// lag. `was_passed`: OnPassing was called; they were looked at then.
-[[nodiscard]] double least_settle(const model::MotionGuards& settings, bool is_lagged, bool was_passed);
+[[nodiscard]] double least_settle(const settings::MotionGuards& settings, bool is_lagged, bool was_passed);
 /// Whether a motion that came to its end at `start` s goes on at `now`, for `at_least` s and so that the tool, at
 /// `speed` m/s, comes to stand.
-[[nodiscard]] bool is_settling(const model::MotionGuards& settings, double at_least, double start, double now,
+[[nodiscard]] bool is_settling(const settings::MotionGuards& settings, double at_least, double start, double now,
                                double speed);
 
 /// Why the motion cannot begin: no waypoints, a pose that is not finite; empty when it can.

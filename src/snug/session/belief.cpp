@@ -20,7 +20,7 @@ model::Scenario coarse(model::Scenario scenario, int factor) {
   return scenario;
 }
 
-Matrix6 unseen_covariance(const model::BeliefParams& params) {
+Matrix6 unseen_covariance(const settings::BeliefParams& params) {
   Matrix6 covariance = Matrix6::Zero();
   covariance.diagonal() << Vector3::Constant(params.unseen_position * params.unseen_position),
       Vector3::Constant(params.unseen_rotation * params.unseen_rotation);
@@ -219,7 +219,7 @@ void Belief::stiffen() {
 void Belief::weigh(int item) {
   const auto i = static_cast<std::size_t>(item);
   if (!boxes_[i] || !boxes_[i]->was_seen || worlds_.size() < 2) return;
-  const model::BeliefParams& params = nominal().belief;
+  const settings::BeliefParams& params = nominal().belief;
   const double variance =
       params.model_error * params.model_error + boxes_[i]->covariance.topLeftCorner<3, 3>().trace() / 3.0;
   double sum = 0.0;

@@ -254,7 +254,7 @@ class GraspPlanner {
 
   /// From waypoint `first` on where the box stands elsewhere than in the nominal rollout, as a session plans anew then.
   void follow_box(const Pose& X_WP_nominal, const Pose& X_WP, std::size_t first, motion::Program& program) const {
-    const model::RecoverySettings& recovery = request_.scenario.recovery;
+    const settings::RecoverySettings& recovery = request_.scenario.recovery;
     const bool is_as_rehearsed = (X_WP.p - X_WP_nominal.p).norm() <= recovery.as_rehearsed &&
                                  angle_between(X_WP.R, X_WP_nominal.R) <= recovery.turned_as_rehearsed;
     if (is_as_rehearsed || !is_upright(X_WP.R, max_lean())) return;

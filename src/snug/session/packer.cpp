@@ -252,7 +252,7 @@ std::optional<GraspOutline> Packer::outline_of(const Standing& box, const packin
 
 double Packer::cost_of(const Standing& box, const packing::Placement& placement) const {
   if (!layout_.is_fast || placement.flips == 0) return 0.0;
-  const model::RehearsalSettings& settings = scenario_.rehearsal;
+  const settings::RehearsalSettings& settings = scenario_.rehearsal;
   const auto outline = outline_of(box, placement.orientation);
   const bool is_by_side = outline && outline->reorientation == skills::Reorientation::SideGrasp;
   return is_by_side ? settings.side_grasp_cost : settings.reorientation_cost;
@@ -270,7 +270,7 @@ void Packer::sort(const Standing& box, std::vector<packing::Candidate>& candidat
 }
 
 bool Packer::is_enough(const std::optional<Attempt>& best, int attempts) const {
-  const model::RehearsalSettings& settings = scenario_.rehearsal;
+  const settings::RehearsalSettings& settings = scenario_.rehearsal;
   const double rate = best ? best->success_rate : -1.0;
   return rate >= settings.accepted_rate || attempts >= settings.most_attempts ||
          (attempts >= settings.max_attempts && rate >= settings.good_rate);

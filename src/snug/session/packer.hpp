@@ -206,7 +206,7 @@ class Packer {
 
   model::Scenario scenario_;
   SessionOptions options_;
-  model::PlaceLimits limits_;  ///< of the motions that are done: fast or not
+  settings::PlaceLimits limits_;  ///< of the motions that are done: fast or not
   plant::Plant& plant_;
   skills::CellLayout layout_;
   ToolReach reaches_;

@@ -4,7 +4,7 @@
 namespace snug::session {
 namespace {
 
-Remedy where_it_lies(const Situation& at, const model::RecoverySettings& settings) {
+Remedy where_it_lies(const Situation& at, const settings::RecoverySettings& settings) {
   const bool may_pick = at.can_be_picked && at.tries < settings.most_tries;
   const bool may_return = at.can_return && at.tries < settings.most_tries;
   const bool is_worth_moving = at.gain_elsewhere > settings.gain_elsewhere;
@@ -87,7 +87,7 @@ const char* name_of(Remedy remedy) {
   return "";
 }
 
-Remedy choose_remedy(const Situation& at, const model::RecoverySettings& settings) {
+Remedy choose_remedy(const Situation& at, const settings::RecoverySettings& settings) {
   switch (at.trouble) {
     case Trouble::None:
       return Remedy::None;

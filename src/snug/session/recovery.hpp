@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "snug/model/session_settings.hpp"
+#include "snug/settings/session_settings.hpp"
 
 namespace snug::session {
 
@@ -62,7 +62,7 @@ struct Situation {
   bool was_pressed = false;     ///< since it was let go
   int pictures = 0;             ///< that told nothing, one after the other, this one included
 };
-[[nodiscard]] Remedy choose_remedy(const Situation& situation, const model::RecoverySettings& settings);
+[[nodiscard]] Remedy choose_remedy(const Situation& situation, const settings::RecoverySettings& settings);
 
 /// One that was taken: for the result and the list of events.
 struct Recovery {

@@ -30,7 +30,7 @@ std::string describe_outside(const cell::ContainerFit& fit, bool is_beside, doub
 }  // namespace
 
 Rehearsal::Rehearsal(Belief& belief, const skills::CellLayout& layout, const ToolReach& reaches,
-                     const model::PlaceLimits& limits, int threads, const RehearsalTask& task)
+                     const settings::PlaceLimits& limits, int threads, const RehearsalTask& task)
     : belief_(belief),
       layout_(layout),
       reaches_(reaches),
@@ -106,7 +106,7 @@ const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double pa
 
 /// All samples, or the first alone where most of these fail: the rate of such an attempt is below what is ever sent.
 void Rehearsal::rehearse_samples(const std::function<Outcome(int)>& execute, Attempt& attempt) const {
-  const model::RehearsalSettings& settings = belief_.nominal().rehearsal;
+  const settings::RehearsalSettings& settings = belief_.nominal().rehearsal;
   const int all = static_cast<int>(rollouts_.size()) - 1;
   std::vector<Outcome> outcomes(static_cast<std::size_t>(all));
   const auto rehearse = [&](int first, int last) {

@@ -74,7 +74,7 @@ class Rehearsal {
  public:
   /// Takes all worlds up where they are believed to be.
   Rehearsal(Belief& belief, const skills::CellLayout& layout, const ToolReach& reaches,
-            const model::PlaceLimits& limits, int threads, const RehearsalTask& task);
+            const settings::PlaceLimits& limits, int threads, const RehearsalTask& task);
 
   [[nodiscard]] Attempt attempt(const packing::Candidate& candidate, const skills::Insertion& insertion,
                                 double packed_top);
@@ -96,7 +96,7 @@ class Rehearsal {
   const Belief& belief_;
   const skills::CellLayout& layout_;
   const ToolReach& reaches_;
-  model::PlaceLimits limits_;
+  settings::PlaceLimits limits_;
   int threads_;
   RehearsalTask task_;
   skills::PlannedBox box_;

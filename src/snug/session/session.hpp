@@ -22,7 +22,7 @@ struct SessionOptions {
   packing::DecisionRun decision;
   int threads = 1;           ///< results do not depend on it
   int samples = 8;           ///< sampled worlds in which every motion is rehearsed beside the nominal one; 0: none
-  std::optional<int> skips;  ///< in the place of the scenario's (model::RecoverySettings)
+  std::optional<int> skips;  ///< in the place of the scenario's (settings::RecoverySettings)
   /// What may follow an item; absent: any parcel of the scenario.
   std::optional<packing::FutureModel> future;
   cell::SimulationOptions simulation{.controller = motion::ControllerKind::Fast};  ///< of rollouts

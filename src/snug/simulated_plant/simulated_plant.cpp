@@ -177,7 +177,7 @@ void SimulatedPlant::fail(const cell::CellTick& tick, plant::MotionWatch& course
 }
 
 void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, Until until) {
-  const model::MotionGuards& guards = simulation_.scenario().motion_guards;
+  const settings::MotionGuards& guards = simulation_.scenario().motion_guards;
   const double start = simulation_.time(state_);
   cell::RestWatch rest(start);
   const auto speed = [this] {

@@ -57,7 +57,7 @@ Vector3 main_direction(const Vector3& from, const Vector3& to) {
 
 /// The highest surface that is large enough, near the way from aligner to container.
 std::optional<FlipPlace> find_flip_place(const std::vector<geometry::Aabb>& tops, const Vector3& from,
-                                         const Vector3& to, const model::PivotParams& params) {
+                                         const Vector3& to, const settings::PivotParams& params) {
   const Vector3 middle = 0.5 * (from + to), direction = main_direction(from, to);
   std::optional<FlipPlace> best;
   double best_distance = 0.0;

@@ -25,7 +25,7 @@ struct CellLayout {
   /// Motions are fast ones (motion::ControllerKind::Fast): tracked exactly, around the robot's first axis. A held box
   /// turns the way round that leaves the wrist less to do, and while it travels.
   bool is_fast = false;
-  model::TravelParams travel;
+  settings::TravelParams travel;
   double cup_growth = 0.0;  ///< m, of a cup that lets go
 };
 /// Throws InputError for a scenario without aligner, tool or target container.

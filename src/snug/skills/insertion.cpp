@@ -13,10 +13,10 @@ namespace {
 struct AxisView {
   double low = 1.0, high = 1.0;          ///< m, gaps
   double low_top = 0.0, high_top = 0.0;  ///< m, of the neighbours over the lower face
-  [[nodiscard]] bool low_near(const model::InsertionParams& params) const {
+  [[nodiscard]] bool low_near(const settings::InsertionParams& params) const {
     return low < params.near && low_top > params.least_neighbour;
   }
-  [[nodiscard]] bool high_near(const model::InsertionParams& params) const {
+  [[nodiscard]] bool high_near(const settings::InsertionParams& params) const {
     return high < params.near && high_top > params.least_neighbour;
   }
 };
@@ -41,7 +41,7 @@ const char* name_of(InsertionSkill skill) {
 }
 
 std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
-                                         const model::InsertionParams& params) {
+                                         const settings::InsertionParams& params) {
   Insertion base;
   int tight_axis = -1;
   bool slides = false;

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "snug/model/skill_params.hpp"
 #include "snug/packing/placement.hpp"
+#include "snug/settings/skill_params.hpp"
 
 namespace snug::skills {
 
@@ -28,6 +28,6 @@ struct Insertion {
 };
 /// Insertions worth trying for a candidate, the most promising first; never empty.
 [[nodiscard]] std::vector<Insertion> choose_insertions(const packing::Candidate& candidate, const Vector3& size,
-                                                       const model::InsertionParams& params);
+                                                       const settings::InsertionParams& params);
 
 }  // namespace snug::skills

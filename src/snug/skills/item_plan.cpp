@@ -49,7 +49,7 @@ double yaw_between(const Matrix3& R_from, const Matrix3& R_to) {
 
 PickIntent pick_intent(const model::Scenario& scenario, const CellLayout& layout, const PlannedBox& box,
                        const Pose& X_WP, const Pose& X_WP_next, double travel, PickKind kind) {
-  const model::PickParams& params = scenario.skills.pick;
+  const settings::PickParams& params = scenario.skills.pick;
   PickIntent intent;
   intent.box = box.id;
   intent.X_WP = X_WP;
@@ -121,7 +121,7 @@ std::vector<motion::Waypoint> plan_leaning_pick(const model::Scenario& scenario,
 }
 
 motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
-  const model::TravelParams& travel = scenario.skills.travel;
+  const settings::TravelParams& travel = scenario.skills.travel;
   const cup::Swing swing = cup::find_swing(scenario.cup, box.inertia, box.size, up_P, scenario.gravity.norm());
   return {std::clamp(swing.slow, travel.shortest_swing, travel.longest_swing),
           std::clamp(swing.fast, travel.shortest_swing, travel.longest_swing)};
@@ -170,7 +170,7 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
                                              const PlannedBox& box, const Pose& X_WP, const Vector3& face,
                                              const Pose& X_WP_next, double travel, bool again) {
   const model::CupParams& cup = scenario.cup;
-  const model::SideGraspParams& params = scenario.skills.side_grasp;
+  const settings::SideGraspParams& params = scenario.skills.side_grasp;
   SidePickIntent intent;
   intent.params = params;
   intent.box = box.id;
@@ -230,7 +230,7 @@ std::vector<motion::Waypoint> plan_press(const model::Scenario& scenario, const 
     X_WE.p.z() = z;
     return motion::make_waypoint(motion_class, box.id, X_WE, {}, "_press");
   };
-  const model::PressParams& params = scenario.skills.press;
+  const settings::PressParams& params = scenario.skills.press;
   const double over = std::max(travel, top) + free + params.stand_off;
   return {row_at(MotionClass::PrePlace, over), row_at(MotionClass::PlaceSlow, top + free - params.depth),
           row_at(MotionClass::PostPlace, over)};

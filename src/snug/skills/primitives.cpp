@@ -70,7 +70,7 @@ Pose tilted_pose(const PlaceIntent& intent, const TiltedEntry& entry, double z, 
 void add_tilted_entry(const PlaceIntent& intent, const TiltedEntry& entry, Rows& rows) {
   const MotionClass place = intent.gentle ? MotionClass::PlaceSlow : MotionClass::Place;
   const double height = -lowest_corner(intent.X_WP.R, intent.size);
-  const model::TiltedParams& tilted = intent.params.tilted;
+  const settings::TiltedParams& tilted = intent.params.tilted;
   const double low = entry.edge_height - tilted.depth;
   const auto tool = [&](const Pose& X_WP) { return intent.tool_for(X_WP); };
   rows.add(MotionClass::PrePlace, tool(tilted_pose(intent, entry, entry.edge_height + tilted.above, intent.come_from)),
@@ -158,7 +158,7 @@ Matrix3 flipped(const Matrix3& R_WP, const Vector3& direction) {
 
 std::vector<motion::Waypoint> flip_rows(const FlipIntent& intent) {
   SNUG_CHECK(std::abs(intent.direction.z()) < 1e-9, "a flip goes about a level edge");
-  const model::PivotParams& params = intent.params;
+  const settings::PivotParams& params = intent.params;
   const Vector3 axis = -Vector3::UnitZ().cross(intent.direction);  // turns down toward `direction`
   const double half_height = half_along(intent.R_WP, intent.size, Vector3::UnitZ());
   const double along = half_along(intent.R_WP, intent.size, intent.direction);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "snug/model/skill_params.hpp"
 #include "snug/motion/waypoint.hpp"
+#include "snug/settings/skill_params.hpp"
 
 namespace snug::skills {
 
@@ -53,7 +53,7 @@ struct FlipIntent {
   double travel_bottom = 0.08;            ///< m, z in W of the lower edge on the way in
   Pose X_PE;                              ///< tool on the box, the cup not deformed
   ToolFor tool_for;
-  model::PivotParams params;
+  settings::PivotParams params;
 };
 [[nodiscard]] std::vector<motion::Waypoint> flip_rows(const FlipIntent& intent);
 /// R_WP of the box that lies after this flip.
@@ -83,7 +83,7 @@ struct PlaceIntent {
   double entry_bottom = 0.0;             ///< m, z of the lower face where it stops before it goes down
   Vector3 come_from = Vector3::Zero();   ///< m, level: shift of the box on its way down, away from its neighbours
   Vector3 overtravel = Vector3::Zero();  ///< m, level: how far it is pushed beyond its place, against neighbours
-  model::InsertionParams params;
+  settings::InsertionParams params;
   std::optional<TiltedEntry> tilted;
   /// Given in the place of travel_bottom and entry_bottom, and of where the tool leaves to.
   std::optional<ToolHeights> tool_heights;

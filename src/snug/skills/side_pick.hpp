@@ -18,7 +18,7 @@ struct SidePickIntent {
   double approach_height = 0.2;            ///< m, z of E in W, before
   double lift = 0.2;                       ///< m, the box is lifted by this, still as it stood
   bool again = false;                      ///< as of PickIntent
-  model::SideGraspParams params;
+  settings::SideGraspParams params;
 };
 /// Rows PrePick (high and upright, high and level, low before the face), Box, PostPick with vacuum: the box as it
 /// stood, lifted. With `again`: PreRePick, RePick, PostRePick.
@@ -43,7 +43,7 @@ struct SetDownIntent {
   Vector3 size = Vector3::Constant(0.1);
   double travel_bottom = 0.08;  ///< m, z in W of the lower face on the way in
   ToolFor tool_for;
-  model::SetDownParams params;
+  settings::SetDownParams params;
 };
 /// Rows PreTwist, Twist, Twist with vacuum off and blow-off on, PreTwist straight up.
 [[nodiscard]] std::vector<motion::Waypoint> set_down_rows(const SetDownIntent& intent);

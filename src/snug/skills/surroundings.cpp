@@ -19,7 +19,7 @@ bool overlap(const packing::Extent& a, const packing::Extent& b, int axis, doubl
   return std::min(a.high[axis], b.high[axis]) - std::max(a.low[axis], b.low[axis]) > graze;
 }
 
-void add_neighbour(const packing::Extent& other, const packing::Extent& box, const model::InsertionParams& params,
+void add_neighbour(const packing::Extent& other, const packing::Extent& box, const settings::InsertionParams& params,
                    packing::Candidate& candidate) {
   const double graze = params.graze;
   for (int axis = 0; axis < 2; ++axis) {
@@ -46,7 +46,7 @@ void add_neighbour(const packing::Extent& other, const packing::Extent& box, con
 }  // namespace
 
 packing::Candidate measured(const packing::ContainerState& state, packing::Candidate candidate, const Vector3& size,
-                            double shrink, const model::InsertionParams& params) {
+                            double shrink, const settings::InsertionParams& params) {
   Pose& X_TP = candidate.placement.X_TP;
   const Vector3 half = 0.5 * (X_TP.R.cwiseAbs() * (size - Vector3::Constant(shrink)));
   packing::Extent box{X_TP.p - half, X_TP.p + half};

@@ -1,9 +1,9 @@
 // Surroundings: what a box meets around the place it shall have: support, neighbours, walls.
 #pragma once
 
-#include "snug/model/skill_params.hpp"
 #include "snug/packing/container_state.hpp"
 #include "snug/packing/placement.hpp"
+#include "snug/settings/skill_params.hpp"
 
 namespace snug::skills {
 
@@ -11,6 +11,6 @@ namespace snug::skills {
 /// and `shrink` is taken from every size: boxes collide as if they were smaller by it. Of `params`: graze and inside.
 [[nodiscard]] packing::Candidate measured(const packing::ContainerState& state, packing::Candidate candidate,
                                           const Vector3& size, double shrink,
-                                          const model::InsertionParams& params = {});
+                                          const settings::InsertionParams& params = {});
 
 }  // namespace snug::skills

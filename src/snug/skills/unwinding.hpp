@@ -4,16 +4,16 @@
 #include <optional>
 #include <vector>
 
-#include "snug/model/skill_params.hpp"
 #include "snug/motion/way.hpp"
 #include "snug/motion/waypoint.hpp"
+#include "snug/settings/skill_params.hpp"
 
 namespace snug::skills {
 
 /// What waypoints in between keep from winding up.
 struct Unwinding {
   double neutral_yaw = 0.0;                                ///< rad, of the tool
-  double sure_turn = model::TravelParams().sure_turn;      ///< rad
+  double sure_turn = settings::TravelParams().sure_turn;   ///< rad
   bool on_the_way = false;                                 ///< it is turned while it travels
   std::optional<motion::PanAxis> pan_axis = std::nullopt;  ///< around which ways go
 };

@@ -12,7 +12,7 @@ namespace {
 
 class Scorer {
  public:
-  Scorer(const model::Scenario& scenario, const model::PlaceLimits& limits, const Witness& witness)
+  Scorer(const model::Scenario& scenario, const settings::PlaceLimits& limits, const Witness& witness)
       : scenario_(scenario),
         container_(*model::find_container(scenario, scenario.target)),
         limits_(limits),
@@ -94,7 +94,7 @@ class Scorer {
 
   const model::Scenario& scenario_;
   const model::Container& container_;
-  model::PlaceLimits limits_;
+  settings::PlaceLimits limits_;
   const Witness& witness_;
   TruePoses before_;
 };

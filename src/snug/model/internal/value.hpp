@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "snug/core/field.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/model/field.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::model::internal {

@@ -139,13 +139,13 @@ TEST(ScenarioReference, SaysTheDefaultsByWhichBoxesArePacked) {
       EXPECT_EQ(found != documented.end() ? found->second : "no row", value) << key;
     }
   };
-  expect_documented(Defaults::of<SkillParams>("skills"));
-  expect_documented(Defaults::of<PackingSettings>("packing"));
-  expect_documented(Defaults::of<PlaceLimits>("place_limits"));
-  expect_documented(Defaults::of<RehearsalSettings>("rehearsal"));
-  expect_documented(Defaults::of<BeliefParams>("belief"));
-  expect_documented(Defaults::of<RecoverySettings>("recovery"));
-  expect_documented(Defaults::of<MotionGuards>("motion_guards"));
+  expect_documented(Defaults::of<settings::SkillParams>("skills"));
+  expect_documented(Defaults::of<settings::PackingSettings>("packing"));
+  expect_documented(Defaults::of<settings::PlaceLimits>("place_limits"));
+  expect_documented(Defaults::of<settings::RehearsalSettings>("rehearsal"));
+  expect_documented(Defaults::of<settings::BeliefParams>("belief"));
+  expect_documented(Defaults::of<settings::RecoverySettings>("recovery"));
+  expect_documented(Defaults::of<settings::MotionGuards>("motion_guards"));
 }
 
 TEST(ScenarioReference, ShowsExamplesThatLoad) {

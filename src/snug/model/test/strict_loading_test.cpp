@@ -332,7 +332,7 @@ TEST(StrictLoading, HoldsSkillsAndSettingsOfSessionsToTheirRanges) {
       "s.yaml");
   EXPECT_EQ(scenario.skills.insertion.overtravel, 0.004);
   EXPECT_EQ(scenario.skills.insertion.tilted.push, 0.002);
-  EXPECT_EQ(scenario.skills.insertion.press, InsertionParams().press) << "what is not said stays";
+  EXPECT_EQ(scenario.skills.insertion.press, settings::InsertionParams().press) << "what is not said stays";
   EXPECT_EQ(scenario.packing.planned_interference, 0.002);
   EXPECT_EQ(scenario.place_limits.force, 120.0);
   EXPECT_NEAR(scenario.place_limits.tilt, 3.0 * std::numbers::pi / 180.0, 1e-15);

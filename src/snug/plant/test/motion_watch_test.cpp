@@ -90,7 +90,7 @@ TEST(MotionWatch, ANewRowHasPatienceOfItsOwn) {
 }
 
 TEST(Settling, EndsWhenTheToolStandsButNotBeforeAndNotNever) {
-  const model::MotionGuards settings;
+  const settings::MotionGuards settings;
   const double lagged = least_settle(settings, true, false), exact = least_settle(settings, false, false);
   EXPECT_TRUE(is_settling(settings, lagged, 10.0, 10.2, 0.0));
   EXPECT_FALSE(is_settling(settings, lagged, 10.0, 10.31, 0.0));

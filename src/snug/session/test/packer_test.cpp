@@ -18,7 +18,7 @@ using test::ScriptedPlant;
 using test::two_boxes;
 
 SessionResult pack(ScriptedPlant& plant, int items, SessionOptions options = quick_options(),
-                   const model::RehearsalSettings& rehearsal = {}, int most_tries = 4) {
+                   const settings::RehearsalSettings& rehearsal = {}, int most_tries = 4) {
   model::Scenario scenario = two_boxes();
   scenario.rehearsal = rehearsal;
   scenario.recovery.most_tries = most_tries;
@@ -57,7 +57,7 @@ TEST(Packer, DoesNotKnowWhereABoxIsThatFellOrWasLetGoEarlyAndIsNotSeen) {
 TEST(Packer, RehearsesAnewWhatWasPickedInVain) {
   ScriptedPlant plant;
   plant.ends = {EndReason::NoSeal};
-  model::RehearsalSettings rehearsal;
+  settings::RehearsalSettings rehearsal;
   rehearsal.max_attempts = rehearsal.most_attempts = 1;  // used up by the first motion
   const SessionResult result = pack(plant, 1, quick_options(), rehearsal);
   EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
@@ -147,7 +147,7 @@ TEST(Packer, AFastRobotTurnsABoxOnlyWhereThatIsWorthIt) {
   SessionOptions options = foresighted_options();
   const auto flips = [&](double reorientation_cost) {
     ScriptedPlant plant;
-    model::RehearsalSettings rehearsal;
+    settings::RehearsalSettings rehearsal;
     rehearsal.reorientation_cost = rehearsal.side_grasp_cost = reorientation_cost;
     const SessionResult result = pack(plant, 1, options, rehearsal);
     EXPECT_EQ(result.items[0].end, ItemEnd::Placed) << result.items[0].reason;
@@ -162,7 +162,7 @@ TEST(Packer, AFastRobotTurnsABoxOnlyWhereThatIsWorthIt) {
 TEST(Packer, WhatASideGraspCostsCountsWhereOneWillDo) {
   const auto turned = [&](double reorientation_cost, double side_grasp_cost) {
     ScriptedPlant plant;
-    model::RehearsalSettings rehearsal;
+    settings::RehearsalSettings rehearsal;
     rehearsal.reorientation_cost = reorientation_cost;
     rehearsal.side_grasp_cost = side_grasp_cost;
     return pack(plant, 1, foresighted_options(), rehearsal).items[0].reorientation;

@@ -286,7 +286,7 @@ TEST(RecoveryFlow, ABoxThatLeansForEverIsPressedOnceForEachMotionAndThenGivenUp)
 /// Just within and just beyond the limits of 20 mm and 6 degrees.
 TEST(RecoveryFlow, ABoxIsPlacedWithinTheLimitsAndOffItsPlaceBeyondThem) {
   const Pose X_WP = planned_pose();
-  const model::PlaceLimits& limits = two_boxes().place_limits;
+  const settings::PlaceLimits& limits = two_boxes().place_limits;
   const auto trouble_of = [&](const Vector3& shift, double yaw) {
     ScriptedPlant plant;
     plant.happens = [&](int) {

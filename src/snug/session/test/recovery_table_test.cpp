@@ -12,7 +12,7 @@
 namespace snug::session {
 namespace {
 
-const model::RecoverySettings kRules;
+const settings::RecoverySettings kRules;
 
 /// Every trouble with every combination of what may be, tries, stops, pictures and gains: 1.3 million.
 void for_every_situation(const std::function<void(const Situation&, Remedy)>& expect) {

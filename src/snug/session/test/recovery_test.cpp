@@ -6,7 +6,7 @@
 namespace snug::session {
 namespace {
 
-const model::RecoverySettings kSettings;
+const settings::RecoverySettings kSettings;
 
 Remedy remedy_for(const Situation& situation) { return choose_remedy(situation, kSettings); }
 

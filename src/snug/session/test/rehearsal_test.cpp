@@ -49,7 +49,7 @@ class RehearsalOfOneBox : public testing::Test {
 
   model::Scenario scenario_;
   skills::CellLayout layout_;
-  model::PlaceLimits limits_;
+  settings::PlaceLimits limits_;
   std::unique_ptr<Belief> belief_;
 };
 
@@ -77,7 +77,7 @@ TEST_F(RehearsalOfOneBox, SucceedsOnAnEmptyFloorWithForcesOfItsWeight) {
 /// Each limit alone set to what nothing keeps: the attempt fails for that reason and says so.
 TEST_F(RehearsalOfOneBox, FailsByEachLimitForItsOwnReason) {
   believe(0);
-  const model::PlaceLimits usual = limits_;
+  const settings::PlaceLimits usual = limits_;
   const auto failure = [&] {
     const Attempt one = attempt(candidate());
     EXPECT_FALSE(one.succeeded);

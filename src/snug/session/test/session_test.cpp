@@ -113,7 +113,7 @@ TEST(Session, ABoxOfAPlanOnPaperThatDoesNotComeIsLeftOut) {
 
 /// (rate n + prior count) / (n + count): from 97 % without samples toward the rate of many.
 TEST(Session, PredictsTheSuccessOfItsRehearsalsAndWhatIsKnownBeforeThem) {
-  const model::RehearsalSettings& rules = two_boxes().rehearsal;
+  const settings::RehearsalSettings& rules = two_boxes().rehearsal;
   double last = 0.0;
   for (const int samples : {0, 1, 4}) {
     ScriptedPlant plant;
@@ -164,7 +164,7 @@ TEST(Session, MotionsAreGuardedByTheLimitsOfTheScenario) {
   (void)session::pack(two_boxes(), "1", options, fast);
   options.simulation.controller = motion::ControllerKind::Faithful;
   (void)session::pack(two_boxes(), "1", options, slow);
-  const model::PlaceLimits& limits = two_boxes().place_limits;
+  const settings::PlaceLimits& limits = two_boxes().place_limits;
   EXPECT_EQ(fast.motions[0].guards, (plant::Guards{limits.force, true, limits.hold_guard}));
   EXPECT_EQ(slow.motions[0].guards, (plant::Guards{limits.force, true, 0.0})) << "of fast motions only";
   EXPECT_EQ(fast.motions.back().guards, (plant::Guards{std::nullopt, false, 0.0})) << "home";

@@ -52,7 +52,7 @@ TEST(FlipPlace, IsOnTheHighestSurfaceAndOfEqualOnesOnTheNearest) {
 }
 
 TEST(FlipPlace, NeedsTheRoomOfTheDragOnTheSideOfTheContainerAlone) {
-  const model::PivotParams params = demonstrator().skills.pivot;
+  const settings::PivotParams params = demonstrator().skills.pivot;
   const double along = params.surface_room + 0.5 * params.surface_drag, across = params.surface_room;
   for (const double more : {-1e-6, 1e-6}) {
     const auto is_large_enough = [&](double x, double y) {
@@ -68,7 +68,7 @@ TEST(FlipPlace, NeedsTheRoomOfTheDragOnTheSideOfTheContainerAlone) {
 }
 
 TEST(FlipPlace, LiesOnATurnedBenchWithTheRoomOfTheDrag) {
-  const model::PivotParams params = demonstrator().skills.pivot;
+  const settings::PivotParams params = demonstrator().skills.pivot;
   int found = 0;
   for (int i = 0; i < 36; ++i) {
     SCOPED_TRACE(i);

@@ -12,7 +12,7 @@ namespace snug::skills {
 namespace {
 
 const Vector3 kSize(0.2, 0.16, 0.1);
-const model::InsertionParams kParams;
+const settings::InsertionParams kParams;
 
 /// A place with nothing beside it: low x, high x, low y, high y.
 packing::Candidate free_place() {
@@ -123,7 +123,7 @@ TEST(ChooseInsertions, NeverComeFromBeyondTheGapAndPushOnlyAgainstWhatIsNear) {
 }
 
 TEST(ChooseInsertions, ComeDownBesideNothingWhereTheMarginTakesAllTheRoom) {
-  model::InsertionParams params = kParams;
+  settings::InsertionParams params = kParams;
   params.slide_margin = 3.0 * params.slide_room;
   Rng rng(23);
   for (int i = 0; i < 500; ++i) {

@@ -226,7 +226,7 @@ TEST(Drivable, TellsFastMotionsOfTheSwingInRowsInWhichABoxHangs) {
 
 TEST(SwingOf, StaysWithinWhatFastMotionsAvoidAndIsSlowerOfAHeavierBox) {
   const model::Scenario& scenario = demonstrator();
-  const model::TravelParams& travel = scenario.skills.travel;
+  const settings::TravelParams& travel = scenario.skills.travel;
   double last = 0.0;
   for (const double factor : {1e-4, 0.5, 1.0, 1.5, 1e3}) {
     PlannedBox box = box_with(Vector3(0.0, 0.0, -0.027));

@@ -199,7 +199,7 @@ TEST(PlanPress, PushesOnTheMiddleFromAboveWithoutVacuum) {
 TEST(PlanFlip, BringsTheAxisAskedForUpAndTheBoxOntoThePlace) {
   Rng rng(53);
   const model::Scenario& scenario = demonstrator();
-  const model::PivotParams& params = scenario.skills.pivot;
+  const settings::PivotParams& params = scenario.skills.pivot;
   const PlannedBox box = box_with(Vector3(0.0, 0.0, -0.01));
   for (int i = 0; i < 40; ++i) {
     SCOPED_TRACE(i);

@@ -130,7 +130,7 @@ TEST(Measured, ShrinksBoxesOnBothSidesOfAGapAndLeavesWallsAsTheyAre) {
 }
 
 TEST(Measured, LeavesOutWhatItMerelyGrazes) {
-  const model::InsertionParams params;
+  const settings::InsertionParams params;
   const Vector3 size = Vector3::Constant(0.1);
   for (const double overlap : {params.graze - 1e-6, params.graze + 1e-6}) {
     const bool counts = overlap > params.graze;

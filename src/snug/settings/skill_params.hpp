@@ -3,9 +3,9 @@
 
 #include <numbers>
 
-#include "snug/model/field.hpp"
+#include "snug/core/field.hpp"
 
-namespace snug::model {
+namespace snug::settings {
 
 /// From above.
 struct PickParams {
@@ -229,4 +229,4 @@ struct SkillParams {
   bool operator==(const SkillParams&) const = default;
 };
 
-}  // namespace snug::model
+}  // namespace snug::settings

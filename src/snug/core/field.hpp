@@ -1,7 +1,7 @@
 // Field: how a settings struct lists its keys once, with the range each value must lie in.
 #pragma once
 
-namespace snug::model {
+namespace snug {
 
 /// What values a number may take; checked when it is loaded and never again.
 enum class Range {
@@ -22,4 +22,4 @@ struct Degrees {
   double& radians;
 };
 
-}  // namespace snug::model
+}  // namespace snug

@@ -5,9 +5,9 @@
 
 #include <numbers>
 
-#include "snug/model/field.hpp"
+#include "snug/core/field.hpp"
 
-namespace snug::model {
+namespace snug::settings {
 
 /// Where a box may go.
 struct PackingSettings {
@@ -197,4 +197,4 @@ struct MotionGuards {
   bool operator==(const MotionGuards&) const = default;
 };
 
-}  // namespace snug::model
+}  // namespace snug::settings
