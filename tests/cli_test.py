@@ -140,7 +140,7 @@ class Simulate(unittest.TestCase):
                 self.assert_refused(snug("simulate", DROP, option, value), option)
 
     def test_misspelt_choice_gets_a_suggestion(self):
-        self.assert_refused(snug("simulate", DROP, "--controller", "idael"), "did you mean ideal?")
+        self.assert_refused(snug("simulate", DROP, "--controller", "exatc"), "did you mean exact?")
 
     def test_record_into_a_missing_folder_is_refused(self):
         self.assert_refused(snug("simulate", DROP, "--until", "0.01", "-o", self.folder / "none" / "run.h5"), "run.h5")
@@ -1093,9 +1093,9 @@ class OtherCells(unittest.TestCase):
         self.assertEqual(line.split().count("-"), 2, "neither a success rate nor a force")
 
     def test_tempo_is_faster_and_says_where_the_seconds_go(self):
-        lagged, fast = self.pack("--sequence", "two", "--controller", "faithful"), self.pack("--sequence", "two")
+        lagged, fast = self.pack("--sequence", "two", "--controller", "lagged"), self.pack("--sequence", "two")
         slower = self.pack("--sequence", "two", "--tempo", 0.5)
-        self.assertEqual((lagged["controller"], lagged["tempo"]), ("faithful", None))
+        self.assertEqual((lagged["controller"], lagged["tempo"]), ("lagged", None))
         self.assertEqual((fast["controller"], fast["tempo"]), ("fast", 1.0))
         for packed in (lagged, fast, slower):
             self.assertEqual(packed["executed_boxes"], 2, packed["stopped"])
@@ -1116,9 +1116,9 @@ class OtherCells(unittest.TestCase):
         self.pack("--sequence", "two", "--plant-seed", 0, "--program", program)
         words = (CELL, "--items", self.orders, "--program", program, "--sequence", "two")
         runs = {kind: json.loads(snug("simulate", *words, "--cup", "phases", "--controller", kind, "--json").stdout)
-                for kind in ("fast", "faithful")}
+                for kind in ("fast", "lagged")}
         self.assertEqual([box["state"] for box in runs["fast"]["boxes"]], ["packed"] * 2)
-        self.assertLess(runs["fast"]["duration_s"], 0.6 * runs["faithful"]["duration_s"])
+        self.assertLess(runs["fast"]["duration_s"], 0.6 * runs["lagged"]["duration_s"])
         checked = json.loads(snug("check", *words, "--controller", "fast", "--json").stdout)
         # Where boxes are pushed in, what is held is inside things by more than `check` allows, with any controller.
         self.assertEqual([one for one in checked["findings"] if not one["waypoint"].startswith("Place")], [],
@@ -1130,7 +1130,7 @@ class OtherCells(unittest.TestCase):
         self.assertEqual(program.read_text().splitlines()[0], "# tempo: 0.8")
         words = (CELL, "--items", self.orders, "--program", program, "--sequence", "two", "--robot", "ur10", "--json")
         seconds = {more: json.loads(snug("simulate", *words, *more).stdout)["duration_s"]
-                   for more in ((), ("--controller", "fast", "--tempo", "0.8"), ("--tempo", "1"), ("--controller", "faithful"))}
+                   for more in ((), ("--controller", "fast", "--tempo", "0.8"), ("--tempo", "1"), ("--controller", "lagged"))}
         own, said, faster, lagged = seconds.values()
         self.assertEqual(own, said)
         self.assertLess(faster, own)
@@ -1158,7 +1158,7 @@ class OtherCells(unittest.TestCase):
         self.assertNotIn("lags", script.read_text())
         stated = float(re.search(r"Simulated: ([0-9.]+) s", script.read_text())[1])
         self.assertAlmostEqual(stated, own, delta=1.0, msg="and the time until the last waypoint counts as reached")
-        self.assert_refused(snug(*export, "urscript", "-o", script, "--controller", "faithful", "--tempo", 0.8), "--tempo")
+        self.assert_refused(snug(*export, "urscript", "-o", script, "--controller", "lagged", "--tempo", 0.8), "--tempo")
         program.write_text(program.read_text().replace("tempo: 0.8", "tempo: 8"))
         self.assert_refused(snug("simulate", *words), "own.csv:1", "tempo", "0.1 to 1")
 
@@ -1166,7 +1166,7 @@ class OtherCells(unittest.TestCase):
         for tempo in (0.49, 1.01, "nan", "fast"):
             self.assert_refused(snug("pack", CELL, "--sequence", "1", "--tempo", tempo), "--tempo")
         for verb in (("pack", CELL, "--sequence", "1"), ("compare", CELL)):
-            self.assert_refused(snug(*verb, "--tempo", 0.8, "--controller", "faithful"), "--tempo", "--controller fast")
+            self.assert_refused(snug(*verb, "--tempo", 0.8, "--controller", "lagged"), "--tempo", "--controller fast")
 
     def test_comparison_prints_names_whole(self):
         lines = snug("compare", CELL, "--sequences", "1", "--agents", "margin", *self.QUICK).stdout.splitlines()

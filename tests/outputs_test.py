@@ -500,7 +500,7 @@ class ExitCodes(Folder):
         slow = "max_acceleration: 3.0, max_speed: 1.0e-5, max_turn_speed: 1.5, max_turn_acceleration: 0.5}"
         cell.write_text("\n".join(line[:line.index("max_acc")] + slow if "prefix: home" in line else line
                                   for line in text.splitlines()))
-        items = ("--items", self.one_box(), *QUICK, "--controller", "faithful", "--json")  # whose limits these are
+        items = ("--items", self.one_box(), *QUICK, "--controller", "lagged", "--json")  # whose limits these are
         for scenario, code in ((CELL, 0), (cell, 1)):
             with self.subTest(code=code):
                 failure = "on the way home: timeout: after 60.0 s toward home" if code else ""

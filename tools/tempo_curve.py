@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def pack(words, tempo, sequence):
     """The documented JSON of one session; with the lag where `tempo` is 0."""
-    command = [*words, "--sequence", sequence, "--json"] + (["--tempo", str(tempo)] if tempo else ["--controller", "faithful"])
+    command = [*words, "--sequence", sequence, "--json"] + (["--tempo", str(tempo)] if tempo else ["--controller", "lagged"])
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)}\n{done.stderr}")

@@ -36,7 +36,7 @@ class MotionPlanner {
   MotionPlanner(const model::Scenario& scenario, const model::Sequence& sequence)
       : scenario_(scenario),
         sequence_(sequence),
-        simulation_(scenario, sequence.name, {.controller = motion::ControllerKind::Fast}),
+        simulation_(scenario, sequence.name, {.tracking = motion::FastTracking{}}),
         layout_(skills::make_layout(scenario, cell::find_pan_axis(scenario))),
         reaches_(session::make_tool_reach(scenario)) {
     layout_.is_fast = true;

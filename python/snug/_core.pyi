@@ -138,7 +138,7 @@ class Cell:
     """The robot's cell under way with a program, one tick of its controller at a time.
 
     cup: "phases", "holding" (attached and released at once), or "": phases, with corrections the cup that they were made
-    for; controller: "faithful" or "ideal"; robot: name of the scenario's robot, or "": the tool moves by itself;
+    for; controller: "lagged" or "exact"; robot: name of the scenario's robot, or "": the tool moves by itself;
     corrections: layer of the scenario's site corrections, or "".
     """
 

@@ -48,7 +48,7 @@ def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware
         robot: name of the scenario's robot, "none": the tool moves by itself; None: the robot where its file is there.
         perception: "exact", "noisy", "dead-reckoning" or "camera" (the scenario's first).
         monte_carlo: repeats the finished program so many times, open loop, in cells drawn anew.
-        tempo: fraction of the speeds, 0.5 .. 1, of fast motions; None: with the demonstrator's lag (`--controller faithful`).
+        tempo: fraction of the speeds, 0.5 .. 1, of fast motions; None: with the demonstrator's lag (`--controller lagged`).
         record: HDF5 file for a recording of the plant's course, or "".
         progress: called as progress(item, items, packed, percent) after each item.
 
@@ -79,7 +79,7 @@ def simulate(scenario: _core.Scenario, program: Optional[_core.Program] = None, 
         robot: name of the scenario's robot; "": the tool moves by itself.
         cup: "phases" (pressure builds up and decays, holds can fail) or "holding" (attached and released at once);
             "": phases, with corrections the cup that they were made for.
-        controller: "faithful" (the demonstrator's lag), "ideal" or "fast"; None: as the program was packed.
+        controller: "lagged" (the demonstrator's lag), "exact" or "fast"; None: as the program was packed.
         until: s; the program's end or the scenario's duration by default.
         record: HDF5 file, or "".
 

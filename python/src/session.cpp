@@ -74,12 +74,10 @@ session::SessionOptions session_options(const model::Scenario& scenario, const P
   session.decision.threads = session.threads;
   session.samples = words.samples;
   session.simulation.robot = choose_robot(words, scenario);
-  session.simulation.controller = words.tempo ? motion::ControllerKind::Fast : motion::ControllerKind::Faithful;
-  if (words.tempo) {
-    if (!(*words.tempo >= 0.5 && *words.tempo <= 1.0))
-      throw InputError("argument", "tempo", std::to_string(*words.tempo), "0.5 .. 1, or None");
-    session.simulation.tempo = *words.tempo;
-  }
+  if (words.tempo && !(*words.tempo >= 0.5 && *words.tempo <= 1.0))
+    throw InputError("argument", "tempo", std::to_string(*words.tempo), "0.5 .. 1, or None");
+  session.simulation.tracking =
+      motion::choose_tracking(std::nullopt, words.tempo, motion::LaggedTracking{}, "argument");
   return session;
 }
 
@@ -94,7 +92,7 @@ void save_recording(const model::Scenario& scenario, const study::Trial& trial, 
   const std::string& robot = trial.plant.simulation.robot;
   recorded.settings_json = nlohmann::json{
       {"cup", "phases"},
-      {"controller", motion::name_of(trial.plant.simulation.controller)},
+      {"controller", motion::name_of(trial.plant.simulation.tracking)},
       {"corrections", "none"},
       {"robot", robot.empty() ? "none" : robot},
       {"plant_seed", trial.plant_seed},
@@ -166,13 +164,9 @@ py::object simulate(const ScenarioHandle& scenario, const ProgramHandle& program
   run.corrections = corrections;
   run.simulation.robot = robot;
   if (!cup.empty()) run.simulation.cup = cup::cup_mode_of(cup, "argument");
-  const std::optional<double> tempo = program ? (**program).tempo : std::nullopt;
-  if (!controller.empty()) {
-    run.simulation.controller = motion::controller_kind_of(controller, "argument");
-  } else if (tempo) {
-    run.simulation.controller = motion::ControllerKind::Fast;
-  }
-  run.simulation.tempo = tempo.value_or(1.0);
+  const motion::Tracking made_for = program ? (**program).tracking : motion::Tracking();
+  run.simulation.tracking = motion::choose_tracking(controller.empty() ? std::nullopt : std::optional(controller),
+                                                    std::nullopt, made_for, "argument");
   if (until && !(*until > 0.0)) throw InputError("argument", "until", std::to_string(*until), "above 0 s");
   run.until = until;
   run.record_path = record;

@@ -127,10 +127,10 @@ cell::SimulationOptions options_of(const model::Scenario& scenario, const std::s
                                    const std::string& controller, const std::string& robot,
                                    const std::string& corrections) {
   cell::SimulationOptions options;
-  if (controller != "faithful" && controller != "ideal")
-    throw InputError("argument", "controller", "'" + controller + "'", "faithful or ideal");
   options.cup = cup.empty() ? runs::cup_for(scenario, corrections) : cup::cup_mode_of(cup, "argument");
-  options.controller = controller == "ideal" ? motion::ControllerKind::Ideal : motion::ControllerKind::Faithful;
+  options.tracking = motion::tracking_of(controller, "argument");
+  if (motion::is_fast(options.tracking))
+    throw InputError("argument", "controller", "'" + controller + "'", "lagged or exact");
   options.robot = robot;
   return options;
 }
@@ -296,7 +296,7 @@ void bind_world(py::module_& m) {
   cell.def(py::init<ScenarioHandle, const std::string&, ProgramHandle, const std::string&, const std::string&,
                     const std::string&, const std::string&>(),
            py::arg("scenario"), py::arg("sequence"), py::arg("program"), py::kw_only(), py::arg("cup") = "",
-           py::arg("controller") = "faithful", py::arg("robot") = "", py::arg("corrections") = "")
+           py::arg("controller") = "lagged", py::arg("robot") = "", py::arg("corrections") = "")
       .def("step", &Cell::step, py::arg("ticks") = 1)
       .def("run", &Cell::run)
       .def("snapshot", &Cell::snapshot)

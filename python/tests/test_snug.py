@@ -284,11 +284,11 @@ class TestPacking:
         words = dict(agent="margin", samples=0, robot="none", decision_time=0.01, threads=1)
         fast, lagged = snug.pack(demonstrator, "1", **words), snug.pack(demonstrator, "1", tempo=None, **words)
         assert (fast.controller, fast.tempo) == ("fast", 1.0)
-        assert (lagged.controller, lagged.tempo) == ("faithful", None)
+        assert (lagged.controller, lagged.tempo) == ("lagged", None)
         assert fast.boxes_per_hour > lagged.boxes_per_hour
         assert fast.program.to_csv().startswith("# tempo: 1")
         own, slow = (snug.simulate(demonstrator, fast.program, "1", cup="phases", controller=controller)["duration_s"]
-                     for controller in (None, "faithful"))
+                     for controller in (None, "lagged"))
         assert own < slow
         with pytest.raises(snug.InputError, match="tempo"):
             snug.pack(demonstrator, "1", tempo=0.4, **words)

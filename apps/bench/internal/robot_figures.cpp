@@ -17,7 +17,7 @@ namespace {
 /// Every tick of the program by the wall clock: kinematics, distances and QP, without the cell around them.
 void measure_ticks(const model::Scenario& scenario, const motion::Program& program, std::vector<Figure>& figures) {
   const cell::Simulation simulation(scenario, "1",
-                                    {motion::ControllerKind::Faithful, cup::CupMode::Holding, scenario.robot->name});
+                                    {motion::LaggedTracking{}, cup::CupMode::Holding, scenario.robot->name});
   const motion::PreparedProgram plan = simulation.prepare(program);
   const control::JointController& controller = simulation.arm()->controller();
   const control::StateMachine machine = control::make_demonstrator_machine();

@@ -104,8 +104,7 @@ int run_check(const CheckOptions& options) {
   const std::string text = read_file(options.program, "a program file (CSV)");
   cell::SimulationOptions how;
   choose_motion(options.motion, text, options.program, how);
-  check.controller = how.controller;
-  check.tempo = how.tempo;
+  check.tracking = how.tracking;
   print_robot_warnings(scenario);
   const motion::Program read = motion::parse_program(text, options.program);
   if (options.sequence) warn_misfit(scenario, *options.sequence, read);

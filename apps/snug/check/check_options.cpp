@@ -13,12 +13,12 @@ namespace {
 constexpr const char* kCheckExamples =
     R"(Moves the arm with its controller and limits, as a run does, but with nothing to touch, and looks at the whole way:
 reach, joint limits and speeds, singularities, the arm's own links, and links, gripper, cup and held box against
-everything that stands in the cell. Nothing is felt: rows of a fast program go to their end; ideal is how exported programs are done.
+everything that stands in the cell. Nothing is felt: rows of a fast program go to their end; exact is how exported programs are done.
 Margins of collisions are distances, negative inside; what cup and held box may be inside is said beside them. Rows with
 one finding stand in one line. Exit code 0: nothing in the way; 1: something is; 2: the input cannot be used.
 Examples:
   snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1
-  snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --controller ideal --json)";
+  snug check scenarios/box-demonstrator.yaml --program program.csv --sequence 1 --controller exact --json)";
 
 }  // namespace
 

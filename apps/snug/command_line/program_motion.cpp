@@ -6,16 +6,15 @@
 #include "apps/snug/command_line/options.hpp"
 #include "apps/snug/command_line/ranges.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/motion/program_tempo.hpp"
+#include "snug/motion/program_tracking.hpp"
 
 namespace snug::app {
 
 void add_motion_words(CLI::App& verb, MotionWords& words) {
-  verb.add_option(
-          "--controller", words.controller,
-          "faithful: the demonstrator's timing and lag; ideal: the reference, exactly; fast: bounded jerk, blends, "
-          "rows and waits that end by what is felt, as pack does (default: as the program was packed)")
-      ->check(one_of({"faithful", "ideal", "fast"}))
+  verb.add_option("--controller", words.controller,
+                  "lagged: the demonstrator's timing and lag; exact: on the reference; fast: bounded jerk, blends, "
+                  "rows and waits that end by what is felt, as pack does (default: as the program was packed)")
+      ->check(one_of({"lagged", "exact", "fast"}))
       ->type_name("KIND");
   verb.add_option("--tempo", words.tempo,
                   "fraction of the speeds, with fast (default: that the program was packed with, or 1)")
@@ -30,14 +29,9 @@ void refuse_tempo_without_fast(const std::optional<double>& tempo, const std::st
 
 void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,
                    cell::SimulationOptions& options) {
-  const std::optional<double> packed = motion::find_tempo(text, name);
   if (words.controller) refuse_tempo_without_fast(words.tempo, *words.controller);
-  if (words.controller) {
-    options.controller = motion::controller_kind_of(*words.controller, "command line");
-  } else if (words.tempo || packed) {
-    options.controller = motion::ControllerKind::Fast;
-  }
-  options.tempo = words.tempo.value_or(packed.value_or(options.tempo));
+  options.tracking =
+      motion::choose_tracking(words.controller, words.tempo, motion::find_tracking(text, name), "command line");
 }
 
 }  // namespace snug::app

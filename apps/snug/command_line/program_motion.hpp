@@ -10,9 +10,9 @@
 
 namespace snug::app {
 
-/// Absent words leave it to the program: fast, with its own tempo, where it was packed with one; else faithful.
+/// Absent words leave it to the program: as it was made for (motion::find_tracking).
 struct MotionWords {
-  std::optional<std::string> controller;  ///< faithful | ideal | fast
+  std::optional<std::string> controller;  ///< lagged | exact | fast
   std::optional<double> tempo;            ///< only with fast
 };
 
@@ -21,7 +21,7 @@ void add_motion_words(CLI::App& verb, MotionWords& words);
 /// Throws InputError.
 void refuse_tempo_without_fast(const std::optional<double>& tempo, const std::string& controller);
 /// `text`: of the program's file `name`. Throws InputError for a --tempo that does not fit --controller, and for a
-/// tempo of the program that is none.
+/// tracking of the program that is none.
 void choose_motion(const MotionWords& words, std::string_view text, std::string_view name,
                    cell::SimulationOptions& options);
 

@@ -76,7 +76,7 @@ int run_control(const ControlOptions& options) {
   motion::PreparedProgram plan =
       cell::prepare(scenario, sequence, how, runs::corrected(scenario, program, corrections));
   std::unique_ptr<const cell::JointPace> pace;
-  if (how.controller == motion::ControllerKind::Fast) pace = cell::make_joint_pace(scenario, how.tempo);
+  if (motion::is_fast(how.tracking)) pace = cell::make_joint_pace(scenario, motion::tempo_of(how.tracking));
   plan.path_limits = pace.get();
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
   remote_plant::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,

@@ -98,8 +98,8 @@ void add_export(CLI::App& app, Action& action) {
       ->type_name("LAYER")
       ->capture_default_str();
   verb.add_option("--controller", options->motion.controller,
-                  "of a program: what it was made for, faithful or fast (default: as the program was packed)")
-      ->check(one_of({"faithful", "fast"}))
+                  "of a program: what it was made for, lagged or fast (default: as the program was packed)")
+      ->check(one_of({"lagged", "fast"}))
       ->type_name("KIND");
   verb.add_option("--tempo", options->motion.tempo,
                   "of a program: fraction of the speeds, with fast (default: that it was packed with, or 1)")

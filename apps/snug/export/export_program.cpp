@@ -47,13 +47,13 @@ struct LoadedProgram {
     if (!options.is_unchecked) trial = runs::try_motion(simulation, plan);
   }
 
-  [[nodiscard]] bool is_fast() const { return plan.settings.kind == motion::ControllerKind::Fast; }
+  [[nodiscard]] bool is_fast() const { return motion::is_fast(plan.settings.tracking); }
 
   /// `done`: the motion that is written, as simulated or fitted to that.
   [[nodiscard]] control::RobotProgram for_robot(const motion::PreparedProgram& done,
                                                 const ExportOptions& options) const {
     const std::string layer = layer_of(options).empty() ? "" : ", corrections " + options.corrections;
-    const std::string tempo = is_fast() ? fmt::format(", tempo {}", plan.settings.fast.tempo) : "";
+    const std::string tempo = is_fast() ? fmt::format(", tempo {}", motion::tempo_of(plan.settings.tracking)) : "";
     return {.plan = done,
             .arm = simulation.arm()->model(),
             .q_start = simulation.arm()->start(),
@@ -69,7 +69,7 @@ struct LoadedProgram {
   [[nodiscard]] motion::PreparedProgram fitted() const {
     motion::PreparedProgram exact = plan;
     exact.row_limits = motion::fit_limits(exact, X_WE_start());
-    exact.settings.kind = motion::ControllerKind::Ideal;
+    exact.settings.tracking = motion::ExactTracking{};
     return exact;
   }
 
@@ -137,7 +137,7 @@ bool is_as_good(const motion::PreparedProgram& fitted, const LoadedProgram& prog
   if (!program.trial) return true;
   const cell::Simulation& own = program.simulation;
   cell::SimulationOptions exact = own.options();
-  exact.controller = motion::ControllerKind::Ideal;
+  exact.tracking = motion::ExactTracking{};
   const cell::Simulation follower(own.scenario(), own.sequence().name, exact);
   return accept("the robot that follows exactly does not do what was simulated",
                 runs::compare_trials(*program.trial, runs::try_motion(follower, fitted)));

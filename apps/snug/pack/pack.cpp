@@ -40,7 +40,7 @@ void record(const model::Scenario& scenario, const study::Trial& trial, OutputFi
   const std::string& robot = trial.plant.simulation.robot;
   recorded.settings_json = nlohmann::ordered_json{
       {"cup", "phases"},
-      {"controller", motion::name_of(trial.plant.simulation.controller)},
+      {"controller", motion::name_of(trial.plant.simulation.tracking)},
       {"corrections", "none"},
       {"robot", robot.empty() ? "none" : robot},
       {"plant_seed", trial.plant_seed},
@@ -120,9 +120,9 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
   session.samples = options.samples;
   session.skips = options.skips;
   session.simulation.robot = choose_robot(options, loaded.scenario);
-  refuse_tempo_without_fast(options.tempo, options.controller);
-  session.simulation.controller = motion::controller_kind_of(options.controller, "command line");
-  session.simulation.tempo = options.tempo.value_or(session.simulation.tempo);
+  refuse_tempo_without_fast(options.tempo, options.tracking);
+  session.simulation.tracking =
+      motion::choose_tracking(options.controller, options.tempo, motion::FastTracking{}, "command line");
   session.is_interrupted = is_interrupted;
   if (options.robot && *options.robot != "none") print_robot_warnings(loaded.scenario);
   return session;

@@ -26,7 +26,7 @@ struct PackOptions {
   std::optional<int> threads;                          ///< absent: all cores
   int samples = session::SessionOptions{}.samples;
   std::optional<int> skips;
-  std::string controller = "fast";  ///< or faithful
+  std::string controller = "fast";  ///< or lagged
   std::optional<double> tempo;      ///< only with fast; absent: 1
   std::string future = "own";
   std::string perception = "exact";

@@ -61,8 +61,8 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
   verb.add_option(
           "--controller", options.controller,
           "fast: exactly on paths of bounded jerk, blended where nothing is switched, waypoints in contact and waits "
-          "for the vacuum end by what is felt; faithful: with the demonstrator's timing and lag")
-      ->check(one_of({"fast", "faithful"}))
+          "for the vacuum end by what is felt; lagged: with the demonstrator's timing and lag")
+      ->check(one_of({"fast", "lagged"}))
       ->type_name("KIND")
       ->capture_default_str();
   verb.add_option("--tempo", options.tempo, "fraction of the speeds, with fast (default: 1)")

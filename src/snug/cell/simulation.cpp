@@ -109,9 +109,8 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
                                 const SimulationOptions& options, motion::Program program) {
   const model::ControllerParams& params = scenario.controller;
   motion::ControllerSettings settings;
-  settings.kind = options.controller;
-  settings.fast.tempo = options.tempo;
-  if (options.controller == motion::ControllerKind::Fast) {
+  settings.tracking = options.tracking;
+  if (motion::is_fast(options.tracking)) {
     settings.fast.held.window = held_swing_window(scenario, sequence).value_or(settings.fast.held.window);
     settings.fast.pan_axis = find_pan_axis(scenario);
   }
@@ -140,7 +139,7 @@ Simulation::Simulation(model::Scenario scenario, const std::string& sequence, co
                                          : WorldOptions{&sequence_, true, nullptr, {}})),
       gripper_(scenario_.cup, options.cup.value_or(cup::CupMode::Phases), world_) {
   if (arm_) arm_->attach(world_);
-  if (options.controller == motion::ControllerKind::Fast) pace_ = make_joint_pace(scenario_, options.tempo);
+  if (motion::is_fast(options.tracking)) pace_ = make_joint_pace(scenario_, motion::tempo_of(options.tracking));
 }
 
 CellState Simulation::make_state() const {
@@ -160,7 +159,7 @@ motion::PreparedProgram Simulation::prepare(motion::Program program) const {
 
 /// What the controller is told at the start of the next tick.
 void Simulation::feel(const motion::PreparedProgram& plan, CellState& state, const CellWorkspace& work) const {
-  if (plan.settings.kind != motion::ControllerKind::Fast) return;
+  if (!motion::is_fast(plan.settings.tracking)) return;
   const double pressure = state.gripper.cup.pressure_gauge;
   const Wrench F_E = tool_load(state, work);
   state.controller.sensed = {pressure, tool_of(state).X_WE.R * F_E.force,

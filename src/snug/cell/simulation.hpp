@@ -16,11 +16,10 @@
 namespace snug::cell {
 
 struct SimulationOptions {
-  motion::ControllerKind controller = motion::ControllerKind::Faithful;
+  motion::Tracking tracking = {};
   /// Absent: with phases, in `run` as the corrections were made for (runs::cup_for; docs/decisions/0040).
   std::optional<cup::CupMode> cup = {};
   std::string robot = {};  ///< name of the scenario's robot that moves the tool; empty: the tool moves by itself
-  double tempo = 1.0;      ///< motion::FastSettings::tempo
 };
 
 /// Everything of a cell that changes. A copy is a snapshot: going on from it gives the same bytes.
@@ -73,7 +72,7 @@ struct CellAnchor {
 
 /// The sequence of this name. Throws InputError, with the names that there are.
 [[nodiscard]] const model::Sequence& require_sequence(const model::Scenario& scenario, const std::string& name);
-/// The program with the limits and gains of scenario and sequence; of `options` controller and tempo count. Throws as
+/// The program with the limits and gains of scenario and sequence; of `options` the tracking counts. Throws as
 /// motion::prepare.
 [[nodiscard]] motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Sequence& sequence,
                                               const SimulationOptions& options, motion::Program program);
@@ -107,7 +106,7 @@ class Simulation {
   [[nodiscard]] CellWorkspace make_workspace(int threads = 1) const {
     return CellWorkspace(world_.model, scenario_.solver.contact_limits, threads);
   }
-  /// cell::prepare of this cell's scenario and sequence. With ControllerKind::Fast the joints of the scenario's robot
+  /// cell::prepare of this cell's scenario and sequence. With fast tracking the joints of the scenario's robot
   /// limit the speed, whatever moves the tool; the plan is then good for as long as this simulation.
   [[nodiscard]] motion::PreparedProgram prepare(motion::Program program) const;
   /// What the arm's sensors read in this state, as if it had been still for a tick. With a robot only.

@@ -16,7 +16,7 @@ class OperationState final : public State {
 
   [[nodiscard]] Outcome run(StateContext& context) const override {
     motion::ControllerState& program = context.machine.program;
-    const bool is_exact = context.plan.settings.kind != motion::ControllerKind::Faithful;
+    const bool is_exact = !motion::is_lagged(context.plan.settings.tracking);
     motion::ControllerOutput& out = context.tick.program;
     out = motion::tick(context.plan, context.machine.tool, program);
     context.follow(is_exact ? ToolTarget{out.tool.X_WE, true, out.tool.V_WE}
@@ -34,7 +34,7 @@ class OperationState final : public State {
     const motion::ControllerState& program = context.machine.program;
     if (program.phase != motion::ControllerPhase::Moving) return false;
     const double elapsed = static_cast<double>(program.phase_ticks) * context.plan.settings.tick;
-    const bool is_fast = context.plan.settings.kind == motion::ControllerKind::Fast;
+    const bool is_fast = motion::is_fast(context.plan.settings.tracking);
     return elapsed > (is_fast ? program.paced.duration() : program.segment.duration()) + patience_;
   }
 

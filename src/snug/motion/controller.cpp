@@ -27,7 +27,7 @@ void begin_motion(const PreparedProgram& plan, ControllerState& state) {
   state.phase = ControllerPhase::Moving;
   state.phase_ticks = 0;
   state.segment = LspbSegment(state.X_WE_departure, plan.X_WE[row], plan.row_limits[row]);
-  if (plan.settings.kind == ControllerKind::Faithful && plan.settings.sampled_coast) {
+  if (is_lagged(plan.settings.tracking) && plan.settings.sampled_coast) {
     state.segment = state.segment.with_sampled_coast(plan.settings.tick);
   }
 }
@@ -49,8 +49,8 @@ void depart(const PreparedProgram& plan, int row, const Pose& X_WE, ControllerSt
 
 bool has_reached_row(const PreparedProgram& plan, const ToolState& measured, const ControllerState& state) {
   const std::size_t row = static_cast<std::size_t>(state.row);
-  if (plan.settings.kind == ControllerKind::Fast) return has_reached_fast(plan, measured, state);
-  if (plan.settings.kind == ControllerKind::Ideal) {
+  if (is_fast(plan.settings.tracking)) return has_reached_fast(plan, measured, state);
+  if (is_exact(plan.settings.tracking)) {
     return static_cast<double>(state.phase_ticks) * plan.settings.tick >= state.segment.duration();
   }
   return convergence_error(measured.X_WE, plan.X_WE[row], plan.settings.convergence_deg_per_metre) <=
@@ -60,8 +60,8 @@ bool has_reached_row(const PreparedProgram& plan, const ToolState& measured, con
 /// What the program does at the start of a tick: starts, waits, goes on to the next row, ends.
 void advance_program(const PreparedProgram& plan, const ToolState& measured, ControllerState& state,
                      ControllerOutput& output) {
-  const bool is_ideal = plan.settings.kind == ControllerKind::Ideal;
-  const Pose& X_WE = is_ideal ? state.command.X_WE : measured.X_WE;
+  const bool follows_exactly = is_exact(plan.settings.tracking);
+  const Pose& X_WE = follows_exactly ? state.command.X_WE : measured.X_WE;
   if (state.phase == ControllerPhase::Ready) {
     depart(plan, 0, X_WE, state);
     output.departed = 0;
@@ -98,25 +98,6 @@ ToolState follow_reference(const ToolState& measured, const Pose& X_WE_reference
 
 }  // namespace
 
-const char* name_of(ControllerKind kind) {
-  switch (kind) {
-    case ControllerKind::Faithful:
-      return "faithful";
-    case ControllerKind::Ideal:
-      return "ideal";
-    case ControllerKind::Fast:
-      return "fast";
-  }
-  return "";
-}
-
-ControllerKind controller_kind_of(std::string_view name, const std::string& where) {
-  for (const ControllerKind kind : {ControllerKind::Faithful, ControllerKind::Ideal, ControllerKind::Fast}) {
-    if (name == name_of(kind)) return kind;
-  }
-  throw InputError(where, "controller", fmt::format("'{}'", name), "faithful, ideal or fast");
-}
-
 PreparedProgram prepare(Program program, ControllerSettings settings) {
   constexpr const char* kPositive = "a finite number above 0";
   require(is_positive(settings.tick), program, "controller tick", settings.tick, kPositive);
@@ -127,10 +108,14 @@ PreparedProgram prepare(Program program, ControllerSettings settings) {
           settings.vacuum_wait, "a finite number, 0 or more");
   // The discrete task is stable below sqrt(k) dt = 1; the limit keeps it well damped.
   const double product = std::sqrt(settings.task_stiffness) * settings.tick;
-  require(settings.kind != ControllerKind::Faithful || product <= 0.5, program, "task stiffness",
-          settings.task_stiffness, "sqrt(stiffness) * tick at most 0.5, else the task oscillates");
+  require(!is_lagged(settings.tracking) || product <= 0.5, program, "task stiffness", settings.task_stiffness,
+          "sqrt(stiffness) * tick at most 0.5, else the task oscillates");
   check_limits(settings.limits, program.name);
-  if (settings.kind == ControllerKind::Fast) check_fast(settings.fast, program.name);
+  if (is_fast(settings.tracking)) {
+    const double tempo = tempo_of(settings.tracking);
+    require(tempo >= 0.1 && tempo <= 1.0, program, "fast: tempo", tempo, "a number from 0.1 to 1");
+    check_fast(settings.fast, program.name);
+  }
   if (program.waypoints.empty()) throw InputError(program.name, "", "no rows", "at least one waypoint");
 
   PreparedProgram plan;
@@ -160,17 +145,17 @@ ControllerState make_controller_state(const Pose& X_WE_start) noexcept {
 
 ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured, ControllerState& state) noexcept {
   ControllerOutput output;
-  const bool is_fast = plan.settings.kind == ControllerKind::Fast;
-  if (is_fast) {
+  const bool goes_fast = is_fast(plan.settings.tracking);
+  if (goes_fast) {
     advance_fast(plan, measured, state, output);
   } else {
     advance_program(plan, measured, state, output);
   }
   const double dt = plan.settings.tick;
-  if (is_fast) {
+  if (goes_fast) {
     state.command = sample_fast(plan, state);
     state.X_WE_reference = state.command.X_WE;
-  } else if (plan.settings.kind == ControllerKind::Ideal) {
+  } else if (is_exact(plan.settings.tracking)) {
     if (state.phase == ControllerPhase::Moving) {
       const LspbSegment::Sample at_end = state.segment.sample(static_cast<double>(state.phase_ticks + 1) * dt);
       state.command = {at_end.X_WE, at_end.V_WE};

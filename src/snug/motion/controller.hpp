@@ -10,24 +10,10 @@
 #include "snug/motion/limits.hpp"
 #include "snug/motion/lspb.hpp"
 #include "snug/motion/tool_path.hpp"
+#include "snug/motion/tracking.hpp"
 #include "snug/motion/waypoint.hpp"
 
 namespace snug::motion {
-
-enum class ControllerKind {
-  /// The tool follows the LSPB reference as a critically damped second-order task without feed-forward; every row
-  /// starts from the measured pose; a row is reached when the error is within its precision.
-  Faithful,
-  /// The tool is on the reference; a row is reached exactly, at the first tick after the segment's duration.
-  Ideal,
-  /// Our own programs: the tool is on a reference of bounded jerk (PacedSegment); rows that touch nothing are blended,
-  /// rows in contact and waits for the vacuum end by what is felt (FastSettings).
-  Fast,
-};
-/// "faithful", "ideal", "fast": the word of the command line and of recordings.
-[[nodiscard]] const char* name_of(ControllerKind kind);
-/// The kind of that word. Throws InputError with `where` and the words that there are.
-[[nodiscard]] ControllerKind controller_kind_of(std::string_view name, const std::string& where);
 
 /// A program under way for longer than this does not end, s.
 inline constexpr double kLongestProgram = 7200.0;
@@ -35,13 +21,13 @@ inline constexpr double kLongestProgram = 7200.0;
 inline constexpr double kSettleTime = 1.0;
 
 struct ControllerSettings {
-  ControllerKind kind = ControllerKind::Faithful;
+  Tracking tracking;
   double tick = 0.008;                       ///< s
-  double task_stiffness = 10.0;              ///< 1/s^2 (Faithful)
+  double task_stiffness = 10.0;              ///< 1/s^2 (lagged)
   double vacuum_wait = 0.5;                  ///< s, hold after the vacuum changed or the blow-off was switched on
   double convergence_deg_per_metre = 500.0;  ///< degrees of orientation error that weigh as much as one metre
-  bool sampled_coast = true;                 ///< Faithful: LspbSegment::with_sampled_coast; lengthens a program by ~1 %
-  FastSettings fast;                         ///< Fast only
+  bool sampled_coast = true;                 ///< lagged: LspbSegment::with_sampled_coast; lengthens a program by ~1 %
+  FastSettings fast;                         ///< fast only
   std::vector<NamedLimits> limits;
   bool operator==(const ControllerSettings&) const = default;
 };
@@ -52,8 +38,8 @@ struct PreparedProgram {
   ControllerSettings settings;
   std::vector<MotionLimits> row_limits;     ///< one per waypoint
   std::vector<Pose> X_WE;                   ///< one per waypoint
-  std::vector<Smoothing> held_smoothing;    ///< Fast, one per waypoint: as its swing says, or the settings
-  const PathLimits* path_limits = nullptr;  ///< Fast: what the joints allow; not owned; none: not limited by them
+  std::vector<Smoothing> held_smoothing;    ///< fast, one per waypoint: as its swing says, or the settings
+  const PathLimits* path_limits = nullptr;  ///< fast: what the joints allow; not owned; none: not limited by them
 };
 
 /// Throws InputError for an unknown waypoint name, an empty program, and settings or limits out of range.
@@ -72,7 +58,7 @@ struct ControllerState {
   LspbSegment segment;           ///< toward `row`; not yet set while waiting
   Pose X_WE_reference;           ///< what the task follows
   ToolState command;             ///< at the end of the last tick
-  // Fast only:
+  // fast only:
   PacedSegment paced;                        ///< toward `row`
   PacedSegment tail;                         ///< the rest of the motion before, where they are blended
   std::int64_t tail_ticks = 0;               ///< since the tail began
@@ -97,7 +83,7 @@ struct ControllerOutput {
 [[nodiscard]] ControllerState make_controller_state(const Pose& X_WE_start) noexcept;
 
 /// One tick. `measured`: the tool at its start; a tool that follows exactly is measured where the last tick put it.
-/// After the last row the tool stays (Ideal) or settles (Faithful) on it.
+/// After the last row the tool stays (exact) or settles (lagged) on it.
 [[nodiscard]] ControllerOutput tick(const PreparedProgram& plan, const ToolState& measured,
                                     ControllerState& state) noexcept;
 

@@ -161,10 +161,11 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
       pace.max_speed = std::min(pace.max_speed, 2.0 * std::numbers::pi / waypoint.swing->slow * fast.lift_swing);
     }
   }
-  pace.max_speed *= fast.tempo;
-  pace.max_turn_speed *= fast.tempo;
-  pace.max_acceleration *= fast.tempo * fast.tempo;
-  pace.max_turn_acceleration *= fast.tempo * fast.tempo;
+  const double tempo = tempo_of(plan.settings.tracking);
+  pace.max_speed *= tempo;
+  pace.max_turn_speed *= tempo;
+  pace.max_acceleration *= tempo * tempo;
+  pace.max_turn_acceleration *= tempo * tempo;
   return pace;
 }
 
@@ -263,7 +264,6 @@ void check_fast(const FastSettings& settings, const std::string& where) {
   const auto require = [&](const char* key, double value, bool ok, const char* expected) {
     if (!ok) throw InputError(where, fmt::format("fast: {}", key), fmt::format("{}", value), expected);
   };
-  require("tempo", settings.tempo, settings.tempo >= 0.1 && settings.tempo <= 1.0, "a number from 0.1 to 1");
   for (const Pace& pace : {settings.empty, settings.held, settings.insert, settings.detach}) {
     for (const double value :
          {pace.max_speed, pace.max_acceleration, pace.max_turn_speed, pace.max_turn_acceleration, pace.window}) {

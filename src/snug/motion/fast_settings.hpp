@@ -17,9 +17,8 @@ struct Sensed {
   bool operator==(const Sensed&) const = default;
 };
 
-/// Settings of ControllerKind::Fast. Speeds count at tempo 1.
+/// Settings of FastTracking. Speeds count at tempo 1.
 struct FastSettings {
-  double tempo = 1.0;  ///< 0.1 .. 1: share of all speeds; accelerations go with its square
   /// Rows that touch nothing, the cup empty. The joints limit the speed too.
   Pace empty = {2.0, 8.0, 2.5, 8.0, 0.10};
   /// The same with a box: averaged over a window in which most boxes swing a whole number of times (3 to 8 Hz).

@@ -13,7 +13,7 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/motion/program_tempo.hpp"
+#include "snug/motion/program_tracking.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
 namespace snug::motion {
@@ -168,7 +168,7 @@ Program parse_program(std::string_view text, std::string_view name) {
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
   if (program.waypoints.empty()) throw InputError(std::string(name), "", "no rows", "at least one waypoint");
-  program.tempo = find_tempo(whole, name);
+  program.tracking = find_tracking(whole, name);
   return program;
 }
 
@@ -177,7 +177,7 @@ Program load_program(const std::filesystem::path& path) {
 }
 
 std::string format_program(const Program& program) {
-  std::string text = program.tempo ? format_tempo(*program.tempo) : std::string();
+  std::string text = format_tracking(program.tracking);
   for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
     check_writable(program, row);
     const Waypoint& w = program.waypoints[row];

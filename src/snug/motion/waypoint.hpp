@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "snug/motion/tracking.hpp"
 #include "snug/spatial/pose.hpp"
 
 namespace snug::motion {
@@ -80,8 +81,7 @@ struct Waypoint {
 struct Program {
   std::string name;  ///< file or label, for messages
   std::vector<Waypoint> waypoints;
-  /// Fraction of the speeds with which it was packed to be done (FastSettings::tempo); none: with the lag.
-  std::optional<double> tempo = std::nullopt;
+  Tracking tracking = {};  ///< for which it was made
   bool operator==(const Program&) const = default;
 };
 
@@ -89,9 +89,9 @@ struct Program {
 [[nodiscard]] std::string place_of(const Program& program, std::size_t row);
 
 /// Reads rows x, y, z [m], rotation vector [rad, any length below 100], name, six switches (0 or 1); no header.
-/// Lines that begin with # are comments; one may say the tempo (program_tempo.hpp). Blank lines, CRLF, spaces around
-/// fields and a missing last newline are fine. Throws InputError with file:line and
-/// column for anything else, and for a file without rows.
+/// Lines that begin with # are comments; one may say how it is tracked (program_tracking.hpp). Blank lines, CRLF,
+/// spaces around fields and a missing last newline are fine. Throws InputError with file:line and column for anything
+/// else, and for a file without rows.
 [[nodiscard]] Program load_program(const std::filesystem::path& path);
 /// The same from text; `name` stands for the file in messages.
 [[nodiscard]] Program parse_program(std::string_view text, std::string_view name);

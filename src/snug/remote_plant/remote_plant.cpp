@@ -68,8 +68,8 @@ RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& seq
     refuse(options_.address, fmt::format("a cell with sequence {} that is served to be packed: {}", sequence, trouble));
   }
   take_over_tracking();
-  if (options_.motions.controller == motion::ControllerKind::Fast) {
-    pace_ = cell::make_joint_pace(scenario_, options_.motions.tempo);
+  if (motion::is_fast(options_.motions.tracking)) {
+    pace_ = cell::make_joint_pace(scenario_, motion::tempo_of(options_.motions.tracking));
   }
   arm_ = std::make_unique<cell::CellArm>(scenario_, tool_stiffness(scenario_, sequence_));
   state_ = arm_->make_state(scenario_.seed, link_.measured().q);
@@ -293,7 +293,7 @@ bool RemotePlant::advance(const plant::Motion& motion, const motion::PreparedPro
 /// The tool comes to stand, boxes come to rest.
 void RemotePlant::settle(const motion::PreparedProgram& plan, bool was_passed, plant::MotionWatch& course) {
   const double start = link_.last().time;
-  const bool is_fast = options_.motions.controller == motion::ControllerKind::Fast;
+  const bool is_fast = motion::is_fast(options_.motions.tracking);
   const double at_least = plant::least_settle(scenario_.motion_guards, !is_fast, was_passed);
   while (plant::is_settling(scenario_.motion_guards, at_least, start, link_.last().time,
                             state_.machine.tool.V_WE.linear.norm())) {

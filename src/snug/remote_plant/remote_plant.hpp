@@ -20,7 +20,7 @@ struct RemotePlantOptions {
   double patience = 10.0;  ///< s, for an answer
   perception::Kind perception = perception::Kind::Exact;
   std::uint64_t seed = 1;  ///< of the noise of perception alone
-  /// How the joints are led to the waypoints: controller and tempo count.
+  /// How the joints are led to the waypoints: the tracking counts.
   cell::SimulationOptions motions;
 };
 

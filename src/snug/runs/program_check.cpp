@@ -88,9 +88,9 @@ class Check {
  public:
   Check(const model::Scenario& scenario, const motion::Program& program, const CheckOptions& options)
       : options_(options),
-        simulation_(scenario, options.sequence.empty() ? any_sequence(scenario) : options.sequence,
-                    {options.controller, cup::CupMode::Holding,
-                     options.robot.empty() ? scenario.robot->name : options.robot, options.tempo}),
+        simulation_(
+            scenario, options.sequence.empty() ? any_sequence(scenario) : options.sequence,
+            {options.tracking, cup::CupMode::Holding, options.robot.empty() ? scenario.robot->name : options.robot}),
         plan_(simulation_.prepare(program)),
         obstacles_(find_obstacles(scenario)),
         movers_(find_movers(scenario, arm(), options.allowance)),

@@ -37,8 +37,7 @@ struct CheckGroup {
 struct CheckOptions {
   std::string sequence = {};  ///< whose boxes are held and packed; empty: boxes are not looked at
   std::string robot = {};     ///< name of the scenario's robot; empty: the one that there is
-  motion::ControllerKind controller = motion::ControllerKind::Faithful;
-  double tempo = 1.0;       ///< of ControllerKind::Fast
+  motion::Tracking tracking = {};
   double path_step = 0.01;  ///< m, and 1 rad counts as 0.3 m: between two looks
   double range = 0.05;      ///< m, up to which distances are measured
   double allowance = 0.03;  ///< m, that cup and held box may press into something; the demonstrator's flips press 20 mm

@@ -56,9 +56,9 @@ Packer::Packer(const model::Scenario& scenario, const std::string& sequence, con
     items_[i].arrival = packing::nearest_orientation(R_AW * X_WP.R);
   }
   sent_.name = "pack";
-  const bool is_fast = options.simulation.controller == motion::ControllerKind::Fast;
+  const bool is_fast = motion::is_fast(options.simulation.tracking);
   layout_.is_fast = is_fast;
-  if (is_fast) sent_.tempo = options.simulation.tempo;
+  sent_.tracking = options.simulation.tracking;
   if (!is_fast) limits_.hold_factor = limits_.hold_guard = 0.0;
 }
 

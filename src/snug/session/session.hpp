@@ -25,7 +25,7 @@ struct SessionOptions {
   std::optional<int> skips;  ///< in the place of the scenario's (settings::RecoverySettings)
   /// What may follow an item; absent: any parcel of the scenario.
   std::optional<packing::FutureModel> future;
-  cell::SimulationOptions simulation{.controller = motion::ControllerKind::Fast};  ///< of rollouts
+  cell::SimulationOptions simulation{.tracking = motion::FastTracking{}};  ///< of rollouts
   std::function<bool()> is_interrupted;  ///< asked before every item; true ends the session; may be empty
 };
 

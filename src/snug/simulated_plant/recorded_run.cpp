@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "snug/motion/program_tempo.hpp"
 
 namespace snug::simulated_plant {
 namespace {
@@ -90,7 +89,7 @@ runs::RunResult record(const model::Scenario& scenario, const std::string& seque
   setup.period = scenario.controller.tick;
   setup.program_name = "pack";
   motion::Program program = program_of(calls);
-  if (options.simulation.controller == motion::ControllerKind::Fast) program.tempo = options.simulation.tempo;
+  program.tracking = options.simulation.tracking;
   setup.program_text = motion::format_program(program);
   setup.sequence = sequence;
   setup.settings_json = recorded.settings_json;

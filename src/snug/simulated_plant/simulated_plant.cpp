@@ -183,7 +183,7 @@ void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWa
   const auto speed = [this] {
     return (state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE).linear.norm();
   };
-  const bool is_fast = options_.simulation.controller == motion::ControllerKind::Fast;
+  const bool is_fast = motion::is_fast(options_.simulation.tracking);
   const auto has_to_wait = [&](double now) {
     return until == Until::BoxesRest && now < start + guards.longest_settle && !rest.is_at_rest(now);
   };

@@ -23,7 +23,7 @@ struct SimulatedPlantOptions {
   std::vector<Fault> faults;
   /// What is otherwise in this cell than in the scenario that the planner has, before the seed draws from it.
   std::vector<model::KeyValue> set;
-  cell::SimulationOptions simulation{.controller = motion::ControllerKind::Fast};
+  cell::SimulationOptions simulation{.tracking = motion::FastTracking{}};
 };
 
 /// One call that changed the plant, with what it was called with: enough to run the same again.

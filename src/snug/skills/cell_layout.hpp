@@ -22,7 +22,7 @@ struct CellLayout {
   std::optional<FlipPlace> flip_place;      ///< absent: nothing flat is large enough
   std::optional<motion::PanAxis> pan_axis;  ///< of the robot, where that is vertical
   double neutral_yaw = 0.0;                 ///< rad, of the tool at its start: half a turn to either side of it is used
-  /// Motions are fast ones (motion::ControllerKind::Fast): tracked exactly, around the robot's first axis. A held box
+  /// Motions are fast ones (motion::FastTracking{}): tracked exactly, around the robot's first axis. A held box
   /// turns the way round that leaves the wrist less to do, and while it travels.
   bool is_fast = false;
   settings::TravelParams travel;

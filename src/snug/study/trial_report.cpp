@@ -188,8 +188,8 @@ std::string how_fast(const study::Trial& trial) {
   std::string text = trial.unturned_cycle > 0.0
                          ? fmt::format("{:.1f} s a box that is not turned, ", trial.unturned_cycle)
                          : std::string();
-  return text + (how.controller == motion::ControllerKind::Fast ? fmt::format("tempo {:g}", how.tempo)
-                                                                : std::string("with the demonstrator's lag"));
+  return text + (motion::is_fast(how.tracking) ? fmt::format("tempo {:g}", motion::tempo_of(how.tracking))
+                                               : std::string("with the demonstrator's lag"));
 }
 
 std::string describe_hold(const study::Trial& trial) {
@@ -303,37 +303,37 @@ std::string format_summary(const study::Trial& trial, const study::MonteCarloRes
 
 std::string format_json(const study::Trial& trial, const study::MonteCarloResult& repeated) {
   const session::SessionResult& result = trial.session;
-  Json json{
-      {"sequence", result.sequence},
-      {"agent", result.agent},
-      {"seed", trial.seed},
-      {"plant", result.plant},
-      {"plant_seed", trial.is_elsewhere ? Json() : Json(trial.plant_seed)},
-      {"perception", perception::name_of(trial.plant.perception)},
-      {"robot", trial.plant.simulation.robot.empty() ? "none" : trial.plant.simulation.robot},
-      {"planned_boxes", result.plan.size()},
-      {"planned_percent", result.planned_percent},
-      {"executed_boxes", trial.executed_boxes},
-      {"executed_percent", trial.executed_percent},
-      {"percent_before_skips", result.percent_before_skips ? Json(*result.percent_before_skips) : Json()},
-      {"items_sent", trial.items_sent},
-      {"items_as_planned", trial.items_as_planned},
-      {"boxes_lost", trial.boxes_lost},
-      {"recoveries", trial.recoveries},
-      {"decision_seconds_median", result.decision_seconds_median},
-      {"stop_reason", session::name_of(result.stop_reason)},
-      {"stopped", result.stopped},
-      {"failure", result.failure.text},
-      {"failure_kind", session::name_of(result.failure.kind)},
-      {"duration", result.duration},
-      {"controller", motion::name_of(trial.plant.simulation.controller)},
-      {"tempo",
-       trial.plant.simulation.controller == motion::ControllerKind::Fast ? Json(trial.plant.simulation.tempo) : Json()},
-      {"boxes_per_hour", trial.boxes_per_hour},
-      {"boxes_per_hour_with_planning", trial.boxes_per_hour_with_planning},
-      {"unturned_cycle_seconds", trial.unturned_cycle > 0.0 ? Json(trial.unturned_cycle) : Json()},
-      {"seconds", as_json(sum_of_seconds(result))},
-      {"state_hash", trial.is_elsewhere ? Json() : Json(fmt::format("{:016x}", trial.state_hash))}};
+  Json json{{"sequence", result.sequence},
+            {"agent", result.agent},
+            {"seed", trial.seed},
+            {"plant", result.plant},
+            {"plant_seed", trial.is_elsewhere ? Json() : Json(trial.plant_seed)},
+            {"perception", perception::name_of(trial.plant.perception)},
+            {"robot", trial.plant.simulation.robot.empty() ? "none" : trial.plant.simulation.robot},
+            {"planned_boxes", result.plan.size()},
+            {"planned_percent", result.planned_percent},
+            {"executed_boxes", trial.executed_boxes},
+            {"executed_percent", trial.executed_percent},
+            {"percent_before_skips", result.percent_before_skips ? Json(*result.percent_before_skips) : Json()},
+            {"items_sent", trial.items_sent},
+            {"items_as_planned", trial.items_as_planned},
+            {"boxes_lost", trial.boxes_lost},
+            {"recoveries", trial.recoveries},
+            {"decision_seconds_median", result.decision_seconds_median},
+            {"stop_reason", session::name_of(result.stop_reason)},
+            {"stopped", result.stopped},
+            {"failure", result.failure.text},
+            {"failure_kind", session::name_of(result.failure.kind)},
+            {"duration", result.duration},
+            {"controller", motion::name_of(trial.plant.simulation.tracking)},
+            {"tempo", motion::is_fast(trial.plant.simulation.tracking)
+                          ? Json(motion::tempo_of(trial.plant.simulation.tracking))
+                          : Json()},
+            {"boxes_per_hour", trial.boxes_per_hour},
+            {"boxes_per_hour_with_planning", trial.boxes_per_hour_with_planning},
+            {"unturned_cycle_seconds", trial.unturned_cycle > 0.0 ? Json(trial.unturned_cycle) : Json()},
+            {"seconds", as_json(sum_of_seconds(result))},
+            {"state_hash", trial.is_elsewhere ? Json() : Json(fmt::format("{:016x}", trial.state_hash))}};
   json["items"] = Json::array();
   for (const session::ItemReport& item : result.items) {  // those left out on paper have no truth
     const auto truth = std::ranges::find(trial.items, item.id, &study::TrueItem::id);

@@ -45,7 +45,7 @@ TEST(Simulation, ExecutesRowsAppendedAtTheEndAsIfTheyHadBeenThere) {
 }
 
 TEST(Simulation, GoesOnFromASnapshotWithTheSameBytes) {
-  const Simulation simulation(demonstrator(), "1", {motion::ControllerKind::Faithful, cup::CupMode::Phases});
+  const Simulation simulation(demonstrator(), "1", {motion::LaggedTracking{}, cup::CupMode::Phases});
   const motion::PreparedProgram plan = simulation.prepare(demo_program());
   CellState state = simulation.make_state();
   CellWorkspace work = simulation.make_workspace();
@@ -60,7 +60,7 @@ TEST(Simulation, GoesOnFromASnapshotWithTheSameBytes) {
 
 TEST(Simulation, GoesOnWithTheSameBytesWhenItsWorkspaceIsReplacedAgainAndAgain) {
   // Boxes that rest, sleep and are touched again: whatever a workspace remembers must not be seen in the state.
-  const Simulation simulation(demonstrator(), "1", {motion::ControllerKind::Faithful, cup::CupMode::Phases});
+  const Simulation simulation(demonstrator(), "1", {motion::LaggedTracking{}, cup::CupMode::Phases});
   const motion::PreparedProgram plan = simulation.prepare(demo_program(64));
   CellState state = simulation.make_state();
   CellState restarted = state;

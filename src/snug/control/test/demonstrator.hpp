@@ -31,9 +31,9 @@ inline robot::JointVector start_joints(const JointController& controller) {
   return solve_pose(controller.arm(), demonstrator().controller.X_WE_start, posture).q;
 }
 
-inline motion::ControllerSettings program_settings(motion::ControllerKind kind, double stiffness = 10.0) {
+inline motion::ControllerSettings program_settings(const motion::Tracking& tracking, double stiffness = 10.0) {
   motion::ControllerSettings settings;
-  settings.kind = kind;
+  settings.tracking = tracking;
   settings.task_stiffness = stiffness;
   for (const model::MoveLimits& limits : demonstrator().controller.limits) {
     settings.limits.push_back({limits.prefix,

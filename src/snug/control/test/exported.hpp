@@ -26,9 +26,9 @@ inline motion::Program small_program() {
 }
 
 struct Exported {
-  motion::ControllerKind kind = motion::ControllerKind::Faithful;
+  motion::Tracking tracking = motion::LaggedTracking{};
   JointController controller = make_controller();
-  motion::PreparedProgram plan = motion::prepare(small_program(), program_settings(kind));
+  motion::PreparedProgram plan = motion::prepare(small_program(), program_settings(tracking));
   JointRun run = run_joints(plan, controller, make_demonstrator_machine(), start_joints(controller));
 
   [[nodiscard]] RobotProgram for_robot() const {

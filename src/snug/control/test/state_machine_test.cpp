@@ -18,11 +18,11 @@ struct MachineDrive {
   MachineState state;
   JointControllerWork work;
 
-  MachineDrive(motion::Program program, motion::ControllerKind kind, double stiffness = 10.0,
+  MachineDrive(motion::Program program, const motion::Tracking& tracking, double stiffness = 10.0,
                const StateSettings& settings = {})
       : controller(test::make_controller(stiffness)),
         machine(make_demonstrator_machine(settings)),
-        plan(motion::prepare(std::move(program), test::program_settings(kind, stiffness))),
+        plan(motion::prepare(std::move(program), test::program_settings(tracking, stiffness))),
         state(machine.make_state(controller, test::start_joints(controller))) {}
   MachineTick tick() { return machine.tick(plan, controller, state, work); }
 };
@@ -76,14 +76,14 @@ Agreement compare(MachineDrive& drive) {
 }
 
 TEST(StateMachine, PassesFromInitialToOperationInTheFirstTick) {
-  MachineDrive drive(moves({{0.05, 0.0, 0.0}}), motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.05, 0.0, 0.0}}), motion::LaggedTracking{});
   const MachineTick tick = drive.tick();
   EXPECT_EQ(drive.machine.name_of(tick.state), "Operation");
   EXPECT_EQ(tick.program.departed, 0);
 }
 
 TEST(StateMachine, EndsWithOkWhenTheProgramIsDone) {
-  MachineDrive drive(moves({{0.02, 0.0, 0.0}}), motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.02, 0.0, 0.0}}), motion::LaggedTracking{});
   for (int i = 0; i < 2000; ++i) {
     const MachineTick tick = drive.tick();
     if (!tick.program.finished_now) continue;
@@ -96,7 +96,7 @@ TEST(StateMachine, EndsWithOkWhenTheProgramIsDone) {
 
 TEST(StateMachine, KeepsToThePointModelWhereNoLimitIsActive) {
   MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.1, 0.15, -0.05}, {-0.05, 0.1, 0.0}, {0.0, 0.0, 0.0}}),
-                     motion::ControllerKind::Faithful);
+                     motion::LaggedTracking{});
   const Agreement result = compare(drive);
   EXPECT_EQ(result.limited_ticks, 0);
   // The joints' accelerations are constant over a tick, the tool's are not quite: nothing else differs.
@@ -106,7 +106,7 @@ TEST(StateMachine, KeepsToThePointModelWhereNoLimitIsActive) {
 }
 
 TEST(StateMachine, IsOnTheReferenceOfTheIdealController) {
-  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.1, 0.15, -0.05}, {0.0, 0.0, 0.0}}), motion::ControllerKind::Ideal);
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.1, 0.15, -0.05}, {0.0, 0.0, 0.0}}), motion::ExactTracking{});
   double worst = 0.0;
   for (int i = 0; i < 1000; ++i) {
     const MachineTick tick = drive.tick();
@@ -117,7 +117,7 @@ TEST(StateMachine, IsOnTheReferenceOfTheIdealController) {
 }
 
 TEST(StateMachine, ComesToHoldWhenARowIsOutOfReach) {
-  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.0, -3.0, 0.0}}), motion::ControllerKind::Faithful, 10.0, {2.0});
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.0, -3.0, 0.0}}), motion::LaggedTracking{}, 10.0, {2.0});
   for (int i = 0; i < 5000; ++i) {
     const MachineTick tick = drive.tick();
     if (tick.outcome != Outcome::Stuck) continue;
@@ -132,7 +132,7 @@ TEST(StateMachine, ComesToHoldWhenARowIsOutOfReach) {
 }
 
 TEST(StateMachine, GoesOnFromACopyWithTheSameBytes) {
-  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.0, 0.2, 0.0}}), motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}, {0.0, 0.2, 0.0}}), motion::LaggedTracking{});
   for (int i = 0; i < 100; ++i) (void)drive.tick();
   const MachineState kept = drive.state;
   for (int i = 0; i < 300; ++i) (void)drive.tick();
@@ -164,7 +164,7 @@ class CountingState final : public State {
 };
 
 TEST(StateMachine, LeadsAStateThroughItsLife) {
-  MachineDrive drive(moves({{0.1, 0.0, 0.0}}), motion::ControllerKind::Faithful);
+  MachineDrive drive(moves({{0.1, 0.0, 0.0}}), motion::LaggedTracking{});
   CountingState::Calls calls;
   std::vector<std::unique_ptr<State>> states;
   states.push_back(std::make_unique<CountingState>(calls));
@@ -183,7 +183,7 @@ TEST(StateMachine, RunsTheRealProgramsAtTheTempoOfThePointModel) {
   const std::filesystem::path path =
       std::filesystem::path(SNUG_SOURCE_DIR) / ".." / "shared" / "data" / "waypoints" / "poses1real.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
-  MachineDrive drive(motion::load_program(path), motion::ControllerKind::Faithful);
+  MachineDrive drive(motion::load_program(path), motion::LaggedTracking{});
   const Agreement result = compare(drive);
   // Without limits it would be as above. Half of the shoulder's speed, which the controller may use, cuts its fastest
   // turns for 3 % of the ticks: it catches up within the row, and the whole takes half a second longer (measured 0.47

@@ -53,8 +53,7 @@ TEST(UrScript, CapsBlendsByTheMovesOnBothSides) {
     program.waypoints.push_back(motion::named_waypoint("PostPick013", X_WE));
   }
   const JointController controller = test::make_controller();
-  const motion::PreparedProgram plan =
-      motion::prepare(program, test::program_settings(motion::ControllerKind::Faithful));
+  const motion::PreparedProgram plan = motion::prepare(program, test::program_settings(motion::LaggedTracking{}));
   const UrScript script = format_urscript({plan, controller.arm(), test::start_joints(controller),
                                            std::vector<std::optional<CarriedLoad>>(program.waypoints.size())},
                                           {});
@@ -199,7 +198,7 @@ JointRun run_of(const RobotProgram& program, RowOf row_of, double acceleration =
 }
 
 TEST(ServoUrScript, PassesEverySampleOfTheMotion) {
-  const Exported exported{motion::ControllerKind::Fast};
+  const Exported exported{motion::FastTracking{}};
   ASSERT_TRUE(exported.run.is_complete);
   const UrServoScript script = servo_script(exported);
   const std::vector<Followed> lines = followed_of(script.text);
@@ -223,7 +222,7 @@ TEST(ServoUrScript, PassesEverySampleOfTheMotion) {
 }
 
 TEST(ServoUrScript, StandsWhereTheVacuumChangesAndDoesNotWaitTwice) {
-  const Exported exported{motion::ControllerKind::Fast};
+  const Exported exported{motion::FastTracking{}};
   const std::string text = servo_script(exported).text;
   const std::size_t row = text.find("# 3 PostPick013");
   const std::size_t rest = text.find("snug_rest(", row);
@@ -241,7 +240,7 @@ TEST(ServoUrScript, StandsWhereTheVacuumChangesAndDoesNotWaitTwice) {
 }
 
 TEST(ServoUrScript, HasAKnotWhereEachRowEnds) {
-  const Exported exported{motion::ControllerKind::Fast};
+  const Exported exported{motion::FastTracking{}};
   const std::string text = servo_script(exported).text;
   const std::vector<Followed> lines = followed_of(text);
   for (std::size_t i = 1; i < exported.run.samples.size(); ++i) {

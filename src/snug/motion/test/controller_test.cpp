@@ -26,9 +26,9 @@ Waypoint row(const std::string& name, const Vector3& p, const IO& io = {}, const
 }
 
 /// One entry "a" that matches the names of these tests.
-ControllerSettings settings_of(ControllerKind kind, const MotionLimits& limits = {0.005, 3.0, 0.5, 2.0, 2.0}) {
+ControllerSettings settings_of(const Tracking& tracking, const MotionLimits& limits = {0.005, 3.0, 0.5, 2.0, 2.0}) {
   ControllerSettings settings;
-  settings.kind = kind;
+  settings.tracking = tracking;
   settings.limits = {{"a", limits}};
   return settings;
 }
@@ -69,9 +69,10 @@ std::size_t arrival_of(const std::vector<Tick>& ticks, int index) {
   return ticks.size();
 }
 
-class BothControllers : public testing::TestWithParam<ControllerKind> {};
-INSTANTIATE_TEST_SUITE_P(Motion, BothControllers, testing::Values(ControllerKind::Faithful, ControllerKind::Ideal),
-                         [](const auto& test) { return test.param == ControllerKind::Ideal ? "Ideal" : "Faithful"; });
+class BothControllers : public testing::TestWithParam<Tracking> {};
+INSTANTIATE_TEST_SUITE_P(Motion, BothControllers,
+                         testing::Values(Tracking(LaggedTracking{}), Tracking(ExactTracking{})),
+                         [](const auto& test) { return is_exact(test.param) ? "Exact" : "Lagged"; });
 
 int waiting_ticks(const std::vector<Tick>& ticks, int index) {
   int count = 0;
@@ -168,11 +169,11 @@ TEST_P(BothControllers, DoNotAllocateInATick) {
   EXPECT_EQ(state.phase, ControllerPhase::Finished);
 }
 
-TEST(FaithfulController, AnswersAStepAsACriticallyDampedTask) {
+TEST(LaggedController, AnswersAStepAsACriticallyDampedTask) {
   // Limits so high that the reference is at the goal after a tick: a step of 0.1 m and 0.2 rad.
   const Vector3 goal(0.1, 0.0, 0.0);
   const Vector3 turn(0.0, 0.0, 0.2);
-  ControllerSettings settings = settings_of(ControllerKind::Faithful, {1e-5, 1e6, 1e6, 1e6, 1e6});
+  ControllerSettings settings = settings_of(LaggedTracking{}, {1e-5, 1e6, 1e6, 1e6, 1e6});
   const PreparedProgram plan = prepare({"p", {row("a", goal, {}, turn)}}, settings);
   const std::vector<Tick> ticks = run(plan, Pose{});
   const double w = std::sqrt(settings.task_stiffness);
@@ -186,9 +187,9 @@ TEST(FaithfulController, AnswersAStepAsACriticallyDampedTask) {
   }
 }
 
-TEST(FaithfulController, LagsBehindASteadyReferenceByTwiceSpeedOverRootStiffness) {
-  const PreparedProgram plan = prepare({"p", {row("a", Vector3(6.0, 0.0, 0.0))}},
-                                       settings_of(ControllerKind::Faithful, {0.005, 4.0, 0.6, 1.0, 1.0}));
+TEST(LaggedController, LagsBehindASteadyReferenceByTwiceSpeedOverRootStiffness) {
+  const PreparedProgram plan =
+      prepare({"p", {row("a", Vector3(6.0, 0.0, 0.0))}}, settings_of(LaggedTracking{}, {0.005, 4.0, 0.6, 1.0, 1.0}));
   const std::vector<Tick> ticks = run(plan, Pose{});
   const std::size_t i = 625;  // 5 s: the start-up error decayed by exp(-15)
   // Against the exact reference (the sampled coast runs slower by 4 %), so with the coast speed itself.
@@ -199,11 +200,11 @@ TEST(FaithfulController, LagsBehindASteadyReferenceByTwiceSpeedOverRootStiffness
   EXPECT_NEAR(ticks[i].measured.V_WE.linear.x(), speed, 1e-3);
 }
 
-TEST(FaithfulController, ReachesARowAtTheFirstTickWithinItsPrecision) {
+TEST(LaggedController, ReachesARowAtTheFirstTickWithinItsPrecision) {
   for (const double precision : {0.0005, 0.005, 0.05, 0.2}) {
     SCOPED_TRACE(precision);
     const Waypoint goal = row("a", Vector3(0.4, 0.0, 0.0), {}, Vector3(0.0, 0.0, 0.5));
-    ControllerSettings settings = settings_of(ControllerKind::Faithful, {precision, 3.0, 0.5, 2.0, 2.0});
+    ControllerSettings settings = settings_of(LaggedTracking{}, {precision, 3.0, 0.5, 2.0, 2.0});
     const std::vector<Tick> ticks = run(prepare({"p", {goal}}, settings), Pose{});
     for (std::size_t i = 1; i < ticks.size(); ++i) {
       const Pose& X_WE = ticks[i].measured.X_WE;
@@ -215,9 +216,9 @@ TEST(FaithfulController, ReachesARowAtTheFirstTickWithinItsPrecision) {
   }
 }
 
-TEST(FaithfulController, FliesByARowOfLowPrecisionAndRestartsTheReferenceFromTheMeasuredPose) {
+TEST(LaggedController, FliesByARowOfLowPrecisionAndRestartsTheReferenceFromTheMeasuredPose) {
   const Program program{"p", {row("a", Vector3(0.5, 0.0, 0.0)), row("a", Vector3(0.5, 0.5, 0.0))}};
-  const PreparedProgram plan = prepare(program, settings_of(ControllerKind::Faithful, {0.05, 3.0, 0.5, 2.0, 2.0}));
+  const PreparedProgram plan = prepare(program, settings_of(LaggedTracking{}, {0.05, 3.0, 0.5, 2.0, 2.0}));
   const std::vector<Tick> ticks = run(plan, Pose{});
   const Tick& departure = ticks[departure_of(ticks, 1)];
   EXPECT_GT(departure.measured.V_WE.linear.norm(), 0.05);
@@ -226,9 +227,9 @@ TEST(FaithfulController, FliesByARowOfLowPrecisionAndRestartsTheReferenceFromThe
   EXPECT_EQ(departure.output.X_WE_reference, departure.measured.X_WE);
 }
 
-TEST(FaithfulController, StartsAfterAWaitFromThePoseBeforeIt) {
+TEST(LaggedController, StartsAfterAWaitFromThePoseBeforeIt) {
   const Program program{"p", {row("a", Vector3(0.5, 0.0, 0.0)), row("a", Vector3(0.5, 0.5, 0.0), {.vacuum = true})}};
-  const PreparedProgram plan = prepare(program, settings_of(ControllerKind::Faithful));
+  const PreparedProgram plan = prepare(program, settings_of(LaggedTracking{}));
   const std::vector<Tick> ticks = run(plan, Pose{});
   const std::size_t departure = departure_of(ticks, 1);
   const std::size_t start = departure + kWaitTicks;
@@ -239,9 +240,9 @@ TEST(FaithfulController, StartsAfterAWaitFromThePoseBeforeIt) {
   EXPECT_LT(0.5 - ticks[start].measured.X_WE.p.x(), 0.5 * (0.5 - ticks[departure].measured.X_WE.p.x()));
 }
 
-TEST(FaithfulController, UsesWhatIsMeasuredNotWhatWasCommanded) {
+TEST(LaggedController, UsesWhatIsMeasuredNotWhatWasCommanded) {
   const Program program{"p", {row("a", Vector3(0.5, 0.0, 0.0))}};
-  const PreparedProgram plan = prepare(program, settings_of(ControllerKind::Faithful));
+  const PreparedProgram plan = prepare(program, settings_of(LaggedTracking{}));
   ControllerState state = make_controller_state(Pose{});
   ToolState measured;
   measured.X_WE.p = Vector3(0.0, 0.1, 0.0);
@@ -251,9 +252,9 @@ TEST(FaithfulController, UsesWhatIsMeasuredNotWhatWasCommanded) {
   EXPECT_TRUE(tick(plan, measured, state).finished_now);
 }
 
-TEST(FaithfulController, SettlesOnTheLastRow) {
+TEST(LaggedController, SettlesOnTheLastRow) {
   const Program program{"p", {row("a", Vector3(0.5, 0.1, 0.2), {}, Vector3(0.0, 2.0, 1.0))}};
-  const PreparedProgram plan = prepare(program, settings_of(ControllerKind::Faithful, {0.2, 3.0, 0.5, 2.0, 2.0}));
+  const PreparedProgram plan = prepare(program, settings_of(LaggedTracking{}, {0.2, 3.0, 0.5, 2.0, 2.0}));
   const std::vector<Tick> ticks = run(plan, Pose{}, 2000);
   const ToolState& last = ticks.back().output.tool;
   // 16 s are 50 time constants.
@@ -263,9 +264,9 @@ TEST(FaithfulController, SettlesOnTheLastRow) {
   EXPECT_FALSE(ticks.back().output.finished_now);
 }
 
-TEST(FaithfulController, MovesSmoothlyBetweenTicks) {
+TEST(LaggedController, MovesSmoothlyBetweenTicks) {
   const Program program{"p", {row("a", Vector3(0.5, 0.1, 0.2), {}, Vector3(0.0, 2.0, 1.0))}};
-  const std::vector<Tick> ticks = run(prepare(program, settings_of(ControllerKind::Faithful)), Pose{});
+  const std::vector<Tick> ticks = run(prepare(program, settings_of(LaggedTracking{})), Pose{});
   for (const Tick& t : ticks) {
     const ToolState middle = interpolate(t.measured, t.output.tool, kTick, 0.5);
     const Twist& V0 = t.measured.V_WE;
@@ -281,7 +282,7 @@ TEST(IdealController, ReachesEveryRowExactlyAndAtRestAndStaysWhileWaiting) {
                         {row("a", Vector3(0.3, 0.0, 0.1), {}, Vector3(0.0, 0.0, 1.0)),
                          row("a", Vector3(0.3, 0.5, 0.1), {.vacuum = true}, Vector3(1.0, 0.0, 1.0)),
                          row("a", Vector3(0.0, 0.5, 0.0), {}, Vector3(0.0, 3.0, 0.0))}};
-  const PreparedProgram plan = prepare(program, settings_of(ControllerKind::Ideal));
+  const PreparedProgram plan = prepare(program, settings_of(ExactTracking{}));
   const std::vector<Tick> ticks = run(plan, Pose{}, 10);
   Pose X_WE_last;
   std::size_t expected_ticks = 0;
@@ -308,7 +309,7 @@ TEST(IdealController, ReachesEveryRowExactlyAndAtRestAndStaysWhileWaiting) {
 
 TEST(IdealController, IsOnTheReferenceAtEveryTick) {
   const Waypoint goal = row("a", Vector3(0.3, 0.0, 0.1), {}, Vector3(0.0, 0.0, 1.0));
-  const PreparedProgram plan = prepare({"p", {goal}}, settings_of(ControllerKind::Ideal));
+  const PreparedProgram plan = prepare({"p", {goal}}, settings_of(ExactTracking{}));
   const LspbSegment segment(Pose{}, goal.X_WE(), plan.row_limits[0]);
   const std::vector<Tick> ticks = run(plan, Pose{});
   for (std::size_t i = 0; i + 1 < ticks.size(); ++i) {
@@ -322,7 +323,7 @@ TEST(Preparation, RefusesSettingsThatCannotBe) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Program program{"p.csv", {row("a", Vector3::Zero())}};
   const auto failing = [&](auto change) {
-    ControllerSettings settings = settings_of(ControllerKind::Faithful);
+    ControllerSettings settings = settings_of(LaggedTracking{});
     change(settings);
     return where_it_fails([&] { (void)prepare(program, settings); });
   };
@@ -337,10 +338,10 @@ TEST(Preparation, RefusesSettingsThatCannotBe) {
   EXPECT_EQ(failing([&](auto& s) { s.vacuum_wait = -0.1; }), "p.csv vacuum wait");
   EXPECT_EQ(failing([&](auto& s) { s.task_stiffness = 1e6; }), "p.csv task stiffness");
   EXPECT_EQ(failing([&](auto& s) { s.limits[0].prefix = "b"; }), "p.csv row 1 column 7 (name)");
-  EXPECT_EQ(where_it_fails([&] { (void)prepare({"p.csv", {}}, settings_of(ControllerKind::Ideal)); }), "p.csv ");
+  EXPECT_EQ(where_it_fails([&] { (void)prepare({"p.csv", {}}, settings_of(ExactTracking{})); }), "p.csv ");
   Program bad = program;
   bad.waypoints[0].p_WE.x() = nan;
-  EXPECT_EQ(where_it_fails([&] { (void)prepare(bad, settings_of(ControllerKind::Ideal)); }), "p.csv row 1 a");
+  EXPECT_EQ(where_it_fails([&] { (void)prepare(bad, settings_of(ExactTracking{})); }), "p.csv row 1 a");
 }
 
 }  // namespace

@@ -15,13 +15,13 @@ Program real_program(int sequence) {
 }
 
 /// The demonstrator waits at `home`, the last row, for its program to start.
-double duration_of(int sequence, bool corrected, bool sampled_coast, ControllerKind kind = ControllerKind::Faithful) {
+double duration_of(int sequence, bool corrected, bool sampled_coast, const Tracking& tracking = LaggedTracking{}) {
   Program program = real_program(sequence);
   const Pose X_WE_home = program.waypoints.back().X_WE();
   if (corrected) program = apply_corrections(program, demonstrator_corrections(sequence));
   ControllerSettings settings = demonstrator_settings(sequence);
   settings.sampled_coast = sampled_coast;
-  settings.kind = kind;
+  settings.tracking = tracking;
   return compute_duration(prepare(program, settings), X_WE_home);
 }
 
@@ -74,7 +74,7 @@ TEST_P(DemonstratorSequence, SpendsLessThanHalfOfItsTimeOnTheReferenceMotions) {
   EXPECT_NEAR(total, reported.reference, 1.1);  // the figures are rounded to seconds, the point model starts elsewhere
   EXPECT_NEAR(worst_jump, 0.0215, 0.001);       // interfaces 2.3: jumps of the reference up to 21-22 mm
   // The ideal controller adds the waits and half a tick a row.
-  const double ideal = duration_of(reported.sequence, false, false, ControllerKind::Ideal);
+  const double ideal = duration_of(reported.sequence, false, false, ExactTracking{});
   EXPECT_GT(ideal, total);
   EXPECT_LT(ideal, reported.plain - 60.0);
 }

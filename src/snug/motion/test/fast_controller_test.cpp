@@ -25,9 +25,8 @@ Waypoint row(const char* name, const Vector3& p, const IO& io = {}) {
 
 ControllerSettings fast_settings(double tempo = 1.0) {
   ControllerSettings settings;
-  settings.kind = ControllerKind::Fast;
+  settings.tracking = FastTracking{tempo};
   settings.limits = {{"", MotionLimits{}}, {"PlaceSlow", {0.002, 1.0, 0.15, 0.6, 1.0}}, {"TwistDrag", {0.2}}};
-  settings.fast.tempo = tempo;
   settings.fast.sealed_pressure = -4.0e4;
   settings.fast.released_pressure = -1.0e3;
   return settings;
@@ -256,7 +255,10 @@ TEST(FastController, RefusesSettingsOutOfRange) {
     EXPECT_THROW((void)prepare({"corner", kCorner}, settings), InputError);
   };
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (const double bad : {0.0, 0.09, 1.01, -1.0, kNaN}) refused([&](FastSettings& fast) { fast.tempo = bad; });
+  for (const double bad : {0.0, 0.09, 1.01, -1.0, kNaN}) {
+    ControllerSettings settings = fast_settings(bad);
+    EXPECT_THROW((void)prepare({"p", {named_waypoint("a", Pose{})}}, settings), InputError) << bad;
+  }
   for (const double bad : {0.0, -1.0, kNaN, std::numeric_limits<double>::infinity()}) {
     refused([&](FastSettings& fast) { fast.held.max_acceleration = bad; });
     refused([&](FastSettings& fast) { fast.lift_swing = bad; });
@@ -265,11 +267,11 @@ TEST(FastController, RefusesSettingsOutOfRange) {
   }
 }
 
-TEST(ControllerKind, WordsAndKindsAreOneToOne) {
-  for (const ControllerKind kind : {ControllerKind::Faithful, ControllerKind::Ideal, ControllerKind::Fast}) {
-    EXPECT_EQ(controller_kind_of(name_of(kind), "test"), kind);
+TEST(Tracking, WordsAndKindsAreOneToOne) {
+  for (const Tracking& tracking : {Tracking(LaggedTracking{}), Tracking(ExactTracking{}), Tracking(FastTracking{})}) {
+    EXPECT_EQ(tracking_of(name_of(tracking), "test"), tracking);
   }
-  EXPECT_THROW((void)controller_kind_of("quick", "test"), InputError);
+  EXPECT_THROW((void)tracking_of("quick", "test"), InputError);
 }
 
 }  // namespace

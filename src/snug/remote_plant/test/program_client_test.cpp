@@ -16,7 +16,7 @@ namespace {
 const cell::Simulation& cell_with_robot() {
   static const cell::Simulation simulation(
       model::load_scenario(std::filesystem::path(SNUG_SOURCE_DIR) / "scenarios/box-demonstrator.yaml"), "1",
-      {motion::ControllerKind::Faithful, cup::CupMode::Holding, "ur10"});
+      {motion::LaggedTracking{}, cup::CupMode::Holding, "ur10"});
   return simulation;
 }
 

@@ -32,7 +32,7 @@ model::Scenario drawn() { return cell::draw_scenario(scenario(), "1", Rng(7).spl
 class Served {
  public:
   explicit Served(const model::Scenario& cell, bool is_plant = true)
-      : simulation_(cell, "1", {motion::ControllerKind::Faithful, cup::CupMode::Phases, "ur10"}),
+      : simulation_(cell, "1", {motion::LaggedTracking{}, cup::CupMode::Phases, "ur10"}),
         simulator_(simulation_, settings_of(is_plant)),
         server_(simulator_, server_settings()) {
     thread_ = std::thread([this] { server_.run(); });

@@ -55,7 +55,7 @@ void TickRecorder::close(const CellState& state, const std::string& result_json,
 std::string settings_json(const SimulationOptions& options, const std::string& corrections) {
   const auto or_none = [](const std::string& name) { return name.empty() ? "none" : name; };
   const nlohmann::ordered_json settings = {{"cup", cup::name_of(options.cup.value_or(cup::CupMode::Phases))},
-                                           {"controller", motion::name_of(options.controller)},
+                                           {"controller", motion::name_of(options.tracking)},
                                            {"corrections", or_none(corrections)},
                                            {"robot", or_none(options.robot)}};
   return settings.dump();

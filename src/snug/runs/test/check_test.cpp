@@ -172,7 +172,7 @@ TEST(Check, FindsTheWallThatAWristRunsInto) {
 
 TEST(Check, FindsTheSingularityOnTheWay) {
   // Wrist 2 is at a right angle at home; where it comes to zero the last axis is parallel to the fourth.
-  const Simulation simulation(demonstrator(), "1", {motion::ControllerKind::Faithful, cup::CupMode::Holding, "ur10"});
+  const Simulation simulation(demonstrator(), "1", {motion::LaggedTracking{}, cup::CupMode::Holding, "ur10"});
   const auto turned_by = [&](double angle) {
     robot::JointVector q = simulation.arm()->start();
     q[4] -= angle;

@@ -22,8 +22,7 @@ using control::DriveKind;
 using robot::JointVector;
 
 const Simulation& cell_with_robot() {
-  static const Simulation kSimulation(demonstrator(), "1",
-                                      {motion::ControllerKind::Faithful, cup::CupMode::Holding, "ur10"});
+  static const Simulation kSimulation(demonstrator(), "1", {motion::LaggedTracking{}, cup::CupMode::Holding, "ur10"});
   return kSimulation;
 }
 

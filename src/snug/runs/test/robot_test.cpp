@@ -193,7 +193,7 @@ TEST(Robot, StandsAndSaysSoWhereARowIsOutOfReach) {
 TEST(Robot, GoesOnFromASnapshotWithTheSameBytes) {
   model::Scenario scenario = demonstrator();
   scenario.robot->sensor.force_noise = 0.1;
-  const Simulation simulation(scenario, "1", {motion::ControllerKind::Faithful, cup::CupMode::Holding, "ur10"});
+  const Simulation simulation(scenario, "1", {motion::LaggedTracking{}, cup::CupMode::Holding, "ur10"});
   const motion::PreparedProgram plan =
       simulation.prepare({"test", {row_at(home().p + Vector3(0.1, 0.0, 0.0)), row_at(home().p)}});
   CellState state = simulation.make_state();

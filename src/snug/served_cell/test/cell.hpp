@@ -12,7 +12,7 @@ namespace snug::served_cell::test {
 inline const cell::Simulation& demonstrator_cell() {
   static const cell::Simulation simulation(
       model::load_scenario(std::filesystem::path(SNUG_SOURCE_DIR) / "scenarios/box-demonstrator.yaml"), "1",
-      {motion::ControllerKind::Faithful, cup::CupMode::Holding, "ur10"});
+      {motion::LaggedTracking{}, cup::CupMode::Holding, "ur10"});
   return simulation;
 }
 

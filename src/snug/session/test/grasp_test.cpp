@@ -15,12 +15,12 @@ namespace {
 
 /// Every box of sequence 1 in every orientation that needs one turn, in cells that are all a little different: the
 /// grasp says how it got there, and the box hangs as asked in nearly all of them.
-class PlanGrasp : public testing::TestWithParam<motion::ControllerKind> {};
+class PlanGrasp : public testing::TestWithParam<motion::Tracking> {};
 
 TEST_P(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
   const model::Scenario scenario = demonstrator();
   skills::CellLayout layout = skills::make_layout(scenario, cell::find_pan_axis(scenario));
-  layout.is_fast = GetParam() == motion::ControllerKind::Fast;
+  layout.is_fast = GetParam() == motion::FastTracking{};
   const cell::SimulationOptions options{GetParam(), cup::CupMode::Phases, {}};
   std::vector<std::unique_ptr<Rollout>> rollouts;
   std::vector<cell::CellState> states;
@@ -81,7 +81,8 @@ TEST_P(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Controllers, PlanGrasp,
-                         testing::Values(motion::ControllerKind::Faithful, motion::ControllerKind::Fast));
+                         testing::Values(motion::Tracking(motion::LaggedTracking{}),
+                                         motion::Tracking(motion::FastTracking{})));
 
 }  // namespace
 }  // namespace snug::session

@@ -144,7 +144,7 @@ TEST(PackerAhead, TheRobotWaitsOnlyForWhatTakesLongerThanItsWay) {
 TEST(PackerAhead, WithTheLagTheToolStaysOverTheBox) {
   ScriptedPlant plant;
   SessionOptions options = quick_options();
-  options.simulation.controller = motion::ControllerKind::Faithful;
+  options.simulation.tracking = motion::LaggedTracking{};
   const SessionResult result = pack(plant, options);
   EXPECT_TRUE(plant.brought_on_the_way.empty());
   EXPECT_TRUE(std::ranges::none_of(result.program.waypoints,

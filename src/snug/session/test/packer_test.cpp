@@ -155,7 +155,7 @@ TEST(Packer, AFastRobotTurnsABoxOnlyWhereThatIsWorthIt) {
   };
   EXPECT_GT(flips(0.0), 0);
   EXPECT_EQ(flips(100.0), 0);
-  options.simulation.controller = motion::ControllerKind::Faithful;
+  options.simulation.tracking = motion::LaggedTracking{};
   EXPECT_GT(flips(100.0), 0) << "with the lag it costs nothing";
 }
 

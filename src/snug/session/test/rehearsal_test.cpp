@@ -26,7 +26,7 @@ class RehearsalOfOneBox : public testing::Test {
     BeliefSettings settings;
     settings.samples = samples;
     settings.seed = seed;
-    settings.simulation.controller = motion::ControllerKind::Fast;
+    settings.simulation.tracking = motion::FastTracking{};
     belief_ = std::make_unique<Belief>(scenario_, "1", settings);
     belief_->arrives(0);
   }

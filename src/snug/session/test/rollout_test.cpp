@@ -16,7 +16,7 @@ namespace {
 using model::test::shortened;
 
 cell::SimulationOptions moved_by(const std::string& robot) {
-  return {motion::ControllerKind::Faithful, cup::CupMode::Phases, robot};
+  return {motion::LaggedTracking{}, cup::CupMode::Phases, robot};
 }
 
 packing::Placement placement_of(const model::Scenario& scenario, const Vector3& p_TP) {
@@ -80,7 +80,7 @@ TEST(Rollout, ComesToTheSameBytesPartByPartWithRestoresAsInOneRun) {
 
 /// A soft post in the middle of the forearm at its start: it touches, but nothing stops the arm for protection.
 model::Scenario with_post(model::Scenario scenario) {
-  const cell::Simulation simulation(scenario, "1", {motion::ControllerKind::Faithful, cup::CupMode::Phases, "ur10"});
+  const cell::Simulation simulation(scenario, "1", {motion::LaggedTracking{}, cup::CupMode::Phases, "ur10"});
   const robot::ArmModel& arm = simulation.arm()->model();
   const robot::ArmPose at = robot::forward(arm, simulation.arm()->start());
   const Vector3 elbow = at.X_WS[3].p, wrist = at.X_WS[4].p;

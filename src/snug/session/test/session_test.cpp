@@ -160,9 +160,9 @@ TEST(Session, SaysWhatItTriedForAnItemThatHasNoPlace) {
 TEST(Session, MotionsAreGuardedByTheLimitsOfTheScenario) {
   ScriptedPlant fast, slow;
   SessionOptions options = quick_options();
-  options.simulation.controller = motion::ControllerKind::Fast;
+  options.simulation.tracking = motion::FastTracking{};
   (void)session::pack(two_boxes(), "1", options, fast);
-  options.simulation.controller = motion::ControllerKind::Faithful;
+  options.simulation.tracking = motion::LaggedTracking{};
   (void)session::pack(two_boxes(), "1", options, slow);
   const settings::PlaceLimits& limits = two_boxes().place_limits;
   EXPECT_EQ(fast.motions[0].guards, (plant::Guards{limits.force, true, limits.hold_guard}));

@@ -231,7 +231,8 @@ TEST(Placements, GiveAProgramThatReadsBackAndRuns) {
   const motion::Program program = program_of(two_boxes());
   const motion::Program again = motion::parse_program(motion::format_program(program), "placements.csv");
   ASSERT_EQ(again.waypoints.size(), program.waypoints.size());
-  for (const motion::ControllerKind kind : {motion::ControllerKind::Faithful, motion::ControllerKind::Ideal}) {
+  for (const motion::Tracking& tracking :
+       {motion::Tracking(motion::LaggedTracking{}), motion::Tracking(motion::ExactTracking{})}) {
     motion::ControllerSettings settings = motion::demonstrator_settings(1);
     settings.kind = kind;
     const double duration = motion::compute_duration(motion::prepare(again, settings), program.waypoints.back().X_WE());

@@ -1,23 +1,23 @@
-// Tempo of a program: a comment of its file says how fast it was packed to be done.
-#include "snug/motion/program_tempo.hpp"
+// Tracking of a program: a comment of its file says for which tracking it was made.
+#include "snug/motion/program_tracking.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <optional>
 #include <string>
 
 #include "snug/core/csv_fields.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/core/read_file.hpp"
 #include "snug/core/text.hpp"
 
 namespace snug::motion {
 namespace {
 
-const std::array<std::string, 1> kKeys{"tempo"};
-constexpr double kLeast = 0.1;  ///< as FastSettings
+const std::array<std::string, 2> kKeys{"tempo", "tracking"};
+constexpr double kLeast = 0.1;  ///< as FastTracking
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
@@ -56,15 +56,35 @@ Setting parse_comment(std::string_view comment) {
 bool is_misspelt(const Setting& setting) {
   if (!parse_number(setting.value)) return false;
   if (setting.word == kKeys[0]) return setting.separator != ':';
+  if (setting.word == kKeys[1]) return false;  // refused as a value
   return setting.separator != '\0' && !find_nearest(setting.word, kKeys).empty();
+}
+
+/// Of a comment that says tempo or tracking.
+Tracking read_value(const Setting& setting, const std::string& place) {
+  const auto fail = [&](const std::string& expected) {
+    throw InputError(place, setting.word, fmt::format("'{}'", setting.value), expected);
+  };
+  if (setting.word == kKeys[0]) {
+    const std::optional<double> tempo = parse_number(setting.value);
+    if (!tempo || !(*tempo >= kLeast && *tempo <= 1.0)) fail(fmt::format("a number from {} to 1", kLeast));
+    return FastTracking{*tempo};
+  }
+  const std::string word = lower(setting.value);
+  if (word == name_of(ExactTracking{})) return ExactTracking{};
+  if (word != name_of(LaggedTracking{})) fail("lagged or exact; fast is said by a tempo");
+  return LaggedTracking{};
 }
 
 }  // namespace
 
-std::string format_tempo(double tempo) { return fmt::format("# {}: {}\n", kKeys[0], tempo); }
+std::string format_tracking(const Tracking& tracking) {
+  if (is_fast(tracking)) return fmt::format("# {}: {}\n", kKeys[0], tempo_of(tracking));
+  return is_exact(tracking) ? fmt::format("# {}: {}\n", kKeys[1], name_of(tracking)) : std::string();
+}
 
-std::optional<double> find_tempo(std::string_view text, std::string_view name) {
-  std::optional<double> found;
+Tracking find_tracking(std::string_view text, std::string_view name) {
+  std::optional<Tracking> found;
   text = without_byte_order_mark(text);
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
@@ -75,19 +95,11 @@ std::optional<double> find_tempo(std::string_view text, std::string_view name) {
     const Setting setting = parse_comment(row);
     const std::string place = fmt::format("{}:{}", name, line);
     if (is_misspelt(setting)) throw InputError(place, "", fmt::format("'# {}'", row), "'# tempo: NUMBER'");
-    if (setting.word != kKeys[0] || setting.separator != ':') continue;
-    const std::optional<double> tempo = parse_number(setting.value);
-    if (found || !tempo || !(*tempo >= kLeast && *tempo <= 1.0)) {
-      throw InputError(place, "tempo", fmt::format("'{}'", setting.value),
-                       found ? "one tempo" : fmt::format("a number from {} to 1", kLeast));
-    }
-    found = tempo;
+    if (setting.separator != ':' || (setting.word != kKeys[0] && setting.word != kKeys[1])) continue;
+    if (found) throw InputError(place, setting.word, fmt::format("'{}'", setting.value), "one tempo or tracking");
+    found = read_value(setting, place);
   }
-  return found;
-}
-
-std::optional<double> load_tempo(const std::filesystem::path& path) {
-  return find_tempo(read_file(path, "a program file (CSV)"), path.string());
+  return found.value_or(LaggedTracking{});
 }
 
 }  // namespace snug::motion

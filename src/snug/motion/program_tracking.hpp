@@ -1,0 +1,19 @@
+// Tracking of a program: a comment of its file says for which tracking it was made.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "snug/motion/tracking.hpp"
+
+namespace snug::motion {
+
+/// For the head of a file: "# tempo: 0.8\n" of fast tracking, "# tracking: exact\n", nothing of lagged tracking: the
+/// demonstrator's files say nothing.
+[[nodiscard]] std::string format_tracking(const Tracking& tracking);
+/// What the comments of a program's text say; lagged where they say nothing. Throws InputError with file and line for a
+/// tempo that is no number from 0.1 to 1, a tracking that is neither lagged nor exact, for a second one of either, and
+/// for a comment that is meant as one but misspelt ("# tmepo: 1", "# tempo = 1"). `name` stands for the file.
+[[nodiscard]] Tracking find_tracking(std::string_view text, std::string_view name);
+
+}  // namespace snug::motion
