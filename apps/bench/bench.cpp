@@ -20,6 +20,7 @@
 #include "apps/bench/internal/scene_bench.hpp"
 #include "apps/bench/internal/validation_bench.hpp"
 #include "snug/core/units.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/runs/run.hpp"
 
 namespace snug::bench {

@@ -60,7 +60,7 @@ class MotionPlanner {
         skills::measured(state, candidate, box.size, scenario_.parcel_clearance, scenario_.skills.insertion);
     const skills::Insertion insertion = skills::choose_insertions(placed, box.size, scenario_.skills.insertion).front();
     const motion::Waypoint held = program.waypoints.back();
-    const skills::PlaceRequest request{box, X_PS, placed.placement.X_TP, insertion, top, held.X_WE(), X_EP};
+    const skills::PlaceRequest request{box, X_PS, placed.placement.X_TP, insertion, top, held.X_WE, X_EP};
     session::append(program, drivable(layout_, held, plan_place(scenario_, layout_, request), pick->swing));
     if (!session::can_follow(reaches_, layout_, home, program.waypoints)) return std::nullopt;
     const motion::PreparedProgram prepared = simulation_.prepare(std::move(program));
@@ -85,7 +85,7 @@ class MotionPlanner {
                                  : plan_side_pick(scenario_, layout_, box, X_WP, face_W, X_next, travel, false);
     const auto held = std::ranges::find_if(pick.rows, [](const motion::Waypoint& row) { return row.io.vacuum; });
     if (held == pick.rows.begin() || held == pick.rows.end()) return std::nullopt;
-    pick.X_WE = std::prev(held)->X_WE();
+    pick.X_WE = std::prev(held)->X_WE;
     pick.swing = skills::swing_of(scenario_, box, X_WP.R.transpose() * face_W);
     return pick;
   }

@@ -12,6 +12,7 @@
 #include "snug/identification/scene_fit.hpp"
 #include "snug/model/number_edit.hpp"
 #include "snug/model/sensors.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/runs/run.hpp"
 #include "snug/validation/measure.hpp"
 

@@ -9,6 +9,7 @@
 #include "apps/bench/internal/validation_bench.hpp"
 #include "snug/core/rng.hpp"
 #include "snug/model/sensors.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/runs/run.hpp"
 #include "snug/validation/measure.hpp"
 #include "snug/validation/page.hpp"

@@ -4,6 +4,7 @@
 #include "snug/model/items_file.hpp"
 #include "snug/model/other_container.hpp"
 #include "snug/model/scenario_edit.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
 namespace snug::python {
@@ -31,7 +32,7 @@ py::dict as_dict(const model::Parcel& parcel) {
 py::dict as_dict(const motion::Waypoint& row) {
   py::dict dict;
   dict["name"] = motion::name_of(row);
-  dict["pose"] = as_array(row.X_WE());
+  dict["pose"] = as_array(row.X_WE);
   dict["vacuum"] = row.io.vacuum;
   dict["blow_off"] = row.io.blow_off;
   return dict;

@@ -6,6 +6,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/record/reader.hpp"
 #include "snug/record/writer.hpp"
 #include "snug/replay/page.hpp"

@@ -1,5 +1,6 @@
 // Programs (CSV): what was read is written and read again.
 #include "fuzz.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

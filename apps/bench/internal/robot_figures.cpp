@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "apps/bench/internal/scene_bench.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/runs/corrected.hpp"
 #include "snug/runs/program_check.hpp"
 #include "snug/runs/run.hpp"

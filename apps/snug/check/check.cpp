@@ -10,6 +10,7 @@
 #include "apps/snug/common/program_fit.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/runs/corrected.hpp"
 #include "snug/runs/program_check.hpp"
 

@@ -14,6 +14,7 @@
 #include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/remote_plant/program_client.hpp"
 #include "snug/runs/corrected.hpp"
 

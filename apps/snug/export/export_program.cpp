@@ -17,6 +17,7 @@
 #include "snug/core/read_file.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/motion/fitted_limits.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/runs/corrected.hpp"
 #include "snug/runs/program_trial.hpp"

@@ -20,6 +20,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/packing/representatives.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/runs/result_json.hpp"

@@ -6,6 +6,7 @@
 #include "apps/snug/command_line/shipped.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/session/task.hpp"
 

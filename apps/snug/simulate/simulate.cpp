@@ -14,6 +14,7 @@
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
 #include "snug/runs/result_json.hpp"

@@ -85,7 +85,7 @@ Pose pose_at_aligner(const model::Scenario& scenario, const model::Item& item, c
 std::optional<Pose> next_pick(const motion::Program& program, int row) {
   const auto& rows = program.waypoints;
   for (auto i = static_cast<std::size_t>(row) + 1; i < rows.size(); ++i) {
-    if (rows[i].io.vacuum) return rows[i - 1].X_WE();
+    if (rows[i].io.vacuum) return rows[i - 1].X_WE;
   }
   return std::nullopt;
 }

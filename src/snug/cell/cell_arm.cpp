@@ -320,7 +320,7 @@ std::optional<ProtectiveStop> CellArm::find_stop(const ArmState& state, const Ar
   stop_by_load(StopCause::SensorTorque, sensor, reading.sensor_torque, limits.sensor_torque, known.torque, "Nm");
   stop(StopCause::TrackingError, "the joints", yielded, params_.protective_stop.tracking_error, "rad");
   if (task.is_stuck && task.waypoint != nullptr) {
-    stop(StopCause::Stuck, motion::name_of(*task.waypoint), (task.waypoint->p_WE - state.machine.tool.X_WE.p).norm(),
+    stop(StopCause::Stuck, motion::name_of(*task.waypoint), (task.waypoint->X_WE.p - state.machine.tool.X_WE.p).norm(),
          -1.0, "m");
   }
   return found;

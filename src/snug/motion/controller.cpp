@@ -121,11 +121,11 @@ PreparedProgram prepare(Program program, ControllerSettings settings) {
   PreparedProgram plan;
   for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
     const Waypoint& waypoint = program.waypoints[row];
-    if (!waypoint.p_WE.allFinite() || !waypoint.rotation_WE.allFinite()) {
+    if (!waypoint.X_WE.p.allFinite() || !waypoint.X_WE.R.allFinite()) {
       throw InputError(place_of(program, row), name_of(waypoint), "a pose that is not finite", "a finite pose");
     }
     plan.row_limits.push_back(find_limits(program, row, settings.limits));
-    plan.X_WE.push_back(waypoint.X_WE());
+    plan.X_WE.push_back(waypoint.X_WE);
     const std::optional<Swing>& swing = waypoint.swing;
     plan.held_smoothing.push_back(swing ? Smoothing{swing->slow, 0.5 * swing->fast}
                                         : Smoothing{settings.fast.held.window, settings.fast.held.shaper_delay});

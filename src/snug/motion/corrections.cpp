@@ -13,7 +13,7 @@ Program apply_corrections(Program program, std::span<const Correction> correctio
     for (const Correction& correction : corrections) {
       const bool matches =
           std::ranges::any_of(correction.prefixes, [&](const std::string& prefix) { return name.starts_with(prefix); });
-      if (matches) waypoint.p_WE += correction.offset;
+      if (matches) waypoint.X_WE.p += correction.offset;
     }
   }
   return program;

@@ -1,144 +1,14 @@
-// Waypoint, Program: where the tool goes and what it switches, read from and written to the 13-column CSV.
+// Waypoint, Program: where the tool goes and what it switches.
 #include "snug/motion/waypoint.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <utility>
-
-#include "snug/core/input_error.hpp"
-#include "snug/core/read_file.hpp"
-#include "snug/core/text.hpp"
-#include "snug/core/write_file.hpp"
-#include "snug/motion/program_tracking.hpp"
-#include "snug/motion/waypoint_name.hpp"
-
 namespace snug::motion {
-namespace {
-
-constexpr std::size_t kColumns = 13;
-constexpr std::array<const char*, kColumns> kColumnNames = {
-    "x",      "y",        "z",           "rx",           "ry",        "rz",      "name",
-    "vacuum", "blow-off", "conveyor cw", "conveyor ccw", "optitrack", "reserved"};
-constexpr double kLargestPosition = 100.0;       // m; a cell is a few metres, so more means other units
-constexpr std::size_t kMostWaypoints = 100'000;  // hours of motion
-constexpr double kLargestRotation = 100.0;       // rad; far beyond any sensible rotation vector, still exact to 1e-14
-
-constexpr const char* kSwingEnding = "behind '~' a swing: two periods from 0.01 to 9.99 s, such as ~0.42+0.31";
-
-/// Where a field stands, for messages.
-struct Field {
-  std::string_view text;
-  std::string_view file;
-  int line = 0;
-  std::size_t column = 0;  ///< from 0
-
-  [[noreturn]] void fail(std::string expected) const {
-    throw InputError(fmt::format("{}:{}", file, line), fmt::format("column {} ({})", column + 1, kColumnNames[column]),
-                     text.empty() ? "nothing" : fmt::format("'{}'", text), std::move(expected));
-  }
-};
-
-double parse_number(const Field& field) {
-  std::string_view text = field.text;
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::result_out_of_range) field.fail("a number that a double can hold");
-  if (error != std::errc() || end != text.data() + text.size()) field.fail("a number");
-  if (!std::isfinite(value)) field.fail("a finite number");
-  return value;
-}
-
-bool parse_switch(const Field& field) {
-  if (field.text == "0") return false;
-  if (field.text == "1") return true;
-  field.fail("0 or 1");
-}
-
-std::string_view read_name(const Field& field) {
-  if (field.text.empty()) field.fail("the waypoint's name");
-  if (!is_printable(field.text)) field.fail("a name without control characters");
-  return field.text;
-}
-
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = text.find(',');
-    fields.push_back(trim(text.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    text.remove_prefix(comma + 1);
-  }
-}
-
-Waypoint parse_row(std::string_view text, std::string_view file, int line) {
-  const std::vector<std::string_view> texts = split(text);
-  if (texts.size() != kColumns) {
-    throw InputError(fmt::format("{}:{}", file, line), "", fmt::format("{} columns", texts.size()),
-                     "13: x, y, z, rx, ry, rz, name, vacuum, blow-off, conveyor cw, conveyor ccw, optitrack, reserved");
-  }
-  const auto field = [&](std::size_t column) { return Field{texts[column], file, line, column}; };
-  std::array<double, 6> number{};
-  for (std::size_t i = 0; i < 6; ++i) number[i] = parse_number(field(i));
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (std::abs(number[i]) > kLargestPosition) field(i).fail("metres, at most 100");
-  }
-  for (std::size_t i = 3; i < 6; ++i) {
-    if (std::abs(number[i]) > kLargestRotation) field(i).fail("radians, at most 100");
-  }
-  Waypoint waypoint = parse_waypoint_name(read_name(field(6)));
-  if (has_malformed_swing(waypoint)) field(6).fail(kSwingEnding);
-  waypoint.p_WE = {number[0], number[1], number[2]};
-  waypoint.rotation_WE = {number[3], number[4], number[5]};
-  waypoint.io = {parse_switch(field(7)),  parse_switch(field(8)),  parse_switch(field(9)),
-                 parse_switch(field(10)), parse_switch(field(11)), parse_switch(field(12))};
-  waypoint.line = line;
-  return waypoint;
-}
-
-constexpr double kGrid = 0x1p-40;  ///< rad, far above the rounding of log_rotation
-
-Vector3 on_grid(const Vector3& r) { return (r / kGrid).array().round().matrix() * kGrid; }
-
-void check_writable(const Program& program, std::size_t row) {
-  const Waypoint& waypoint = program.waypoints[row];
-  const std::string name = name_of(waypoint);
-  if (name.empty() || name != trim(name) || name.find(',') != std::string::npos || !is_printable(name)) {
-    throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name),
-                     "a name without commas, control characters and blanks at its ends");
-  }
-  if (has_malformed_swing(parse_waypoint_name(name))) {
-    throw InputError(place_of(program, row), "column 7 (name)", fmt::format("'{}'", name), kSwingEnding);
-  }
-  if (!waypoint.p_WE.allFinite() || !waypoint.rotation_WE.allFinite()) {
-    throw InputError(place_of(program, row), name, "a pose that is not finite", "a finite pose");
-  }
-}
-
-}  // namespace
-
-void Waypoint::set_pose(const Pose& X_WE) {
-  p_WE = X_WE.p;
-  rotation_WE = log_rotation(X_WE.R);
-  // Logarithm and exponential together do not give a vector back to the last bit. Where one on the grid gives this
-  // matrix, it is that one.
-  const Vector3 rounded = on_grid(rotation_WE);
-  if (exp_rotation(rounded) == X_WE.R) rotation_WE = rounded;
-}
-
-Waypoint rounded(Waypoint waypoint) {
-  waypoint.rotation_WE = on_grid(waypoint.rotation_WE);
-  return waypoint;
-}
 
 Waypoint make_waypoint(MotionClass motion_class, std::string_view item, const Pose& X_WE, const IO& io,
                        std::string_view variant) {
   Waypoint waypoint;
-  waypoint.set_pose(X_WE);
+  waypoint.X_WE = X_WE;
   waypoint.motion_class = motion_class;
   waypoint.item = item;
   waypoint.variant = variant;
@@ -149,48 +19,6 @@ Waypoint make_waypoint(MotionClass motion_class, std::string_view item, const Po
 std::string place_of(const Program& program, std::size_t row) {
   const int line = program.waypoints[row].line;
   return line > 0 ? fmt::format("{}:{}", program.name, line) : fmt::format("{} row {}", program.name, row + 1);
-}
-
-Program parse_program(std::string_view text, std::string_view name) {
-  Program program{std::string(name), {}};
-  check_utf8(text, name);
-  const std::string_view whole = text;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark that spreadsheets add
-  for (int line = 1; !text.empty(); ++line) {
-    const std::size_t end = text.find('\n');
-    const std::string_view row = trim(text.substr(0, end));
-    const bool is_comment = row.starts_with('#');
-    if (!row.empty() && !is_comment) program.waypoints.push_back(parse_row(row, name, line));
-    if (program.waypoints.size() > kMostWaypoints) {
-      throw InputError(fmt::format("{}:{}", name, line), "", fmt::format("more than {} waypoints", kMostWaypoints),
-                       "fewer");
-    }
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  }
-  if (program.waypoints.empty()) throw InputError(std::string(name), "", "no rows", "at least one waypoint");
-  program.tracking = find_tracking(whole, name);
-  return program;
-}
-
-Program load_program(const std::filesystem::path& path) {
-  return parse_program(read_file(path, "a program file (CSV)"), path.string());
-}
-
-std::string format_program(const Program& program) {
-  std::string text = format_tracking(program.tracking);
-  for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
-    check_writable(program, row);
-    const Waypoint& w = program.waypoints[row];
-    const Vector3 &p = w.p_WE, &r = w.rotation_WE;
-    text += fmt::format("{}, {}, {}, {}, {}, {},{},{:d},{:d},{:d},{:d},{:d},{:d}\n", p.x(), p.y(), p.z(), r.x(), r.y(),
-                        r.z(), name_of(w), w.io.vacuum, w.io.blow_off, w.io.conveyor_cw, w.io.conveyor_ccw,
-                        w.io.optitrack, w.io.reserved);
-  }
-  return text;
-}
-
-void write_program(const Program& program, const std::filesystem::path& path) {
-  write_file(path, format_program(program));
 }
 
 }  // namespace snug::motion

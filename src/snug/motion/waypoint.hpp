@@ -1,7 +1,6 @@
-// Waypoint, Program: where the tool goes and what it switches, read from and written to the 13-column CSV.
+// Waypoint, Program: where the tool goes and what it switches.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -54,8 +53,7 @@ struct Swing {
 };
 
 struct Waypoint {
-  Vector3 p_WE = Vector3::Zero();         ///< m, tool frame E (gripper end, z toward the package)
-  Vector3 rotation_WE = Vector3::Zero();  ///< rad, rotation vector, as a file keeps it
+  Pose X_WE;  ///< tool frame E (gripper end, z toward the package)
   MotionClass motion_class = MotionClass::Other;
   std::string item;        ///< id of the box that it is for; empty: for none
   bool item_is_id = true;  ///< false: as a file of the demonstrator has it, such as 027: fit_of (waypoint_name.hpp)
@@ -66,17 +64,11 @@ struct Waypoint {
   IO io;
   int line = 0;  ///< in the file it was read from, from 1; 0: made by the program itself
 
-  [[nodiscard]] Pose X_WE() const { return {exp_rotation(rotation_WE), p_WE}; }
-  /// Rotation vector of length in [0, pi]; X_WE() then has it to the accuracy of the logarithm.
-  void set_pose(const Pose& X_WE);
   bool operator==(const Waypoint&) const = default;
 };
 
 [[nodiscard]] Waypoint make_waypoint(MotionClass motion_class, std::string_view item, const Pose& X_WE,
                                      const IO& io = {}, std::string_view variant = {});
-
-/// Its rotation vector in steps of 2^-40 rad: without digits that rounding alone has made.
-[[nodiscard]] Waypoint rounded(Waypoint waypoint);
 
 struct Program {
   std::string name;  ///< file or label, for messages
@@ -87,21 +79,5 @@ struct Program {
 
 /// "file:line" of a waypoint, or "file row N" (from 1) for one that was not read from a file.
 [[nodiscard]] std::string place_of(const Program& program, std::size_t row);
-
-/// Reads rows x, y, z [m], rotation vector [rad, any length below 100], name, six switches (0 or 1); no header.
-/// Lines that begin with # are comments; one may say how it is tracked (program_tracking.hpp). Blank lines, CRLF,
-/// spaces around fields and a missing last newline are fine. Throws InputError with file:line and column for anything
-/// else, and for a file without rows.
-[[nodiscard]] Program load_program(const std::filesystem::path& path);
-/// The same from text; `name` stands for the file in messages.
-[[nodiscard]] Program parse_program(std::string_view text, std::string_view name);
-
-/// The CSV text: rotation vectors as the waypoints have them, numbers in the shortest form that reads back exactly, so
-/// that what is read is what was written, to the last bit.
-/// Throws InputError for a name that the format cannot carry (empty, with a comma, a control character or blank ends)
-/// and for a pose that is not finite.
-[[nodiscard]] std::string format_program(const Program& program);
-/// Writes beside `path`, then renames, so that a file of that name is always whole. Throws InputError if it cannot.
-void write_program(const Program& program, const std::filesystem::path& path);
 
 }  // namespace snug::motion

@@ -140,7 +140,7 @@ bool has_malformed_swing(const Waypoint& waypoint) {
 
 Waypoint named_waypoint(std::string_view name, const Pose& X_WE, const IO& io) {
   Waypoint waypoint = parse_waypoint_name(name);
-  waypoint.set_pose(X_WE);
+  waypoint.X_WE = X_WE;
   waypoint.io = io;
   return waypoint;
 }

@@ -62,7 +62,7 @@ bool is_settling(const settings::MotionGuards& settings, double at_least, double
 const char* find_refusal(const Motion& motion) {
   if (motion.waypoints.empty()) return "no waypoints";
   const bool is_finite = std::ranges::all_of(motion.waypoints, [](const motion::Waypoint& waypoint) {
-    return waypoint.p_WE.allFinite() && waypoint.rotation_WE.allFinite();
+    return waypoint.X_WE.p.allFinite() && waypoint.X_WE.R.allFinite();
   });
   return is_finite ? "" : "a pose that is not finite";
 }

@@ -9,6 +9,7 @@
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/model/reported_agent.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/replay/internal/recorded_scenario.hpp"
 #include "snug/replay/internal/robot_look.hpp"

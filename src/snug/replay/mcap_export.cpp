@@ -7,6 +7,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/replay/internal/mcap_messages.hpp"
 #include "snug/replay/internal/mcap_scene.hpp"

@@ -7,6 +7,7 @@
 
 #include "snug/core/check.hpp"
 #include "snug/core/parallel.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/skills/side_pick.hpp"
 
@@ -92,9 +93,9 @@ class GraspPlanner {
   /// Where the tool is near the first row already it does not move to it.
   void execute(std::vector<motion::Waypoint> rows) {
     const bool is_there = grasp_.program.waypoints.empty() && rows.size() > 1 &&
-                          (rows[0].p_WE - last().p_WE).norm() < kThere &&
-                          angle_between(rows[0].X_WE().R, last().X_WE().R) < kTurnedThere;
-    if (is_there && request_.layout.is_fast && nominal_ != nullptr) rows[0].set_pose(last().X_WE());
+                          (rows[0].X_WE.p - last().X_WE.p).norm() < kThere &&
+                          angle_between(rows[0].X_WE.R, last().X_WE.R) < kTurnedThere;
+    if (is_there && request_.layout.is_fast && nominal_ != nullptr) rows[0].X_WE = last().X_WE;
     append(grasp_.program, drivable(request_.layout, last(), rows, grasp_.swing));
     if (nominal_ != nullptr) merge(grasp_.episodes[0], nominal_->run(grasp_.program));
   }
@@ -111,7 +112,7 @@ class GraspPlanner {
       return false;
     }
     grasp_.X_PS = nominal_->state().gripper.cup.X_PS;
-    grasp_.X_EP = grasp_.program.waypoints.back().X_WE().inverse() * *nominal_->pose_of(request_.box.item);
+    grasp_.X_EP = grasp_.program.waypoints.back().X_WE.inverse() * *nominal_->pose_of(request_.box.item);
     return true;
   }
 
@@ -158,20 +159,19 @@ class GraspPlanner {
       return;
     }
     const auto reaches = [&](const motion::Way& way) { return !request_.reaches || request_.reaches(way); };
-    if (!std::ranges::all_of(rows, [&](const auto& row) { return reaches({row.X_WE(), row.X_WE()}); })) {
+    if (!std::ranges::all_of(rows, [&](const auto& row) { return reaches({row.X_WE, row.X_WE}); })) {
       grasp_.problem = GraspProblem::OutOfReach;
       return;
     }
     const std::optional<motion::PanAxis>& pan_axis = request_.layout.pan_axis;
     // A fast tool comes to the second row, level, without the upright one before, unless it would pass over the box.
-    if (request_.layout.is_fast && !again && reaches({last().X_WE(), rows[1].X_WE(), pan_axis}))
-      rows.erase(rows.begin());
+    if (request_.layout.is_fast && !again && reaches({last().X_WE, rows[1].X_WE, pan_axis})) rows.erase(rows.begin());
     execute(rows);
     if (!holds()) return;
     const motion::Waypoint up = plan_turn_up(request_.scenario, request_.box, X_WP_, grasp_.X_PS, face, travel_, again);
-    Pose X_WE_over = up.X_WE();
+    Pose X_WE_over = up.X_WE;
     X_WE_over.p.head<2>() = request_.layout.X_WT.p.head<2>();
-    if (request_.layout.is_fast && reaches({last().X_WE(), X_WE_over, pan_axis})) return;  // on the way to its place
+    if (request_.layout.is_fast && reaches({last().X_WE, X_WE_over, pan_axis})) return;  // on the way to its place
     execute({up});
     (void)holds();
   }
@@ -261,7 +261,7 @@ class GraspPlanner {
     const Pose X_moved = X_WP * X_WP_nominal.inverse();
     for (std::size_t i = first; i < program.waypoints.size(); ++i) {
       motion::Waypoint& waypoint = program.waypoints[i];
-      waypoint.set_pose(X_moved * grasp_.program.waypoints[i].X_WE());
+      waypoint.X_WE = X_moved * grasp_.program.waypoints[i].X_WE;
       waypoint = motion::rounded(waypoint);
     }
   }
@@ -363,7 +363,7 @@ std::optional<GraspOutline> outline_grasp(const GraspRequest& request, const pac
     const auto first = std::ranges::find_if(rows, [](const motion::Waypoint& row) {
       return row.motion_class == motion::MotionClass::PrePick || row.motion_class == motion::MotionClass::PreRePick;
     });
-    if (first != rows.end()) return GraspOutline{way, first->X_WE()};
+    if (first != rows.end()) return GraspOutline{way, first->X_WE};
   }
   return std::nullopt;
 }

@@ -221,7 +221,7 @@ bool Packer::can_be_picked(int item) const {
   const skills::PlannedBox planned = skills::make_planned_box(belief_.nominal(), belief_.sequence(), item);
   const auto rows = plan_pick(belief_.nominal(), layout_, planned, box->X_WP, box->X_WP,
                               travel_bottom(layout_, obstacle_top(item)), skills::PickKind::FromAfar);
-  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_({row.X_WE(), row.X_WE()}); });
+  return std::ranges::all_of(rows, [&](const motion::Waypoint& row) { return reaches_({row.X_WE, row.X_WE}); });
 }
 
 /// Percent in the end, on average, when this share of the worlds goes well and the others end here, less what turning

@@ -66,7 +66,7 @@ void Packer::look_ahead(int item, const Attempt& attempt, const std::vector<std:
   ahead.is_seen = look_plainly(ahead.report);
   if (!ahead.is_seen || is_gone(id) || is_wrong(next->item)) return;
   ahead.since = plant_.read().time;
-  ahead.robot.X_WE = attempt.program.waypoints.back().X_WE();
+  ahead.robot.X_WE = attempt.program.waypoints.back().X_WE;
   ahead.robot.q = attempt.q_end;
   ahead.planning = std::async(std::launch::async, [this, agent = next->agent] {
     return plan(ahead_->item, *agent, ahead_->robot, ahead_->report);

@@ -49,7 +49,7 @@ void Packer::retreat(const std::string& id, ItemReport& report) {
   if (is_holding() || robot_.end.reason == plant::EndReason::VacuumLost) let_go_ = index_of(id);
   const double travel = travel_bottom(layout_, obstacle_top(-1));
   motion::Waypoint up = motion::make_waypoint(MotionClass::PostPlace, id, robot_.X_WE, {}, "_retreat");
-  up.p_WE.z() = std::max(up.p_WE.z(), travel + scenario_.cup.free_length + scenario_.skills.travel.retreat);
+  up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel + scenario_.cup.free_length + scenario_.skills.travel.retreat);
   const motion::Waypoint let_go =
       motion::make_waypoint(MotionClass::Place, id, robot_.X_WE, {.blow_off = true}, "_release");
   const std::vector<motion::Waypoint> rows{let_go, up};
@@ -121,7 +121,7 @@ motion::Waypoint Packer::lift(const Carried& carried) const {
   motion::Waypoint up =
       motion::make_waypoint(MotionClass::PostPick, carried.box.id, robot_.X_WE, {.vacuum = true}, "_up");
   const double hanging = -2.0 * skills::lowest_corner(carried.R_WP, carried.box.size) + scenario_.cup.hold_length;
-  up.p_WE.z() = std::max(up.p_WE.z(), travel_bottom(layout_, obstacle_top(-1)) + hanging);
+  up.X_WE.p.z() = std::max(up.X_WE.p.z(), travel_bottom(layout_, obstacle_top(-1)) + hanging);
   return up;
 }
 
@@ -164,7 +164,7 @@ bool Packer::can_return(int item) const {
   if (is_holding()) return true;
   if (!belief_.box(item) || is_under_obstacle(item) || locate(item) == Location::Aligner) return false;
   return !reaches_ || std::ranges::all_of(plan_pick_to_return(item, rotation_at_aligner(item)), [&](const auto& row) {
-    return reaches_({row.X_WE(), row.X_WE()});
+    return reaches_({row.X_WE, row.X_WE});
   });
 }
 
@@ -191,7 +191,7 @@ void Packer::return_to_aligner(int item, const Planned* planned, ItemReport& rep
     rows = plan_pick_to_return(item, R_WP);
     const auto pick = std::ranges::find(rows, MotionClass::RePick, &motion::Waypoint::motion_class);
     const Pose X_ES{Matrix3::Identity(), cup::pick_length(scenario_.cup) * Vector3::UnitZ()};
-    carried.X_PS = X_WP.inverse() * pick->X_WE() * X_ES;
+    carried.X_PS = X_WP.inverse() * pick->X_WE * X_ES;
   }
   put_down(carried, place, std::move(rows), report);
 }

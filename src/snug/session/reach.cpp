@@ -73,9 +73,9 @@ ToolReach make_tool_reach(const model::Scenario& scenario) {
 bool can_follow(const ToolReach& reaches, const skills::CellLayout& layout, const motion::Waypoint& before,
                 std::span<const motion::Waypoint> rows) {
   if (!layout.is_fast || !reaches) return true;
-  Pose X_WE = before.X_WE();
+  Pose X_WE = before.X_WE;
   return std::ranges::all_of(rows, [&](const motion::Waypoint& row) {
-    const Pose X_WE_before = std::exchange(X_WE, row.X_WE());
+    const Pose X_WE_before = std::exchange(X_WE, row.X_WE);
     return motion::is_contact(row.motion_class) || reaches({X_WE_before, X_WE, layout.pan_axis});
   });
 }

@@ -176,8 +176,8 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   attempt.X_PS = grasp.X_PS;
   attempt.swing = grasp.swing;
   const motion::Waypoint& last = attempt.program.waypoints.back();
-  const skills::PlaceRequest request{box_,        grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
-                                     last.X_WE(), grasp.X_EP};
+  const skills::PlaceRequest request{box_,      grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
+                                     last.X_WE, grasp.X_EP};
   auto rows = drivable(layout_, last, plan_place(belief_.nominal(), layout_, request), grasp.swing);
   if (!can_follow(reaches_, layout_, last, rows)) {
     attempt.failure = AttemptFailure::OutOfReach;

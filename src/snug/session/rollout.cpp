@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "snug/cell/rest_watch.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
 namespace snug::session {

@@ -1,8 +1,8 @@
 // RecordedRun: a plant's course once more, call by call, written to a recording: what was sent is known by then.
 #include "snug/simulated_plant/recorded_run.hpp"
+#include "snug/motion/program_csv.hpp"
 
 #include <algorithm>
-
 
 namespace snug::simulated_plant {
 namespace {

@@ -110,7 +110,7 @@ std::vector<motion::Waypoint> plan_pick(const model::Scenario& scenario, const C
 
 Pose tool_before_pick(const model::Scenario& scenario, const CellLayout& layout, const PlannedBox& box,
                       const Pose& X_WP, double travel) {
-  return plan_pick(scenario, layout, box, X_WP, X_WP, travel, PickKind::First).front().X_WE();
+  return plan_pick(scenario, layout, box, X_WP, X_WP, travel, PickKind::First).front().X_WE;
 }
 
 std::vector<motion::Waypoint> plan_leaning_pick(const model::Scenario& scenario, const CellLayout& layout,
@@ -154,7 +154,7 @@ std::vector<motion::Waypoint> with_detaching(const CellLayout& layout, const std
     motion::Waypoint off = rows[i];
     off.motion_class = rows[i + 1].motion_class;
     off.variant = "_off";
-    off.p_WE -= (layout.cup_growth + layout.travel.detach) * rows[i].X_WE().R.col(2);
+    off.X_WE.p -= (layout.cup_growth + layout.travel.detach) * rows[i].X_WE.R.col(2);
     detaching.push_back(off);
   }
   return detaching;
@@ -196,7 +196,8 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
   if (!layout.is_fast) return rows;
   if (again) {  // it was set down by a tool that is still over it
     const double top = X_WP.p.z() + half_height;
-    rows.front().p_WE.z() = std::max(rows.front().p_WE.z(), top + cup.free_length + layout.travel.turning_clearance);
+    rows.front().X_WE.p.z() =
+        std::max(rows.front().X_WE.p.z(), top + cup.free_length + layout.travel.turning_clearance);
   }
   SidePickPoses poses = side_pick_poses(intent);
   const Pose X_EP = poses.X_WE_pick.inverse() * X_WP;
@@ -208,7 +209,7 @@ std::vector<motion::Waypoint> plan_side_pick(const model::Scenario& scenario, co
                              travel - layout.travel.clearance + layout.travel.turning_clearance);
     X_WE_lifted.p.z() += dip.depth / std::max(kLeastLever, 1.0 - dip.share);
   }
-  rows.back().p_WE = poses.X_WE_lifted.p;
+  rows.back().X_WE.p = poses.X_WE_lifted.p;
   return rows;
 }
 

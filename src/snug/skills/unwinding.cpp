@@ -20,9 +20,9 @@ std::vector<motion::Waypoint> with_turns(const motion::Waypoint& before, const s
   const bool on_the_way = unwinding.on_the_way;
   std::vector<motion::Waypoint> turned;
   const motion::Waypoint* last = &before;
-  Pose X_WE_last = before.X_WE();
+  Pose X_WE_last = before.X_WE;
   for (const motion::Waypoint& row : rows) {
-    const Pose X_WE = row.X_WE();
+    const Pose X_WE = row.X_WE;
     const std::optional<double> from = motion::yaw_of(X_WE_last.R), to = motion::yaw_of(X_WE.R);
     if (from && to) {
       const double turn = wrapped(*to - neutral_yaw) - wrapped(*from - neutral_yaw);
@@ -31,7 +31,7 @@ std::vector<motion::Waypoint> with_turns(const motion::Waypoint& before, const s
       for (int i = 1; i < parts; ++i) {
         const double share = static_cast<double>(i) / parts;
         motion::Waypoint between = *last;
-        between.set_pose({exp_rotation(Vector3(0.0, 0.0, share * turn)) * X_WE_last.R, way.at(share).p});
+        between.X_WE = {exp_rotation(Vector3(0.0, 0.0, share * turn)) * X_WE_last.R, way.at(share).p};
         if (on_the_way) between.io = row.io;
         between.variant += "_turn";
         turned.push_back(between);
@@ -48,9 +48,9 @@ std::vector<motion::Waypoint> with_detours(const motion::Waypoint& before, const
                                            const Vector3& p_WB, double least, double room) {
   std::vector<motion::Waypoint> led;
   const motion::Waypoint* last = &before;
-  Pose X_WE_last = before.X_WE();
+  Pose X_WE_last = before.X_WE;
   for (const motion::Waypoint& row : rows) {
-    const Pose X_WE = row.X_WE();
+    const Pose X_WE = row.X_WE;
     const Vector3 from = X_WE_last.p, way = X_WE.p - from;
     const double length = way.head<2>().norm();
     const double share = length > 0.0 ? way.head<2>().dot((p_WB - from).head<2>()) / (length * length) : 0.0;
@@ -63,7 +63,7 @@ std::vector<motion::Waypoint> with_detours(const motion::Waypoint& before, const
       X_WE_between.p.z() = std::max(from.z(), X_WE.p.z());
       X_WE_between.R = exp_rotation(share * log_rotation(X_WE.R * X_WE_last.R.transpose())) * X_WE_last.R;
       motion::Waypoint between = *last;
-      between.set_pose(X_WE_between);
+      between.X_WE = X_WE_between;
       between.variant += "_around";
       led.push_back(between);
     }

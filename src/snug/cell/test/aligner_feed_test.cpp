@@ -12,6 +12,7 @@
 
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cup/pick_length.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
@@ -80,7 +81,7 @@ std::optional<Pose> pick_pose(const motion::Program& program, const std::string&
   bool approaches = false;
   for (std::size_t i = 0; i < program.waypoints.size(); ++i) {
     approaches = approaches || motion::name_of(program.waypoints[i]).starts_with("PrePick" + number);
-    if (approaches && program.waypoints[i].io.vacuum) return program.waypoints[i - 1].X_WE();
+    if (approaches && program.waypoints[i].io.vacuum) return program.waypoints[i - 1].X_WE;
   }
   return std::nullopt;
 }

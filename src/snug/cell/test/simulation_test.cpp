@@ -5,6 +5,7 @@
 
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/motion/program_csv.hpp"
 
 namespace snug::cell {
 namespace {

@@ -15,7 +15,7 @@ inline motion::Program small_program() {
   motion::Program program{"test", {}};
   const auto row = [&](const Vector3& offset, const char* name, bool vacuum) {
     motion::Waypoint waypoint = motion::named_waypoint(name, demonstrator().controller.X_WE_start, {.vacuum = vacuum});
-    waypoint.p_WE += offset;
+    waypoint.X_WE.p += offset;
     program.waypoints.push_back(waypoint);
   };
   row({0.1, 0.0, 0.0}, "PrePick013", false);

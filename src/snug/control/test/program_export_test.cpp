@@ -27,7 +27,7 @@ TEST(JointRun, ComesToRestWithoutAJump) {
   const Exported exported;
   const JointState& end = exported.run.samples.back().after;
   EXPECT_EQ(end.qd.norm(), 0.0);
-  const Pose& goal = exported.plan.program.waypoints.back().X_WE();
+  const Pose& goal = exported.plan.program.waypoints.back().X_WE;
   EXPECT_LT((robot::forward_tool(exported.controller.arm(), end.q).p - goal.p).norm(), 1e-3);
   for (std::size_t i = 1; i < exported.run.samples.size(); ++i) {
     const JointSample& sample = exported.run.samples[i];

@@ -7,6 +7,7 @@
 
 #include "demonstrator.hpp"
 #include "snug/control/states.hpp"
+#include "snug/motion/program_csv.hpp"
 
 namespace snug::control {
 namespace {
@@ -32,7 +33,7 @@ motion::Program moves(const std::vector<Vector3>& offsets) {
   for (const Vector3& offset : offsets) {
     motion::Waypoint row =
         motion::make_waypoint(motion::MotionClass::Home, {}, test::demonstrator().controller.X_WE_start);
-    row.p_WE += offset;
+    row.X_WE.p += offset;
     program.waypoints.push_back(row);
   }
   return program;

@@ -27,7 +27,7 @@ TEST(UrScript, MovesTheToolInTheControllersBaseFrame) {
   const UrScript script = format_urscript(exported.for_robot(), {3, 4, 5, 2.0});
   const std::string& text = script.text;
   // W is the controller's base in this cell, so that the waypoint's own numbers appear.
-  const Vector3 p = exported.plan.program.waypoints[1].X_WE().p;
+  const Vector3 p = exported.plan.program.waypoints[1].X_WE.p;
   char expected[80];
   std::snprintf(expected, sizeof expected, "movel(p[%.6f, %.6f, %.6f,", p.x(), p.y(), p.z());
   EXPECT_NE(text.find(expected), std::string::npos) << text;

@@ -4,6 +4,7 @@
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/environment/internal/happening.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/skills/highest_fixed_point.hpp"
 #include "snug/skills/placements.hpp"
 

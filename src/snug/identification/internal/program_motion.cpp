@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/runs/run.hpp"

@@ -19,8 +19,8 @@ constexpr int kWaitTicks = 63;  // 0.5 s / 8 ms = 62.5, rounded up
 
 Waypoint row(const std::string& name, const Vector3& p, const IO& io = {}, const Vector3& rotation = Vector3::Zero()) {
   Waypoint waypoint = parse_waypoint_name(name);
-  waypoint.p_WE = p;
-  waypoint.rotation_WE = rotation;
+  waypoint.X_WE.p = p;
+  waypoint.X_WE.R = exp_rotation(rotation);
   waypoint.io = io;
   return waypoint;
 }
@@ -119,12 +119,12 @@ TEST_P(BothControllers, FinishOnDuplicateRowsAndRowsWhereTheToolIsAlready) {
   const Vector3 r(0.0, std::numbers::pi, 0.0);
   const Program program{"p",
                         {row("a", p, {}, r), row("a", p, {}, r), row("a", p, {.vacuum = true}, r), row("a", p, {}, r)}};
-  const std::vector<Tick> ticks = run(prepare(program, settings_of(GetParam())), program.waypoints[0].X_WE());
+  const std::vector<Tick> ticks = run(prepare(program, settings_of(GetParam())), program.waypoints[0].X_WE);
   // Each row takes one tick; two of them wait.
   EXPECT_EQ(ticks.size(), 4u + 2u * kWaitTicks + 1u);
   for (const Tick& t : ticks) {
     EXPECT_EQ(t.output.tool.X_WE.p, p);
-    EXPECT_LT(angle_between(t.output.tool.X_WE.R, program.waypoints[0].X_WE().R), 1e-12);
+    EXPECT_LT(angle_between(t.output.tool.X_WE.R, program.waypoints[0].X_WE.R), 1e-12);
     EXPECT_LT(as_vector(t.output.tool.V_WE).norm(), 1e-12);
   }
 }
@@ -208,10 +208,10 @@ TEST(LaggedController, ReachesARowAtTheFirstTickWithinItsPrecision) {
     const std::vector<Tick> ticks = run(prepare({"p", {goal}}, settings), Pose{});
     for (std::size_t i = 1; i < ticks.size(); ++i) {
       const Pose& X_WE = ticks[i].measured.X_WE;
-      const double angle_deg = angle_between(X_WE.R, goal.X_WE().R) * 180.0 / std::numbers::pi;
-      const double error = (goal.X_WE().p - X_WE.p).norm() + angle_deg / 500.0;
+      const double angle_deg = angle_between(X_WE.R, goal.X_WE.R) * 180.0 / std::numbers::pi;
+      const double error = (goal.X_WE.p - X_WE.p).norm() + angle_deg / 500.0;
       EXPECT_EQ(error <= precision, i + 1 == ticks.size()) << i;
-      EXPECT_DOUBLE_EQ(convergence_error(X_WE, goal.X_WE(), 500.0), error);
+      EXPECT_DOUBLE_EQ(convergence_error(X_WE, goal.X_WE, 500.0), error);
     }
   }
 }
@@ -248,7 +248,7 @@ TEST(LaggedController, UsesWhatIsMeasuredNotWhatWasCommanded) {
   measured.X_WE.p = Vector3(0.0, 0.1, 0.0);
   EXPECT_EQ(tick(plan, measured, state).departed, 0);
   EXPECT_EQ(state.segment.start(), measured.X_WE);
-  measured.X_WE = program.waypoints[0].X_WE();
+  measured.X_WE = program.waypoints[0].X_WE;
   EXPECT_TRUE(tick(plan, measured, state).finished_now);
 }
 
@@ -258,7 +258,7 @@ TEST(LaggedController, SettlesOnTheLastRow) {
   const std::vector<Tick> ticks = run(plan, Pose{}, 2000);
   const ToolState& last = ticks.back().output.tool;
   // 16 s are 50 time constants.
-  EXPECT_LT(convergence_error(last.X_WE, program.waypoints[0].X_WE(), 500.0), 1e-12);
+  EXPECT_LT(convergence_error(last.X_WE, program.waypoints[0].X_WE, 500.0), 1e-12);
   EXPECT_LT(as_vector(last.V_WE).norm(), 1e-12);
   EXPECT_EQ(ticks.back().output.phase, ControllerPhase::Finished);
   EXPECT_FALSE(ticks.back().output.finished_now);
@@ -289,7 +289,7 @@ TEST(IdealController, ReachesEveryRowExactlyAndAtRestAndStaysWhileWaiting) {
   for (int i = 0; i < 3; ++i) {
     SCOPED_TRACE(i);
     const std::size_t index = static_cast<std::size_t>(i);
-    const Pose& X_WE = program.waypoints[index].X_WE();
+    const Pose& X_WE = program.waypoints[index].X_WE;
     const Tick& arrival = ticks[arrival_of(ticks, i)];
     EXPECT_EQ(arrival.measured.X_WE, X_WE);
     EXPECT_EQ(arrival.measured.V_WE, Twist{});
@@ -301,16 +301,16 @@ TEST(IdealController, ReachesEveryRowExactlyAndAtRestAndStaysWhileWaiting) {
   }
   const std::size_t departure = departure_of(ticks, 1);
   for (std::size_t k = departure; k < departure + kWaitTicks; ++k) {
-    EXPECT_EQ(ticks[k].output.tool.X_WE, program.waypoints[0].X_WE());
+    EXPECT_EQ(ticks[k].output.tool.X_WE, program.waypoints[0].X_WE);
     EXPECT_EQ(ticks[k].output.tool.V_WE, Twist{});
   }
-  EXPECT_EQ(ticks.back().output.tool.X_WE, program.waypoints[2].X_WE());
+  EXPECT_EQ(ticks.back().output.tool.X_WE, program.waypoints[2].X_WE);
 }
 
 TEST(IdealController, IsOnTheReferenceAtEveryTick) {
   const Waypoint goal = row("a", Vector3(0.3, 0.0, 0.1), {}, Vector3(0.0, 0.0, 1.0));
   const PreparedProgram plan = prepare({"p", {goal}}, settings_of(ExactTracking{}));
-  const LspbSegment segment(Pose{}, goal.X_WE(), plan.row_limits[0]);
+  const LspbSegment segment(Pose{}, goal.X_WE, plan.row_limits[0]);
   const std::vector<Tick> ticks = run(plan, Pose{});
   for (std::size_t i = 0; i + 1 < ticks.size(); ++i) {
     const LspbSegment::Sample sample = segment.sample(static_cast<double>(i + 1) * kTick);
@@ -340,7 +340,7 @@ TEST(Preparation, RefusesSettingsThatCannotBe) {
   EXPECT_EQ(failing([&](auto& s) { s.limits[0].prefix = "b"; }), "p.csv row 1 column 7 (name)");
   EXPECT_EQ(where_it_fails([&] { (void)prepare({"p.csv", {}}, settings_of(ExactTracking{})); }), "p.csv ");
   Program bad = program;
-  bad.waypoints[0].p_WE.x() = nan;
+  bad.waypoints[0].X_WE.p.x() = nan;
   EXPECT_EQ(where_it_fails([&] { (void)prepare(bad, settings_of(ExactTracking{})); }), "p.csv row 1 a");
 }
 

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/test/demonstrator.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 Vector3 shift_mm(const std::string& name, int sequence) {
   Program program{"f.csv", {}};
   program.waypoints.push_back(named_waypoint(name, Pose{Matrix3::Identity(), Vector3::Zero()}));
-  return 1000.0 * apply_corrections(program, demonstrator_corrections(sequence)).waypoints[0].X_WE().p;
+  return 1000.0 * apply_corrections(program, demonstrator_corrections(sequence)).waypoints[0].X_WE.p;
 }
 
 TEST(Corrections, ShiftTheRowsThatTheDemonstratorShifts) {
@@ -44,8 +45,8 @@ TEST(Corrections, ShiftARowOnceWhenTwoPrefixesOfOneMatch) {
   program.waypoints.push_back(named_waypoint("Box017", Pose{}));
   const std::vector<Correction> corrections = {{{"Box", "Box017", "B"}, Vector3(1.0, 2.0, 3.0)}};
   const Program shifted = apply_corrections(program, corrections);
-  EXPECT_EQ(shifted.waypoints[0].X_WE().p, Vector3(1.0, 2.0, 3.0));
-  EXPECT_EQ(shifted.waypoints[0].X_WE().R, program.waypoints[0].X_WE().R);
+  EXPECT_EQ(shifted.waypoints[0].X_WE.p, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(shifted.waypoints[0].X_WE.R, program.waypoints[0].X_WE.R);
 }
 
 TEST(Corrections, OfNoneGiveTheSameProgram) {
@@ -61,7 +62,7 @@ TEST(Corrections, MatchEveryRePickOfTheRealFiles) {
     const Program shifted = apply_corrections(program, demonstrator_corrections(sequence));
     std::size_t count = 0;
     for (std::size_t i = 0; i < program.waypoints.size(); ++i) {
-      const Vector3 shift = shifted.waypoints[i].X_WE().p - program.waypoints[i].X_WE().p;
+      const Vector3 shift = shifted.waypoints[i].X_WE.p - program.waypoints[i].X_WE.p;
       if (shift.x() > 0.02 && shift.z() < -0.01) ++count;
     }
     EXPECT_EQ(count, expected_flips[static_cast<std::size_t>(sequence - 1)]) << sequence;

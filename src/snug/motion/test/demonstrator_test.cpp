@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/test/demonstrator.hpp"
 
 namespace snug::motion {
@@ -17,7 +18,7 @@ Program real_program(int sequence) {
 /// The demonstrator waits at `home`, the last row, for its program to start.
 double duration_of(int sequence, bool corrected, bool sampled_coast, const Tracking& tracking = LaggedTracking{}) {
   Program program = real_program(sequence);
-  const Pose X_WE_home = program.waypoints.back().X_WE();
+  const Pose X_WE_home = program.waypoints.back().X_WE;
   if (corrected) program = apply_corrections(program, demonstrator_corrections(sequence));
   ControllerSettings settings = demonstrator_settings(sequence);
   settings.sampled_coast = sampled_coast;
@@ -60,11 +61,11 @@ TEST_P(DemonstratorSequence, SpendsLessThanHalfOfItsTimeOnTheReferenceMotions) {
   const Reported& reported = GetParam();
   const Program program = real_program(reported.sequence);
   const std::vector<NamedLimits> table = demonstrator_limits();
-  Pose X_WE = program.waypoints.back().X_WE();
+  Pose X_WE = program.waypoints.back().X_WE;
   double total = 0.0;
   double worst_jump = 0.0;
   for (std::size_t row = 0; row < program.waypoints.size(); ++row) {
-    const LspbSegment segment(X_WE, program.waypoints[row].X_WE(), find_limits(program, row, table));
+    const LspbSegment segment(X_WE, program.waypoints[row].X_WE, find_limits(program, row, table));
     total += segment.duration();
     X_WE = segment.end();
     const LspbProfile sampled = segment.with_sampled_coast(0.008).translation();

@@ -65,15 +65,15 @@ TEST(FastController, BlendsWhatTouchesNothingAndStaysNearTheCorner) {
   for (const ControllerOutput& out : course.ticks) {
     const double speed = out.tool.V_WE.linear.norm();
     const Vector3& p = out.tool.X_WE.p;
-    nearest = std::min(nearest, (p - kCorner[0].X_WE().p).norm());
-    const bool is_at_corner = (p - kCorner[0].X_WE().p).norm() < 0.03;
+    nearest = std::min(nearest, (p - kCorner[0].X_WE.p).norm());
+    const bool is_at_corner = (p - kCorner[0].X_WE.p).norm() < 0.03;
     if (is_at_corner) slowest = std::min(slowest, speed);
     EXPECT_LE((out.tool.V_WE.linear - before).norm(), 0.008 * 2.0 * 6.0 * 1.01) << "at most both accelerations";
     before = out.tool.V_WE.linear;
   }
   EXPECT_GT(slowest, 0.05) << "m/s: it does not stop";
   EXPECT_LT(nearest, 0.05);
-  EXPECT_EQ(course.ticks.back().tool.X_WE, kCorner[1].X_WE());
+  EXPECT_EQ(course.ticks.back().tool.X_WE, kCorner[1].X_WE);
   std::vector<Waypoint> stops = kCorner;
   stops[1].io.conveyor_cw = true;  // something is switched: it stops there
   EXPECT_LT(course.arrival(1), run(prepare({"stops", stops}, fast_settings())).arrival(1) - 0.1);
@@ -220,7 +220,7 @@ TEST(FastController, ABoxIsLetGoOnTheWayOfADrag) {
   EXPECT_TRUE(course.ticks[release].io.blow_off);
   EXPECT_NEAR(course.ticks[release].tool.X_WE.p.x(), 0.12, 0.01);
   EXPECT_GT(course.ticks[release].tool.V_WE.linear.x(), 0.2) << "m/s";
-  EXPECT_EQ(course.ticks.back().tool.X_WE, drag.back().X_WE());
+  EXPECT_EQ(course.ticks.back().tool.X_WE, drag.back().X_WE);
 }
 
 TEST(FastController, ARowIsNotReachedWhileTheToolIsBehind) {

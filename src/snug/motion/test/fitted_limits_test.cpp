@@ -15,7 +15,7 @@ PreparedProgram make_plan(const std::vector<double>& lengths, double precision) 
   for (const double length : lengths) {
     Waypoint waypoint = parse_waypoint_name("move");
     x += length;
-    waypoint.p_WE.x() = x;
+    waypoint.X_WE.p.x() = x;
     program.waypoints.push_back(waypoint);
   }
   ControllerSettings settings;
@@ -27,7 +27,7 @@ TEST(FitLimits, MakeAMoveTakeAsLongAsTheToolThatLagsBehind) {
   const PreparedProgram plan = make_plan({0.4}, 0.001);
   const std::vector<MotionLimits> fitted = fit_limits(plan, Pose());
   const double simulated = compute_duration(plan, Pose());
-  const LspbSegment segment(Pose(), plan.program.waypoints[0].X_WE(), fitted[0]);
+  const LspbSegment segment(Pose(), plan.program.waypoints[0].X_WE, fitted[0]);
   EXPECT_NEAR(segment.duration(), simulated, 2.0 * plan.settings.tick);  // when a tick begins and ends it
   EXPECT_LT(fitted[0].max_acceleration, 0.5 * plan.row_limits[0].max_acceleration);
   EXPECT_LT(fitted[0].max_speed, plan.row_limits[0].max_speed);

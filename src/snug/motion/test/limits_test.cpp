@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/test/demonstrator.hpp"
 
 namespace snug::motion {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "snug/core/input_error.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 
 namespace snug::motion {
@@ -15,8 +16,8 @@ TEST(ProgramTracking, ReadsBackAndLeavesTheRowsAlone) {
   for (const double tempo : {0.5, 0.1, 1.0, 0.77}) {
     const std::string text = format_tracking(FastTracking{tempo}) + kTempoRow;
     EXPECT_EQ(find_tracking(text, "p.csv"), Tracking(FastTracking{tempo}));
-    EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().X_WE(),
-              parse_program(kTempoRow, "p.csv").waypoints.front().X_WE());
+    EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().X_WE,
+              parse_program(kTempoRow, "p.csv").waypoints.front().X_WE);
     EXPECT_EQ(parse_program(text, "p.csv").waypoints.front().line, 2);
   }
 }

@@ -8,6 +8,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/motion/limits.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/test/demonstrator.hpp"
 
 namespace snug::motion {

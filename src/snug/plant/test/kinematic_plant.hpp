@@ -26,7 +26,7 @@ class KinematicPlant final : public Plant {
     now_.end = {EndReason::Refused, -1, 0.0, 0.0, ""};
     now_.times.clear();
     for (const motion::Waypoint& waypoint : motion.waypoints) {
-      if (!waypoint.p_WE.allFinite() || !waypoint.rotation_WE.allFinite()) return now_;
+      if (!waypoint.X_WE.p.allFinite() || !waypoint.X_WE.R.allFinite()) return now_;
     }
     now_.times.resize(motion.waypoints.size());
     for (std::size_t i = 0; i < motion.waypoints.size(); ++i) {
@@ -54,14 +54,14 @@ class KinematicPlant final : public Plant {
   bool follow(const motion::Waypoint& waypoint, int index, const Guards& guards) {
     now_.time += 1.0;
     now_.times[static_cast<std::size_t>(index)].moving = 1.0;
-    now_.X_WE = waypoint.X_WE();
+    now_.X_WE = waypoint.X_WE;
     now_.io = waypoint.io;
     now_.end = {EndReason::Completed, index, 0.0, 0.0, ""};
-    const double depth = has_come_ && !is_held_ ? std::max(0.0, kTable - waypoint.p_WE.z()) : 0.0;
+    const double depth = has_come_ && !is_held_ ? std::max(0.0, kTable - waypoint.X_WE.p.z()) : 0.0;
     if (waypoint.io.vacuum && depth > 0.0) is_held_ = true;
     if (!waypoint.io.vacuum) is_held_ = false;
     now_.pressure_gauge = is_held_ ? kSet : 0.0;
-    if (is_held_) X_WP_ = waypoint.X_WE();
+    if (is_held_) X_WP_ = waypoint.X_WE;
     now_.F_E.force = Vector3(0.0, 0.0, is_held_ ? 5.0 : -kStiffness * depth);
     now_.peak_force = std::max(now_.peak_force, now_.F_E.force.norm());
     if (guards.force && now_.F_E.force.norm() > *guards.force) {

@@ -56,7 +56,7 @@ TEST(ProgramClient, DoesAProgramBitByBitAsTheCellDoes) {
   motion::Program program{"test", {}};
   for (const char* name : {"home", "PrePick027", "Box027", "PostPick027"}) {
     motion::Waypoint row = motion::named_waypoint(name, simulation.scenario().controller.X_WE_start);
-    row.p_WE += Vector3(0.0, 0.02 * static_cast<double>(program.waypoints.size()), 0.02);
+    row.X_WE.p += Vector3(0.0, 0.02 * static_cast<double>(program.waypoints.size()), 0.02);
     row.io.vacuum = program.waypoints.size() == 3;
     program.waypoints.push_back(row);
   }

@@ -14,6 +14,7 @@
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/test/scratch_folder.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/record/reader.hpp"
 #include "snug/runs/corrected.hpp"
@@ -120,7 +121,7 @@ TEST(RunOptions, HaveTheCupThatCorrectionsWereMadeForUnlessTheySayAnother) {
 
 TEST(RunOptions, AreRefusedForAWaypointWhoseNameNoPrefixMatches) {
   RunOptions options = demo_options();
-  options.program->waypoints[3] = motion::named_waypoint("Dance007", options.program->waypoints[3].X_WE());
+  options.program->waypoints[3] = motion::named_waypoint("Dance007", options.program->waypoints[3].X_WE);
   EXPECT_THROW((void)run(demonstrator(), options), InputError);
 }
 

@@ -9,6 +9,7 @@
 #include "snug/cell/aligner_feed.hpp"
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/cup/phases.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/runs/corrected.hpp"
@@ -75,8 +76,8 @@ TEST(Check, StopsAtALimitWhereTheRunDoes) {
   std::vector<motion::Waypoint> rows;
   for (int i = 0; i <= 8; ++i) {
     rows.push_back(turned_tool(-0.3, 0.0));
-    const Pose X_WE = rows.back().X_WE();
-    rows.back().set_pose({X_WE.R * exp_rotation(Vector3(0.0, 0.0, 1.0 * i)), X_WE.p});
+    const Pose X_WE = rows.back().X_WE;
+    rows.back().X_WE = {X_WE.R * exp_rotation(Vector3(0.0, 0.0, 1.0 * i)), X_WE.p};
   }
   const BallWrist cell;
   const RunResult run = simulate(cell.scenario, rows);
@@ -177,7 +178,7 @@ TEST(Check, FindsTheSingularityOnTheWay) {
     robot::JointVector q = simulation.arm()->start();
     q[4] -= angle;
     motion::Waypoint turned = row_at(home().p);
-    turned.set_pose(robot::forward_tool(simulation.arm()->model(), q));
+    turned.X_WE = robot::forward_tool(simulation.arm()->model(), q);
     return check({row_at(home().p), turned}, "");
   };
   const CheckResult before = turned_by(1.3);

@@ -34,7 +34,7 @@ motion::Program to_the_side() {
   motion::Program program{"test", {}};
   for (const double y : {0.1, -0.1}) {
     motion::Waypoint row = motion::make_waypoint(motion::MotionClass::Home, {}, demonstrator().controller.X_WE_start);
-    row.p_WE += Vector3(0.0, y, 0.05);
+    row.X_WE.p += Vector3(0.0, y, 0.05);
     program.waypoints.push_back(row);
   }
   return program;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "snug/cell/test/demonstrator.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/runs/run.hpp"
 
 namespace snug::runs {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "snug/cell/test/demonstrator.hpp"
+#include "snug/motion/program_csv.hpp"
 
 namespace snug::runs {
 namespace {
@@ -32,7 +33,7 @@ TEST(FindLoss, IsEmptyForAPackedBoxWhileTheOthersOfTheSequenceNeverCome) {
 
 TEST(FindLoss, NamesThePickThatIsTooHighToSeal) {
   motion::Program program = one_box();
-  program.waypoints[1].p_WE.z() += 0.05;
+  program.waypoints[1].X_WE.p.z() += 0.05;
   const MotionTrial trial = tried(program);
   ASSERT_EQ(trial.missed_seals.size(), 1U);
   const std::string loss = find_loss(trial);

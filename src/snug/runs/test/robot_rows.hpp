@@ -47,7 +47,7 @@ inline std::vector<motion::Waypoint> wrist_into_the_wall() {
   std::vector<motion::Waypoint> rows;
   for (const Vector3& p : {Vector3(0.505, -0.45, 0.30), Vector3(0.505, -0.55, -0.05), Vector3(0.505, -0.50, -0.05)}) {
     rows.push_back(row_at(p));
-    rows.back().rotation_WE = Vector3(0.5 * std::numbers::pi, 0.0, 0.0);
+    rows.back().X_WE.R = exp_rotation(Vector3(0.5 * std::numbers::pi, 0.0, 0.0));
   }
   return rows;
 }

@@ -8,6 +8,7 @@
 #include "snug/cell/test/demonstrator.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/test/scratch_folder.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/record/reader.hpp"
 #include "snug/runs/corrected.hpp"
 #include "snug/runs/run.hpp"

@@ -56,7 +56,8 @@ TEST_P(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
       const auto outline = outline_grasp(
           {scenario, layout, {}, {}, {}, from, box, X_WP, Location::Aligner, 0.0, 1, everywhere}, orientation);
       ASSERT_TRUE(outline);
-      const auto begins = std::ranges::find(grasp.program.waypoints, outline->X_WE.p, &motion::Waypoint::p_WE);
+      const auto begins = std::ranges::find(grasp.program.waypoints, outline->X_WE.p,
+                                            [](const motion::Waypoint& row) { return row.X_WE.p; });
       if (outline->reorientation == grasp.reorientation) {  // else the way that is tried first was not the best
         EXPECT_NE(begins, grasp.program.waypoints.end()) << "there the tool comes to first";
         ++outlined;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "snug/cell/drawn_scenario.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/session/test/scripted_plant.hpp"
 
 namespace snug::session {
@@ -46,11 +47,11 @@ TEST(PackerAhead, TheToolWaitsWhereTheNextPickBegins) {
   EXPECT_EQ(first.back().variant, "_away");
   const model::Scenario fixed = cell::with_fixed_arrivals(two_boxes(), "1");
   const Pose arrival = cell::arrival_pose(fixed, fixed.sequences.front().items[1]);
-  const Vector3 off = first.back().p_WE - arrival.p;
+  const Vector3 off = first.back().X_WE.p - arrival.p;
   EXPECT_LT(off.head<2>().norm(), 0.25) << "over the aligner, or at a side of the box";
   EXPECT_GT(off.z(), 0.0);
   EXPECT_EQ(second.front().motion_class, motion::MotionClass::PrePick) << "the box comes then in a run of the program";
-  EXPECT_EQ(second.front().X_WE(), first.back().X_WE()) << "the tool is there already";
+  EXPECT_EQ(second.front().X_WE, first.back().X_WE) << "the tool is there already";
   EXPECT_EQ(plant.motions[1].waypoints.back().motion_class, motion::MotionClass::PostPlace);
   EXPECT_NE(plant.motions[1].waypoints.back().variant, "_away") << "nothing follows";
 }

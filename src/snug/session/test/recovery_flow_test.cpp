@@ -71,7 +71,7 @@ TEST(RecoveryFlow, ASecondStopLetsTheBoxGo) {
   const auto& up = plant.motions[2].waypoints;
   EXPECT_TRUE(up.front().io.blow_off);
   EXPECT_FALSE(up.back().io.vacuum);
-  EXPECT_GE(up.back().p_WE.z(), up.front().p_WE.z());
+  EXPECT_GE(up.back().X_WE.p.z(), up.front().X_WE.p.z());
 }
 
 TEST(RecoveryFlow, StopsThatDoNotEndEndTheSession) {
@@ -117,7 +117,7 @@ TEST(RecoveryFlow, LoadAndLatenessPutABoxDownOnTheBenchAndPickItThere) {
     const auto& down = plant.motions[1].waypoints;
     double nearest = 10.0;
     for (const motion::Waypoint& row : down) {
-      nearest = std::min(nearest, (row.p_WE - layout.flip_place->p_WF).head<2>().norm());
+      nearest = std::min(nearest, (row.X_WE.p - layout.flip_place->p_WF).head<2>().norm());
     }
     EXPECT_LT(nearest, 0.1) << "over the bench";
     EXPECT_TRUE(down.front().io.vacuum);
@@ -392,7 +392,7 @@ void expect_sound(const SessionResult& result, const ScriptedPlant& plant, const
     ASSERT_FALSE(motion.waypoints.empty());
   }
   EXPECT_EQ(result.program.waypoints, sent) << "every waypoint that was sent";
-  for (const motion::Waypoint& row : sent) EXPECT_TRUE(row.p_WE.allFinite() && row.rotation_WE.allFinite());
+  for (const motion::Waypoint& row : sent) EXPECT_TRUE(row.X_WE.p.allFinite() && row.X_WE.R.allFinite());
   std::set<std::string> planned, packed, seen;
   for (const packing::Placement& one : result.plan) EXPECT_TRUE(planned.insert(one.item).second) << "planned twice";
   for (const ItemReport& item : result.items) {

@@ -7,6 +7,7 @@
 
 #include "snug/cell/joint_pace.hpp"
 #include "snug/model/test/shortened.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/session/rollout.hpp"
 
@@ -54,7 +55,7 @@ motion::Program to_and_fro() {
   const Pose X_WE = shortened(1).controller.X_WE_start;
   for (int i = 0; i < 6; ++i) {
     motion::Waypoint row = motion::make_waypoint(motion::MotionClass::Home, {}, X_WE);
-    row.p_WE += Vector3(0.1 * (i % 3), 0.3 * (i % 2), 0.1 * (i % 2));
+    row.X_WE.p += Vector3(0.1 * (i % 3), 0.3 * (i % 2), 0.1 * (i % 2));
     program.waypoints.push_back(row);
   }
   return program;
@@ -100,7 +101,7 @@ TEST(Rollout, FailsWhereALinkOfTheArmTouchesSomething) {
   Rollout rollout(scenario, "1", moved_by("ur10"));
   motion::Waypoint row =
       motion::make_waypoint(motion::MotionClass::Home, {}, rollout.simulation().scenario().controller.X_WE_start);
-  row.p_WE.x() += 0.05;
+  row.X_WE.p.x() += 0.05;
   const cell::CellState start = rollout.state();
   const Episode episode = rollout.run({"test", {row}});
   EXPECT_EQ(episode.end, RolloutEnd::ArmContact);

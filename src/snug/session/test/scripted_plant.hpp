@@ -86,11 +86,11 @@ class ScriptedPlant final : public plant::Plant {
       const auto found = std::ranges::find(motion.waypoints, *ends_at, &motion::Waypoint::motion_class);
       if (found != motion.waypoints.end()) last = found;
     }
-    if (holds) X_WE_let_go = last->X_WE();
+    if (holds) X_WE_let_go = last->X_WE;
     now_.time += 1.0;
     now_.end = {end, ends_at && end != EndReason::Completed ? static_cast<int>(last - motion.waypoints.begin()) : 0,
                 0.0, 0.0, ""};
-    now_.X_WE = last->X_WE();
+    now_.X_WE = last->X_WE;
     now_.io = last->io;
     now_.pressure_gauge = last->io.vacuum && end != EndReason::NoSeal && end != EndReason::VacuumLost ? -6.0e4 : 0.0;
     now_.times.assign(1, {1.0, 0.0});

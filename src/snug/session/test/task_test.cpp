@@ -11,6 +11,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/geometry/convex_hull.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/session/test/demonstrator.hpp"
 
 namespace snug::session {
@@ -58,7 +59,7 @@ TEST(MakeProgram, CrossesTheCellOverAHull) {
     EXPECT_TRUE(program.has_value());
     double lowest = 10.0;
     for (const motion::Waypoint& row : program->waypoints) {
-      if (row.motion_class == motion::MotionClass::PostPick) lowest = std::min(lowest, row.p_WE.z());
+      if (row.motion_class == motion::MotionClass::PostPick) lowest = std::min(lowest, row.X_WE.p.z());
     }
     return lowest;
   };

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "snug/model/test/shortened.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/simulated_plant/simulated_plant.hpp"
 
 namespace snug::simulated_plant::test {

@@ -141,7 +141,7 @@ TEST(FaultInjection, ADroppedBoxFallsFreelyOnceTheCupIsOffIt) {
     return plant.state().world.bodies[static_cast<std::size_t>(body)].velocity;
   };
   motion::Waypoint up = motion::make_waypoint(motion::MotionClass::PostPlace, "BOX027", dropped.X_WE);
-  up.p_WE.z() += 0.3;
+  up.X_WE.p.z() += 0.3;
   const double tick = three_boxes().controller.tick;
   Vector3 before = velocity();
   EXPECT_GT(before.norm(), 0.1) << "it was carried";
@@ -271,7 +271,7 @@ TEST(ObjectFault, StandsAtRestOnWhatCarriesItsWeight) {
   });
   ASSERT_EQ(pack(plant, "BOX027").end.reason, EndReason::Completed);
   motion::Waypoint stay = packing_of("BOX027").waypoints.back();
-  stay.p_WE.z() += 0.2;
+  stay.X_WE.p.z() += 0.2;
   ASSERT_EQ(plant.submit({"BOX027", {stay}, {}}).end.reason, EndReason::Completed);
   EXPECT_NEAR(carried.z(), kForeignMass * 9.81, 0.01 * kForeignMass * 9.81);
   EXPECT_LT(carried.head<2>().norm(), 0.01 * kForeignMass * 9.81);

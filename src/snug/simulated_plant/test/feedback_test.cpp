@@ -70,7 +70,7 @@ TEST(Feedback, ForcesOverTheWholeWayAreTheMomentumOfTheBox) {
   });
   motion::Waypoint far = pick_of("BOX027").waypoints.back();
   far.motion_class = motion::MotionClass::PrePlace;
-  far.p_WE += Vector3(0.4, -0.2, 0.1);
+  far.X_WE.p += Vector3(0.4, -0.2, 0.1);
   ASSERT_EQ(plant.submit({"BOX027", {far}, {}}).end.reason, EndReason::Completed);
   const double seconds = plant.read().time - start;
   const Vector3 gained = mass * body_of(plant, 0).velocity - before + 9.81 * mass * seconds * Vector3::UnitZ();
@@ -82,7 +82,7 @@ TEST(Feedback, OfAnEmptyCupInTheAirIsNothing) {
   for (const char* robot : {"", "ur10"}) {
     SimulatedPlant plant(three_boxes(), "1", drawn(0, robot));
     motion::Waypoint there = packing_of("BOX027").waypoints.front();
-    there.p_WE.z() += 0.2;
+    there.X_WE.p.z() += 0.2;
     const plant::Feedback fed = plant.submit({"", {there}, {}});
     ASSERT_EQ(fed.end.reason, EndReason::Completed);
     EXPECT_LT(fed.F_E.force.norm(), 1e-9);
@@ -187,7 +187,7 @@ TEST(Feedback, AWaypointFarBeyondTheCellIsNoReasonToHangOrToLoseTheTool) {
     SCOPED_TRACE(robot);
     SimulatedPlant plant(three_boxes(), "1", drawn(0, robot));
     motion::Waypoint far = packing_of("BOX027").waypoints.front();
-    far.p_WE.x() = 1e3;
+    far.X_WE.p.x() = 1e3;
     const plant::Feedback fed = plant.submit({"", {far}, {}});
     EXPECT_TRUE(fed.X_WE.p.allFinite());
     if (robot[0] != '\0') {
@@ -207,10 +207,10 @@ TEST(Feedback, BadMotionsAreRefusedAndChangeNothing) {
   for (std::size_t row = 0; row < motion.waypoints.size(); ++row) {
     for (int axis = 0; axis < 3; ++axis) {
       plant::Motion bad = motion;
-      bad.waypoints[row].p_WE[axis] = nan;
+      bad.waypoints[row].X_WE.p[axis] = nan;
       EXPECT_EQ(plant.submit(bad).end.reason, EndReason::Refused);
       bad = motion;
-      bad.waypoints[row].rotation_WE[axis] = -std::numeric_limits<double>::infinity();
+      bad.waypoints[row].X_WE.R(axis, 0) = -std::numeric_limits<double>::infinity();
       const plant::Feedback fed = plant.submit(bad);
       EXPECT_EQ(fed.end.reason, EndReason::Refused);
       EXPECT_FALSE(fed.end.where.empty()) << "says why";

@@ -106,14 +106,14 @@ plant::Motion throwing_out(const std::string& item) {
   plant::Motion motion = pick_of(item);
   motion::Waypoint out = motion.waypoints.back();
   out.motion_class = motion::MotionClass::PrePlace;
-  out.p_WE = Vector3(1.3, -0.4, 0.5);
+  out.X_WE.p = Vector3(1.3, -0.4, 0.5);
   motion.waypoints.push_back(out);
   out.motion_class = motion::MotionClass::Place;
   out.io = {.blow_off = true};
   motion.waypoints.push_back(out);
   out.motion_class = motion::MotionClass::PostPlace;
   out.io = {};
-  out.p_WE.z() += 0.2;
+  out.X_WE.p.z() += 0.2;
   motion.waypoints.push_back(out);
   return motion;
 }

@@ -71,7 +71,7 @@ SimulatedPlantOptions with_fault(FaultKind kind) {
 plant::Motion carrying() {
   plant::Motion motion{"BOX027", box().pick(), {}};
   motion::Waypoint away = motion.waypoints.back();
-  away.p_WE += Vector3(0.5, 0.0, 0.1);
+  away.X_WE.p += Vector3(0.5, 0.0, 0.1);
   away.motion_class = motion::MotionClass::PrePlace;
   motion.waypoints.push_back(away);
   return motion;

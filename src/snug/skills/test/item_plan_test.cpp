@@ -109,7 +109,7 @@ TEST(WithDetaching, LeavesABoxAlongTheToolUntilTheFreeCupIsOffIt) {
   const auto placed = with_detaching(layout, rows(motion::MotionClass::Place, motion::MotionClass::PostPlace));
   ASSERT_EQ(placed.size(), 4U);
   const double growth = scenario.cup.free_length - scenario.cup.hold_length;
-  EXPECT_NEAR((placed[2].p_WE - X_WE.p - Vector3(0.0, 0.0, growth + 0.003)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((placed[2].X_WE.p - X_WE.p - Vector3(0.0, 0.0, growth + 0.003)).norm(), 0.0, 1e-12);
   EXPECT_TRUE(placed[2].io.blow_off);
   EXPECT_EQ(placed[2].motion_class, motion::MotionClass::PostPlace);
   const auto dragged = rows(motion::MotionClass::TwistDrag, motion::MotionClass::PreTwist);

@@ -42,7 +42,7 @@ TEST(PlanPick, PressesUprightWithinTheFaceAsNearTheCentreOfMassAsItSeals) {
     ASSERT_EQ(rows.size(), 3U);
     EXPECT_FALSE(rows[0].io.vacuum || rows[1].io.vacuum);
     EXPECT_TRUE(rows[2].io.vacuum) << "it comes on when the tool leaves the face";
-    const Pose X_PS = lip_on(X_WP, rows[1].X_WE(), cup::pick_length(scenario.cup));
+    const Pose X_PS = lip_on(X_WP, rows[1].X_WE, cup::pick_length(scenario.cup));
     const Vector3 up_P = X_WP.R.transpose() * Vector3::UnitZ();
     for (int axis = 0; axis < 3; ++axis) {
       const double half = 0.5 * box.size[axis], com = box.inertia.com[axis];
@@ -54,12 +54,12 @@ TEST(PlanPick, PressesUprightWithinTheFaceAsNearTheCentreOfMassAsItSeals) {
       }
     }
     for (const motion::Waypoint& row : rows) {
-      EXPECT_NEAR(row.X_WE().R(2, 2), -1.0, 1e-12);
-      EXPECT_EQ(row.p_WE.head<2>(), rows[1].p_WE.head<2>()) << "straight down and up";
+      EXPECT_NEAR(row.X_WE.R(2, 2), -1.0, 1e-12);
+      EXPECT_EQ(row.X_WE.p.head<2>(), rows[1].X_WE.p.head<2>()) << "straight down and up";
     }
     // The box rises until its lower face is at the travel height, held by the cup.
     const double height = -2.0 * lowest_corner(X_WP.R, box.size);
-    EXPECT_NEAR(rows[2].p_WE.z() - scenario.cup.hold_length - height, kTravel, 1e-12);
+    EXPECT_NEAR(rows[2].X_WE.p.z() - scenario.cup.hold_length - height, kTravel, 1e-12);
   }
 }
 
@@ -71,7 +71,7 @@ TEST(PlanPick, ComesFromAsHighAsWhereTheToolIsNeeds) {
     const auto lip = [&](PickKind kind) {
       const auto rows = plan_pick(scenario, layout_at(0.0), box, X_WP, X_WP, kTravel, kind);
       EXPECT_EQ(motion::name_of(rows[1]), kind == PickKind::First ? "Box(BOX027)" : "RePick(BOX027)");
-      return rows[0].p_WE.z() - scenario.cup.free_length;
+      return rows[0].X_WE.p.z() - scenario.cup.free_length;
     };
     const double top = z + 0.047;
     EXPECT_NEAR(lip(PickKind::First), std::max(kTravel + 0.020, top + 0.060), 1e-12);
@@ -93,7 +93,7 @@ TEST(PlanPick, SharesTheTurnToTheNextPlaceBetweenBothSidesOfNeutral) {
     const double turn = rng.uniform(-pi, pi);
     const Pose X_WP_next{about_vertical(turn) * X_WP.R, random_point(rng, Vector3(0.8, 0.8, 0.1))};
     const auto rows = plan_pick(scenario, layout, box, X_WP, X_WP_next, kTravel, PickKind::First);
-    const Pose X_WE = rows[1].X_WE();
+    const Pose X_WE = rows[1].X_WE;
     const Pose X_WE_next = make_tool_for(scenario, box, lip_on(X_WP, X_WE, cup::pick_length(scenario.cup)))(X_WP_next);
     const double before = *motion::yaw_of(X_WE.R) - layout.neutral_yaw;
     const double after = *motion::yaw_of(X_WE_next.R) - layout.neutral_yaw;
@@ -132,7 +132,7 @@ TEST(PlanSidePick, PointsAtTheFaceWithTheLipOffTheGroundAndLittleOverTheUpperEdg
     const bool again = i % 2 == 1;
     const auto rows = plan_side_pick(scenario, layout, scene.box, scene.X_WP, scene.face, scene.X_WP, kTravel, again);
     ASSERT_EQ(rows.size(), 5U);
-    const Pose X_WE = rows[3].X_WE();
+    const Pose X_WE = rows[3].X_WE;
     EXPECT_NEAR(X_WE.R.col(2).dot(scene.face), -std::cos(scenario.skills.side_grasp.incline), 1e-9);
     const Vector3 touched = X_WE.p + (again ? cup.free_length : cup::pick_length(cup)) * X_WE.R.col(2);
     const double breadth = (scene.X_WP.R.transpose() * scene.face).cwiseAbs().dot(scene.box.size);
@@ -141,12 +141,12 @@ TEST(PlanSidePick, PointsAtTheFaceWithTheLipOffTheGroundAndLittleOverTheUpperEdg
     EXPECT_GE(touched.z() - cup.lip_radius, ground + scenario.skills.side_grasp.lip_clearance - 1e-9);
     EXPECT_LE(touched.z() + cup.lip_radius, top + cup.seal.max_overhang + 1e-9);
     // Lifted as it stood, over what is crossed.
-    EXPECT_GE(ground + rows[4].p_WE.z() - rows[3].p_WE.z(), kTravel - 1e-9);
-    EXPECT_EQ(rows[4].p_WE.head<2>(), rows[3].p_WE.head<2>());
+    EXPECT_GE(ground + rows[4].X_WE.p.z() - rows[3].X_WE.p.z(), kTravel - 1e-9);
+    EXPECT_EQ(rows[4].X_WE.p.head<2>(), rows[3].X_WE.p.head<2>());
     const Pose X_PS = lip_on(scene.X_WP, X_WE, cup.hold_length);
     const auto up = plan_turn_up(scenario, scene.box, scene.X_WP, X_PS, scene.face, kTravel, again);
     EXPECT_TRUE(up.io.vacuum);
-    const Pose X_WP_up = hung(scene.box, X_PS, up.X_WE());
+    const Pose X_WP_up = hung(scene.box, X_PS, up.X_WE);
     EXPECT_NEAR((X_WP_up.R * scene.X_WP.R.transpose() * scene.face).z(), 1.0, 1e-6) << "that side is up";
     EXPECT_NEAR(bottom_of(scene.box, X_WP_up), kTravel + scenario.skills.side_grasp.turn_clearance, 1e-4);
   }
@@ -183,7 +183,7 @@ TEST(Drivable, NeitherWindsTheWristNorLosesARowOverLongChains) {
       ASSERT_FALSE(rows.empty());
       EXPECT_EQ(rows.back(), goal);
       for (const motion::Waypoint& row : rows) {
-        const motion::Way way(before.X_WE(), row.X_WE(), way_axis);
+        const motion::Way way(before.X_WE, row.X_WE, way_axis);
         double last = *motion::yaw_of(way.at(0.0).R);
         for (int part = 1; part <= 16; ++part) {
           const double next = *motion::yaw_of(way.at(part / 16.0).R);

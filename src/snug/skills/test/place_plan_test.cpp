@@ -36,7 +36,7 @@ struct PlaceScene {
   [[nodiscard]] std::vector<motion::Waypoint> rows() const { return plan_place(demonstrator(), layout, request); }
   /// The box at a row, seen from where it shall rest, in T.
   [[nodiscard]] Pose off(const motion::Waypoint& row) const {
-    const Pose X_WP = hung(request.box, request.X_PS, row.X_WE());
+    const Pose X_WP = hung(request.box, request.X_PS, row.X_WE);
     const Matrix3 R_TW = layout.X_WT.R.transpose();
     return {R_TW * X_WP.R * rest().R.transpose() * layout.X_WT.R, R_TW * (X_WP.p - rest().p)};
   }
@@ -85,10 +85,10 @@ TEST(PlanPlace, LowersTheBoxStraightDownToItsPlace) {
   expect_at(scene.off(rows[0]), Vector3(0.0, 0.0, travel_bottom(scene.layout, 0.3) - rest));
   expect_at(scene.off(rows[1]), Vector3(0.0, 0.0, scene.layout.X_WT.p.z() + 0.3 + 0.010 - rest));
   expect_at(scene.off(rows[2]), Vector3(0.0, 0.0, -0.005));
-  EXPECT_EQ(rows[2].X_WE(), rows[3].X_WE());
+  EXPECT_EQ(rows[2].X_WE, rows[3].X_WE);
   EXPECT_TRUE(rows[3].io.blow_off);
-  EXPECT_EQ(rows[4].p_WE.head<2>(), rows[3].p_WE.head<2>());
-  EXPECT_GT(rows[4].p_WE.z() - demonstrator().cup.free_length, scene.layout.X_WT.p.z() + 0.3);
+  EXPECT_EQ(rows[4].X_WE.p.head<2>(), rows[3].X_WE.p.head<2>());
+  EXPECT_GT(rows[4].X_WE.p.z() - demonstrator().cup.free_length, scene.layout.X_WT.p.z() + 0.3);
 }
 
 TEST(PlanPlace, SlidesAlongTheAxesOfTheContainerAndSlowlyWhereItIsGentle) {
@@ -106,7 +106,7 @@ TEST(PlanPlace, SlidesAlongTheAxesOfTheContainerAndSlowlyWhereItIsGentle) {
   const auto gentle = scene.rows();
   ASSERT_EQ(variants_of(gentle),
             "PrePlace+ PrePlace_2+ PlaceSlow_down+ PlaceSlow_push+ PlaceSlow+ PlaceSlow PostPlace ");
-  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(gentle[i].X_WE(), rows[i].X_WE());
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(gentle[i].X_WE, rows[i].X_WE);
 }
 
 TEST(PlanPlace, TiltsTheLowSideIntoTheSlotFirstAndLevelsItThere) {
@@ -123,7 +123,7 @@ TEST(PlanPlace, TiltsTheLowSideIntoTheSlotFirstAndLevelsItThere) {
     const double heights[] = {0.012, 0.006, -0.015};
     const Vector3 half = 0.5 * (scene.request.X_TP.R.cwiseAbs() * scene.request.box.size);
     for (std::size_t i = 1; i < 4; ++i) {
-      const Pose X_WP = hung(scene.request.box, scene.request.X_PS, rows[i].X_WE());
+      const Pose X_WP = hung(scene.request.box, scene.request.X_PS, rows[i].X_WE);
       EXPECT_NEAR(bottom_of(scene.request.box, X_WP), scene.layout.X_WT.p.z() + edge + heights[i - 1], 2.0 * kSettled);
       const Pose off = scene.off(rows[i]);
       EXPECT_NEAR(angle_between(off.R, Matrix3::Identity()), demonstrator().skills.insertion.tilted.angle,
@@ -158,20 +158,20 @@ TEST(PlanPlace, PassesOverEverythingFromASidePickAndComesStraightDownWhereMotion
     scene.request.X_TP.R = R_TW * about_vertical(rng.uniform(-pi, pi)) * face_up(X_WP.R, face);
     const auto picked = plan_side_pick(scenario, scene.layout, box, X_WP, face, scene.rest(), travel, i % 2 == 0);
     ASSERT_EQ(picked.size(), 5U);
-    scene.request.X_WE = picked[4].X_WE();
-    scene.request.X_EP = picked[3].X_WE().inverse() * X_WP;
-    scene.request.X_PS = lip_on(X_WP, picked[3].X_WE(), scenario.cup.hold_length);
+    scene.request.X_WE = picked[4].X_WE;
+    scene.request.X_EP = picked[3].X_WE.inverse() * X_WP;
+    scene.request.X_PS = lip_on(X_WP, picked[3].X_WE, scenario.cup.hold_length);
     const auto rows = scene.rows();
     ASSERT_EQ(variants_of(rows), "PrePlace+ Place+ Place PostPlace ");
     // Where its own cup lets it, as it was pressed: within what 25 looks at the way leave.
-    const motion::Way way(picked[4].X_WE(), rows[0].X_WE(), scene.layout.pan_axis);
+    const motion::Way way(picked[4].X_WE, rows[0].X_WE, scene.layout.pan_axis);
     double lowest = 1.0;
     for (int part = 0; part <= 100; ++part) {
       lowest = std::min(lowest, bottom_of(box, way.at(part / 100.0) * scene.request.X_EP));
     }
     EXPECT_GT(lowest, travel - scenario.skills.travel.clearance + scenario.skills.travel.turning_clearance - 0.003);
     raised += scene.off(rows[0]).p.z() + bottom_of(box, scene.rest()) > travel + 0.001 ? 1 : 0;
-    EXPECT_LT((rows[0].p_WE - rows[1].p_WE).head<2>().norm(), 1e-9) << "straight down";
+    EXPECT_LT((rows[0].X_WE.p - rows[1].X_WE.p).head<2>().norm(), 1e-9) << "straight down";
     expect_at(scene.off(rows[1]), Vector3(0.0, 0.0, -0.005));
   }
   RecordProperty("raised", std::to_string(raised));
@@ -186,12 +186,12 @@ TEST(PlanPress, PushesOnTheMiddleFromAboveWithoutVacuum) {
     const auto rows = plan_press(scenario, layout, box, X_WP, travel);
     ASSERT_EQ(variants_of(rows), "PrePlace_press PlaceSlow_press PostPlace_press ");
     const double top = 2.0 * X_WP.p.z() - bottom_of(box, X_WP), lip = scenario.cup.free_length;
-    EXPECT_NEAR(rows[1].p_WE.z() - lip, top - 0.030, 1e-12);
-    EXPECT_NEAR(rows[0].p_WE.z() - lip, std::max(travel, top) + 0.020, 1e-12);
-    EXPECT_EQ(rows[0].p_WE, rows[2].p_WE);
+    EXPECT_NEAR(rows[1].X_WE.p.z() - lip, top - 0.030, 1e-12);
+    EXPECT_NEAR(rows[0].X_WE.p.z() - lip, std::max(travel, top) + 0.020, 1e-12);
+    EXPECT_EQ(rows[0].X_WE.p, rows[2].X_WE.p);
     for (const auto& row : rows) {
-      EXPECT_EQ(row.p_WE.head<2>(), X_WP.p.head<2>());
-      EXPECT_NEAR(row.X_WE().R(2, 2), -1.0, 1e-12);
+      EXPECT_EQ(row.X_WE.p.head<2>(), X_WP.p.head<2>());
+      EXPECT_NEAR(row.X_WE.R(2, 2), -1.0, 1e-12);
     }
   }
 }
@@ -215,19 +215,19 @@ TEST(PlanFlip, BringsTheAxisAskedForUpAndTheBoxOntoThePlace) {
     const Pose X_PS{R_WP.transpose() * motion::upright_tool(heading), 0.5 * box.size.cwiseProduct(top_P)};
     const auto rows = plan_flip(scenario, box, place, R_WP, X_PS, 0.2);
     ASSERT_EQ(rows.size(), 7U);
-    EXPECT_NEAR(bottom_of(box, hung(box, X_PS, rows[0].X_WE())), 0.2, kSettled);
+    EXPECT_NEAR(bottom_of(box, hung(box, X_PS, rows[0].X_WE)), 0.2, kSettled);
     // At the end the surface carries it, so that the cup is not bent.
-    const Pose X_WP = rows[3].X_WE() * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, 0.050)} * X_PS.inverse();
+    const Pose X_WP = rows[3].X_WE * Pose{Matrix3::Identity(), Vector3(0.0, 0.0, 0.050)} * X_PS.inverse();
     EXPECT_LT(angle_between(X_WP.R, R_after), 1e-5);
     EXPECT_NEAR(bottom_of(box, X_WP), place.p_WF.z() - params.press, 1e-5);
     EXPECT_LT((X_WP.p - params.dragged * place.direction - place.p_WF).head<2>().norm(), 1e-5);
-    EXPECT_GT(rows[3].X_WE().R.col(2).dot(place.direction), 1.0 - 1e-6) << "the tool points there";
+    EXPECT_GT(rows[3].X_WE.R.col(2).dot(place.direction), 1.0 - 1e-6) << "the tool points there";
     // Set down as it hangs, its middle over the place.
     const auto down = plan_set_down(scenario, box, place, R_WP, X_PS, 0.2);
     ASSERT_EQ(variants_of(down), "PreTwist+ PreTwist_low+ Twist+ Twist PreTwist_back ");
     const double heights[] = {0.2, place.p_WF.z() + 0.010, place.p_WF.z() - 0.003};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Pose X_WP_k = hung(box, X_PS, down[k].X_WE());
+      const Pose X_WP_k = hung(box, X_PS, down[k].X_WE);
       EXPECT_NEAR(bottom_of(box, X_WP_k), heights[k], kSettled);
       EXPECT_LT((X_WP_k.p - place.p_WF).head<2>().norm(), kSettled);
     }
@@ -251,9 +251,9 @@ std::vector<motion::Waypoint> everything(const Pose& X_VW, bool is_fast) {
   const auto add = [&](const std::vector<motion::Waypoint>& rows) { all.insert(all.end(), rows.begin(), rows.end()); };
   const Pose X_WP_lean = X_VW * Pose{exp_rotation(Vector3(0.1, 0.05, 0.3)), Vector3(0.5, -0.3, 0.0)};
   add(plan_pick(scenario, scene.layout, box, X_WP, scene.rest(), 0.2, PickKind::First));
-  scene.request.X_WE = all.back().X_WE();
-  scene.request.X_PS = lip_on(X_WP, all[1].X_WE(), cup::pick_length(scenario.cup));
-  scene.request.X_EP = all[1].X_WE().inverse() * X_WP;
+  scene.request.X_WE = all.back().X_WE;
+  scene.request.X_PS = lip_on(X_WP, all[1].X_WE, cup::pick_length(scenario.cup));
+  scene.request.X_EP = all[1].X_WE.inverse() * X_WP;
   scene.request.insertion.come_from_T = Vector3(0.01, 0.0, 0.0);
   scene.request.insertion.overtravel_T = Vector3(-0.005, 0.0, 0.0);
   add(scene.rows());
@@ -262,7 +262,7 @@ std::vector<motion::Waypoint> everything(const Pose& X_VW, bool is_fast) {
   scene.request.insertion.edge_height_T = 0.2;
   add(scene.rows());
   add(plan_side_pick(scenario, scene.layout, box, X_WP, face, scene.rest(), 0.2, false));
-  const Pose X_PS_side = lip_on(X_WP, all[all.size() - 2].X_WE(), cup::pick_length(scenario.cup));
+  const Pose X_PS_side = lip_on(X_WP, all[all.size() - 2].X_WE, cup::pick_length(scenario.cup));
   all.push_back(plan_turn_up(scenario, box, X_WP, X_PS_side, face, 0.2, false));
   add(plan_leaning_pick(scenario, scene.layout, box, X_WP_lean, scene.rest(), 0.2));
   add(plan_press(scenario, scene.layout, box, X_WP_lean, 0.2));
@@ -281,9 +281,9 @@ TEST(Plans, TurnAndShiftWithTheWholeScene) {
       ASSERT_EQ(after.size(), before.size());
       for (std::size_t i = 0; i < before.size(); ++i) {
         SCOPED_TRACE(motion::name_of(before[i]));
-        const Pose X_VE = X_VW * before[i].X_WE();
-        EXPECT_LT((after[i].p_WE - X_VE.p).norm(), 1e-7);  // what the search for the sag stops at
-        EXPECT_LT(angle_between(after[i].X_WE().R, X_VE.R), 1e-6);
+        const Pose X_VE = X_VW * before[i].X_WE;
+        EXPECT_LT((after[i].X_WE.p - X_VE.p).norm(), 1e-7);  // what the search for the sag stops at
+        EXPECT_LT(angle_between(after[i].X_WE.R, X_VE.R), 1e-6);
         EXPECT_EQ(motion::name_of(after[i]), motion::name_of(before[i]));
         EXPECT_EQ(after[i].io, before[i].io);
       }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/test/demonstrator.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
@@ -113,9 +114,9 @@ TEST(Placements, PutTheRigidlyHeldBoxWhereItShallRest) {
   const motion::Program program = program_of(job);
   for (std::size_t b = 0; b < 2; ++b) {
     SCOPED_TRACE(b);
-    const Pose& X_WE_pick = program.waypoints[8 * b + 1].X_WE();
-    const Pose& X_WE_place = program.waypoints[8 * b + 5].X_WE();
-    EXPECT_EQ(program.waypoints[8 * b + 6].X_WE(), X_WE_place);
+    const Pose& X_WE_pick = program.waypoints[8 * b + 1].X_WE;
+    const Pose& X_WE_place = program.waypoints[8 * b + 5].X_WE;
+    EXPECT_EQ(program.waypoints[8 * b + 6].X_WE, X_WE_place);
     // Between pressing and hanging the cup stretches by hold_length - pick_length, straight up.
     Pose X_WE_hang = X_WE_pick;
     X_WE_hang.p.z() += job.settings.hold_length - job.settings.pick_length;
@@ -137,8 +138,8 @@ TEST(Placements, GoStraightDownAndUp) {
   for (const auto& [first, last] :
        std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {3, 7}, {8, 10}, {11, 15}}) {
     for (std::size_t i = first; i <= last; ++i) {
-      EXPECT_EQ(program.waypoints[i].X_WE().R, program.waypoints[first].X_WE().R) << i;
-      EXPECT_EQ(program.waypoints[i].X_WE().p.head<2>(), program.waypoints[first].X_WE().p.head<2>()) << i;
+      EXPECT_EQ(program.waypoints[i].X_WE.R, program.waypoints[first].X_WE.R) << i;
+      EXPECT_EQ(program.waypoints[i].X_WE.p.head<2>(), program.waypoints[first].X_WE.p.head<2>()) << i;
     }
   }
 }
@@ -152,7 +153,7 @@ TEST(Placements, CrossAboveRimObstacleAndPackedBoxes) {
   double highest = std::max(kRimW, job.settings.obstacle_top);
   for (std::size_t b = 0; b < 2; ++b) {
     SCOPED_TRACE(b);
-    const auto z = [&](std::size_t i) { return program.waypoints[7 * b + i].X_WE().p.z(); };
+    const auto z = [&](std::size_t i) { return program.waypoints[7 * b + i].X_WE.p.z(); };
     const double carried_below_tool = job.settings.hold_length + job.picks[b].size.z();
     EXPECT_EQ(z(2), z(3));  // PostPick to PrePlace: level
     EXPECT_GE(z(2) - carried_below_tool, highest + clearance - 1e-12);
@@ -160,14 +161,14 @@ TEST(Placements, CrossAboveRimObstacleAndPackedBoxes) {
     EXPECT_GE(z(6) - job.settings.free_length, highest + clearance - 1e-12);  // PostPlace
     EXPECT_GE(z(0), z(1) + clearance);                                        // PrePick above the box
   }
-  EXPECT_EQ(program.waypoints[6].X_WE().p.z(), program.waypoints[7].X_WE().p.z());  // PostPlace to PrePick: level
+  EXPECT_EQ(program.waypoints[6].X_WE.p.z(), program.waypoints[7].X_WE.p.z());  // PostPlace to PrePick: level
   EXPECT_GT(highest, 0.0);  // the second box stands above rim and obstacle, so it was what had to be cleared
 }
 
 TEST(Placements, StopAboveTheNeighboursBeforeGoingDownBetweenThem) {
   const Job job = two_boxes();
   const motion::Program program = program_of(job);
-  const double bottom = program.waypoints[4].X_WE().p.z() - job.settings.hold_length - job.picks[0].size.z();
+  const double bottom = program.waypoints[4].X_WE.p.z() - job.settings.hold_length - job.picks[0].size.z();
   EXPECT_NEAR(bottom, kRimW + *job.settings.entry_clearance, 1e-14);
 }
 
@@ -179,8 +180,8 @@ TEST(Placements, TurnABoxThatLiesOnItsSideAboutTheVerticalOnly) {
   job.placements[0].X_TP.R = exp_rotation(Vector3(0.0, 0.0, -2.0)) * R_side;
   job.placements[0].X_TP.p.z() = 0.5 * job.picks[0].size.y();
   const motion::Program program = program_of(job);
-  EXPECT_NEAR(program.waypoints[1].X_WE().p.z(), -0.105 + job.picks[0].size.y() + job.settings.pick_length, 1e-14);
-  EXPECT_LT((program.waypoints[5].X_WE().R.col(2) + Vector3::UnitZ()).norm(), 1e-14);
+  EXPECT_NEAR(program.waypoints[1].X_WE.p.z(), -0.105 + job.picks[0].size.y() + job.settings.pick_length, 1e-14);
+  EXPECT_LT((program.waypoints[5].X_WE.R.col(2) + Vector3::UnitZ()).norm(), 1e-14);
 }
 
 TEST(Placements, AreRefusedWithTheReason) {
@@ -235,7 +236,7 @@ TEST(Placements, GiveAProgramThatReadsBackAndRuns) {
        {motion::Tracking(motion::LaggedTracking{}), motion::Tracking(motion::ExactTracking{})}) {
     motion::ControllerSettings settings = motion::demonstrator_settings(1);
     settings.kind = kind;
-    const double duration = motion::compute_duration(motion::prepare(again, settings), program.waypoints.back().X_WE());
+    const double duration = motion::compute_duration(motion::prepare(again, settings), program.waypoints.back().X_WE);
     EXPECT_GT(duration, 10.0);
     EXPECT_LT(duration, 60.0);
   }
@@ -246,9 +247,9 @@ TEST(Placements, AreEnteredByTheFaithfulToolFarWithinTheGapsBetweenBoxes) {
   const Job job = two_boxes();
   const motion::Program program = program_of(job);
   const motion::PreparedProgram plan = motion::prepare(program, motion::demonstrator_settings(1));
-  motion::ControllerState state = motion::make_controller_state(program.waypoints.back().X_WE());
+  motion::ControllerState state = motion::make_controller_state(program.waypoints.back().X_WE);
   motion::ToolState measured = state.command;
-  const Pose& X_WE_place = program.waypoints[5].X_WE();
+  const Pose& X_WE_place = program.waypoints[5].X_WE;
   double worst = 0.0;
   while (state.row < 6) {
     measured = motion::tick(plan, measured, state).tool;

@@ -42,8 +42,8 @@ TEST(PickRows, PressFromAboveAndLiftWithVacuum) {
   EXPECT_EQ(motion::name_of(rows[2]), "PostPick(BOX027)");
   EXPECT_FALSE(rows[1].io.vacuum);
   EXPECT_TRUE(rows[2].io.vacuum);
-  EXPECT_TRUE(rows[1].X_WE().p.isApprox(Vector3(0.1, 0.2, 0.1 + intent.length), kRounding));
-  EXPECT_NEAR(rows[1].X_WE().R(2, 2), -1.0, kRounding);
+  EXPECT_TRUE(rows[1].X_WE.p.isApprox(Vector3(0.1, 0.2, 0.1 + intent.length), kRounding));
+  EXPECT_NEAR(rows[1].X_WE.R(2, 2), -1.0, kRounding);
 }
 
 TEST(LeaningPickRows, AreSquareToTheUppermostFaceHoweverItLeansAndEndLevel) {
@@ -62,15 +62,15 @@ TEST(LeaningPickRows, AreSquareToTheUppermostFaceHoweverItLeansAndEndLevel) {
     const auto rows = leaning_pick_rows(intent, 0.03);
     ASSERT_EQ(rows.size(), 5u);
     const Vector3 normal = intent.X_WP.R * R_WP.transpose().col(2);
-    const Pose pick = rows[2].X_WE(), off = rows[3].X_WE();
+    const Pose pick = rows[2].X_WE, off = rows[3].X_WE;
     EXPECT_NEAR(pick.R.col(2).dot(normal), -1.0, kRounding);
     const Vector3 lip_P = intent.X_WP.inverse() * (pick.p - intent.length * normal);
     const Vector3 up_P = R_WP.transpose().col(2);
     EXPECT_NEAR(lip_P.dot(up_P), 0.5 * intent.size.dot(up_P.cwiseAbs()), kRounding) << "on the face";
     EXPECT_TRUE((lip_P - lip_P.dot(up_P) * up_P).isApprox(intent.cup_offset_P, 1e-6));
     EXPECT_TRUE((off.p - pick.p).isApprox(0.03 * normal, 1e-6));
-    EXPECT_NEAR(rows[0].X_WE().R(2, 2), -1.0, kRounding);
-    EXPECT_NEAR(rows[4].X_WE().R(2, 2), -1.0, kRounding);
+    EXPECT_NEAR(rows[0].X_WE.R(2, 2), -1.0, kRounding);
+    EXPECT_NEAR(rows[4].X_WE.R(2, 2), -1.0, kRounding);
     EXPECT_FALSE(rows[2].io.vacuum);
     EXPECT_TRUE(rows[3].io.vacuum);
   }
@@ -88,18 +88,18 @@ TEST(FlipRows, EndFlatOnTheSideThatFacedAway) {
   ASSERT_EQ(rows.size(), 7u);
   // The side toward +x ends up: P's x axis.
   EXPECT_TRUE(flipped(Matrix3::Identity(), Vector3::UnitX()).col(0).isApprox(Vector3::UnitZ(), kRounding));
-  const Pose X_WP = rows[3].X_WE() * intent.X_PE.inverse();
+  const Pose X_WP = rows[3].X_WE * intent.X_PE.inverse();
   EXPECT_TRUE(X_WP.R.isApprox(flipped(Matrix3::Identity(), Vector3::UnitX()), 1e-9));
   EXPECT_NEAR(X_WP.p.z() + lowest_corner(X_WP.R, intent.size), intent.p_WF.z(), 1e-9);
   EXPECT_NEAR(X_WP.p.x(), intent.p_WF.x() + intent.params.dragged, 1e-9);
   // Before, no corner is under the surface.
   for (int i = 0; i < 2; ++i) {
-    const Pose X = rows[static_cast<std::size_t>(i)].X_WE() * intent.X_PE.inverse();
+    const Pose X = rows[static_cast<std::size_t>(i)].X_WE * intent.X_PE.inverse();
     EXPECT_GT(X.p.z() + lowest_corner(X.R, intent.size), intent.p_WF.z()) << i;
   }
   EXPECT_TRUE(rows[4].io.vacuum);
   EXPECT_FALSE(rows[5].io.vacuum);
-  EXPECT_EQ(rows[4].X_WE(), rows[5].X_WE());
+  EXPECT_EQ(rows[4].X_WE, rows[5].X_WE);
 }
 
 TEST(PlaceRows, SlideAgainstNeighboursFromTheFreeSide) {
@@ -113,13 +113,13 @@ TEST(PlaceRows, SlideAgainstNeighboursFromTheFreeSide) {
   intent.overtravel = Vector3(-0.005, 0.0, 0.0);
   const auto rows = place_rows(intent);
   ASSERT_EQ(rows.size(), 7u);
-  EXPECT_NEAR(rows[0].X_WE().p.x(), 0.51, kRounding);
-  EXPECT_NEAR(rows[2].X_WE().p.x(), 0.51, kRounding);
-  EXPECT_NEAR(rows[3].X_WE().p.x(), 0.495, kRounding);
-  EXPECT_NEAR(rows[2].X_WE().p.z(), 0.1 + intent.params.slide_gap + 0.05, kRounding);
+  EXPECT_NEAR(rows[0].X_WE.p.x(), 0.51, kRounding);
+  EXPECT_NEAR(rows[2].X_WE.p.x(), 0.51, kRounding);
+  EXPECT_NEAR(rows[3].X_WE.p.x(), 0.495, kRounding);
+  EXPECT_NEAR(rows[2].X_WE.p.z(), 0.1 + intent.params.slide_gap + 0.05, kRounding);
   EXPECT_TRUE(rows[4].io.vacuum);
   EXPECT_TRUE(rows[5].io.blow_off);
-  EXPECT_GE(rows[6].X_WE().p.z(), intent.travel_bottom);
+  EXPECT_GE(rows[6].X_WE.p.z(), intent.travel_bottom);
 }
 
 TEST(PlaceRows, EnterASlotOneSideFirstAndEndLevel) {
@@ -131,12 +131,12 @@ TEST(PlaceRows, EnterASlotOneSideFirstAndEndLevel) {
   const auto rows = place_rows(intent);
   ASSERT_EQ(rows.size(), 8u);
   const Pose X_PE = rigid(intent.size)(Pose{});
-  const Pose X_WP = rows[3].X_WE() * X_PE.inverse();
+  const Pose X_WP = rows[3].X_WE * X_PE.inverse();
   EXPECT_NEAR(X_WP.p.z() + lowest_corner(X_WP.R, intent.size), 0.085, 1e-9);
   const Vector3 low = X_WP * Vector3(0.05, 0.0, -0.05), high = X_WP * Vector3(-0.05, 0.0, -0.05);
   EXPECT_LT(low.z(), high.z());
   EXPECT_NEAR(low.x(), 0.546, 1e-9);  // where that corner will be, and the push
-  EXPECT_NEAR(angle_between((rows[4].X_WE() * X_PE.inverse()).R, Matrix3::Identity()), 0.0, 1e-9);
+  EXPECT_NEAR(angle_between((rows[4].X_WE * X_PE.inverse()).R, Matrix3::Identity()), 0.0, 1e-9);
 }
 
 }  // namespace

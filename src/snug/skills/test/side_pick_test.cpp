@@ -48,15 +48,15 @@ TEST(SidePickRows, ComeLowBeforeTheFaceTouchItAndLiftTheBoxAsItStood) {
   EXPECT_EQ(motion::name_of(rows[4]), "PostPick(BOX013)");
   for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(rows[i].io.vacuum) << i;
   EXPECT_TRUE(rows[4].io.vacuum);
-  const Vector3 touched = rows[3].X_WE().p + intent.length * rows[3].X_WE().R.col(2);
+  const Vector3 touched = rows[3].X_WE.p + intent.length * rows[3].X_WE.R.col(2);
   EXPECT_TRUE(touched.isApprox(Vector3(0.3, 0.04, 0.05), kRounding));
-  EXPECT_TRUE((rows[2].X_WE().p - rows[3].X_WE().p).isApprox(Vector3(0.0, -intent.params.stand_off, 0.0), kRounding));
-  EXPECT_TRUE((rows[4].X_WE().p - rows[3].X_WE().p).isApprox(Vector3(0.0, 0.0, intent.lift), kRounding));
-  EXPECT_EQ(rows[4].X_WE().R, rows[3].X_WE().R);
+  EXPECT_TRUE((rows[2].X_WE.p - rows[3].X_WE.p).isApprox(Vector3(0.0, -intent.params.stand_off, 0.0), kRounding));
+  EXPECT_TRUE((rows[4].X_WE.p - rows[3].X_WE.p).isApprox(Vector3(0.0, 0.0, intent.lift), kRounding));
+  EXPECT_EQ(rows[4].X_WE.R, rows[3].X_WE.R);
   // Only the first row is upright, so that yaw and tilt are turned one after the other.
-  EXPECT_TRUE(motion::yaw_of(rows[0].X_WE().R));
-  EXPECT_FALSE(motion::yaw_of(rows[1].X_WE().R));
-  EXPECT_EQ(rows[0].X_WE().p, rows[1].X_WE().p);
+  EXPECT_TRUE(motion::yaw_of(rows[0].X_WE.R));
+  EXPECT_FALSE(motion::yaw_of(rows[1].X_WE.R));
+  EXPECT_EQ(rows[0].X_WE.p, rows[1].X_WE.p);
   intent.again = true;
   const auto again = side_pick_rows(intent);
   EXPECT_EQ(motion::name_of(again[0]), "PreRePick(BOX013)");
@@ -71,7 +71,7 @@ TEST(SidePickRows, FollowABoxThatStandsALittleTurned) {
   intent.X_WP = {exp_rotation(Vector3(0.0, 0.0, yaw)), Vector3(0.3, 0.1, 0.05)};
   intent.face = Vector3::UnitX();
   const auto rows = side_pick_rows(intent);
-  EXPECT_NEAR(rows[3].X_WE().R.col(2).head<2>().normalized().dot(-Vector3(std::cos(yaw), std::sin(yaw), 0.0).head<2>()),
+  EXPECT_NEAR(rows[3].X_WE.R.col(2).head<2>().normalized().dot(-Vector3(std::cos(yaw), std::sin(yaw), 0.0).head<2>()),
               1.0, kRounding);
 }
 
@@ -85,13 +85,13 @@ TEST(SetDownRows, PutTheBoxOnTheSurfaceAndLetGo) {
   };
   const auto rows = set_down_rows(intent);
   ASSERT_EQ(rows.size(), 5u);
-  EXPECT_NEAR(rows[0].X_WE().p.z(), intent.travel_bottom + 0.05 + 0.1, kRounding);
-  EXPECT_NEAR(rows[2].X_WE().p.z(), 0.15 - intent.params.press, kRounding);
+  EXPECT_NEAR(rows[0].X_WE.p.z(), intent.travel_bottom + 0.05 + 0.1, kRounding);
+  EXPECT_NEAR(rows[2].X_WE.p.z(), 0.15 - intent.params.press, kRounding);
   EXPECT_TRUE(rows[2].io.vacuum);
   EXPECT_FALSE(rows[3].io.vacuum);
   EXPECT_TRUE(rows[3].io.blow_off);
-  EXPECT_EQ(rows[2].X_WE(), rows[3].X_WE());
-  EXPECT_GT(rows[4].X_WE().p.z(), rows[0].X_WE().p.z());
+  EXPECT_EQ(rows[2].X_WE, rows[3].X_WE);
+  EXPECT_GT(rows[4].X_WE.p.z(), rows[0].X_WE.p.z());
 }
 
 }  // namespace

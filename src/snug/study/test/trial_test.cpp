@@ -6,6 +6,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/model/other_container.hpp"
 #include "snug/model/test/shortened.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/study/monte_carlo.hpp"
 
 namespace snug::study {

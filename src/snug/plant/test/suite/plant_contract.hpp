@@ -39,7 +39,7 @@ struct BoxAtAligner {
   [[nodiscard]] motion::Waypoint over(double z, const char* name, bool vacuum) const {
     motion::Waypoint waypoint =
         motion::named_waypoint(name, {motion::upright_tool(std::numbers::pi), X_WP.p}, {.vacuum = vacuum});
-    waypoint.p_WE.z() += 0.5 * 0.092 + z;
+    waypoint.X_WE.p.z() += 0.5 * 0.092 + z;
     return waypoint;
   }
   [[nodiscard]] std::vector<motion::Waypoint> pick() const {
@@ -116,10 +116,10 @@ TEST_P(PlantContract, RefusesMotionsThatCannotBeAndDoesNotMove) {
   EXPECT_EQ(go({}).end.reason, EndReason::Refused);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     motion::Waypoint waypoint = GetParam().free_waypoint;
-    waypoint.p_WE.x() = bad;
+    waypoint.X_WE.p.x() = bad;
     EXPECT_EQ(go({GetParam().free_waypoint, waypoint}).end.reason, EndReason::Refused);
     waypoint = GetParam().free_waypoint;
-    waypoint.rotation_WE.x() = bad;
+    waypoint.X_WE.R(0, 0) = bad;
     EXPECT_EQ(go({waypoint}).end.reason, EndReason::Refused);
   }
   motion::Waypoint nameless = GetParam().free_waypoint;
@@ -137,7 +137,7 @@ TEST_P(PlantContract, ComesToAWaypointAndStands) {
   const Feedback there = go({GetParam().free_waypoint});
   ASSERT_EQ(there.end.reason, EndReason::Completed) << describe(there.end, {});
   EXPECT_EQ(there.end.waypoint, 0);
-  EXPECT_LE((there.X_WE.p - GetParam().free_waypoint.X_WE().p).norm(), GetParam().tolerance);
+  EXPECT_LE((there.X_WE.p - GetParam().free_waypoint.X_WE.p).norm(), GetParam().tolerance);
   EXPECT_LT(there.V_WE.linear.norm(), 0.01);
   EXPECT_GT(there.time, start.time);
   ASSERT_EQ(there.times.size(), 1u);
