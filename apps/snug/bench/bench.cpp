@@ -13,9 +13,9 @@
 #include "apps/bench/bench.hpp"
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/common/row_values.hpp"
 #include "apps/snug/study/study.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/study/row_values.hpp"
 #include "snug/study/run.hpp"
 
 namespace snug::app {
@@ -80,7 +80,7 @@ std::vector<bench::Figure> run_scenes(const std::vector<std::string>& scenes, co
   settings.tell = [&](const study::RowResult& result, const std::string& said) {
     std::fputs(said.c_str(), stderr);
     const std::string& scene = scenes[result.row];
-    const nlohmann::ordered_json list = RowValues(result).list("results");
+    const nlohmann::ordered_json list = study::RowValues(result).list("results");
     if (list.empty() && result.exit_code != kBadInput)  // else there is no such figure here
       throw std::runtime_error("bench " + scene + ": " + result.error);
     for (const auto& json : list) figures.push_back(read_figure(json));

@@ -91,6 +91,10 @@ std::optional<OutputFile> reserve_recording(const std::optional<std::string>& pa
   return record::reserve_recording(*path);
 }
 
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::fprintf(stderr, "snug: warning: %s\n", warning.c_str());
+}
+
 void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) fail_stdout();
 }

@@ -41,6 +41,9 @@ void make_folder(const std::string& word, const std::filesystem::path& path);
 
 [[nodiscard]] std::optional<OutputFile> reserve_recording(const std::optional<std::string>& path);
 
+/// "snug: warning: ..." on stderr, a line for each.
+void print_warnings(const std::vector<std::string>& warnings);
+
 /// To stdout. Throws OutputError when it cannot be written.
 void print(std::string_view text);
 /// The same, seen at once by who reads along.

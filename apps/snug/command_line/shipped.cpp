@@ -36,6 +36,8 @@ fs::path shipped_folder() {
   return folder;
 }
 
+fs::path agent_script() { return shipped_folder() / "python" / "snug" / "agent.py"; }
+
 std::string find_shipped(const std::string& file) {
   std::error_code error;
   const fs::path path(file);

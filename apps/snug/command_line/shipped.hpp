@@ -10,6 +10,9 @@ namespace snug::app {
 /// Throws InputError when there is none.
 [[nodiscard]] std::filesystem::path shipped_folder();
 
+/// What Python agents are run by.
+[[nodiscard]] std::filesystem::path agent_script();
+
 /// `file` itself where there is one; else the shipped file of that name, as in `snug simulate scenarios/drop.yaml` from
 /// any folder; else `file`, for the reader to complain about.
 [[nodiscard]] std::string find_shipped(const std::string& file);

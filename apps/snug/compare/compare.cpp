@@ -12,15 +12,16 @@
 #include "apps/snug/command_line/interrupt.hpp"
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/program_motion.hpp"
+#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/compare/compare_page.hpp"
 #include "apps/snug/compare/compare_report.hpp"
 #include "apps/snug/compare/compare_study.hpp"
-#include "apps/snug/pack/python_agent.hpp"
 #include "apps/snug/report/report.hpp"
 #include "apps/snug/study/study.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/packing/python_agent.hpp"
 #include "snug/study/run.hpp"
 
 namespace snug::app {
@@ -33,7 +34,7 @@ std::vector<std::string> choose(const std::string& words, const std::vector<std:
   std::vector<std::string> chosen;
   std::stringstream text(words);
   for (std::string word; std::getline(text, word, ',');) {
-    if (std::ranges::find(known, word) == known.end() && !(may_be_python && is_python_agent(word))) {
+    if (std::ranges::find(known, word) == known.end() && !(may_be_python && packing::is_python_agent(word))) {
       throw InputError("command line", key, "'" + word + "'", fmt::format("all, or of {}", fmt::join(known, ", ")));
     }
     chosen.push_back(word);
@@ -91,7 +92,7 @@ void check_words(const PackOptions& pack, const std::vector<std::string>& agents
   (void)make_plant_options(pack, {});
   refuse_tempo_without_fast(pack.tempo, pack.controller);
   for (const std::string& agent : agents) {
-    if (is_python_agent(agent)) (void)start_python_agent(agent);
+    if (packing::is_python_agent(agent)) (void)packing::start_python_agent(agent, agent_script());
   }
 }
 

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/snug/common/row_values.hpp"
 #include "snug/study/calibration_json.hpp"
+#include "snug/study/row_values.hpp"
 
 namespace snug::app {
 namespace {
@@ -102,7 +102,7 @@ study::Study make_compare_study(const CompareOptions& options, std::uint64_t see
 
 CompareSession read_session(const model::Scenario& scenario, const study::Study& study, const SessionPoint& point,
                             std::uint64_t seed, const study::RowResult& result) {
-  const RowValues values(result);
+  const study::RowValues values(result);
   CompareSession session;
   CompareRow& row = session.row;
   row.agent = point.agent;

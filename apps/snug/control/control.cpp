@@ -9,7 +9,6 @@
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/scenario_options.hpp"
-#include "apps/snug/common/program_fit.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
 #include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
@@ -17,6 +16,7 @@
 #include "snug/motion/program_csv.hpp"
 #include "snug/remote_plant/program_client.hpp"
 #include "snug/runs/corrected.hpp"
+#include "snug/runs/program_fit.hpp"
 
 namespace snug::app {
 namespace {
@@ -72,7 +72,7 @@ int run_control(const ControlOptions& options) {
   const std::string text = read_file(options.program, "a program file (CSV)");
   choose_motion(options.motion, text, options.program, how);
   const motion::Program program = motion::parse_program(text, options.program);
-  if (options.sequence) warn_misfit(scenario, *options.sequence, program);
+  if (options.sequence) print_warnings(runs::find_misfits(scenario, *options.sequence, program));
   const std::string corrections = options.corrections == "none" ? "" : options.corrections;
   motion::PreparedProgram plan =
       cell::prepare(scenario, sequence, how, runs::corrected(scenario, program, corrections));

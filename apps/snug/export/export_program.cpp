@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "apps/snug/command_line/version.hpp"
-#include "apps/snug/common/program_fit.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
 #include "snug/cell/held_boxes.hpp"
 #include "snug/cell/simulation.hpp"
@@ -20,6 +19,7 @@
 #include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/runs/corrected.hpp"
+#include "snug/runs/program_fit.hpp"
 #include "snug/runs/program_trial.hpp"
 
 namespace snug::app {
@@ -113,7 +113,7 @@ LoadedProgram load(const ExportOptions& options) {
   print_robot_warnings(scenario);
   std::string sequence = options.sequence;
   if (sequence.empty() && !scenario.sequences.empty()) sequence = scenario.sequences.front().name;
-  require_fit(scenario, sequence, motion::load_program(options.input));
+  runs::require_fit(scenario, sequence, motion::load_program(options.input));
   return {scenario, sequence, options};
 }
 

@@ -5,13 +5,12 @@
 #include <fmt/printf.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/cup/law.hpp"
+#include "snug/identification/cup_text.hpp"
 #include "snug/identification/damping.hpp"
 #include "snug/identification/scenario_block.hpp"
 #include "snug/identification/stiffness.hpp"
@@ -24,9 +23,6 @@ namespace {
 using identification::HeldBackError;
 using identification::MeasurementNoise;
 using identification::Parameter;
-using nlohmann::ordered_json;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 model::CupParams cup_of(const IdentifyOptions& options) {
   return options.scenario ? model::load_scenario(*options.scenario).cup : model::CupParams{};
@@ -45,51 +41,6 @@ void apply(const IdentifyOptions& options, MeasurementNoise& noise, bool& is_giv
   set(options.torque_noise, noise.torque);
 }
 
-ordered_json as_json(const std::vector<Parameter>& parameters) {
-  ordered_json list = ordered_json::array();
-  for (const Parameter& parameter : parameters) {
-    list.push_back({{"name", parameter.name},
-                    {"value", parameter.value},
-                    {"standard_error", parameter.standard_error},
-                    {"unit", parameter.unit},
-                    {"verdict", name_of(parameter.verdict)}});
-    if (!parameter.advice.empty()) list.back()["record_instead"] = parameter.advice;
-  }
-  return list;
-}
-
-void add_errors(ordered_json& json, double chi2_per_dof, int degrees_of_freedom, const HeldBackError& held_back) {
-  json["chi2_per_dof"] = chi2_per_dof;
-  json["degrees_of_freedom"] = degrees_of_freedom;
-  json["held_back_error"] = held_back.relative;
-  json["held_back_position_mm"] = 1e3 * held_back.position;
-  json["held_back_rotation_deg"] = kDegrees * held_back.rotation;
-}
-
-void show(const std::vector<Parameter>& parameters) {
-  for (const Parameter& parameter : parameters) {
-    print(fmt::sprintf("  %-9s %12.6g +- %-9.2g %-8s %s\n", parameter.name.c_str(), parameter.value,
-                       parameter.standard_error, parameter.unit.c_str(), name_of(parameter.verdict)));
-    if (!parameter.advice.empty()) print(fmt::sprintf("            record instead: %s\n", parameter.advice.c_str()));
-  }
-}
-
-void print_errors(double chi2_per_dof, const HeldBackError& held_back, bool noise_is_given) {
-  print(fmt::sprintf("misfit: chi2 per degree of freedom %.3f with the noise %s%s\n", chi2_per_dof,
-                     noise_is_given ? "given" : "assumed (the demonstrator's sensors)",
-                     chi2_per_dof > 2.0   ? ": more than noise; standard errors are enlarged"
-                     : chi2_per_dof < 0.5 ? ": less than noise; it is smaller than said"
-                                          : ""));
-  print(fmt::sprintf("held back: %.3f mm, %.3f degrees rms, %.3f times the noise\n", 1e3 * held_back.position,
-                     kDegrees * held_back.rotation, held_back.relative));
-}
-
-std::string indices(const std::vector<int>& list) {
-  std::string text;
-  for (const int index : list) text += (text.empty() ? "" : ", ") + std::to_string(index);
-  return text;
-}
-
 identification::StiffnessOptions as_fit_options(const IdentifyStiffnessOptions& options, const model::CupParams& cup) {
   identification::StiffnessOptions fit;
   for (const auto method : {identification::StiffnessMethod::Wrench, identification::StiffnessMethod::Compliance,
@@ -101,47 +52,6 @@ identification::StiffnessOptions as_fit_options(const IdentifyStiffnessOptions& 
   if (options.parameters == "21") fit.form = identification::StiffnessForm::Full;
   fit.prior = cup.stiffness;
   return fit;
-}
-
-ordered_json describe(const identification::StiffnessFit& fit, const HeldBackError& held_back, bool noise_is_given) {
-  ordered_json json;
-  json["parameters"] = as_json(fit.parameters);
-  add_errors(json, fit.chi2_per_dof, fit.degrees_of_freedom, held_back);
-  json["method"] = name_of(fit.method);
-  json["wrench"] = name_of(fit.wrench);
-  json["noise_is_given"] = noise_is_given;
-  json["poses"] = fit.poses;
-  json["outliers"] = fit.outliers;
-  json["residual_position_mm"] = 1e3 * fit.position;
-  json["residual_rotation_deg"] = kDegrees * fit.rotation;
-  if (fit.symmetry)
-    json["symmetry"] = {{"supported", fit.symmetry->is_supported},
-                        {"p_value", fit.symmetry->p_value},
-                        {"chi2", fit.symmetry->statistic},
-                        {"degrees_of_freedom", 16},
-                        {"worst", fit.symmetry->worst}};
-  for (int i = 0; i < 6; ++i) {
-    ordered_json row = ordered_json::array();
-    for (int j = 0; j < 6; ++j) row.push_back(fit.K(i, j));
-    json["K"].push_back(row);
-  }
-  return json;
-}
-
-void show(const identification::StiffnessFit& fit, const HeldBackError& held_back, bool noise_is_given) {
-  print(fmt::sprintf("stiffness from %d poses, method %s, wrench of the %s\n", fit.poses, name_of(fit.method),
-                     fit.wrench == identification::WrenchSource::Sensor ? "sensor" : "payload's gravity"));
-  show(fit.parameters);
-  print_errors(fit.chi2_per_dof, held_back, noise_is_given);
-  print(fmt::sprintf("residuals: %.3f mm, %.3f degrees rms, measured less predicted pose\n", 1e3 * fit.position,
-                     kDegrees * fit.rotation));
-  if (fit.symmetry)
-    print(fmt::sprintf("symmetry: the same from all sides is %s (p = %.3g; worst: %s)\n",
-                       fit.symmetry->is_supported ? "supported" : "NOT supported", fit.symmetry->p_value,
-                       fit.symmetry->worst.c_str()));
-  if (!fit.outliers.empty())
-    print(
-        fmt::sprintf("left out, beyond 6 standard deviations of the rest: poses %s\n", indices(fit.outliers).c_str()));
 }
 
 /// The five numbers of a fit with 21 have the errors of the entries they are read from.
@@ -179,39 +89,6 @@ std::vector<identification::Release> load_all(const IdentifyDampingOptions& opti
   return {releases[*options.release]};
 }
 
-ordered_json describe(const identification::DampingFit& fit, const HeldBackError& held_back, bool noise_is_given) {
-  ordered_json json;
-  json["parameters"] = as_json(fit.parameters);
-  add_errors(json, fit.chi2_per_dof, fit.degrees_of_freedom, held_back);
-  json["noise_is_given"] = noise_is_given;
-  json["start"] = fit.start == identification::ReleaseStart::Moving ? "moving" : "rest";
-  json["releases_agree"] = fit.releases_agree;
-  for (const identification::ReleaseFit& release : fit.releases)
-    json["releases"].push_back({{"name", release.name},
-                                {"parameters", as_json(release.parameters)},
-                                {"chi2_per_dof", release.chi2_per_dof},
-                                {"residual_position_mm", 1e3 * release.position},
-                                {"residual_rotation_deg", kDegrees * release.rotation},
-                                {"outliers", release.outliers}});
-  return json;
-}
-
-void show(const identification::DampingFit& fit, const HeldBackError& held_back, bool noise_is_given) {
-  print(fmt::sprintf("damping from %zu release%s, %s when the records begin\n", fit.releases.size(),
-                     fit.releases.size() == 1 ? "" : "s",
-                     fit.start == identification::ReleaseStart::Moving ? "moving" : "at rest"));
-  show(fit.parameters);
-  print_errors(fit.chi2_per_dof, held_back, noise_is_given);
-  for (const identification::ReleaseFit& release : fit.releases) {
-    print(fmt::sprintf("%s: chi2 per degree of freedom %.3f, residuals %.3f mm, %.3f degrees", release.name.c_str(),
-                       release.chi2_per_dof, 1e3 * release.position, kDegrees * release.rotation));
-    print(
-        fmt::sprintf(release.outliers.empty() ? "\n" : ", samples left out: %s\n", indices(release.outliers).c_str()));
-    if (!fit.releases_agree) show(release.parameters);
-  }
-  if (!fit.releases_agree) print(fmt::sprintf("the releases contradict each other: no one damping fits them all\n"));
-}
-
 }  // namespace
 
 int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
@@ -230,10 +107,8 @@ int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
                    stiffness_entries(fit), {},
                    {fmt::format("Stiffness from {} ({} poses, {}, chi2 per degree of freedom {:.3f})",
                                 file_name(options.input), fit.poses, name_of(fit.method), fit.chi2_per_dof)}));
-  if (options.json)
-    print(describe(fit, held_back, poses.noise_is_given).dump(2) + "\n");
-  else
-    show(fit, held_back, poses.noise_is_given);
+  print(options.json ? format_json(fit, held_back, poses.noise_is_given)
+                     : format_table(fit, held_back, poses.noise_is_given));
   return kSuccess;
 }
 
@@ -261,10 +136,8 @@ int run_identify_damping(const IdentifyDampingOptions& options) {
             {fmt::format("Damping from {}{} ({} releases, chi2 per degree of freedom {:.3f})",
                          file_name(options.inputs.front()), options.inputs.size() > 1 ? " and others" : "",
                          releases.size(), fit.chi2_per_dof)}));
-  if (options.json)
-    print(describe(fit, held_back, releases.front().noise_is_given).dump(2) + "\n");
-  else
-    show(fit, held_back, releases.front().noise_is_given);
+  print(options.json ? format_json(fit, held_back, releases.front().noise_is_given)
+                     : format_table(fit, held_back, releases.front().noise_is_given));
   return kSuccess;
 }
 

@@ -13,17 +13,18 @@
 #include "apps/snug/command_line/interrupt.hpp"
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/program_motion.hpp"
+#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
-#include "apps/snug/common/run_report.hpp"
-#include "apps/snug/pack/python_agent.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/motion/program_csv.hpp"
+#include "snug/packing/python_agent.hpp"
 #include "snug/packing/representatives.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/runs/result_json.hpp"
+#include "snug/runs/run_table.hpp"
 #include "snug/study/monte_carlo.hpp"
 #include "snug/study/trial_report.hpp"
 
@@ -112,7 +113,7 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
                                              const std::string& sequence) {
   session::SessionOptions session;
   session.agent = options.agent;
-  if (is_python_agent(options.agent)) session.ask = start_python_agent(options.agent);
+  if (packing::is_python_agent(options.agent)) session.ask = packing::start_python_agent(options.agent, agent_script());
   session.decision.seed = options.seed.value_or(loaded.scenario.seed);
   if (options.future == "own") session.future = own_future(loaded, sequence);
   session.decision.time = options.decision_time;

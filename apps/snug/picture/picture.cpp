@@ -21,10 +21,10 @@
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "apps/snug/common/recorded_instant.hpp"
 #include "apps/snug/common/robot_files.hpp"
-#include "apps/snug/picture/browser.hpp"
 #include "snug/core/descriptor.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/replay/browser.hpp"
 #include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
 
@@ -79,7 +79,7 @@ class TemporaryFolder {
 class Studio {
  public:
   Studio(const PictureOptions& options, record::RecordingReader& reader)
-      : browser_(find_browser(), folder_.path() / "profile", options.width, options.height) {
+      : browser_(replay::find_browser(), folder_.path() / "profile", options.width, options.height) {
     const std::string name = fs::path(options.recording).filename().string();
     const replay::RobotDescription robot = find_robot(reader, options.recording, options.urdf);
     const replay::PageRecording recording{name, replay::encode_recording(reader, name, {}, robot)};
@@ -102,15 +102,16 @@ class Studio {
   void wait_until_drawn() {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (browser_.evaluate("window.snugReady === true") != "true") {
-      if (std::chrono::steady_clock::now() > deadline) throw BrowserError("the page did not draw within a minute");
+      if (std::chrono::steady_clock::now() > deadline)
+        throw replay::BrowserError("the page did not draw within a minute");
       ::usleep(20'000);
     }
     const std::string trouble = browser_.evaluate("window.snug.error");
-    if (trouble != "\"\"") throw BrowserError("in the page: " + trouble);
+    if (trouble != "\"\"") throw replay::BrowserError("in the page: " + trouble);
   }
 
   TemporaryFolder folder_;
-  Browser browser_;
+  replay::Browser browser_;
 };
 
 /// Instants of the frames of a video.
@@ -167,7 +168,7 @@ void draw_video(const PictureOptions& options, record::RecordingReader& reader) 
   Studio studio(options, reader);
   const bool is_watched = ::isatty(STDERR_FILENO) == 1;
   for (std::size_t i = 0; i < instants.size(); ++i) {
-    if (g_is_interrupted != 0) throw BrowserError(fmt::format("interrupted after {} pictures", i));
+    if (g_is_interrupted != 0) throw replay::BrowserError(fmt::format("interrupted after {} pictures", i));
     studio.show(instants[i]);
     write_file(fs::path(options.video) / fmt::format("frame-{:06}.png", i), studio.take_picture());
     if (is_watched) std::fprintf(stderr, "\r%zu of %zu pictures", i + 1, instants.size());
@@ -198,7 +199,7 @@ int run_picture(const PictureOptions& options) {
       std::fprintf(stderr, "%s: %dx%d at %.3f s, camera %s\n", options.output.c_str(), options.width, options.height,
                    options.time.value_or(reader.times().back()), options.camera.c_str());
     }
-  } catch (const BrowserError& error) {
+  } catch (const replay::BrowserError& error) {
     std::fprintf(stderr, "snug: failed: %s\n", error.what());
     return kRunFailed;
   }

@@ -15,11 +15,11 @@
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
-#include "apps/snug/common/run_report.hpp"
 #include "apps/snug/view/view.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/record/writer.hpp"
 #include "snug/runs/result_json.hpp"
+#include "snug/runs/run_table.hpp"
 #include "snug/simulated_plant/simulated_plant.hpp"
 
 namespace snug::app {

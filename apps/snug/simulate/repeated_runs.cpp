@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "apps/snug/common/row_values.hpp"
 #include "apps/snug/study/study.hpp"
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/study/row_values.hpp"
 #include "snug/study/run.hpp"
 
 namespace snug::app {
@@ -55,7 +55,7 @@ study::Study make_study(const SimulateOptions& options, std::uint64_t seed, int 
 }
 
 RepeatedRun read_run(const study::RowResult& result) {
-  const RowValues values(result);
+  const study::RowValues values(result);
   RepeatedRun run;
   for (const auto& box : values.list("boxes")) {
     ++run.boxes;

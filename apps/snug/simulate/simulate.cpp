@@ -6,9 +6,7 @@
 #include <filesystem>
 
 #include "apps/snug/command_line/version.hpp"
-#include "apps/snug/common/program_fit.hpp"
 #include "apps/snug/common/robot_warnings.hpp"
-#include "apps/snug/common/run_report.hpp"
 #include "apps/snug/simulate/repeated_runs.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
@@ -17,8 +15,10 @@
 #include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
+#include "snug/runs/program_fit.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run.hpp"
+#include "snug/runs/run_table.hpp"
 
 namespace snug::app {
 namespace {
@@ -66,7 +66,7 @@ runs::RunOptions make_run_options(const SimulateOptions& options, const model::S
     run.program_text = read_file(*options.program, "a program file (CSV)");
     run.program = motion::parse_program(run.program_text, *options.program);
     if (!options.sequence) throw InputError("command line", "--sequence", "nothing", list_sequences(scenario));
-    warn_misfit(scenario, *options.sequence, *run.program);
+    print_warnings(runs::find_misfits(scenario, *options.sequence, *run.program));
   } else if (options.robot) {
     throw InputError("command line", "--robot", "'" + *options.robot + "' without --program", "both or none");
   } else if (options.sequence) {

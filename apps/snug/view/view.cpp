@@ -14,9 +14,9 @@
 #include "apps/snug/command_line/stop_signal.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "apps/snug/common/robot_files.hpp"
-#include "apps/snug/common/run_report.hpp"
 #include "apps/snug/view/view_served.hpp"
 #include "snug/runs/result_json.hpp"
+#include "snug/runs/run_table.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 

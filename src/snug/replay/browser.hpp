@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace snug::app {
+namespace snug::replay {
 
 /// Chromium as the environment variable SNUG_CHROMIUM or Debian's package chromium has it. Throws InputError naming
 /// both when there is none.
@@ -52,4 +52,4 @@ class Browser {
   std::string buffer_;  ///< received, not read yet
 };
 
-}  // namespace snug::app
+}  // namespace snug::replay

@@ -6,12 +6,12 @@
 
 #include "snug/study/table.hpp"
 
-namespace snug::app {
+namespace snug::study {
 
 class RowValues {
  public:
   /// `result` must outlive this.
-  explicit RowValues(const study::RowResult& result) : result_(result) {}
+  explicit RowValues(const RowResult& result) : result_(result) {}
 
   [[nodiscard]] double number(const std::string& name, double otherwise = 0.0) const {
     const auto* value = std::get_if<double>(find(name));
@@ -29,13 +29,13 @@ class RowValues {
   }
 
  private:
-  [[nodiscard]] const study::Cell* find(const std::string& name) const {
+  [[nodiscard]] const Cell* find(const std::string& name) const {
     for (const auto& [key, value] : result_.values) {
       if (key == name) return &value;
     }
     return nullptr;
   }
-  const study::RowResult& result_;
+  const RowResult& result_;
 };
 
-}  // namespace snug::app
+}  // namespace snug::study

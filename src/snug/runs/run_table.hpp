@@ -5,9 +5,9 @@
 
 #include "snug/runs/run.hpp"
 
-namespace snug::app {
+namespace snug::runs {
 
 /// Boxes (or bodies), how each got there, and the figures of the run. Lengths in mm.
-[[nodiscard]] std::string format_table(const runs::RunResult& result);
+[[nodiscard]] std::string format_table(const RunResult& result);
 
-}  // namespace snug::app
+}  // namespace snug::runs

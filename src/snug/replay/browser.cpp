@@ -1,5 +1,5 @@
 // Browser: the DevTools protocol over --remote-debugging-pipe: JSON texts that end with a zero byte. No port is opened.
-#include "apps/snug/picture/browser.hpp"
+#include "snug/replay/browser.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -21,7 +21,7 @@
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
-namespace snug::app {
+namespace snug::replay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -236,4 +236,4 @@ std::string Browser::take_picture() {
   return png;
 }
 
-}  // namespace snug::app
+}  // namespace snug::replay

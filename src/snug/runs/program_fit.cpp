@@ -1,16 +1,15 @@
 // program_fit: the picks that a program's waypoints tell of, beside the items of a sequence.
-#include "apps/snug/common/program_fit.hpp"
+#include "snug/runs/program_fit.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
 #include "snug/core/input_error.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
-namespace snug::app {
+namespace snug::runs {
 namespace {
 
 /// The parcel of the scenario that a waypoint of this class is for, or nothing.
@@ -93,19 +92,23 @@ std::string describe_fitting(const model::Scenario& scenario, const std::vector<
 
 }  // namespace
 
-void warn_misfit(const model::Scenario& scenario, const std::string& sequence_name, const motion::Program& program) {
+std::vector<std::string> find_misfits(const model::Scenario& scenario, const std::string& sequence_name,
+                                      const motion::Program& program) {
+  std::vector<std::string> found;
   const model::Sequence* sequence = model::find_sequence(scenario, sequence_name);
-  if (sequence == nullptr) return;  // refused elsewhere
+  if (sequence == nullptr) return found;  // refused elsewhere
   const std::vector<std::string> missing = never_come(scenario, program);
   if (!missing.empty()) {
-    std::fprintf(stderr, "snug: warning: %s picks %zu %s before a row PrePick lets %s come: %s\n", program.name.c_str(),
-                 missing.size(), missing.size() == 1 ? "box" : "boxes", missing.size() == 1 ? "it" : "them",
-                 missing.front().c_str());
+    found.push_back(fmt::format("{} picks {} {} before a row PrePick lets {} come: {}", program.name, missing.size(),
+                                missing.size() == 1 ? "box" : "boxes", missing.size() == 1 ? "it" : "them",
+                                missing.front()));
   }
   const std::string misfit = find_misfit(*sequence, picks_of(scenario, program));
-  if (misfit.empty()) return;
-  std::fprintf(stderr, "snug: warning: %s does not fit sequence %s: %s: another sequence?\n", program.name.c_str(),
-               sequence_name.c_str(), misfit.c_str());
+  if (!misfit.empty()) {
+    found.push_back(
+        fmt::format("{} does not fit sequence {}: {}: another sequence?", program.name, sequence_name, misfit));
+  }
+  return found;
 }
 
 void require_fit(const model::Scenario& scenario, const std::string& sequence_name, const motion::Program& program) {
@@ -118,4 +121,4 @@ void require_fit(const model::Scenario& scenario, const std::string& sequence_na
                    describe_fitting(scenario, picks));
 }
 
-}  // namespace snug::app
+}  // namespace snug::runs

@@ -1,5 +1,5 @@
 // Python agents: a process with two pipes.
-#include "apps/snug/pack/python_agent.hpp"
+#include "snug/packing/python_agent.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -15,13 +15,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "apps/snug/command_line/shipped.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/packing/remote_agent.hpp"
 
 extern char** environ;
 
-namespace snug::app {
+namespace snug::packing {
 namespace {
 
 constexpr std::size_t kLongestAnswer = std::size_t{16} << 20U;
@@ -33,12 +32,11 @@ std::string interpreter() {
 
 class Interpreter {
  public:
-  explicit Interpreter(std::string words) : words_(std::move(words)) {
+  Interpreter(std::string words, const std::string& script) : words_(std::move(words)) {
     const std::string program = interpreter();
-    const std::string script = (shipped_folder() / "python" / "snug" / "agent.py").string();
     std::array<int, 2> in{}, out{};
     if (::pipe2(in.data(), O_CLOEXEC) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0)
-      throw packing::AgentError(words_ + ": no pipe: " + std::strerror(errno));
+      throw AgentError(words_ + ": no pipe: " + std::strerror(errno));
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_adddup2(&actions, in[0], 0);
@@ -70,7 +68,7 @@ class Interpreter {
     for (std::size_t at = 0; at < line.size();) {
       const ssize_t count = ::write(to_, line.data() + at, line.size() - at);
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) throw packing::AgentError(words_ + ": its interpreter has ended (see its messages)");
+      if (count <= 0) throw AgentError(words_ + ": its interpreter has ended (see its messages)");
       at += static_cast<std::size_t>(count);
     }
   }
@@ -85,9 +83,9 @@ class Interpreter {
       std::array<char, 65536> buffer{};
       const ssize_t count = ::read(from_, buffer.data(), buffer.size());
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) throw packing::AgentError(words_ + ": its interpreter has ended (see its messages)");
+      if (count <= 0) throw AgentError(words_ + ": its interpreter has ended (see its messages)");
       heard_.append(buffer.data(), static_cast<std::size_t>(count));
-      if (heard_.size() > kLongestAnswer) throw packing::AgentError(words_ + ": an answer of more than 16 MB");
+      if (heard_.size() > kLongestAnswer) throw AgentError(words_ + ": an answer of more than 16 MB");
     }
   }
 
@@ -102,10 +100,10 @@ class Interpreter {
 
 bool is_python_agent(const std::string& words) { return words.find(':') != std::string::npos; }
 
-packing::Ask start_python_agent(const std::string& words) {
+Ask start_python_agent(const std::string& words, const std::filesystem::path& script) {
   ::signal(SIGPIPE, SIG_IGN);  // an interpreter that has ended is said, not died of
   // Shared, because what is returned can be copied.
-  const auto process = std::make_shared<Interpreter>(words);
+  const auto process = std::make_shared<Interpreter>(words, script.string());
   const nlohmann::json first = nlohmann::json::parse(process->hear(), nullptr, false);
   if (!first.is_object() || !first.contains("ready")) {
     const bool has_reason = first.is_object() && first.contains("error") && first["error"].is_string();
@@ -119,4 +117,4 @@ packing::Ask start_python_agent(const std::string& words) {
   };
 }
 
-}  // namespace snug::app
+}  // namespace snug::packing

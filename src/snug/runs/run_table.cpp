@@ -1,11 +1,11 @@
 // The result of a run as a table for people.
-#include "apps/snug/common/run_report.hpp"
+#include "snug/runs/run_table.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace snug::app {
+namespace snug::runs {
 namespace {
 
 constexpr double kMm = 1.0e3;  // per metre
@@ -26,7 +26,7 @@ std::string events_of(const cell::BoxResult& box) {
   return text;
 }
 
-std::string boxes_table(const runs::RunResult& result) {
+std::string boxes_table(const RunResult& result) {
   std::string text = fmt::format("{:<8} {:<8} {:>7} {:>7} {:>7}  {:<2} {:>8} {:>8}  {}\n", "box", "state", "x_T mm",
                                  "y_T mm", "z_T mm", "up", "out mm", "rim mm", "how it got there");
   for (const cell::BoxResult& box : result.boxes) {
@@ -40,7 +40,7 @@ std::string boxes_table(const runs::RunResult& result) {
   text += fmt::format("\npacked             {} of {} boxes\n", packed, result.boxes.size());
   text += fmt::format("filling degree     {:.2f} %\n", result.filling_degree_percent);
   if (!result.repicks.empty()) {
-    const runs::RepickOffsets offsets = runs::summarize(result.repicks);
+    const RepickOffsets offsets = summarize(result.repicks);
     text += fmt::format("re-picks           {}, offset mean {:.1f} mm, worst {:.1f} mm\n", result.repicks.size(),
                         offsets.mean * kMm, offsets.worst * kMm);
   }
@@ -61,10 +61,10 @@ std::string arm_contacts(const std::vector<record::Event>& events) {
   return fmt::format("arm contacts       {}; {}: {}, at {:.1f} s\n", count, worst->body, worst->text, worst->time);
 }
 
-std::string bodies_table(const runs::RunResult& result) {
+std::string bodies_table(const RunResult& result) {
   std::string text =
       fmt::format("{:<16} {:>9} {:>9} {:>9} {:>10}\n", "body", "x_W mm", "y_W mm", "z_W mm", "speed m/s");
-  for (const runs::BodyResult& body : result.bodies) {
+  for (const BodyResult& body : result.bodies) {
     const Vector3 p = body.X_WB.p * kMm;
     text += fmt::format("{:<16} {:>9.2f} {:>9.2f} {:>9.2f} {:>10.2e}\n", body.name, p.x(), p.y(), p.z(), body.speed);
   }
@@ -73,7 +73,7 @@ std::string bodies_table(const runs::RunResult& result) {
 
 }  // namespace
 
-std::string format_table(const runs::RunResult& result) {
+std::string format_table(const RunResult& result) {
   std::string text = result.boxes.empty() ? bodies_table(result) : boxes_table(result);
   text += fmt::format("simulated          {:.2f} s in {:.2f} s, real-time factor {:.0f}{}\n", result.duration,
                       result.wall, result.real_time_factor, result.is_interrupted ? ", ended early" : "");
@@ -94,4 +94,4 @@ std::string format_table(const runs::RunResult& result) {
   return text + fmt::format("state hash         {:016x}\n", result.state_hash);
 }
 
-}  // namespace snug::app
+}  // namespace snug::runs

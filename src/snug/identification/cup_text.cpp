@@ -1,0 +1,145 @@
+// What was identified of a cup as text.
+#include "snug/identification/cup_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/printf.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace snug::identification {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+ordered_json as_json(const std::vector<Parameter>& parameters) {
+  ordered_json list = ordered_json::array();
+  for (const Parameter& parameter : parameters) {
+    list.push_back({{"name", parameter.name},
+                    {"value", parameter.value},
+                    {"standard_error", parameter.standard_error},
+                    {"unit", parameter.unit},
+                    {"verdict", name_of(parameter.verdict)}});
+    if (!parameter.advice.empty()) list.back()["record_instead"] = parameter.advice;
+  }
+  return list;
+}
+
+void add_errors(ordered_json& json, double chi2_per_dof, int degrees_of_freedom, const HeldBackError& held_back) {
+  json["chi2_per_dof"] = chi2_per_dof;
+  json["degrees_of_freedom"] = degrees_of_freedom;
+  json["held_back_error"] = held_back.relative;
+  json["held_back_position_mm"] = 1e3 * held_back.position;
+  json["held_back_rotation_deg"] = kDegrees * held_back.rotation;
+}
+
+std::string as_text(const std::vector<Parameter>& parameters) {
+  std::string text;
+  for (const Parameter& parameter : parameters) {
+    text += fmt::sprintf("  %-9s %12.6g +- %-9.2g %-8s %s\n", parameter.name.c_str(), parameter.value,
+                         parameter.standard_error, parameter.unit.c_str(), name_of(parameter.verdict));
+    if (!parameter.advice.empty()) text += fmt::sprintf("            record instead: %s\n", parameter.advice.c_str());
+  }
+  return text;
+}
+
+std::string errors_as_text(double chi2_per_dof, const HeldBackError& held_back, bool noise_is_given) {
+  std::string text;
+  text += fmt::sprintf("misfit: chi2 per degree of freedom %.3f with the noise %s%s\n", chi2_per_dof,
+                       noise_is_given ? "given" : "assumed (the demonstrator's sensors)",
+                       chi2_per_dof > 2.0   ? ": more than noise; standard errors are enlarged"
+                       : chi2_per_dof < 0.5 ? ": less than noise; it is smaller than said"
+                                            : "");
+  text += fmt::sprintf("held back: %.3f mm, %.3f degrees rms, %.3f times the noise\n", 1e3 * held_back.position,
+                       kDegrees * held_back.rotation, held_back.relative);
+  return text;
+}
+
+std::string indices(const std::vector<int>& list) {
+  std::string text;
+  for (const int index : list) text += (text.empty() ? "" : ", ") + std::to_string(index);
+  return text;
+}
+
+}  // namespace
+
+std::string format_json(const StiffnessFit& fit, const HeldBackError& held_back, bool noise_is_given) {
+  ordered_json json;
+  json["parameters"] = as_json(fit.parameters);
+  add_errors(json, fit.chi2_per_dof, fit.degrees_of_freedom, held_back);
+  json["method"] = name_of(fit.method);
+  json["wrench"] = name_of(fit.wrench);
+  json["noise_is_given"] = noise_is_given;
+  json["poses"] = fit.poses;
+  json["outliers"] = fit.outliers;
+  json["residual_position_mm"] = 1e3 * fit.position;
+  json["residual_rotation_deg"] = kDegrees * fit.rotation;
+  if (fit.symmetry)
+    json["symmetry"] = {{"supported", fit.symmetry->is_supported},
+                        {"p_value", fit.symmetry->p_value},
+                        {"chi2", fit.symmetry->statistic},
+                        {"degrees_of_freedom", 16},
+                        {"worst", fit.symmetry->worst}};
+  for (int i = 0; i < 6; ++i) {
+    ordered_json row = ordered_json::array();
+    for (int j = 0; j < 6; ++j) row.push_back(fit.K(i, j));
+    json["K"].push_back(row);
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string format_table(const StiffnessFit& fit, const HeldBackError& held_back, bool noise_is_given) {
+  std::string text;
+  text += fmt::sprintf("stiffness from %d poses, method %s, wrench of the %s\n", fit.poses, name_of(fit.method),
+                       fit.wrench == WrenchSource::Sensor ? "sensor" : "payload's gravity");
+  text += as_text(fit.parameters);
+  text += errors_as_text(fit.chi2_per_dof, held_back, noise_is_given);
+  text += fmt::sprintf("residuals: %.3f mm, %.3f degrees rms, measured less predicted pose\n", 1e3 * fit.position,
+                       kDegrees * fit.rotation);
+  if (fit.symmetry)
+    text += fmt::sprintf("symmetry: the same from all sides is %s (p = %.3g; worst: %s)\n",
+                         fit.symmetry->is_supported ? "supported" : "NOT supported", fit.symmetry->p_value,
+                         fit.symmetry->worst.c_str());
+  if (!fit.outliers.empty())
+    text +=
+        fmt::sprintf("left out, beyond 6 standard deviations of the rest: poses %s\n", indices(fit.outliers).c_str());
+  return text;
+}
+
+std::string format_json(const DampingFit& fit, const HeldBackError& held_back, bool noise_is_given) {
+  ordered_json json;
+  json["parameters"] = as_json(fit.parameters);
+  add_errors(json, fit.chi2_per_dof, fit.degrees_of_freedom, held_back);
+  json["noise_is_given"] = noise_is_given;
+  json["start"] = fit.start == ReleaseStart::Moving ? "moving" : "rest";
+  json["releases_agree"] = fit.releases_agree;
+  for (const ReleaseFit& release : fit.releases)
+    json["releases"].push_back({{"name", release.name},
+                                {"parameters", as_json(release.parameters)},
+                                {"chi2_per_dof", release.chi2_per_dof},
+                                {"residual_position_mm", 1e3 * release.position},
+                                {"residual_rotation_deg", kDegrees * release.rotation},
+                                {"outliers", release.outliers}});
+  return json.dump(2) + "\n";
+}
+
+std::string format_table(const DampingFit& fit, const HeldBackError& held_back, bool noise_is_given) {
+  std::string text;
+  text += fmt::sprintf("damping from %zu release%s, %s when the records begin\n", fit.releases.size(),
+                       fit.releases.size() == 1 ? "" : "s", fit.start == ReleaseStart::Moving ? "moving" : "at rest");
+  text += as_text(fit.parameters);
+  text += errors_as_text(fit.chi2_per_dof, held_back, noise_is_given);
+  for (const ReleaseFit& release : fit.releases) {
+    text += fmt::sprintf("%s: chi2 per degree of freedom %.3f, residuals %.3f mm, %.3f degrees", release.name.c_str(),
+                         release.chi2_per_dof, 1e3 * release.position, kDegrees * release.rotation);
+    text +=
+        fmt::sprintf(release.outliers.empty() ? "\n" : ", samples left out: %s\n", indices(release.outliers).c_str());
+    if (!fit.releases_agree) text += as_text(release.parameters);
+  }
+  if (!fit.releases_agree) text += fmt::sprintf("the releases contradict each other: no one damping fits them all\n");
+  return text;
+}
+
+}  // namespace snug::identification

@@ -1,0 +1,129 @@
+// What was identified of a scene as text.
+#include "snug/identification/scene_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace snug::identification {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// JSON has no infinity.
+ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
+
+ordered_json as_json(const SceneError& error) {
+  return {{"position_mm", error.position_mm},
+          {"rotation_deg", error.rotation_deg},
+          {"right_orientation_percent", error.right_orientation_percent},
+          {"cost", error.cost},
+          {"end_position_mm", error.end_position_mm},
+          {"end_rotation_deg", error.end_rotation_deg},
+          {"recordings", error.recordings},
+          {"failed", error.failed}};
+}
+
+std::string as_text(const SceneError& error) {
+  std::string text =
+      fmt::format("{:.3f} mm, {:.3f} degrees, right orientation {:.1f} %, cost {:.4f} mm, {} recording{}",
+                  error.position_mm, error.rotation_deg, error.right_orientation_percent, error.cost, error.recordings,
+                  error.recordings == 1 ? "" : "s");
+  if (error.failed > 0) text += fmt::format(", {} of them could not be simulated", error.failed);
+  return text;
+}
+
+ordered_json as_json(const SceneFit& fit) {
+  ordered_json json;
+  json["parameters"] = ordered_json::array();
+  for (const Parameter& parameter : fit.parameters) {
+    json["parameters"].push_back({{"name", parameter.name},
+                                  {"value", parameter.value},
+                                  {"standard_error", number(parameter.standard_error)},
+                                  {"verdict", name_of(parameter.verdict)}});
+    if (!parameter.advice.empty()) json["parameters"].back()["record_instead"] = parameter.advice;
+  }
+  json["chi2_per_dof"] = number(fit.chi2_per_dof);
+  json["held_back_error"] = number(fit.held_back_error);
+  json["cost"] = fit.fitted.cost;
+  json["is_trusted"] = fit.is_trusted;
+  json["before"] = as_json(fit.before);
+  json["fitted"] = as_json(fit.fitted);
+  if (fit.held_back.recordings > 0) json["held_back"] = as_json(fit.held_back);
+  json["sensitivity"] = ordered_json::array();
+  for (const Sensitivity& row : fit.sensitivity)
+    json["sensitivity"].push_back({{"name", row.name},
+                                   {"step", row.step},
+                                   {"position_mm", row.position_mm},
+                                   {"rotation_deg", row.rotation_deg},
+                                   {"error_alone", number(row.error_alone)},
+                                   {"error_together", number(row.error_together)}});
+  json["refused"] = ordered_json::array();
+  for (const UnknownDirection& direction : fit.unknown) {
+    ordered_json shares = ordered_json::object();
+    for (const auto& [name, share] : direction.shares) shares[name] = share;
+    json["refused"].push_back({{"shares_of_bounds", shares}, {"error_in_bounds", number(direction.error)}});
+  }
+  json["unpredictable"] = ordered_json::array();
+  for (const Unpredictable& one : fit.unpredictable)
+    json["unpredictable"].push_back({{"recording", one.recording}, {"body", one.body}, {"from_s", one.from}});
+  json["covariance"] = ordered_json::array();
+  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
+    ordered_json row = ordered_json::array();
+    for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j) row.push_back(fit.covariance(i, j));
+    json["covariance"].push_back(row);
+  }
+  json["evaluations"] = fit.evaluations;
+  json["message"] = fit.message;
+  return json;
+}
+
+std::string as_text(const SceneFit& fit) {
+  std::string text =
+      "what one step of each parameter changes at the start (rms), and its standard error alone / with all others\n";
+  for (const Sensitivity& row : fit.sensitivity)
+    text += fmt::format("  {:<20} step {:<9.4g} {:>9.3f} mm {:>9.3f} deg   {:>9.3g} / {:.3g}\n", row.name, row.step,
+                        row.position_mm, row.rotation_deg, row.error_alone, row.error_together);
+  for (const UnknownDirection& direction : fit.unknown) {
+    text += "refused, the recordings do not tell:";
+    for (const auto& [name, share] : direction.shares) text += fmt::format(" {:+.2f} {}", share, name);
+    text += fmt::format(" (of what their bounds span; error {:.2g} of it)\n", direction.error);
+  }
+  text += fmt::format("before: {}\nfitted: {}\n", as_text(fit.before), as_text(fit.fitted));
+  if (fit.held_back.recordings > 0) text += fmt::format("held back: {}\n", as_text(fit.held_back));
+  if (std::isfinite(fit.held_back_error)) text += fmt::format("held-back error: {:.4f} mm\n", fit.held_back_error);
+  text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task\n", fit.chi2_per_dof);
+  struct LeftOut {
+    double from = 0.0;  // s, the earliest
+    int recordings = 0;
+  };
+  std::map<std::string, LeftOut> left_out;  // by body
+  for (const Unpredictable& one : fit.unpredictable) {
+    LeftOut& of_body = left_out[one.body];
+    of_body.from = of_body.recordings == 0 ? one.from : std::min(of_body.from, one.from);
+    ++of_body.recordings;
+  }
+  for (const auto& [body, one] : left_out)
+    text += fmt::format("left out: {} from {:.2f} s on, in {} recordings: its motion cannot be predicted from there\n",
+                        body, one.from, one.recordings);
+  if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
+  for (const Parameter& parameter : fit.parameters) {
+    text += fmt::format("  {:<20} {:>12.6g} +- {:<9.2g} {}\n", parameter.name, parameter.value,
+                        parameter.standard_error, name_of(parameter.verdict));
+    if (!parameter.advice.empty()) text += fmt::format("  {:<20} {}\n", "", parameter.advice);
+  }
+  text += fmt::format("{} evaluations; {}\n", fit.evaluations, fit.message);
+  return text;
+}
+
+}  // namespace
+
+std::string format_json(const SceneError& error) { return as_json(error).dump(2) + "\n"; }
+std::string format_table(const SceneError& error) { return as_text(error) + "\n"; }
+std::string format_json(const SceneFit& fit) { return as_json(fit).dump(2) + "\n"; }
+std::string format_table(const SceneFit& fit) { return as_text(fit); }
+
+}  // namespace snug::identification
