@@ -20,7 +20,7 @@ class PlanGrasp : public testing::TestWithParam<motion::Tracking> {};
 TEST_P(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
   const model::Scenario scenario = demonstrator();
   skills::CellLayout layout = skills::make_layout(scenario, cell::find_pan_axis(scenario));
-  layout.is_fast = GetParam() == motion::FastTracking{};
+  layout.is_fast = motion::is_fast(GetParam());
   const cell::SimulationOptions options{GetParam(), cup::CupMode::Phases, {}};
   std::vector<std::unique_ptr<Rollout>> rollouts;
   std::vector<cell::CellState> states;

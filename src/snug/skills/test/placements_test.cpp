@@ -235,14 +235,14 @@ TEST(Placements, GiveAProgramThatReadsBackAndRuns) {
   for (const motion::Tracking& tracking :
        {motion::Tracking(motion::LaggedTracking{}), motion::Tracking(motion::ExactTracking{})}) {
     motion::ControllerSettings settings = motion::demonstrator_settings(1);
-    settings.kind = kind;
+    settings.tracking = tracking;
     const double duration = motion::compute_duration(motion::prepare(again, settings), program.waypoints.back().X_WE);
     EXPECT_GT(duration, 10.0);
     EXPECT_LT(duration, 60.0);
   }
 }
 
-TEST(Placements, AreEnteredByTheFaithfulToolFarWithinTheGapsBetweenBoxes) {
+TEST(Placements, AreEnteredByTheLaggedToolFarWithinTheGapsBetweenBoxes) {
   // What the stop PrePlace(...)_2 is for: boxes are packed with 1 mm between them.
   const Job job = two_boxes();
   const motion::Program program = program_of(job);
