@@ -20,7 +20,7 @@
 namespace snug::click {
 namespace {
 
-namespace wire = ::click::protobuf;
+namespace proto = ::click::protobuf;
 using Reason = Unexpected<std::string>;
 
 /// Where a message of usual size lives without the heap: reading and writing them is a good part of a round trip.
@@ -43,7 +43,7 @@ class Room {
   google::protobuf::Arena arena_;
 };
 
-wire::ValueType_Kind as_wire(ValueType type) { return static_cast<wire::ValueType_Kind>(static_cast<int>(type)); }
+proto::ValueType_Kind as_wire(ValueType type) { return static_cast<proto::ValueType_Kind>(static_cast<int>(type)); }
 
 // ---- what is sent
 
@@ -59,7 +59,7 @@ ValueType common_type(const Handshake& handshake) {
   return common.value_or(ValueType::Multiple);
 }
 
-void put(const ObjectDescription& object, wire::HandshakeMessage_Object* out) {
+void put(const ObjectDescription& object, proto::HandshakeMessage_Object* out) {
   for (const std::string& name : object.controls) out->add_controlsinorder(name);
   for (const ValueType type : object.control_types) out->add_controltypesinorder(as_wire(type));
   for (const std::string& name : object.joints) out->add_jointsensorsinorder(name);
@@ -71,7 +71,7 @@ void put(const ObjectDescription& object, wire::HandshakeMessage_Object* out) {
   }
 }
 
-void put(const ObjectControl& object, wire::ControlMessage_Object* out) {
+void put(const ObjectControl& object, proto::ControlMessage_Object* out) {
   using List = google::protobuf::RepeatedField<double>;
   List* list = nullptr;
   if (object.list == CommandList::Values) list = out->mutable_values();
@@ -82,45 +82,45 @@ void put(const ObjectControl& object, wire::ControlMessage_Object* out) {
   for (const auto& [name, is_on] : object.events) (*out->mutable_controlevents())[name] = is_on;
 }
 
-void put(const HandshakeInit& message, wire::HandshakeInitMessage* out) {
-  out->set_messagetype(wire::MessageType::HandshakeInit);
-  out->set_version(static_cast<wire::Version_Kind>(message.version));
+void put(const HandshakeInit& message, proto::HandshakeInitMessage* out) {
+  out->set_messagetype(proto::MessageType::HandshakeInit);
+  out->set_version(static_cast<proto::Version_Kind>(message.version));
 }
-void put(const Handshake& message, wire::HandshakeMessage* out) {
-  out->set_messagetype(wire::MessageType::Handshake);
-  out->set_version(static_cast<wire::Version_Kind>(message.version));
+void put(const Handshake& message, proto::HandshakeMessage* out) {
+  out->set_messagetype(proto::MessageType::Handshake);
+  out->set_version(static_cast<proto::Version_Kind>(message.version));
   out->set_controltype(as_wire(common_type(message)));
   out->mutable_simsettings()->set_timestep(message.time_step);
   for (const auto& [name, object] : message.objects) put(object, &(*out->mutable_objects())[name]);
 }
-void put(const Control& message, wire::ControlMessage* out) {
-  out->set_messagetype(wire::MessageType::Control);
+void put(const Control& message, proto::ControlMessage* out) {
+  out->set_messagetype(proto::MessageType::Control);
   for (const auto& [name, object] : message.objects) put(object, &(*out->mutable_objects())[name]);
 }
-void put(const Reset&, wire::ResetMessage* out) { out->set_messagetype(wire::MessageType::Reset); }
-void put(const SensorRequest&, wire::SensorRequestMessage* out) {
-  out->set_messagetype(wire::MessageType::SensorRequest);
+void put(const Reset&, proto::ResetMessage* out) { out->set_messagetype(proto::MessageType::Reset); }
+void put(const SensorRequest&, proto::SensorRequestMessage* out) {
+  out->set_messagetype(proto::MessageType::SensorRequest);
 }
-void put(const Error& message, wire::ErrorMessage* out) {
-  out->set_messagetype(wire::MessageType::Error);
-  out->set_error(wire::ErrorMessage::VersionNotSupported);  // there is no other
+void put(const Error& message, proto::ErrorMessage* out) {
+  out->set_messagetype(proto::MessageType::Error);
+  out->set_error(proto::ErrorMessage::VersionNotSupported);  // there is no other
   out->set_errormessage(message.text);
 }
 
 template <class T>
 struct WireOf;
 template <>
-struct WireOf<HandshakeInit> : std::type_identity<wire::HandshakeInitMessage> {};
+struct WireOf<HandshakeInit> : std::type_identity<proto::HandshakeInitMessage> {};
 template <>
-struct WireOf<Handshake> : std::type_identity<wire::HandshakeMessage> {};
+struct WireOf<Handshake> : std::type_identity<proto::HandshakeMessage> {};
 template <>
-struct WireOf<Control> : std::type_identity<wire::ControlMessage> {};
+struct WireOf<Control> : std::type_identity<proto::ControlMessage> {};
 template <>
-struct WireOf<Reset> : std::type_identity<wire::ResetMessage> {};
+struct WireOf<Reset> : std::type_identity<proto::ResetMessage> {};
 template <>
-struct WireOf<SensorRequest> : std::type_identity<wire::SensorRequestMessage> {};
+struct WireOf<SensorRequest> : std::type_identity<proto::SensorRequestMessage> {};
 template <>
-struct WireOf<Error> : std::type_identity<wire::ErrorMessage> {};
+struct WireOf<Error> : std::type_identity<proto::ErrorMessage> {};
 
 template <class T>
 std::string encode_one(const T& message) {
@@ -153,7 +153,7 @@ std::vector<ValueType> types_of(const List& list) {
   return types;
 }
 
-Expected<ObjectControl, std::string> take(const std::string& name, const wire::ControlMessage_Object& in) {
+Expected<ObjectControl, std::string> take(const std::string& name, const proto::ControlMessage_Object& in) {
   ObjectControl object;
   const auto use = [&](const google::protobuf::RepeatedField<double>& list, CommandList kind) {
     if (list.empty()) return true;
@@ -170,19 +170,19 @@ Expected<ObjectControl, std::string> take(const std::string& name, const wire::C
   return object;
 }
 
-Expected<Vector3, std::string> take(const wire::Vec3& in) {
+Expected<Vector3, std::string> take(const proto::Vec3& in) {
   if (in.arr_size() != 3) return Reason(fmt::format("a vector of {} numbers, expected 3", in.arr_size()));
   return Vector3(in.arr(0), in.arr(1), in.arr(2));
 }
 
-Expected<SensorValue, std::string> take(const wire::Sensor& in) {
+Expected<SensorValue, std::string> take(const proto::Sensor& in) {
   SensorValue value;
   const auto scalar = [&](ValueType type, double x) -> Expected<SensorValue, std::string> {
     value.type = type;
     value.scalar = x;
     return value;
   };
-  const auto vector = [&](ValueType type, const wire::Vec3& x) -> Expected<SensorValue, std::string> {
+  const auto vector = [&](ValueType type, const proto::Vec3& x) -> Expected<SensorValue, std::string> {
     const auto three = take(x);
     if (!three) return Reason(three.error());
     value.type = type;
@@ -190,35 +190,35 @@ Expected<SensorValue, std::string> take(const wire::Sensor& in) {
     return value;
   };
   switch (in.sensor_case()) {
-    case wire::Sensor::kAngle:
+    case proto::Sensor::kAngle:
       return scalar(ValueType::Angle, in.angle());
-    case wire::Sensor::kAngularVelocity1D:
+    case proto::Sensor::kAngularVelocity1D:
       return scalar(ValueType::AngularVelocity1D, in.angularvelocity1d());
-    case wire::Sensor::kTorque1D:
+    case proto::Sensor::kTorque1D:
       return scalar(ValueType::Torque1D, in.torque1d());
-    case wire::Sensor::kForce1D:
+    case proto::Sensor::kForce1D:
       return scalar(ValueType::Force1D, in.force1d());
-    case wire::Sensor::kPosition:
+    case proto::Sensor::kPosition:
       return vector(ValueType::Position, in.position());
-    case wire::Sensor::kRpy:
+    case proto::Sensor::kRpy:
       return vector(ValueType::Rpy, in.rpy());
-    case wire::Sensor::kAcceleration3D:
+    case proto::Sensor::kAcceleration3D:
       return vector(ValueType::Acceleration3D, in.acceleration3d());
-    case wire::Sensor::kForce3D:
+    case proto::Sensor::kForce3D:
       return vector(ValueType::Force3D, in.force3d());
-    case wire::Sensor::kTorque3D:
+    case proto::Sensor::kTorque3D:
       return vector(ValueType::Torque3D, in.torque3d());
-    case wire::Sensor::kAngularAcceleration3D:
+    case proto::Sensor::kAngularAcceleration3D:
       return vector(ValueType::AngularAcceleration3D, in.angularacceleration3d());
-    case wire::Sensor::kVelocity3D:
+    case proto::Sensor::kVelocity3D:
       return vector(ValueType::Velocity3D, in.velocity3d());
-    case wire::Sensor::kAngularVelocity3D:
+    case proto::Sensor::kAngularVelocity3D:
       return vector(ValueType::AngularVelocity3D, in.angularvelocity3d());
-    case wire::Sensor::kActivated:
+    case proto::Sensor::kActivated:
       value.type = ValueType::Activated;
       value.is_active = in.activated();
       return value;
-    case wire::Sensor::SENSOR_NOT_SET:
+    case proto::Sensor::SENSOR_NOT_SET:
       break;
   }
   return Reason("a sensor without a value");
@@ -227,7 +227,7 @@ Expected<SensorValue, std::string> take(const wire::Sensor& in) {
 /// Appends the values of a list; the reason when one has none.
 template <class List>
 std::string take_all(const List& list, std::vector<SensorValue>& values) {
-  for (const wire::Sensor& in : list) {
+  for (const proto::Sensor& in : list) {
     const auto value = take(in);
     if (!value) return value.error();
     values.push_back(*value);
@@ -235,12 +235,12 @@ std::string take_all(const List& list, std::vector<SensorValue>& values) {
   return {};
 }
 
-Expected<ObjectSensors, std::string> take(const wire::SensorMessage_Object& in) {
+Expected<ObjectSensors, std::string> take(const proto::SensorMessage_Object& in) {
   ObjectSensors object;
   object.angles.assign(in.anglesensors().begin(), in.anglesensors().end());
   object.velocities.assign(in.angularvelocitysensors().begin(), in.angularvelocitysensors().end());
   object.torques.assign(in.torquesensors().begin(), in.torquesensors().end());
-  for (const wire::Vec3& force : in.forcesensors()) {
+  for (const proto::Vec3& force : in.forcesensors()) {
     const auto three = take(force);
     if (!three) return Reason(three.error());
     object.forces.push_back(*three);
@@ -253,7 +253,7 @@ Expected<ObjectSensors, std::string> take(const wire::SensorMessage_Object& in) 
   return object;
 }
 
-ObjectDescription take(const wire::HandshakeMessage_Object& in) {
+ObjectDescription take(const proto::HandshakeMessage_Object& in) {
   ObjectDescription object;
   object.controls.assign(in.controlsinorder().begin(), in.controlsinorder().end());
   object.control_types = types_of(in.controltypesinorder());
@@ -270,7 +270,7 @@ const char* const kGarbled = "the frame cannot be read";
 
 Decoded decode_control(std::string_view frame) {
   Room room;
-  auto& in = *room.make<wire::ControlMessage>();
+  auto& in = *room.make<proto::ControlMessage>();
   if (!parse(frame, in)) return Reason(kGarbled);
   Control control;
   for (const auto& [name, object] : in.objects()) {
@@ -283,7 +283,7 @@ Decoded decode_control(std::string_view frame) {
 
 Decoded decode_sensor(std::string_view frame) {
   Room room;
-  auto& in = *room.make<wire::SensorMessage>();
+  auto& in = *room.make<proto::SensorMessage>();
   if (!parse(frame, in)) return Reason(kGarbled);
   Sensor sensor;
   sensor.time = in.simvars().simulatedtime();
@@ -297,7 +297,7 @@ Decoded decode_sensor(std::string_view frame) {
 
 /// Where only the older, scene-wide type was sent, it is that of every joint.
 Decoded decode_handshake(std::string_view frame) {
-  wire::HandshakeMessage in;
+  proto::HandshakeMessage in;
   if (!parse(frame, in)) return Reason(kGarbled);
   Handshake handshake;
   handshake.version = in.version();
@@ -316,7 +316,7 @@ Decoded decode_handshake(std::string_view frame) {
 
 Expected<ObjectSensors, std::string> wire::decode_object(std::string_view bytes) {
   Room room;
-  auto& in = *room.make<wire::SensorMessage_Object>();
+  auto& in = *room.make<proto::SensorMessage_Object>();
   if (!parse(bytes, in)) return Reason(kGarbled);
   return take(in);
 }
@@ -367,26 +367,26 @@ std::string encode(const Message& message) {
 
 Decoded decode(std::string_view frame) {
   const google::protobuf::LogSilencer silencer;  // strangers' frames are told by the reason, not on stderr
-  wire::Message head;
+  proto::Message head;
   if (!parse(frame, head)) return Reason(kGarbled);
   switch (head.messagetype()) {
-    case wire::MessageType::HandshakeInit: {
-      wire::HandshakeInitMessage in;
+    case proto::MessageType::HandshakeInit: {
+      proto::HandshakeInitMessage in;
       if (!parse(frame, in)) return Reason(kGarbled);
       return Message(HandshakeInit{in.version()});
     }
-    case wire::MessageType::Handshake:
+    case proto::MessageType::Handshake:
       return decode_handshake(frame);
-    case wire::MessageType::Control:
+    case proto::MessageType::Control:
       return decode_control(frame);
-    case wire::MessageType::Sensor:
+    case proto::MessageType::Sensor:
       return decode_sensor(frame);
-    case wire::MessageType::Reset:
+    case proto::MessageType::Reset:
       return Message(Reset{});
-    case wire::MessageType::SensorRequest:
+    case proto::MessageType::SensorRequest:
       return Message(SensorRequest{});
-    case wire::MessageType::Error: {
-      wire::ErrorMessage in;
+    case proto::MessageType::Error: {
+      proto::ErrorMessage in;
       if (!parse(frame, in)) return Reason(kGarbled);
       return Message(Error{in.errormessage()});
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "snug/click/names.hpp"
 #include "snug/click/sensor_writer.hpp"
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "snug/click/names.hpp"
 #include "snug/served_cell/feeder.hpp"
 #include "snug/served_cell/served_cell.hpp"
 

@@ -12,6 +12,19 @@
 namespace snug::click::internal {
 namespace {
 
+using wire::decode_object;
+using wire::kBytes;
+using wire::kDouble;
+using wire::kEntryKey;
+using wire::kEntryValue;
+using wire::kObjects;
+using wire::kSensorType;
+using wire::kSimulatedTime;
+using wire::kSimVars;
+using wire::kType;
+using wire::kVarint;
+using wire::WireType;
+
 /// A field of protobuf's wire form.
 struct WireField {
   std::uint64_t tag = 0;    ///< its number and its kind

@@ -72,7 +72,7 @@ TEST(SensorReader, LearnsNothingOfAnObjectThatIsThereTwice) {
   Rng rng = Rng(3).split("sensor reader");
   Sensor sensor;
   move(rng, sensor);
-  const std::string twice = encode(sensor) + write_object("box1", sensor.objects["box2"]);
+  const std::string twice = encode(sensor) + wire::write_object("box1", sensor.objects["box2"]);
   SensorReader reader;
   EXPECT_EQ(reader.learn(twice, decoded(twice)).objects.at("box1"), sensor.objects["box2"]);  // the last counts
   EXPECT_EQ(reader.read(twice), nullptr);
