@@ -5,14 +5,13 @@
 #include <fmt/printf.h>
 
 #include <nlohmann/json.hpp>
-#include <numbers>
+
+#include "snug/core/units.hpp"
 
 namespace snug::identification {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 ordered_json as_json(const std::vector<Parameter>& parameters) {
   ordered_json list = ordered_json::array();

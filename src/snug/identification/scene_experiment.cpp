@@ -10,6 +10,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
+#include "snug/core/units.hpp"
 #include "snug/identification/free_flight.hpp"
 #include "snug/identification/internal/at_rest.hpp"
 #include "snug/identification/internal/motion_error.hpp"
@@ -20,7 +21,6 @@
 namespace snug::identification {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kKnownRuns = 64;  // that are kept, a few MB each
 constexpr double kOwnStep = 0.01;       // of what is expected of an own unknown, for differences
 

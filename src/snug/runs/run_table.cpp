@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "snug/core/units.hpp"
+
 namespace snug::runs {
 namespace {
-
-constexpr double kMm = 1.0e3;  // per metre
 
 /// "seal 4.2 s, release 9.8 s": the kinds of a box's events, in order; of many the beginning and the end.
 std::string events_of(const cell::BoxResult& box) {
