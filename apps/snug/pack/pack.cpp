@@ -122,7 +122,7 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
   session.samples = options.samples;
   session.skips = options.skips;
   session.simulation.robot = choose_robot(options, loaded.scenario);
-  refuse_tempo_without_fast(options.tempo, options.tracking);
+  refuse_tempo_without_fast(options.tempo, options.controller);
   session.simulation.tracking =
       motion::choose_tracking(options.controller, options.tempo, motion::FastTracking{}, "command line");
   session.is_interrupted = is_interrupted;
