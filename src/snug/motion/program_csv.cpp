@@ -114,6 +114,17 @@ Vector3 beyond_pi(const Vector3& r) {
   return angle > 0.0 ? Vector3((1.0 - 2.0 * std::numbers::pi / angle) * r) : r;
 }
 
+/// The vector on the grid that gives R exactly, where there is one. Rounded to the grid, one of length pi may be
+/// longer.
+std::optional<Vector3> find_on_grid(const Matrix3& R) {
+  const Vector3 r = log_rotation(R);
+  for (const Vector3& start : {r, beyond_pi(r)}) {
+    const Vector3 grid = on_grid(start);
+    if (gives(grid, R)) return grid;
+  }
+  return std::nullopt;
+}
+
 double step(double value, int ulps) {
   const double toward = ulps > 0 ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
   for (int i = 0; i < std::abs(ulps); ++i) value = std::nextafter(value, toward);
@@ -141,8 +152,8 @@ std::optional<Vector3> find_exact(const Vector3& r, const Matrix3& R) {
 /// A vector whose exponential is R to the last bit, where there is one. Logarithm and exponential together do not give
 /// a matrix back: it is looked for on the grid of rounded(), among short decimals as people write them, then around.
 Vector3 rotation_vector_of(const Matrix3& R) {
-  const Vector3 r = log_rotation(R), grid = on_grid(r);
-  if (gives(grid, R)) return grid;
+  if (const std::optional<Vector3> grid = find_on_grid(R)) return *grid;
+  const Vector3 r = log_rotation(R);
   for (const Vector3& start : {r, beyond_pi(r)}) {
     if (const std::optional<Vector3> found = find_exact(start, R)) return *found;
   }
@@ -188,7 +199,7 @@ Program parse_program(std::string_view text, std::string_view name) {
 }
 
 Waypoint rounded(Waypoint waypoint) {
-  waypoint.X_WE.R = exp_rotation(on_grid(log_rotation(waypoint.X_WE.R)));
+  if (!find_on_grid(waypoint.X_WE.R)) waypoint.X_WE.R = exp_rotation(on_grid(log_rotation(waypoint.X_WE.R)));
   return waypoint;
 }
 

@@ -188,6 +188,7 @@ TEST(Waypoint, IsRoundedByHalfAStepOfItsRotationVector) {
     EXPECT_EQ(coarse.X_WE.p, X_WE.p);
     EXPECT_LT((coarse.X_WE.R - X_WE.R).norm(), std::sqrt(3.0) * 0x1p-41 * std::numbers::sqrt2 + 1e-13);
     EXPECT_EQ(rounded(coarse), coarse);
+    EXPECT_EQ(parse_program(format_program({"f.csv", {coarse}}), "f.csv").waypoints[0].X_WE, coarse.X_WE);
   }
 }
 
