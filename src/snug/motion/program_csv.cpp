@@ -8,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -108,17 +107,21 @@ Vector3 on_grid(const Vector3& r) { return (r / kGrid).array().round().matrix() 
 
 bool gives(const Vector3& r, const Matrix3& R) { return exp_rotation(r) == R; }
 
-/// The same rotation the other way round: files may have vectors longer than pi.
-Vector3 beyond_pi(const Vector3& r) {
-  const double angle = r.norm();
-  return angle > 0.0 ? Vector3((1.0 - 2.0 * std::numbers::pi / angle) * r) : r;
+/// Vectors of about this rotation: its logarithm, and those of the quaternion and of its negative, one of which may be
+/// longer than pi, as files have them. Near pi the logarithm chooses the sign of the axis; these do not.
+std::array<Vector3, 3> vectors_of(const Matrix3& R) {
+  const Quaternion quat = Quaternion(R).normalized();
+  const double s = quat.vec().norm();
+  if (s < 1e-9) return {log_rotation(R), log_rotation(R), log_rotation(R)};  // there both are one, or a whole turn
+  const Vector3 one = (2.0 * std::atan2(s, quat.w()) / s) * quat.vec();
+  const Vector3 other = (-2.0 * std::atan2(s, -quat.w()) / s) * quat.vec();
+  return {log_rotation(R), one, other};
 }
 
 /// The vector on the grid that gives R exactly, where there is one. Rounded to the grid, one of length pi may be
 /// longer.
 std::optional<Vector3> find_on_grid(const Matrix3& R) {
-  const Vector3 r = log_rotation(R);
-  for (const Vector3& start : {r, beyond_pi(r)}) {
+  for (const Vector3& start : vectors_of(R)) {
     const Vector3 grid = on_grid(start);
     if (gives(grid, R)) return grid;
   }
@@ -153,11 +156,10 @@ std::optional<Vector3> find_exact(const Vector3& r, const Matrix3& R) {
 /// a matrix back: it is looked for on the grid of rounded(), among short decimals as people write them, then around.
 Vector3 rotation_vector_of(const Matrix3& R) {
   if (const std::optional<Vector3> grid = find_on_grid(R)) return *grid;
-  const Vector3 r = log_rotation(R);
-  for (const Vector3& start : {r, beyond_pi(r)}) {
+  for (const Vector3& start : vectors_of(R)) {
     if (const std::optional<Vector3> found = find_exact(start, R)) return *found;
   }
-  return r;
+  return log_rotation(R);
 }
 
 void check_writable(const Program& program, std::size_t row) {

@@ -21,13 +21,13 @@ const cell::Simulation& cell_with_robot() {
 }
 
 /// A server in a thread of its own.
-class Served {
+class ProgramServer {
  public:
-  explicit Served(served_cell::SimulatorSettings settings)
+  explicit ProgramServer(served_cell::SimulatorSettings settings)
       : simulator_(cell_with_robot(), with_log(std::move(settings))), server_(simulator_, at_an_address()) {
     thread_ = std::thread([this] { server_.run(); });
   }
-  ~Served() { stop(); }
+  ~ProgramServer() { stop(); }
   void stop() {
     server_.stop();
     if (thread_.joinable()) thread_.join();
@@ -70,7 +70,7 @@ TEST(ProgramClient, DoesAProgramBitByBitAsTheCellDoes) {
   for (const bool by_position : {false, true}) {
     served_cell::SimulatorSettings settings;
     if (by_position) settings.cell.controls = {control::DriveKind::Position};
-    Served served(settings);
+    ProgramServer served(settings);
     click::Client client(served.endpoint());
     ProgramClientSettings controller;
     controller.sequence = &simulation.sequence();

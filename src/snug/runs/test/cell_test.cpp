@@ -27,10 +27,12 @@ using cell::BoxResult;
 using cell::BoxState;
 using cell::build_world;
 using cell::CellWorld;
+using cell::demonstrator;
 using cell::Gripper;
 using cell::GripperEvent;
 using cell::GripperState;
 using cell::GripperStep;
+using cell::kSource;
 using cell::make_initial_state;
 using cell::vertical_axis;
 

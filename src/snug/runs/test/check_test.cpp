@@ -20,6 +20,8 @@
 namespace snug::runs {
 namespace {
 
+using cell::demonstrator;
+using cell::kSource;
 using cell::pose_at_aligner;
 using cell::Simulation;
 using cell::StopCause;

@@ -15,6 +15,7 @@ namespace {
 
 using cell::CellState;
 using cell::CellWorkspace;
+using cell::demonstrator;
 using cell::OutsideCommand;
 using cell::Simulation;
 

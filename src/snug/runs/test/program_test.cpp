@@ -16,8 +16,10 @@ namespace {
 
 using cell::BoxResult;
 using cell::BoxState;
+using cell::demonstrator;
 using cell::kPackedAboveRim;
 using cell::kPackedBeyondWall;
+using cell::kSource;
 using cell::Repick;
 
 const std::filesystem::path kPrograms = kSource / "../shared/data/waypoints";

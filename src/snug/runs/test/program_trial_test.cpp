@@ -10,6 +10,8 @@ namespace snug::runs {
 namespace {
 
 using cell::BoxState;
+using cell::demonstrator;
+using cell::kSource;
 using cell::Simulation;
 
 /// BOX027 is packed by its 8 rows; 1 is the pick, 2 has the vacuum on first.

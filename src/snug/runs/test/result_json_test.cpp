@@ -19,6 +19,7 @@ namespace {
 using cell::BoxResult;
 using cell::BoxState;
 using cell::FailureKind;
+using cell::kSource;
 using cell::ProtectiveStop;
 using cell::StopCause;
 

@@ -17,7 +17,7 @@
 
 namespace snug::runs::test {
 
-inline const Pose& home() { return demonstrator().controller.X_WE_start; }
+inline const Pose& home() { return cell::demonstrator().controller.X_WE_start; }
 
 inline motion::Waypoint row_at(const Vector3& p_WE, const std::string& name = "home") {
   return motion::named_waypoint(name, {home().R, p_WE});
@@ -35,7 +35,7 @@ inline RunResult simulate(const model::Scenario& scenario, std::vector<motion::W
 
 /// Into the container and then sideways through its wall.
 inline std::vector<motion::Waypoint> into_the_wall() {
-  const model::Container& tote = *model::find_container(demonstrator(), demonstrator().target);
+  const model::Container& tote = *model::find_container(cell::demonstrator(), cell::demonstrator().target);
   const auto at = [&](double along, double height) {
     return tote.X_WT * Vector3(along, 0.0, tote.inner_size.z() + height);
   };
@@ -87,7 +87,7 @@ inline std::string spherical_wrist() {
 /// The demonstrator's cell with that arm, which points away from everything.
 struct BallWrist {
   snug::test::ScratchFolder folder;
-  model::Scenario scenario = demonstrator();
+  model::Scenario scenario = cell::demonstrator();
 
   BallWrist() {
     const std::filesystem::path path = folder / "wrist.urdf";

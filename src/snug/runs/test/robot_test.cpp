@@ -19,8 +19,10 @@ namespace {
 
 using cell::CellState;
 using cell::CellWorkspace;
+using cell::demonstrator;
 using cell::describe;
 using cell::FailureKind;
+using cell::kSource;
 using cell::Simulation;
 using cell::StopCause;
 

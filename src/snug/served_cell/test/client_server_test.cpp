@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "cell.hpp"
+#include "snug/click/client.hpp"
 #include "snug/click/socket.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/test/scratch_folder.hpp"
