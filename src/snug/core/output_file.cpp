@@ -27,6 +27,7 @@ namespace snug {
 namespace {
 
 constexpr const char* kDraftSuffix = ".snug-part";
+constexpr const char* kNextSuffix = ".snug-next";  ///< of a draft or file that is about to be replaced
 constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 /// Paths of drafts for the handler of signals, which may neither lock nor allocate. Beyond so many at a time (no verb
@@ -174,11 +175,44 @@ class Draft {
     is_moved_ = true;
     return true;
   }
+  /// The bytes in a new file that takes the place of this one, locked like it. False: errno tells why.
+  [[nodiscard]] bool replace(std::string_view bytes) {
+    const std::string next = location_.string() + kNextSuffix;
+    const SignalsHeld held;
+    registration_.set(DraftSlot::Busy);
+    const bool has_replaced = write_next(next, bytes);
+    registration_.set(DraftSlot::Ready);
+    return has_replaced;
+  }
   [[nodiscard]] const std::filesystem::path& location() const { return location_; }
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
   [[nodiscard]] bool is_moved() const { return is_moved_; }
 
  private:
+  [[nodiscard]] bool write_next(const std::string& next, std::string_view bytes) {
+    ::unlink(next.c_str());  // of a killed process: who has the lock here writes there
+    Descriptor file(::open(next.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+    struct stat now = {};
+    bool is_good = file.is_open() && ::fstat(descriptor_.get(), &now) == 0;
+    if (is_good && ::fchown(file.get(), now.st_uid, now.st_gid) != 0) errno = 0;  // only root may give files away
+    is_good = is_good && ::fchmod(file.get(), now.st_mode & 07777U) == 0 &&
+              try_lock(file.get(), LockByte::Writer, LockKind::Exclusive);
+    while (is_good && !bytes.empty()) {
+      const ssize_t count = ::write(file.get(), bytes.data(), bytes.size());
+      is_good = count > 0 || (count < 0 && errno == EINTR);
+      if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+    is_good = is_good && ::rename(next.c_str(), location_.c_str()) == 0;
+    if (!is_good) {
+      const int why = errno;
+      ::unlink(next.c_str());
+      errno = why;
+      return false;
+    }
+    descriptor_ = std::move(file);
+    return true;
+  }
+
   std::filesystem::path location_;
   Descriptor descriptor_;
   Registration registration_;
@@ -229,6 +263,8 @@ struct OutputFile::Impl {
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
+  /// Over a copy of the draft's descriptor.
+  [[nodiscard]] bool open_stream();
   void fail() const { throw OutputError(path.string(), std::strerror(errno)); }
 
   std::filesystem::path path, place;
@@ -245,12 +281,17 @@ OutputFile::Impl::Impl(const std::filesystem::path& as_asked)
     (void)!::fchown(draft.descriptor(), old->st_uid, old->st_gid);  // only root may give files away
     if (::fchmod(draft.descriptor(), old->st_mode & 07777U) != 0) refuse(path, std::strerror(errno));
   }
+  if (!open_stream()) refuse(path, std::strerror(errno));
+}
+
+bool OutputFile::Impl::open_stream() {
+  if (stream != nullptr) std::fclose(stream);
   const int copy = ::fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0);
   stream = copy >= 0 ? ::fdopen(copy, "wb") : nullptr;
-  if (stream == nullptr) {
-    if (copy >= 0) ::close(copy);
-    refuse(path, std::strerror(errno));
-  }
+  const int why = errno;
+  if (stream == nullptr && copy >= 0) ::close(copy);
+  errno = why;
+  return stream != nullptr;
 }
 
 OutputFile::OutputFile(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
@@ -265,6 +306,10 @@ bool OutputFile::is_published() const { return impl_->draft.is_moved(); }
 
 void OutputFile::write(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), impl_->stream) != bytes.size()) impl_->fail();
+}
+
+void OutputFile::replace(std::string_view bytes) {
+  if (!impl_->draft.replace(bytes) || !impl_->open_stream()) impl_->fail();
 }
 
 void OutputFile::publish() {

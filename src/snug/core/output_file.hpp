@@ -40,6 +40,9 @@ class OutputFile {
 
   /// Appends. Throws OutputError.
   void write(std::string_view bytes);
+  /// In the place of all that was written before, in one step: who looks sees the one or the other, also when the
+  /// process is killed meanwhile. Throws OutputError; then what was there before stays.
+  void replace(std::string_view bytes);
   /// Puts the file into its place, safe from a power failure. The lock stays, and who has it open may go on writing.
   /// Throws OutputError.
   void publish();

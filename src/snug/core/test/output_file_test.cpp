@@ -229,6 +229,65 @@ TEST(OutputFile, DoesNotWriteThroughALinkInThePlaceOfItsDraft) {
   EXPECT_EQ(folder.names(), (Names{"a", "precious"}));
 }
 
+TEST(OutputFile, ReplacesWhatItWroteInOneStepBeforeAndAfterItIsPublished) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "list";
+  OutputFile file(path);
+  for (int i = 0; i < 100; ++i) {
+    const std::string text(static_cast<std::size_t>(1 + 37 * i), static_cast<char>('a' + i % 26));
+    file.replace(text);
+    EXPECT_EQ(content_of(file.location()), text);
+    EXPECT_THROW(OutputFile{path}, InputError) << "it is still written";
+    if (i == 50) file.publish();
+  }
+  EXPECT_EQ(file.location(), path);
+  file.replace("");
+  EXPECT_EQ(content_of(path), "");
+  file.replace("head\n");
+  file.write("tail\n");
+  file = OutputFile(folder / "other");
+  EXPECT_EQ(content_of(path), "head\ntail\n");
+  EXPECT_EQ(folder.names(), (Names{"list", "other.snug-part"}));
+}
+
+TEST(OutputFile, ReplacingKeepsTheModeAndWhatIsThereUntilItIsPublished) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "list";
+  std::ofstream(path) << "old";
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+  OutputFile file(path);
+  file.replace("new");
+  EXPECT_EQ(content_of(path), "old");
+  file.publish();
+  file.replace("newer");
+  EXPECT_EQ(content_of(path), "newer");
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+/// Killed a hundred times, at any instant: one of the texts is there, whole.
+TEST(OutputFile, OneThatIsKilledWhileItReplacesLeavesAWholeFile) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "list";
+  for (int run = 0; run < 100; ++run) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      OutputFile file(path);
+      file.replace(std::string(100'000, 'a'));
+      if (!file.replaces_file()) file.publish();
+      for (char c = 'b';; c = c == 'z' ? 'a' : static_cast<char>(c + 1)) file.replace(std::string(100'000, c));
+    }
+    ::usleep(static_cast<useconds_t>(100 * (run % 50)));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    for (const fs::path& left : {path, draft_of(path)}) {
+      const std::string text = content_of(left);
+      if (text.empty()) continue;  // before its first text
+      EXPECT_EQ(text, std::string(100'000, text.front())) << left;
+    }
+    if (run % 2 == 0) fs::remove(path);
+  }
+}
+
 TEST(OutputFile, KeepsTheOldFileWhenTheDiskIsFull) {
   const ScratchFolder folder;
   put(folder / "a", "old");
