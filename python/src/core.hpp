@@ -50,7 +50,7 @@ class Use {
 struct HdfUse {
   HdfUse();
   py::gil_scoped_release release;
-  std::unique_lock<std::mutex> lock;
+  std::unique_lock<std::recursive_mutex> lock;
 };
 
 /// Properties `positions`, `quaternions`, `velocities`, `angular_velocities`, `present` of a class that steps a world,

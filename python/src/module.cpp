@@ -5,6 +5,7 @@
 #include "core.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/output_file.hpp"
+#include "snug/record/hdf5_lock.hpp"
 
 namespace snug::python {
 namespace {
@@ -100,10 +101,7 @@ Use::Use(std::atomic<bool>& busy) : busy_(busy) {
   if (busy_.exchange(true)) throw std::runtime_error("this object is in use by another thread: one at a time");
 }
 
-HdfUse::HdfUse() {
-  static std::mutex mutex;
-  lock = std::unique_lock(mutex);
-}
+HdfUse::HdfUse() : lock(record::lock_hdf5()) {}
 
 }  // namespace snug::python
 

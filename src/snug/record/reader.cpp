@@ -82,6 +82,8 @@ std::vector<Event> read_events(Source& source) {
     for (auto k = static_cast<std::size_t>(first[i]); k < static_cast<std::size_t>(first[i] + numbers[i]); ++k)
       events[i].numbers.push_back({names[k], values[k]});
   }
+  // Who packs says what it did when an item is done, while the plant goes on.
+  std::ranges::stable_sort(events, {}, &Event::time);
   return events;
 }
 

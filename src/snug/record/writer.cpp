@@ -145,7 +145,7 @@ class EventLog {
 }  // namespace
 
 struct RecordingWriter::Impl {
-  Impl(OutputFile output_file, const RecordingHeader& header);
+  Impl(OutputFile output_file, const RecordingHeader& header, ProgramText program);
   void append(const Frame& frame);
   void put_frame(const Frame& frame);
   void put_bodies(const Frame& frame);
@@ -180,19 +180,26 @@ struct RecordingWriter::Impl {
   std::vector<double> joint_row;
   std::optional<ContactLog> contacts;
   std::optional<EventLog> events;
+  std::optional<FlatColumn> program;  ///< of one that grows
+  std::string program_text;           ///< of it, whole
   std::vector<std::uint8_t> present;
   hsize_t chunk_first = 0;  ///< row of the file at which the chunk being filled starts
   std::size_t filled = 0;   ///< rows in it
   double last_time = -std::numeric_limits<double>::infinity();
 };
 
-RecordingWriter::Impl::Impl(OutputFile output_file, const RecordingHeader& header)
+RecordingWriter::Impl::Impl(OutputFile output_file, const RecordingHeader& header, ProgramText program_kind)
     : file(std::move(output_file)), body_count(header.bodies.size()), joint_count(header.joints.size()), chunk_rows(0) {
   validate(file.path(), header);
   chunk_rows = chunk_rows_for(header.record_period);
   guarded([&] {
     output = create_file(file.location());
     write_header(output.file.get(), header);
+    if (program_kind == ProgramText::Known) {
+      write_text(output.file.get(), kProgram, header.program_text);
+    } else {
+      program.emplace(output.file.get(), column_of<std::uint8_t>(kProgramSoFar, 1, "UTF-8", "", ""));
+    }
     // The commit driver writes the lengths of datasets in the order of their creation: what is referred to first.
     events.emplace(output.file.get());
     contacts.emplace(output.file.get());
@@ -282,6 +289,7 @@ void RecordingWriter::Impl::put_joints(const Frame& frame) {
 /// visible, but an earlier one stays in its place until the new one has its end.
 void RecordingWriter::Impl::write() {
   events->write();
+  if (program) program->write();
   contacts->write();
   if (filled > 0) {
     for (Column& column : body_columns) column.write(chunk_first, filled);
@@ -299,6 +307,7 @@ void RecordingWriter::Impl::write() {
 /// Without `end` the run did not get there.
 void RecordingWriter::Impl::close(std::optional<RunEnd> end, const std::string& result_json) {
   guarded([&] {
+    if (program && end) write_text(output.file.get(), kProgram, program_text);
     if (!result_json.empty()) write_text(output.file.get(), kResult, result_json);
     write();  // commits; only then may the file be called complete
     const std::uint8_t complete = end == RunEnd::Complete ? 1 : 0;
@@ -308,6 +317,7 @@ void RecordingWriter::Impl::close(std::optional<RunEnd> end, const std::string& 
     check(H5Fflush(output.file.get(), H5F_SCOPE_LOCAL), "flush");
     contacts.reset();
     events.reset();
+    program.reset();
     columns.clear();
     body_columns.clear();
     joint_columns.clear();
@@ -338,8 +348,8 @@ OutputFile reserve_recording(const std::filesystem::path& path) {
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHeader& header)
     : RecordingWriter(reserve_recording(path), header) {}
 
-RecordingWriter::RecordingWriter(OutputFile file, const RecordingHeader& header)
-    : impl_(std::make_unique<Impl>(std::move(file), header)) {}
+RecordingWriter::RecordingWriter(OutputFile file, const RecordingHeader& header, ProgramText program)
+    : impl_(std::make_unique<Impl>(std::move(file), header, program)) {}
 
 RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
 
@@ -363,6 +373,12 @@ void RecordingWriter::append(const Frame& frame) {
 void RecordingWriter::append(const Event& event) {
   SNUG_CHECK(impl_ != nullptr, "recording is closed");
   impl_->events->append(event);
+}
+
+void RecordingWriter::append_program(std::string_view lines) {
+  SNUG_CHECK(impl_ != nullptr && impl_->program, "the program of this recording does not grow, or it is closed");
+  impl_->program->put(lines.data(), lines.size());
+  impl_->program_text += lines;
 }
 
 void RecordingWriter::flush() {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "snug/core/output_file.hpp"
 #include "snug/record/recording.hpp"
@@ -14,6 +15,12 @@ namespace snug::record {
 enum class RunEnd {
   Complete,
   Interrupted,  ///< early, because who watched it had enough
+};
+
+/// When the program of a recording is known.
+enum class ProgramText {
+  Known,  ///< RecordingHeader::program_text
+  Grows,  ///< append_program, while it is sent
 };
 
 /// The file of a recording, before there is anything to record. Throws InputError like OutputFile, and for a path that
@@ -34,7 +41,7 @@ class RecordingWriter {
   /// Begins the file; an earlier recording at that path is replaced, any other file is refused.
   RecordingWriter(const std::filesystem::path& path, const RecordingHeader& header);
   /// The same into a file of reserve_recording().
-  RecordingWriter(OutputFile file, const RecordingHeader& header);
+  RecordingWriter(OutputFile file, const RecordingHeader& header, ProgramText program = ProgramText::Known);
   /// Without close() the recording stays marked incomplete, where it does not take the place of an earlier one; silent
   /// when writing fails.
   ~RecordingWriter();
@@ -44,8 +51,10 @@ class RecordingWriter {
   /// Time must be finite and grow, `bodies` must be as many as in the header, body indices must be valid: a frame
   /// that breaks this is a bug of the caller and aborts.
   void append(const Frame& frame);
-  /// In any order; kept in the order of the calls.
+  /// In any order; kept in the order of the calls, and read in the order of their times.
   void append(const Event& event);
+  /// Whole lines of a program's file, behind those before. Only with ProgramText::Grows (checked).
+  void append_program(std::string_view lines);
   /// Writes out what is gathered so far.
   void flush();
   /// Writes the rest and `result_json` (what became of the run; empty: nothing), marks how the run ended and closes the

@@ -122,7 +122,8 @@ Recorder::Recorder(const model::Scenario& scenario, const CellWorld& world, cons
     : observer_(setup.observer) {
   const record::RecordingHeader header = header_of(scenario, world, setup);
   if (setup.file != nullptr) {
-    writer_.emplace(std::move(*setup.file), header);
+    writer_.emplace(std::move(*setup.file), header,
+                    setup.program_grows ? record::ProgramText::Grows : record::ProgramText::Known);
   } else if (!setup.path.empty()) {
     writer_.emplace(setup.path, header);
   }
@@ -135,6 +136,10 @@ void Recorder::add_events(const std::vector<record::Event>& events) {
     if (writer_) writer_->append(event);
     if (observer_ != nullptr) observer_->add(event);
   }
+}
+
+void Recorder::append_program(std::string_view lines) {
+  if (writer_) writer_->append_program(lines);
 }
 
 void Recorder::close(const std::string& result_json, bool is_interrupted) {

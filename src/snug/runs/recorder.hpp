@@ -40,6 +40,7 @@ struct RecorderSetup {
   RunObserver* observer = nullptr;  ///< not owned
   double period = 0.008;            ///< s between frames
   std::string program_text;
+  bool program_grows = false;  ///< append_program instead of `program_text`
   std::string program_name;
   std::string sequence;
   std::string settings_json = "{}";
@@ -68,6 +69,8 @@ class Recorder {
                                const FrameInput& input);
   /// Records those of a growing list that it has not seen.
   void add_events(const std::vector<record::Event>& events);
+  /// Whole lines, with RecorderSetup::program_grows.
+  void append_program(std::string_view lines);
   /// `result_json` is kept in the recording; `is_interrupted`: the observer ended the run early.
   void close(const std::string& result_json, bool is_interrupted);
 

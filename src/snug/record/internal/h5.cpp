@@ -90,6 +90,19 @@ bool is_number(hid_t type) {
   return std::ranges::any_of(known, [&](hid_t one) { return H5Tequal(type, one) > 0; });
 }
 
+}  // namespace snug::record::internal
+
+namespace snug::record {
+
+std::unique_lock<std::recursive_mutex> lock_hdf5() {
+  static std::recursive_mutex mutex;
+  return std::unique_lock(mutex);
+}
+
+}  // namespace snug::record
+
+namespace snug::record::internal {
+
 QuietErrors::QuietErrors() {
   // All files are closed by their handles. The library's own clean-up at exit is switched off because it prints an
   // endless chain of names when a damaged file was refused. Does nothing when HDF5 is in use already.

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "snug/record/hdf5_lock.hpp"
+
 namespace snug::record::internal {
 
 /// What HDF5 complained about; turned into InputError where the path is known.
@@ -17,7 +19,8 @@ struct H5Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Keeps HDF5 from printing on stderr while it lives; the caller gets H5Error instead.
+/// Keeps HDF5 from printing on stderr, and other threads from HDF5 (lock_hdf5), while it lives; the caller gets H5Error
+/// instead.
 class QuietErrors {
  public:
   QuietErrors();
@@ -26,6 +29,7 @@ class QuietErrors {
   QuietErrors& operator=(const QuietErrors&) = delete;
 
  private:
+  std::unique_lock<std::recursive_mutex> lock_ = lock_hdf5();
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "snug/core/text.hpp"
 #include "snug/record/internal/layout.hpp"
 
 namespace snug::record::internal {
@@ -157,6 +158,15 @@ std::vector<BodyInfo> read_bodies(Source& source) {
   return bodies;
 }
 
+/// Whole lines of it: the run was killed, or goes on.
+std::string read_program_so_far(Source& source) {
+  if (!has_link(source.file(), kProgramSoFar)) throw H5Error(std::string(kProgram) + " is missing");
+  const auto bytes = read_all<std::uint8_t>(source, kProgramSoFar);
+  const std::string text(bytes.begin(), bytes.end());
+  if (!is_utf8(text)) throw H5Error(std::string(kProgramSoFar) + " holds text that is not UTF-8");
+  return text.substr(0, text.rfind('\n') + 1);
+}
+
 }  // namespace
 
 void write_header(hid_t file, const RecordingHeader& header) {
@@ -173,7 +183,6 @@ void write_header(hid_t file, const RecordingHeader& header) {
   write_attribute(file, "dt", H5T_NATIVE_DOUBLE, &header.dt);
   write_attribute(file, "record_period", H5T_NATIVE_DOUBLE, &header.record_period);
   write_text(file, "/scenario", header.scenario_text);
-  write_text(file, "/program", header.program_text);
   write_text(file, "/settings", header.settings);
   write_bodies(file, header.bodies);
   if (!header.joints.empty()) write_texts(file, kJointName, header.joints);
@@ -196,7 +205,7 @@ RecordingHeader read_header(Source& source) {
   read_attribute(file, "dt", H5T_NATIVE_DOUBLE, &header.dt);
   read_attribute(file, "record_period", H5T_NATIVE_DOUBLE, &header.record_period);
   header.scenario_text = read_text(source, "/scenario");
-  header.program_text = read_text(source, "/program");
+  header.program_text = has_link(file, kProgram) ? read_text(source, kProgram) : read_program_so_far(source);
   header.settings = read_text(source, "/settings");
   header.bodies = read_bodies(source);
   if (has_link(file, kJointName)) header.joints = read_texts(source, kJointName);

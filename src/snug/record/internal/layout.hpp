@@ -69,6 +69,9 @@ enum ContactColumn : std::size_t {
 // Fixed lengths: HDF5 keeps texts of any length in a heap without checksums, and crashes on a damaged one.
 inline constexpr std::size_t kEventWordBytes = 64;
 inline constexpr std::size_t kEventTextBytes = 1024;
+inline constexpr const char* kProgram = "/program";
+/// Bytes of the program as far as it was sent; kProgram is written when the recording is closed.
+inline constexpr const char* kProgramSoFar = "/program_so_far";
 inline constexpr const char* kResult = "/result";
 inline constexpr const char* kEventTime = "/events/time";
 inline constexpr const char* kEventKind = "/events/kind";

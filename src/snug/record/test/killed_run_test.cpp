@@ -42,7 +42,11 @@ class SharedCounter {
     Frame frame = recording.frames[static_cast<std::size_t>(i) % recording.frames.size()];
     frame.time = i * recording.header.record_period;
     writer.append(frame);
-    if (i % 40 == 0) writer.append(recording.events[static_cast<std::size_t>(i / 40) % recording.events.size()]);
+    if (i % 40 == 0) {
+      Event event = recording.events[static_cast<std::size_t>(i / 40) % recording.events.size()];
+      event.time = frame.time;
+      writer.append(event);
+    }
     appended = i + 2;
   }
 }
@@ -84,8 +88,11 @@ TEST(KilledRun, LeavesAFileWithAllButTheLastSecond) {
       expected.time = i * recording.header.record_period;
       ASSERT_TRUE(read.frames[static_cast<std::size_t>(i)] == expected) << i << " of " << kept;
     }
-    for (std::size_t i = 0; i < read.events.size(); ++i)
-      EXPECT_TRUE(read.events[i] == recording.events[i % recording.events.size()]) << i;
+    for (std::size_t i = 0; i < read.events.size(); ++i) {
+      Event written = recording.events[i % recording.events.size()];
+      written.time = static_cast<double>(40 * i) * recording.header.record_period;
+      EXPECT_TRUE(read.events[i] == written) << i;
+    }
     EXPECT_GE(static_cast<int>(read.events.size()), (kept - 1) / 40);
   }
 }

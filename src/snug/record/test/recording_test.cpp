@@ -185,6 +185,41 @@ TEST(Recording, StoresRestingContactsOnce) {
   EXPECT_LT(std::filesystem::file_size(folder / "run.h5"), 600'000u);
 }
 
+/// Of a run that goes on: what was appended and written is read, whole lines of it; of one that ended all.
+TEST(Recording, AProgramThatGrowsIsReadAsFarAsItWasSent) {
+  const ScratchFolder folder;
+  Rng rng = Rng(13).split("program");
+  Recording recording = test::random_recording(rng, 3, 40, 0);
+  recording.header.program_text.clear();
+  RecordingWriter writer(OutputFile(folder / "run.h5"), recording.header, ProgramText::Grows);
+  writer.append_program("# tempo: 1\n");
+  std::string sent = "# tempo: 1\n";
+  for (const Frame& frame : recording.frames) {
+    const std::string line(static_cast<std::size_t>(frame.step % 97 + 1), 'w');
+    writer.append_program(line + "\nhalf a li");
+    writer.append(frame);
+    sent += line + "\n";
+    writer.flush();
+    EXPECT_EQ(load_recording(folder / "run.h5").header.program_text, sent);
+    writer.append_program("ne\n");
+    sent += "half a line\n";
+  }
+  writer.close();
+  EXPECT_EQ(load_recording(folder / "run.h5").header.program_text, sent);
+}
+
+TEST(Recording, EventsAreReadInTheOrderOfTimeHoweverTheyWereWritten) {
+  const ScratchFolder folder;
+  Rng rng = Rng(14).split("events");
+  Recording recording = test::random_recording(rng, 4, 10, 0);
+  recording.events = {
+      {3.0, "c", "", "", {}}, {1.0, "a", "", "", {{"n", 1.0}}}, {3.0, "d", "", "", {}}, {2.0, "b", "", "", {}}};
+  save_recording(folder / "run.h5", recording);
+  std::string kinds;
+  for (const Event& event : load_recording(folder / "run.h5").events) kinds += event.kind;
+  EXPECT_EQ(kinds, "abcd");
+}
+
 TEST(Recording, CutsLongTextsOfEventsBetweenCharacters) {
   const ScratchFolder folder;
   Rng rng(26);
