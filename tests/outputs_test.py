@@ -21,6 +21,15 @@ TASK = ROOT / "scenarios" / "tosses" / "task.yaml"
 ORDERS = ROOT / "scenarios" / "orders-example.csv"
 PLACEMENTS = ROOT / "scenarios" / "demo-placements.yaml"
 QUICK = ("--samples", 0, "--decision-time", 0.02, "--robot", "none")
+TWO_BOXES = """parcel_types:
+  - {name: brick, size: [0.11, 0.12, 0.1], mass: 0.4}
+parcels:
+  - {id: b1, type: brick, material: box}
+  - {id: b2, type: brick, material: box}
+sequences:
+  - name: two
+    items: [{parcel: b1, up: Z}, {parcel: b2, up: X}]
+"""
 WRITER_BYTE, COMMIT_BYTE = 2**62, 2**62 + 1  # docs/formats.md, "While a run goes on"
 FLOCK = "hhqqi"  # struct flock: type, whence, start, length, process
 
@@ -237,6 +246,51 @@ class WholeFiles(Folder):
         self.assertEqual(snug("report", draft, "-o", self.folder / "part.html").returncode, 0, "what it had done is there")
         self.make_recording()
         self.assertEqual(self.names(), ["part.html", "run.h5"])
+
+    def test_session_that_ends_at_any_instant_leaves_what_it_had_done(self):
+        """KILL at many instants, and HUP: the recording opens, program and placements are the beginning of the whole ones, and all say so."""
+        items = self.folder / "two.yaml"
+        items.write_text(TWO_BOXES)
+        pack = ("pack", CELL, "--items", items, "--sequence", "two", *QUICK, "--threads", 1, "--json")
+        names = {"--program": "sent.csv", "--plan": "plan.json", "-o": "run.h5"}
+
+        def files(folder):
+            folder.mkdir()
+            return [word for option, name in names.items() for word in (option, folder / name)]
+
+        began = time.monotonic()
+        whole = snug(*pack, *files(self.folder / "whole"))
+        took = time.monotonic() - began
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        whole_program = (self.folder / "whole" / "sent.csv").read_text()
+        placements = json.loads((self.folder / "whole" / "plan.json").read_text())["placements"]
+        self.assertEqual(len(placements), 2)
+        self.assertNotIn("incomplete", whole_program)
+        seen = 0
+        for k in range(8):
+            folder = self.folder / f"killed{k}"
+            process = start(*pack, *files(folder))
+            time.sleep((k + 0.5) / 8 * took)
+            process.send_signal(signal.SIGHUP if k == 4 else signal.SIGKILL)
+            process.communicate()
+            for path in folder.glob("*.snug-*"):
+                path.unlink()
+            if (folder / "sent.csv").exists():
+                first, rest = (folder / "sent.csv").read_text().split("\n", 1)
+                if k != 4:
+                    self.assertEqual(first, "# incomplete, the session had not ended")
+                    self.assertTrue(whole_program.startswith(rest), k)
+                seen += 1
+            if (folder / "run.h5").exists():
+                page = snug("report", folder / "run.h5", "-o", folder / "run.html")
+                self.assertEqual(page.returncode, 0, page.stderr)
+                seen += 1
+            if (folder / "plan.json").exists():
+                plan = json.loads((folder / "plan.json").read_text())
+                self.assertEqual(plan["placements"], placements[:len(plan["placements"])])
+                self.assertEqual(plan.get("complete", True), k == 4)
+                seen += 1
+        self.assertGreater(seen, 6, "of 24: some were killed too early")
 
     def test_run_that_is_killed_early_leaves_no_empty_file(self):
         for delay in (0.0, 0.02, 0.05, 0.1):

@@ -82,26 +82,18 @@ session::SessionOptions session_options(const model::Scenario& scenario, const P
   return session;
 }
 
-void save_recording(const model::Scenario& scenario, const study::Trial& trial, const std::filesystem::path& path) {
-  OutputFile file = record::reserve_recording(path);
-  simulated_plant::RecordedRunOptions recorded;
-  recorded.file = &file;
-  recorded.version = SNUG_VERSION;
-  recorded.events = study::events_of(trial.session);
-  recorded.warnings = study::warnings_of(trial.session);
-  recorded.is_interrupted = trial.session.stop_reason == session::StopReason::Interrupted;
-  const std::string& robot = trial.plant.simulation.robot;
-  recorded.settings_json = nlohmann::json{
-      {"cup", "phases"},
-      {"controller", motion::name_of(trial.plant.simulation.tracking)},
-      {"corrections", "none"},
-      {"robot", robot.empty() ? "none" : robot},
-      {"plant_seed", trial.plant_seed},
-      {"agent", trial.session.agent},
-      {"ended",
-       trial.session.stopped}}.dump();
-  recorded.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
-  (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
+simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
+                                                   const std::string& agent, OutputFile& file) {
+  simulated_plant::LiveRecordingOptions recording;
+  recording.file = &file;
+  recording.version = SNUG_VERSION;
+  const std::string& robot = plant.simulation.robot;
+  recording.settings_json =
+      nlohmann::json{{"cup", "phases"},          {"controller", motion::name_of(plant.simulation.tracking)},
+                     {"corrections", "none"},    {"robot", robot.empty() ? "none" : robot},
+                     {"plant_seed", plant.seed}, {"agent", agent}}
+          .dump();
+  return recording;
 }
 
 study::MonteCarloResult repeated(const model::Scenario& scenario, const study::Trial& trial,
@@ -143,13 +135,16 @@ py::tuple pack(const ScenarioHandle& handle, const PackWords& words) {
   study::Trial trial;
   {
     const py::gil_scoped_release release;
-    trial = study::run_trial(scenario, words.sequence, session, plant, progress);
+    std::optional<OutputFile> file;
+    study::TrialFiles files;
+    files.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
+    if (!words.record.empty()) {
+      file = record::reserve_recording(words.record);
+      files.recording = recording_of(plant, session.agent, *file);
+    }
+    trial = study::run_trial(scenario, words.sequence, session, plant, progress, files);
     json = study::format_json(trial, repeated(scenario, trial, session, words.monte_carlo));
     program = std::make_shared<Held<motion::Program>>(trial.session.program);
-  }
-  if (!words.record.empty() && !trial.session.program.waypoints.empty()) {
-    const HdfUse use;
-    save_recording(scenario, trial, words.record);
   }
   return py::make_tuple(from_json(json), program);
 }

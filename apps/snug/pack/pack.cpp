@@ -31,26 +31,19 @@
 namespace snug::app {
 namespace {
 
-/// The plant's course once more, recorded.
-void record(const model::Scenario& scenario, const study::Trial& trial, OutputFile& file) {
-  simulated_plant::RecordedRunOptions recorded;
-  recorded.file = &file;
-  recorded.version = version_text();
-  recorded.events = study::events_of(trial.session);
-  recorded.warnings = study::warnings_of(trial.session);
-  recorded.is_interrupted = trial.session.stop_reason == session::StopReason::Interrupted;
-  const std::string& robot = trial.plant.simulation.robot;
-  recorded.settings_json = nlohmann::ordered_json{
-      {"cup", "phases"},
-      {"controller", motion::name_of(trial.plant.simulation.tracking)},
-      {"corrections", "none"},
-      {"robot", robot.empty() ? "none" : robot},
-      {"plant_seed", trial.plant_seed},
-      {"agent", trial.session.agent},
-      {"ended",
-       trial.session.stopped}}.dump();
-  recorded.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
-  (void)simulated_plant::record(scenario, trial.session.sequence, trial.plant, trial.calls, recorded);
+/// What the recording says of how it was made.
+simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
+                                                   const std::string& agent, OutputFile& file) {
+  const std::string& robot = plant.simulation.robot;
+  simulated_plant::LiveRecordingOptions recording;
+  recording.file = &file;
+  recording.version = version_text();
+  recording.settings_json =
+      nlohmann::ordered_json{{"cup", "phases"},          {"controller", motion::name_of(plant.simulation.tracking)},
+                             {"corrections", "none"},    {"robot", robot.empty() ? "none" : robot},
+                             {"plant_seed", plant.seed}, {"agent", agent}}
+          .dump();
+  return recording;
 }
 
 /// The robot that moves the tool: what was asked for, or the scenario's, where its file is there.
@@ -94,6 +87,15 @@ struct PackFiles {
     program = reserve(options.program);
     plan = reserve(options.plan);
     record = reserve_recording(options.record);
+  }
+  /// The placements so far: at their path where no earlier file is, else beside it until they are complete.
+  void update_plan(const std::string& text) {
+    plan->replace(text);
+    if (!plan->is_published() && !plan->replaces_file()) plan->publish();
+  }
+  void finish_plan(const std::string& text) {
+    plan->replace(text);
+    if (!plan->is_published()) plan->publish();
   }
 };
 
@@ -168,11 +170,17 @@ int run_pack(const PackOptions& options) {
     print_now(study::format_pack_head(options.sequence, session, plant, is_served ? options.plant : std::string()));
   }
   const auto progress = [&](const study::Trial& so_far, int item, int items) {
+    if (files.plan) files.update_plan(study::format_plan(so_far.session, false));
     if (!options.json) print_now(study::format_item(so_far.session.items.back(), so_far.items.back()));
     if (options.json && line) line(so_far, item, items);
   };
-  const study::Trial trial = is_served ? run_served_trial(options, scenario, session, progress)
-                                       : study::run_trial(scenario, options.sequence, session, plant, progress);
+  study::TrialFiles written;
+  if (files.record) written.recording = recording_of(plant, session.agent, *files.record);
+  written.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
+  if (files.program) written.program = &*files.program;
+  const study::Trial trial = is_served
+                                 ? run_served_trial(options, scenario, session, progress, written.program)
+                                 : study::run_trial(scenario, options.sequence, session, plant, progress, written);
   const session::SessionResult& result = trial.session;
   study::MonteCarloResult repeated;
   if (options.monte_carlo) {
@@ -184,11 +192,7 @@ int run_pack(const PackOptions& options) {
     repeated = study::repeat(scenario, options.sequence, result.program, result.plan, monte_carlo);
   }
   const bool has_program = !result.program.waypoints.empty();
-  if (files.program && has_program) {
-    write_file(std::move(*files.program), motion::format_program(result.program));
-  }
-  if (files.plan) write_file(std::move(*files.plan), study::format_plan(result));
-  if (files.record && has_program) record(scenario, trial, *files.record);
+  if (files.plan) files.finish_plan(study::format_plan(result, true));
   print(options.json ? study::format_json(trial, repeated) : study::format_summary(trial, repeated));
   std::string failure = result.failure.text;
   if (failure.empty() && repeated.failed > 0) {

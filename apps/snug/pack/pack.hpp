@@ -48,11 +48,12 @@ void add_packing_options(CLI::App& verb, PackOptions& options);
 /// Throws InputError for words that say nothing.
 [[nodiscard]] simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
                                                                         const session::SessionOptions& session);
-/// Packs the plant that is served at `options.plant`, scored by its object sensors. Throws InputError where it cannot
+/// Packs the plant that is served at `options.plant`, scored by its object sensors. `program`: plant::SentProgram, or
+/// nullptr. Throws InputError where it cannot
 /// be had.
 [[nodiscard]] study::Trial run_served_trial(const PackOptions& options, const model::Scenario& scenario,
                                             const session::SessionOptions& session,
-                                            const study::TrialProgress& progress);
+                                            const study::TrialProgress& progress, OutputFile* program);
 /// A line on a terminal that is written over again, or nothing.
 [[nodiscard]] study::TrialProgress make_progress_line(const std::string& label);
 

@@ -1,6 +1,7 @@
 // pack_served: packs a plant that another program serves, scored by what its object sensors say.
 #include "apps/snug/pack/pack.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/plant/sent_program.hpp"
 #include "snug/remote_plant/remote_plant.hpp"
 #include "snug/study/witness.hpp"
 
@@ -69,7 +70,8 @@ void expect_options_of_a_served_plant(const PackOptions& options, const session:
 }  // namespace
 
 study::Trial run_served_trial(const PackOptions& options, const model::Scenario& scenario,
-                              const session::SessionOptions& session, const study::TrialProgress& progress) {
+                              const session::SessionOptions& session, const study::TrialProgress& progress,
+                              OutputFile* program) {
   expect_options_of_a_served_plant(options, session);
   const perception::Kind kind = perception::kind_of(options.perception);
   remote_plant::RemotePlant plant(scenario, options.sequence,
@@ -82,7 +84,11 @@ study::Trial run_served_trial(const PackOptions& options, const model::Scenario&
   witness.poses = [&] { return watcher.poses(); };
   witness.size_of = [&](std::size_t item) { return plant.size_of(item); };
   witness.boxes = [&] { return watcher.boxes(witness.items); };
-  study::Trial trial = study::run_trial(scenario, options.sequence, session, plant, witness, progress);
+  std::optional<plant::SentProgram> sent;
+  if (program != nullptr) sent.emplace(plant, *program, session.simulation.tracking);
+  plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : plant;
+  study::Trial trial = study::run_trial(scenario, options.sequence, session, packed, witness, progress);
+  if (sent) sent->finish();
   trial.is_elsewhere = true;
   trial.plant.perception = kind;
   trial.plant.simulation = session.simulation;

@@ -42,7 +42,8 @@ PlacementEntry read_planned(const MapReader& map) {
 
 std::vector<PlacementEntry> read_list(const Value& root, const Scenario& scenario) {
   const bool is_plan = root.is_map();
-  const Value list = is_plan ? root.map("plan", {"sequence", "agent", "placements"}).require("placements") : root;
+  const Value list =
+      is_plan ? root.map("plan", {"sequence", "agent", "complete", "placements"}).require("placements") : root;
   const std::vector<std::string> keys =
       is_plan ? std::vector<std::string>{"box", "position", "quaternion_wxyz", "up", "up_sign", "yaw_quarter"}
               : std::vector<std::string>{"box", "position", "yaw_deg", "quat_wxyz"};

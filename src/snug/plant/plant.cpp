@@ -23,6 +23,8 @@ const char* name_of(EndReason reason) {
       return "protective stop";
     case EndReason::Timeout:
       return "timeout";
+    case EndReason::Cancelled:
+      return "cancelled";
     case EndReason::Refused:
       return "refused";
     case EndReason::Fault:
@@ -51,8 +53,8 @@ std::string describe(const End& end, std::span<const motion::Waypoint> waypoints
       break;
   }
   if (!end.where.empty()) text += ": " + end.where;
-  if (end.reason != EndReason::Completed && end.waypoint >= 0 && end.waypoint < static_cast<int>(waypoints.size())) {
-    text += " toward " + motion::name_of(waypoints[static_cast<std::size_t>(end.waypoint)]);
+  if (end.reason != EndReason::Completed && end.waypoint && end.waypoint->slot() < waypoints.size()) {
+    text += " toward " + motion::name_of(waypoints[end.waypoint->slot()]);
   }
   return text;
 }

@@ -60,7 +60,8 @@ RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& seq
       client_(endpoint_of(options.address), options.patience),
       link_(client_, model_, {}),
       perception_(perception::make_perception(options.perception, options.seed, scenario)),
-      was_brought_(sequence_.items.size(), false) {
+      was_brought_(sequence_.items.size(), false),
+      runner_(plant::runner_settings(scenario_, !motion::is_fast(options.motions.tracking))) {
   for (const model::Item& item : sequence_.items) names_.push_back(record::log_name(item.parcel));
   std::string trouble = link_.connect(scenario_.controller.tick);
   if (trouble.empty()) trouble = find_what_packing_needs();
@@ -74,7 +75,7 @@ RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& seq
   arm_ = std::make_unique<cell::CellArm>(scenario_, tool_stiffness(scenario_, sequence_));
   state_ = arm_->make_state(scenario_.seed, link_.measured().q);
   program_ = motion::make_controller_state(state_.machine.tool.X_WE);
-  read_sensors({}, {});
+  feedback_ = sensors();
 }
 
 /// Empty, or what the served cell lacks.
@@ -149,7 +150,7 @@ std::vector<std::optional<perception::SceneBox>> RemotePlant::boxes() const {
   return boxes;
 }
 
-perception::Observation RemotePlant::perceive(std::span<const perception::Expectation> expected) {
+void RemotePlant::perceive(std::span<const perception::Expectation> expected) {
   perception::Scene scene;
   if (failure_.empty()) {
     const std::string trouble = link_.sense();
@@ -164,12 +165,14 @@ perception::Observation RemotePlant::perceive(std::span<const perception::Expect
   }
   perception::Observation observation = perception_->perceive(scene, expected);
   if (!failure_.empty()) observation.missing.clear();  // nothing was looked at
-  return observation;
+  runner_.add({scene.time, plant::Perceived{std::move(observation)}});
 }
 
 void RemotePlant::fail(std::string why) {
+  if (!failure_.empty()) return;
   failure_ = std::move(why);
-  feedback_.end = {plant::EndReason::Fault, -1, 0.0, 0.0, failure_};
+  feedback_.end = {plant::EndReason::Fault, std::nullopt, 0.0, 0.0, failure_};
+  runner_.add({link_.last().time, plant::FaultRaised{plant::EndReason::Fault, failure_}});
 }
 
 /// The first Control says that boxes are brought from here.
@@ -188,22 +191,34 @@ bool RemotePlant::send(const click::Control& control) {
   return failure_.empty();
 }
 
-bool RemotePlant::bring(const std::string& item) {
-  const auto found = std::ranges::find(sequence_.items, item, &model::Item::parcel);
+bool RemotePlant::bring(const model::ParcelId& item) {
+  const auto found = std::ranges::find(sequence_.items, item.value, &model::Item::parcel);
   const auto index = static_cast<std::size_t>(found - sequence_.items.begin());
   if (found == sequence_.items.end() || was_brought_[index] || !failure_.empty()) return false;
-  const int quarter = quarter_of(*found);
-  const click::Named<bool> events{
-      {click::kFeedEvent, true}, {click::kQuarterTurnEvent, quarter % 2 == 1}, {click::kHalfTurnEvent, quarter >= 2}};
+  if (coming_) feed();  // one that comes in the same tick, before it
   was_brought_[index] = true;
-  if (tick_) {  // a Control is a tick of the motion: this one too
-    fed_ = {names_[index], events};
-    tick_();
-    if (!std::exchange(fed_, std::nullopt)) return failure_.empty();
-  }
+  coming_ = index;
+  if (!is_moving()) feed();
+  return failure_.empty();
+}
+
+/// Moves the item that comes into the Control.
+std::size_t RemotePlant::put_coming(click::Control& control) {
+  const std::size_t item = *std::exchange(coming_, std::nullopt);
+  const int quarter = quarter_of(sequence_.items[item]);
+  control.objects[names_[item]].events = {
+      {click::kFeedEvent, true}, {click::kQuarterTurnEvent, quarter % 2 == 1}, {click::kHalfTurnEvent, quarter >= 2}};
+  return item;
+}
+
+void RemotePlant::feed() {
   click::Control control = make_control();
-  control.objects[names_[index]].events = events;
-  return send(control);
+  const std::size_t item = put_coming(control);
+  if (send(control)) note_arrival(item);
+}
+
+void RemotePlant::note_arrival(std::size_t item) {
+  runner_.add({link_.last().time, plant::ItemArrived{model::ParcelId(sequence_.items[item].parcel)}});
 }
 
 void RemotePlant::acknowledge() {
@@ -225,82 +240,111 @@ plant::TickReading RemotePlant::reading() const {
   return now;
 }
 
-void RemotePlant::read_sensors(const plant::MotionWatch& course, const plant::End& end) {
+plant::Feedback RemotePlant::sensors() const {
   const plant::TickReading now = reading();
-  feedback_ = {};
-  feedback_.time = now.time;
-  feedback_.end = end;
-  feedback_.X_WE = state_.machine.tool.X_WE;
-  feedback_.V_WE = state_.machine.tool.V_WE;
+  plant::Feedback fed;
+  fed.time = now.time;
+  fed.X_WE = state_.machine.tool.X_WE;
+  fed.V_WE = state_.machine.tool.V_WE;
   const control::JointMotion& joints = state_.machine.joints;
-  feedback_.q.assign(joints.q.begin(), joints.q.end());
-  feedback_.qd.assign(joints.qd.begin(), joints.qd.end());
+  fed.q.assign(joints.q.begin(), joints.q.end());
+  fed.qd.assign(joints.qd.begin(), joints.qd.end());
   const std::vector<double>& torques = link_.last_of_robot().torques;
-  for (std::size_t j = 0; j < feedback_.q.size(); ++j) {
+  for (std::size_t j = 0; j < fed.q.size(); ++j) {
     const std::size_t place = link_.sensor_of(j);
-    feedback_.torques.push_back(place < torques.size() ? torques[place] : 0.0);
+    fed.torques.push_back(place < torques.size() ? torques[place] : 0.0);
   }
-  feedback_.pressure_gauge = now.pressure_gauge;
-  feedback_.F_E = now.F_E;
-  feedback_.peak_force = std::max(course.peak_force, now.F_E.force.norm());
-  feedback_.peak_torque = std::max(course.peak_torque, now.F_E.torque.norm());
-  feedback_.io = program_.io;
-  feedback_.times = course.times;
+  fed.pressure_gauge = now.pressure_gauge;
+  fed.F_E = now.F_E;
+  fed.io = program_.io;
+  return fed;
 }
 
-/// One tick: the controller, and the answer to its Control. `waypoint` of what is returned: aimed at.
-plant::End RemotePlant::step(const motion::PreparedProgram& plan) {
+plant::Feedback RemotePlant::read() {
+  if (!is_moving()) return feedback_;
+  plant::Feedback now = sensors();
+  now.end = feedback_.end;
+  runner_.fill(now);
+  return now;
+}
+
+/// The controller's next tick, sent, and its answer.
+control::MachineTick RemotePlant::command_tick() {
   state_.machine.tool = control::tool_at(model_, link_.measured());
-  const control::MachineTick tick = arm_->tick(plan, program_, state_, work_);
+  const control::MachineTick tick = arm_->tick(plan_, program_, state_, work_);
   click::Control control = make_control();
   link_.command(state_.machine.joints, tick.program.io, control);
-  if (fed_) control.objects[fed_->first].events = fed_->second;
-  fed_.reset();
+  const std::optional<std::size_t> arriving = coming_ ? std::optional(put_coming(control)) : std::nullopt;
   const double start = link_.last().time;
-  std::string trouble = link_.send(control);
+  trouble_ = link_.send(control);
   const double length = link_.last().time - start;
-  if (!trouble.empty()) {
+  if (!trouble_.empty()) {
     const std::string silence = link_.sense();
     is_stopped_ = silence.empty() && is_active(link_.last_of_robot(), click::kStoppedSensor);
-    if (!is_stopped_) fail(trouble);
-  } else if (!(std::abs(length - plan.settings.tick) <= kSameTime)) {  // nor NaN
+    if (!is_stopped_) fail(trouble_);
+  } else if (!(std::abs(length - plan_.settings.tick) <= kSameTime)) {  // nor NaN
     fail(fmt::format("a Control is a step of {} s there, not of {} s: is it served with --async?", length,
-                     plan.settings.tick));
+                     plan_.settings.tick));
   } else if (tick.outcome == control::Outcome::Stuck) {
-    trouble = "stuck";
+    trouble_ = "stuck";
     is_stopped_ = true;
   }
+  if (arriving && failure_.empty()) note_arrival(*arriving);
   state_.machine.tool = control::tool_at(model_, link_.measured());
   const plant::TickReading felt = reading();
   program_.sensed = {felt.pressure_gauge, state_.machine.tool.X_WE.R * felt.F_E.force, felt.hold_factor};
-  const plant::EndReason reason = !failure_.empty() ? plant::EndReason::Fault
-                                  : is_stopped_     ? plant::EndReason::ProtectiveStop
-                                                    : plant::EndReason::Completed;
-  return {reason, tick.program.row, 0.0, 0.0, trouble};
+  return tick;
 }
 
-bool RemotePlant::advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
-                          plant::MotionWatch& course) {
-  if (motion::will_finish(plan, program_.command, program_)) return false;
-  const plant::End end = step(plan);
-  course.follow(end.waypoint, link_.last().time, program_.phase == motion::ControllerPhase::Waiting);
-  course.check(motion.guards, scenario_.motion_guards.needed_vacuum * scenario_.cup.vacuum.pressure_gauge_hold,
-               reading());
-  if (end.reason != plant::EndReason::Completed) course.end = end;
-  return course.end.reason == plant::EndReason::Completed;
+std::vector<plant::Event> RemotePlant::advance() {
+  if (is_moving() && !runner_.has_events()) step();
+  return runner_.take_events();
 }
 
-/// The tool comes to stand, boxes come to rest.
-void RemotePlant::settle(const motion::PreparedProgram& plan, bool was_passed, plant::MotionWatch& course) {
-  const double start = link_.last().time;
-  const bool is_fast = motion::is_fast(options_.motions.tracking);
-  const double at_least = plant::least_settle(scenario_.motion_guards, !is_fast, was_passed);
-  while (plant::is_settling(scenario_.motion_guards, at_least, start, link_.last().time,
-                            state_.machine.tool.V_WE.linear.norm())) {
-    if (step(plan).reason != plant::EndReason::Completed) break;
+void RemotePlant::cancel() {
+  if (!is_moving()) return;
+  runner_.stop(plant::EndReason::Cancelled);
+  end_motion();
+}
+
+void RemotePlant::step() {
+  if (!failure_.empty()) return end_motion();
+  const double now = link_.last().time;
+  if (runner_.phase() == plant::MotionPhase::Following && motion::will_finish(plan_, program_.command, program_)) {
+    runner_.arrive(now);
   }
-  course.rest(link_.last().time);
+  if (runner_.phase() == plant::MotionPhase::Settling &&
+      runner_.is_settled(now, state_.machine.tool.V_WE.linear.norm())) {
+    return finish_settling();
+  }
+  const control::MachineTick tick = command_tick();
+  const bool goes_on = failure_.empty() && !is_stopped_;
+  if (runner_.phase() == plant::MotionPhase::Settling) {
+    if (!goes_on) finish_settling();
+    return;
+  }
+  runner_.follow(
+      {motion::WaypointIndex(tick.program.row), link_.last().time, program_.phase == motion::ControllerPhase::Waiting});
+  runner_.check(reading());
+  if (is_stopped_) runner_.stop(plant::EndReason::ProtectiveStop, 0.0, 0.0, trouble_);
+  if (runner_.has_ended() || !goes_on) end_motion();
+}
+
+void RemotePlant::finish_settling() {
+  runner_.rest(link_.last().time);
   acknowledge();  // a stop now: the tool was where it was to come
+  end_motion();
+}
+
+void RemotePlant::end_motion() {
+  if (coming_ && failure_.empty()) feed();
+  if (runner_.end().reason == plant::EndReason::ProtectiveStop) {
+    runner_.add({link_.last().time, plant::FaultRaised{plant::EndReason::ProtectiveStop, runner_.end().where}});
+  }
+  stand();
+  if (!failure_.empty()) runner_.stop(plant::EndReason::Fault, 0.0, 0.0, failure_);
+  feedback_ = sensors();
+  runner_.finish(feedback_);
 }
 
 void RemotePlant::begin_motion() {
@@ -325,42 +369,23 @@ void RemotePlant::stand() {
   program_.command.V_WE = Twist{};
 }
 
-plant::Feedback RemotePlant::submit(const plant::Motion& motion, const plant::OnPassing& passing) {
-  const auto refuse_motion = [&](const std::string& why) {
-    read_sensors({}, {plant::EndReason::Refused, -1, 0.0, 0.0, why});
-    return feedback_;
+void RemotePlant::start(const plant::Motion& motion) {
+  const auto refuse_motion = [&](std::string why) {
+    feedback_ = sensors();
+    runner_.refuse(std::move(why), feedback_);
   };
   if (is_stopped_) return refuse_motion("a protective stop is not acknowledged");
   if (!failure_.empty()) return refuse_motion("the plant has failed: " + failure_);
-  const std::string refusal = plant::find_refusal(motion);
+  const std::string refusal = plant::MotionRunner::find_refusal(motion);
   if (!refusal.empty()) return refuse_motion(refusal);
-  motion::PreparedProgram plan;
   try {
-    plan = cell::prepare(scenario_, sequence_, options_.motions, {"motion", motion.waypoints});
-    plan.path_limits = pace_.get();
+    plan_ = cell::prepare(scenario_, sequence_, options_.motions, {"motion", motion.waypoints});
+    plan_.path_limits = pace_.get();
   } catch (const InputError& error) {
     return refuse_motion(error.what());
   }
   begin_motion();
-  plant::MotionWatch course;
-  course.settings = scenario_.motion_guards;
-  course.begin(reading(), is_active(link_.last_of_robot(), click::kHoldingSensor));
-  bool was_passed = false, goes_on = true;
-  while (goes_on && advance(motion, plan, course)) {
-    if (!passing.act || was_passed || course.row <= passing.waypoint) continue;
-    was_passed = true;
-    tick_ = [&] { goes_on = goes_on && advance(motion, plan, course); };
-    passing.act();
-    tick_ = nullptr;
-  }
-  if (course.end.reason == plant::EndReason::Completed) {
-    course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
-    settle(plan, was_passed, course);
-  }
-  stand();
-  if (!failure_.empty()) course.end = {plant::EndReason::Fault, course.end.waypoint, 0.0, 0.0, failure_};
-  read_sensors(course, course.end);
-  return feedback_;
+  runner_.begin(motion, reading(), is_active(link_.last_of_robot(), click::kHoldingSensor));
 }
 
 std::string RemotePlant::finish() { return failure_.empty() ? client_.reset() : failure_; }

@@ -1,17 +1,15 @@
 // RemotePlant: a cell that another program serves over CLICK, behind the interface of a plant.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "snug/cell/simulation.hpp"
 #include "snug/click/joint_link.hpp"
 #include "snug/perception/perception.hpp"
-#include "snug/plant/motion_watch.hpp"
+#include "snug/plant/motion_runner.hpp"
 
 namespace snug::remote_plant {
 
@@ -36,11 +34,13 @@ class RemotePlant final : public plant::Plant {
   RemotePlant(const model::Scenario& scenario, const std::string& sequence, const RemotePlantOptions& options);
 
   [[nodiscard]] plant::Description describe() const override;
-  [[nodiscard]] plant::Feedback read() override { return feedback_; }
-  [[nodiscard]] bool bring(const std::string& item) override;
-  using plant::Plant::submit;
-  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion, const plant::OnPassing& passing) override;
-  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override;
+  [[nodiscard]] plant::Feedback read() override;
+  [[nodiscard]] bool is_moving() const override { return runner_.is_moving(); }
+  void start(const plant::Motion& motion) override;
+  [[nodiscard]] std::vector<plant::Event> advance() override;
+  void cancel() override;
+  [[nodiscard]] bool bring(const model::ParcelId& item) override;
+  void perceive(std::span<const perception::Expectation> expected) override;
   void acknowledge() override;
 
   /// What the object sensors said last, for each item of the sequence; nothing of those that are not in the cell.
@@ -56,15 +56,20 @@ class RemotePlant final : public plant::Plant {
   void take_over_tracking();
   [[nodiscard]] click::Control make_control();
   [[nodiscard]] bool send(const click::Control& control);
-  [[nodiscard]] plant::End step(const motion::PreparedProgram& plan);
-  [[nodiscard]] bool advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
-                             plant::MotionWatch& course);
-  void settle(const motion::PreparedProgram& plan, bool was_passed, plant::MotionWatch& course);
+  void step();
+  [[nodiscard]] control::MachineTick command_tick();
+  /// The last waypoint was reached and the tool stands.
+  void finish_settling();
+  void end_motion();
   void begin_motion();
   void stand();
   void fail(std::string why);
   [[nodiscard]] plant::TickReading reading() const;
-  void read_sensors(const plant::MotionWatch& course, const plant::End& end);
+  [[nodiscard]] plant::Feedback sensors() const;
+  /// With a Control of its own: the robot stands.
+  void feed();
+  [[nodiscard]] std::size_t put_coming(click::Control& control);
+  void note_arrival(std::size_t item);
   [[nodiscard]] std::optional<perception::SceneBox> box_of(std::size_t item) const;
 
   RemotePlantOptions options_;
@@ -82,11 +87,12 @@ class RemotePlant final : public plant::Plant {
   plant::Feedback feedback_;
   std::vector<std::string> names_;  ///< of the items' objects
   std::vector<bool> was_brought_;
-  /// Object and its events, of an item that is brought with the next tick of the motion under way.
-  std::optional<std::pair<std::string, click::Named<bool>>> fed_;
-  std::function<void()> tick_;  ///< of the motion under way: the next one; empty while the robot stands
+  std::optional<std::size_t> coming_;  ///< item that comes with the next tick
+  motion::PreparedProgram plan_;       ///< of the motion under way
+  plant::MotionRunner runner_;
   bool has_commanded_ = false;
   bool is_stopped_ = false;
+  std::string trouble_;  ///< of the last tick: why it stopped
   std::string failure_;  ///< why no motion can follow
 };
 

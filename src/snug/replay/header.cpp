@@ -279,6 +279,7 @@ Json result_as_json(const HeaderInput& input, const std::optional<runs::RunResul
           {"filling_degree_percent", result ? Json(result->filling_degree_percent) : Json()},
           {"packed", std::move(packed)},
           {"failure", result ? result->failure.text : ""},
+          {"ended_by", result ? result->ended_by : ""},
           {"warnings", result ? Json(result->warnings) : Json::array()},
           {"report_table7", reported_as_json(scenario, input.header->sequence)}};
 }

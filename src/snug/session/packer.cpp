@@ -1,5 +1,6 @@
 // Packer: what is known of an item, where it goes, and which way of bringing it there is sent.
 #include "snug/session/packer.hpp"
+#include "snug/plant/wait.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -131,7 +132,7 @@ bool Packer::is_seen_outside(const std::string& id) const {
 
 perception::Observation Packer::take_picture(std::span<const perception::Expectation> expected, bool stays,
                                              ItemReport& report) {
-  perception::Observation seen = plant_.perceive(expected);
+  perception::Observation seen = plant::observe(plant_, expected);
   Situation at;
   while (seen.fault != perception::LookFault::None && !stop_reason_) {
     const bool is_blocked = seen.fault == perception::LookFault::ViewBlocked;
@@ -143,7 +144,7 @@ perception::Observation Packer::take_picture(std::span<const perception::Expecta
     if (remedy == Remedy::Stop) stop_reason_ = StopReason::ViewBlocked;
     if (remedy == Remedy::Stop || remedy == Remedy::Believe) break;
     if (remedy == Remedy::MoveAway) move_home(report);
-    seen = plant_.perceive(expected);
+    seen = plant::observe(plant_, expected);
   }
   return seen;
 }

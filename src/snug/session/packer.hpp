@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "snug/plant/event.hpp"
 #include "snug/session/reach.hpp"
 #include "snug/session/session.hpp"
 
@@ -79,8 +80,22 @@ class Packer {
     std::future<PlanResult> planning;
     std::optional<PlanResult> planned;
   };
-  /// The item that was sent comes to its place as planned: the next one is brought, looked at, and its planning begun.
-  void look_ahead(int item, const Attempt& attempt, const std::vector<std::optional<Pose>>& before, ItemReport& report);
+  /// The motion with which an item comes to its place, and what is done while the tool leaves it: the boxes are
+  /// perceived; where it went as planned the next item is brought, perceived, and its planning begun.
+  struct Leaving {
+    enum class Stage { Inserts, PerceivesItem, BringsNext, PerceivesNext, Done };
+    int item = 0;
+    const Attempt& attempt;
+    const std::vector<std::optional<Pose>>& before;
+    ItemReport& report;
+    motion::WaypointIndex waypoint;  ///< of the motion: over the box that was let go
+    Stage stage = Stage::Inserts;
+  };
+  void look_ahead(Leaving& leaving, const plant::Event& event);
+  void bring_next(Leaving& leaving, const perception::Observation& seen);
+  void plan_next(const Attempt& attempt, const perception::Observation& seen, double time);
+  /// Whether a look told what it was to, and nothing new; then it is believed.
+  [[nodiscard]] bool take_in_if_plain(const perception::Observation& seen, const ItemReport& report);
   /// The motion has ended.
   void finish_planning_ahead();
   /// None where it is not known, or the item is not to be followed by another.
@@ -142,7 +157,7 @@ class Packer {
   [[nodiscard]] double utility_of(const packing::Candidate& candidate, double rate, double cost) const;
   [[nodiscard]] bool is_enough(const std::optional<Attempt>& best, int attempts) const;
   void submit(const std::string& id, std::vector<motion::Waypoint> waypoints, const plant::Guards& guards,
-              ItemReport& report, const plant::OnPassing& passing = {});
+              ItemReport& report, Leaving* leaving = nullptr);
   /// Stage by stage. False when the box was let go on the way and does not stand where the plan needs it.
   [[nodiscard]] bool send(const Attempt& attempt, const std::vector<std::optional<Pose>>& before, ItemReport& report);
   /// The box met more than it should on the way to its place.

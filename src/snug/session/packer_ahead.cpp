@@ -46,29 +46,55 @@ std::optional<Pose> Packer::tool_after(int item, const packing::ContainerState& 
                                   travel_bottom(layout_, obstacle_top(item)));
 }
 
-void Packer::look_ahead(int item, const Attempt& attempt, const std::vector<std::optional<Pose>>& before,
-                        ItemReport& report) {
-  const ComingItem* next = follower_of(item);
-  if (next == nullptr || (options_.is_interrupted && options_.is_interrupted())) return;
-  const auto look_plainly = [&](const ItemReport& own) {
-    const perception::Observation seen = plant_.perceive(belief_.expectations());
-    const bool is_plain =
-        seen.fault == perception::LookFault::None && seen.missing.empty() && !belief_.has_new_obstacle(seen);
-    if (is_plain) take_in(seen, own);
-    return is_plain;  // else it is looked at again when the tool stands
-  };
-  if (!look_plainly(report) || assess(item, attempt.planned, before, report) != Trouble::None) return;
-  const std::string& id = items_[static_cast<std::size_t>(next->item)].id;
-  if (!plant_.bring(id)) return;
-  belief_.weigh(item);
-  belief_.arrives(next->item);
-  Ahead& ahead = ahead_.emplace(next->item, id);
-  ahead.is_seen = look_plainly(ahead.report);
-  if (!ahead.is_seen || is_gone(id) || is_wrong(next->item)) return;
-  ahead.since = plant_.read().time;
+void Packer::look_ahead(Leaving& leaving, const plant::Event& event) {
+  using Stage = Leaving::Stage;
+  if (const auto* passed = plant::get<plant::WaypointPassed>(event)) {
+    const bool is_followed = follower_of(leaving.item) != nullptr;
+    if (passed->waypoint != leaving.waypoint || !is_followed) return;
+    if (options_.is_interrupted && options_.is_interrupted()) return;
+    plant_.perceive(belief_.expectations());
+    leaving.stage = Stage::PerceivesItem;
+  } else if (const auto* seen = plant::get<plant::Perceived>(event)) {
+    if (leaving.stage == Stage::PerceivesItem) return bring_next(leaving, seen->observation);
+    leaving.stage = Stage::Done;
+    plan_next(leaving.attempt, seen->observation, event.time);
+  } else if (plant::get<plant::ItemArrived>(event) != nullptr) {
+    plant_.perceive(belief_.expectations());
+    leaving.stage = Stage::PerceivesNext;
+  } else if (plant::get<plant::FaultRaised>(event) != nullptr) {
+    if (leaving.stage == Stage::BringsNext) leaving.stage = Stage::Done;
+  }
+}
+
+bool Packer::take_in_if_plain(const perception::Observation& seen, const ItemReport& report) {
+  const bool is_plain =
+      seen.fault == perception::LookFault::None && seen.missing.empty() && !belief_.has_new_obstacle(seen);
+  if (is_plain) take_in(seen, report);
+  return is_plain;  // else it is looked at again when the tool stands
+}
+
+void Packer::bring_next(Leaving& leaving, const perception::Observation& seen) {
+  leaving.stage = Leaving::Stage::Done;
+  if (!take_in_if_plain(seen, leaving.report)) return;
+  if (assess(leaving.item, leaving.attempt.planned, leaving.before, leaving.report) != Trouble::None) return;
+  const ComingItem& next = *follower_of(leaving.item);
+  const std::string& id = items_[static_cast<std::size_t>(next.item)].id;
+  if (!plant_.bring(model::ParcelId(id))) return;
+  leaving.stage = Leaving::Stage::BringsNext;
+  belief_.weigh(leaving.item);
+  belief_.arrives(next.item);
+  ahead_.emplace(next.item, id);
+}
+
+void Packer::plan_next(const Attempt& attempt, const perception::Observation& seen, double time) {
+  Ahead& ahead = *ahead_;
+  ahead.is_seen = take_in_if_plain(seen, ahead.report);
+  if (!ahead.is_seen || is_gone(ahead.report.id) || is_wrong(ahead.item)) return;
+  const ComingItem& next = *std::ranges::find(coming_, ahead.item, &ComingItem::item);
+  ahead.since = time;
   ahead.robot.X_WE = attempt.program.waypoints.back().X_WE;
   ahead.robot.q = attempt.q_end;
-  ahead.planning = std::async(std::launch::async, [this, agent = next->agent] {
+  ahead.planning = std::async(std::launch::async, [this, agent = next.agent] {
     return plan(ahead_->item, *agent, ahead_->robot, ahead_->report);
   });
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "snug/core/stopwatch.hpp"
+#include "snug/plant/wait.hpp"
 #include "snug/session/packer.hpp"
 
 namespace snug::session {
@@ -32,10 +33,25 @@ std::vector<std::optional<Pose>> Packer::believed_poses() const {
 }
 
 void Packer::submit(const std::string& id, std::vector<motion::Waypoint> waypoints, const plant::Guards& guards,
-                    ItemReport& report, const plant::OnPassing& passing) {
+                    ItemReport& report, Leaving* leaving) {
   last_ = std::move(waypoints);
   sent_.waypoints.insert(sent_.waypoints.end(), last_.begin(), last_.end());
-  robot_ = plant_.submit({id, last_, guards}, passing);
+  plant::Motion motion{model::ParcelId(id), last_, guards, {}};
+  if (leaving != nullptr) motion.perceive_after = leaving->waypoint;
+  plant_.start(motion);
+  bool has_ended = false;
+  const auto is_busy = [&] {
+    return leaving != nullptr && leaving->stage != Leaving::Stage::Inserts && leaving->stage != Leaving::Stage::Done;
+  };
+  while (!has_ended || is_busy()) {
+    for (const plant::Event& event : plant_.advance()) {
+      if (const auto* ended = plant::get<plant::MotionEnded>(event)) {
+        robot_ = ended->feedback;
+        has_ended = true;
+      }
+      if (leaving != nullptr) look_ahead(*leaving, event);
+    }
+  }
   finish_planning_ahead();
   report.seconds += split_seconds(last_, robot_.times);
   report.happened.force = std::max(report.happened.force, robot_.peak_force);
@@ -46,8 +62,8 @@ bool Packer::was_stopped_by_load() const {
   const plant::EndReason reason = robot_.end.reason;
   const bool is_of_load = reason == plant::EndReason::ForceGuard || reason == plant::EndReason::VacuumLost ||
                           reason == plant::EndReason::HoldGuard || reason == plant::EndReason::ProtectiveStop;
-  if (!is_of_load || robot_.end.waypoint < 0) return false;
-  const MotionClass at = last_[static_cast<std::size_t>(robot_.end.waypoint)].motion_class;
+  if (!is_of_load || !robot_.end.waypoint) return false;
+  const MotionClass at = last_[robot_.end.waypoint->slot()].motion_class;
   return at == MotionClass::Place || at == MotionClass::PlaceSlow;
 }
 
@@ -58,18 +74,18 @@ bool Packer::send(const Attempt& attempt, const std::vector<std::optional<Pose>>
   for (std::size_t stage = 0; stage <= attempt.looks.size(); ++stage) {
     const bool is_last = stage == attempt.looks.size();
     const std::size_t end = is_last ? all.size() : attempt.looks[stage];
-    plant::OnPassing passing;
+    std::optional<Leaving> leaving;
     if (is_last) {
       belief_.expect(attempt.ends);
       if (attempt.leaves) {
-        passing = {static_cast<int>(*attempt.leaves - begin), [&] { look_ahead(item, attempt, before, report); }};
+        leaving.emplace(Leaving{item, attempt, before, report, motion::WaypointIndex(*attempt.leaves - begin)});
       }
     } else {
       belief_.expect_on_the_way(item, attempt.looked[stage]);
     }
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
     submit(report.id, {first, all.begin() + static_cast<std::ptrdiff_t>(end)},
-           {limits_.force, true, limits_.hold_guard}, report, passing);
+           {limits_.force, true, limits_.hold_guard}, report, leaving ? &*leaving : nullptr);
     if (was_stopped_by_load()) belief_.stiffen();
     if (robot_.end.reason != plant::EndReason::Completed || is_last) return true;
     look(report, true);
@@ -171,7 +187,7 @@ ItemReport Packer::bring_in(int item, packing::Agent& agent) {
     planned = std::move(ahead->planned);
   }
   report.begin = robot_.time;
-  if (!ahead && !plant_.bring(report.id)) {
+  if (!ahead && !plant::bring_and_wait(plant_, model::ParcelId(report.id))) {
     report.end = ItemEnd::NotBrought;
     report.reason = "the plant does not bring it";
     const plant::End end = plant_.read().end;

@@ -35,6 +35,7 @@ Trouble trouble_of(plant::EndReason reason) {
       return Trouble::ProtectiveStop;
     case plant::EndReason::Timeout:
       return Trouble::Timeout;
+    case plant::EndReason::Cancelled:
     case plant::EndReason::Refused:
     case plant::EndReason::Fault:
       return Trouble::PlantFault;
@@ -104,7 +105,8 @@ Situation Packer::situation_of(int item, Trouble trouble, packing::Agent& agent,
 
 void Packer::resume(const std::string& id, ItemReport& report) {
   plant_.acknowledge();
-  const std::vector<motion::Waypoint> rest(last_.begin() + std::max(0, robot_.end.waypoint), last_.end());
+  const std::vector<motion::Waypoint> rest(last_.begin() + robot_.end.waypoint.value_or(motion::WaypointIndex()).value,
+                                           last_.end());
   submit(id, rest, {limits_.force, true, limits_.hold_guard}, report);
 }
 

@@ -78,7 +78,7 @@ void SimulatedPlant::move_aside(int item, FaultKind kind) {
                    1e3 * (best.p.z() - X_WP.p.z())));
 }
 
-void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
+void SimulatedPlant::inject() {
   if (current_ < 0) return;
   const cell::CellWorld& world = simulation_.world();
   const physics::BodyId body = world.parcels[static_cast<std::size_t>(current_)];
@@ -94,22 +94,24 @@ void SimulatedPlant::inject(const motion::PreparedProgram& plan, plant::MotionWa
   if (is_carried && pending_.stop) {
     pending_.stop = false;
     note("stop", current_, "protective stop");
-    course.end = {plant::EndReason::ProtectiveStop, course.row, 0.0, 0.0, "injected"};
+    runner_.stop(plant::EndReason::ProtectiveStop, 0.0, 0.0, "injected");
   }
   if (is_carried && pending_.drop) {
     pending_.drop = false;
     break_suction();
     note("drop", current_, "it falls from the cup");
   }
-  if (!is_let_go(plan)) return;
-  while (pending_.displace || pending_.push) move_boxes(plan, course);
-  if (put_and_take_objects()) {
-    settle(plan, course, Until::BoxesRest);
-    objects_.note_rest();
-  }
+  if (is_let_go()) inject_let_go();
 }
 
-bool SimulatedPlant::is_let_go(const motion::PreparedProgram& plan) const {
+void SimulatedPlant::inject_let_go() {
+  while (pending_.displace || pending_.push) {
+    if (move_boxes()) return begin_rest(false);
+  }
+  if (put_and_take_objects()) begin_rest(true);
+}
+
+bool SimulatedPlant::is_let_go() const {
   const cell::CellWorld& world = simulation_.world();
   const physics::BodyId body = world.parcels[static_cast<std::size_t>(current_)];
   // The last motion of an item ends with the box let go and the tool over it, or leaves from there.
@@ -117,13 +119,12 @@ bool SimulatedPlant::is_let_go(const motion::PreparedProgram& plan) const {
   if (container == nullptr || !state_.world.bodies[static_cast<std::size_t>(body.index)].is_present) return false;
   const Vector3 p_TP = container->X_WT.inverse() * physics::pose_of(world.model, state_.world, body).p;
   const bool is_in = p_TP.z() > 0.0 && (p_TP.cwiseAbs() - 0.5 * container->inner_size).head<2>().maxCoeff() < 0.0;
-  return is_in && plan.program.waypoints.back().motion_class == motion::MotionClass::PostPlace &&
+  return is_in && plan_.program.waypoints.back().motion_class == motion::MotionClass::PostPlace &&
          state_.gripper.cup.body != body.index &&
-         (state_.controller.phase == motion::ControllerPhase::Finished ||
-          (passed_ && state_.controller.row > *passed_));
+         (state_.controller.phase == motion::ControllerPhase::Finished || runner_.has_passed_perception());
 }
 
-void SimulatedPlant::move_boxes(const motion::PreparedProgram& plan, plant::MotionWatch& course) {
+bool SimulatedPlant::move_boxes() {
   const cell::CellWorld& world = simulation_.world();
   int item = current_;
   if (pending_.push && !pending_.displace) {
@@ -142,9 +143,9 @@ void SimulatedPlant::move_boxes(const motion::PreparedProgram& plan, plant::Moti
   }
   const FaultKind kind = pending_.displace ? FaultKind::Displace : FaultKind::Push;
   (pending_.displace ? pending_.displace : pending_.push) = false;
-  if (item < 0) return;
+  if (item < 0) return false;
   move_aside(item, kind);
-  settle(plan, course, Until::BoxesRest);
+  return true;
 }
 
 bool SimulatedPlant::put_and_take_objects() {

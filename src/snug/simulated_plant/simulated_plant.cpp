@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "snug/cell/drawn_scenario.hpp"
-#include "snug/cell/rest_watch.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/phases.hpp"
 #include "snug/perception/camera_perception.hpp"
+#include "snug/simulated_plant/live_recording.hpp"
 
 namespace snug::simulated_plant {
 
@@ -32,8 +32,9 @@ SimulatedPlant::SimulatedPlant(const model::Scenario& scenario, const std::strin
       work_(simulation_.make_workspace()),
       objects_(simulation_, options.faults, options.seed),
       perception_(perception::make_perception(options.perception, options.seed, scenario)),
-      was_brought_(simulation_.sequence().items.size(), false) {
-  read_sensors({}, {});
+      was_brought_(simulation_.sequence().items.size(), false),
+      runner_(plant::runner_settings(simulation_.scenario(), !motion::is_fast(options.simulation.tracking))) {
+  feedback_ = sensors();
 }
 
 plant::Description SimulatedPlant::describe() const {
@@ -56,19 +57,30 @@ int SimulatedPlant::item_of(const std::string& id) const {
   return found == items.end() ? -1 : static_cast<int>(found - items.begin());
 }
 
-bool SimulatedPlant::bring(const std::string& item) {
-  const int index = item_of(item);
+double SimulatedPlant::tool_speed() const {
+  return (state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE).linear.norm();
+}
+
+bool SimulatedPlant::bring(const model::ParcelId& item) {
+  const int index = item_of(item.value);
   if (index < 0 || was_brought_[static_cast<std::size_t>(index)]) return false;
-  calls_.push_back({Call::Kind::Bring, item, {}, tick_ ? *passed_ : -1});
+  if (coming_) feed();  // one that comes in the same tick, before it
   was_brought_[static_cast<std::size_t>(index)] = true;
-  simulation_.bring(index, state_);
-  if (!tick_) {
-    begin_item(index);
-    return true;
-  }
-  arrived_ = index;
-  tick_();
+  coming_ = index;
+  if (!is_moving()) feed();
   return true;
+}
+
+void SimulatedPlant::feed() {
+  const int index = *std::exchange(coming_, std::nullopt);
+  simulation_.bring(index, state_);
+  if (is_moving()) {
+    arrived_ = index;
+  } else {
+    begin_item(index);
+  }
+  const std::string& id = simulation_.sequence().items[static_cast<std::size_t>(index)].parcel;
+  runner_.add({time(), plant::ItemArrived{model::ParcelId(id)}});
 }
 
 void SimulatedPlant::begin_item(int index) {
@@ -91,12 +103,11 @@ void SimulatedPlant::begin_item(int index) {
 }
 
 void SimulatedPlant::acknowledge() {
-  calls_.push_back({Call::Kind::Acknowledge, {}, {}, -1});
   if (is_stopped_) simulation_.acknowledge(work_, state_);
   is_stopped_ = false;
 }
 
-perception::Observation SimulatedPlant::perceive(std::span<const perception::Expectation> expected) {
+void SimulatedPlant::perceive(std::span<const perception::Expectation> expected) {
   perception::Scene scene;
   scene.time = simulation_.time(state_);
   scene.X_WE = X_WE();
@@ -113,28 +124,33 @@ perception::Observation SimulatedPlant::perceive(std::span<const perception::Exp
     if (one.is_in)
       scene.objects.push_back({one.name, physics::pose_of(world.model, state_.world, one.body), kForeignSize});
   }
-  return perception_->perceive(scene, expected);
+  runner_.add({scene.time, plant::Perceived{perception_->perceive(scene, expected)}});
 }
 
-void SimulatedPlant::read_sensors(const plant::MotionWatch& course, const plant::End& end) {
-  feedback_ = {};
-  feedback_.time = simulation_.time(state_);
-  feedback_.end = end;
-  feedback_.X_WE = X_WE();
-  feedback_.V_WE = state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE;
+plant::Feedback SimulatedPlant::sensors() const {
+  plant::Feedback fed;
+  fed.time = time();
+  fed.X_WE = X_WE();
+  fed.V_WE = state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE;
   if (state_.arm) {
     const auto& joints = state_.arm->machine.joints;
-    feedback_.q.assign(joints.q.begin(), joints.q.end());
-    feedback_.qd.assign(joints.qd.begin(), joints.qd.end());
-    for (const record::JointSample& joint : work_.arm.joints) feedback_.torques.push_back(joint.torque);
-    feedback_.torques.resize(feedback_.q.size(), 0.0);
+    fed.q.assign(joints.q.begin(), joints.q.end());
+    fed.qd.assign(joints.qd.begin(), joints.qd.end());
+    for (const record::JointSample& joint : work_.arm.joints) fed.torques.push_back(joint.torque);
+    fed.torques.resize(fed.q.size(), 0.0);
   }
-  feedback_.pressure_gauge = state_.gripper.cup.pressure_gauge;
-  feedback_.F_E = simulation_.tool_load(state_, work_);
-  feedback_.peak_force = std::max(course.peak_force, feedback_.F_E.force.norm());
-  feedback_.peak_torque = std::max(course.peak_torque, feedback_.F_E.torque.norm());
-  feedback_.io = state_.controller.io;
-  feedback_.times = course.times;
+  fed.pressure_gauge = state_.gripper.cup.pressure_gauge;
+  fed.F_E = simulation_.tool_load(state_, work_);
+  fed.io = state_.controller.io;
+  return fed;
+}
+
+plant::Feedback SimulatedPlant::read() {
+  if (!is_moving()) return feedback_;
+  plant::Feedback now = sensors();
+  now.end = feedback_.end;
+  runner_.fill(now);
+  return now;
 }
 
 plant::TickReading SimulatedPlant::reading() const {
@@ -144,105 +160,141 @@ plant::TickReading SimulatedPlant::reading() const {
           cup::sensed_hold_factor(simulation_.scenario().cup, pressure, F_E)};
 }
 
-bool SimulatedPlant::advance(const plant::Motion& motion, const motion::PreparedProgram& plan,
-                             plant::MotionWatch& course) {
-  if (simulation_.is_at_end(plan, state_)) return false;
-  const cell::CellTick tick = simulation_.advance(plan, state_, work_);
-  objects_.watch(state_, work_);
-  const auto row = static_cast<std::size_t>(std::max(0, tick.row));
-  witness_.follow(simulation_, state_, work_, plan.program.waypoints[row], plan.settings.tick);
-  course.follow(tick.row, simulation_.time(state_), state_.controller.phase == motion::ControllerPhase::Waiting);
-  if (watcher_) watcher_(tick);
-  inject(plan, course);
-  course.check(
-      motion.guards,
-      simulation_.scenario().motion_guards.needed_vacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold,
-      reading());
-  if (!state_.controller.io.vacuum) state_.gripper.cannot_seal = false;
-  if (tick.failure.kind == cell::FailureKind::ProtectiveStop) {
-    const cell::ProtectiveStop& stop = *work_.arm.stop;
-    course.end = {plant::EndReason::ProtectiveStop, tick.row, stop.value, stop.limit,
-                  std::string(name_of(stop.cause)) + " of " + stop.where};
-  } else if (tick.failure) {
-    fail(tick, course);
-  }
-  is_stopped_ |= course.end.reason == plant::EndReason::ProtectiveStop;
-  return course.end.reason == plant::EndReason::Completed;
-}
-
-/// The simulation cannot go on.
-void SimulatedPlant::fail(const cell::CellTick& tick, plant::MotionWatch& course) {
-  course.end = {plant::EndReason::Fault, tick.row, 0.0, 0.0, tick.failure.text};
-  has_failed_ = true;
-}
-
-void SimulatedPlant::settle(const motion::PreparedProgram& plan, plant::MotionWatch& course, Until until) {
-  const settings::MotionGuards& guards = simulation_.scenario().motion_guards;
-  const double start = simulation_.time(state_);
-  cell::RestWatch rest(start);
-  const auto speed = [this] {
-    return (state_.arm ? state_.arm->machine.tool.V_WE : state_.controller.command.V_WE).linear.norm();
-  };
-  const bool is_fast = motion::is_fast(options_.simulation.tracking);
-  const auto has_to_wait = [&](double now) {
-    return until == Until::BoxesRest && now < start + guards.longest_settle && !rest.is_at_rest(now);
-  };
-  const double at_least = plant::least_settle(guards, !is_fast, was_passed_ && until == Until::ToolStands);
-  while (plant::is_settling(guards, at_least, start, simulation_.time(state_), speed()) ||
-         has_to_wait(simulation_.time(state_))) {
-    const cell::CellTick tick = simulation_.advance(plan, state_, work_);
-    rest.follow(simulation_, state_);
-    objects_.watch(state_, work_);
-    if (watcher_) watcher_(tick);
-    if (!tick.failure) continue;
-    if (tick.failure.kind != cell::FailureKind::ProtectiveStop)
-      fail(tick, course);  // a stop now: the tool was where it was to come
-    break;
-  }
-  course.rest(simulation_.time(state_));
-}
-
-plant::Feedback SimulatedPlant::submit(const plant::Motion& motion, const plant::OnPassing& passing) {
-  calls_.push_back({Call::Kind::Submit, {}, motion, passing.act ? passing.waypoint : -1});
-  const auto refuse = [&](const std::string& why) {
-    read_sensors({}, {plant::EndReason::Refused, -1, 0.0, 0.0, why});
-    return feedback_;
+void SimulatedPlant::start(const plant::Motion& motion) {
+  if (recording_ != nullptr) recording_->begin_motion(motion.waypoints);
+  const auto refuse = [&](std::string why) {
+    feedback_ = sensors();
+    runner_.refuse(std::move(why), feedback_);
   };
   if (is_stopped_) return refuse("a protective stop is not acknowledged");
   if (has_failed_) return refuse("the plant has failed");
-  const std::string refusal = plant::find_refusal(motion);
+  const std::string refusal = plant::MotionRunner::find_refusal(motion);
   if (!refusal.empty()) return refuse(refusal);
-  motion::PreparedProgram plan;
   try {
-    plan = simulation_.prepare({"motion", motion.waypoints});
+    plan_ = simulation_.prepare({"motion", motion.waypoints});
   } catch (const InputError& error) {
     return refuse(error.what());
   }
   if (arrived_ >= 0) begin_item(arrived_);
   simulation_.begin_motion(state_);
   witness_.stand();
-  plant::MotionWatch course;
-  course.settings = simulation_.scenario().motion_guards;
-  course.begin(reading(), state_.gripper.cup.body >= 0);
-  passed_ = passing.act ? std::optional(passing.waypoint) : std::nullopt;
-  was_passed_ = false;
-  bool goes_on = true;
-  while (goes_on && advance(motion, plan, course)) {
-    if (!passed_ || was_passed_ || course.row <= *passed_) continue;
-    was_passed_ = true;
-    tick_ = [&] { goes_on = goes_on && advance(motion, plan, course); };
-    passing.act();
-    tick_ = nullptr;
+  runner_.begin(motion, reading(), state_.gripper.cup.body >= 0);
+}
+
+std::vector<plant::Event> SimulatedPlant::advance() {
+  if (is_moving() && !runner_.has_events()) step();
+  return runner_.take_events();
+}
+
+void SimulatedPlant::cancel() {
+  if (!is_moving()) return;
+  runner_.stop(plant::EndReason::Cancelled);
+  end_motion();
+}
+
+void SimulatedPlant::step() {
+  if (rest_) return step_rest();
+  if (runner_.phase() == plant::MotionPhase::Following && simulation_.is_at_end(plan_, state_)) runner_.arrive(time());
+  if (runner_.phase() == plant::MotionPhase::Settling && runner_.is_settled(time(), tool_speed())) {
+    return finish_settling();
   }
-  passed_.reset();
-  if (course.end.reason == plant::EndReason::Completed) {
-    course.end.waypoint = static_cast<int>(motion.waypoints.size()) - 1;
-    settle(plan, course);
-    inject(plan, course);
+  tick();
+}
+
+cell::CellTick SimulatedPlant::advance_cell() {
+  if (coming_) feed();
+  last_tick_ = simulation_.advance(plan_, state_, work_);
+  objects_.watch(state_, work_);
+  return *last_tick_;
+}
+
+void SimulatedPlant::tick() {
+  const cell::CellTick tick = advance_cell();
+  if (runner_.phase() == plant::MotionPhase::Settling) {
+    if (recording_ != nullptr) recording_->add_tick();
+    if (!tick.failure) return;
+    if (tick.failure.kind != cell::FailureKind::ProtectiveStop) fail(tick);
+    return finish_settling();  // after a stop, too: the tool was where it was to come
   }
+  const int waypoint = std::max(0, tick.row);
+  witness_.follow(simulation_, state_, work_, plan_.program.waypoints[static_cast<std::size_t>(waypoint)],
+                  plan_.settings.tick);
+  runner_.follow(
+      {motion::WaypointIndex(waypoint), time(), state_.controller.phase == motion::ControllerPhase::Waiting});
+  if (recording_ != nullptr) recording_->add_tick();
+  inject();
+  if (!rest_) finish_tick(tick);
+}
+
+void SimulatedPlant::finish_tick(const cell::CellTick& tick) {
+  runner_.check(reading());
+  if (!state_.controller.io.vacuum) state_.gripper.cannot_seal = false;
+  if (tick.failure.kind == cell::FailureKind::ProtectiveStop) {
+    const cell::ProtectiveStop& stop = *work_.arm.stop;
+    runner_.stop(plant::EndReason::ProtectiveStop, stop.value, stop.limit,
+                 std::string(name_of(stop.cause)) + " of " + stop.where);
+  } else if (tick.failure) {
+    fail(tick);
+  }
+  if (runner_.has_ended()) end_motion();
+}
+
+/// The simulation cannot go on.
+void SimulatedPlant::fail(const cell::CellTick& tick) {
+  runner_.stop(plant::EndReason::Fault, 0.0, 0.0, tick.failure.text);
+  has_failed_ = true;
+}
+
+void SimulatedPlant::finish_settling() {
+  runner_.rest(time());
+  inject();
+  if (!rest_) end_motion();
+}
+
+void SimulatedPlant::end_motion() {
+  if (coming_) feed();
+  if (rest_ && rest_->has_objects) objects_.note_rest();
+  rest_.reset();
+  const plant::End& end = runner_.end();
+  const bool has_stopped = end.reason == plant::EndReason::ProtectiveStop;
+  if (has_stopped || end.reason == plant::EndReason::Fault) {
+    runner_.add({time(), plant::FaultRaised{end.reason, end.where}});
+  }
+  is_stopped_ = is_stopped_ || has_stopped;
   simulation_.stand(state_);
-  read_sensors(course, course.end);
-  return feedback_;
+  feedback_ = sensors();
+  runner_.finish(feedback_);
+}
+
+void SimulatedPlant::begin_rest(bool has_objects) {
+  rest_ = Rest{time(), cell::RestWatch(time()), has_objects, *last_tick_};
+}
+
+void SimulatedPlant::step_rest() {
+  const settings::MotionGuards& guards = runner_.settings().guards;
+  const double at_least = runner_.settings().is_lagged ? guards.lagged_settle : guards.exact_settle;
+  const double now = time();
+  const bool is_settling = now <= rest_->start + at_least || tool_speed() >= guards.still_speed;
+  bool goes_on = now < rest_->start + guards.longest_settle && (is_settling || !rest_->boxes.is_at_rest(now));
+  if (goes_on) {
+    const cell::CellTick tick = advance_cell();
+    rest_->boxes.follow(simulation_, state_);
+    if (recording_ != nullptr) recording_->add_tick();
+    if (!tick.failure) return;
+    if (tick.failure.kind != cell::FailureKind::ProtectiveStop) fail(tick);
+  }
+  runner_.rest(time());
+  if (rest_->has_objects) objects_.note_rest();
+  const cell::CellTick before = rest_->before;
+  rest_.reset();
+  inject_let_go();
+  if (rest_) {
+    rest_->before = before;
+  } else if (runner_.phase() == plant::MotionPhase::Settling) {
+    end_motion();
+  } else {
+    finish_tick(before);
+  }
 }
 
 }  // namespace snug::simulated_plant

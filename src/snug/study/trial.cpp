@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+
+#include "snug/plant/sent_program.hpp"
 
 namespace snug::study {
 namespace {
@@ -142,13 +145,54 @@ Trial run_trial(const model::Scenario& scenario, const std::string& sequence, co
   return trial;
 }
 
+namespace {
+
+/// What the session has to say goes into the recording when an item is done.
+class RecordedSession {
+ public:
+  RecordedSession(simulated_plant::SimulatedPlant& plant, const model::Scenario& scenario, const TrialFiles& files)
+      : recording_(plant, scenario, *files.recording), describe_(files.describe) {}
+
+  void note(const session::SessionResult& so_far) {
+    for (const record::Event& event : events_of(so_far)) {
+      if (std::ranges::find(noted_, event) != noted_.end()) continue;
+      noted_.push_back(event);
+      recording_.note(event);
+    }
+  }
+  void close(const session::SessionResult& result) {
+    if (result.program.waypoints.empty()) return;  // no file
+    note(result);
+    (void)recording_.close(
+        {warnings_of(result), result.stopped, result.stop_reason == session::StopReason::Interrupted, describe_});
+  }
+
+ private:
+  simulated_plant::LiveRecording recording_;
+  std::function<std::string(const runs::RunResult&)> describe_;
+  std::vector<record::Event> noted_;
+};
+
+}  // namespace
+
 Trial run_trial(const model::Scenario& scenario, const std::string& sequence, const session::SessionOptions& session,
-                const simulated_plant::SimulatedPlantOptions& options, const TrialProgress& progress) {
+                const simulated_plant::SimulatedPlantOptions& options, const TrialProgress& progress,
+                const TrialFiles& files) {
   simulated_plant::SimulatedPlant plant(scenario, sequence, options);
-  Trial trial = run_trial(scenario, sequence, session, plant, truth_of(plant), progress);
+  std::optional<RecordedSession> recorded;
+  if (files.recording) recorded.emplace(plant, scenario, files);
+  std::optional<plant::SentProgram> sent;
+  if (files.program != nullptr) sent.emplace(plant, *files.program, session.simulation.tracking);
+  const auto after_item = [&](const Trial& so_far, int item, int items) {
+    if (recorded) recorded->note(so_far.session);
+    if (progress) progress(so_far, item, items);
+  };
+  plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : plant;
+  Trial trial = run_trial(scenario, sequence, session, packed, truth_of(plant), after_item);
+  if (sent) sent->finish();
+  if (recorded) recorded->close(trial.session);
   trial.plant_seed = options.seed;
   trial.plant = options;
-  trial.calls = plant.calls();
   trial.objects = plant.objects();
   return trial;
 }

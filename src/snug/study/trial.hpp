@@ -2,11 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "snug/session/session.hpp"
-#include "snug/simulated_plant/recorded_run.hpp"
+#include "snug/simulated_plant/live_recording.hpp"
 #include "snug/simulated_plant/simulated_plant.hpp"
 
 namespace snug::study {
@@ -42,17 +43,24 @@ struct Trial {
   std::vector<cell::BoxResult> boxes;
   std::vector<simulated_plant::ForeignObject> objects;  ///< that faults put into the plant
   std::uint64_t state_hash = 0;
-  std::vector<simulated_plant::Call> calls;
   simulated_plant::SimulatedPlantOptions plant;
 };
 
 /// Called after every item; the session and plant so far.
 using TrialProgress = std::function<void(const Trial& so_far, int item, int items)>;
 
+/// What is written while the plant is packed; where nothing was sent no file is made.
+struct TrialFiles {
+  std::optional<simulated_plant::LiveRecordingOptions> recording;
+  std::function<std::string(const runs::RunResult&)> describe;  ///< RecordingEnd::describe
+  OutputFile* program = nullptr;                                ///< plant::SentProgram; not owned
+};
+
 /// Throws InputError as session::pack and SimulatedPlant do.
 [[nodiscard]] Trial run_trial(const model::Scenario& scenario, const std::string& sequence,
                               const session::SessionOptions& session,
-                              const simulated_plant::SimulatedPlantOptions& plant, const TrialProgress& progress = {});
+                              const simulated_plant::SimulatedPlantOptions& plant, const TrialProgress& progress = {},
+                              const TrialFiles& files = {});
 
 /// What the session did, as events of a recording: what it predicted, troubles and remedies, obstacles.
 [[nodiscard]] std::vector<record::Event> events_of(const session::SessionResult& result);

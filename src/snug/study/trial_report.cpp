@@ -45,7 +45,7 @@ Json as_json(const session::AttemptForces& forces) {
 
 Json as_json(const plant::End& end) {
   return {{"reason", plant::name_of(end.reason)},
-          {"waypoint", end.waypoint},
+          {"waypoint", end.waypoint ? end.waypoint->value : -1},
           {"value", end.value},
           {"limit", end.limit},
           {"where", end.where}};
@@ -354,8 +354,9 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
   return json.dump(2) + "\n";
 }
 
-std::string format_plan(const session::SessionResult& result) {
+std::string format_plan(const session::SessionResult& result, bool is_complete) {
   Json plan{{"sequence", result.sequence}, {"agent", result.agent}};
+  if (!is_complete) plan["complete"] = false;
   plan["placements"] = Json::array();
   for (const packing::Placement& placement : result.plan) plan["placements"].push_back(as_json(placement));
   return plan.dump(2) + "\n";

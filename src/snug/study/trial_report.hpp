@@ -19,6 +19,7 @@ namespace snug::study {
 /// The keys are described in docs/packing-execution.md.
 [[nodiscard]] std::string format_json(const study::Trial& trial, const study::MonteCarloResult& repeated);
 /// The placements, in the order of packing.
-[[nodiscard]] std::string format_plan(const session::SessionResult& result);
+/// `is_complete`: the session has ended.
+[[nodiscard]] std::string format_plan(const session::SessionResult& result, bool is_complete);
 
 }  // namespace snug::study

@@ -116,7 +116,7 @@ function eventsOf(source: Source): ReplayEvent[] {
     const numbers: Record<string, number> = {};
     for (let i = firsts[k]!; i < firsts[k]! + counts[k]!; ++i) numbers[names[i]!] = values[i]!;
     return { time, kind: kinds[k] ?? "", body: bodies[k] ?? "", text: texts[k] ?? "", numbers };
-  });
+  }).sort((a, b) => a.time - b.time); // a session says what it did when an item is done
 }
 
 /** Of another version, perhaps: keys may be missing. */
@@ -139,7 +139,7 @@ function resultOf(stored: StoredResult | null): RunResult | null {
   }));
   return {
     boxes, filling_degree_percent: stored.filling_degree_percent ?? null, packed: boxes.filter((box) => box.state === "packed").length,
-    failure: stored.failure ?? null, warnings: stored.warnings ?? [], report_table7: null,
+    failure: stored.failure ?? null, ended_by: stored.ended_by ?? "", warnings: stored.warnings ?? [], report_table7: null,
   };
 }
 
@@ -158,7 +158,8 @@ function headerOf(source: Source, name: string, frames: number, times: Float64Ar
   const links = bodies.flatMap((body, k) => (body.kind !== "dynamic" && body.name.startsWith("robot/") ? [k] : []));
   const [poses, size, container] = [source.numbers("container/pose"), source.numbers("container/inner_size"), source.text("container/name")];
   const steps = source.numbers("step");
-  const rows = source.text("program").split(/\r?\n/).filter((line) => /^[^#]+,/.test(line)).map((line) => line.split(",")[NAME_COLUMN]?.trim() ?? "");
+  const program = source.text("program") || new TextDecoder().decode(Uint8Array.from(source.numbers("program_so_far")));  // the latter: of a run that was killed
+  const rows = program.split(/\r?\n/).filter((line) => /^[^#]+,/.test(line)).map((line) => line.split(",")[NAME_COLUMN]?.trim() ?? "");
   const number = (key: string, fallback: number): number => {
     const value = Number(source.attribute(key));
     return Number.isFinite(value) && value > 0 ? value : fallback;

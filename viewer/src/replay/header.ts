@@ -65,6 +65,7 @@ export interface RunResult {
   filling_degree_percent: number | null;
   packed: number | null;
   failure: string | null;
+  ended_by?: string; // what ended a served run or a session
   warnings?: string[];
   report_table7: {
     filling_percent: number;

@@ -21,9 +21,9 @@ export function flatten(value: unknown, path = ""): [string, string][] {
   return Object.entries(value as Record<string, unknown>).flatMap(([key, inner]) => flatten(inner, path ? `${path}.${key}` : key));
 }
 
-/** Why a packing session ended; empty when nothing was packed by one. */
+/** Why a packing session ended; empty when nothing was packed by one. Older recordings have it in the settings. */
 function endOfSession(replay: Replay): string {
-  const ended = replay.header.settings?.ended;
+  const ended = replay.header.result?.ended_by || replay.header.settings?.ended;
   return typeof ended === "string" ? ended : "";
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "snug/plant/plant.hpp"
+#include "snug/plant/motion_runner.hpp"
 
 namespace snug::plant::test {
 
@@ -13,67 +13,87 @@ class KinematicPlant final : public Plant {
  public:
   [[nodiscard]] Description describe() const override { return {"kinematic", {}}; }
   [[nodiscard]] Feedback read() override { return now_; }
-  [[nodiscard]] bool bring(const std::string& item) override {
-    if (item != "BOX" || has_come_) return false;
+  [[nodiscard]] bool is_moving() const override { return runner_.is_moving(); }
+
+  void start(const Motion& motion) override {
+    const std::string refusal = MotionRunner::find_refusal(motion);
+    if (!refusal.empty()) return runner_.refuse(refusal, now_);
+    runner_.begin(motion, reading(), is_held_);
+    next_ = 0;
+  }
+  [[nodiscard]] std::vector<Event> advance() override {
+    if (is_moving() && !runner_.has_events()) tick();
+    return runner_.take_events();
+  }
+  void cancel() override {
+    if (!is_moving()) return;
+    runner_.stop(EndReason::Cancelled);
+    runner_.finish(now_);
+  }
+  [[nodiscard]] bool bring(const model::ParcelId& item) override {
+    if (item.value != "BOX" || has_come_) return false;
     has_come_ = true;
+    runner_.add({now_.time, ItemArrived{item}});
     return true;
   }
-  void acknowledge() override {}
-
-  using Plant::submit;
-  [[nodiscard]] Feedback submit(const Motion& motion, const OnPassing& passing) override {
-    now_.peak_force = now_.peak_torque = 0.0;
-    now_.end = {EndReason::Refused, -1, 0.0, 0.0, ""};
-    now_.times.clear();
-    for (const motion::Waypoint& waypoint : motion.waypoints) {
-      if (!waypoint.X_WE.p.allFinite() || !waypoint.X_WE.R.allFinite()) return now_;
-    }
-    now_.times.resize(motion.waypoints.size());
-    for (std::size_t i = 0; i < motion.waypoints.size(); ++i) {
-      if (!follow(motion.waypoints[i], static_cast<int>(i), motion.guards)) break;
-      if (passing.act && static_cast<int>(i) == passing.waypoint && i + 1 < motion.waypoints.size()) passing.act();
-    }
-    return now_;
-  }
-
-  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
+  void perceive(std::span<const perception::Expectation> expected) override {
     perception::Observation seen;
     seen.time = now_.time;
     if (has_come_) seen.seen.push_back({"BOX", X_WP_, Matrix6::Zero(), Vector3::Constant(0.1), 0.0});
     for (const perception::Expectation& one : expected) {
       if (perception::find(seen, one.item) == nullptr) seen.not_seen.push_back(one.item);
     }
-    return seen;
+    runner_.add({now_.time, Perceived{seen}});
   }
+  void acknowledge() override {}
 
  private:
   static constexpr double kStiffness = 1000.0;              ///< N/m, of the tool's end
   static constexpr double kTable = 0.1;                     ///< m, height of the box's upper face
   static constexpr double kSet = -6.0e4, kNeeded = -2.0e4;  ///< Pa
 
-  bool follow(const motion::Waypoint& waypoint, int index, const Guards& guards) {
-    now_.time += 1.0;
-    now_.times[static_cast<std::size_t>(index)].moving = 1.0;
+  static RunnerSettings settings() {
+    RunnerSettings one;
+    one.guards.exact_settle = one.guards.seal_patience = 0.0;
+    one.pressure_needed = kNeeded;
+    return one;
+  }
+  [[nodiscard]] TickReading reading() const { return {now_.time, now_.F_E, now_.pressure_gauge, now_.io.vacuum}; }
+
+  /// One waypoint, and a tick of rest at it: the vacuum has time to be seen.
+  void tick() {
+    const auto& waypoints = runner_.motion().waypoints;
+    if (next_ == waypoints.size()) {
+      runner_.arrive(now_.time);
+      runner_.rest(now_.time);
+      return runner_.finish(now_);
+    }
+    const motion::Waypoint& waypoint = waypoints[next_];
+    now_.time += 0.5;
+    jump(waypoint);
+    runner_.follow({motion::WaypointIndex(next_), now_.time});
+    runner_.check(reading());
+    next_ += is_second_ ? 1 : 0;
+    is_second_ = !is_second_ && !runner_.has_ended();
+    if (runner_.has_ended()) runner_.finish(now_);
+  }
+
+  void jump(const motion::Waypoint& waypoint) {
     now_.X_WE = waypoint.X_WE;
     now_.io = waypoint.io;
-    now_.end = {EndReason::Completed, index, 0.0, 0.0, ""};
     const double depth = has_come_ && !is_held_ ? std::max(0.0, kTable - waypoint.X_WE.p.z()) : 0.0;
     if (waypoint.io.vacuum && depth > 0.0) is_held_ = true;
     if (!waypoint.io.vacuum) is_held_ = false;
     now_.pressure_gauge = is_held_ ? kSet : 0.0;
     if (is_held_) X_WP_ = waypoint.X_WE;
     now_.F_E.force = Vector3(0.0, 0.0, is_held_ ? 5.0 : -kStiffness * depth);
-    now_.peak_force = std::max(now_.peak_force, now_.F_E.force.norm());
-    if (guards.force && now_.F_E.force.norm() > *guards.force) {
-      now_.end = {EndReason::ForceGuard, index, now_.F_E.force.norm(), *guards.force, ""};
-    } else if (guards.vacuum && waypoint.io.vacuum && !is_held_) {
-      now_.end = {EndReason::NoSeal, index, now_.pressure_gauge, kNeeded, ""};
-    }
-    return now_.end.reason == EndReason::Completed;
   }
 
   Feedback now_;
   Pose X_WP_;
+  MotionRunner runner_{settings()};
+  std::size_t next_ = 0;    ///< waypoint
+  bool is_second_ = false;  ///< tick at it
   bool has_come_ = false, is_held_ = false;
 };
 

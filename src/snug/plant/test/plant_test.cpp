@@ -29,9 +29,9 @@ TEST(End, SaysWhatItWasAndWhere) {
   motion::Waypoint place;
   place.motion_class = motion::MotionClass::Place;
   place.item = "BOX027";
-  EXPECT_EQ(describe({EndReason::ForceGuard, 0, 61.2, 60.0, ""}, {&place, 1}),
+  EXPECT_EQ(describe({EndReason::ForceGuard, motion::WaypointIndex(0), 61.2, 60.0, ""}, {&place, 1}),
             "force guard: 61 N of 60 N toward Place(BOX027)");
-  EXPECT_EQ(describe({EndReason::ProtectiveStop, 0, 0.0, 0.0, "joint torque of elbow"}, {}),
+  EXPECT_EQ(describe({EndReason::ProtectiveStop, motion::WaypointIndex(0), 0.0, 0.0, "joint torque of elbow"}, {}),
             "protective stop: joint torque of elbow");
   EXPECT_EQ(describe({}, {&place, 1}), "completed");
 }

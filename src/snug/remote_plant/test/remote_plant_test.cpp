@@ -82,14 +82,12 @@ class WithServer final : public plant::Plant {
       : served_(is_plant ? drawn() : scenario(), is_plant), plant_(scenario(), "1", at(served_.address())) {}
   [[nodiscard]] plant::Description describe() const override { return plant_.describe(); }
   [[nodiscard]] plant::Feedback read() override { return plant_.read(); }
-  [[nodiscard]] bool bring(const std::string& item) override { return plant_.bring(item); }
-  using plant::Plant::submit;
-  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion, const plant::OnPassing& passing) override {
-    return plant_.submit(motion, passing);
-  }
-  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
-    return plant_.perceive(expected);
-  }
+  [[nodiscard]] bool is_moving() const override { return plant_.is_moving(); }
+  void start(const plant::Motion& motion) override { plant_.start(motion); }
+  [[nodiscard]] std::vector<plant::Event> advance() override { return plant_.advance(); }
+  void cancel() override { plant_.cancel(); }
+  [[nodiscard]] bool bring(const model::ParcelId& item) override { return plant_.bring(item); }
+  void perceive(std::span<const perception::Expectation> expected) override { plant_.perceive(expected); }
   void acknowledge() override { plant_.acknowledge(); }
 
  private:
@@ -118,8 +116,8 @@ TEST(RemotePlant, SeesBoxesToTheLastBitAndAsLargeAsTheyAre) {
   const model::Scenario cell = drawn();
   Served served(cell);
   RemotePlant plant(scenario(), "1", at(served.address()));
-  ASSERT_TRUE(plant.bring("BOX027"));
-  const perception::Observation seen = plant.perceive({});
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  const perception::Observation seen = plant::observe(plant, {});
   ASSERT_EQ(seen.seen.size(), 1U);
   EXPECT_EQ(seen.seen[0].size, model::collision_size(cell, *model::find_parcel(cell, "BOX027")));
   // The cell keeps quaternions: as a pose that was set in one is read from it.
@@ -136,7 +134,7 @@ TEST(RemotePlant, TakesTheRobotsLagFromTheServedCell) {
     cell.controller.task_stiffness *= factor;
     Served served(cell);
     RemotePlant plant(scenario(), "1", at(served.address()));
-    times.push_back(plant.submit({"", there.waypoints, {}}).time);
+    times.push_back(plant::run(plant, {{}, there.waypoints, {}}).time);
   }
   EXPECT_LT(times[1], times[0]) << "a stiffer task is there earlier";
 }
@@ -144,18 +142,35 @@ TEST(RemotePlant, TakesTheRobotsLagFromTheServedCell) {
 TEST(RemotePlant, APeerThatDiesIsAFaultAndNothingFollows) {
   Served served(drawn());
   RemotePlant plant(scenario(), "1", at(served.address(), 0.3));
-  ASSERT_TRUE(plant.bring("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
   served.stop();
-  const plant::Feedback fed = plant.submit({"BOX027", box().pick(), {}});
+  const plant::Feedback fed = plant::run(plant, {model::ParcelId("BOX027"), box().pick(), {}});
   EXPECT_EQ(fed.end.reason, plant::EndReason::Fault);
   EXPECT_NE(fed.end.where.find("nobody answers within 0.3 s"), std::string::npos) << fed.end.where;
-  EXPECT_FALSE(plant.bring("BOX028"));
-  const perception::Observation seen = plant.perceive(std::vector<perception::Expectation>{{"BOX027", {}, {}}});
+  EXPECT_FALSE(plant::bring_and_wait(plant, model::ParcelId("BOX028")));
+  const perception::Observation seen = plant::observe(plant, std::vector<perception::Expectation>{{"BOX027", {}, {}}});
   EXPECT_TRUE(seen.seen.empty());
   EXPECT_EQ(seen.not_seen.size(), 1U);
   EXPECT_TRUE(seen.missing.empty()) << "nobody looked";
-  EXPECT_EQ(plant.submit({"BOX027", box().pick(), {}}).end.reason, plant::EndReason::Refused);
+  EXPECT_EQ(plant::run(plant, {model::ParcelId("BOX027"), box().pick(), {}}).end.reason, plant::EndReason::Refused);
   ASSERT_EQ(served.runs().size(), 1U) << "the run has its result";
+}
+
+TEST(RemotePlant, APeerThatDiesIsSaidOnceAlsoWhileTheRobotStands) {
+  Served served(drawn());
+  RemotePlant plant(scenario(), "1", at(served.address(), 0.3));
+  served.stop();
+  EXPECT_FALSE(plant.bring(model::ParcelId("BOX027")));
+  plant.perceive({});
+  std::string story;
+  for (int i = 0; i < 3; ++i) {
+    for (const plant::Event& event : plant.advance()) {
+      story += plant::get<plant::FaultRaised>(event) != nullptr ? "f"
+               : plant::get<plant::Perceived>(event) != nullptr ? "p"
+                                                                : "?";
+    }
+  }
+  EXPECT_EQ(story, "fp");
 }
 
 TEST(RemotePlant, WhatIsNoSuchPlantIsRefused) {
@@ -187,7 +202,7 @@ TEST(RemotePlant, WhatIsNoSuchPlantIsRefused) {
 TEST(RemotePlant, EndsTheRunWhenAsked) {
   Served served(drawn());
   RemotePlant plant(scenario(), "1", at(served.address()));
-  (void)plant.submit({"", {box().over(0.35, "home", false)}, {}});
+  (void)plant::run(plant, {{}, {box().over(0.35, "home", false)}, {}});
   EXPECT_EQ(plant.finish(), "");
   ASSERT_EQ(served.runs().size(), 1U);
   EXPECT_EQ(served.runs()[0].ended_by, "reset by the controller");
@@ -200,8 +215,8 @@ TEST(WatchedCell, SeesWhatTheControllerDoesAndChangesNothing) {
   WatchedCell cell(scenario(), "1", endpoint, 20.0);
   EXPECT_EQ(cell.time(), 0.0);
   EXPECT_EQ(cell.state().world.step_index, 0);
-  ASSERT_TRUE(plant.bring(scenario().sequences.front().items.front().parcel));
-  const plant::Feedback feedback = plant.submit({"pick", box().pick(), {}});
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId(scenario().sequences.front().items.front().parcel)));
+  const plant::Feedback feedback = plant::run(plant, {model::ParcelId("pick"), box().pick(), {}});
   EXPECT_EQ(feedback.end.reason, plant::EndReason::Completed) << feedback.end.where;
   ASSERT_EQ(cell.look(), "");
   EXPECT_EQ(cell.time(), feedback.time) << "looking made no step";

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "snug/model/test/shortened.hpp"
+#include "snug/plant/event.hpp"
 #include "snug/session/session.hpp"
 
 namespace snug::session::test {
@@ -56,27 +57,37 @@ class ScriptedPlant final : public plant::Plant {
 
   [[nodiscard]] plant::Description describe() const override { return {"scripted", {}}; }
   [[nodiscard]] plant::Feedback read() override { return now_; }
-  [[nodiscard]] bool bring(const std::string& id) override {
-    if (not_brought.contains(id)) return false;
-    brought.push_back(id);
-    if (is_passing_) brought_on_the_way.push_back(id);
+  [[nodiscard]] bool is_moving() const override { return ending_.has_value(); }
+  [[nodiscard]] bool bring(const model::ParcelId& id) override {
+    if (not_brought.contains(id.value)) return false;
+    brought.push_back(id.value);
+    if (is_moving()) brought_on_the_way.push_back(id.value);
+    events_.push_back({now_.time, plant::ItemArrived{id}});
     return true;
+  }
+  [[nodiscard]] std::vector<plant::Event> advance() override {
+    if (events_.empty() && ending_) {
+      events_.push_back({now_.time, plant::MotionEnded{*std::exchange(ending_, std::nullopt)}});
+    }
+    return std::exchange(events_, {});
+  }
+  void cancel() override {
+    if (ending_) ending_->end = now_.end = {EndReason::Cancelled, std::nullopt, 0.0, 0.0, ""};
   }
   void acknowledge() override { ++acknowledged; }
 
-  using Plant::submit;
-  [[nodiscard]] plant::Feedback submit(const plant::Motion& motion, const plant::OnPassing& passing) override {
+  void start(const plant::Motion& motion) override {
     motions.push_back(motion);
     const auto held = std::ranges::find_if(motion.waypoints, [](const auto& row) { return row.io.vacuum; });
     const bool holds = held != motion.waypoints.end();
-    item = motion.item;
+    item = motion.item.value;
     const bool is_retreat = motion.waypoints.back().variant == "_retreat", is_home = motion.item.empty();
     const EndReason end = holds        ? next(ends)
                           : is_retreat ? next(retreat_ends)
                           : is_home    ? next(home_ends)
                                        : EndReason{};
     for (const motion::Waypoint& row : motion.waypoints) {
-      if (row.variant == "_press" && row.motion_class == motion::MotionClass::PlaceSlow) pressed.push_back(motion.item);
+      if (row.variant == "_press" && row.motion_class == motion::MotionClass::PlaceSlow) pressed.push_back(item);
     }
     const bool is_press = motion.guards.force && !motion.guards.vacuum;
     if (is_press && when_pressed) when_pressed();
@@ -88,23 +99,23 @@ class ScriptedPlant final : public plant::Plant {
     }
     if (holds) X_WE_let_go = last->X_WE;
     now_.time += 1.0;
-    now_.end = {end, ends_at && end != EndReason::Completed ? static_cast<int>(last - motion.waypoints.begin()) : 0,
-                0.0, 0.0, ""};
+    const auto reached = ends_at && end != EndReason::Completed ? last - motion.waypoints.begin() : 0;
+    now_.end = {end, motion::WaypointIndex(static_cast<int>(reached)), 0.0, 0.0, ""};
     now_.X_WE = last->X_WE;
     now_.io = last->io;
     now_.pressure_gauge = last->io.vacuum && end != EndReason::NoSeal && end != EndReason::VacuumLost ? -6.0e4 : 0.0;
     now_.times.assign(1, {1.0, 0.0});
     if (holds && happens) happens(++motion_count_);
-    if (passes && end == EndReason::Completed && passing.act) {
-      is_passing_ = true;
-      passing.act();
-      is_passing_ = false;
-      if (ends_after_passing) now_.end = {*std::exchange(ends_after_passing, std::nullopt), 0, 0.0, 0.0, ""};
+    if (passes && end == EndReason::Completed && motion.perceive_after) {
+      events_.push_back({now_.time, plant::WaypointPassed{*motion.perceive_after}});
+      if (ends_after_passing) {
+        now_.end = {*std::exchange(ends_after_passing, std::nullopt), motion::WaypointIndex(), 0.0, 0.0, ""};
+      }
     }
-    return now_;
+    ending_ = now_;
   }
 
-  [[nodiscard]] perception::Observation perceive(std::span<const perception::Expectation> expected) override {
+  void perceive(std::span<const perception::Expectation> expected) override {
     perception::Observation seen;
     seen.time = now_.time;
     seen.obstacles = obstacles;
@@ -125,7 +136,7 @@ class ScriptedPlant final : public plant::Plant {
       seen.not_seen.push_back(one.item);
       if (missing.contains(one.item)) seen.missing.push_back(one.item);
     }
-    return seen;
+    events_.push_back({now_.time, plant::Perceived{seen}});
   }
 
  private:
@@ -142,7 +153,8 @@ class ScriptedPlant final : public plant::Plant {
     return start;
   }();
   int motion_count_ = 0;
-  bool is_passing_ = false;
+  std::vector<plant::Event> events_;
+  std::optional<plant::Feedback> ending_;  ///< of the motion under way
 };
 
 inline SessionOptions quick_options() {

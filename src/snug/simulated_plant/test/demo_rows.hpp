@@ -7,6 +7,7 @@
 
 #include "snug/model/test/shortened.hpp"
 #include "snug/motion/program_csv.hpp"
+#include "snug/plant/wait.hpp"
 #include "snug/simulated_plant/simulated_plant.hpp"
 
 namespace snug::simulated_plant::test {
@@ -23,7 +24,7 @@ inline const model::Scenario& three_boxes() {
 /// From the aligner to its place and up again.
 inline plant::Motion packing_of(std::string_view item) {
   static const motion::Program all = motion::load_program(SNUG_SOURCE_DIR "/src/snug/cell/test/demo_program.csv");
-  plant::Motion motion{std::string(item), {}, {}};
+  plant::Motion motion{model::ParcelId(std::string(item)), {}, {}, {}};
   for (const motion::Waypoint& row : all.waypoints) {
     if (row.item == item) motion.waypoints.push_back(row);
   }
@@ -47,10 +48,28 @@ inline SimulatedPlantOptions nominal(std::string_view faults = {}) {
   return options;
 }
 
+/// The motion; `look` is shown each tick that it makes.
+template <class Look>
+plant::Feedback run_seen(SimulatedPlant& plant, const plant::Motion& motion, const Look& look) {
+  plant.start(motion);
+  for (;;) {
+    const auto before = plant.state().world.step_index;
+    const std::vector<plant::Event> events = plant.advance();
+    if (plant.state().world.step_index != before) look(*plant.last_tick());
+    for (const plant::Event& event : events) {
+      if (const auto* ended = plant::get<plant::MotionEnded>(event)) return ended->feedback;
+    }
+  }
+}
+
 /// Brings the item and packs it.
+template <class Look>
+plant::Feedback pack(SimulatedPlant& plant, std::string_view item, const Look& look) {
+  if (!plant::bring_and_wait(plant, model::ParcelId(std::string(item)))) return {};
+  return run_seen(plant, packing_of(item), look);
+}
 inline plant::Feedback pack(SimulatedPlant& plant, std::string_view item) {
-  if (!plant.bring(std::string(item))) return {};
-  return plant.submit(packing_of(item));
+  return pack(plant, item, [](const cell::CellTick&) {});
 }
 
 /// X_WP by the plant's truth.

@@ -109,7 +109,7 @@ TEST(FaultInjection, AMovedBoxIsInNoOtherBoxAndInNoWall) {
 
 TEST(FaultInjection, CountsItemsAsTheyAreBroughtAndNotByTheSequence) {
   SimulatedPlant plant(three_boxes(), "1", nominal("noseal@1"));
-  EXPECT_FALSE(plant.bring("BOX999")) << "it does not count";
+  EXPECT_FALSE(plant::bring_and_wait(plant, model::ParcelId("BOX999"))) << "it does not count";
   EXPECT_EQ(pack(plant, "BOX013").end.reason, EndReason::NoSeal);
   EXPECT_EQ(pack(plant, "BOX027").end.reason, EndReason::Completed);
 }
@@ -118,11 +118,11 @@ TEST(FaultInjection, ADropHappensOnTheWayBeyondThirtyCentimetresFromTheAligner) 
   SimulatedPlant plant(three_boxes(), "1", nominal("drop@1"));
   const Vector3 p_A = three_boxes().aligner->X_WA.p;
   double before = 0.0, now = 0.0;
-  plant.watch([&](const cell::CellTick& tick) {
+  const auto look = [&](const cell::CellTick& tick) {
     before = now;
     now = (tick.tool.X_WE.p - p_A).head<2>().norm();
-  });
-  const plant::Feedback dropped = pack(plant, "BOX027");
+  };
+  const plant::Feedback dropped = pack(plant, "BOX027", look);
   EXPECT_EQ(dropped.end.reason, EndReason::VacuumLost);
   EXPECT_GT(now, 0.30);
   EXPECT_LE(before, 0.30) << "at the first tick there";
@@ -147,7 +147,7 @@ TEST(FaultInjection, ADroppedBoxFallsFreelyOnceTheCupIsOffIt) {
   EXPECT_GT(before.norm(), 0.1) << "it was carried";
   int falling = 0;
   bool was_free = false, has_landed = false;
-  plant.watch([&](const cell::CellTick&) {
+  const auto look = [&](const cell::CellTick&) {
     const bool is_pushed = plant.work().gripper.element != nullptr, touches = !plant.work().physics.contacts().empty();
     has_landed = has_landed || (was_free && touches);
     const bool is_free = !is_pushed && !touches && !has_landed;
@@ -157,8 +157,8 @@ TEST(FaultInjection, ADroppedBoxFallsFreelyOnceTheCupIsOffIt) {
     }
     was_free = is_free;
     before = velocity();
-  });
-  (void)plant.submit({"BOX027", {up}, {}});
+  };
+  (void)run_seen(plant, {model::ParcelId("BOX027"), {up}}, look);
   EXPECT_GE(falling, 2);
   EXPECT_EQ(plant.boxes()[0].state, cell::BoxState::Dropped);
 }
@@ -168,14 +168,14 @@ TEST(FaultInjection, AStopHoldsToolAndBoxWhereTheyAre) {
   const plant::Feedback stopped = pack(plant, "BOX027");
   ASSERT_EQ(stopped.end.reason, EndReason::ProtectiveStop);
   EXPECT_EQ(stopped.end.where, "injected");
-  EXPECT_EQ(stopped.end.waypoint, 3);
+  EXPECT_EQ(stopped.end.waypoint, motion::WaypointIndex(3));
   EXPECT_EQ(stopped.V_WE.linear.norm(), 0.0);
   EXPECT_TRUE(stopped.io.vacuum);
   EXPECT_EQ(plant.boxes()[0].state, cell::BoxState::Held);
   const Pose X_WP = pose_of(plant, "BOX027");
-  EXPECT_EQ(plant.submit(packing_of("BOX027")).end.reason, EndReason::Refused);
-  EXPECT_TRUE(plant.bring("BOX028")) << "that does not move the robot";
-  EXPECT_EQ(plant.submit(packing_of("BOX028")).end.reason, EndReason::Refused);
+  EXPECT_EQ(plant::run(plant, packing_of("BOX027")).end.reason, EndReason::Refused);
+  EXPECT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX028"))) << "that does not move the robot";
+  EXPECT_EQ(plant::run(plant, packing_of("BOX028")).end.reason, EndReason::Refused);
   EXPECT_EQ(plant.read().time, stopped.time);
   EXPECT_EQ(plant.read().X_WE, stopped.X_WE);
   EXPECT_EQ(pose_of(plant, "BOX027"), X_WP);
@@ -187,7 +187,7 @@ TEST(FaultInjection, AnAcknowledgedStopDoesNotComeBack) {
   plant.acknowledge();
   plant::Motion rest = packing_of("BOX027");
   rest.waypoints.erase(rest.waypoints.begin(), rest.waypoints.begin() + 3);
-  EXPECT_EQ(plant.submit(rest).end.reason, EndReason::Completed);
+  EXPECT_EQ(plant::run(plant, rest).end.reason, EndReason::Completed);
   EXPECT_EQ(plant.boxes()[0].state, cell::BoxState::Packed);
   EXPECT_LT(off_by(plant, "BOX027"), kSamePlace);
   EXPECT_EQ(pack(plant, "BOX028").end.reason, EndReason::Completed);
@@ -197,7 +197,7 @@ TEST(FaultInjection, AnAcknowledgedStopDoesNotComeBack) {
 /// In one motion, the guard off: the vacuum stays on over a second pick, and seals only after it was off.
 TEST(FaultInjection, ALipThatLeaksSealsAgainOnlyAfterTheVacuumWasOff) {
   SimulatedPlant plant(three_boxes(), "1", nominal("noseal@1"));
-  ASSERT_TRUE(plant.bring("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
   const plant::Motion pick = pick_of("BOX027");
   const motion::Waypoint above = pick.waypoints[0], at = pick.waypoints[1];
   motion::Waypoint sucking = at;
@@ -205,19 +205,20 @@ TEST(FaultInjection, ALipThatLeaksSealsAgainOnlyAfterTheVacuumWasOff) {
   motion::Waypoint sucking_above = above;
   sucking_above.io.vacuum = true;
   const plant::Guards unguarded{std::nullopt, false};
-  plant::Feedback fed = plant.submit({"BOX027", {above, at, sucking, sucking_above, sucking}, unguarded});
+  plant::Feedback fed =
+      plant::run(plant, {model::ParcelId("BOX027"), {above, at, sucking, sucking_above, sucking}, unguarded});
   EXPECT_EQ(fed.end.reason, EndReason::Completed);
   EXPECT_EQ(fed.pressure_gauge, 0.0) << "it touches the box, and leaks";
-  fed = plant.submit({"BOX027", {above, at, sucking, sucking_above}, unguarded});
+  fed = plant::run(plant, {model::ParcelId("BOX027"), {above, at, sucking, sucking_above}, unguarded});
   EXPECT_LT(fed.pressure_gauge, 0.8 * three_boxes().cup.vacuum.pressure_gauge_hold);
   EXPECT_EQ(plant.boxes()[0].state, cell::BoxState::Held);
 }
 
 TEST(FaultInjection, SeveralOfOneItemHappenOneAfterTheOther) {
   SimulatedPlant plant(three_boxes(), "1", nominal("drop@1,noseal@1,stop@1"));
-  ASSERT_TRUE(plant.bring("BOX027"));
-  EXPECT_EQ(plant.submit(packing_of("BOX027")).end.reason, EndReason::NoSeal);
-  const plant::Feedback second = plant.submit(packing_of("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  EXPECT_EQ(plant::run(plant, packing_of("BOX027")).end.reason, EndReason::NoSeal);
+  const plant::Feedback second = plant::run(plant, packing_of("BOX027"));
   EXPECT_EQ(second.end.reason, EndReason::ProtectiveStop);
   EXPECT_EQ(second.pressure_gauge, 0.0) << "and it falls";
   EXPECT_EQ(fault_events(plant).size(), 3U);
@@ -261,18 +262,18 @@ TEST(FaultInjection, WaitsForBoxesAtMostAsLongAsTheScenarioSays) {
 TEST(ObjectFault, StandsAtRestOnWhatCarriesItsWeight) {
   SimulatedPlant plant(three_boxes(), "1", nominal("object@1"));
   Vector3 carried = Vector3::Zero();  // before it fell asleep
-  plant.watch([&](const cell::CellTick&) {
+  const auto look = [&](const cell::CellTick&) {
     Vector3 now = Vector3::Zero();
     for (const physics::ContactReport& contact : plant.work().physics.contacts()) {
       if (contact.b == plant.objects()[0].body) now += contact.force_W;
       if (contact.a == plant.objects()[0].body) now -= contact.force_W;
     }
     if (now.norm() > 0.0) carried = now;
-  });
-  ASSERT_EQ(pack(plant, "BOX027").end.reason, EndReason::Completed);
+  };
+  ASSERT_EQ(pack(plant, "BOX027", look).end.reason, EndReason::Completed);
   motion::Waypoint stay = packing_of("BOX027").waypoints.back();
   stay.X_WE.p.z() += 0.2;
-  ASSERT_EQ(plant.submit({"BOX027", {stay}, {}}).end.reason, EndReason::Completed);
+  ASSERT_EQ(run_seen(plant, {model::ParcelId("BOX027"), {stay}}, look).end.reason, EndReason::Completed);
   EXPECT_NEAR(carried.z(), kForeignMass * 9.81, 0.01 * kForeignMass * 9.81);
   EXPECT_LT(carried.head<2>().norm(), 0.01 * kForeignMass * 9.81);
   const ForeignObject& object = plant.objects()[0];
@@ -286,7 +287,7 @@ TEST(ObjectFault, StandsAtRestOnWhatCarriesItsWeight) {
 TEST(ObjectFault, IsSeenAsAnObstacleAndNoBox) {
   SimulatedPlant plant(three_boxes(), "1", nominal("object@1,clear@2"));
   ASSERT_EQ(pack(plant, "BOX027").end.reason, EndReason::Completed);
-  perception::Observation seen = plant.perceive({});
+  perception::Observation seen = plant::observe(plant, {});
   ASSERT_EQ(seen.obstacles->size(), 1U);
   const Vector3 p_W = model::find_container(three_boxes(), "tote1")->X_WT * plant.objects()[0].X_TB.p;
   const geometry::Aabb bounds = perception::bounds_of(seen.obstacles->front().columns);
@@ -295,7 +296,7 @@ TEST(ObjectFault, IsSeenAsAnObstacleAndNoBox) {
   EXPECT_LT((middle - p_W).head<2>().cwiseAbs().maxCoeff(), perception::kColumnSide);
   EXPECT_EQ(seen.seen.size(), 1U);
   ASSERT_EQ(pack(plant, "BOX028").end.reason, EndReason::Completed);
-  EXPECT_TRUE(plant.perceive({}).obstacles->empty()) << "taken out";
+  EXPECT_TRUE(plant::observe(plant, {}).obstacles->empty()) << "taken out";
   EXPECT_FALSE(plant.objects()[0].is_in);
   ASSERT_EQ(fault_events(plant).size(), 2U);
   EXPECT_EQ(fault_events(plant)[1].text, "clear: foreign objects are taken out");
@@ -386,11 +387,11 @@ TEST(FaultInjection, DisplaceAndPushOfOneItemBothHappen) {
 TEST(ObjectFault, IsNotShotAwayByABoxThatAFaultMovesIntoIt) {
   SimulatedPlant plant(three_boxes(), "1", nominal("object@1,displace@2"));
   double fastest = 0.0;
-  plant.watch([&](const cell::CellTick&) {
+  const auto look = [&](const cell::CellTick&) {
     const int body = plant.objects()[0].body.index;
     fastest = std::max(fastest, plant.state().world.bodies[static_cast<std::size_t>(body)].velocity.norm());
-  });
-  for (const char* item : {"BOX027", "BOX028"}) (void)pack(plant, item);
+  };
+  for (const char* item : {"BOX027", "BOX028"}) (void)pack(plant, item, look);
   EXPECT_LT((plant.objects()[0].X_TB.p - plant.objects()[0].X_TB_put.p).norm(), 0.005);
   EXPECT_LT(fastest, 0.5);
 }

@@ -39,8 +39,8 @@ TEST(Feedback, OfABoxThatHangsStillIsItsWeight) {
     for (const std::uint64_t seed : {0UL, 3UL}) {
       SCOPED_TRACE(std::string(robot) + " " + std::to_string(seed));
       SimulatedPlant plant(unhurried(), "1", drawn(seed, robot));
-      ASSERT_TRUE(plant.bring("BOX027"));
-      const plant::Feedback held = plant.submit(pick_of("BOX027"));
+      ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+      const plant::Feedback held = plant::run(plant, pick_of("BOX027"));
       ASSERT_EQ(held.end.reason, EndReason::Completed);
       ASSERT_LT(body_of(plant, 0).velocity.norm(), 1e-3);
       const double mass = model::find_parcel(plant.simulation().scenario(), "BOX027")->inertia.mass;
@@ -57,21 +57,21 @@ TEST(Feedback, OfABoxThatHangsStillIsItsWeight) {
 /// Newton's law over the whole way up: what the cup did to the box is its change of momentum and what gravity took.
 TEST(Feedback, ForcesOverTheWholeWayAreTheMomentumOfTheBox) {
   SimulatedPlant plant(three_boxes(), "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
-  ASSERT_EQ(plant.submit(pick_of("BOX027")).end.reason, EndReason::Completed);
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  ASSERT_EQ(plant::run(plant, pick_of("BOX027")).end.reason, EndReason::Completed);
   const double mass = model::find_parcel(three_boxes(), "BOX027")->inertia.mass;
   const Vector3 before = mass * body_of(plant, 0).velocity;
   Vector3 impulse = Vector3::Zero(), last = plant.read().X_WE.R * plant.read().F_E.force;
   const double start = plant.read().time, tick = three_boxes().controller.tick;
-  plant.watch([&](const cell::CellTick& one) {
+  const auto look = [&](const cell::CellTick& one) {
     const Vector3 now = one.tool.X_WE.R * plant.simulation().tool_load(plant.state(), plant.work()).force;
     impulse -= 0.5 * tick * (last + now);  // on the box; by the trapezoidal rule
     last = now;
-  });
+  };
   motion::Waypoint far = pick_of("BOX027").waypoints.back();
   far.motion_class = motion::MotionClass::PrePlace;
   far.X_WE.p += Vector3(0.4, -0.2, 0.1);
-  ASSERT_EQ(plant.submit({"BOX027", {far}, {}}).end.reason, EndReason::Completed);
+  ASSERT_EQ(run_seen(plant, {model::ParcelId("BOX027"), {far}}, look).end.reason, EndReason::Completed);
   const double seconds = plant.read().time - start;
   const Vector3 gained = mass * body_of(plant, 0).velocity - before + 9.81 * mass * seconds * Vector3::UnitZ();
   EXPECT_GT(gained.norm(), 5.0) << "N s";
@@ -83,7 +83,7 @@ TEST(Feedback, OfAnEmptyCupInTheAirIsNothing) {
     SimulatedPlant plant(three_boxes(), "1", drawn(0, robot));
     motion::Waypoint there = packing_of("BOX027").waypoints.front();
     there.X_WE.p.z() += 0.2;
-    const plant::Feedback fed = plant.submit({"", {there}, {}});
+    const plant::Feedback fed = plant::run(plant, {{}, {there}, {}});
     ASSERT_EQ(fed.end.reason, EndReason::Completed);
     EXPECT_LT(fed.F_E.force.norm(), 1e-9);
     EXPECT_LT(fed.peak_force, 1e-9);
@@ -97,20 +97,20 @@ TEST(Feedback, TheVacuumBuildsUpUnderASealAndNotInTheAir) {
   const plant::Motion pick = pick_of("BOX027");
   motion::Waypoint in_air = pick.waypoints.front();
   in_air.io.vacuum = true;
-  plant::Feedback fed = plant.submit({"", {pick.waypoints.front(), in_air}, {std::nullopt, false}});
+  plant::Feedback fed = plant::run(plant, {{}, {pick.waypoints.front(), in_air}, {std::nullopt, false}});
   EXPECT_EQ(fed.end.reason, EndReason::Completed);
   EXPECT_EQ(fed.pressure_gauge, 0.0);
-  ASSERT_TRUE(plant.bring("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
   double last = 0.0;
   std::vector<double> rises;
-  plant.watch([&](const cell::CellTick& tick) {
+  const auto look = [&](const cell::CellTick& tick) {
     const double now = plant.state().gripper.cup.pressure_gauge;
     EXPECT_GE(now, cup.vacuum.pressure_gauge_hold - 3000.0) << "a cup that is stretched has a little more";
     EXPECT_LE(now, cup.vacuum.pressure_gauge_blow + 1e-9);
     if (tick.command.vacuum && now < last) rises.push_back(now);
     last = now;
-  });
-  fed = plant.submit(pick);
+  };
+  fed = run_seen(plant, pick, look);
   ASSERT_EQ(fed.end.reason, EndReason::Completed);
   EXPECT_GT(rises.size(), 10U);
   EXPECT_NEAR(fed.pressure_gauge, cup.vacuum.pressure_gauge_hold, 0.05 * std::abs(cup.vacuum.pressure_gauge_hold));
@@ -121,12 +121,12 @@ TEST(Feedback, TimeIsCountedInTicksAndNeverRunsBack) {
   const double tick = three_boxes().controller.tick;
   double last = plant.read().time;
   EXPECT_EQ(last, 0.0);
-  plant.watch([&](const cell::CellTick&) {
+  const auto look = [&](const cell::CellTick&) {
     const double now = plant.simulation().time(plant.state());
     EXPECT_NEAR(now - last, tick, 1e-12);
     last = now;
-  });
-  const plant::Feedback fed = pack(plant, "BOX027");
+  };
+  const plant::Feedback fed = pack(plant, "BOX027", look);
   EXPECT_EQ(fed.time, last);
   double sum = 0.0;
   ASSERT_EQ(fed.times.size(), packing_of("BOX027").waypoints.size());
@@ -136,32 +136,32 @@ TEST(Feedback, TimeIsCountedInTicksAndNeverRunsBack) {
     sum += one.moving + one.waiting;
   }
   EXPECT_NEAR(sum, fed.time, 1e-9) << "nothing lost";
-  (void)plant.bring("BOX028");
-  (void)plant.perceive({});
+  (void)plant::bring_and_wait(plant, model::ParcelId("BOX028"));
+  (void)plant::observe(plant, {});
   plant.acknowledge();
   EXPECT_EQ(plant.read().time, fed.time) << "it stands still between motions";
 }
 
 TEST(Feedback, PeaksAreOfTheLastMotionAndAtLeastWhatIsThereInTheEnd) {
   SimulatedPlant plant(three_boxes(), "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
   const plant::Motion pick = pick_of("BOX027");
-  const plant::Feedback held = plant.submit(pick);
+  const plant::Feedback held = plant::run(plant, pick);
   EXPECT_GT(held.peak_force, 1.5 * held.F_E.force.norm()) << "it was pressed when it was picked";
-  const plant::Feedback still = plant.submit({"BOX027", {pick.waypoints.back()}, {}});
+  const plant::Feedback still = plant::run(plant, {model::ParcelId("BOX027"), {pick.waypoints.back()}, {}});
   EXPECT_LT(still.peak_force, 1.2 * held.F_E.force.norm()) << "not what was before";
   EXPECT_GE(still.peak_force, still.F_E.force.norm());
   EXPECT_GE(still.peak_torque, still.F_E.torque.norm());
-  const plant::Feedback refused = plant.submit({"BOX027", {}, {}});
+  const plant::Feedback refused = plant::run(plant, {model::ParcelId("BOX027"), {}, {}});
   EXPECT_GE(refused.peak_force, refused.F_E.force.norm()) << "it hangs there all the same";
 }
 
 TEST(Feedback, AGuardOfTheHoldEndsAMotionThatTheCupCouldStillBear) {
   SimulatedPlant plant(three_boxes(), "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
   plant::Motion motion = pick_of("BOX027");
   motion.guards.hold_factor = 1000.0;
-  const plant::Feedback fed = plant.submit(motion);
+  const plant::Feedback fed = plant::run(plant, motion);
   EXPECT_EQ(fed.end.reason, EndReason::HoldGuard);
   EXPECT_EQ(fed.end.limit, 1000.0);
   EXPECT_LT(fed.end.value, 1000.0);
@@ -174,9 +174,9 @@ TEST(Feedback, AWaypointThatIsNotReachedInTimeEndsTheMotion) {
   model::Scenario scenario = three_boxes();
   scenario.motion_guards.waypoint_patience = 0.2;
   SimulatedPlant plant(scenario, "1", nominal());
-  const plant::Feedback fed = plant.submit({"", {packing_of("BOX027").waypoints.front()}, {}});
+  const plant::Feedback fed = plant::run(plant, {{}, {packing_of("BOX027").waypoints.front()}, {}});
   EXPECT_EQ(fed.end.reason, EndReason::Timeout);
-  EXPECT_EQ(fed.end.waypoint, 0);
+  EXPECT_EQ(fed.end.waypoint, motion::WaypointIndex(0));
   EXPECT_EQ(fed.end.limit, 0.2);
   EXPECT_NEAR(fed.time, 0.2, 2.0 * scenario.controller.tick);
   EXPECT_EQ(fed.V_WE.linear.norm(), 0.0);
@@ -188,7 +188,7 @@ TEST(Feedback, AWaypointFarBeyondTheCellIsNoReasonToHangOrToLoseTheTool) {
     SimulatedPlant plant(three_boxes(), "1", drawn(0, robot));
     motion::Waypoint far = packing_of("BOX027").waypoints.front();
     far.X_WE.p.x() = 1e3;
-    const plant::Feedback fed = plant.submit({"", {far}, {}});
+    const plant::Feedback fed = plant::run(plant, {{}, {far}, {}});
     EXPECT_TRUE(fed.X_WE.p.allFinite());
     if (robot[0] != '\0') {
       EXPECT_NE(fed.end.reason, EndReason::Completed);
@@ -201,25 +201,25 @@ TEST(Feedback, AWaypointFarBeyondTheCellIsNoReasonToHangOrToLoseTheTool) {
 TEST(Feedback, BadMotionsAreRefusedAndChangeNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   SimulatedPlant plant(three_boxes(), "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
   const std::uint64_t before = plant.simulation().hash(plant.state());
   plant::Motion motion = pick_of("BOX027");
   for (std::size_t row = 0; row < motion.waypoints.size(); ++row) {
     for (int axis = 0; axis < 3; ++axis) {
       plant::Motion bad = motion;
       bad.waypoints[row].X_WE.p[axis] = nan;
-      EXPECT_EQ(plant.submit(bad).end.reason, EndReason::Refused);
+      EXPECT_EQ(plant::run(plant, bad).end.reason, EndReason::Refused);
       bad = motion;
       bad.waypoints[row].X_WE.R(axis, 0) = -std::numeric_limits<double>::infinity();
-      const plant::Feedback fed = plant.submit(bad);
+      const plant::Feedback fed = plant::run(plant, bad);
       EXPECT_EQ(fed.end.reason, EndReason::Refused);
       EXPECT_FALSE(fed.end.where.empty()) << "says why";
       EXPECT_TRUE(fed.times.empty());
     }
   }
-  EXPECT_EQ(plant.submit({"BOX027", {}, {}}).end.reason, EndReason::Refused);
+  EXPECT_EQ(plant::run(plant, {model::ParcelId("BOX027"), {}, {}}).end.reason, EndReason::Refused);
   EXPECT_EQ(plant.simulation().hash(plant.state()), before);
-  EXPECT_EQ(plant.submit(motion).end.reason, EndReason::Completed) << "and a good one goes on";
+  EXPECT_EQ(plant::run(plant, motion).end.reason, EndReason::Completed) << "and a good one goes on";
 }
 
 /// A box of a mass that no number holds any more.
@@ -227,13 +227,13 @@ TEST(Feedback, APlantThatFailsSaysSoAndMovesNoMore) {
   model::Scenario scenario = three_boxes();
   std::ranges::find(scenario.parcels, "BOX027", &model::Parcel::id)->inertia.mass = 1e308;
   SimulatedPlant plant(scenario, "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
-  const plant::Feedback failed = plant.submit(pick_of("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  const plant::Feedback failed = plant::run(plant, pick_of("BOX027"));
   EXPECT_EQ(failed.end.reason, EndReason::Fault);
   EXPECT_FALSE(failed.end.where.empty());
   EXPECT_TRUE(failed.X_WE.p.allFinite());
   plant.acknowledge();
-  const plant::Feedback refused = plant.submit({"", {packing_of("BOX028").waypoints.front()}, {}});
+  const plant::Feedback refused = plant::run(plant, {{}, {packing_of("BOX028").waypoints.front()}, {}});
   EXPECT_EQ(refused.end.reason, EndReason::Refused);
   EXPECT_EQ(refused.end.where, "the plant has failed");
   EXPECT_EQ(refused.X_WE, failed.X_WE);
@@ -246,28 +246,14 @@ TEST(SimulatedPlantCalls, TheSameOnesGiveTheSameBytesWhateverIsReadInBetween) {
     SimulatedPlant one(three_boxes(), "1", options), other(three_boxes(), "1", options);
     for (const std::string_view item : kItems) {
       const plant::Feedback a = pack(one, item);
-      for (int look = 0; look < 3; ++look) (void)other.perceive({});
+      for (int look = 0; look < 3; ++look) (void)plant::observe(other, {});
       (void)other.read();
       (void)other.describe();
-      (void)other.bring("BOX999");
+      (void)plant::bring_and_wait(other, model::ParcelId("BOX999"));
       EXPECT_EQ(a, pack(other, item)) << item;
       EXPECT_EQ(one.simulation().hash(one.state()), other.simulation().hash(other.state())) << item;
     }
   }
-}
-
-TEST(SimulatedPlantCalls, AreRememberedInTheirOrderWithWhatTheyWereCalledWith) {
-  SimulatedPlant plant(three_boxes(), "1", nominal());
-  EXPECT_FALSE(plant.bring("BOX999"));
-  ASSERT_TRUE(plant.bring("BOX013"));
-  (void)plant.submit(pick_of("BOX013"));
-  plant.acknowledge();
-  (void)plant.perceive({});
-  ASSERT_EQ(plant.calls().size(), 3U) << "looks and what did not come change nothing";
-  EXPECT_EQ(plant.calls()[0].kind, Call::Kind::Bring);
-  EXPECT_EQ(plant.calls()[0].item, "BOX013");
-  EXPECT_EQ(plant.calls()[1].motion, pick_of("BOX013"));
-  EXPECT_EQ(plant.calls()[2].kind, Call::Kind::Acknowledge);
 }
 
 TEST(SimulatedPlantCalls, OtherSeedsAreOtherPlantsAndTheirNamesSayWhich) {
@@ -275,7 +261,8 @@ TEST(SimulatedPlantCalls, OtherSeedsAreOtherPlantsAndTheirNamesSayWhich) {
       two(three_boxes(), "1", drawn(2));
   EXPECT_EQ(exact.describe().name, "simulated, as the scenario says");
   EXPECT_EQ(one.describe().name, "simulated, plant seed 1");
-  for (SimulatedPlant* plant : {&exact, &one, &two}) ASSERT_TRUE(plant->bring("BOX027"));
+  for (SimulatedPlant* plant : {&exact, &one, &two})
+    ASSERT_TRUE(plant::bring_and_wait(*plant, model::ParcelId("BOX027")));
   EXPECT_NE(pose_of(one, "BOX027").p, pose_of(two, "BOX027").p);
   EXPECT_NE(pose_of(one, "BOX027").p, pose_of(exact, "BOX027").p);
   EXPECT_LT((pose_of(one, "BOX027").p - pose_of(exact, "BOX027").p).norm(), 0.01) << "at the same aligner";
@@ -288,15 +275,15 @@ TEST(SimulatedPlantCalls, UnknownSequencesAndRobotsAreErrors) {
 
 TEST(Bring, TakesAwayWhatStoodThereAndNotWhatHangsFromTheCup) {
   SimulatedPlant plant(three_boxes(), "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
-  ASSERT_TRUE(plant.bring("BOX028"));
-  EXPECT_EQ(perception::find(plant.perceive({}), "BOX027"), nullptr);
-  EXPECT_NE(perception::find(plant.perceive({}), "BOX028"), nullptr);
-  ASSERT_EQ(plant.submit(pick_of("BOX028")).end.reason, EndReason::Completed);
-  ASSERT_TRUE(plant.bring("BOX013"));
-  EXPECT_NE(perception::find(plant.perceive({}), "BOX028"), nullptr);
-  EXPECT_NE(perception::find(plant.perceive({}), "BOX013"), nullptr);
-  EXPECT_FALSE(plant.bring("BOX027")) << "it came before";
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX028")));
+  EXPECT_EQ(perception::find(plant::observe(plant, {}), "BOX027"), nullptr);
+  EXPECT_NE(perception::find(plant::observe(plant, {}), "BOX028"), nullptr);
+  ASSERT_EQ(plant::run(plant, pick_of("BOX028")).end.reason, EndReason::Completed);
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX013")));
+  EXPECT_NE(perception::find(plant::observe(plant, {}), "BOX028"), nullptr);
+  EXPECT_NE(perception::find(plant::observe(plant, {}), "BOX013"), nullptr);
+  EXPECT_FALSE(plant::bring_and_wait(plant, model::ParcelId("BOX027"))) << "it came before";
 }
 
 TEST(MotionTruth, CountsFromWhenAnItemIsBrought) {
@@ -309,7 +296,7 @@ TEST(MotionTruth, CountsFromWhenAnItemIsBrought) {
   EXPECT_GE(first.swing, 0.0);
   EXPECT_LT(first.swing, 0.02);
   EXPECT_EQ(first.joint_speed, 0.0) << "no joints";
-  ASSERT_TRUE(plant.bring("BOX028"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX028")));
   EXPECT_EQ(plant.motion_truth(), MotionTruth{});
 }
 
@@ -325,8 +312,8 @@ TEST(MotionTruth, OfAnArmItsJointsMoveWithinWhatTheyMay) {
 /// The largest load of a lift by a rigid hold is m (g + a): the factor of the way is below that of hanging still.
 TEST(MotionTruth, TheHoldIsLeastWhereTheBoxIsAccelerated) {
   SimulatedPlant plant(unhurried(), "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
-  const plant::Feedback held = plant.submit(pick_of("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  const plant::Feedback held = plant::run(plant, pick_of("BOX027"));
   ASSERT_EQ(held.end.reason, EndReason::Completed);
   const double still = cup::sensed_hold_factor(plant.simulation().scenario().cup, held.pressure_gauge, held.F_E);
   EXPECT_LT(plant.motion_truth().hold_factor, still);

@@ -32,8 +32,8 @@ TEST(PlantPerception, ExactIsTheTruthToTheLastBit) {
   options.set = {{"parcel_clearance", "0.0005"}};  // what is seen is the box as it collides
   SimulatedPlant plant(three_boxes(), "1", options);
   ASSERT_EQ(pack(plant, "BOX027").end.reason, EndReason::Completed);
-  ASSERT_TRUE(plant.bring("BOX028"));
-  const perception::Observation seen = plant.perceive(all_items());
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX028")));
+  const perception::Observation seen = plant::observe(plant, all_items());
   EXPECT_EQ(seen.time, plant.read().time);
   ASSERT_EQ(seen.seen.size(), 2U);
   for (const std::string id : {"BOX027", "BOX028"}) {
@@ -58,7 +58,7 @@ TEST(PlantPerception, NoiseHasTheCovarianceThatIsStatedAndNoMean) {
   Vector6 mean = Vector6::Zero();
   Matrix6 stated;
   for (int look = 0; look < kLooks; ++look) {
-    const perception::Observation seen = plant.perceive({});
+    const perception::Observation seen = plant::observe(plant, {});
     ASSERT_EQ(seen.seen.size(), 1U);
     Vector6 error;
     error << seen.seen[0].X_WP.p - X_WP.p, log_rotation(seen.seen[0].X_WP.R * X_WP.R.transpose());
@@ -82,8 +82,8 @@ TEST(PlantPerception, NoiseHasTheCovarianceThatIsStatedAndNoMean) {
 TEST(PlantPerception, NoiseIsTheSeedsAndSoIsThePlant) {
   const auto look = [](std::uint64_t seed) {
     SimulatedPlant plant(three_boxes(), "1", seen_by(Kind::Noisy, seed));
-    EXPECT_TRUE(plant.bring("BOX027"));
-    return plant.perceive(all_items());
+    EXPECT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+    return plant::observe(plant, all_items());
   };
   EXPECT_EQ(look(3), look(3));
   EXPECT_NE(look(3), look(4));
@@ -93,7 +93,7 @@ TEST(PlantPerception, DeadReckoningSeesNeitherBoxesNorWhatFaultsDo) {
   SimulatedPlant sound(three_boxes(), "1", seen_by(Kind::DeadReckoning, 0));
   SimulatedPlant moved(three_boxes(), "1", seen_by(Kind::DeadReckoning, 0, "displace@1,object@1"));
   for (SimulatedPlant* plant : {&sound, &moved}) ASSERT_EQ(pack(*plant, "BOX027").end.reason, EndReason::Completed);
-  perception::Observation a = sound.perceive(all_items()), b = moved.perceive(all_items());
+  perception::Observation a = plant::observe(sound, all_items()), b = plant::observe(moved, all_items());
   a.time = b.time = 0.0;  // the fault took its time to rest
   EXPECT_EQ(a, b);
   EXPECT_TRUE(a.seen.empty());
@@ -122,9 +122,9 @@ TEST(ABoxThatIsThrownOut, LiesOnTheGroundAndIsSeenThere) {
   model::Scenario scenario = three_boxes();
   scenario.motion_guards.exact_settle = scenario.motion_guards.longest_settle = 3.0;
   SimulatedPlant plant(scenario, "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
-  ASSERT_EQ(plant.submit(throwing_out("BOX027")).end.reason, EndReason::Completed);
-  const perception::Observation seen = plant.perceive(all_items());
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  ASSERT_EQ(plant::run(plant, throwing_out("BOX027")).end.reason, EndReason::Completed);
+  const perception::Observation seen = plant::observe(plant, all_items());
   ASSERT_NE(perception::find(seen, "BOX027"), nullptr);
   const Vector3 p_W = perception::find(seen, "BOX027")->X_WP.p;
   EXPECT_LT(p_W.z(), -0.6);
@@ -139,18 +139,18 @@ TEST(ABoxThatIsThrownOut, IsLostWhereNothingEndsItsFallAndPackingGoesOn) {
   std::erase_if(bottomless.bodies, [](const model::Body& body) { return body.name == "ground"; });
   bottomless.motion_guards.exact_settle = bottomless.motion_guards.longest_settle = 16.0;
   SimulatedPlant plant(bottomless, "1", nominal());
-  ASSERT_TRUE(plant.bring("BOX027"));
-  const plant::Feedback thrown = plant.submit(throwing_out("BOX027"));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  const plant::Feedback thrown = plant::run(plant, throwing_out("BOX027"));
   EXPECT_EQ(thrown.end.reason, EndReason::Completed) << plant::describe(thrown.end, {});
   ASSERT_EQ(plant.work().lost.size(), 1U);
   const cell::LostBody& lost = plant.work().lost[0];
   EXPECT_EQ(lost.name, "BOX027");
   // It fell from half a metre: v^2 = 2 g h. A push of some decimetres a second at first adds nothing to that.
   EXPECT_NEAR(lost.v_W.norm(), std::sqrt(2.0 * 9.81 * (0.5 - lost.p_W.z())), 0.3);
-  EXPECT_EQ(perception::find(plant.perceive(all_items()), "BOX027"), nullptr);
+  EXPECT_EQ(perception::find(plant::observe(plant, all_items()), "BOX027"), nullptr);
   ASSERT_EQ(plant.boxes().size(), 1U);
   EXPECT_EQ(plant.boxes()[0].state, cell::BoxState::Lost);
-  EXPECT_FALSE(plant.bring("BOX027"));
+  EXPECT_FALSE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
   EXPECT_EQ(pack(plant, "BOX028").end.reason, EndReason::Completed);
 }
 

@@ -9,6 +9,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/model/test/shortened.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
 
 namespace snug::simulated_plant {
@@ -69,7 +70,7 @@ SimulatedPlantOptions with_fault(FaultKind kind) {
 
 /// From the pick over the bench, 0.5 m from the aligner.
 plant::Motion carrying() {
-  plant::Motion motion{"BOX027", box().pick(), {}};
+  plant::Motion motion{model::ParcelId("BOX027"), box().pick(), {}};
   motion::Waypoint away = motion.waypoints.back();
   away.X_WE.p += Vector3(0.5, 0.0, 0.1);
   away.motion_class = motion::MotionClass::PrePlace;
@@ -79,17 +80,17 @@ plant::Motion carrying() {
 
 TEST(SimulatedPlant, ABoxThatDoesNotSealIsFeltOnceAndPickedTheNextTime) {
   SimulatedPlant plant(scenario(), "1", with_fault(FaultKind::NoSeal));
-  ASSERT_TRUE(plant.bring("BOX027"));
-  EXPECT_EQ(plant.submit(carrying()).end.reason, plant::EndReason::NoSeal);
-  EXPECT_EQ(plant.submit(carrying()).end.reason, plant::EndReason::Completed);
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  EXPECT_EQ(plant::run(plant, carrying()).end.reason, plant::EndReason::NoSeal);
+  EXPECT_EQ(plant::run(plant, carrying()).end.reason, plant::EndReason::Completed);
 }
 
 TEST(SimulatedPlant, ABoxThatDropsIsFeltByItsVacuum) {
   SimulatedPlant plant(scenario(), "1", with_fault(FaultKind::Drop));
-  ASSERT_TRUE(plant.bring("BOX027"));
-  const plant::Feedback fed = plant.submit(carrying());
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  const plant::Feedback fed = plant::run(plant, carrying());
   EXPECT_EQ(fed.end.reason, plant::EndReason::VacuumLost);
-  EXPECT_EQ(fed.end.waypoint, 3);
+  EXPECT_EQ(fed.end.waypoint, motion::WaypointIndex(3));
   EXPECT_LT(plant.motion_truth().hold_factor, 1e3) << "it hung from the cup before";
   const auto& events = plant.state().event_log.events();
   EXPECT_TRUE(std::ranges::any_of(events, [](const record::Event& event) { return event.kind == "fault"; }));
@@ -97,14 +98,70 @@ TEST(SimulatedPlant, ABoxThatDropsIsFeltByItsVacuum) {
 
 TEST(SimulatedPlant, AStopHoldsTheBoxAndAsksForAnAcknowledgement) {
   SimulatedPlant plant(scenario(), "1", with_fault(FaultKind::Stop));
-  ASSERT_TRUE(plant.bring("BOX027"));
-  const plant::Feedback stopped = plant.submit(carrying());
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  const plant::Feedback stopped = plant::run(plant, carrying());
   EXPECT_EQ(stopped.end.reason, plant::EndReason::ProtectiveStop);
   EXPECT_LT(stopped.pressure_gauge, -1.0e4);
-  const plant::Motion rest{"BOX027", {carrying().waypoints.back()}, {}};
-  EXPECT_EQ(plant.submit(rest).end.reason, plant::EndReason::Refused);
+  const plant::Motion rest{model::ParcelId("BOX027"), {carrying().waypoints.back()}, {}};
+  EXPECT_EQ(plant::run(plant, rest).end.reason, plant::EndReason::Refused);
   plant.acknowledge();
-  EXPECT_EQ(plant.submit(rest).end.reason, plant::EndReason::Completed);
+  EXPECT_EQ(plant::run(plant, rest).end.reason, plant::EndReason::Completed);
+}
+
+TEST(SimulatedPlant, AStopIsSaidBeforeItsMotionEndsAndNotAgain) {
+  SimulatedPlant plant(scenario(), "1", with_fault(FaultKind::Stop));
+  ASSERT_TRUE(plant::bring_and_wait(plant, model::ParcelId("BOX027")));
+  plant.start(carrying());
+  std::string story;
+  while (plant.is_moving()) {
+    for (const plant::Event& event : plant.advance()) {
+      const auto* fault = plant::get<plant::FaultRaised>(event);
+      story += fault != nullptr ? "f" : plant::get<plant::MotionEnded>(event) != nullptr ? "e" : "";
+      if (fault == nullptr) continue;
+      EXPECT_EQ(fault->reason, plant::EndReason::ProtectiveStop);
+      EXPECT_EQ(fault->where, "injected");
+    }
+  }
+  EXPECT_EQ(story, "fe");
+  EXPECT_EQ(plant::run(plant, carrying()).end.reason, plant::EndReason::Refused);
+  plant.acknowledge();
+  EXPECT_TRUE(plant.advance().empty());
+  const plant::Motion rest{model::ParcelId("BOX027"), {carrying().waypoints.back()}};
+  EXPECT_EQ(plant::run(plant, rest).end.reason, plant::EndReason::Completed);
+}
+
+/// Boxes that a fault moved come to rest tick by tick, and a motion can be cancelled meanwhile.
+TEST(SimulatedPlant, WhatAFaultMovedRestsTickByTick) {
+  SimulatedPlantOptions options;
+  options.seed = 0;
+  options.faults = {{FaultKind::Object, 1}};
+  const motion::Program demo = motion::load_program(SNUG_SOURCE_DIR "/src/snug/cell/test/demo_program.csv");
+  plant::Motion packing{model::ParcelId("BOX027"), {}};
+  std::ranges::copy_if(demo.waypoints, std::back_inserter(packing.waypoints),
+                       [](const motion::Waypoint& one) { return one.item == "BOX027"; });
+  for (const bool is_cancelled : {false, true}) {
+    SimulatedPlant plant(scenario(), "1", options);
+    ASSERT_TRUE(plant::bring_and_wait(plant, packing.item));
+    plant.start(packing);
+    const double tick = scenario().controller.tick;
+    int resting = 0;
+    plant::EndReason reason = plant::EndReason::Completed;
+    while (plant.is_moving()) {
+      const double before = plant.read().time;
+      for (const plant::Event& event : plant.advance()) {
+        if (const auto* ended = plant::get<plant::MotionEnded>(event)) reason = ended->feedback.end.reason;
+      }
+      EXPECT_LE(plant.read().time - before, tick + 1e-9);
+      resting += plant.objects()[0].is_in ? 1 : 0;
+      if (is_cancelled && resting == 5) plant.cancel();
+    }
+    for (const plant::Event& event : plant.advance()) {
+      if (const auto* ended = plant::get<plant::MotionEnded>(event)) reason = ended->feedback.end.reason;
+    }
+    EXPECT_EQ(reason, is_cancelled ? plant::EndReason::Cancelled : plant::EndReason::Completed);
+    EXPECT_TRUE(plant.objects()[0].has_rested);
+    EXPECT_GE(resting, 5);
+  }
 }
 
 /// What pressed on the arm when it was acknowledged presses on it still at the first tick of the way out.
@@ -116,7 +173,8 @@ TEST(SimulatedPlant, AStopByLoadIsLeftTheWayItCameButNotPressedOn) {
   Pose below = above;
   below.p.z() = -0.1;  // inside the workbench
   const auto to = [&](const Pose& X_WE) {
-    return plant.submit({"BOX027", {motion::make_waypoint(motion::MotionClass::Place, "BOX027", X_WE)}, {}});
+    return plant::run(
+        plant, {model::ParcelId("BOX027"), {motion::make_waypoint(motion::MotionClass::Place, "BOX027", X_WE)}, {}});
   };
   for (int push = 0; push < 3; ++push) {
     const plant::Feedback stopped = to(below);

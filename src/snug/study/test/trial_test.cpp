@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/output_file.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 #include "snug/model/other_container.hpp"
 #include "snug/model/test/shortened.hpp"
 #include "snug/motion/program_csv.hpp"
+#include "snug/record/reader.hpp"
 #include "snug/study/monte_carlo.hpp"
 
 namespace snug::study {
@@ -48,15 +51,25 @@ TEST(Trial, PacksADrawnPlantAndIsTheSameWithAnyNumberOfThreads) {
   EXPECT_NE(run_trial(scenario, "1", options, plant_seed(8)).state_hash, one.state_hash) << "another plant";
 }
 
-TEST(Trial, ItsCallsRepeatedComeToTheSameState) {
+TEST(Trial, IsTheSameRecordedAndItsRecordingHoldsWhatTheSessionSays) {
   const model::Scenario scenario = shortened(2);
-  const Trial trial = run_trial(scenario, "1", quick(0), plant_seed(7));
-  EXPECT_TRUE(std::ranges::any_of(trial.calls, [](const simulated_plant::Call& call) {
-    return call.kind == simulated_plant::Call::Kind::Bring && call.passed >= 0;
-  })) << "the second box is brought while the tool leaves the first";
-  simulated_plant::SimulatedPlant again(scenario, "1", trial.plant);
-  simulated_plant::repeat(again, trial.calls);
-  EXPECT_EQ(again.simulation().hash(again.state()), trial.state_hash);
+  const Trial unseen = run_trial(scenario, "1", quick(0), plant_seed(7));
+  const snug::test::ScratchFolder folder;
+  OutputFile file(folder / "run.h5");
+  TrialFiles files;
+  files.recording.emplace().file = &file;
+  files.describe = [](const runs::RunResult& one) { return std::to_string(one.state_hash); };
+  const Trial recorded = run_trial(scenario, "1", quick(0), plant_seed(7), {}, files);
+  EXPECT_EQ(recorded.state_hash, unseen.state_hash);
+  const record::Recording read = record::load_recording(folder / "run.h5");
+  EXPECT_TRUE(read.is_complete);
+  EXPECT_EQ(read.result, std::to_string(unseen.state_hash)) << "one simulation";
+  motion::Program program = unseen.session.program;
+  program.tracking = motion::FastTracking{};
+  EXPECT_EQ(read.header.program_text, motion::format_program(program));
+  for (const record::Event& event : events_of(recorded.session)) {
+    EXPECT_NE(std::ranges::find(read.events, event), read.events.end()) << event.kind << " of " << event.body;
+  }
 }
 
 TEST(Trial, PacksWithTheArm) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -14,7 +15,7 @@
 
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/motion/waypoint_name.hpp"
-#include "snug/plant/plant.hpp"
+#include "snug/plant/wait.hpp"
 
 namespace snug::plant {
 
@@ -62,7 +63,34 @@ class PlantContract : public testing::TestWithParam<PlantCase> {
  protected:
   void SetUp() override { plant_ = GetParam().make(); }
   [[nodiscard]] Feedback go(std::vector<motion::Waypoint> waypoints, Guards guards = {}) {
-    return plant_->submit({GetParam().item, std::move(waypoints), guards});
+    return run(*plant_, motion_of(std::move(waypoints), guards));
+  }
+  [[nodiscard]] static Motion motion_of(std::vector<motion::Waypoint> waypoints, Guards guards = {}) {
+    return {item(), std::move(waypoints), guards, {}};
+  }
+  [[nodiscard]] static model::ParcelId item() { return model::ParcelId(GetParam().item); }
+  [[nodiscard]] static bool is_there(const perception::Observation& seen) {
+    return perception::find(seen, GetParam().item) != nullptr;
+  }
+  [[nodiscard]] static std::vector<motion::Waypoint> there_and_back() {
+    return {GetParam().free_waypoint, GetParam().pick.front(), GetParam().free_waypoint};
+  }
+  /// Advances until the motion has ended, at most `most` times; all events.
+  std::vector<Event> finish(int most = 1'000'000) {
+    std::vector<Event> all;
+    while (plant_->is_moving() && most-- > 0) {
+      for (Event& event : plant_->advance()) all.push_back(std::move(event));
+    }
+    for (Event& event : plant_->advance()) all.push_back(std::move(event));
+    return all;
+  }
+  template <class Kind>
+  [[nodiscard]] static std::vector<Kind> all_of(const std::vector<Event>& events) {
+    std::vector<Kind> found;
+    for (const Event& event : events) {
+      if (const Kind* one = get<Kind>(event)) found.push_back(*one);
+    }
+    return found;
   }
   [[nodiscard]] static std::vector<perception::Expectation> item_alone() {
     return {{GetParam().item, Vector3::Constant(0.1), std::nullopt}};
@@ -87,9 +115,10 @@ TEST_P(PlantContract, ReadingChangesNothing) {
 }
 
 TEST_P(PlantContract, BringsEachItemOnce) {
-  EXPECT_FALSE(plant_->bring("no such item"));
-  EXPECT_TRUE(plant_->bring(GetParam().item));
-  EXPECT_FALSE(plant_->bring(GetParam().item));
+  EXPECT_FALSE(plant_->bring(model::ParcelId("no such item")));
+  EXPECT_FALSE(plant_->bring({}));
+  EXPECT_TRUE(bring_and_wait(*plant_, item()));
+  EXPECT_FALSE(plant_->bring(item()));
 }
 
 TEST_P(PlantContract, EveryExpectedItemIsEitherSeenOrNot) {
@@ -97,9 +126,9 @@ TEST_P(PlantContract, EveryExpectedItemIsEitherSeenOrNot) {
   expected.push_back({"no such item", Vector3::Constant(0.1), std::nullopt});
   for (const bool is_there : {false, true}) {
     if (is_there) {
-      EXPECT_TRUE(plant_->bring(GetParam().item));
+      EXPECT_TRUE(bring_and_wait(*plant_, item()));
     }
-    const perception::Observation seen = plant_->perceive(expected);
+    const perception::Observation seen = observe(*plant_, expected);
     for (const perception::Expectation& one : expected) {
       const bool not_seen = std::ranges::find(seen.not_seen, one.item) != seen.not_seen.end();
       EXPECT_NE(perception::find(seen, one.item) != nullptr, not_seen) << one.item;
@@ -136,7 +165,7 @@ TEST_P(PlantContract, ComesToAWaypointAndStands) {
   const Feedback start = plant_->read();
   const Feedback there = go({GetParam().free_waypoint});
   ASSERT_EQ(there.end.reason, EndReason::Completed) << describe(there.end, {});
-  EXPECT_EQ(there.end.waypoint, 0);
+  EXPECT_EQ(there.end.waypoint, motion::WaypointIndex(0));
   EXPECT_LE((there.X_WE.p - GetParam().free_waypoint.X_WE.p).norm(), GetParam().tolerance);
   EXPECT_LT(there.V_WE.linear.norm(), 0.01);
   EXPECT_GT(there.time, start.time);
@@ -163,7 +192,7 @@ TEST_P(PlantContract, WithoutThatGuardItGoesOn) {
 }
 
 TEST_P(PlantContract, PicksAndFeelsTheVacuumAndTheWeight) {
-  ASSERT_TRUE(plant_->bring(GetParam().item));
+  ASSERT_TRUE(bring_and_wait(*plant_, item()));
   const Feedback held = go(GetParam().pick);
   ASSERT_EQ(held.end.reason, EndReason::Completed) << describe(held.end, GetParam().pick);
   EXPECT_LT(held.pressure_gauge, -1.0e4);
@@ -172,51 +201,180 @@ TEST_P(PlantContract, PicksAndFeelsTheVacuumAndTheWeight) {
   EXPECT_GE(held.peak_force, held.F_E.force.norm());
 }
 
-TEST_P(PlantContract, BringsAndPerceivesWhileItPassesAWaypoint) {
-  const std::vector<motion::Waypoint> way{GetParam().free_waypoint, GetParam().pick.front(), GetParam().free_waypoint};
-  int calls = 0;
-  const Feedback start = plant_->read();
-  double seen_at = 0.0;
-  const Feedback there =
-      plant_->submit({GetParam().item, way, {}}, {0, [&] {
-                                                    ++calls;
-                                                    EXPECT_TRUE(plant_->bring(GetParam().item));
-                                                    const perception::Observation seen = plant_->perceive(item_alone());
-                                                    seen_at = seen.time;
-                                                    EXPECT_NE(perception::find(seen, GetParam().item), nullptr);
-                                                  }});
-  EXPECT_EQ(there.end.reason, EndReason::Completed) << describe(there.end, way);
-  EXPECT_EQ(there.end.waypoint, 2);
-  EXPECT_EQ(calls, 1);
-  EXPECT_GT(seen_at, start.time);
-  EXPECT_LT(seen_at, there.time) << "it moves on";
-  EXPECT_FALSE(plant_->bring(GetParam().item)) << "it has come";
-  double sum = 0.0;
-  for (const WaypointTime& one : there.times) sum += one.moving + one.waiting;
-  EXPECT_NEAR(sum, there.time - start.time, 1e-9) << "rounding of sums";
+TEST_P(PlantContract, WithoutAMotionNothingHappensAndNoTimePasses) {
+  const Feedback before = plant_->read();
+  EXPECT_FALSE(plant_->is_moving());
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(plant_->advance().empty());
+  plant_->cancel();
+  EXPECT_TRUE(plant_->advance().empty());
+  EXPECT_EQ(plant_->read(), before);
 }
 
-TEST_P(PlantContract, WhatIsToBeDoneOnPassingIsNotDoneBeforeOrInVain) {
-  int calls = 0;
-  const auto passing = [&](int waypoint) { return OnPassing{waypoint, [&calls] { ++calls; }}; };
+TEST_P(PlantContract, EventsComeInTheOrderOfTimeAndEachOnce) {
+  ASSERT_TRUE(bring_and_wait(*plant_, item()));
+  std::vector<motion::Waypoint> waypoints = GetParam().pick;
+  waypoints.insert(waypoints.begin(), GetParam().free_waypoint);
+  plant_->start(motion_of(waypoints));
+  EXPECT_TRUE(plant_->is_moving());
+  const std::vector<Event> events = finish();
+  EXPECT_FALSE(plant_->is_moving());
+  EXPECT_TRUE(plant_->advance().empty());
+  EXPECT_TRUE(std::ranges::is_sorted(events, {}, &Event::time));
+  const auto passed = all_of<WaypointPassed>(events);
+  ASSERT_EQ(passed.size(), waypoints.size() - 1) << "the last one is reached, not passed";
+  for (std::size_t i = 0; i < passed.size(); ++i) EXPECT_EQ(passed[i].waypoint.slot(), i);
+  EXPECT_EQ(all_of<VacuumBuilt>(events).size(), 1U);
+  EXPECT_TRUE(all_of<VacuumDropped>(events).empty());
+  EXPECT_TRUE(all_of<GuardTripped>(events).empty());
+  EXPECT_TRUE(all_of<FaultRaised>(events).empty());
+  const auto ended = all_of<MotionEnded>(events);
+  ASSERT_EQ(ended.size(), 1U);
+  EXPECT_NE(get<MotionEnded>(events.back()), nullptr);
+  EXPECT_EQ(ended[0].feedback.end.reason, EndReason::Completed);
+  EXPECT_EQ(ended[0].feedback, plant_->read());
+}
+
+TEST_P(PlantContract, AHeldBoxIsNoNewVacuum) {
+  ASSERT_TRUE(bring_and_wait(*plant_, item()));
+  ASSERT_EQ(go(GetParam().pick).end.reason, EndReason::Completed);
+  plant_->start(motion_of({GetParam().pick.back()}));
+  EXPECT_TRUE(all_of<VacuumBuilt>(finish()).empty());
+}
+
+TEST_P(PlantContract, ReadsWhileItMoves) {
+  plant_->start(motion_of({GetParam().free_waypoint}));
+  double before = plant_->read().time;
+  int ticks = 0;
+  while (plant_->is_moving()) {
+    (void)plant_->advance();
+    const Feedback now = plant_->read();
+    EXPECT_EQ(now, plant_->read());
+    EXPECT_GE(now.time, before);
+    before = now.time;
+    ++ticks;
+  }
+  EXPECT_GT(ticks, 1);
+}
+
+TEST_P(PlantContract, BringsAndPerceivesWhileItPassesAWaypoint) {
+  plant_->start(motion_of(there_and_back()));
+  const double start = plant_->read().time;
+  double seen_at = 0.0;
+  bool has_arrived = false;
+  Feedback there;
+  while (plant_->is_moving()) {
+    for (const Event& event : plant_->advance()) {
+      if (const auto* passed = get<WaypointPassed>(event); passed != nullptr && passed->waypoint.value == 0) {
+        EXPECT_TRUE(plant_->bring(item()));
+        EXPECT_FALSE(plant_->bring(item())) << "it comes already";
+      }
+      if (const auto* arrived = get<ItemArrived>(event)) {
+        EXPECT_EQ(arrived->item, item());
+        has_arrived = true;
+        plant_->perceive(item_alone());
+      }
+      if (const auto* seen = get<Perceived>(event)) {
+        EXPECT_TRUE(is_there(seen->observation));
+        EXPECT_EQ(seen->observation.time, event.time);
+        seen_at = event.time;
+      }
+      if (const auto* ended = get<MotionEnded>(event)) there = ended->feedback;
+    }
+  }
+  EXPECT_TRUE(has_arrived);
+  EXPECT_EQ(there.end.reason, EndReason::Completed) << describe(there.end, there_and_back());
+  EXPECT_EQ(there.end.waypoint, motion::WaypointIndex(2));
+  EXPECT_GT(seen_at, start);
+  EXPECT_LT(seen_at, there.time) << "it moves on";
+  double sum = 0.0;
+  for (const WaypointTime& one : there.times) sum += one.moving + one.waiting;
+  EXPECT_NEAR(sum, there.time - start, 1e-9) << "rounding of sums";
+}
+
+TEST_P(PlantContract, PerceivingTakesNoTickOfAMotionAndEachIsAnswered) {
+  plant_->start(motion_of(there_and_back()));
+  for (int i = 0; i < 3; ++i) (void)plant_->advance();
+  const double now = plant_->read().time;
+  for (int i = 0; i < 3; ++i) plant_->perceive(item_alone());
+  std::vector<Event> events;
+  while (all_of<Perceived>(events).size() < 3) {
+    for (Event& event : plant_->advance()) events.push_back(std::move(event));
+  }
+  for (const Perceived& one : all_of<Perceived>(events)) EXPECT_EQ(one.observation.time, now);
+  EXPECT_EQ(plant_->read().time, now);
+  EXPECT_EQ(all_of<MotionEnded>(finish()).size(), 1U);
+}
+
+TEST_P(PlantContract, WhatIsPassedIsNotSaidBeforeOrInVain) {
   const motion::Waypoint& free = GetParam().free_waypoint;
   motion::Waypoint sucking = free;
   sucking.io.vacuum = true;
-  EXPECT_EQ(plant_->submit({GetParam().item, {}, {}}, passing(0)).end.reason, EndReason::Refused);
-  EXPECT_EQ(plant_->submit({GetParam().item, {free, sucking, free}, {}}, passing(1)).end.reason, EndReason::NoSeal);
-  EXPECT_EQ(plant_->submit({GetParam().item, {free, free}, {}}, passing(1)).end.reason, EndReason::Completed);
-  EXPECT_EQ(calls, 0) << "refused, ended before, and the last waypoint, which is not passed";
+  const auto passed_of = [&](std::vector<motion::Waypoint> waypoints) {
+    plant_->start(motion_of(std::move(waypoints)));
+    return all_of<WaypointPassed>(finish());
+  };
+  EXPECT_TRUE(passed_of({}).empty()) << "refused";
+  const auto ended = passed_of({free, sucking, free});
+  ASSERT_EQ(ended.size(), 1U) << "it ends on the way to the second";
+  EXPECT_EQ(ended[0].waypoint.value, 0);
+  EXPECT_EQ(passed_of({free, free}).size(), 1U) << "the last one is not passed";
+}
+
+/// Before its first tick, at each of the next, later and later, and while it comes to rest.
+TEST_P(PlantContract, CancelsAtEachInstant) {
+  int most = 0;
+  ASSERT_TRUE(bring_and_wait(*plant_, item()));
+  for (plant_->start(motion_of(GetParam().pick)); plant_->is_moving(); ++most) (void)plant_->advance();
+  std::vector<int> instants = {0, 1, most / 4, most / 2, 3 * most / 4, most - 1};
+  for (const int instant : instants) {
+    SCOPED_TRACE(instant);
+    plant_ = GetParam().make();
+    ASSERT_TRUE(bring_and_wait(*plant_, item()));
+    plant_->start(motion_of(GetParam().pick));
+    for (int i = 0; i < instant; ++i) {
+      for (const Event& event : plant_->advance()) ASSERT_EQ(get<MotionEnded>(event), nullptr);
+    }
+    ASSERT_TRUE(plant_->is_moving());
+    plant_->cancel();
+    plant_->cancel();
+    const auto ended = all_of<MotionEnded>(finish());
+    ASSERT_EQ(ended.size(), 1U);
+    EXPECT_EQ(ended[0].feedback.end.reason, EndReason::Cancelled);
+    EXPECT_EQ(ended[0].feedback.V_WE.linear.norm(), 0.0);
+    EXPECT_EQ(go({GetParam().free_waypoint}, {std::nullopt, false}).end.reason, EndReason::Completed);
+  }
+}
+
+TEST_P(PlantContract, AnItemThatWasBroughtComesThoughTheMotionIsCancelled) {
+  plant_->start(motion_of(there_and_back()));
+  (void)plant_->advance();
+  ASSERT_TRUE(plant_->bring(item()));
+  plant_->cancel();
+  EXPECT_EQ(all_of<ItemArrived>(finish()).size(), 1U);
+  EXPECT_TRUE(is_there(observe(*plant_, item_alone())));
 }
 
 TEST_P(PlantContract, StopsAtAForce) {
-  ASSERT_TRUE(plant_->bring(GetParam().item));
+  ASSERT_TRUE(bring_and_wait(*plant_, item()));
   const double limit = 10.0;
   const Feedback fed = go({GetParam().free_waypoint, GetParam().pressing}, {limit, false});
   EXPECT_EQ(fed.end.reason, EndReason::ForceGuard);
-  EXPECT_EQ(fed.end.waypoint, 1);
+  EXPECT_EQ(fed.end.waypoint, motion::WaypointIndex(1));
   EXPECT_GT(fed.end.value, limit);
   EXPECT_EQ(fed.end.limit, limit);
   EXPECT_EQ(fed.V_WE.linear.norm(), 0.0);
+}
+
+TEST_P(PlantContract, SaysThatAGuardTrippedBeforeTheMotionEnds) {
+  ASSERT_TRUE(bring_and_wait(*plant_, item()));
+  plant_->start(motion_of({GetParam().free_waypoint, GetParam().pressing}, {10.0, false}));
+  const std::vector<Event> events = finish();
+  const auto tripped = all_of<GuardTripped>(events);
+  const auto ended = all_of<MotionEnded>(events);
+  ASSERT_EQ(tripped.size(), 1U);
+  ASSERT_EQ(ended.size(), 1U);
+  EXPECT_EQ(tripped[0].end, ended[0].feedback.end);
+  EXPECT_NE(get<MotionEnded>(events.back()), nullptr);
 }
 
 TEST_P(PlantContract, AcknowledgingNothingIsHarmless) {
@@ -227,11 +385,11 @@ TEST_P(PlantContract, AcknowledgingNothingIsHarmless) {
 TEST_P(PlantContract, TheSameCallsGiveTheSameAnswers) {
   const std::unique_ptr<Plant> other = GetParam().make();
   for (Plant* plant : {plant_.get(), other.get()}) {
-    EXPECT_TRUE(plant->bring(GetParam().item));
-    (void)plant->submit({GetParam().item, GetParam().pick, {}});
+    EXPECT_TRUE(bring_and_wait(*plant, item()));
+    (void)run(*plant, motion_of(GetParam().pick));
   }
   EXPECT_EQ(plant_->read(), other->read());
-  EXPECT_EQ(plant_->perceive(item_alone()), other->perceive(item_alone()));
+  EXPECT_EQ(observe(*plant_, item_alone()), observe(*other, item_alone()));
 }
 
 }  // namespace snug::plant

@@ -1,0 +1,30 @@
+// SentProgram: any plant, and beside it the program that it is sent.
+#include "snug/plant/sent_program.hpp"
+
+#include <algorithm>
+
+#include "snug/motion/program_csv.hpp"
+
+namespace snug::plant {
+
+SentProgram::SentProgram(Plant& plant, OutputFile& file, const motion::Tracking& tracking)
+    : plant_(plant), file_(file), program_{"pack", {}, tracking} {}
+
+void SentProgram::start(const Motion& motion) {
+  const bool is_finite = std::ranges::all_of(
+      motion.waypoints, [](const motion::Waypoint& one) { return one.X_WE.p.allFinite() && one.X_WE.R.allFinite(); });
+  if (is_finite) {  // else it is refused
+    program_.waypoints.insert(program_.waypoints.end(), motion.waypoints.begin(), motion.waypoints.end());
+    file_.replace(kUnfinishedProgram + motion::format_program(program_));
+    if (!file_.is_published() && !file_.replaces_file()) file_.publish();
+  }
+  plant_.start(motion);
+}
+
+void SentProgram::finish() {
+  if (program_.waypoints.empty()) return;
+  file_.replace(motion::format_program(program_));
+  if (!file_.is_published()) file_.publish();
+}
+
+}  // namespace snug::plant
