@@ -1,4 +1,4 @@
-// Interrupt: SIGINT and SIGTERM end long work in order, with what is done so far; a second one ends it at once.
+// Interrupt: SIGINT, SIGTERM and SIGHUP end long work in order, with what is done so far; a second one ends it at once.
 #pragma once
 
 namespace snug::app {

@@ -11,7 +11,12 @@ namespace {
 
 sem_t g_stop;  ///< posted by the handler: one of the few things that a handler may do
 
-constexpr int kSignals[] = {SIGINT, SIGTERM};
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+
+bool is_ignored(int signal) {
+  struct sigaction before {};
+  return ::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN;
+}
 
 }  // namespace
 
@@ -20,7 +25,10 @@ StopSignal::StopSignal(std::function<void()> stop) {
   struct sigaction action {};
   action.sa_handler = [](int) { ::sem_post(&g_stop); };
   action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
-  for (const int signal : kSignals) ::sigaction(signal, &action, nullptr);
+  for (const int signal : kSignals) {
+    if (signal == SIGHUP && is_ignored(signal)) continue;  // nohup stays what it is
+    ::sigaction(signal, &action, nullptr);
+  }
   thread_ = std::thread([stop = std::move(stop)] {
     while (::sem_wait(&g_stop) != 0) continue;  // another signal woke it up
     stop();
@@ -28,7 +36,9 @@ StopSignal::StopSignal(std::function<void()> stop) {
 }
 
 StopSignal::~StopSignal() {
-  for (const int signal : kSignals) ::signal(signal, SIG_DFL);
+  for (const int signal : kSignals) {
+    if (!is_ignored(signal)) ::signal(signal, SIG_DFL);
+  }
   ::sem_post(&g_stop);  // harmless when the thread has ended
   thread_.join();
   ::sem_destroy(&g_stop);

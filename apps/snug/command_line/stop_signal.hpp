@@ -6,9 +6,9 @@
 
 namespace snug::app {
 
-/// Waits for SIGINT or SIGTERM in a thread of its own, so that stopping may lock and wait like any other code. A
-/// handler, as libraries have threads of their own that a blocked signal would be given to. The second Ctrl-C ends the
-/// program at once. One at a time.
+/// Waits for SIGINT, SIGTERM or SIGHUP in a thread of its own, so that stopping may lock and wait like any other code.
+/// A handler, as libraries have threads of their own that a blocked signal would be given to. The second Ctrl-C ends
+/// the program at once. One at a time.
 class StopSignal {
  public:
   explicit StopSignal(std::function<void()> stop);
