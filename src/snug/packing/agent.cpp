@@ -1,7 +1,9 @@
 // make_agent: agents by name.
 #include "snug/packing/agent.hpp"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
 #include "snug/packing/internal/agents.hpp"
@@ -33,9 +35,37 @@ void check(const PackingSettings& s, const DecisionRun& run) {
   require_number(within(s.min_pick_face, 0.0, 10.0), "packing settings", "min_pick_face", s.min_pick_face, "0 .. 10 m");
 }
 
+/// All agents; a new one is a line here.
+struct Entry {
+  AgentKind kind;
+  const char* name;
+  bool plans_whole_sequence;
+  std::unique_ptr<Agent> (*make)(AgentInput input);
+};
+constexpr std::array kAgents{
+    Entry{AgentKind::Margin, "margin", false, internal::make_margin_agent},
+    Entry{AgentKind::ContactAware, "contact-aware", false, internal::make_contact_aware_agent},
+    Entry{AgentKind::Manual, "manual", true, internal::make_manual_agent},
+    Entry{AgentKind::Offline, "offline", true, internal::make_offline_agent},
+};
+
 }  // namespace
 
-std::vector<std::string> agent_names() { return {"margin", "contact-aware", "manual", "offline"}; }
+const char* name_of(AgentKind kind) { return std::ranges::find(kAgents, kind, &Entry::kind)->name; }
+
+bool plans_whole_sequence(AgentKind kind) {
+  return std::ranges::find(kAgents, kind, &Entry::kind)->plans_whole_sequence;
+}
+
+bool plans_whole_sequence(std::string_view name) {
+  return std::ranges::any_of(kAgents, [&](const Entry& one) { return one.name == name && one.plans_whole_sequence; });
+}
+
+std::vector<std::string> agent_names() {
+  std::vector<std::string> names;
+  for (const Entry& one : kAgents) names.emplace_back(one.name);
+  return names;
+}
 
 Expected<Decision, NoPlace> Agent::decide_pressed(const ContainerState& /*state*/, const Item& /*item*/) {
   return tl::unexpected(NoPlace::NoSpace);
@@ -51,10 +81,8 @@ std::unique_ptr<Agent> make_agent(std::string_view name, AgentInput input) {
     throw InputError("future model", "weights", std::to_string(input.future.weights.size()), "as many as kinds");
   }
   if (input.ask) return make_remote_agent(name, std::move(input));
-  if (name == "margin") return internal::make_margin_agent(std::move(input));
-  if (name == "contact-aware") return internal::make_contact_aware_agent(std::move(input));
-  if (name == "manual") return internal::make_manual_agent(std::move(input));
-  if (name == "offline") return internal::make_offline_agent(std::move(input));
+  const auto found = std::ranges::find(kAgents, name, &Entry::name);
+  if (found != kAgents.end()) return found->make(std::move(input));
   const std::vector<std::string> names = agent_names();
   std::string expected = "one of";
   for (const std::string& known : names) expected += " " + known;

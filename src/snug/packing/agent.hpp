@@ -64,6 +64,18 @@ struct AgentInput {
   DecisionRun run = {};
 };
 
+enum class AgentKind {
+  Margin,        ///< lowest place with a margin to everything
+  ContactAware,  ///< places in contact, chosen by roll-outs over what may come
+  Manual,        ///< re-arranges what it placed before, as a person with paper does
+  Offline,       ///< knows the whole sequence
+};
+/// Of `pack --agent` and files.
+[[nodiscard]] const char* name_of(AgentKind kind);
+/// It plans all of a sequence before anything is done: its places are not decided on item by item.
+[[nodiscard]] bool plans_whole_sequence(AgentKind kind);
+/// The same by name; false for a name that is not known.
+[[nodiscard]] bool plans_whole_sequence(std::string_view name);
 /// Names that make_agent knows.
 [[nodiscard]] std::vector<std::string> agent_names();
 /// Throws InputError for an unknown name or for settings that cannot be.

@@ -50,7 +50,7 @@ double largest_volume(const Prospect& prospect) {
 class ContactAwareAgent : public Agent {
  public:
   explicit ContactAwareAgent(AgentInput input) : input_(std::move(input)) {}
-  std::string_view name() const override { return "contact-aware"; }
+  std::string_view name() const override { return name_of(AgentKind::ContactAware); }
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     Expected<Decision, NoPlace> decision = decide(state, item, plan_for_contact(state, input_.settings));

@@ -16,7 +16,7 @@ constexpr int kOrders = 12;
 class ManualAgent : public Agent {
  public:
   explicit ManualAgent(AgentInput input) : input_(input), online_(make_contact_aware_agent(std::move(input))) {}
-  std::string_view name() const override { return "manual"; }
+  std::string_view name() const override { return name_of(AgentKind::Manual); }
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     Expected<Decision, NoPlace> decision = online_->decide(state, item);

@@ -25,7 +25,7 @@ double placing_cost(const Layout& layout, const Policy& policy, const Piece& pie
 class MarginAgent : public Agent {
  public:
   explicit MarginAgent(AgentInput input) : input_(std::move(input)) {}
-  std::string_view name() const override { return "margin"; }
+  std::string_view name() const override { return name_of(AgentKind::Margin); }
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     const Planning planning{state.inner_size, input_.settings, 0, input_.settings.margin, 0.0};

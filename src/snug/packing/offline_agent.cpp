@@ -12,7 +12,7 @@ namespace {
 class OfflineAgent : public Agent {
  public:
   explicit OfflineAgent(AgentInput input) : input_(std::move(input)) {}
-  std::string_view name() const override { return "offline"; }
+  std::string_view name() const override { return name_of(AgentKind::Offline); }
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     const Planning planning = plan_for_contact(state, input_.settings);
