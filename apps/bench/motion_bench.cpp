@@ -14,8 +14,8 @@
 #include "snug/cell/simulation.hpp"
 #include "snug/motion/controller.hpp"
 #include "snug/packing/agent.hpp"
-#include "snug/session/reach.hpp"
-#include "snug/session/rollout.hpp"
+#include "snug/planning/reach.hpp"
+#include "snug/planning/rollout.hpp"
 #include "snug/skills/item_plan.hpp"
 #include "snug/skills/surroundings.hpp"
 
@@ -38,7 +38,7 @@ class MotionPlanner {
         sequence_(sequence),
         simulation_(scenario, sequence.name, {.tracking = motion::FastTracking{}}),
         layout_(skills::make_layout(scenario, cell::find_pan_axis(scenario))),
-        reaches_(session::make_tool_reach(scenario)) {
+        reaches_(planning::make_tool_reach(scenario)) {
     layout_.is_fast = true;
   }
 
@@ -46,14 +46,14 @@ class MotionPlanner {
   [[nodiscard]] std::optional<double> plan(int item, const packing::Candidate& candidate,
                                            const packing::ContainerState& state) const {
     const auto index = static_cast<std::size_t>(item);
-    const skills::PlannedBox box = skills::make_planned_box(scenario_, sequence_, item);
+    const skills::PlannedBox box = skills::make_planned_box(scenario_, sequence_, model::ItemIndex(item));
     const Pose X_WP = cell::pose_at_aligner(scenario_, sequence_.items[index], 0);
     const double top = top_of(state);
     const motion::Waypoint home = motion::make_waypoint(motion::MotionClass::Home, {}, scenario_.controller.X_WE_start);
     const std::optional<Pick> pick = plan_pick_of(box, X_WP, candidate.placement.X_TP.R, travel_bottom(layout_, top));
     if (!pick) return std::nullopt;
     motion::Program program{.name = "motion", .waypoints = {}};
-    session::append(program, drivable(layout_, home, pick->rows, pick->swing));
+    planning::append(program, drivable(layout_, home, pick->rows, pick->swing));
     const Pose X_EP = pick->X_WE.inverse() * X_WP;
     const Pose X_PS = X_EP.inverse() * Pose{Matrix3::Identity(), scenario_.cup.hold_length * Vector3::UnitZ()};
     const packing::Candidate placed =
@@ -61,8 +61,8 @@ class MotionPlanner {
     const skills::Insertion insertion = skills::choose_insertions(placed, box.size, scenario_.skills.insertion).front();
     const motion::Waypoint held = program.waypoints.back();
     const skills::PlaceRequest request{box, X_PS, placed.placement.X_TP, insertion, top, held.X_WE, X_EP};
-    session::append(program, drivable(layout_, held, plan_place(scenario_, layout_, request), pick->swing));
-    if (!session::can_follow(reaches_, layout_, home, program.waypoints)) return std::nullopt;
+    planning::append(program, drivable(layout_, held, plan_place(scenario_, layout_, request), pick->swing));
+    if (!planning::can_follow(reaches_, layout_, home, program.waypoints)) return std::nullopt;
     const motion::PreparedProgram prepared = simulation_.prepare(std::move(program));
     return motion::compute_duration(prepared, scenario_.controller.X_WE_start);
   }
@@ -94,7 +94,7 @@ class MotionPlanner {
   const model::Sequence& sequence_;
   cell::Simulation simulation_;
   skills::CellLayout layout_;
-  session::ToolReach reaches_;
+  planning::ToolReach reaches_;
 };
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "apps/snug/pack/pack.hpp"
 #include "apps/snug/perceive/perceive.hpp"
 #include "apps/snug/picture/picture.hpp"
+#include "apps/snug/plan/plan.hpp"
 #include "apps/snug/plot/plot.hpp"
 #include "apps/snug/program/program.hpp"
 #include "apps/snug/report/report.hpp"
@@ -35,6 +36,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_init(app, action);
   add_simulate(app, action);
   add_pack(app, action);
+  add_plan(app, action);
   add_compare(app, action);
   add_study(app, action);
   add_program(app, action);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -74,19 +75,32 @@ packing::FutureModel own_future(const SourcedScenario& loaded, const std::string
   }
   return future;
 }
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (!std::filesystem::is_directory(path, error)) {
+    throw InputError(path, "--save-belief", "no folder", "a folder, or a place for one");
+  }
+}
+
 /// The files that were asked for, reserved before the work begins.
 struct PackFiles {
   std::optional<OutputFile> program, plan, record;
+  std::optional<session::LogFile> log;
 
   PackFiles(const PackOptions& options, const model::Scenario& scenario) {
     NamedFiles outputs;
     add_file(outputs, "--program", options.program);
     add_file(outputs, "--plan", options.plan);
     add_file(outputs, "-o", options.record);
+    add_file(outputs, "--log", options.log);
     expect_distinct(files_of(options.scenario, options.changes, scenario), outputs);
     program = reserve(options.program);
     plan = reserve(options.plan);
     record = reserve_recording(options.record);
+    if (options.log) log.emplace(*options.log);
+    if (options.save_beliefs) make_folder(*options.save_beliefs);
   }
   /// The placements so far: at their path where no earlier file is, else beside it until they are complete.
   void update_plan(const std::string& text) {
@@ -159,10 +173,12 @@ int run_pack(const PackOptions& options) {
   if (options.random_seed) {
     scenario.sequences.push_back(draw_order(scenario, options.sequence, *options.random_seed));
   }
-  const session::SessionOptions session = make_session_options(options, loaded, options.sequence);
+  session::SessionOptions session = make_session_options(options, loaded, options.sequence);
   const simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
   const bool is_served = options.plant != "simulated";
   PackFiles files(options, scenario);
+  if (files.log) session.log = [&files](const session::SessionEvent& one) { files.log->write(one); };
+  if (options.save_beliefs) session.save_beliefs = *options.save_beliefs;
   catch_interrupts();
   const study::TrialProgress line = make_progress_line("sequence " + options.sequence);
   const bool is_known = model::find_sequence(scenario, options.sequence) != nullptr;  // else the trial says so

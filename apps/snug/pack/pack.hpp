@@ -35,6 +35,8 @@ struct PackOptions {
   std::optional<std::string> robot;    ///< absent: the scenario's, where its file is there; "none"
   std::optional<int> monte_carlo;
   std::optional<std::string> program, plan, record;
+  std::optional<std::string> log;           ///< of events
+  std::optional<std::string> save_beliefs;  ///< folder
   bool json = false;
 };
 

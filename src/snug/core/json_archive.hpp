@@ -55,6 +55,7 @@ class JsonReader {
       : value_(value), where_(std::move(where)), path_(std::move(path)) {}
 
   [[nodiscard]] const JsonValue& value() const { return value_; }
+  [[nodiscard]] const std::string& where() const { return where_; }
   [[noreturn]] void fail(const std::string& expected) const {
     throw InputError(where_, path_, std::string(value_.kind()), expected);
   }

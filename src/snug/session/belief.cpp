@@ -7,18 +7,11 @@
 
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/check.hpp"
-#include "snug/core/parallel.hpp"
 
 namespace snug::session {
 namespace {
 
 constexpr double kSameBody = 0.0015;  ///< m, obstacles' bodies that differ by less stay as they are
-
-model::Scenario coarse(model::Scenario scenario, int factor) {
-  const double step = factor * scenario.time_step, ticks = scenario.controller.tick / step;
-  if (factor > 1 && ticks > 0.99 && std::abs(ticks - std::round(ticks)) < 1e-9) scenario.time_step = step;
-  return scenario;
-}
 
 Matrix6 unseen_covariance(const settings::BeliefParams& params) {
   Matrix6 covariance = Matrix6::Zero();
@@ -48,217 +41,185 @@ bool are_alike(const std::vector<geometry::Aabb>& a, const std::vector<geometry:
   });
 }
 
-int index_of(const model::Sequence& sequence, const std::string& item) {
-  const auto found = std::ranges::find(sequence.items, item, &model::Item::parcel);
-  return found == sequence.items.end() ? -1 : static_cast<int>(found - sequence.items.begin());
-}
-
 }  // namespace
 
 Belief::Belief(const model::Scenario& scenario, const std::string& sequence, const BeliefSettings& settings)
-    : settings_(settings),
-      sequence_name_(sequence),
-      own_bodies_(scenario.bodies.size()),
-      obstacles_(container_pose(scenario)),
-      rng_(Rng(settings.seed).split("belief")) {
-  const Rng rng(settings.seed);
-  const model::Scenario nominal = cell::with_fixed_arrivals(scenario, sequence);
-  worlds_.push_back({coarse(nominal, scenario.rehearsal.coarse_steps), {}, {}});
-  sequence_ = *model::find_sequence(worlds_[0].scenario, sequence);
-  for (int i = 0; i < settings.samples; ++i) {
-    const Rng own = rng.split("sample " + std::to_string(i));
-    World& world = worlds_.emplace_back(
-        World{coarse(cell::draw_scenario(nominal, sequence, own), scenario.rehearsal.coarse_steps), {}, {}});
-    Rng sensors = own.split("sensors");
-    for (double& normal : world.common) normal = sensors.normal();
+    : obstacles_(container_pose(scenario)), rng_(Rng(settings.seed).split("belief")) {
+  now_.scenario = scenario;
+  now_.sequence = sequence;
+  now_.seed = settings.seed;
+  now_.simulation = settings.simulation;
+  now_.worlds = planning::draw_worlds(scenario, sequence, settings.seed, settings.samples);
+  const model::Sequence& order = *model::find_sequence(nominal(), sequence);
+  now_.items = packing::make_items(nominal(), order);
+  now_.boxes.resize(order.items.size());
+  for (std::size_t i = 0; i < order.items.size() && scenario.aligner; ++i) {
+    const Pose X_WP = cell::arrival_pose(nominal(), order.items[i]);
+    now_.items[i].arrival = packing::nearest_orientation(scenario.aligner->X_WA.R.transpose() * X_WP.R);
   }
-  for (World& world : worlds_) {
-    world.poses.resize(sequence_.items.size());
-    world.predicted.resize(sequence_.items.size());
+  for (std::size_t w = 0; w < now_.worlds.size(); ++w) {
+    Filter& filter = filters_.emplace_back();
+    filter.predicted.resize(order.items.size());
+    if (w == 0) continue;
+    Rng sensors = Rng(settings.seed).split("sample " + std::to_string(w - 1)).split("sensors");
+    for (double& normal : filter.common) normal = sensors.normal();
   }
-  weights_.assign(worlds_.size(), 1.0);
-  rollouts_.resize(worlds_.size());
-  boxes_.resize(sequence_.items.size());
+}
+
+std::optional<model::ItemIndex> Belief::find(const std::string& id) const {
+  const auto found = std::ranges::find(now_.items, id, &packing::Item::id);
+  if (found == now_.items.end()) return std::nullopt;
+  return model::ItemIndex(static_cast<std::size_t>(found - now_.items.begin()));
 }
 
 std::vector<perception::Expectation> Belief::expectations() const {
   std::vector<perception::Expectation> expected;
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    if (!boxes_[i]) continue;
-    const std::string& id = sequence_.items[i].parcel;
-    const std::optional<Pose>& predicted = worlds_[0].predicted[i];
+  for (std::size_t i = 0; i < now_.boxes.size(); ++i) {
+    if (!now_.boxes[i]) continue;
+    const std::string& id = now_.items[i].id;
+    const std::optional<Pose>& predicted = filters_[0].predicted[i];
     expected.push_back({id, model::collision_size(nominal(), *model::find_parcel(nominal(), id)),
-                        is_prediction_new_ && predicted ? *predicted : boxes_[i]->X_WP});
+                        is_prediction_new_ && predicted ? *predicted : now_.boxes[i]->X_WP});
   }
   return expected;
 }
 
-void Belief::arrives(int item) {
-  const auto i = static_cast<std::size_t>(item);
-  for (World& world : worlds_) {
-    const model::Sequence& sequence = *model::find_sequence(world.scenario, sequence_name_);
-    world.poses[i] = cell::arrival_pose(world.scenario, sequence.items[i]);
+void Belief::arrives(model::ItemIndex item) {
+  for (planning::World& world : now_.worlds) {
+    const model::Sequence& sequence = *model::find_sequence(world.scenario, now_.sequence);
+    world.X_WP[item.slot()] = cell::arrival_pose(world.scenario, sequence.items[item.slot()]);
   }
-  boxes_[i] = BelievedBox{*worlds_[0].poses[i], unseen_covariance(nominal().belief), false};
+  now_.boxes[item.slot()] =
+      planning::BelievedBox{*now_.worlds[0].X_WP[item.slot()], unseen_covariance(nominal().belief), false};
 }
 
-void Belief::forget(int item) {
-  const auto i = static_cast<std::size_t>(item);
-  boxes_[i].reset();
-  for (World& world : worlds_) world.poses[i] = world.predicted[i] = std::nullopt;
+void Belief::forget(model::ItemIndex item) {
+  now_.boxes[item.slot()].reset();
+  for (planning::World& world : now_.worlds) world.X_WP[item.slot()].reset();
+  for (Filter& filter : filters_) filter.predicted[item.slot()].reset();
 }
 
-void Belief::measure(int item, const perception::PoseEstimate& seen) {
-  const std::string& id = sequence_.items[static_cast<std::size_t>(item)].parcel;
-  for (std::size_t w = 0; w < worlds_.size(); ++w) {
-    const auto parcel = std::ranges::find(worlds_[w].scenario.parcels, id, &model::Parcel::id);
-    SNUG_CHECK(parcel != worlds_[w].scenario.parcels.end(), "every item is a parcel");
+void Belief::measure(model::ItemIndex item, const perception::PoseEstimate& seen) {
+  const std::string& id = now_.items[item.slot()].id;
+  for (std::size_t w = 0; w < now_.worlds.size(); ++w) {
+    model::Scenario& scenario = now_.worlds[w].scenario;
+    const auto parcel = std::ranges::find(scenario.parcels, id, &model::Parcel::id);
+    SNUG_CHECK(parcel != scenario.parcels.end(), "every item is a parcel");
     // What is seen is the box as it collides.
-    Vector3 size = *seen.size + Vector3::Constant(worlds_[w].scenario.parcel_clearance);
+    Vector3 size = *seen.size + Vector3::Constant(scenario.parcel_clearance);
     for (double& edge : size) edge += w > 0 ? seen.size_deviation * rng_.normal() : 0.0;
-    size = size.cwiseMax(0.5 * parcel->size);
-    if (parcel->size == size) continue;
-    parcel->size = size;
-    worlds_[w].is_stale = true;
+    parcel->size = size.cwiseMax(0.5 * parcel->size);
   }
 }
 
 void Belief::see(const perception::Observation& observation) {
   for (const perception::PoseEstimate& seen : observation.seen) {
-    const int item = index_of(sequence_, seen.item);
-    if (item < 0) continue;
-    const auto i = static_cast<std::size_t>(item);
-    const bool is_new = !boxes_[i] || !boxes_[i]->was_seen;
-    boxes_[i] = BelievedBox{seen.X_WP, seen.covariance, true};
-    if (is_new && seen.size) measure(item, seen);
-    for (std::size_t w = 0; w < worlds_.size(); ++w)
-      worlds_[w].poses[i] = w == 0 ? seen.X_WP : drawn(seen, worlds_[w].common, rng_);
+    const auto item = find(seen.item);
+    if (!item) continue;
+    std::optional<planning::BelievedBox>& box = now_.boxes[item->slot()];
+    const bool is_new = !box || !box->was_seen;
+    box = planning::BelievedBox{seen.X_WP, seen.covariance, true};
+    if (is_new && seen.size) measure(*item, seen);
+    for (std::size_t w = 0; w < now_.worlds.size(); ++w) {
+      now_.worlds[w].X_WP[item->slot()] = w == 0 ? seen.X_WP : drawn(seen, filters_[w].common, rng_);
+    }
   }
   for (const std::string& id : observation.not_seen) {
-    const int item = index_of(sequence_, id);
-    if (item < 0 || !boxes_[static_cast<std::size_t>(item)]) continue;
-    const auto i = static_cast<std::size_t>(item);
-    boxes_[i]->was_seen = false;
-    boxes_[i]->covariance = unseen_covariance(nominal().belief);
+    const auto item = find(id);
+    if (!item || !box(*item)) continue;
+    planning::BelievedBox& unseen = *now_.boxes[item->slot()];
+    unseen.was_seen = false;
+    unseen.covariance = unseen_covariance(nominal().belief);
     if (!is_prediction_new_ || !is_prediction_sound_) continue;
-    if (worlds_[0].predicted[i]) boxes_[i]->X_WP = *worlds_[0].predicted[i];
-    for (World& world : worlds_) {
-      if (world.predicted[i]) world.poses[i] = world.predicted[i];
+    for (std::size_t w = 0; w < now_.worlds.size(); ++w) {
+      const std::optional<Pose>& predicted = filters_[w].predicted[item->slot()];
+      if (!predicted) continue;
+      now_.worlds[w].X_WP[item->slot()] = predicted;
+      if (w == 0) unseen.X_WP = *predicted;
     }
   }
   for (const std::string& id : observation.missing) {
-    const int item = index_of(sequence_, id);
-    if (item >= 0) forget(item);
+    if (const auto item = find(id)) forget(*item);
   }
   is_prediction_new_ = false;
   see_obstacles(observation);
+  for (std::size_t i = 0; i < now_.items.size(); ++i) {
+    if (now_.boxes[i]) now_.items[i].size = model::find_parcel(nominal(), now_.items[i].id)->size;
+  }
 }
 
-std::vector<Solid> Belief::solids(const perception::Observation& look) const {
+std::vector<Solid> Belief::solids(const perception::Observation& seen) const {
   std::vector<Solid> solids;
   for (const perception::Expectation& one : expectations()) {
-    const perception::PoseEstimate* seen = perception::find(look, one.item);
-    solids.push_back({seen != nullptr ? seen->X_WP : *one.X_WP, one.size});
+    const perception::PoseEstimate* estimate = perception::find(seen, one.item);
+    solids.push_back({estimate != nullptr ? estimate->X_WP : *one.X_WP, one.size});
   }
   return solids;
 }
 
-bool Belief::has_new_obstacle(const perception::Observation& look) const {
-  return obstacles_.has_news(obstacles_.find_foreign(look, solids(look)));
+bool Belief::has_new_obstacle(const perception::Observation& seen) const {
+  return obstacles_.has_news(obstacles_.find_foreign(seen, solids(seen)));
 }
 
-void Belief::drop_unconfirmed(perception::Observation& look, const perception::Observation& before) const {
-  if (!look.obstacles) return;
+void Belief::drop_unconfirmed(perception::Observation& seen, const perception::Observation& before) const {
+  if (!seen.obstacles) return;
   const std::vector<perception::Obstacle> others = before.obstacles.value_or(std::vector<perception::Obstacle>{});
-  std::erase_if(*look.obstacles, [&](const perception::Obstacle& one) { return obstacles_.has_news({one}, others); });
+  std::erase_if(*seen.obstacles, [&](const perception::Obstacle& one) { return obstacles_.has_news({one}, others); });
 }
 
-void Belief::see_obstacles(const perception::Observation& look) {
-  const std::vector<Solid> boxes = solids(look);
-  obstacles_.see(look, obstacles_.find_foreign(look, boxes), boxes);
-  const std::vector<geometry::Aabb> bodies = clear_of(obstacles_.regions(), boxes);
-  if (are_alike(bodies, obstacle_bodies_)) return;
-  obstacle_bodies_ = bodies;
-  for (World& world : worlds_) {
-    world.scenario.bodies.resize(own_bodies_);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      model::Body body;
-      body.name = "obstacle" + std::to_string(i + 1);
-      body.kind = model::BodyKind::Static;
-      body.material = world.scenario.parcels.front().material;
-      body.X_WB.p = 0.5 * (bodies[i].lower + bodies[i].upper);
-      body.shapes = {{geometry::Box{0.5 * (bodies[i].upper - bodies[i].lower)}, Pose{}}};
-      world.scenario.bodies.push_back(std::move(body));
-    }
-    world.is_stale = true;
-  }
+void Belief::see_obstacles(const perception::Observation& seen) {
+  const std::vector<Solid> boxes = solids(seen);
+  obstacles_.see(seen, obstacles_.find_foreign(seen, boxes), boxes);
+  now_.obstacles = obstacles_.regions();
+  std::vector<geometry::Aabb> bodies = clear_of(now_.obstacles, boxes);
+  if (are_alike(bodies, now_.obstacle_bodies)) return;
+  now_.obstacle_bodies = std::move(bodies);
+  for (planning::World& world : now_.worlds) planning::set_obstacles(now_, world);
 }
 
 void Belief::expect(const std::vector<std::vector<std::optional<Pose>>>& predicted) {
-  SNUG_CHECK(predicted.size() == worlds_.size(), "a prediction of every world");
-  for (std::size_t w = 0; w < worlds_.size(); ++w) worlds_[w].predicted = predicted[w];
+  SNUG_CHECK(predicted.size() == filters_.size(), "a prediction of every world");
+  for (std::size_t w = 0; w < filters_.size(); ++w) filters_[w].predicted = predicted[w];
   is_prediction_new_ = is_prediction_sound_ = true;
 }
 
-void Belief::expect_on_the_way(int item, const Pose& X_WP) {
-  std::vector<std::optional<Pose>> predicted(boxes_.size());
-  predicted[static_cast<std::size_t>(item)] = X_WP;
-  expect(std::vector<std::vector<std::optional<Pose>>>(worlds_.size(), predicted));
+void Belief::expect_on_the_way(model::ItemIndex item, const Pose& X_WP) {
+  std::vector<std::optional<Pose>> predicted(now_.boxes.size());
+  predicted[item.slot()] = X_WP;
+  expect(std::vector<std::vector<std::optional<Pose>>>(filters_.size(), predicted));
+}
+
+void Belief::forget_let_go() {
+  const model::ItemIndex item = std::exchange(let_go_, model::ItemIndex());
+  if (item.is_valid() && box(item) && !box(item)->was_seen) forget(item);
 }
 
 void Belief::stiffen() {
-  const double stiffness = std::min(nominal().belief.stiffest, stiffness_ * nominal().belief.stiffer);
-  if (stiffness <= stiffness_) return;
-  for (World& world : worlds_) {
-    cell::stiffen(world.scenario, stiffness / stiffness_);
-    world.is_stale = true;
-  }
-  stiffness_ = stiffness;
-}
-
-void Belief::weigh(int item) {
-  const auto i = static_cast<std::size_t>(item);
-  if (!boxes_[i] || !boxes_[i]->was_seen || worlds_.size() < 2) return;
   const settings::BeliefParams& params = nominal().belief;
-  const double variance =
-      params.model_error * params.model_error + boxes_[i]->covariance.topLeftCorner<3, 3>().trace() / 3.0;
+  const int next = now_.stiffenings + 1;
+  if (planning::stiffness_after(params, next) <= planning::stiffness_after(params, now_.stiffenings)) return;
+  for (planning::World& world : now_.worlds) planning::stiffen(params, now_.stiffenings, next, world);
+  now_.stiffenings = next;
+}
+
+void Belief::weigh(model::ItemIndex item) {
+  std::vector<planning::World>& worlds = now_.worlds;
+  if (!box(item) || !box(item)->was_seen || worlds.size() < 2) return;
+  const planning::BelievedBox& is = *box(item);
+  const settings::BeliefParams& params = nominal().belief;
+  const double variance = params.model_error * params.model_error + is.covariance.topLeftCorner<3, 3>().trace() / 3.0;
   double sum = 0.0;
-  for (std::size_t w = 1; w < worlds_.size(); ++w) {
-    const std::optional<Pose>& predicted = worlds_[w].predicted[i];
-    const double off = predicted ? (predicted->p - boxes_[i]->X_WP.p).squaredNorm() : 25.0 * variance;
-    weights_[w] *= std::exp(-0.5 * std::min(off / variance, 25.0) / 3.0);  // three coordinates, not independent
-    sum += weights_[w];
+  for (std::size_t w = 1; w < worlds.size(); ++w) {
+    const std::optional<Pose>& predicted = filters_[w].predicted[item.slot()];
+    const double off = predicted ? (predicted->p - is.X_WP.p).squaredNorm() : 25.0 * variance;
+    worlds[w].weight *= std::exp(-0.5 * std::min(off / variance, 25.0) / 3.0);  // three coordinates, not independent
+    sum += worlds[w].weight;
   }
-  const double count = static_cast<double>(worlds_.size() - 1);
-  for (std::size_t w = 1; w < worlds_.size(); ++w) {
-    const double share = sum > 0.0 ? weights_[w] * count / sum : 1.0;
-    weights_[w] = params.least_weight + (1.0 - params.least_weight) * share;
+  const double count = static_cast<double>(worlds.size() - 1);
+  for (std::size_t w = 1; w < worlds.size(); ++w) {
+    const double relative = sum > 0.0 ? worlds[w].weight * count / sum : 1.0;
+    worlds[w].weight = params.least_weight + (1.0 - params.least_weight) * relative;
   }
-}
-
-cell::CellAnchor Belief::anchor(const World& world, const plant::Feedback& robot) const {
-  cell::CellAnchor anchor;
-  anchor.X_WE = robot.X_WE;
-  anchor.q = robot.q;
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    if (boxes_[i] && world.poses[i]) anchor.boxes.push_back({static_cast<int>(i), *world.poses[i]});
-  }
-  return anchor;
-}
-
-const std::vector<std::unique_ptr<Rollout>>& Belief::take_up(const plant::Feedback& robot) {
-  parallel_for(static_cast<int>(worlds_.size()), settings_.threads, [&](int index, int) {
-    const auto w = static_cast<std::size_t>(index);
-    World& world = worlds_[w];
-    if (world.is_stale || !rollouts_[w]) {
-      cell::SimulationOptions options = settings_.simulation;
-      if (w > 0) options.robot.clear();
-      rollouts_[w] = std::make_unique<Rollout>(world.scenario, sequence_name_, options);
-      world.is_stale = false;
-    }
-    rollouts_[w]->take_up(anchor(world, robot), nominal().belief.rest);
-  });
-  return rollouts_;
 }
 
 }  // namespace snug::session

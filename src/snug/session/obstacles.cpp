@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "snug/geometry/bounds.hpp"
+#include "snug/planning/scene.hpp"
 
 namespace snug::session {
 namespace {
@@ -91,7 +92,7 @@ void ObstacleMemory::note(const Believed& one, double time) {
     reports_.push_back({one.number, time, {}, {}, {}});
   }
   ObstacleReport& report = *std::ranges::find(reports_, one.number, &ObstacleReport::number);
-  const geometry::Aabb bounds = in_container(X_WT_, perception::bounds_of(one.columns));
+  const geometry::Aabb bounds = planning::in_container(X_WT_, perception::bounds_of(one.columns));
   report.low_T = bounds.lower;
   report.high_T = bounds.upper;
 }
@@ -173,12 +174,6 @@ std::vector<geometry::Aabb> clear_of(std::vector<geometry::Aabb> regions, std::s
     if ((body.upper - body.lower).minCoeff() >= kThinnest) bodies.push_back(body);
   }
   return bodies;
-}
-
-geometry::Aabb in_container(const Pose& X_WT, const geometry::Aabb& region) {
-  const Vector3 middle = X_WT.inverse() * (0.5 * (region.lower + region.upper));
-  const Vector3 half = X_WT.R.cwiseAbs().transpose() * (0.5 * (region.upper - region.lower));
-  return {middle - half, middle + half};
 }
 
 }  // namespace snug::session

@@ -69,7 +69,4 @@ class ObstacleMemory {
 /// off boxes under them, so that boxes that stand there are not pushed away.
 [[nodiscard]] std::vector<geometry::Aabb> clear_of(std::vector<geometry::Aabb> regions, std::span<const Solid> boxes);
 
-/// In T, from W: the level box around.
-[[nodiscard]] geometry::Aabb in_container(const Pose& X_WT, const geometry::Aabb& region);
-
 }  // namespace snug::session

@@ -75,8 +75,8 @@ const char* name_of(Remedy remedy) {
       return "return to aligner";
     case Remedy::Skip:
       return "skip";
-    case Remedy::LookAgain:
-      return "look again";
+    case Remedy::PerceiveAgain:
+      return "perceive again";
     case Remedy::MoveAway:
       return "move away";
     case Remedy::Believe:
@@ -116,10 +116,10 @@ Remedy choose_remedy(const Situation& at, const settings::RecoverySettings& sett
     case Trouble::WrongItem:
       return Remedy::Skip;
     case Trouble::BadPicture:
-      return at.pictures < settings.most_pictures ? Remedy::LookAgain : Remedy::Believe;
+      return at.pictures < settings.most_pictures ? Remedy::PerceiveAgain : Remedy::Believe;
     case Trouble::ViewBlocked:
       if (at.pictures >= settings.most_pictures) return Remedy::Stop;
-      return at.is_held ? Remedy::LookAgain : Remedy::MoveAway;
+      return at.is_held ? Remedy::PerceiveAgain : Remedy::MoveAway;
   }
   return Remedy::Stop;
 }

@@ -7,7 +7,7 @@
 
 namespace snug::session {
 
-/// What went wrong, as far as the session can tell from the robot's sensors and from a look.
+/// What went wrong, as far as the session can tell from the robot's sensors and from an observation.
 enum class Trouble {
   None,
   NoSeal,          ///< the cup did not seal
@@ -22,7 +22,7 @@ enum class Trouble {
   SticksOut,       ///< it, or another box, stands over the rim or beyond a wall
   Gone,            ///< it is not seen where it could be
   WrongItem,       ///< its edges at the aligner are other ones than those of the item that was to come
-  BadPicture,      ///< a look has too few points to tell anything
+  BadPicture,      ///< an observation has too few points to tell anything
   ViewBlocked,     ///< something is between camera and container
   PlantFault,      ///< the cell itself failed
 };
@@ -31,14 +31,14 @@ enum class Trouble {
 enum class Remedy {
   None,
   Resume,           ///< acknowledge the stop, and go on with the rest of the motion
-  SetDown,          ///< go up with the box, put it down on the bench, look, plan anew
-  Release,          ///< let go where it is, go up, look
-  PickAgain,        ///< look, plan anew, pick it where it lies
-  PressLevel,       ///< press on it from above, look
+  SetDown,          ///< go up with the box, put it down on the bench, perceive, plan anew
+  Release,          ///< let go where it is, go up, perceive
+  PickAgain,        ///< perceive, plan anew, pick it where it lies
+  PressLevel,       ///< press on it from above, perceive
   Accept,           ///< it stays where it lies; what follows is planned around it
   ReturnToAligner,  ///< planned anew from there, or taken away by the next arrival
   Skip,             ///< it is left, or taken away; the next item comes
-  LookAgain,        ///< another picture
+  PerceiveAgain,    ///< another picture
   MoveAway,         ///< the tool goes to its start, another picture
   Believe,          ///< go on with what is believed
   Stop,             ///< the session ends

@@ -1,23 +1,18 @@
-// Session: packs a plant, item after item: look, decide, rehearse, send, look, recover.
+// Session: packs a plant, item after item: perceive, decide, rehearse, send, perceive, recover.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "snug/packing/agent.hpp"
-#include "snug/plant/plant.hpp"
-#include "snug/session/item_seconds.hpp"
-#include "snug/session/obstacles.hpp"
-#include "snug/session/recovery.hpp"
-#include "snug/session/rehearsal.hpp"
+#include "snug/session/event_log.hpp"
 
 namespace snug::session {
 
 /// What the caller of a run decides. By what rules is the scenario's.
 struct SessionOptions {
-  std::string agent = "contact-aware";
+  std::string agent = packing::name_of(packing::AgentKind::ContactAware);
   packing::Ask ask = {};  ///< decides in its place, if set (packing/remote_agent.hpp); `agent` is then its name
   packing::DecisionRun decision;
   int threads = 1;           ///< results do not depend on it
@@ -27,123 +22,17 @@ struct SessionOptions {
   std::optional<packing::FutureModel> future;
   cell::SimulationOptions simulation{.tracking = motion::FastTracking{}};  ///< of rollouts
   std::function<bool()> is_interrupted;  ///< asked before every item; true ends the session; may be empty
+  EventSink log;                         ///< told of every event when it happens; may be empty
+  /// Folder that gets a file of every belief that is decided on (planning/belief_json.hpp), before it is decided on.
+  std::optional<std::filesystem::path> save_beliefs;
 };
-
-/// What became of an item, as far as the session knows.
-enum class ItemEnd {
-  Placed,     ///< where it was planned, within the limits
-  Accepted,   ///< in the container, but not where it was planned
-  NoPlace,    ///< nothing was found that would come to rest as planned; it was taken away
-  Hopeless,   ///< it would not fit into the empty container either, is too heavy or cannot be held
-  NotHeld,    ///< every pick failed; it was left behind
-  Returned,   ///< after tries that failed it was put back to the aligner, and taken away from there
-  Left,       ///< it lies where it cannot be picked, or the tries were used up
-  Gone,       ///< it is not seen any more
-  WrongItem,  ///< another one came in its place; it was taken away
-  NotBrought  ///< the plant did not bring it
-};
-[[nodiscard]] const char* name_of(ItemEnd end);
-
-/// One motion for an item that was sent.
-struct Send {
-  double time = 0.0;               ///< s, of the plant, when it began
-  double predicted_success = 0.0;  ///< 0 .. 1
-  packing::Placement planned;
-  plant::End end;
-  Trouble trouble = Trouble::None;  ///< found when it had ended
-};
-
-/// Why a session did not end as it should, whatever was packed.
-enum class SessionFailureKind {
-  None,
-  NotHome,    ///< the robot did not come to its start in the end
-  PlantLost,  ///< a plant elsewhere ended otherwise than agreed
-};
-[[nodiscard]] const char* name_of(SessionFailureKind kind);
-
-struct SessionFailure {
-  SessionFailureKind kind = SessionFailureKind::None;
-  std::string text;  ///< for people
-  [[nodiscard]] explicit operator bool() const { return kind != SessionFailureKind::None; }
-};
-
-/// A way to bring an item to a place that was rehearsed and did not go well in every rollout.
-struct FailedAttempt {
-  packing::Placement planned;
-  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
-  AttemptFailure failure = AttemptFailure::None;  ///< in the nominal world, else the first of a sampled one
-  bool succeeded = false;     ///< in the nominal world; then `success_rate` of the samples is below 1
-  double success_rate = 0.0;  ///< of the samples, by weight
-  std::string reason;         ///< for people: of the nominal world, else of the first sample that failed
-};
-
-struct ItemReport {
-  std::string id;
-  ItemEnd end = ItemEnd::NoPlace;
-  std::string reason;  ///< for people, where it is not placed
-  packing::Placement planned;
-  std::optional<Pose> X_TP;  ///< where it was seen (or is believed to be) in the end
-  skills::Reorientation reorientation = skills::Reorientation::None;
-  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
-  int flips = 0;
-  int attempts = 0;                            ///< that were rehearsed for this item
-  std::vector<FailedAttempt> failed_attempts;  ///< of these, in their order
-  int stops = 0;                   ///< of them that ended with a protective stop of the robot, in the nominal world
-  int samples = 0;                 ///< in which the one that was sent was rehearsed beside the nominal world
-  double success_rate = 0.0;       ///< of these, by weight; means nothing without samples
-  double predicted_success = 0.0;  ///< what the session expects of the motion that was sent
-  AttemptForces predicted;         ///< largest of the samples; means nothing without samples
-  AttemptForces happened;          ///< force and torque on the tool; displacement as it was seen
-  double position_error = 0.0;     ///< m, level, as it was seen
-  double angle_error = 0.0;        ///< rad
-  std::vector<Send> sends;
-  std::vector<Recovery> recoveries;
-  double decision_seconds = 0.0;  ///< wall clock, of the agent alone
-  double rehearsal_seconds = 0.0;
-  double planning_wait = 0.0;      ///< of both, while the robot stood: the rest passed while it left the item before
-  double begin = 0.0, done = 0.0;  ///< s, of the plant
-  ItemSeconds seconds;             ///< of all its motions, recoveries included: done - begin
-  [[nodiscard]] bool is_packed() const { return end == ItemEnd::Placed || end == ItemEnd::Accepted; }
-};
-
-/// How it ended and why: "no place: no space left".
-[[nodiscard]] std::string describe(const ItemReport& item);
-
-enum class StopReason {
-  AllPacked,
-  NoMoreItems,  ///< some are not packed
-  NoItems,
-  NoPlace,      ///< for more items than may be skipped
-  RobotStops,   ///< protective stops did not end
-  ViewBlocked,  ///< something stays between camera and container
-  PlantFault,
-  Interrupted,  ///< by who started it
-};
-[[nodiscard]] const char* name_of(StopReason reason);
-
-struct SessionResult {
-  std::string sequence;
-  std::string agent;
-  std::string plant;  ///< its name
-  std::vector<ItemReport> items;
-  motion::Program program;               ///< every waypoint that was sent
-  std::vector<packing::Placement> plan;  ///< of the items that are packed, in the order of packing
-  double planned_percent = 0.0;          ///< of those
-  double decision_seconds_median = 0.0;
-  double duration = 0.0;  ///< s, of the plant
-  StopReason stop_reason = StopReason::NoItems;
-  std::string stopped;  ///< the same for people
-  SessionFailure failure;
-  std::vector<ObstacleReport> obstacles;       ///< that were seen, those that are gone again too
-  std::optional<double> percent_before_skips;  ///< planned_percent when the first item without a place was skipped
-};
-[[nodiscard]] int recovery_count(const SessionResult& result);
 
 /// Called after every item.
 using Progress = std::function<void(const SessionResult& so_far, int item, int items)>;
 
 /// Packs a sequence. Agents that re-arrange or know the sequence (manual, offline) make their plan first, and its boxes
-/// are brought in its order. Throws InputError for an unknown sequence, agent, or a scenario that cannot be packed.
+/// are brought in its order. Throws InputError for an unknown sequence, agent, or a scenario that cannot be packed, and
+/// what the plant throws; whatever is planned ahead then has ended.
 [[nodiscard]] SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
                                  const SessionOptions& options, plant::Plant& plant, const Progress& progress = {});
 

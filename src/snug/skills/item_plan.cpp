@@ -84,8 +84,8 @@ const char* name_of(Reorientation reorientation) {
   return "";
 }
 
-PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item) {
-  const std::string& id = sequence.items[static_cast<std::size_t>(item)].parcel;
+PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, model::ItemIndex item) {
+  const std::string& id = sequence.items[item.slot()].parcel;
   const model::Parcel& parcel = *model::find_parcel(scenario, id);
   return {item, id, model::collision_size(scenario, parcel), parcel.inertia};
 }

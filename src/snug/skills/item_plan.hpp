@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/model/ids.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/skills/cell_layout.hpp"
 #include "snug/skills/insertion.hpp"
@@ -24,12 +25,13 @@ enum class Reorientation {
 
 /// A box of the plan: as the scenario has it.
 struct PlannedBox {
-  int item = 0;  ///< of the sequence
+  model::ItemIndex item;
   std::string id;
   Vector3 size = Vector3::Constant(0.1);  ///< m, collision size
   SpatialInertia inertia;
 };
-[[nodiscard]] PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence, int item);
+[[nodiscard]] PlannedBox make_planned_box(const model::Scenario& scenario, const model::Sequence& sequence,
+                                          model::ItemIndex item);
 /// m, in P, from the middle of the upper face to where the cup presses: as near the centre of mass as it seals.
 [[nodiscard]] Vector3 cup_offset(const model::CupParams& cup, double seal_margin, const PlannedBox& box,
                                  const Matrix3& R_WP);

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "snug/cell/drawn_scenario.hpp"
-#include "snug/session/rollout.hpp"
+#include "snug/planning/rollout.hpp"
 #include "snug/study/run.hpp"
 
 namespace snug::study {
@@ -26,10 +26,10 @@ struct Run {
 Run run_once(const model::Scenario& scenario, const std::string& sequence, const motion::Program& program,
              const MonteCarloOptions& options, int index) {
   const Rng rng = Rng(options.seed).split("execution " + std::to_string(index));
-  session::Rollout rollout(cell::draw_scenario(cell::with_fixed_arrivals(scenario, sequence), sequence, rng), sequence,
-                           options.simulation);
-  session::Episode episode = rollout.run(program, {.arm_may_touch = true});
-  session::merge(episode, rollout.settle(program, kRest));
+  planning::Rollout rollout(cell::draw_scenario(cell::with_fixed_arrivals(scenario, sequence), sequence, rng), sequence,
+                            options.simulation);
+  planning::Episode episode = rollout.run(program, {.arm_may_touch = true});
+  planning::merge(episode, rollout.settle(program, kRest));
   Run run;
   run.has_failed = !episode.is_complete();
   std::vector<std::string> packed;

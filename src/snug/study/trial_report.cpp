@@ -39,7 +39,7 @@ Json as_json(const packing::Placement& placement) {
       {"yaw_quarter", placement.orientation.yaw_quarter}};
 }
 
-Json as_json(const session::AttemptForces& forces) {
+Json as_json(const planning::AttemptForces& forces) {
   return {{"force_N", forces.force}, {"torque_Nm", forces.torque}, {"displacement_mm", 1e3 * forces.displacement}};
 }
 
@@ -75,12 +75,12 @@ Json recoveries_as_json(const std::vector<session::Recovery>& recoveries) {
   return list;
 }
 
-Json attempts_as_json(const std::vector<session::FailedAttempt>& attempts) {
+Json attempts_as_json(const std::vector<planning::Tried>& attempts) {
   Json list = Json::array();
-  for (const session::FailedAttempt& one : attempts) {
+  for (const planning::Tried& one : attempts) {
     list.push_back({{"planned", as_json(one.planned)},
                     {"insertion", skills::name_of(one.skill)},
-                    {"failure", session::name_of(one.failure)},
+                    {"failure", planning::name_of(one.failure)},
                     {"succeeded", one.succeeded},
                     {"samples_succeeded", one.success_rate},
                     {"reason", one.reason}});
@@ -111,7 +111,7 @@ Json as_json(const session::ItemReport& item, const study::TrueItem& truth) {
     json["samples_succeeded"] = item.samples > 0 ? Json(item.success_rate) : Json();
     json["predicted_success"] = item.predicted_success;
     json["predicted"] = item.samples > 0 ? as_json(item.predicted) : Json();
-    json["happened"] = as_json(item.happened);
+    json["happened"] = as_json(item.measured);
     const simulated_plant::MotionTruth& motion = truth.motion;
     const bool was_held = std::isfinite(motion.hold_factor);
     json["hold_factor"] = was_held ? Json(rounded(motion.hold_factor, 6)) : Json();
@@ -201,9 +201,9 @@ std::string describe_hold(const study::Trial& trial) {
 }
 
 /// "         tried  100.6, 238.7, 116.1 mm, +Y up, tilted: it would stick out", a line for each
-std::string describe(const std::vector<session::FailedAttempt>& attempts) {
+std::string describe(const std::vector<planning::Tried>& attempts) {
   std::string text;
-  for (const session::FailedAttempt& one : attempts) {
+  for (const planning::Tried& one : attempts) {
     const Vector3 p = 1e3 * one.planned.X_TP.p;
     const std::string rate =
         one.succeeded ? fmt::format(", {:.0f} % of the samples succeed", 100.0 * one.success_rate) : std::string();
@@ -248,7 +248,7 @@ std::string format_item(const session::ItemReport& item, const study::TrueItem& 
         skills::name_of(item.skill),
         item.samples > 0 ? fmt::format("{:.0f} %", 100.0 * item.predicted_success) : std::string("-"),
         1e3 * truth.position_error, truth.angle_error / kDegree,
-        item.samples > 0 ? fmt::format("{:.0f}", item.predicted.force) : std::string("-"), item.happened.force,
+        item.samples > 0 ? fmt::format("{:.0f}", item.predicted.force) : std::string("-"), item.measured.force,
         1e3 * truth.displacement, item.decision_seconds, item.rehearsal_seconds, item.attempts, item.seconds.total(),
         item.seconds.travel, item.seconds.carry, item.seconds.regrasp, item.seconds.insert, item.seconds.push,
         item.seconds.wait,

@@ -1,5 +1,5 @@
 // Belief: what is seen replaces what was drawn, sizes are learned, and worlds that predict badly lose weight.
-#include "snug/session/belief.hpp"
+#include "snug/session/test/believing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,11 @@
 namespace snug::session {
 namespace {
 
-BeliefSettings quick(int threads = 1) {
+using test::TestBelief;
+
+BeliefSettings quick() {
   BeliefSettings settings;
   settings.samples = 4;
-  settings.threads = threads;
   return settings;
 }
 
@@ -33,18 +34,19 @@ perception::Observation seen_at(const Pose& X_WP, std::optional<Vector3> size = 
 struct BeliefOfOneBox : testing::Test {
   BeliefOfOneBox() { belief.arrives(0); }
   const model::Scenario scenario = model::test::shortened(3);
-  Belief belief{scenario, "1", quick()};
+  TestBelief belief{scenario, "1", quick()};
 };
 
 TEST_F(BeliefOfOneBox, EveryWorldHasABoxWhereItWasSeen) {
   const Pose nominal = belief.box(0)->X_WP;
-  const auto& before = belief.take_up(at_start(scenario));
-  EXPECT_GT((before[1]->pose_of(0)->p - before[0]->pose_of(0)->p).norm(), 1e-4) << "not seen: each draws its own";
+  const auto before = belief.take_up(at_start(scenario));
+  EXPECT_GT((before[1]->pose_of(model::ItemIndex(0))->p - before[0]->pose_of(model::ItemIndex(0))->p).norm(), 1e-4)
+      << "not seen: each draws its own";
   Pose seen = nominal;
   seen.p += belief.nominal().aligner->X_WA.R * Vector3(0.002, 0.001, 0.0);
   belief.see(seen_at(seen));
   for (const auto& rollout : belief.take_up(at_start(scenario))) {
-    EXPECT_LT((rollout->pose_of(0)->p - seen.p).head<2>().norm(), 1e-3);
+    EXPECT_LT((rollout->pose_of(model::ItemIndex(0))->p - seen.p).head<2>().norm(), 1e-3);
   }
 }
 
@@ -55,19 +57,15 @@ TEST_F(BeliefOfOneBox, ErrorsThatPosesHaveInCommonLeaveWhatIsBetweenBoxesAsItWas
   perception::Observation seen;
   for (const int item : {0, 1}) {
     const Pose X_WP{Matrix3::Identity(), Vector3(0.0, 0.4 * item, 30.0)};  // in the air, away from everything
-    seen.seen.push_back({belief.sequence().items[static_cast<std::size_t>(item)].parcel,
-                         X_WP,
-                         common * common.transpose(),
-                         {},
-                         0.0,
-                         common});
+    seen.seen.push_back(
+        {belief.now().items[static_cast<std::size_t>(item)].id, X_WP, common * common.transpose(), {}, 0.0, common});
   }
   std::vector<Vector3> first;
   for (int look = 0; look < 2; ++look) {
     belief.see(seen);
-    const auto& worlds = belief.take_up(at_start(scenario));
+    const auto worlds = belief.take_up(at_start(scenario));
     for (std::size_t w = 0; w < worlds.size(); ++w) {
-      const Vector3 a = worlds[w]->pose_of(0)->p, b = worlds[w]->pose_of(1)->p;
+      const Vector3 a = worlds[w]->pose_of(model::ItemIndex(0))->p, b = worlds[w]->pose_of(model::ItemIndex(1))->p;
       EXPECT_LT((b - a - Vector3(0.0, 0.4, 0.0)).norm(), 1e-9) << w;
       if (look == 0) first.push_back(a);
       EXPECT_EQ(a, first[w]) << "the camera is where it was";
@@ -83,12 +81,12 @@ TEST_F(BeliefOfOneBox, WhatDoesNotStayWhereItWasSeenHasFallenBeforeAnythingIsReh
   seen.p.z() += 1.0;
   belief.see(seen_at(seen));
   for (const auto& rollout : belief.take_up(at_start(scenario))) {
-    const Vector3 p = rollout->pose_of(0)->p;
+    const Vector3 p = rollout->pose_of(model::ItemIndex(0))->p;
     EXPECT_LT(p.z(), seen.p.z() - 0.5);
     const motion::Program still = {
         "still", {motion::make_waypoint(motion::MotionClass::Home, {}, rollout->state().controller.command.X_WE)}};
     (void)rollout->settle(still, 0.5);
-    EXPECT_LT((rollout->pose_of(0)->p - p).norm(), 1e-3);
+    EXPECT_LT((rollout->pose_of(model::ItemIndex(0))->p - p).norm(), 1e-3);
   }
 }
 
@@ -125,7 +123,7 @@ TEST_F(BeliefOfOneBox, ForgetsWhatIsTakenAway) {
   EXPECT_EQ(belief.expectations().size(), 1U);
   belief.forget(0);
   EXPECT_TRUE(belief.expectations().empty());
-  for (const auto& rollout : belief.take_up(at_start(scenario))) EXPECT_FALSE(rollout->pose_of(0));
+  for (const auto& rollout : belief.take_up(at_start(scenario))) EXPECT_FALSE(rollout->pose_of(model::ItemIndex(0)));
 }
 
 TEST_F(BeliefOfOneBox, WorldsThatPredictedBadlyLoseWeightButNotAll) {
@@ -139,7 +137,7 @@ TEST_F(BeliefOfOneBox, WorldsThatPredictedBadlyLoseWeightButNotAll) {
   belief.expect(predicted);
   belief.see(seen_at(is));
   belief.weigh(0);
-  const std::vector<double>& weights = belief.weights();
+  const std::vector<double> weights = belief.weights();
   for (std::size_t w = 2; w < 5; ++w) EXPECT_LT(weights[w], weights[w - 1]);
   EXPECT_GT(weights[4], 0.0);
   EXPECT_NEAR(std::accumulate(weights.begin() + 1, weights.end(), 0.0), 4.0, 1e-12);
@@ -250,10 +248,11 @@ TEST_F(BeliefOfOneBox, AnObstacleOfOneBadPictureIsDropped) {
 
 TEST(Belief, IsTheSameWithAnyNumberOfThreads) {
   const model::Scenario scenario = model::test::shortened(3);
-  Belief one(scenario, "1", quick(1)), two(scenario, "1", quick(2));
-  for (Belief* belief : {&one, &two}) belief->arrives(0);
-  const auto& a = one.take_up(at_start(scenario));
-  const auto& b = two.take_up(at_start(scenario));
+  TestBelief one(scenario, "1", quick()), two(scenario, "1", quick());
+  two.threads = 2;
+  for (TestBelief* belief : {&one, &two}) belief->arrives(0);
+  const auto a = one.take_up(at_start(scenario));
+  const auto b = two.take_up(at_start(scenario));
   for (std::size_t w = 0; w < a.size(); ++w) {
     EXPECT_EQ(a[w]->simulation().hash(a[w]->state()), b[w]->simulation().hash(b[w]->state())) << w;
   }

@@ -174,7 +174,7 @@ TEST(ObstacleBodies, StopBesideBoxesAndOverThoseUnderThem) {
 
 TEST(ObstacleBodies, AreTurnedWithTheContainer) {
   const Pose X_WT{exp_rotation(Vector3(0.0, 0.0, 1.57079632679489662)), Vector3(1.0, 0.0, 0.0)};
-  const geometry::Aabb in_T = in_container(X_WT, {Vector3(1.1, 0.2, 0.0), Vector3(1.2, 0.5, 0.1)});
+  const geometry::Aabb in_T = planning::in_container(X_WT, {Vector3(1.1, 0.2, 0.0), Vector3(1.2, 0.5, 0.1)});
   EXPECT_NEAR(in_T.lower.x(), 0.2, 1e-12);
   EXPECT_NEAR(in_T.upper.x(), 0.5, 1e-12);
   EXPECT_NEAR(in_T.lower.y(), -0.2, 1e-12);

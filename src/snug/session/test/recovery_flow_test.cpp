@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <set>
 #include <utility>
@@ -9,7 +10,7 @@
 #include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
-#include "snug/session/packer.hpp"
+#include "snug/planning/belief_json.hpp"
 #include "snug/session/test/scripted_plant.hpp"
 
 namespace snug::session {
@@ -166,14 +167,20 @@ TEST(RecoveryFlow, LoadOnTheWayInMakesBoxesStifferInTheBeliefAndLoadElsewhereDoe
     ScriptedPlant plant;
     plant.ends = {reason};
     plant.ends_at = where;
-    model::Scenario scenario = two_boxes();
-    Packer packer(scenario, "1", quick_options(), plant);
-    packing::AgentInput input;
-    input.settings = scenario.packing;
-    const auto agent = packing::make_agent("margin", std::move(input));
-    (void)packer.bring_in(0, *agent);
-    return *packer.belief().nominal().contact_pairs.front().params.stiffness /
-           *scenario.contact_pairs.front().params.stiffness;
+    SessionOptions options = quick_options();
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "stiffer";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    options.save_beliefs = folder;
+    std::string last;
+    options.log = [&](const SessionEvent& one) {
+      if (const auto* planned = std::get_if<event::Planned>(&one)) last = planned->belief_file;
+    };
+    (void)session::pack(two_boxes(), "1", options, plant);
+    const planning::BeliefSnapshot belief = planning::load_request(folder / last).belief;
+    EXPECT_EQ(belief.items[belief.sent.empty() ? 0 : 1].id, "BOX028") << "the item after";
+    return *belief.nominal().contact_pairs.front().params.stiffness /
+           *two_boxes().contact_pairs.front().params.stiffness;
   };
   const double stiffer = two_boxes().belief.stiffer;
   for (const EndReason reason :
@@ -221,7 +228,7 @@ TEST(RecoveryFlow, AnItemThatFitsNowhereEverUsesUpNoSkip) {
       },
       options);
   ASSERT_EQ(heavy.items.size(), 2U);
-  EXPECT_EQ(heavy.items[0].end, ItemEnd::Hopeless);
+  EXPECT_EQ(heavy.items[0].end, ItemEnd::Infeasible);
   EXPECT_EQ(heavy.items[0].reason, packing::describe(packing::NoPlace::TooHeavy));
   EXPECT_EQ(heavy.items[1].end, ItemEnd::Placed);
   EXPECT_FALSE(heavy.percent_before_skips);

@@ -75,7 +75,8 @@ TEST(RemedyTable, DoesNotGoOnForEver) {
     if (remedy == Remedy::PickAgain || remedy == Remedy::SetDown) wrong += has_tries ? 0 : 1;
     if (remedy == Remedy::PressLevel) wrong += at.was_pressed ? 1 : 0;
     if (remedy == Remedy::Resume) wrong += at.stops == 1 ? 0 : 1;
-    if (remedy == Remedy::LookAgain || remedy == Remedy::MoveAway) wrong += at.pictures < kRules.most_pictures ? 0 : 1;
+    if (remedy == Remedy::PerceiveAgain || remedy == Remedy::MoveAway)
+      wrong += at.pictures < kRules.most_pictures ? 0 : 1;
   });
   EXPECT_EQ(wrong, 0);
 }
@@ -127,10 +128,10 @@ TEST(SessionWords, EveryValueHasANameOfItsOwn) {
   expect_names(Trouble::PlantFault, [](Trouble one) { return name_of(one); });
   expect_names(Remedy::Stop, [](Remedy one) { return name_of(one); });
   expect_names(ItemEnd::NotBrought, [](ItemEnd one) { return name_of(one); });
-  expect_names(AttemptFailure::OthersCameOut, [](AttemptFailure one) { return name_of(one); });
+  expect_names(planning::AttemptFailure::OthersCameOut, [](planning::AttemptFailure one) { return name_of(one); });
   expect_names(StopReason::Interrupted, [](StopReason one) { return name_of(one); });
   expect_names(SessionFailureKind::PlantLost, [](SessionFailureKind one) { return name_of(one); });
-  expect_names(Location::Elsewhere, [](Location one) { return name_of(one); });
+  expect_names(planning::Location::Elsewhere, [](planning::Location one) { return name_of(one); });
 }
 
 TEST(SessionWords, AnItemSaysHowItEndedAndWhyUnlessThatIsTheSame) {

@@ -127,14 +127,14 @@ TEST(ChooseRemedy, WhatCannotStayIsPressedWhereItLeansAndElseReturnedWhereItCanB
 TEST(ChooseRemedy, PicturesAreTakenThreeTimesThenBeliefGoesOnAndABlockedViewEndsTheSession) {
   Situation situation = at(Trouble::BadPicture);
   for (situation.pictures = 1; situation.pictures < 3; ++situation.pictures) {
-    EXPECT_EQ(remedy_for(situation), Remedy::LookAgain);
+    EXPECT_EQ(remedy_for(situation), Remedy::PerceiveAgain);
   }
   EXPECT_EQ(remedy_for(situation), Remedy::Believe);
   situation = at(Trouble::ViewBlocked);
   situation.pictures = 1;
   EXPECT_EQ(remedy_for(situation), Remedy::MoveAway);
   situation.is_held = true;
-  EXPECT_EQ(remedy_for(situation), Remedy::LookAgain) << "not with a box";
+  EXPECT_EQ(remedy_for(situation), Remedy::PerceiveAgain) << "not with a box";
   situation.pictures = 3;
   EXPECT_EQ(remedy_for(situation), Remedy::Stop);
 }

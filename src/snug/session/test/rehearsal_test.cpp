@@ -1,5 +1,5 @@
 // Rehearsal: what it says of one way to one place, limit by limit, and how often that holds in worlds that are known.
-#include "snug/session/rehearsal.hpp"
+#include "snug/planning/rehearsal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,24 +10,28 @@
 
 #include "snug/cell/joint_pace.hpp"
 #include "snug/model/test/shortened.hpp"
+#include "snug/session/test/believing.hpp"
 
 namespace snug::session {
 namespace {
+
+using planning::Attempt;
+using planning::AttemptFailure;
+using test::TestBelief;
 
 /// BOX027 at the aligner, to be put down on the empty floor.
 class RehearsalOfOneBox : public testing::Test {
  protected:
   explicit RehearsalOfOneBox(model::Scenario scenario = model::test::shortened(2)) : scenario_(std::move(scenario)) {
-    layout_ = skills::make_layout(scenario_, cell::find_pan_axis(scenario_));
-    layout_.is_fast = true;
-    limits_ = scenario_.place_limits;
+    cell_ = planning::make_cell_plan(scenario_, motion::FastTracking{});
+    cell_.reaches = {};  // everywhere
   }
   void believe(int samples, std::uint64_t seed = 1) {
     BeliefSettings settings;
     settings.samples = samples;
     settings.seed = seed;
     settings.simulation.tracking = motion::FastTracking{};
-    belief_ = std::make_unique<Belief>(scenario_, "1", settings);
+    belief_ = std::make_unique<TestBelief>(scenario_, "1", settings);
     belief_->arrives(0);
   }
   [[nodiscard]] packing::Candidate candidate(const Vector3& p_TP = Vector3(0.0, 0.0, 0.047)) const {
@@ -41,16 +45,15 @@ class RehearsalOfOneBox : public testing::Test {
   [[nodiscard]] Attempt attempt(const packing::Candidate& where, int threads = 1) {
     plant::Feedback robot;
     robot.X_WE = scenario_.controller.X_WE_start;
-    const ToolReach everywhere;
-    Rehearsal rehearsal(*belief_, layout_, everywhere, limits_, threads,
-                        {0, belief_->box(0)->X_WP, Location::Aligner, robot, {}});
+    const auto rollouts = belief_->take_up(robot);
+    planning::Rehearsal rehearsal(belief_->now(), cell_, rollouts, threads,
+                                  {model::ItemIndex(0), belief_->box(0)->X_WP, planning::Location::Aligner, {}});
     return rehearsal.attempt(where, {}, 0.0);
   }
 
   model::Scenario scenario_;
-  skills::CellLayout layout_;
-  settings::PlaceLimits limits_;
-  std::unique_ptr<Belief> belief_;
+  planning::CellPlan cell_;
+  std::unique_ptr<TestBelief> belief_;
 };
 
 TEST_F(RehearsalOfOneBox, SucceedsOnAnEmptyFloorWithForcesOfItsWeight) {
@@ -63,13 +66,13 @@ TEST_F(RehearsalOfOneBox, SucceedsOnAnEmptyFloorWithForcesOfItsWeight) {
   EXPECT_EQ(one.success_rate, 1.0);
   const double weight = 9.81 * model::find_parcel(scenario_, "BOX027")->inertia.mass;
   EXPECT_GT(one.nominal.force, weight) << "it was lifted";
-  EXPECT_LT(one.nominal.force, limits_.force);
+  EXPECT_LT(one.nominal.force, cell_.limits.force);
   EXPECT_EQ(one.nominal.displacement, 0.0) << "there is no other box";
   ASSERT_EQ(one.ends.size(), 3U) << "world by world";
   const Pose X_WT = model::find_container(scenario_, scenario_.target)->X_WT;
   for (const auto& end : one.ends) {
     ASSERT_TRUE(end[0]);
-    EXPECT_LT((X_WT.inverse() * end[0]->p - one.planned.X_TP.p).norm(), limits_.position);
+    EXPECT_LT((X_WT.inverse() * end[0]->p - one.planned.X_TP.p).norm(), cell_.limits.position);
     EXPECT_FALSE(end[1]) << "it has not come";
   }
 }
@@ -77,22 +80,22 @@ TEST_F(RehearsalOfOneBox, SucceedsOnAnEmptyFloorWithForcesOfItsWeight) {
 /// Each limit alone set to what nothing keeps: the attempt fails for that reason and says so.
 TEST_F(RehearsalOfOneBox, FailsByEachLimitForItsOwnReason) {
   believe(0);
-  const settings::PlaceLimits usual = limits_;
+  const settings::PlaceLimits usual = cell_.limits;
   const auto failure = [&] {
     const Attempt one = attempt(candidate());
     EXPECT_FALSE(one.succeeded);
     EXPECT_FALSE(one.text.empty());
     EXPECT_EQ(one.samples, 0) << "what fails in the nominal world is not sampled";
-    limits_ = usual;
+    cell_.limits = usual;
     return one.failure;
   };
-  limits_.position = 0.0;
+  cell_.limits.position = 0.0;
   EXPECT_EQ(failure(), AttemptFailure::OffPlace);
-  limits_.tilt = 0.0;
+  cell_.limits.tilt = 0.0;
   EXPECT_EQ(failure(), AttemptFailure::Tilted);
-  limits_.force = 1.0;
+  cell_.limits.force = 1.0;
   EXPECT_EQ(failure(), AttemptFailure::Rollout);
-  limits_.hold_factor = 1e6;
+  cell_.limits.hold_factor = 1e6;
   EXPECT_EQ(failure(), AttemptFailure::HoldMargin);
 }
 
@@ -115,9 +118,9 @@ TEST_F(RehearsalOfOneBox, ABoxThatIsPushedAsideIsFoundAndCounted) {
   other.p.x() += 0.19;  // its edge lies under the place
   seen.seen.push_back({"BOX028", other, Matrix6::Zero(), {}, 0.0});
   belief_->see(seen);
-  limits_.displacement = 0.0;
-  limits_.position = 1.0;
-  limits_.tilt = 3.0;
+  cell_.limits.displacement = 0.0;
+  cell_.limits.position = 1.0;
+  cell_.limits.tilt = 3.0;
   const Attempt one = attempt(where);
   EXPECT_FALSE(one.succeeded);
   EXPECT_GT(one.nominal.displacement, 0.0);
@@ -147,10 +150,10 @@ class RehearsalOfUnseenBoxes : public RehearsalOfOneBox {
   RehearsalOfUnseenBoxes() : RehearsalOfOneBox(unseen()) {}
 };
 
-TEST_F(RehearsalOfUnseenBoxes, PredictsTheShareOfWorldsInWhichItSucceeds) {
+TEST_F(RehearsalOfUnseenBoxes, PredictsTheFractionOfWorldsInWhichItSucceeds) {
   constexpr int kWorlds = 16;
   believe(kWorlds, 3);
-  limits_.position = 0.009;
+  cell_.limits.position = 0.009;
   const Attempt one = attempt(candidate());
   ASSERT_TRUE(one.succeeded) << one.text;
   ASSERT_EQ(one.samples, kWorlds);
@@ -158,13 +161,13 @@ TEST_F(RehearsalOfUnseenBoxes, PredictsTheShareOfWorldsInWhichItSucceeds) {
   int within = 0;
   plant::Feedback robot;
   robot.X_WE = scenario_.controller.X_WE_start;
-  const auto& rollouts = belief_->take_up(robot);
-  const Vector3 nominal = rollouts[0]->pose_of(0)->p;
+  const auto rollouts = belief_->take_up(robot);
+  const Vector3 nominal = rollouts[0]->pose_of(model::ItemIndex(0))->p;
   for (std::size_t w = 1; w < one.ends.size(); ++w) {
     const double off = (X_WT.inverse() * one.ends[w][0]->p - one.planned.X_TP.p).head<2>().norm();
-    const double stood_off = (rollouts[w]->pose_of(0)->p - nominal).head<2>().norm();
+    const double stood_off = (rollouts[w]->pose_of(model::ItemIndex(0))->p - nominal).head<2>().norm();
     EXPECT_NEAR(off, stood_off, 0.004) << "the cup bends under a box that it holds beside its middle";
-    within += off <= limits_.position ? 1 : 0;
+    within += off <= cell_.limits.position ? 1 : 0;
   }
   EXPECT_GT(within, 0);
   EXPECT_LT(within, kWorlds);
@@ -177,7 +180,7 @@ TEST_F(RehearsalOfUnseenBoxes, PredictsTheShareOfWorldsInWhichItSucceeds) {
 
 TEST_F(RehearsalOfUnseenBoxes, WorldsCountByTheirWeight) {
   believe(4, 3);
-  limits_.position = 0.009;
+  cell_.limits.position = 0.009;
   const Attempt before = attempt(candidate());
   ASSERT_TRUE(before.succeeded);
   ASSERT_GT(before.success_rate, 0.0);
@@ -186,7 +189,7 @@ TEST_F(RehearsalOfUnseenBoxes, WorldsCountByTheirWeight) {
   std::vector<bool> succeeds;
   for (const auto& end : before.ends) {
     const double off = (X_WT.inverse() * end[0]->p - before.planned.X_TP.p).head<2>().norm();
-    succeeds.push_back(off <= limits_.position);
+    succeeds.push_back(off <= cell_.limits.position);
   }
   // The box is seen where those worlds predicted it that will fail: they weigh more now.
   Pose seen = belief_->box(0)->X_WP, wrong = seen;
@@ -215,7 +218,7 @@ TEST_F(RehearsalOfUnseenBoxes, WhatFailsInTheFirstSamplesIsNotTriedInTheRest) {
   scenario_.rehearsal.first_samples = 2;
   scenario_.rehearsal.least_rate = 1.0;
   believe(6, 3);
-  limits_.position = 0.0035;  // hardly any world
+  cell_.limits.position = 0.0035;  // hardly any world
   const Attempt one = attempt(candidate());
   ASSERT_TRUE(one.succeeded) << one.text;
   EXPECT_EQ(one.samples, 2);

@@ -25,7 +25,7 @@ inline const model::Scenario& two_boxes() {
 }
 
 /// Motions that hold a box end as the script says.
-class ScriptedPlant final : public plant::Plant {
+class ScriptedPlant : public plant::Plant {
  public:
   using EndReason = plant::EndReason;
 

@@ -147,8 +147,8 @@ TEST(Session, SaysWhatItTriedForAnItemThatHasNoPlace) {
   EXPECT_TRUE(item.sends.empty());
   EXPECT_GE(item.attempts, 3);
   ASSERT_EQ(item.failed_attempts.size(), static_cast<std::size_t>(item.attempts));
-  for (const FailedAttempt& one : item.failed_attempts) {
-    EXPECT_EQ(one.failure, AttemptFailure::OffPlace);
+  for (const planning::Tried& one : item.failed_attempts) {
+    EXPECT_EQ(one.failure, planning::AttemptFailure::OffPlace);
     EXPECT_FALSE(one.succeeded);
     EXPECT_FALSE(one.reason.empty());
     EXPECT_EQ(one.planned.item, "BOX027");

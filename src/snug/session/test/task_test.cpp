@@ -12,10 +12,12 @@
 #include "snug/core/read_file.hpp"
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/motion/program_csv.hpp"
-#include "snug/session/test/demonstrator.hpp"
+#include "snug/planning/test/demonstrator.hpp"
 
 namespace snug::session {
 namespace {
+
+using planning::demonstrator;
 
 const std::filesystem::path kSource = SNUG_SOURCE_DIR;
 

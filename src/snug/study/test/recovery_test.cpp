@@ -117,9 +117,9 @@ TEST(SessionRecord, EveryAttemptForAnItemWithoutPlaceHasItsReason) {
   EXPECT_EQ(item.end, session::ItemEnd::NoPlace) << item.reason;
   EXPECT_GT(item.attempts, 0);
   EXPECT_EQ(static_cast<int>(item.failed_attempts.size()), item.attempts);
-  for (const session::FailedAttempt& one : item.failed_attempts) {
+  for (const planning::Tried& one : item.failed_attempts) {
     EXPECT_FALSE(one.succeeded);
-    EXPECT_NE(one.failure, session::AttemptFailure::None);
+    EXPECT_NE(one.failure, planning::AttemptFailure::None);
     EXPECT_FALSE(one.reason.empty());
     EXPECT_EQ(one.planned.item, item.id);
   }

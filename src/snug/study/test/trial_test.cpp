@@ -98,7 +98,7 @@ TEST(Trial, LeavesABoxThatIsTooBigForTheContainerWithAReason) {
   ASSERT_EQ(trial.session.items.size(), 18U);
   for (const session::ItemReport& item : trial.session.items) {
     EXPECT_EQ(item.reason, "too big for the container") << item.id;
-    EXPECT_EQ(item.end, ItemEnd::Hopeless);
+    EXPECT_EQ(item.end, ItemEnd::Infeasible);
   }
   EXPECT_EQ(trial.session.stopped, "no more items, 18 not packed");
 }

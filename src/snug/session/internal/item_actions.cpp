@@ -1,0 +1,263 @@
+// What states of a session do: from the order to the motion, and what became of the item.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "snug/session/internal/run.hpp"
+#include "snug/session/remedy_motions.hpp"
+
+namespace snug::session::internal {
+namespace {
+
+event::Planned event_of(const Decided& decided, double time) {
+  const planning::Plan& plan = decided.plan;
+  event::Planned one;
+  one.time = time;
+  one.item = plan.item;
+  one.outcome = plan.outcome;
+  one.reason = plan.reason;
+  one.tried = plan.tried;
+  one.attempts = plan.attempts;
+  one.stops = plan.stops;
+  one.flips = plan.flips;
+  one.predicted_success = plan.predicted_success;
+  one.decision_seconds = plan.decision_seconds;
+  one.rehearsal_seconds = plan.rehearsal_seconds;
+  one.waited = decided.waited;
+  one.belief_file = decided.belief_file;
+  one.hash = decided.hash;
+  if (!plan.best) return one;
+  one.planned = plan.best->planned;
+  one.reorientation = plan.best->reorientation;
+  one.skill = plan.best->skill;
+  one.samples = plan.best->samples;
+  one.success_rate = plan.best->success_rate;
+  one.predicted = plan.best->predicted;
+  return one;
+}
+
+void begin_item(Run& run, model::ItemIndex item, std::optional<model::ItemIndex> because_of) {
+  ItemTask& task = run.agenda.under_way.emplace_back();
+  task.item = item;
+  task.id = run.belief.now().items[item.slot()].id;
+  task.begun = run.executor.time();
+  run.log(event::ItemStarted{task.begun, item, because_of});
+}
+
+/// The plan that was made ahead, or one that is made now.
+Decided decide(Run& run) {
+  ItemTask& task = run.agenda.top();
+  if (task.ready) return std::move(*std::exchange(task.ready, std::nullopt));
+  planning::BeliefSnapshot& belief = run.belief.edit();
+  const plant::Feedback& robot = run.executor.robot();
+  belief.robot = {robot.X_WE, robot.q, robot.io};
+  belief.next = run.agenda.follower_of(task.item);
+  return run.decisions.decide(belief, task.item);
+}
+
+/// What was packed before, and is seen outside or nowhere now, is not packed any more.
+void review(Run& run) {
+  std::erase_if(run.agenda.packed, [&](model::ItemIndex item) {
+    const bool is_gone = !run.belief.box(item);
+    if (!is_gone && !run.scene().is_seen_outside(item)) return false;
+    const bool was_returned = run.agenda.returned.contains(item);
+    const char* reason = was_returned ? "it was moved, and no other place was found for it"
+                         : is_gone    ? "it is not seen any more"
+                                      : "it is seen outside the container";
+    run.log(event::ItemLost{item, was_returned ? ItemEnd::Returned : is_gone ? ItemEnd::Gone : ItemEnd::Left, reason});
+    return true;
+  });
+}
+
+void count(Run& run) {
+  const model::Scenario& scenario = run.belief.now().scenario;
+  std::vector<std::string> packed;
+  for (const model::ItemIndex item : run.agenda.packed) packed.push_back(run.belief.now().items[item.slot()].id);
+  const model::Container& container = *model::find_container(scenario, scenario.target);
+  run.log(event::Counted{run.executor.time(), model::compute_filling_degree_percent(scenario, container, packed),
+                         run.belief.obstacles().reports()});
+}
+
+bool is_taken_away(ItemEnd end) {
+  return end == ItemEnd::NoPlace || end == ItemEnd::Infeasible || end == ItemEnd::NotHeld || end == ItemEnd::Returned ||
+         end == ItemEnd::WrongItem || end == ItemEnd::Gone;
+}
+
+/// Why the order is at its end.
+void say_why_it_ends(Run& run) {
+  if (run.stop) return;
+  const Agenda& agenda = run.agenda;
+  const std::size_t left = static_cast<std::size_t>(agenda.reported) - agenda.packed.size();
+  if (!agenda.order_ends.empty()) {
+    stop(run, StopReason::NoPlace, agenda.order_ends);
+  } else if (run.belief.now().items.empty()) {
+    stop(run, StopReason::NoItems, "no items");
+  } else if (left == 0) {
+    stop(run, StopReason::AllPacked, "all items are packed");
+  } else {
+    stop(run, StopReason::NoMoreItems, fmt::format("no more items, {} not packed", left));
+  }
+}
+
+}  // namespace
+
+Signal take_next_item(Run& run) {
+  Agenda& agenda = run.agenda;
+  if (agenda.next == agenda.order.size()) return Signal::OrderDone;
+  if (!run.stop && run.options.is_interrupted && run.options.is_interrupted()) {
+    stop(run, StopReason::Interrupted, "interrupted");
+  }
+  if (run.stop) return Signal::Stopped;
+  const model::ItemIndex item = agenda.order[agenda.next++];
+  auto ahead = run.decisions.take_ahead(item);
+  run.executor.refresh();
+  begin_item(run, item, std::nullopt);
+  if (!ahead) return Signal::ItemToBring;
+  agenda.top().ready = std::move(ahead->decided);
+  return ahead->is_seen ? Signal::ItemIsHere : Signal::ItemIsUnseen;
+}
+
+Signal bring_item(Run& run) {
+  ItemTask& task = run.agenda.top();
+  if (run.executor.bring(task.item, task.id, false)) {
+    run.belief.arrives(task.item);
+    return Signal::Brought;
+  }
+  end_item(task, ItemEnd::NotBrought, "the plant does not bring it");
+  const plant::End end = run.executor.read().end;
+  if (end.reason == plant::EndReason::Fault) {
+    task.reason = plant::describe(end, {});
+    stop(run, StopReason::PlantFault);
+  }
+  return Signal::NotBrought;
+}
+
+Signal perceive_item(Run& run) {
+  perceive(run);
+  if (!run.stop) return Signal::Perceived;
+  end_item(run.agenda.top(), ItemEnd::NotHeld, name_of(*run.stop));
+  return Signal::Stopped;
+}
+
+Signal check_item(Run& run) {
+  ItemTask& task = run.agenda.top();
+  const settings::RecoverySettings& settings = run.belief.now().scenario.recovery;
+  if (!run.belief.box(task.item) || run.scene().size_error(task.item) <= settings.wrong_size) return Signal::RightItem;
+  std::string detail = fmt::format("edges differ by up to {:.0f} mm", 1e3 * run.scene().size_error(task.item));
+  note_remedy(run, Trouble::WrongItem, choose_remedy({.trouble = Trouble::WrongItem}, settings), detail, false);
+  end_item(task, ItemEnd::WrongItem, std::move(detail));
+  return Signal::WrongItem;
+}
+
+Signal plan_item(Run& run) {
+  ItemTask& task = run.agenda.top();
+  if (run.stop) {
+    leave(run);
+    task.reason = name_of(*run.stop);
+    return Signal::Stopped;
+  }
+  if (!run.belief.box(task.item)) {
+    give_up(run, Trouble::Gone);
+    return Signal::Gone;
+  }
+  Decided decided = decide(run);
+  run.log(event_of(decided, run.executor.time()));
+  run.belief.edit().items[task.item.slot()] = decided.plan.standing;
+  task.attempts += decided.plan.attempts;
+  task.reason = decided.plan.reason;
+  if (decided.plan.outcome == planning::PlanOutcome::Found) {
+    task.plan = std::move(decided.plan);
+    task.stage = 0;
+    return Signal::Planned;
+  }
+  const bool is_infeasible = decided.plan.outcome == planning::PlanOutcome::Infeasible;
+  task.end = is_infeasible ? ItemEnd::Infeasible : ItemEnd::NoPlace;
+  return Signal::NoPlace;
+}
+
+Signal put_back(Run& run) {
+  ItemTask& task = run.agenda.top();
+  leave(run);
+  if (task.end != ItemEnd::Left) return Signal::Finished;
+  if (!run.executor.is_holding() && !can_return(run.scene(), task.item)) return Signal::Finished;
+  send_to_aligner(run, task.item, false);
+  if (run.executor.has_completed()) task.end = ItemEnd::Returned;
+  return Signal::Finished;
+}
+
+Signal finish_item(Run& run) {
+  Agenda& agenda = run.agenda;
+  ItemTask task = std::move(agenda.top());
+  agenda.under_way.pop_back();
+  if (!agenda.under_way.empty()) {
+    run.log(event::ItemEnded{run.executor.time(), task.item, task.end, task.reason});
+    agenda.finished = std::move(task);
+    return Signal::NextOnAgenda;
+  }
+  planning::BeliefSnapshot& belief = run.belief.edit();
+  const bool is_packed = task.end == ItemEnd::Placed || task.end == ItemEnd::Accepted;
+  if (is_taken_away(task.end)) run.belief.forget(task.item);  // the next arrival takes it away
+  if (!is_packed && task.end != ItemEnd::NotBrought) belief.skipped.push_back(task.item);
+  if (task.end == ItemEnd::NoPlace) --belief.skips_left;
+  ++agenda.reported;
+  if (is_packed) agenda.packed.push_back(task.item);
+  if (belief.chosen.empty() && belief.skips_left < 0) {
+    stop(run, StopReason::NoPlace, fmt::format("{}: {}", task.id, task.reason));
+  }
+  run.log(event::ItemEnded{run.executor.time(), task.item, task.end, task.reason});
+  review(run);
+  count(run);
+  return Signal::Finished;
+}
+
+Signal repack(Run& run) {
+  begin_item(run, run.agenda.top().recovery.culprit, run.agenda.top().item);
+  return Signal::Started;
+}
+
+Signal resume_item(Run& run) {
+  Agenda& agenda = run.agenda;
+  const ItemTask own = std::move(*std::exchange(agenda.finished, std::nullopt));
+  ItemTask& task = agenda.top();
+  RecoveryTask& recovery = task.recovery;
+  task.attempts += own.attempts;
+  if (own.last_remedy) task.last_remedy = own.last_remedy;
+  if (!run.executor.has_completed()) retreat(run, own.item);
+  const auto& box = run.belief.box(own.item);
+  if (box && run.scene().locate(own.item) == planning::Location::Aligner) {
+    run.belief.forget(own.item);  // the next arrival takes it away
+    agenda.returned.insert(own.item);
+  } else if (run.scene().is_seen_outside(own.item)) {
+    agenda.left_out.insert(own.item);
+  } else if (box && own.sends > 0) {
+    run.log(event::Repacked{own.item, own.plan->best->planned, run.cell.layout.X_WT.inverse() * box->X_WP});
+  }
+  const bool has_moved = run.executor.time() > own.begun;
+  if (recovery.ends_unless_moved && !has_moved) {
+    recovery.repacked = run.belief.now().scenario.recovery.most_tries;
+  } else {
+    ++recovery.repacked;
+  }
+  recovery.was_pressed = false;
+  forget_displacement(run);
+  return Signal::Finished;
+}
+
+Signal go_home(Run& run) {
+  say_why_it_ends(run);
+  event::SessionEnded ended;
+  if (run.executor.has_moved()) {
+    move_home(run);
+    if (!run.executor.has_completed()) {
+      ended.failure = SessionFailureKind::NotHome;
+      ended.text = "on the way home: " + run.executor.describe_end();
+    }
+  }
+  count(run);
+  ended.time = run.executor.time();
+  run.log(ended);
+  return Signal::Finished;
+}
+
+}  // namespace snug::session::internal

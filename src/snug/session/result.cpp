@@ -1,0 +1,77 @@
+// SessionResult: words for how items and sessions end.
+#include "snug/session/result.hpp"
+
+namespace snug::session {
+
+const char* name_of(ItemEnd end) {
+  switch (end) {
+    case ItemEnd::Placed:
+      return "placed";
+    case ItemEnd::Accepted:
+      return "accepted";
+    case ItemEnd::NoPlace:
+      return "no place";
+    case ItemEnd::Infeasible:
+      return "infeasible";
+    case ItemEnd::NotHeld:
+      return "not held";
+    case ItemEnd::Returned:
+      return "returned";
+    case ItemEnd::Left:
+      return "left";
+    case ItemEnd::Gone:
+      return "gone";
+    case ItemEnd::WrongItem:
+      return "wrong item";
+    case ItemEnd::NotBrought:
+      return "not brought";
+  }
+  return "";
+}
+
+std::string describe(const ItemReport& item) {
+  const std::string end = name_of(item.end);
+  return item.reason.empty() || item.reason == end ? end : end + ": " + item.reason;
+}
+
+const char* name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::AllPacked:
+      return "all packed";
+    case StopReason::NoMoreItems:
+      return "no more items";
+    case StopReason::NoItems:
+      return "no items";
+    case StopReason::NoPlace:
+      return "no place";
+    case StopReason::RobotStops:
+      return "robot stops";
+    case StopReason::ViewBlocked:
+      return "view blocked";
+    case StopReason::PlantFault:
+      return "plant fault";
+    case StopReason::Interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+const char* name_of(SessionFailureKind kind) {
+  switch (kind) {
+    case SessionFailureKind::None:
+      return "none";
+    case SessionFailureKind::NotHome:
+      return "not home";
+    case SessionFailureKind::PlantLost:
+      return "plant lost";
+  }
+  return "";
+}
+
+int recovery_count(const SessionResult& result) {
+  int count = 0;
+  for (const ItemReport& item : result.items) count += static_cast<int>(item.recoveries.size());
+  return count;
+}
+
+}  // namespace snug::session
