@@ -73,7 +73,8 @@ class Commands(unittest.TestCase):
             shutil.copytree(ROOT / shipped, cls.path / shipped)
         cell = "scenarios/box-demonstrator.yaml"
         simulate = ["simulate", cell, "--program", "program.csv", "--sequence", "1"]
-        for words in (["pack", cell, "--sequence", "1", "--plant-seed", "7", "--samples", "0", "--program", "program.csv", "--plan", "plan.json"],
+        for words in (["pack", cell, "--sequence", "1", "--plant-seed", "7", "--samples", "0", "--program", "program.csv", "--plan", "plan.json",
+                       "--save-belief", "beliefs"],
                       [*simulate, "--robot", "ur10", "-o", "run.h5"], [*simulate, "-o", "again.h5"],
                       ["measure", "run.h5", "--sensors", "scenarios/sensors/demonstrator.yaml", "--repetitions", "2", "-o", "measured.h5"]):
             result = subprocess.run([SNUG, *words], cwd=cls.path, capture_output=True, text=True, check=False)

@@ -11,9 +11,9 @@ namespace {
 
 constexpr const char* kPlanExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant-seed 7 --save-belief beliefs
-  snug plan beliefs/0003-BOX017.json
-  snug plan beliefs/0003-BOX017.json --json
-  snug plan beliefs/0003-BOX017.json --decision-time 2
+  snug plan beliefs/0001-BOX027.json
+  snug plan beliefs/0001-BOX027.json --json
+  snug plan beliefs/0001-BOX027.json --decision-time 2
 The same belief, item and decision time come to the same plan, to the last digit.)";
 
 }  // namespace
