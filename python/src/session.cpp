@@ -9,8 +9,8 @@
 #include "snug/motion/program_csv.hpp"
 #include "snug/record/reader.hpp"
 #include "snug/record/writer.hpp"
-#include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
+#include "snug/report/recordings_page.hpp"
 #include "snug/robot/load_arm.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run.hpp"
@@ -238,8 +238,8 @@ class Recording {
     replay::Selection selection;
     selection.every = static_cast<std::size_t>(std::max(1, every));
     const HdfUse use;
-    const std::vector<replay::PageRecording> one = {{name(), replay::encode_recording(reader_, name(), selection)}};
-    return replay::assemble_page(page, one);
+    const std::vector<report::PageRecording> one = {{name(), replay::encode_recording(reader_, name(), selection)}};
+    return report::assemble_page(page, one);
   }
 
  private:

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "snug/core/text.hpp"
-#include "snug/replay/figure.hpp"
+#include "snug/report/figure.hpp"
 
 namespace snug::app {
 namespace {
@@ -80,7 +80,7 @@ const char* const kDotChartStyle =
 
 std::string draw_dot_chart(const std::string& title, const std::vector<DotLine>& lines) {
   Axis axis = make_axis(lines);
-  const std::vector<double> ticks = replay::choose_ticks(axis.low, axis.high, 5);
+  const std::vector<double> ticks = report::choose_ticks(axis.low, axis.high, 5);
   if (ticks.size() > 1) {
     axis.decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(ticks[1] - ticks[0]) - 1e-9)));
   }

@@ -25,8 +25,8 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/replay/browser.hpp"
-#include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
+#include "snug/report/recordings_page.hpp"
 
 namespace snug::app {
 namespace {
@@ -82,9 +82,9 @@ class Studio {
       : browser_(replay::find_browser(), folder_.path() / "profile", options.width, options.height) {
     const std::string name = fs::path(options.recording).filename().string();
     const replay::RobotDescription robot = find_robot(reader, options.recording, options.urdf);
-    const replay::PageRecording recording{name, replay::encode_recording(reader, name, {}, robot)};
+    const report::PageRecording recording{name, replay::encode_recording(reader, name, {}, robot)};
     const fs::path page = folder_.path() / "page.html";
-    write_file(page, replay::assemble_page(viewer_page(), {&recording, 1}));
+    write_file(page, report::assemble_page(viewer_page(), {&recording, 1}));
     browser_.open(fmt::format("file://{}#picture=1&t={}&camera={}&theme={}&show={}&hide={}&size={}x{}", page.string(),
                               options.time.value_or(options.from.value_or(reader.times().back())), options.camera,
                               options.theme, options.show, options.hide, options.width, options.height));

@@ -9,8 +9,8 @@
 #include "apps/snug/common/robot_files.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/replay/page.hpp"
 #include "snug/replay/plot.hpp"
+#include "snug/report/recordings_page.hpp"
 
 namespace snug::app {
 
@@ -36,10 +36,10 @@ int run_plot(const PlotOptions& options) {
       sources.back().urdf = find_robot(readers.back(), path, options.urdf).urdf;
     }
   }
-  replay::Figure figure = replay::make_plot(sources, options.what, options.selection);
+  report::Figure figure = replay::make_plot(sources, options.what, options.selection);
   figure.width_mm = options.width_mm;
   figure.panel_height_mm = options.height_mm;
-  write_file(std::move(output), replay::draw_svg(figure));
+  write_file(std::move(output), report::draw_svg(figure));
   std::fprintf(stderr, "%s: %zu panels over %s, %.0f mm wide\n", options.output.c_str(), figure.panels.size(),
                options.recordings.size() > 1 ? "two recordings" : "one recording", figure.width_mm);
   return kSuccess;

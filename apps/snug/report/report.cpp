@@ -9,7 +9,7 @@
 #include "apps/snug/common/robot_files.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
-#include "snug/replay/page.hpp"
+#include "snug/report/recordings_page.hpp"
 
 namespace snug::app {
 
@@ -22,14 +22,14 @@ int run_report(const ReportOptions& options) {
   add_file(inputs, "--urdf", options.urdf);
   OutputFile output = reserve(inputs, options.output);
   const std::string_view page = viewer_page();
-  std::vector<replay::PageRecording> recordings;
+  std::vector<report::PageRecording> recordings;
   for (const std::string& path : options.recordings) {
     record::RecordingReader reader(path);
     const std::string name = std::filesystem::path(path).filename().string();
     const replay::RobotDescription robot = find_robot(reader, path, options.urdf);
     recordings.push_back({name, replay::encode_recording(reader, name, options.selection, robot)});
   }
-  const std::string html = replay::assemble_page(page, recordings);
+  const std::string html = report::assemble_page(page, recordings);
   write_file(std::move(output), html);
   std::fprintf(stderr, "%s: %.2f MB\n", options.output.c_str(), static_cast<double>(html.size()) / 1e6);
   return kSuccess;

@@ -44,7 +44,7 @@ validation::HandShifts parse_shifts(const std::vector<std::string>& words) {
 
 void write_figures(const std::string& folder, const std::vector<validation::NamedFigure>& figures) {
   for (const validation::NamedFigure& figure : figures)
-    write_file(std::filesystem::path(folder) / figure.file, replay::draw_svg(figure.figure));
+    write_file(std::filesystem::path(folder) / figure.file, report::draw_svg(figure.figure));
 }
 
 }  // namespace

@@ -260,9 +260,9 @@ const std::vector<std::string>& plot_words() {
   return words;
 }
 
-Figure make_plot(std::span<const PlotSource> sources, const std::vector<std::string>& what,
-                 const Selection& selection) {
-  Figure figure;
+report::Figure make_plot(std::span<const PlotSource> sources, const std::vector<std::string>& what,
+                         const Selection& selection) {
+  report::Figure figure;
   figure.x_label = "time [s]";
   for (std::size_t k = 0; k < sources.size(); ++k) {
     const record::RecordingHeader& header = sources[k].reader->header();
@@ -276,7 +276,7 @@ Figure make_plot(std::span<const PlotSource> sources, const std::vector<std::str
     figure.panels.resize(plans.size());
     std::size_t line = 0;
     for (std::size_t i = 0; i < plans.size(); ++i) {
-      Panel& panel = figure.panels[i];
+      report::Panel& panel = figure.panels[i];
       panel.y_label = plans[i].y_label;
       if (k == 0) panel.bands = samples.held;
       panel.band_label = "box held";

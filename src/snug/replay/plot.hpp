@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "snug/replay/figure.hpp"
 #include "snug/replay/replay.hpp"
+#include "snug/report/figure.hpp"
 
 namespace snug::replay {
 
@@ -23,7 +23,7 @@ struct PlotSource {
 
 /// One figure of all the quantities in `what`, one below the other. Curves of a second source are dashed. Throws
 /// InputError for a word or a body that does not exist, naming the nearest, and for a selection without frames.
-[[nodiscard]] Figure make_plot(std::span<const PlotSource> sources, const std::vector<std::string>& what,
-                               const Selection& selection);
+[[nodiscard]] report::Figure make_plot(std::span<const PlotSource> sources, const std::vector<std::string>& what,
+                                       const Selection& selection);
 
 }  // namespace snug::replay

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "snug/core/base64.hpp"
-#include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
+#include "snug/report/recordings_page.hpp"
 
 namespace snug::serve {
 namespace {

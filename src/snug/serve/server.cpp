@@ -72,8 +72,8 @@ struct Server::Impl {
 
 Server::Impl::Impl(const ServerSettings& server_settings, Content server_content)
     : settings(server_settings), content(std::move(server_content)) {
-  page = std::make_shared<const std::string>(replay::assemble_page(content.page, {}));
-  for (replay::PageRecording& recording : content.recordings) {
+  page = std::make_shared<const std::string>(report::assemble_page(content.page, {}));
+  for (report::PageRecording& recording : content.recordings) {
     forms.push_back(std::make_shared<const std::string>(std::move(recording.bytes)));
   }
   server.set_payload_max_length(0);
@@ -101,7 +101,7 @@ Server::Impl::Impl(const ServerSettings& server_settings, Content server_content
 Json Server::Impl::recordings_json() const {
   const bool is_live = content.live != nullptr && !content.live->is_over();
   Json list = Json::array();
-  for (const replay::PageRecording& recording : content.recordings) list.push_back({{"name", recording.name}});
+  for (const report::PageRecording& recording : content.recordings) list.push_back({{"name", recording.name}});
   if (content.live != nullptr && !is_live && content.live->whole_form()) list.push_back({{"name", "live"}});
   Json answer = {{"recordings", std::move(list)}, {"live", is_live}};
   if (content.has_more_runs) answer["more"] = true;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "snug/replay/page.hpp"
+#include "snug/report/recordings_page.hpp"
 #include "snug/serve/live_run.hpp"
 
 namespace snug::serve {
@@ -18,7 +18,7 @@ struct ServerSettings {
 /// What is shown: recordings, or a run that goes on.
 struct Content {
   std::string page;                               ///< that viewer/ builds, without recordings
-  std::vector<replay::PageRecording> recordings;  ///< none with `live`
+  std::vector<report::PageRecording> recordings;  ///< none with `live`
   LiveRun* live = nullptr;                        ///< not owned; must outlive the server
   bool has_more_runs = false;                     ///< `live` shows one after the other
 };

@@ -10,9 +10,9 @@
 namespace snug::validation {
 namespace {
 
-using replay::Curve;
-using replay::Figure;
-using replay::Panel;
+using report::Curve;
+using report::Figure;
+using report::Panel;
 
 constexpr int kBlue = 0, kOrange = 1, kGreen = 2, kPurple = 3;
 constexpr int kRepetitionColors[] = {kOrange, kGreen, kPurple};

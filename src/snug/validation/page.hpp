@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "snug/replay/figure.hpp"
+#include "snug/report/figure.hpp"
 #include "snug/validation/validate.hpp"
 
 namespace snug::validation {
@@ -13,7 +13,7 @@ namespace snug::validation {
 struct NamedFigure {
   std::string file;     ///< "Box016-poses.svg"
   std::string caption;  ///< for people
-  replay::Figure figure;
+  report::Figure figure;
 };
 
 /// Poses (like the report's Figures 15 and 16) and wrenches (17 and 18) of each window: simulated and measured, all

@@ -9,7 +9,6 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/record/writer.hpp"
-#include "snug/replay/page.hpp"
 #include "snug/replay/replay.hpp"
 #include "snug/replay/test/scratch.hpp"
 
@@ -290,17 +289,6 @@ TEST(Replay, RefusesTextThatIsNotUtf8) {
   record::Recording recording = test::random_recording(rng, 1);
   recording.header.scenario_text = "\xff\xfe broken";
   EXPECT_THROW((void)form_of(recording), InputError);
-}
-
-TEST(Page, PutsRecordingsInThePlaceOfTheMark) {
-  const std::string page = "<html>\n<!--snug:recordings-->\n</html>\n";
-  const PageRecording recordings[] = {{"a\"<b>&.h5", "abc"}, {"c.h5", std::string("\0\xff", 2)}};
-  EXPECT_EQ(assemble_page(page, recordings),
-            "<html>\n<script type=\"application/octet-stream;base64\" id=\"snug-recording-0\" "
-            "data-name=\"a&quot;&lt;b&gt;&amp;.h5\">YWJj</script>\n<script type=\"application/octet-stream;base64\" "
-            "id=\"snug-recording-1\" data-name=\"c.h5\">AP8=</script>\n\n</html>\n");
-  EXPECT_NE(complaint([] { (void)assemble_page("<html></html>", {}); }), "");
-  EXPECT_NE(complaint([&] { (void)assemble_page(page + page, {}); }), "");
 }
 
 TEST(Page, WritesWholeFilesOrNone) {

@@ -1,4 +1,4 @@
-// Page: the report, one HTML file: the page that viewer/ builds with recordings inside.
+// RecordingsPage: the report, one HTML file: the page that viewer/ builds with recordings inside.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace snug::replay {
+namespace snug::report {
 
 struct PageRecording {
   std::string name;   ///< file name, shown to people
@@ -19,4 +19,4 @@ inline constexpr std::string_view kRecordingsMark = "<!--snug:recordings-->";
 /// `page` with the recordings in the place of its mark. Throws InputError when `page` does not have exactly one.
 [[nodiscard]] std::string assemble_page(std::string_view page, std::span<const PageRecording> recordings);
 
-}  // namespace snug::replay
+}  // namespace snug::report

@@ -1,11 +1,11 @@
-// Page: the report, one HTML file: the page that viewer/ builds with recordings inside.
-#include "snug/replay/page.hpp"
+// RecordingsPage: the report, one HTML file: the page that viewer/ builds with recordings inside.
+#include "snug/report/recordings_page.hpp"
 
 #include "snug/core/base64.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/core/text.hpp"
+#include "snug/report/escape.hpp"
 
-namespace snug::replay {
+namespace snug::report {
 
 std::string assemble_page(std::string_view page, std::span<const PageRecording> recordings) {
   const std::size_t at = page.find(kRecordingsMark);
@@ -16,10 +16,10 @@ std::string assemble_page(std::string_view page, std::span<const PageRecording> 
   std::string out(page.substr(0, at));
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     out += "<script type=\"application/octet-stream;base64\" id=\"snug-recording-" + std::to_string(i) +
-           "\" data-name=\"" + escape_markup(recordings[i].name) + "\">" + base64(recordings[i].bytes) + "</script>\n";
+           "\" data-name=\"" + escape(recordings[i].name) + "\">" + base64(recordings[i].bytes) + "</script>\n";
   }
   out += page.substr(at + kRecordingsMark.size());
   return out;
 }
 
-}  // namespace snug::replay
+}  // namespace snug::report

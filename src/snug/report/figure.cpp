@@ -1,5 +1,5 @@
 // Figure: curves over a common axis, drawn as SVG for papers: no browser, no scripts, fonts that everybody has.
-#include "snug/replay/figure.hpp"
+#include "snug/report/figure.hpp"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,15 @@
 #include <limits>
 #include <string_view>
 
-#include "snug/core/text.hpp"
+#include "snug/report/escape.hpp"
+#include "snug/report/internal/svg.hpp"
 
-namespace snug::replay {
+namespace snug::report {
 namespace {
+
+using internal::svg_line;
+using internal::svg_rect;
+using internal::svg_text;
 
 // Okabe and Ito's palette without its yellow, which is too light for a line on white.
 constexpr std::array<std::string_view, 7> kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
@@ -75,15 +80,6 @@ Range y_range(const Panel& panel) {
     for (const double value : curve.y) widen(range, value);
   }
   return closed(range, 0.06);
-}
-
-std::string text_at(double x, double y, std::string_view text, std::string_view anchor, std::string_view more = "") {
-  return fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
-                     escape_markup(text));
-}
-
-std::string line_at(double x1, double y1, double x2, double y2, std::string_view style) {
-  return fmt::format("<line x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" {}/>\n", x1, y1, x2, y2, style);
 }
 
 /// "-0.25" with a proper minus sign and as many decimals as the step between ticks needs.
@@ -200,12 +196,11 @@ std::string draw_legend(const Panel& panel, const Axes& axes) {
     const auto lines_below = static_cast<double>(legend.widths.size()) - 1.0 - entry.line;
     const double y = axes.top - 6.0 - kLegendLine * lines_below;
     if (entry.curve != nullptr) {
-      out += line_at(x, y - 2.6, x + kSwatch, y - 2.6, style_of(*entry.curve));
+      out += svg_line(x, y - 2.6, x + kSwatch, y - 2.6, style_of(*entry.curve));
     } else {
-      out += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"7\" fill=\"#E6E6E6\"/>\n", x,
-                         y - 6.0, kSwatch);
+      out += svg_rect(x, y - 6.0, kSwatch, 7.0, "fill=\"#E6E6E6\"");
     }
-    out += text_at(x + kSwatch + kSpace, y, entry.label, "start");
+    out += svg_text(x + kSwatch + kSpace, y, entry.label, "start");
   }
   return out;
 }
@@ -216,8 +211,7 @@ std::string draw_bands(const Panel& panel, const Axes& axes) {
     const double left = axes.across(std::clamp(from, axes.x.low, axes.x.high));
     const double right = axes.across(std::clamp(to, axes.x.low, axes.x.high));
     if (right - left < 0.05) continue;
-    out += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"#E6E6E6\"/>\n", left,
-                       axes.top, right - left, axes.height);
+    out += svg_rect(left, axes.top, right - left, axes.height, "fill=\"#E6E6E6\"");
   }
   return out;
 }
@@ -228,14 +222,14 @@ std::string draw_grid(const Axes& axes, bool has_x_labels) {
   const std::vector<double> ys = choose_ticks(axes.y.low, axes.y.high, std::max(3, static_cast<int>(axes.height / 24)));
   for (const double y : ys) {
     const bool is_zero = std::abs(y) < 1e-9 * step_of(ys);
-    out += line_at(axes.left, axes.down(y), axes.left + axes.width, axes.down(y),
-                   is_zero ? "stroke=\"#999999\" stroke-width=\"0.6\"" : "stroke=\"#D9D9D9\" stroke-width=\"0.4\"");
-    out += text_at(axes.left - 4.0, axes.down(y) + 2.8, tick_text(y, step_of(ys)), "end");
+    out += svg_line(axes.left, axes.down(y), axes.left + axes.width, axes.down(y),
+                    is_zero ? "stroke=\"#999999\" stroke-width=\"0.6\"" : "stroke=\"#D9D9D9\" stroke-width=\"0.4\"");
+    out += svg_text(axes.left - 4.0, axes.down(y) + 2.8, tick_text(y, step_of(ys)), "end");
   }
   const std::vector<double> xs = choose_ticks(axes.x.low, axes.x.high, std::max(3, static_cast<int>(axes.width / 48)));
   for (const double x : xs) {
-    out += line_at(axes.across(x), bottom, axes.across(x), bottom - 3.0, "stroke=\"#000000\" stroke-width=\"0.6\"");
-    if (has_x_labels) out += text_at(axes.across(x), bottom + 10.5, tick_text(x, step_of(xs)), "middle");
+    out += svg_line(axes.across(x), bottom, axes.across(x), bottom - 3.0, "stroke=\"#000000\" stroke-width=\"0.6\"");
+    if (has_x_labels) out += svg_text(axes.across(x), bottom + 10.5, tick_text(x, step_of(xs)), "middle");
   }
   return out;
 }
@@ -262,16 +256,14 @@ std::string draw_panel(const Figure& figure, std::size_t index, const Axes& axes
       index, axes.left, axes.top, axes.width, axes.height, index);
   for (const Curve& curve : panel.curves) out += draw_curve(curve, axes);
   out += "</g>\n";
-  out += fmt::format(
-      "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"none\" stroke=\"#000000\" "
-      "stroke-width=\"0.6\"/>\n",
-      axes.left, axes.top, axes.width, axes.height);
+  out +=
+      svg_rect(axes.left, axes.top, axes.width, axes.height, "fill=\"none\" stroke=\"#000000\" stroke-width=\"0.6\"");
   const double middle = axes.top + 0.5 * axes.height;
   const double label = axes.left - kLeft + 10.0;
-  out += text_at(label, middle, panel.y_label, "middle",
-                 fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", label, middle));
+  out += svg_text(label, middle, panel.y_label, "middle",
+                  fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", label, middle));
   if (is_last) {
-    out += text_at(axes.left + 0.5 * axes.width, axes.top + axes.height + 24.0, figure.x_label, "middle");
+    out += svg_text(axes.left + 0.5 * axes.width, axes.top + axes.height + 24.0, figure.x_label, "middle");
   }
   return out + draw_legend(panel, axes);
 }
@@ -309,7 +301,7 @@ std::string draw_svg(const Figure& figure) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{:.2f}mm\" height=\"{:.2f}mm\" "
       "viewBox=\"0 0 {:.2f} {:.2f}\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" "
       "font-size=\"{}\" fill=\"#000000\">\n<desc>{}</desc>\n<rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n",
-      width / kPointsPerMm, height / kPointsPerMm, width, height, kFont, escape_markup(figure.description));
+      width / kPointsPerMm, height / kPointsPerMm, width, height, kFont, escape(figure.description));
   axes.x = x_range(figure);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     if (i % rows == 0) axes.top = 0.0;
@@ -322,4 +314,4 @@ std::string draw_svg(const Figure& figure) {
   return svg + "</svg>\n";
 }
 
-}  // namespace snug::replay
+}  // namespace snug::report

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace snug::replay {
+namespace snug::report {
 
 /// One line. It breaks where y is not finite.
 struct Curve {
@@ -39,4 +39,4 @@ struct Figure {
 /// Round numbers within [low, high], about `count` of them; `low < high`.
 [[nodiscard]] std::vector<double> choose_ticks(double low, double high, int count);
 
-}  // namespace snug::replay
+}  // namespace snug::report
