@@ -1182,7 +1182,7 @@ class OtherCells(unittest.TestCase):
         rows = json.loads(snug("compare", CELL, "--sequences", "1", "--agents", "margin", *self.QUICK, "--json", "-o", page).stdout)["rows"]
         text = page.read_text(encoding="utf-8")
         self.assertEqual(text.count("<polygon"), rows[0]["executed_boxes"])
-        words = html.unescape(re.search(r"<code>snug (.*?) -o run.h5<br>", text).group(1))
+        words = html.unescape(re.search(r"<code>snug (.*?) -o run.h5</code>", text).group(1))
         packed = json.loads(snug(*shlex.split(words), "--json").stdout)
         self.assertEqual((packed["executed_boxes"], packed["executed_percent"]), (rows[0]["executed_boxes"], rows[0]["executed_percent"]))
 
@@ -1206,7 +1206,7 @@ class OtherCells(unittest.TestCase):
         rows = json.loads(snug(*words, "--json", "-o", page).stdout)["rows"]
         text = page.read_text(encoding="utf-8")
         self.assertEqual(text.count('class="mean"'), 5 * (1 + 2), "each in a plant of its own: lines by plant would repeat them")
-        codes = re.findall(r"<code>(.*?) -o run.h5<br>", text)
+        codes = re.findall(r"<code>(.*?) -o run.h5</code>", text)
         self.assertEqual(len(codes), 2)
         for row, code in zip(rows, codes):
             packed = json.loads(snug(*shlex.split(html.unescape(code))[1:], "--json").stdout)
@@ -1223,7 +1223,7 @@ class OtherCells(unittest.TestCase):
         words = ("compare", CELL, "--container", "60x60x60", "--sequences", "1", "--agents", "margin", *self.QUICK)
         table = snug(*words, "-o", page).stdout
         self.assertNotIn("100.00 %", table)
-        chart = re.search(r"items that end as planned, %</figcaption>(.*?)</figure>", page.read_text(encoding="utf-8")).group(1)
+        chart = re.search(r"items that end as planned, %</figcaption>(.*?)</figure>", page.read_text(encoding="utf-8"), re.DOTALL).group(1)
         self.assertNotIn("<circle", chart)
         self.assertNotIn("nan", chart)
 

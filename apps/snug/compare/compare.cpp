@@ -13,15 +13,13 @@
 #include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/program_motion.hpp"
 #include "apps/snug/command_line/shipped.hpp"
-#include "apps/snug/compare/compare_page.hpp"
-#include "apps/snug/compare/compare_report.hpp"
 #include "apps/snug/compare/compare_study.hpp"
 #include "apps/snug/report/report.hpp"
-#include "apps/snug/study/study.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/packing/python_agent.hpp"
+#include "snug/runs/result_json.hpp"
 #include "snug/study/run.hpp"
 
 namespace snug::app {
@@ -66,8 +64,8 @@ std::vector<std::string> choose_sequences(const CompareOptions& options, model::
 }
 
 /// Every agent packs every sequence in every plant; random sequences in plants of their own.
-std::vector<SessionPoint> list_sessions(const CompareOptions& options, const std::vector<std::string>& agents,
-                                        const std::vector<std::string>& sequences) {
+std::vector<study::SessionPoint> list_sessions(const CompareOptions& options, const std::vector<std::string>& agents,
+                                               const std::vector<std::string>& sequences) {
   const std::size_t plants = static_cast<std::size_t>(options.plants);
   const std::size_t given = sequences.size() - static_cast<std::size_t>(options.random);
   const std::size_t count = agents.size() * sequences.size() * plants;
@@ -75,12 +73,13 @@ std::vector<SessionPoint> list_sessions(const CompareOptions& options, const std
     throw InputError("command line", "sessions", std::to_string(count),
                      fmt::format("at most {}; `snug study` runs more (docs/studies.md)", kMostSessions));
   }
-  std::vector<SessionPoint> points;
+  std::vector<study::SessionPoint> points;
   for (const std::string& agent : agents) {
     for (std::size_t i = 0; i < sequences.size(); ++i) {
       const std::size_t first = i > given ? (i - given) * plants : 0;
       for (std::size_t plant = 0; plant < plants; ++plant) {
-        points.push_back({agent, sequences[i], options.pack.plant_seed + first + plant, i >= given});
+        points.push_back({agent, sequences[i], options.pack.plant_seed + first + plant, i >= given, {}});
+        if (options.runs) points.back().recording = recording_path(*options.runs, points.size() - 1, points.back());
       }
     }
   }
@@ -99,26 +98,27 @@ void check_words(const PackOptions& pack, const std::vector<std::string>& agents
 /// Prints rows as they come, and how many are done on a terminal.
 class Printer {
  public:
-  Printer(CompareForm form, std::size_t sessions) : form_(form), sessions_(sessions) {}
+  Printer(study::CompareForm form, std::size_t sessions) : form_(form), sessions_(sessions) {}
 
-  void add(const CompareRow& row, const std::string& said) {
+  void add(const study::SessionRow& row, const std::string& said) {
     if (is_terminal_) std::fputs("\r\033[K", stderr);
     if (!row.is_interrupted()) std::fputs(said.c_str(), stderr);  // else it says only that, as say_end() will
-    print_now(format_compare_row(form_, row, count_ == 0));
+    print_now(study::format_compare_row(form_, row, count_ == 0));
     ++count_;
     if (is_terminal_ && count_ < sessions_) std::fprintf(stderr, "%zu of %zu sessions", count_, sessions_);
     std::fflush(stderr);
   }
 
  private:
-  CompareForm form_;
+  study::CompareForm form_;
   std::size_t sessions_, count_ = 0;
   bool is_terminal_ = isatty(STDERR_FILENO) != 0;
 };
 
 /// The report page of a session's recording, beside it; nothing where nothing was sent, and so nothing recorded.
-std::string make_report(const std::string& recording, const CompareRow& row) {
-  if (row.items_sent == 0 || !std::filesystem::exists(recording)) return {};
+std::string make_report(const study::SessionRow& row) {
+  const std::string& recording = row.point.recording;
+  if (recording.empty() || row.items_sent == 0 || !std::filesystem::exists(recording)) return {};
   ReportOptions report;
   report.recordings = {recording};
   report.output = std::filesystem::path(recording).replace_extension(".html").string();
@@ -127,8 +127,8 @@ std::string make_report(const std::string& recording, const CompareRow& row) {
 }
 
 /// What went wrong, on standard error; the exit code.
-int say_end(const std::vector<CompareRow>& rows, std::size_t sessions, std::uint64_t left_out) {
-  const auto failed = std::ranges::count_if(rows, [](const CompareRow& row) { return !row.failure.empty(); });
+int say_end(const std::vector<study::SessionRow>& rows, std::size_t sessions, std::uint64_t left_out) {
+  const auto failed = std::ranges::count_if(rows, [](const study::SessionRow& row) { return !row.failure.empty(); });
   if (is_interrupted()) std::fprintf(stderr, "snug: interrupted after %zu of %zu sessions\n", rows.size(), sessions);
   if (failed > 0) {
     std::fprintf(stderr, "snug: failed: %d of %zu sessions did not reach their end\n", static_cast<int>(failed),
@@ -141,32 +141,67 @@ int say_end(const std::vector<CompareRow>& rows, std::size_t sessions, std::uint
   return failed == 0 && left_out == 0 && !is_interrupted() ? kSuccess : kRunFailed;
 }
 
+/// In a process of its own: one session, its recording, its row as JSON. The exit code of `snug pack`.
+int run_session(const CompareOptions& options, const SourcedScenario& loaded, const study::SessionPoint& point,
+                int threads) {
+  PackOptions pack = options.pack;
+  pack.agent = point.agent;
+  pack.sequence = point.sequence;
+  pack.plant_seed = point.plant_seed;
+  pack.threads = threads;
+  const session::SessionOptions session = make_session_options(pack, loaded, point.sequence);
+  const simulated_plant::SimulatedPlantOptions plant = make_plant_options(pack, session);
+  std::optional<OutputFile> recording;
+  study::TrialFiles files;
+  if (!point.recording.empty()) {
+    recording = reserve_recording(point.recording);
+    files.recording = recording_of(plant, session.agent, *recording);
+    files.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
+  }
+  const study::Trial trial = study::run_trial(loaded.scenario, point.sequence, session, plant, {}, files);
+  print(study::format_row(study::make_row(trial, point)));
+  if (!trial.session.failure.text.empty())
+    std::fprintf(stderr, "snug: failed: %s\n", trial.session.failure.text.c_str());
+  const bool is_whole = trial.session.stop_reason != session::StopReason::Interrupted;
+  return flush_stdout() && trial.session.failure.text.empty() && is_whole ? kSuccess : kRunFailed;
+}
+
+study::CompareForm form_of(const CompareOptions& options) {
+  if (options.json) return study::CompareForm::Json;
+  return options.csv ? study::CompareForm::Csv : study::CompareForm::Table;
+}
+
+/// The folder of --dir, its files among those that no output may be.
+std::optional<study::Folder> open_folder(const CompareOptions& options, const study::Study& study, NamedFiles& inputs) {
+  if (!options.dir) return std::nullopt;
+  std::optional<study::Folder> folder(std::in_place, study, *options.dir, true);
+  for (const std::filesystem::path& file : folder->files()) inputs.push_back({"a file of --dir", file});
+  return folder;
+}
+
 }  // namespace
 
 int run_compare(const CompareOptions& options) {
-  model::Scenario scenario = load_changed(options.pack.scenario, options.pack.changes);
+  SourcedScenario loaded = load_with_sources(options.pack.scenario, options.pack.changes);
+  model::Scenario& scenario = loaded.scenario;
   const std::vector<std::string> sequences = choose_sequences(options, scenario);
   const std::vector<std::string> agents = choose(options.agents, packing::agent_names(), "--agents", true);
-  const std::vector<SessionPoint> points = list_sessions(options, agents, sequences);
+  const std::vector<study::SessionPoint> points = list_sessions(options, agents, sequences);
   const std::uint64_t seed = options.pack.seed.value_or(scenario.seed);
   const study::Study study = make_compare_study(options, seed, points);
-  const CompareForm form = options.json ? CompareForm::Json : options.csv ? CompareForm::Csv : CompareForm::Table;
   check_words(options.pack, agents);
   NamedFiles inputs = files_of(options.pack.scenario, options.pack.changes, scenario);
   expect_distinct(inputs, options.page ? NamedFiles{{"-o", *options.page}} : NamedFiles{});  // before a folder is made
-  std::optional<study::Folder> folder;
-  if (options.dir) folder.emplace(study, *options.dir, true);
-  if (folder) {
-    for (const std::filesystem::path& file : folder->files()) inputs.push_back({"a file of --dir", file});
-  }
+  const std::optional<study::Folder> folder = open_folder(options, study, inputs);
   std::optional<OutputFile> page = reserve(inputs, options.page);
   if (options.runs) make_folder("--runs", *options.runs);
   catch_interrupts();
   std::fprintf(stderr, "snug: %zu sessions: %zu agents, %zu sequences, %d plants\n", points.size(), agents.size(),
                sequences.size(), options.plants);
-  print_now(format_compare_head(form));
+  const study::CompareForm form = form_of(options);
+  print_now(study::format_compare_head(form));
 
-  std::vector<CompareSession> sessions;
+  std::vector<study::ComparedSession> sessions;
   Printer printer(form, points.size());
   study::RunSettings settings;
   const int threads = options.pack.threads.value_or(core_count());
@@ -175,24 +210,21 @@ int run_compare(const CompareOptions& options) {
   settings.tell = [&](const study::RowResult& result, const std::string& said) {
     if (result.exit_code == kBadInput)
       throw InputError(study.source, "row " + std::to_string(result.row), result.error, "a session that can be run");
-    sessions.push_back(read_session(scenario, study, points[result.row], seed, result));
-    printer.add(sessions.back().row, said);
-    if (options.runs) {
-      const std::string recording = recording_of(options, result.row, points[result.row]);
-      sessions.back().report = make_report(recording, sessions.back().row);
-    }
+    const study::SessionRow row = study::read_row(result, points[result.row], seed);
+    sessions.push_back({row, study::command_of(study, study::row_of(study, result.row)), {}});
+    printer.add(row, said);
+    sessions.back().report = make_report(row);
   };
-  const study::Verb pack = [each = threads / settings.processes](const std::vector<std::string>& words) {
-    return run_row(words, each);
+  const study::RowWork work = [&, each = threads / settings.processes](std::uint64_t row) {
+    return run_session(options, loaded, points[row], each);
   };
-  const study::RunSummary summary =
-      folder ? study::run_study(study, *folder, pack, settings) : study::run_study(study, pack, settings);
+  const study::RunSummary summary = study::run_rows(study, folder ? &*folder : nullptr, work, settings);
 
-  std::vector<CompareRow> rows;
-  for (const CompareSession& session : sessions) rows.push_back(session.row);
-  if (page) write_file(std::move(*page), format_compare_page(scenario, sessions, *options.page));
+  std::vector<study::SessionRow> rows;
+  for (const study::ComparedSession& session : sessions) rows.push_back(session.row);
+  if (page) write_file(std::move(*page), study::format_compare_page(scenario, sessions, *options.page));
   const bool is_own_container = !options.pack.changes.container && !options.pack.changes.pallet;
-  print_now(format_compare_end(form, scenario, rows, is_own_container));
+  print_now(study::format_compare_end(form, scenario, rows, is_own_container));
   return say_end(rows, points.size(), summary.left_out);
 }
 

@@ -32,21 +32,6 @@
 namespace snug::app {
 namespace {
 
-/// What the recording says of how it was made.
-simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
-                                                   const std::string& agent, OutputFile& file) {
-  const std::string& robot = plant.simulation.robot;
-  simulated_plant::LiveRecordingOptions recording;
-  recording.file = &file;
-  recording.version = version_text();
-  recording.settings_json =
-      nlohmann::ordered_json{{"cup", "phases"},          {"controller", motion::name_of(plant.simulation.tracking)},
-                             {"corrections", "none"},    {"robot", robot.empty() ? "none" : robot},
-                             {"plant_seed", plant.seed}, {"agent", agent}}
-          .dump();
-  return recording;
-}
-
 /// The robot that moves the tool: what was asked for, or the scenario's, where its file is there.
 std::string choose_robot(const PackOptions& options, const model::Scenario& scenario) {
   if (options.robot) return *options.robot == "none" ? std::string() : *options.robot;
@@ -114,6 +99,20 @@ struct PackFiles {
 };
 
 }  // namespace
+
+simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
+                                                   const std::string& agent, OutputFile& file) {
+  const std::string& robot = plant.simulation.robot;
+  simulated_plant::LiveRecordingOptions recording;
+  recording.file = &file;
+  recording.version = version_text();
+  recording.settings_json =
+      nlohmann::ordered_json{{"cup", "phases"},          {"controller", motion::name_of(plant.simulation.tracking)},
+                             {"corrections", "none"},    {"robot", robot.empty() ? "none" : robot},
+                             {"plant_seed", plant.seed}, {"agent", agent}}
+          .dump();
+  return recording;
+}
 
 model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed) {
   if (model::find_sequence(scenario, name) != nullptr) {

@@ -8,10 +8,10 @@
 namespace snug::study {
 
 /// Bins that hold some motions.
-[[nodiscard]] inline nlohmann::ordered_json calibration_json(const study::Calibration& calibration) {
+[[nodiscard]] inline nlohmann::ordered_json calibration_json(const Calibration& calibration) {
   nlohmann::ordered_json bins = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < calibration.bins.size(); ++i) {
-    const study::CalibrationBin& bin = calibration.bins[i];
+    const CalibrationBin& bin = calibration.bins[i];
     if (bin.motions == 0) continue;
     bins.push_back({{"from_percent", 10 * i},
                     {"to_percent", 10 * (i + 1)},
@@ -24,8 +24,8 @@ namespace snug::study {
 }
 
 /// Of what calibration_json() wrote.
-[[nodiscard]] inline study::Calibration read_calibration(const nlohmann::ordered_json& bins) {
-  study::Calibration calibration;
+[[nodiscard]] inline Calibration read_calibration(const nlohmann::ordered_json& bins) {
+  Calibration calibration;
   for (const nlohmann::ordered_json& json : bins) {
     const int motions = json.at("motions").get<int>();
     calibration.bins.at(json.at("from_percent").get<std::size_t>() / 10) = {

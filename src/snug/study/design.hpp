@@ -75,6 +75,21 @@ inline constexpr std::uint64_t kMostRows = 10'000'000;
 [[nodiscard]] Study load_study(const std::filesystem::path& path);
 [[nodiscard]] Study parse_study(std::string_view text, const std::string& name);
 
+/// A study of listed points, as a program makes it.
+struct ListDesign {
+  std::string name, verb, scenario;
+  std::vector<std::pair<std::string, std::string>> options;  ///< that all rows have, with their values
+  std::vector<std::string> factors;                          ///< options of the verb
+  std::vector<std::vector<std::string>> points;              ///< a value for each factor
+  std::vector<Output> outputs;
+};
+/// The study, and as its text the file that parse_study() reads as the same one. Needs at least one point.
+[[nodiscard]] Study make_list_study(const ListDesign& design);
+
+/// Rows of a table where a study does not say: about a thousand tables at most, and not more rows in one than are lost
+/// with pleasure.
+[[nodiscard]] int default_chunk(std::uint64_t rows);
+
 struct Row {
   std::uint64_t index = 0, point = 0;
   int repeat = 0;

@@ -245,12 +245,6 @@ void read_outputs(const Reader& reader, const YAML::Node& root, Study& study) {
   }
 }
 
-/// About a thousand tables at most, and not more rows in one than are lost with pleasure.
-int default_chunk(std::uint64_t rows) {
-  return static_cast<int>(
-      std::clamp<std::uint64_t>((rows + 63) / 64, 1, std::max<std::uint64_t>(100, (rows + 999) / 1000)));
-}
-
 Study read(const Reader& reader, const YAML::Node& root) {
   reader.expect_keys(root, "study",
                      {"name", "verb", "scenario", "options", "design", "rows", "seed", "repeat", "seed_option",

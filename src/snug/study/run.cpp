@@ -53,7 +53,7 @@ struct Job {
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
 /// In the new process: never returns.
-[[noreturn]] void be_row(const Verb& verb, const std::vector<std::string>& words, int out, int error) {
+[[noreturn]] void be_row(const RowWork& work, std::uint64_t row, int out, int error) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a row whose caller is gone has nobody to tell
   ::setpgid(0, 0);                     // what a terminal sends goes to the caller, who passes it on
   const int nothing = ::open("/dev/null", O_RDONLY);
@@ -63,7 +63,10 @@ struct Job {
   ::close_range(3, ~0U, 0);  // tables, with their locks
   int code = 1;
   try {
-    code = verb(words);
+    code = work(row);
+  } catch (const InputError& problem) {
+    std::fprintf(stderr, "snug: error: %s\n", problem.what());
+    code = 2;
   } catch (const std::exception& problem) {
     std::fprintf(stderr, "%s\n", problem.what());
   }
@@ -72,7 +75,7 @@ struct Job {
   ::_exit(code);
 }
 
-void begin(const Verb& verb, const std::vector<std::string>& words, Job& job) {
+void begin(const RowWork& work, Job& job) {
   int out[2], error[2];
   if (::pipe2(out, O_CLOEXEC) != 0) fail("pipe");
   if (::pipe2(error, O_CLOEXEC) != 0) fail("pipe");
@@ -84,7 +87,7 @@ void begin(const Verb& verb, const std::vector<std::string>& words, Job& job) {
   job.start = Clock::now();
   job.process = ::fork();
   if (job.process < 0) fail("fork");
-  if (job.process == 0) be_row(verb, words, out[1], error[1]);
+  if (job.process == 0) be_row(work, job.row, out[1], error[1]);
   ::close(out[1]);
   ::close(error[1]);
   job.out = out[0];
@@ -125,8 +128,8 @@ std::string last_words(const std::string& words) {
 class Runner {
  public:
   /// `folder`: or null, no tables.
-  Runner(const Study& study, const Folder* folder, const Verb& verb, const RunSettings& settings)
-      : study_(study), folder_(folder), verb_(verb), settings_(settings) {}
+  Runner(const Study& study, const Folder* folder, const RowWork& work, const RunSettings& settings)
+      : study_(study), folder_(folder), work_(work), settings_(settings) {}
 
   RunSummary run() {
     end_ = std::min(study_.chunks(), settings_.last_chunk == UINT64_MAX ? study_.chunks() : settings_.last_chunk + 1);
@@ -156,9 +159,7 @@ class Runner {
     }
     Job job = std::move(waiting_.front());
     waiting_.pop_front();
-    std::vector<std::string> words = words_of(study_, row_of(study_, job.row));
-    words.emplace_back("--json");
-    begin(verb_, words, job);
+    begin(work_, job);
     jobs_.push_back(std::move(job));
     return true;
   }
@@ -296,7 +297,7 @@ class Runner {
 
   const Study& study_;
   const Folder* const folder_;
-  const Verb& verb_;
+  const RowWork& work_;
   const RunSettings& settings_;
   std::uint64_t next_chunk_ = 0, end_ = 0, wanted_ = 0, next_told_ = 0;
   bool is_stopped_ = false;
@@ -308,12 +309,28 @@ class Runner {
 
 }  // namespace
 
+RunSummary run_rows(const Study& study, const Folder* folder, const RowWork& work, const RunSettings& settings) {
+  return Runner(study, folder, work, settings).run();
+}
+
+namespace {
+
+RowWork work_of(const Study& study, const Verb& verb) {
+  return [&study, &verb](std::uint64_t row) {
+    std::vector<std::string> words = words_of(study, row_of(study, row));
+    words.emplace_back("--json");
+    return verb(words);
+  };
+}
+
+}  // namespace
+
 RunSummary run_study(const Study& study, const Folder& folder, const Verb& verb, const RunSettings& settings) {
-  return Runner(study, &folder, verb, settings).run();
+  return run_rows(study, &folder, work_of(study, verb), settings);
 }
 
 RunSummary run_study(const Study& study, const Verb& verb, const RunSettings& settings) {
-  return Runner(study, nullptr, verb, settings).run();
+  return run_rows(study, nullptr, work_of(study, verb), settings);
 }
 
 }  // namespace snug::study

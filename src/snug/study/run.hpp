@@ -14,6 +14,10 @@ namespace snug::study {
 /// process of its own that ends afterwards: what it breaks, leaks or aborts is the row's alone.
 using Verb = std::function<int(const std::vector<std::string>& words)>;
 
+/// The same of a row by its index: what does not come from words. It prints the row's JSON, and throws InputError for a
+/// row that cannot be run (exit code 2).
+using RowWork = std::function<int(std::uint64_t row)>;
+
 struct RunSettings {
   int processes = 1;  ///< rows at a time; tables do not depend on it, but for the order of their lines
   std::uint64_t first_chunk = 0;
@@ -44,5 +48,9 @@ struct RunSummary {
                                    const RunSettings& settings);
 /// The same without tables: every row is run and told.
 [[nodiscard]] RunSummary run_study(const Study& study, const Verb& verb, const RunSettings& settings);
+/// The same of rows that are done by `work`; the study says what they are and which outputs they have. `folder`: or
+/// null, no tables.
+[[nodiscard]] RunSummary run_rows(const Study& study, const Folder* folder, const RowWork& work,
+                                  const RunSettings& settings);
 
 }  // namespace snug::study

@@ -349,7 +349,7 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
   }
   study::Calibration calibration;
   calibration.add(trial);
-  json["calibration"] = calibration_json(calibration);
+  json["calibration"] = study::calibration_json(calibration);
   if (repeated.count > 0) json["monte_carlo"] = as_json(repeated);
   return json.dump(2) + "\n";
 }

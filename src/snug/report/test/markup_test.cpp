@@ -71,5 +71,33 @@ TEST(TableDeathTest, RefusesMoreCellsThanColumns) {
   EXPECT_DEATH((void)as_markup(Table{{{"a"}}, {{"1", "2"}}, {}}), "a cell for each column");
 }
 
+/// Files of C++ outside this module, without tests.
+std::vector<std::filesystem::path> other_sources() {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> files;
+  const fs::path root = SNUG_SOURCE_DIR;
+  for (const fs::path& folder : {root / "src", root / "apps", root / "python" / "src"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string path = entry.path().generic_string();
+      const bool is_source = path.ends_with(".cpp") || path.ends_with(".hpp");
+      const bool is_other = path.find("/snug/report/") == std::string::npos && path.find("/test/") == std::string::npos;
+      if (is_source && is_other) files.push_back(entry.path());
+    }
+  }
+  return files;
+}
+
+TEST(Markup, IsWrittenByThisModuleAlone) {
+  const std::regex tag(
+      "\"[^\"\n]*</?(a|b|p|br|td|th|tr|table|div|span|h[1-6]|pre|code|html|head|svg|circle|polygon|figure|small)[ >/]");
+  const std::vector<std::filesystem::path> files = other_sources();
+  ASSERT_GT(files.size(), 500u);
+  for (const std::filesystem::path& file : files) {
+    const std::string text = read_file(file, "a source");
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(text, found, tag)) << file << ": " << found.str();
+  }
+}
+
 }  // namespace
 }  // namespace snug::report

@@ -1,6 +1,4 @@
 // The rows of a comparison as text: tables for people, JSON and CSV for programs; each row as soon as it is known.
-#include "apps/snug/compare/compare_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,69 +8,25 @@
 
 #include "snug/core/csv_cell.hpp"
 #include "snug/model/reported_agent.hpp"
-#include "snug/session/session.hpp"
 #include "snug/study/calibration_json.hpp"
+#include "snug/study/comparison.hpp"
 
-namespace snug::app {
+namespace snug::study {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Over the rows of one agent.
-struct Summary {
-  int count = 0, sent = 0, as_planned = 0, lost = 0, recoveries = 0;
-  double planned = 0.0, executed = 0.0, deviation = 0.0, lowest = 0.0, highest = 0.0, before_skips = 0.0;
-  double seconds = 0.0;                                             ///< mean of the medians
-  double boxes_per_hour = 0.0, boxes_per_hour_with_planning = 0.0;  ///< means
-  study::Calibration calibration;
-};
-
-Summary summarize(const std::vector<CompareRow>& rows, const std::string& agent, const std::string& sequence = {}) {
-  Summary all;
-  double square = 0.0;
-  for (const CompareRow& row : rows) {
-    if (row.agent != agent || (!sequence.empty() && row.sequence != sequence)) continue;
-    all.lowest = all.count == 0 ? row.executed_percent : std::min(all.lowest, row.executed_percent);
-    all.highest = std::max(all.highest, row.executed_percent);
-    ++all.count;
-    all.sent += row.items_sent;
-    all.as_planned += row.items_as_planned;
-    all.lost += row.boxes_lost;
-    all.recoveries += row.recoveries;
-    all.planned += row.planned_percent;
-    all.executed += row.executed_percent;
-    all.before_skips += row.percent_before_skips;
-    square += row.executed_percent * row.executed_percent;
-    all.seconds += row.decision_seconds_median;
-    all.boxes_per_hour += row.boxes_per_hour;
-    all.boxes_per_hour_with_planning += row.boxes_per_hour_with_planning;
-    all.calibration.add(row.calibration);
-  }
-  if (all.count == 0) return all;
-  const double count = all.count;
-  all.planned /= count;
-  all.executed /= count;
-  all.before_skips /= count;
-  all.seconds /= count;
-  all.boxes_per_hour /= count;
-  all.boxes_per_hour_with_planning /= count;
-  // Of the sample: divided by one less than there are.
-  if (all.count > 1)
-    all.deviation = std::sqrt(std::max(0.0, (square - count * all.executed * all.executed) / (count - 1.0)));
-  return all;
-}
-
 template <class Get>
-std::vector<std::string> distinct(const std::vector<CompareRow>& rows, const Get& get) {
+std::vector<std::string> distinct(const std::vector<SessionRow>& rows, const Get& get) {
   std::vector<std::string> words;
-  for (const CompareRow& row : rows) {
+  for (const SessionRow& row : rows) {
     if (std::ranges::find(words, get(row)) == words.end()) words.push_back(get(row));
   }
   return words;
 }
 
 /// Of those that were sent, in percent.
-std::string share_of(const Summary& all) {
+std::string percent_as_planned(const AgentSummary& all) {
   return all.sent > 0 ? fmt::format("{:.2f} %", 100.0 * all.as_planned / all.sent) : std::string("-");
 }
 
@@ -119,17 +73,17 @@ std::string reporter_line(const model::Scenario& scenario, const std::vector<std
 constexpr const char* kRow =
     "{:<14} {:<10} {:>6} {:>6}  {:>4} {:>7}  {:>4} {:>7}  {:>5} {:>10} {:>5} {:>10}  {:>7} {:>9}  {:>7}  {}\n";
 
-std::string summary_line(const std::string& label, const Summary& all) {
+std::string summary_line(const std::string& label, const AgentSummary& all) {
   return fmt::format("{:<25} {:4}  {:7.2f} {:7.2f} {:7.2f} - {:5.2f}  {:5} {:>11} {:5} {:10}  {:7.0f} {:9.0f}\n", label,
-                     all.count, all.executed, all.deviation, all.lowest, all.highest, all.sent, share_of(all), all.lost,
-                     all.recoveries, all.boxes_per_hour, all.boxes_per_hour_with_planning);
+                     all.count, all.executed, all.deviation, all.lowest, all.highest, all.sent, percent_as_planned(all),
+                     all.lost, all.recoveries, all.boxes_per_hour, all.boxes_per_hour_with_planning);
 }
 
 /// Predicted success beside what happened.
-std::string calibration_lines(const std::string& agent, const study::Calibration& calibration) {
+std::string calibration_lines(const std::string& agent, const Calibration& calibration) {
   std::string text;
   for (std::size_t i = 0; i < calibration.bins.size(); ++i) {
-    const study::CalibrationBin& bin = calibration.bins[i];
+    const CalibrationBin& bin = calibration.bins[i];
     if (bin.motions == 0) continue;
     text += fmt::format("{:<25} {:3} - {:3} %  {:7} {:10.1f} % {:9.1f} %\n", agent, 10 * i, 10 * (i + 1), bin.motions,
                         100.0 * bin.predicted / bin.motions, 100.0 * bin.succeeded / bin.motions);
@@ -138,14 +92,14 @@ std::string calibration_lines(const std::string& agent, const study::Calibration
 }
 
 /// `rows`: those that count; `interrupted`: how many do not.
-std::string format_table_end(const model::Scenario& scenario, const std::vector<CompareRow>& rows,
+std::string format_table_end(const model::Scenario& scenario, const std::vector<SessionRow>& rows,
                              std::size_t interrupted, bool with_references) {
   std::string text =
       "\nexecuted filling, %        runs     mean      sd           range   sent as planned  lost recoveries  "
       "boxes/h  with plan\n";
-  const std::vector<std::string> sequences = distinct(rows, [](const CompareRow& row) { return row.sequence; });
-  for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
-    const Summary all = summarize(rows, agent);
+  const std::vector<std::string> sequences = distinct(rows, [](const SessionRow& row) { return row.point.sequence; });
+  for (const std::string& agent : distinct(rows, [](const SessionRow& row) { return row.point.agent; })) {
+    const AgentSummary all = summarize(rows, agent);
     const bool has_spread = all.count > static_cast<int>(sequences.size());
     if (has_spread && sequences.size() > 1 && sequences.size() <= 12) {
       for (const std::string& sequence : sequences) {
@@ -159,7 +113,7 @@ std::string format_table_end(const model::Scenario& scenario, const std::vector<
   }
   if (interrupted > 0) text += fmt::format("not counted: {} that were interrupted\n", interrupted);
   std::string lines;
-  for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
+  for (const std::string& agent : distinct(rows, [](const SessionRow& row) { return row.point.agent; })) {
     lines += calibration_lines(agent, summarize(rows, agent).calibration);
   }
   if (!lines.empty()) text += "\nsuccess of motions         predicted  motions   predicted   observed\n" + lines;
@@ -175,9 +129,9 @@ std::string format_table_end(const model::Scenario& scenario, const std::vector<
   return text;
 }
 
-Json as_json(const CompareRow& row) {
-  return {{"agent", row.agent},
-          {"sequence", row.sequence},
+Json as_json(const SessionRow& row) {
+  return {{"agent", row.point.agent},
+          {"sequence", row.point.sequence},
           {"planned_boxes", row.planned_boxes},
           {"planned_percent", row.planned_percent},
           {"executed_boxes", row.executed_boxes},
@@ -185,23 +139,23 @@ Json as_json(const CompareRow& row) {
           {"percent_before_skips", row.percent_before_skips},
           {"decision_seconds_median", row.decision_seconds_median},
           {"seed", row.seed},
-          {"plant_seed", row.plant_seed},
+          {"plant_seed", row.point.plant_seed},
           {"items_sent", row.items_sent},
           {"items_as_planned", row.items_as_planned},
           {"boxes_lost", row.boxes_lost},
           {"recoveries", row.recoveries},
           {"boxes_per_hour", row.boxes_per_hour},
           {"boxes_per_hour_with_planning", row.boxes_per_hour_with_planning},
-          {"stop_reason", row.stop_reason},
+          {"stop_reason", row.stop_name()},
           {"failure", row.failure}};
 }
 
-std::string format_json_end(const std::vector<CompareRow>& rows, std::size_t interrupted) {
+std::string format_json_end(const std::vector<SessionRow>& rows, std::size_t interrupted) {
   Json means = Json::array();
-  for (const std::string& agent : distinct(rows, [](const CompareRow& row) { return row.agent; })) {
-    const Summary all = summarize(rows, agent);
+  for (const std::string& agent : distinct(rows, [](const SessionRow& row) { return row.point.agent; })) {
+    const AgentSummary all = summarize(rows, agent);
     means.push_back({{"agent", agent},
-                     {"sequences", distinct(rows, [](const CompareRow& row) { return row.sequence; }).size()},
+                     {"sequences", distinct(rows, [](const SessionRow& row) { return row.point.sequence; }).size()},
                      {"runs", all.count},
                      {"planned_percent", all.planned},
                      {"executed_percent", all.executed},
@@ -215,15 +169,13 @@ std::string format_json_end(const std::vector<CompareRow>& rows, std::size_t int
                      {"recoveries", all.recoveries},
                      {"boxes_per_hour", all.boxes_per_hour},
                      {"boxes_per_hour_with_planning", all.boxes_per_hour_with_planning},
-                     {"decision_seconds_median", all.seconds},
+                     {"decision_seconds_median", all.decision_seconds},
                      {"calibration", calibration_json(all.calibration)}});
   }
   return fmt::format("\n],\n\"interrupted\": {},\n\"means\": {}}}\n", interrupted, means.dump(2));
 }
 
 }  // namespace
-
-bool CompareRow::is_interrupted() const { return stop_reason == session::name_of(session::StopReason::Interrupted); }
 
 std::string format_compare_head(CompareForm form) {
   if (form == CompareForm::Json) return "{\"rows\": [";
@@ -236,31 +188,31 @@ std::string format_compare_head(CompareForm form) {
                      "as planned", "lost", "recoveries", "boxes/h", "with plan", "dec., s", "stopped");
 }
 
-std::string format_compare_row(CompareForm form, const CompareRow& row, bool is_first) {
+std::string format_compare_row(CompareForm form, const SessionRow& row, bool is_first) {
   if (form == CompareForm::Json) return (is_first ? "\n" : ",\n") + as_json(row).dump();
   if (form == CompareForm::Csv) {
     return fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{},{},{:.4f},{},{:.1f},{},{:.1f}\n",
-                       csv_cell(row.agent), csv_cell(row.sequence), row.planned_boxes, row.planned_percent,
-                       row.executed_boxes, row.executed_percent, row.decision_seconds_median, row.seed, row.plant_seed,
-                       row.items_sent, row.items_as_planned, row.boxes_lost, row.recoveries, row.percent_before_skips,
-                       csv_cell(row.stop_reason), row.boxes_per_hour, csv_cell(row.failure),
+                       csv_cell(row.point.agent), csv_cell(row.point.sequence), row.planned_boxes, row.planned_percent,
+                       row.executed_boxes, row.executed_percent, row.decision_seconds_median, row.seed,
+                       row.point.plant_seed, row.items_sent, row.items_as_planned, row.boxes_lost, row.recoveries,
+                       row.percent_before_skips, csv_cell(row.stop_name()), row.boxes_per_hour, csv_cell(row.failure),
                        row.boxes_per_hour_with_planning);
   }
-  return fmt::format(fmt::runtime(kRow), row.agent, row.sequence, row.seed, row.plant_seed, row.planned_boxes,
-                     fmt::format("{:.2f}", row.planned_percent), row.executed_boxes,
+  return fmt::format(fmt::runtime(kRow), row.point.agent, row.point.sequence, row.seed, row.point.plant_seed,
+                     row.planned_boxes, fmt::format("{:.2f}", row.planned_percent), row.executed_boxes,
                      fmt::format("{:.2f}", row.executed_percent), row.items_sent, row.items_as_planned, row.boxes_lost,
                      row.recoveries, fmt::format("{:.0f}", row.boxes_per_hour),
                      fmt::format("{:.0f}", row.boxes_per_hour_with_planning),
-                     fmt::format("{:.2f}", row.decision_seconds_median), row.stop_reason);
+                     fmt::format("{:.2f}", row.decision_seconds_median), row.stop_name());
 }
 
-std::string format_compare_end(CompareForm form, const model::Scenario& scenario, const std::vector<CompareRow>& rows,
+std::string format_compare_end(CompareForm form, const model::Scenario& scenario, const std::vector<SessionRow>& rows,
                                bool with_references) {
-  std::vector<CompareRow> whole;
-  std::ranges::copy_if(rows, std::back_inserter(whole), [](const CompareRow& row) { return !row.is_interrupted(); });
+  std::vector<SessionRow> whole;
+  std::ranges::copy_if(rows, std::back_inserter(whole), [](const SessionRow& row) { return !row.is_interrupted(); });
   const std::size_t interrupted = rows.size() - whole.size();
   if (form == CompareForm::Json) return format_json_end(whole, interrupted);
   return form == CompareForm::Csv ? std::string() : format_table_end(scenario, whole, interrupted, with_references);
 }
 
-}  // namespace snug::app
+}  // namespace snug::study
