@@ -9,16 +9,6 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr double kInset = 0.04;  // part of an edge's length at either end that is left out
-constexpr int kLeastLines = 8;
-constexpr double kLeastPart = 0.35;          // of the lines across an edge on which its end has to be seen
-constexpr int kWindow = 3;                   // samples, around an edge once it is known roughly
-constexpr double kOffsetError = 0.12;        // samples, of what all lines of an edge have in common
-constexpr double kDriftError = 0.2;          // px, of the drift that a fit finds
-constexpr int kWidestShadow = 40;            // px, of no points, beyond which it is looked for what casts it
-constexpr int kLeastPixelsOfNextFace = 200;  // behind a ridge
-constexpr double kRidgeError = 0.3;          // of how far points count as a face's own behind a ridge
-
 enum class Kind : std::uint8_t { Outside, On, Before, Behind, None };  // None: no point
 
 struct Sample {
@@ -40,26 +30,27 @@ struct Edge {
   /// Behind a ridge the box's next face is seen: how much more it looks away from the camera than this one, as the
   /// tangent; 0: no ridge, what is seen behind the edge lies deeper.
   double ridge = 0.0;
+  int body = -1;  // of the prediction
 };
 
 /// One edge as the frame shows it.
 class EdgeSearch {
  public:
-  EdgeSearch(const camera::Frame& frame, const Edge& edge, double tolerance, int reach, const Prediction& prediction,
-             bool ignores_neighbours, int body)
-      : frame_(frame),
+  EdgeSearch(const FitContext& context, const Edge& edge, double tolerance, const FitStep& step,
+             const Prediction& prediction)
+      : frame_(context.frame),
+        s_(context.settings.edges),
         edge_(edge),
         offset_(edge.n.dot(edge.middle)),
         tolerance_(tolerance),
-        reach_(reach),
+        reach_(step.reach),
         prediction_(prediction),
-        ignores_neighbours_(ignores_neighbours),
-        body_(body) {}
+        ignores_neighbours_(step.ignores_neighbours) {}
 
   /// False when the edge is not in the picture, or across the lines of pixels.
   bool gather() {
-    const Vector3 a = edge_.middle - (0.5 - kInset) * edge_.length * edge_.along;
-    const Vector3 b = edge_.middle + (0.5 - kInset) * edge_.length * edge_.along;
+    const Vector3 a = edge_.middle - (0.5 - s_.inset) * edge_.length * edge_.along;
+    const Vector3 b = edge_.middle + (0.5 - s_.inset) * edge_.length * edge_.along;
     if (!(a.z() > 0.05 && b.z() > 0.05)) return false;
     const Eigen::Vector2d pa = camera::project(frame_.camera.intrinsics, a),
                           pb = camera::project(frame_.camera.intrinsics, b);
@@ -69,7 +60,7 @@ class EdgeSearch {
     const int major = is_steep_ ? 1 : 0, minor = 1 - major;
     const int sign = out(minor) >= 0.0 ? 1 : -1;
     const double span = pb(major) - pa(major);
-    if (std::abs(span) < kLeastLines) return false;
+    if (std::abs(span) < s_.least_lines) return false;
     drift_ = std::abs(pb(minor) - pa(minor));
     const int from = static_cast<int>(std::ceil(std::min(pa(major), pb(major))));
     const int to = static_cast<int>(std::floor(std::max(pa(major), pb(major))));
@@ -81,14 +72,14 @@ class EdgeSearch {
       line.is_covered = is_covered(k, middle, sign);
       line.beyond = line.samples.back().kind;
       Line ignored;
-      for (int d = reach_ + 1; d <= reach_ + kWidestShadow && line.beyond == Kind::None; ++d)
+      for (int d = reach_ + 1; d <= reach_ + s_.widest_shadow && line.beyond == Kind::None; ++d)
         line.beyond = sample(k, middle + sign * d, ignored).kind;
       lines_.push_back(std::move(line));
     }
     const Vector3& p_CL = frame_.camera.p_CL;
     is_lit_from_outside_ = p_CL != Vector3::Zero() && edge_.outward.dot(p_CL - edge_.middle) > 0.0;
     spacing_ = mean_spacing();
-    return static_cast<int>(lines_.size()) >= kLeastLines && spacing_ > 0.2 * pixel();
+    return static_cast<int>(lines_.size()) >= s_.least_lines && spacing_ > 0.2 * pixel();
   }
 
   /// Where most lines agree that the face ends: the offset that leaves the fewest points of the face outside and the
@@ -137,16 +128,16 @@ class EdgeSearch {
       for (const Sample& sample : line.samples) {
         const double d = (sample.s - rough) / step;  // samples
         if (sample.kind == Kind::Outside) continue;
-        if (d > -kWindow - 2.5 && d < kWindow + 1.5 && sample.kind == Kind::Before) is_blocked = true;
-        if (d >= -kWindow - 2.5 && d < -kWindow && sample.kind != Kind::On) ++inner_off;
-        if (d < -kWindow || d >= kWindow) continue;
+        if (d > -s_.window - 2.5 && d < s_.window + 1.5 && sample.kind == Kind::Before) is_blocked = true;
+        if (d >= -s_.window - 2.5 && d < -s_.window && sample.kind != Kind::On) ++inner_off;
+        if (d < -s_.window || d >= s_.window) continue;
         first = std::min(first, sample.s);
         ++inside;
         on += sample.kind == Kind::On ? 1 : 0;
-        outer_on += sample.kind == Kind::On && d > kWindow - 1.5 ? 1 : 0;
+        outer_on += sample.kind == Kind::On && d > s_.window - 1.5 ? 1 : 0;
       }
-      if (is_blocked || ends_in_shadow(line, rough + (kWindow - 1) * step) || outer_on > 0 || inner_off > 1 ||
-          inside < 2 * kWindow - 1)
+      if (is_blocked || ends_in_shadow(line, rough + (s_.window - 1) * step) || outer_on > 0 || inner_off > 1 ||
+          inside < 2 * s_.window - 1)
         continue;
       for (const Sample& sample : line.samples) {
         const double d = (sample.s - rough) / step;
@@ -157,7 +148,7 @@ class EdgeSearch {
       ends.emplace_back(line.t, first + (on - 0.5) * step);
     }
     if (static_cast<double>(ends.size()) <
-        std::max<double>(kLeastLines, kLeastPart * static_cast<double>(lines_.size())))
+        std::max<double>(s_.least_lines, s_.least_part * static_cast<double>(lines_.size())))
       return std::nullopt;
     return straight_line(ends, drops > steps / 2);
   }
@@ -208,7 +199,7 @@ class EdgeSearch {
     const std::int32_t s = prediction_.cast.surface(r, c);
     if (s < 0) return false;
     const int body = prediction_.cast.surfaces[static_cast<std::size_t>(s)].body;
-    return body >= prediction_.first_box && body != body_;
+    return body >= prediction_.first_box && body != edge_.body;
   }
 
   /// Whether the face is predicted to end, near its edge, where something before it begins.
@@ -219,7 +210,7 @@ class EdgeSearch {
       const int r = row - prediction_.range.first_row, c = col - prediction_.range.first_col;
       if (!prediction_.cast.surface.is_inside(r, c)) return false;
       const std::int32_t s = prediction_.cast.surface(r, c);
-      const bool is_own = s >= 0 && prediction_.cast.surfaces[static_cast<std::size_t>(s)].body == body_;
+      const bool is_own = s >= 0 && prediction_.cast.surfaces[static_cast<std::size_t>(s)].body == edge_.body;
       if (was_own && !is_own) {
         const double z = offset_ / edge_.n.dot(camera::pixel_ray(frame_.camera.intrinsics, col, row));
         return s >= 0 && z * prediction_.cast.inverse_depth(r, c) > 1.0;
@@ -238,7 +229,7 @@ class EdgeSearch {
   }
 
   /// Through the ends by least squares, twice: those beyond three standard deviations are left out the second time.
-  [[nodiscard]] static std::optional<Found> straight_line(const std::vector<Eigen::Vector2d>& ends, bool is_drop) {
+  [[nodiscard]] std::optional<Found> straight_line(const std::vector<Eigen::Vector2d>& ends, bool is_drop) const {
     Found found;
     found.is_drop = is_drop;
     double limit = 1e9;
@@ -254,7 +245,7 @@ class EdgeSearch {
         ts += end.x() * end.y();
       }
       const double determinant = n * tt - t * t;
-      if (n < kLeastLines || !(determinant > 0.0)) return std::nullopt;
+      if (n < s_.least_lines || !(determinant > 0.0)) return std::nullopt;
       found.slope = (n * ts - t * s) / determinant;
       found.offset = (s - found.slope * t) / n;
       found.lines = n;
@@ -270,12 +261,12 @@ class EdgeSearch {
   }
 
   const camera::Frame& frame_;
+  const EdgeSettings& s_;
   Edge edge_;
   double offset_, tolerance_;
   int reach_;
   const Prediction& prediction_;
   bool ignores_neighbours_;
-  int body_;
   bool is_steep_ = false;
   bool is_lit_from_outside_ = false;  // shadows fall inward: what is before the face behind its edge casts them on it
   double drift_ = 0.0;                // px, by which the edge crosses the grid of pixels
@@ -294,22 +285,23 @@ Rows make_rows(const Edge& edge, const Vector3& middle_of_box, double offset, do
   return rows;
 }
 
-std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, const Edge& edge,
-                            const ErrorModel& errors, const FeatureSettings& settings, const Prediction& prediction,
-                            int body, bool& is_coarse) {
+std::optional<Rows> measure(const FitContext& context, const TrackedBox& box, const Edge& edge, const FitStep& how,
+                            const Prediction& prediction, bool& is_coarse) {
+  const ErrorModel& errors = context.errors;
+  const EdgeSettings& settings = context.settings.edges;
   const double depth = edge.middle.z();
   const double tolerance = std::max(3.5 * errors.point_error(depth), 0.5e-3);
-  EdgeSearch search(frame, edge, tolerance, settings.reach, prediction, settings.ignores_neighbours, body);
+  EdgeSearch search(context, edge, tolerance, how, prediction);
   if (!search.gather()) return std::nullopt;
   const double rough = search.rough_offset(), step = search.spacing();
-  is_coarse = std::abs(rough) > (settings.reach - kWindow - 2) * step;
+  is_coarse = std::abs(rough) > (how.reach - settings.window - 2) * step;
   if (is_coarse) {
     // Too near the end of the band to be counted. At its very end all of the band is face, or none: the end lies
     // beyond.
-    const bool is_beyond = std::abs(rough) > (settings.reach - 1.5) * step;
+    const bool is_beyond = std::abs(rough) > (how.reach - 1.5) * step;
     Rows rows = make_rows(edge, box.X_CP.p, rough, 0.0);
     rows.count = 1;
-    rows.covariance = Matrix3::Identity() * std::pow((is_beyond ? 0.3 * settings.reach : 2.0) * step, 2);
+    rows.covariance = Matrix3::Identity() * std::pow((is_beyond ? 0.3 * how.reach : 2.0) * step, 2);
     return rows;
   }
   const auto found = search.refine(rough);
@@ -324,11 +316,11 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
   const double of_place = step * step * (1.0 / 12.0 + part_lost * (1.0 - part_lost) * std::pow(errors.edge_shift(), 2));
   const double drift = search.drift();
   const double alike = std::pow(std::max(0.0, 1.0 - drift), 2);  // of the mean over `drift` pixels
-  const double likely = std::hypot(drift, kDriftError);
+  const double likely = std::hypot(drift, settings.drift_error);
   const double tilting = likely < 1.0 ? likely * (1.2 - likely) : 0.2 / (likely * likely);
   const double of_lines = found->spread * found->spread / found->lines;
-  const double offset = of_place * alike + of_lines + std::pow(kOffsetError * step, 2) +
-                        std::pow(errors.length_error(0.5 * edge.width), 2) + std::pow(kRidgeError * beyond, 2);
+  const double offset = of_place * alike + of_lines + std::pow(settings.offset_error * step, 2) +
+                        std::pow(errors.length_error(0.5 * edge.width), 2) + std::pow(settings.ridge_error * beyond, 2);
   const double slope = (of_place * tilting + of_lines) / (found->length * found->length);
   rows.covariance = Vector3(offset, slope, 1.0).asDiagonal();
   return rows;
@@ -336,31 +328,32 @@ std::optional<Rows> measure(const camera::Frame& frame, const TrackedBox& box, c
 
 }  // namespace
 
-std::vector<EdgeFeature> find_edges(const camera::Frame& frame, const Prediction& prediction,
-                                    const std::vector<TrackedBox>& boxes, const ErrorModel& errors,
-                                    const FeatureSettings& settings) {
+std::vector<EdgeFeature> find_edges(const FitContext& context, const Prediction& prediction,
+                                    const std::vector<TrackedBox>& boxes, const FitStep& step) {
+  const EdgeSettings& settings = context.settings.edges;
   std::vector<int> seen(prediction.cast.surfaces.size(), 0);
   for (const std::int32_t s : prediction.cast.surface.values())
     if (s >= 0) ++seen[static_cast<std::size_t>(s)];
   const auto shows = [&](int body, int face) {
     for (std::size_t i = 0; i < seen.size(); ++i)
       if (prediction.cast.surfaces[i].body == body && prediction.cast.surfaces[i].face == face)
-        return seen[i] >= kLeastPixelsOfNextFace;
+        return seen[i] >= settings.least_pixels_of_face;
     return false;
   };
   std::vector<EdgeFeature> features;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const camera::Surface& surface = prediction.cast.surfaces[i];
-    if (surface.body < prediction.first_box + settings.first_box || seen[i] < 200) continue;
+    if (surface.body < prediction.first_box + step.first_box || seen[i] < settings.least_pixels_of_face) continue;
     const int index = surface.body - prediction.first_box;
     const TrackedBox& box = boxes[static_cast<std::size_t>(index)];
     const int axis = surface.face / 2;
     const double facing = std::abs(surface.offset) / (box.X_CP.p + box.half(axis) * surface.n_C).norm();
-    if (facing < 0.5) continue;  // seen too flat: its pixels are long
+    if (facing < settings.least_facing) continue;  // seen too flat: its pixels are long
     for (int k = 1; k <= 2; ++k)
       for (int side = 0; side < 2; ++side) {
         const int across = (axis + k) % 3, along = 3 - axis - across;
         Edge edge;
+        edge.body = surface.body;
         edge.n = surface.n_C;
         edge.outward = box.X_CP.R.col(across) * (side == 1 ? 1.0 : -1.0);
         edge.along = box.X_CP.R.col(along);
@@ -370,7 +363,7 @@ std::vector<EdgeFeature> find_edges(const camera::Frame& frame, const Prediction
         if (shows(surface.body, 2 * across + side))
           edge.ridge = std::max(0.0, edge.outward.dot(edge.middle) / edge.n.dot(edge.middle));
         EdgeFeature feature;
-        const auto rows = measure(frame, box, edge, errors, settings, prediction, surface.body, feature.is_coarse);
+        const auto rows = measure(context, box, edge, step, prediction, feature.is_coarse);
         if (!rows) continue;
         feature.box = index;
         feature.axis = across;

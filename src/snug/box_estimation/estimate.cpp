@@ -21,25 +21,6 @@ using internal::Place;
 using internal::Prediction;
 using internal::TrackedBox;
 
-constexpr int kLeastPointsOfBox = 150;      // on a box, to say that it was seen
-constexpr double kLeastPartOn = 0.6;        // of the points where a box should be, to fit it from where it was believed
-constexpr double kLeastPartOnAfter = 0.85;  // the same after the fit
-constexpr double kLeastOfPixels = 0.08;     // of the pixels where it should be seen
-constexpr double kMostSpread = 0.015;       // m: a pose less sure than this was not seen
-constexpr double kLeastVisible = 0.04;      // of what a box would show alone
-constexpr double kLeastFramePart = 0.5;     // of pixels with a point
-constexpr double kMostAbove = 0.5;          // of pixels with points above the region
-constexpr double kMostHighAbove = 0.25;     // the same where no box can lie: over kOverRim
-constexpr double kMostTolerance = 0.02;     // m, of a face from where it was believed to be
-constexpr double kLeastGone = 0.7;          // of a place: it is empty
-constexpr double kPartThatTells = 0.15;     // of what a box would show alone: seen to say that its place is empty
-constexpr double kTakenOverlap = 0.01;      // m, of solids: one of them is not there
-constexpr double kOverRim = 0.12;           // m: so high over the region boxes are looked for
-constexpr int kMostRounds = 4;              // of looking for lost boxes
-// A tracked box may be another one: seen through, sides not as long as its own, far from its belief.
-constexpr double kDoubtfulPartOn = 0.97, kDoubtfulMisfit = 3e-3, kDoubtfulDeviations = 4.0;
-constexpr double kDoubtfulOverlap = 6e-3;  // m: so deep in a box that was found
-
 TrackedBox make_tracked(const ExpectedBox& box, const Pose& X_CW) {
   TrackedBox tracked;
   tracked.half = 0.5 * box.size;
@@ -51,14 +32,17 @@ TrackedBox make_tracked(const ExpectedBox& box, const Pose& X_CW) {
 
 class Estimator {
  public:
-  Estimator(const camera::Frame& frame, const EstimateInput& input)
+  Estimator(const camera::Frame& frame, const EstimateInput& input, const EstimatorSettings& settings)
       : frame_(frame),
         input_(input),
+        settings_(settings),
+        s_(settings.tracking),
         X_CW_(frame.camera.X_WC.inverse()),
         errors_(frame.camera),
         surroundings_C_(internal::in_camera(input.surroundings, frame.camera.X_WC)),
-        range_(internal::pixel_range(frame.camera, input.region_low, input.region_high + Vector3(0.0, 0.0, kOverRim))),
-        tolerance_(std::max(6e-3, 4.0 * errors_.point_error(frame.camera.range.focus))) {}
+        range_(
+            internal::pixel_range(frame.camera, input.region_low, input.region_high + Vector3(0.0, 0.0, s_.over_rim))),
+        tolerance_(std::max(s_.least_tolerance, 4.0 * errors_.point_error(frame.camera.range.focus))) {}
 
   Estimate run() {
     Estimate result;
@@ -72,7 +56,7 @@ class Estimator {
     if (result.fault != FrameFault::None) return result;
     track();
     track_uncovered();
-    look_for_lost();
+    search_lost();
     drop_bad_fits();
     report(result);
     return result;
@@ -97,12 +81,12 @@ class Estimator {
         const Vector3 p_C = depth * camera::pixel_ray(frame_.camera.intrinsics, c, r);
         const double z = frame_.camera.X_WC.R.row(2).dot(p_C) + frame_.camera.X_WC.p.z();
         above += z > input_.region_high.z() ? 1 : 0;
-        high_above += z > input_.region_high.z() + kOverRim ? 1 : 0;
+        high_above += z > input_.region_high.z() + s_.over_rim ? 1 : 0;
       }
     const int pixels = range.rows() * range.cols();
     part = pixels > 0 ? static_cast<double>(points) / pixels : 0.0;
-    if (part < kLeastFramePart) return FrameFault::TooFewPoints;
-    const bool is_blocked = above > kMostAbove * pixels || high_above > kMostHighAbove * pixels;
+    if (part < s_.least_frame_part) return FrameFault::TooFewPoints;
+    const bool is_blocked = above > s_.most_above * pixels || high_above > s_.most_high_above * pixels;
     return is_blocked ? FrameFault::ViewBlocked : FrameFault::None;
   }
 
@@ -113,15 +97,15 @@ class Estimator {
   /// How far a face may be from where the belief has it, m.
   [[nodiscard]] double belief_tolerance(const ExpectedBox& box) const {
     const double spread = std::hypot(box.position_spread, 0.5 * box.rotation_spread * box.size.norm());
-    return std::min(kMostTolerance, 2.5 * spread) + tolerance_;
+    return std::min(s_.most_tolerance, 2.5 * spread) + tolerance_;
   }
 
   [[nodiscard]] std::vector<Agreement> compare(const std::vector<TrackedBox>& boxes) const {
     return internal::compare(frame_, predict(boxes), std::vector<double>(boxes.size(), fit_tolerance()));
   }
 
-  static bool agrees(const Agreement& a, double least_part_on) {
-    return a.on >= kLeastPointsOfBox && a.part_on() >= least_part_on && a.on >= kLeastOfPixels * a.pixels;
+  [[nodiscard]] bool agrees(const Agreement& a, double least_part_on) const {
+    return a.on >= s_.least_points && a.part_on() >= least_part_on && a.on >= s_.least_of_pixels * a.pixels;
   }
 
   /// Boxes that the frame shows about where they are believed to be.
@@ -135,8 +119,8 @@ class Estimator {
     const std::vector<Agreement> agreement = internal::compare(frame_, predict(all), tolerances);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Agreement& a = agreement[i];
-      was_in_view_.push_back(a.pixels >= kLeastPointsOfBox);
-      if (agrees(a, kLeastPartOn)) {
+      was_in_view_.push_back(a.pixels >= s_.least_points);
+      if (agrees(a, s_.least_part_on)) {
         tracked_.push_back(all[i]);
         ids_.push_back(i);
       } else {
@@ -151,7 +135,7 @@ class Estimator {
   void track_uncovered() {
     std::vector<std::size_t> uncovered;
     for (const std::size_t i : others_)
-      if (agrees(look_at_belief(i), kLeastPartOn)) uncovered.push_back(i);
+      if (agrees(perceive_belief(i), s_.least_part_on)) uncovered.push_back(i);
     if (uncovered.empty()) return;
     for (const std::size_t i : uncovered) add(i, make_tracked(input_.boxes[i], X_CW_));
     fit(FitStart::Belief, 6);
@@ -163,7 +147,7 @@ class Estimator {
   bool drop_seen_through() {
     std::vector<bool> is_solid;
     for (const Agreement& a : compare(tracked_))
-      is_solid.push_back(a.on + a.farther < kLeastPointsOfBox || a.part_on() >= kLeastPartOnAfter);
+      is_solid.push_back(a.on + a.farther < s_.least_points || a.part_on() >= s_.least_part_on_after);
     keep(is_solid);
     return tracked_.size() < is_solid.size();
   }
@@ -173,18 +157,20 @@ class Estimator {
     const std::size_t before = others_.size();
     drop_seen_through();
     std::vector<bool> is_good;
-    for (const Agreement& a : compare(tracked_)) is_good.push_back(agrees(a, kLeastPartOnAfter));
+    for (const Agreement& a : compare(tracked_)) is_good.push_back(agrees(a, s_.least_part_on_after));
     keep(is_good);
     return {others_.begin() + static_cast<std::ptrdiff_t>(before), others_.end()};
   }
 
   /// m, from a face after the fit.
   [[nodiscard]] double fit_tolerance() const {
-    return std::max(2.5e-3, 4.0 * errors_.point_error(frame_.camera.range.focus));
+    return std::max(s_.least_fit_tolerance, 4.0 * errors_.point_error(frame_.camera.range.focus));
   }
 
+  [[nodiscard]] internal::FitContext context() const { return {frame_, range_, surroundings_C_, errors_, settings_}; }
+
   void fit(internal::FitStart start, int steps) {
-    fit_ = internal::fit_boxes(frame_, range_, surroundings_C_, tracked_, errors_, start, steps);
+    fit_ = internal::fit_boxes(context(), tracked_, start, steps);
     tracked_ = fit_.boxes;
   }
 
@@ -205,7 +191,7 @@ class Estimator {
   }
 
   /// What is seen of the place where box i is believed to be, among the tracked ones.
-  [[nodiscard]] Agreement look_at_belief(std::size_t i) const {
+  [[nodiscard]] Agreement perceive_belief(std::size_t i) const {
     std::vector<TrackedBox> boxes = tracked_;
     boxes.push_back(make_tracked(input_.boxes[i], X_CW_));
     std::vector<double> tolerances(tracked_.size(), fit_tolerance());
@@ -214,23 +200,23 @@ class Estimator {
   }
 
   /// Boxes that are not where they were believed to be, and those that may be taken for others.
-  void look_for_lost() {
+  void search_lost() {
     std::vector<std::optional<TrackedBox>> tracked(input_.boxes.size());  // those that are doubted
     doubt(tracked);
-    for (int round = 0; round < kMostRounds && !others_.empty(); ++round) {
+    for (int round = 0; round < s_.most_rounds && !others_.empty(); ++round) {
       std::sort(others_.begin(), others_.end());
       std::vector<Lost> lost;
       std::vector<std::size_t> boxes;  // of the input
       for (const std::size_t i : others_) {
-        const Agreement a = look_at_belief(i);
+        const Agreement a = perceive_belief(i);
         const double gone = part_gone(i, a);
         // What was covered is where it was, as long as its place is not seen to be empty.
         if (!was_in_view_[i] && gone < 0.5) continue;
         lost.push_back(
-            {{0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP}, gone, a.on >= kLeastPointsOfBox, tracked[i]});
+            {{0.5 * input_.boxes[i].size, X_CW_ * input_.boxes[i].X_WP}, gone, a.on >= s_.least_points, tracked[i]});
         boxes.push_back(i);
       }
-      const internal::Known known{frame_, input_, range_, surroundings_C_, tracked_, errors_, fit_tolerance()};
+      const internal::Known known{context(), input_, tracked_, fit_tolerance()};
       const std::vector<Place> found = internal::relocate(known, lost);
       if (found.empty()) break;
       doubt_overlapped(found, tracked);
@@ -245,15 +231,15 @@ class Estimator {
   /// `a`: what is seen of its place.
   [[nodiscard]] double part_gone(std::size_t i, const Agreement& a) const {
     if (is_taken(i)) return 1.0;
-    const double least = kPartThatTells * pixels_alone(make_tracked(input_.boxes[i], X_CW_));
-    return a.farther / std::max({least, kLeastPointsOfBox * 1.0, a.on + a.nearer + a.farther * 1.0});
+    const double least = s_.part_that_tells * pixels_alone(make_tracked(input_.boxes[i], X_CW_));
+    return a.farther / std::max({least, s_.least_points * 1.0, a.on + a.nearer + a.farther * 1.0});
   }
 
   /// Whether a tracked box is where box i was believed to be.
   [[nodiscard]] bool is_taken(std::size_t i) const {
     const TrackedBox box = make_tracked(input_.boxes[i], X_CW_);
     return std::any_of(tracked_.begin(), tracked_.end(), [&](const TrackedBox& other) {
-      return internal::overlap(box, other) > kTakenOverlap + 2.5 * input_.boxes[i].position_spread;
+      return internal::overlap(box, other) > s_.taken_overlap + 2.5 * input_.boxes[i].position_spread;
     });
   }
 
@@ -266,9 +252,9 @@ class Estimator {
       const Vector3& misfit = fit_.size_misfit[i];
       const Pose X_WP = frame_.camera.X_WC * tracked_[i].X_CP;
       const bool has_its_size =
-          !(misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > kDoubtfulMisfit);
-      is_sure.push_back(agreement[i].part_on() >= kDoubtfulPartOn && has_its_size && !fit_.is_larger[i] &&
-                        (X_WP.p - box.X_WP.p).norm() < kDoubtfulDeviations * box.position_spread);
+          !(misfit.array().isFinite().select(misfit.array().abs(), 0.0).maxCoeff() > s_.doubtful_misfit);
+      is_sure.push_back(agreement[i].part_on() >= s_.doubtful_part_on && has_its_size && !fit_.is_larger[i] &&
+                        (X_WP.p - box.X_WP.p).norm() < s_.doubtful_deviations * box.position_spread);
       if (!is_sure.back()) tracked[ids_[i]] = tracked_[i];
     }
     keep(is_sure);
@@ -279,7 +265,7 @@ class Estimator {
     std::vector<bool> is_free;
     for (std::size_t i = 0; i < tracked_.size(); ++i) {
       is_free.push_back(std::none_of(found.begin(), found.end(), [&](const Place& place) {
-        return internal::overlap(tracked_[i], place.box) > kDoubtfulOverlap;
+        return internal::overlap(tracked_[i], place.box) > s_.doubtful_overlap;
       }));
       if (!is_free.back()) tracked[ids_[i]] = tracked_[i];
     }
@@ -308,10 +294,10 @@ class Estimator {
         internal::compare(frame_, prediction, std::vector<double>(tracked_.size(), fit_tolerance()));
     for (std::size_t i = 0; i < tracked_.size(); ++i) report_seen(i, agreement[i], result.boxes[ids_[i]]);
     report_others(result);
-    const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + 2.5e-3);
-    result.obstacles = internal::find_obstacles(frame_, input_, range_, mask);
+    const auto mask = internal::unexplained(frame_, prediction, fit_tolerance() + settings_.obstacles.unexplained);
+    result.obstacles = internal::find_obstacles(context(), input_, mask);
     for (Obstacle& obstacle : result.obstacles) obstacle.deviation = deviation_at(0.5 * (obstacle.low + obstacle.high));
-    result.heights = internal::make_height_map(frame_, input_, range_);
+    result.heights = internal::make_height_map(context(), input_);
   }
 
   /// m, standard deviation of a point in W with all that the camera states.
@@ -327,8 +313,8 @@ class Estimator {
     estimate.points = a.on;
     estimate.visible_part = alone > 0 ? std::min(1.0, static_cast<double>(a.on) / alone) : 0.0;
     const double spread = std::sqrt(fit_.covariance[i].topLeftCorner<3, 3>().diagonal().maxCoeff());
-    if (a.on < kLeastPointsOfBox || estimate.visible_part < kLeastVisible ||
-        spread > std::max(kMostSpread, 1.1 * box.position_spread))
+    if (a.on < s_.least_points || estimate.visible_part < s_.least_visible ||
+        spread > std::max(s_.most_spread, 1.1 * box.position_spread))
       return;  // stays hidden, at its belief
     estimate.sight = Sight::Seen;
     estimate.rms = a.on > 0 ? std::sqrt(a.squares / a.on) : 0.0;
@@ -338,7 +324,8 @@ class Estimator {
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = frame_.camera.X_WC.R;
     estimate.common = turn * errors_.common_error(tracked_[i].X_CP.p);
     estimate.covariance = turn * fit_.covariance[i] * turn.transpose() + estimate.common * estimate.common.transpose();
-    estimate.findings = internal::findings_of(estimate, box, input_, fit_.size_misfit[i], fit_.size_error[i]);
+    estimate.findings =
+        internal::findings_of(estimate, box, input_, {fit_.size_misfit[i], fit_.size_error[i]}, settings_.findings);
   }
 
   [[nodiscard]] int pixels_alone(const TrackedBox& box) const {
@@ -351,12 +338,14 @@ class Estimator {
   /// Of those that were not found: is the place where each should be seen, and empty?
   void report_others(Estimate& result) const {
     for (const std::size_t i : others_) {
-      if (part_gone(i, look_at_belief(i)) > kLeastGone) result.boxes[i].sight = Sight::Missing;
+      if (part_gone(i, perceive_belief(i)) > s_.least_gone) result.boxes[i].sight = Sight::Missing;
     }
   }
 
   const camera::Frame& frame_;
   const EstimateInput& input_;
+  const EstimatorSettings& settings_;
+  const TrackingSettings& s_;
   Pose X_CW_;
   ErrorModel errors_;
   camera::Scene surroundings_C_;
@@ -381,8 +370,8 @@ EstimateInput make_input(const model::Scenario& scenario, const model::Container
   return input;
 }
 
-Estimate estimate_boxes(const camera::Frame& frame, const EstimateInput& input) {
-  return Estimator(frame, input).run();
+Estimate estimate_boxes(const camera::Frame& frame, const EstimateInput& input, const EstimatorSettings& settings) {
+  return Estimator(frame, input, settings).run();
 }
 
 Matrix3 nearest_equal_rotation(const Matrix3& R_WP, const Matrix3& R_WP_near) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/box_estimation/settings.hpp"
 #include "snug/camera/common_error.hpp"
 #include "snug/camera/frame.hpp"
 #include "snug/camera/scene.hpp"
@@ -23,11 +24,11 @@ struct ExpectedBox {
 struct EstimateInput {
   camera::Scene surroundings;  ///< what stands still and where it is: container, benches
   std::vector<ExpectedBox> boxes;
-  Vector3 region_low = Vector3::Constant(-1e3);  ///< m, W: points outside are not looked at
+  Vector3 region_low = Vector3::Constant(-1e3);  ///< m, W: points outside are passed over
   Vector3 region_high = Vector3::Constant(1e3);
 };
 
-/// Surroundings and region of a container that is looked into; no boxes yet.
+/// Surroundings and region of a container that a camera stands over; no boxes yet.
 [[nodiscard]] EstimateInput make_input(const model::Scenario& scenario, const model::Container& container);
 
 enum class Sight {
@@ -91,8 +92,9 @@ struct Estimate {
   HeightMap heights;
 };
 
-/// Pure: same frame and input, same result. docs/camera.md says how.
-[[nodiscard]] Estimate estimate_boxes(const camera::Frame& frame, const EstimateInput& input);
+/// Pure: same frame, input and settings, same result. docs/camera.md says how.
+[[nodiscard]] Estimate estimate_boxes(const camera::Frame& frame, const EstimateInput& input,
+                                      const EstimatorSettings& settings = {});
 
 [[nodiscard]] const char* name_of(Sight sight);
 [[nodiscard]] const char* name_of(Finding finding);

@@ -9,17 +9,7 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr int kCells = 5;   // a side: the waves' covariance is summed over this many parts of a face
-constexpr int kBorder = 2;  // px: points nearer to the end of what is seen of a face are left out
-constexpr int kLeastPointsOfFace = 40;
-/// Part of the interreflection's bias that stays: faces end at corners here and there.
-constexpr double kBiasLeft = 0.15;
-/// The same for faces seen from the side: their lower ends are corners with what the box stands on.
-constexpr double kSideBiasLeft = 0.5;
-constexpr double kSideFacing = 0.7;
-/// rad: what is tilted more is no face of this box, but a strip of points of something else. Three times a belief's
-/// spread.
-constexpr double kMostTilt = 0.15;
+constexpr int kCells = 5;  // a side: the waves' covariance is summed over this many parts of a face
 
 struct Sums {
   int face = -1;
@@ -68,7 +58,9 @@ void add_point(Sums& sums, const FaceFrame& f, const Vector3& p, double e, int c
 
 /// Covariance of offset and tilts: points' own noise, and waves that neighbours share.
 Matrix3 covariance_of(const Sums& sums, const FaceFrame& f, const Matrix3& inverse, double facing,
-                      const ErrorModel& errors, const model::CameraParams& camera) {
+                      const FitContext& context) {
+  const ErrorModel& errors = context.errors;
+  const FaceSettings& settings = context.settings.faces;
   const double noise = errors.point_noise(sums.depth / sums.count) * facing;
   Matrix3 shared = Matrix3::Zero();
   for (std::size_t i = 0; i < sums.number.size(); ++i) {
@@ -83,8 +75,9 @@ Matrix3 covariance_of(const Sums& sums, const FaceFrame& f, const Matrix3& inver
     }
   }
   Matrix3 result = noise * noise * errors.likeness() * inverse + inverse * shared * inverse;
-  const bool is_side = facing < kSideFacing;
-  const double left = (is_side ? kSideBiasLeft : kBiasLeft) * camera.errors.interreflection.bias;
+  const bool is_side = facing < settings.side_facing;
+  const double left =
+      (is_side ? settings.side_bias_left : settings.bias_left) * context.frame.camera.errors.interreflection.bias;
   result(0, 0) += left * left + 1e-10;  // single precision
   result(1, 1) += 1e-10;
   result(2, 2) += 1e-10;
@@ -132,32 +125,34 @@ std::vector<double> common_offsets(const camera::Frame& frame, const Prediction&
 
 }  // namespace
 
-std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction& prediction,
-                                   const std::vector<TrackedBox>& boxes, const ErrorModel& errors,
-                                   const FeatureSettings& settings) {
+std::vector<FaceFeature> fit_faces(const FitContext& context, const Prediction& prediction,
+                                   const std::vector<TrackedBox>& boxes, const FitStep& step) {
+  const camera::Frame& frame = context.frame;
+  const FaceSettings& settings = context.settings.faces;
+  const int border = settings.border;
   const camera::Cast& cast = prediction.cast;
   std::vector<Sums> sums(cast.surfaces.size());
   std::vector<FaceFrame> frames(cast.surfaces.size());
   for (std::size_t i = 0; i < cast.surfaces.size(); ++i) {
     const camera::Surface& surface = cast.surfaces[i];
-    if (surface.body < prediction.first_box + settings.first_box) continue;
+    if (surface.body < prediction.first_box + step.first_box) continue;
     sums[i].face = surface.face;
     frames[i] = frame_of(boxes[static_cast<std::size_t>(surface.body - prediction.first_box)], surface.face);
   }
   std::vector<double> offsets(sums.size(), 0.0);
-  if (settings.wide_gate > 0.0) offsets = common_offsets(frame, prediction, settings.wide_gate);
+  if (step.wide_gate > 0.0) offsets = common_offsets(frame, prediction, step.wide_gate);
   const PixelRange& range = prediction.range;
-  for (int r = kBorder; r < range.rows() - kBorder; ++r) {
+  for (int r = border; r < range.rows() - border; ++r) {
     const float* const depth = frame.depth.row(r + range.first_row) + range.first_col;
     const std::int32_t* const surface = cast.surface.row(r);
-    const std::int32_t *const above = cast.surface.row(r - kBorder), *const below = cast.surface.row(r + kBorder);
+    const std::int32_t *const above = cast.surface.row(r - border), *const below = cast.surface.row(r + border);
     const float* const w = cast.inverse_depth.row(r);
-    for (int c = kBorder; c < range.cols() - kBorder; ++c) {
+    for (int c = border; c < range.cols() - border; ++c) {
       const std::int32_t s = surface[c];
       if (s < 0 || sums[static_cast<std::size_t>(s)].face < 0 || depth[c] == 0.0F) continue;
-      if (surface[c - kBorder] != s || surface[c + kBorder] != s || above[c] != s || below[c] != s) continue;
+      if (surface[c - border] != s || surface[c + border] != s || above[c] != s || below[c] != s) continue;
       const double e = cast.surfaces[static_cast<std::size_t>(s)].offset * (static_cast<double>(depth[c]) * w[c] - 1.0);
-      if (std::abs(e - offsets[static_cast<std::size_t>(s)]) > settings.gate) continue;
+      if (std::abs(e - offsets[static_cast<std::size_t>(s)]) > step.gate) continue;
       const int col = c + range.first_col, row = r + range.first_row;
       add_point(sums[static_cast<std::size_t>(s)], frames[static_cast<std::size_t>(s)],
                 static_cast<double>(depth[c]) * camera::pixel_ray(frame.camera.intrinsics, col, row), e, col, row);
@@ -165,7 +160,7 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
   }
   std::vector<FaceFeature> features;
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (sums[i].face < 0 || sums[i].count < kLeastPointsOfFace) continue;
+    if (sums[i].face < 0 || sums[i].count < settings.least_points) continue;
     const camera::Surface& surface = cast.surfaces[i];
     const FaceFrame& f = frames[i];
     // Tilts of what is only a strip are not told by it: 0.2 mm over its width is what a small prior says.
@@ -177,9 +172,9 @@ std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction&
     feature.points = static_cast<int>(sums[i].count);
     const Matrix3 inverse = G.inverse();
     feature.rows.measured = inverse * sums[i].e;
-    if (feature.rows.measured.tail<2>().cwiseAbs().maxCoeff() > kMostTilt) continue;
+    if (feature.rows.measured.tail<2>().cwiseAbs().maxCoeff() > settings.most_tilt) continue;
     const double facing = std::abs(surface.offset) / f.centre.z();  // n . ray at the middle of the face
-    feature.rows.covariance = covariance_of(sums[i], f, inverse, facing, errors, frame.camera);
+    feature.rows.covariance = covariance_of(sums[i], f, inverse, facing, context);
     const Vector3 arm = f.centre - boxes[static_cast<std::size_t>(feature.box)].X_CP.p;
     feature.rows.J.row(0) << f.n.transpose(), arm.cross(f.n).transpose();
     feature.rows.J.row(1) << Vector3::Zero().transpose(), f.u.cross(f.n).transpose();

@@ -15,13 +15,10 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-/// m: how far solids may overlap, a standard deviation: soft boxes give way by about that.
-constexpr double kOverlap = 1.0e-3;
-
 /// Normal equations of the boxes that are not held.
 class System {
  public:
-  System(std::size_t boxes, int held) : held_(held) {
+  System(std::size_t boxes, int held, const FitSettings& settings) : settings_(settings), held_(held) {
     const Eigen::Index size = 6 * (static_cast<Eigen::Index>(boxes) - held);
     H_ = Eigen::MatrixXd::Zero(size, size);
     g_ = Eigen::VectorXd::Zero(size);
@@ -49,7 +46,7 @@ class System {
       if (row_of(box) >= 0) J << sign * n, sign * (p - boxes[static_cast<std::size_t>(box)].X_CP.p).cross(n);
       return J;
     };
-    const double weight = 1.0 / (kOverlap * kOverlap);
+    const double weight = 1.0 / (settings_.overlap * settings_.overlap);
     const std::array<std::pair<Eigen::Index, Vector6>, 2> both = {
         {{row_of(a), jacobian(a, -1.0)}, {row_of(b), jacobian(b, 1.0)}}};
     for (const auto& [row, J] : both) {
@@ -66,12 +63,13 @@ class System {
   }
 
  private:
+  const FitSettings& settings_;
   int held_;
   Eigen::MatrixXd H_;
   Eigen::VectorXd g_;
 };
 
-void add_overlaps(const std::vector<TrackedBox>& boxes, int held, const camera::Scene& surroundings_C, System& system) {
+void add_overlaps(const FitContext& context, const std::vector<TrackedBox>& boxes, int held, System& system) {
   const auto add = [&](int a, int b, const geometry::Shape& A, const Pose& X_CA, const geometry::Shape& B,
                        const Pose& X_CB) {
     if ((X_CA.p - X_CB.p).norm() > geometry::bounding_radius(A) + geometry::bounding_radius(B)) return;
@@ -81,7 +79,7 @@ void add_overlaps(const std::vector<TrackedBox>& boxes, int held, const camera::
     for (int i = 0; i < manifold.count; ++i) {
       const geometry::ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
       // Deeper than what a fit can be off by: another box is thought to be where this one is. Pushing would move both.
-      if (point.phi < 0.0 && point.phi > -0.03)
+      if (point.phi < 0.0 && point.phi > -context.settings.fit.deepest_overlap)
         system.add_overlap(a, b, boxes, manifold.n_AB_W, 0.5 * (point.p_WA + point.p_WB), point.phi);
     }
   };
@@ -89,7 +87,7 @@ void add_overlaps(const std::vector<TrackedBox>& boxes, int held, const camera::
     const geometry::Shape box_b = geometry::Box{boxes[b].half};
     for (std::size_t a = static_cast<std::size_t>(held); a < b; ++a)
       add(static_cast<int>(a), static_cast<int>(b), geometry::Box{boxes[a].half}, boxes[a].X_CP, box_b, boxes[b].X_CP);
-    for (const camera::SceneShape& fixed : surroundings_C.shapes)
+    for (const camera::SceneShape& fixed : context.surroundings_C.shapes)
       add(static_cast<int>(b), -1, box_b, boxes[b].X_CP, fixed.shape, fixed.X_WG);
   }
 }
@@ -113,35 +111,41 @@ void note_size(const std::vector<EdgeFeature>& edges, const std::vector<TrackedB
     }
 }
 
+/// From a belief that is off by centimetres to the camera's noise: first the planes alone, since edges are sought in
+/// them. From rough poses on, edges at once: without them boxes would go back to the belief.
+FitStep step_of(const FitSettings& settings, bool planes_only, int step, int left, double noise) {
+  FitStep how;
+  how.wide_gate = planes_only ? settings.wide_gate_from_belief : step <= 1 ? settings.wide_gate : 0.0;
+  how.gate = std::max(planes_only ? settings.gate_from_belief
+                      : step <= 1 ? settings.gate_rough
+                                  : settings.gate,
+                      4.0 * noise);
+  how.reach = left >= 2 ? settings.reach_rough : left == 1 ? settings.reach_near : settings.reach;
+  how.ignores_neighbours = left < 2;
+  return how;
+}
+
 }  // namespace
 
-FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range, const camera::Scene& surroundings_C,
-                    std::vector<TrackedBox> boxes, const ErrorModel& errors, FitStart start, int steps, int held) {
+FitResult fit_boxes(const FitContext& context, std::vector<TrackedBox> boxes, FitStart start, int steps, int held) {
   FitResult result;
   const auto first = static_cast<std::size_t>(held);
-  const double noise = errors.point_error(frame.camera.range.focus);
+  const double noise = context.errors.point_error(context.frame.camera.range.focus);
   for (int step = 0; step < steps && !boxes.empty(); ++step) {
     const bool is_last = step + 1 == steps;
-    FeatureSettings settings;
-    settings.first_box = held;
-    // From a belief that is off by centimetres to the camera's noise: first the planes alone, since edges are looked
-    // for in them. From rough poses on, edges at once: without them boxes would go back to the belief.
     const int left = steps - 1 - step;
     const bool planes_only = start == FitStart::Belief && step == 0;
-    settings.wide_gate = planes_only ? 0.025 : step <= 1 ? 0.008 : 0.0;
-    settings.gate = std::max(planes_only ? 0.006 : step <= 1 ? 0.004 : 0.0015, 4.0 * noise);
-    settings.reach = left >= 2 ? 16 : left == 1 ? 9 : 7;
-    settings.ignores_neighbours = left < 2;
-    const Prediction prediction = predict(frame, range, surroundings_C, boxes);
-    System system(boxes.size(), held);
+    FitStep how = step_of(context.settings.fit, planes_only, step, left, noise);
+    how.first_box = held;
+    const Prediction prediction = predict(context.frame, context.range, context.surroundings_C, boxes);
+    System system(boxes.size(), held, context.settings.fit);
     for (std::size_t i = first; i < boxes.size(); ++i) system.add_prior(static_cast<int>(i), boxes[i]);
-    for (const FaceFeature& face : fit_faces(frame, prediction, boxes, errors, settings))
-      system.add(face.box, face.rows);
+    for (const FaceFeature& face : fit_faces(context, prediction, boxes, how)) system.add(face.box, face.rows);
     std::vector<EdgeFeature> edges;
-    if (!planes_only) edges = find_edges(frame, prediction, boxes, errors, settings);
+    if (!planes_only) edges = find_edges(context, prediction, boxes, how);
     for (const EdgeFeature& edge : edges)
       if (!edge.is_coarse || left >= 2) system.add(edge.box, edge.rows);
-    add_overlaps(boxes, held, surroundings_C, system);
+    add_overlaps(context, boxes, held, system);
     const Eigen::VectorXd change = system.solve();
     for (std::size_t i = first; i < boxes.size(); ++i) {
       const Vector6 own = change.segment<6>(system.row_of(static_cast<int>(i)));

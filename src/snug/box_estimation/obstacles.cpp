@@ -10,12 +10,6 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr int kCell = 4;                     // px, side of the cells that clusters are made of
-constexpr int kLeastPointsOfObstacle = 250;  // of an obstacle: at 1 mm a pixel 16 mm x 16 mm
-constexpr float kAlike = 0.006F;             // m, of depths of neighbours on one surface
-constexpr int kLeastAlike = 4;               // of 8 neighbours
-constexpr int kLargestMap = 2000;            // cells a side
-
 Vector3 point_at(const camera::Frame& frame, int row, int col) {
   return frame.camera.X_WC *
          Vector3(static_cast<double>(frame.depth(row, col)) * camera::pixel_ray(frame.camera.intrinsics, col, row));
@@ -26,15 +20,16 @@ bool is_inside(const EstimateInput& input, const Vector3& p) {
 }
 
 /// Most points around are as deep: no point of an edge of depth, between what is before and what is behind.
-bool is_of_a_surface(const camera::Frame& frame, int row, int col) {
+bool is_of_a_surface(const camera::Frame& frame, int row, int col, const ObstacleSettings& settings) {
   const float depth = frame.depth(row, col);
+  const auto limit = static_cast<float>(settings.alike);
   int alike = 0;
   for (int i = 0; i < 9; ++i) {
     const int r = row + i / 3 - 1, c = col + i % 3 - 1;
     if (i == 4 || !frame.depth.is_inside(r, c)) continue;
-    alike += std::abs(frame.depth(r, c) - depth) < kAlike ? 1 : 0;
+    alike += std::abs(frame.depth(r, c) - depth) < limit ? 1 : 0;
   }
-  return alike >= kLeastAlike;
+  return alike >= settings.least_alike;
 }
 
 /// In the region, or over it: what stands out over a rim is in the way, too.
@@ -45,9 +40,10 @@ bool is_inside_or_over(const EstimateInput& input, const Vector3& p) {
 /// Blocks of pixels in which most points are unexplained, and which of them hang together.
 class Clusters {
  public:
-  explicit Clusters(const camera::Grid2<std::uint8_t>& mask) : counts_(mask.rows() / kCell, mask.cols() / kCell) {
-    for (int r = 0; r < counts_.rows() * kCell; ++r)
-      for (int c = 0; c < counts_.cols() * kCell; ++c) counts_(r / kCell, c / kCell) += mask(r, c);
+  Clusters(const camera::Grid2<std::uint8_t>& mask, int cell)
+      : cell_(cell), counts_(mask.rows() / cell, mask.cols() / cell) {
+    for (int r = 0; r < counts_.rows() * cell_; ++r)
+      for (int c = 0; c < counts_.cols() * cell_; ++c) counts_(r / cell_, c / cell_) += mask(r, c);
   }
   [[nodiscard]] int rows() const { return counts_.rows(); }
   [[nodiscard]] int cols() const { return counts_.cols(); }
@@ -71,8 +67,9 @@ class Clusters {
  private:
   /// Three quarters of a block: edges that a fit leaves over are thinner.
   [[nodiscard]] bool is_full(int row, int col) const {
-    return counts_.is_inside(row, col) && counts_(row, col) >= 3 * kCell * kCell / 4;
+    return counts_.is_inside(row, col) && counts_(row, col) >= 3 * cell_ * cell_ / 4;
   }
+  int cell_;
   camera::Grid2<int> counts_;
 };
 
@@ -110,9 +107,13 @@ std::set<std::pair<int, int>> rim_of(const std::vector<std::pair<int, int>>& blo
 
 }  // namespace
 
-std::vector<Obstacle> find_obstacles(const camera::Frame& frame, const EstimateInput& input, const PixelRange& range,
+std::vector<Obstacle> find_obstacles(const FitContext& context, const EstimateInput& input,
                                      const camera::Grid2<std::uint8_t>& mask) {
-  Clusters clusters(mask);
+  const camera::Frame& frame = context.frame;
+  const PixelRange& range = context.range;
+  const ObstacleSettings& settings = context.settings.obstacles;
+  const int cell = settings.cell;
+  Clusters clusters(mask, cell);
   std::vector<Obstacle> obstacles;
   for (int r = 0; r < clusters.rows(); ++r)
     for (int c = 0; c < clusters.cols(); ++c) {
@@ -121,19 +122,19 @@ std::vector<Obstacle> find_obstacles(const camera::Frame& frame, const EstimateI
       Gathering gathering;
       const auto gather = [&](const std::pair<int, int>& block, double highest) {
         int points = 0;
-        for (int i = 0; i < kCell * kCell; ++i) {
-          const int row = block.first * kCell + i / kCell, col = block.second * kCell + i % kCell;
+        for (int i = 0; i < cell * cell; ++i) {
+          const int row = block.first * cell + i / cell, col = block.second * cell + i % cell;
           if (!mask.is_inside(row, col) || mask(row, col) == 0) continue;
           const Vector3 p = point_at(frame, row + range.first_row, col + range.first_col);
           if (!is_inside_or_over(input, p) || p.z() > highest) continue;
           ++points;
-          if (is_of_a_surface(frame, row + range.first_row, col + range.first_col)) gathering.add(p);
+          if (is_of_a_surface(frame, row + range.first_row, col + range.first_col, settings)) gathering.add(p);
         }
         return points;
       };
       int points = 0;
       for (const auto& block : blocks) points += gather(block, std::numeric_limits<double>::max());
-      if (points < kLeastPointsOfObstacle) continue;
+      if (points < settings.least_points) continue;
       for (const auto& block : rim_of(blocks)) (void)gather(block, gathering.top());
       if (!gathering.is_empty()) obstacles.push_back(gathering.finish(points));
     }
@@ -142,10 +143,13 @@ std::vector<Obstacle> find_obstacles(const camera::Frame& frame, const EstimateI
   return obstacles;
 }
 
-HeightMap make_height_map(const camera::Frame& frame, const EstimateInput& input, const PixelRange& range) {
+HeightMap make_height_map(const FitContext& context, const EstimateInput& input) {
+  const camera::Frame& frame = context.frame;
+  const PixelRange& range = context.range;
   HeightMap map;
   const Vector3 size = input.region_high - input.region_low;
-  if (!(size.head<2>().maxCoeff() < kLargestMap * map.cell)) return map;  // no region was given
+  if (!(size.head<2>().maxCoeff() < context.settings.obstacles.largest_map * map.cell))
+    return map;  // no region was given
   const int x = geometry::column_of(input.region_low.x()), y = geometry::column_of(input.region_low.y());
   map.origin = {x * map.cell, y * map.cell};
   map.height =

@@ -13,19 +13,6 @@
 namespace snug::box_estimation::internal {
 namespace {
 
-constexpr int kBlock = 6;              // px, side of the blocks that patches grow from
-constexpr double kSameNormal = 0.985;  // cosine between neighbouring blocks of a patch: 10 degrees
-constexpr int kLeastBlocks = 6;
-constexpr double kFit = 0.007;               // m: by so much a patch may be wider or narrower than a face
-constexpr double kSizeError = 0.0020;        // m, standard deviation of the side of a rectangle around a patch
-constexpr int kSamples = 14;                 // a side, of a face that is compared with the frame
-constexpr double kLeastProposedPart = 0.75;  // of the points where a proposed box should be
-constexpr double kLeastScore = 6e-4;         // m^2
-constexpr double kUnexplained = 1.5e-3;      // m, beyond the tolerance of fitted faces
-constexpr double kRim = 0.05;                // m: boxes may lie on the rim of the region
-constexpr int kMostPoses = 12;               // of a box
-constexpr double kSamePlace = 0.006, kSameTurn = 0.08;  // m, rad: poses that are not proposed twice
-
 struct Block {
   int count = 0;
   Vector3 sum = Vector3::Zero();
@@ -53,13 +40,15 @@ bool fit_plane(int count, const Vector3& sum, const Matrix3& squares, double noi
 
 class Patches {
  public:
-  Patches(const camera::Frame& frame, const Prediction& prediction, const camera::Grid2<std::uint8_t>& mask,
+  Patches(const FitContext& context, const Prediction& prediction, const camera::Grid2<std::uint8_t>& mask,
           double noise)
-      : frame_(frame),
+      : frame_(context.frame),
+        s_(context.settings.search),
+        block_(context.settings.search.block),
         range_(prediction.range),
         mask_(mask),
         noise_(noise),
-        blocks_(range_.rows() / kBlock, range_.cols() / kBlock) {
+        blocks_(range_.rows() / block_, range_.cols() / block_) {
     for (int r = 0; r < blocks_.rows(); ++r)
       for (int c = 0; c < blocks_.cols(); ++c) fill(r, c);
   }
@@ -76,16 +65,16 @@ class Patches {
  private:
   void fill(int r, int c) {
     Block& block = blocks_(r, c);
-    for (int i = 0; i < kBlock; ++i)
-      for (int k = 0; k < kBlock; ++k) {
-        const int row = r * kBlock + i, col = c * kBlock + k;
+    for (int i = 0; i < block_; ++i)
+      for (int k = 0; k < block_; ++k) {
+        const int row = r * block_ + i, col = c * block_ + k;
         if (mask_(row, col) == 0) continue;
         const Vector3 p = point(row, col);
         ++block.count;
         block.sum += p;
         block.squares += p * p.transpose();
       }
-    if (block.count < kBlock * kBlock / 2) return;
+    if (block.count < block_ * block_ / 2) return;
     Vector3 n;
     if (fit_plane(block.count, block.sum, block.squares, std::max(3.0 * noise_, 5e-4), n, block.mean)) block.n = n;
   }
@@ -120,13 +109,13 @@ class Patches {
         if (!is_free(r + dr, c + dc)) continue;
         const Block& next = blocks_(r + dr, c + dc);
         const double step = std::max(4.0 * noise_, 1.5e-3);
-        if (next.n.dot(here.n) < kSameNormal - 2.0 * noise_ / 6e-3 || std::abs(n.dot(next.mean - mean)) > step)
+        if (next.n.dot(here.n) < s_.same_normal - 2.0 * noise_ / 6e-3 || std::abs(n.dot(next.mean - mean)) > step)
           continue;
         blocks_(r + dr, c + dc).patch = id;
         open.emplace_back(r + dr, c + dc);
       }
     }
-    if (static_cast<int>(members.size()) < kLeastBlocks) return;
+    if (static_cast<int>(members.size()) < s_.least_blocks) return;
     Patch patch;
     patch.n = n;
     patch.mean = mean;
@@ -141,10 +130,10 @@ class Patches {
     for (int r = 0; r < blocks_.rows(); ++r)
       for (int c = 0; c < blocks_.cols(); ++c) {
         if (around(r, c) == 0) continue;
-        for (int i = 0; i < kBlock; i += stride)
-          for (int k = 0; k < kBlock; k += stride) {
-            if (mask_(r * kBlock + i, c * kBlock + k) == 0) continue;
-            const Vector3 p = point(r * kBlock + i, c * kBlock + k);
+        for (int i = 0; i < block_; i += stride)
+          for (int k = 0; k < block_; k += stride) {
+            if (mask_(r * block_ + i, c * block_ + k) == 0) continue;
+            const Vector3 p = point(r * block_ + i, c * block_ + k);
             if (std::abs(n.dot(p - mean)) < tolerance) patch.points.push_back(p);
           }
       }
@@ -153,6 +142,8 @@ class Patches {
   }
 
   const camera::Frame& frame_;
+  const SearchSettings& s_;
+  int block_;
   PixelRange range_;
   const camera::Grid2<std::uint8_t>& mask_;
   double noise_;
@@ -203,8 +194,12 @@ Rectangle rectangle_of(const Patch& patch) {
 /// How well a box at a pose agrees with the frame, over the faces that the camera sees.
 class Judge {
  public:
-  Judge(const camera::Frame& frame, const Prediction& prediction, const camera::Grid2<std::uint8_t>& mask, double noise)
-      : frame_(frame), range_(prediction.range), mask_(mask), tolerance_(std::max(4.0 * noise, 4e-3)) {}
+  Judge(const FitContext& context, const Prediction& prediction, const camera::Grid2<std::uint8_t>& mask, double noise)
+      : frame_(context.frame),
+        samples_(context.settings.search.samples),
+        range_(prediction.range),
+        mask_(mask),
+        tolerance_(std::max(4.0 * noise, 4e-3)) {}
 
   /// Area of it that is seen where it should be, m^2, less three times what is seen through, less what other things
   /// explain.
@@ -216,11 +211,11 @@ class Judge {
       const Vector3 centre = X_CP.p + half(axis) * n;
       const double facing = -n.dot(centre) / centre.norm();
       if (facing < 0.1) continue;
-      const double area = 4.0 * half(a) * half(b) * facing / (kSamples * kSamples);
-      for (int i = 0; i < kSamples; ++i)
-        for (int k = 0; k < kSamples; ++k) {
-          const Vector3 p = centre + half(a) * ((2 * i + 1.0) / kSamples - 1.0) * 0.96 * X_CP.R.col(a) +
-                            half(b) * ((2 * k + 1.0) / kSamples - 1.0) * 0.96 * X_CP.R.col(b);
+      const double area = 4.0 * half(a) * half(b) * facing / (samples_ * samples_);
+      for (int i = 0; i < samples_; ++i)
+        for (int k = 0; k < samples_; ++k) {
+          const Vector3 p = centre + half(a) * ((2 * i + 1.0) / samples_ - 1.0) * 0.96 * X_CP.R.col(a) +
+                            half(b) * ((2 * k + 1.0) / samples_ - 1.0) * 0.96 * X_CP.R.col(b);
           add(p, area, facing, on, through, taken);
         }
     }
@@ -247,15 +242,16 @@ class Judge {
   }
 
   const camera::Frame& frame_;
+  int samples_;
   PixelRange range_;
   const camera::Grid2<std::uint8_t>& mask_;
   double tolerance_;
 };
 
 /// Whether a point is in the region, over it, or at its rim.
-bool is_about(const EstimateInput& input, const Vector3& p_W) {
-  return (p_W.array() > input.region_low.array() - kRim).all() &&
-         (p_W.head<2>().array() < input.region_high.head<2>().array() + kRim).all();
+bool is_about(const EstimateInput& input, const Vector3& p_W, double rim) {
+  return (p_W.array() > input.region_low.array() - rim).all() &&
+         (p_W.head<2>().array() < input.region_high.head<2>().array() + rim).all();
 }
 
 struct Scored {
@@ -265,16 +261,18 @@ struct Scored {
 
 /// Calls visit(pose, likeliness) for each way in which a face of the box can be the rectangle, or a part of it seen.
 template <class Visit>
-void each_pose(const Wanted& wanted, const Rectangle& rectangle, const Vector3& n, double shrink, const Visit& visit) {
+void each_pose(const Wanted& wanted, const Rectangle& rectangle, const Vector3& n, double shrink,
+               const SearchSettings& settings, const Visit& visit) {
   for (int axis = 0; axis < 3; ++axis)
     for (int turn = 0; turn < 2; ++turn) {
       const int a = (axis + 1 + turn) % 3, b = 3 - axis - a;  // P axes along u and v
       const double slack_u = 2.0 * wanted.half(a) - rectangle.width, slack_v = 2.0 * wanted.half(b) - rectangle.height;
-      if (slack_u < -kFit || slack_v < -kFit) continue;
+      if (slack_u < -settings.fit || slack_v < -settings.fit) continue;
       // A face that is seen whole is as large as the box says, less the points that edges lose.
       double likeliness = 1.0;
       for (const double slack : {slack_u, slack_v})
-        if (slack <= kFit) likeliness *= 0.3 + 0.7 * std::exp(-0.5 * std::pow((slack - shrink) / kSizeError, 2));
+        if (slack <= settings.fit)
+          likeliness *= 0.3 + 0.7 * std::exp(-0.5 * std::pow((slack - shrink) / settings.size_error, 2));
       Matrix3 R_CP;
       R_CP.col(a) = rectangle.u;
       R_CP.col(b) = rectangle.v;
@@ -284,7 +282,7 @@ void each_pose(const Wanted& wanted, const Rectangle& rectangle, const Vector3& 
       // Where the patch is smaller than the face, it may be any of its corners.
       for (const double su : {-0.5, 0.0, 0.5})
         for (const double sv : {-0.5, 0.0, 0.5}) {
-          if ((su != 0.0) != (slack_u > kFit) || (sv != 0.0) != (slack_v > kFit)) continue;
+          if ((su != 0.0) != (slack_u > settings.fit) || (sv != 0.0) != (slack_v > settings.fit)) continue;
           visit(Pose{R, middle + su * slack_u * rectangle.u + sv * slack_v * rectangle.v}, likeliness);
         }
     }
@@ -292,10 +290,11 @@ void each_pose(const Wanted& wanted, const Rectangle& rectangle, const Vector3& 
 
 /// How likely it is to find a box there, 0 .. 1: less where it would be in one of the solids, or touch none. Rough
 /// poses are off by a few millimetres.
-double likely_place(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
-  const double gap = least_gap(half, X_CP, solids_C);
-  if (gap >= kTouch) return 0.6;
-  return gap > -kTouch ? 1.0 : std::max(0.1, 1.0 + 40.0 * (gap + kTouch));
+double likely_place(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C,
+                    const SearchSettings& settings) {
+  const double touch = settings.touch, gap = least_gap(half, X_CP, solids_C, touch);
+  if (gap >= touch) return settings.in_the_air;
+  return gap > -touch ? 1.0 : std::max(0.1, 1.0 + 40.0 * (gap + touch));
 }
 
 }  // namespace
@@ -317,16 +316,16 @@ camera::Grid2<std::uint8_t> unexplained(const camera::Frame& frame, const Predic
   return mask;
 }
 
-double least_gap(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C) {
+double least_gap(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C, double touch) {
   const geometry::Shape box = geometry::Box{half};
-  double least = kTouch;
+  double least = touch;
   for (const camera::SceneShape& solid : solids_C) {
     if ((X_CP.p - solid.X_WG.p).norm() >
-        geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + kTouch)
+        geometry::bounding_radius(box) + geometry::bounding_radius(solid.shape) + touch)
       continue;
     geometry::PairCache cache;
     geometry::Manifold manifold;
-    geometry::collide(box, X_CP, solid.shape, solid.X_WG, kTouch, cache, manifold);
+    geometry::collide(box, X_CP, solid.shape, solid.X_WG, touch, cache, manifold);
     for (int i = 0; i < manifold.count; ++i) least = std::min(least, manifold.points[static_cast<std::size_t>(i)].phi);
   }
   return least;
@@ -335,22 +334,24 @@ double least_gap(const Vector3& half, const Pose& X_CP, const std::vector<camera
 std::vector<std::vector<Pose>> propose_poses(const Known& known, const Prediction& prediction,
                                              const std::vector<Wanted>& wanted,
                                              const std::vector<camera::SceneShape>& solids_C) {
-  const camera::Frame& frame = known.frame;
-  const double noise = known.errors.point_error(frame.camera.range.focus);
-  const auto points = unexplained(frame, prediction, known.tolerance + kUnexplained);
-  const Judge judge(frame, prediction, points, noise);
+  const camera::Frame& frame = known.context.frame;
+  const ErrorModel& errors = known.context.errors;
+  const SearchSettings& settings = known.context.settings.search;
+  const double noise = errors.point_error(frame.camera.range.focus);
+  const auto points = unexplained(frame, prediction, known.tolerance + settings.unexplained);
+  const Judge judge(known.context, prediction, points, noise);
   std::vector<std::vector<Scored>> all(wanted.size());
-  for (const Patch& patch : Patches(frame, prediction, points, noise).grow()) {
-    if (patch.points.size() < 40 || !is_about(known.input, frame.camera.X_WC * patch.mean)) continue;
+  for (const Patch& patch : Patches(known.context, prediction, points, noise).grow()) {
+    if (patch.points.size() < 40 || !is_about(known.input, frame.camera.X_WC * patch.mean, settings.rim)) continue;
     const Rectangle rectangle = rectangle_of(patch);
-    const double shrink = 2.0 * known.errors.edge_shift() * patch.mean.z() / frame.camera.intrinsics.fx;
+    const double shrink = 2.0 * errors.edge_shift() * patch.mean.z() / frame.camera.intrinsics.fx;
     for (std::size_t i = 0; i < wanted.size(); ++i)
-      each_pose(wanted[i], rectangle, patch.n, shrink, [&](const Pose& X_CP, double likeliness) {
+      each_pose(wanted[i], rectangle, patch.n, shrink, settings, [&](const Pose& X_CP, double likeliness) {
         double part_on = 0.0;
         double score = judge.score(wanted[i].half, X_CP, part_on);
-        if (part_on < kLeastProposedPart) return;
-        score *= likeliness * likely_place(wanted[i].half, X_CP, solids_C);
-        if (score > kLeastScore) all[i].push_back({score, X_CP});
+        if (part_on < settings.least_part) return;
+        score *= likeliness * likely_place(wanted[i].half, X_CP, solids_C, settings);
+        if (score > settings.least_score) all[i].push_back({score, X_CP});
       });
   }
   std::vector<std::vector<Pose>> poses(wanted.size());
@@ -358,11 +359,11 @@ std::vector<std::vector<Pose>> propose_poses(const Known& known, const Predictio
     std::stable_sort(all[i].begin(), all[i].end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
     for (const Scored& one : all[i]) {
       const bool is_known = std::any_of(poses[i].begin(), poses[i].end(), [&](const Pose& other) {
-        return (other.p - one.X_CP.p).norm() < kSamePlace &&
-               angle_between(nearest_equal_rotation(one.X_CP.R, other.R), other.R) < kSameTurn;
+        return (other.p - one.X_CP.p).norm() < settings.same_place &&
+               angle_between(nearest_equal_rotation(one.X_CP.R, other.R), other.R) < settings.same_turn;
       });
       if (!is_known) poses[i].push_back(one.X_CP);
-      if (static_cast<int>(poses[i].size()) == kMostPoses) break;
+      if (static_cast<int>(poses[i].size()) == settings.most_poses) break;
     }
   }
   return poses;

@@ -24,12 +24,13 @@ struct FaceFeature {
 /// An edge of a face: its offset in the face's plane, outward [m], and its turn in the plane [rad].
 struct EdgeFeature {
   int box = 0, axis = 0, side = 0;  ///< which side of the box it is on: the axis of P across it, 0: negative end
-  bool is_coarse = false;           ///< found at the end of where it was looked for: only tells the direction
+  bool is_coarse = false;           ///< found at the end of where it was sought: only tells the direction
   Rows rows;
 };
 
-struct FeatureSettings {
-  double wide_gate = 0.0;  ///< m, in which the offset that most points of a face agree on is looked for first; 0: not
+/// How one step of a fit takes points and edges.
+struct FitStep {
+  double wide_gate = 0.0;  ///< m, in which the offset that most points of a face agree on is sought first; 0: not
   double gate = 0.006;     ///< m, points farther from a face (or from that offset) are not its own
   int reach = 14;          ///< px, on either side of where an edge should be
   /// Whether points of a face's plane count where another box should be seen: its face may be as high.
@@ -38,12 +39,10 @@ struct FeatureSettings {
 };
 
 /// Faces with enough points. Points near the edges of what is seen of a face are left out.
-[[nodiscard]] std::vector<FaceFeature> fit_faces(const camera::Frame& frame, const Prediction& prediction,
-                                                 const std::vector<TrackedBox>& boxes, const ErrorModel& errors,
-                                                 const FeatureSettings& settings);
+[[nodiscard]] std::vector<FaceFeature> fit_faces(const FitContext& context, const Prediction& prediction,
+                                                 const std::vector<TrackedBox>& boxes, const FitStep& step);
 /// Edges of faces behind which something else is seen.
-[[nodiscard]] std::vector<EdgeFeature> find_edges(const camera::Frame& frame, const Prediction& prediction,
-                                                  const std::vector<TrackedBox>& boxes, const ErrorModel& errors,
-                                                  const FeatureSettings& settings);
+[[nodiscard]] std::vector<EdgeFeature> find_edges(const FitContext& context, const Prediction& prediction,
+                                                  const std::vector<TrackedBox>& boxes, const FitStep& step);
 
 }  // namespace snug::box_estimation::internal

@@ -5,9 +5,14 @@
 
 namespace snug::box_estimation::internal {
 
-/// `size_misfit`, `size_error`: as FitResult has them for this box.
+/// How far the sides that were seen are from those that the box should have.
+struct SizeMisfit {
+  Vector3 misfit = Vector3::Zero();  ///< m, along each axis of P; NaN where not both edges were seen
+  double deviations = 0.0;           ///< the largest of them, in standard deviations
+};
+
 [[nodiscard]] std::vector<Finding> findings_of(const BoxEstimate& estimate, const ExpectedBox& box,
-                                               const EstimateInput& input, const Vector3& size_misfit,
-                                               double size_error);
+                                               const EstimateInput& input, const SizeMisfit& size,
+                                               const FindingSettings& settings);
 
 }  // namespace snug::box_estimation::internal

@@ -11,7 +11,7 @@ struct FitResult {
   /// m, along each axis of P by how much farther apart opposite edges are than the box is long; NaN where not both were
   /// seen.
   std::vector<Vector3> size_misfit;
-  std::vector<bool> is_larger;     ///< a face goes on beyond where its edge was looked for
+  std::vector<bool> is_larger;     ///< a face goes on beyond where its edge was sought
   std::vector<double> size_error;  ///< the largest of them, in standard deviations
 };
 
@@ -20,10 +20,9 @@ enum class FitStart {
   Near,    ///< off by millimetres
 };
 
-/// Gauss-Newton steps, each with a new prediction and narrower gates. `surroundings_C`: in C. The first `held` boxes
-/// stay where they are and are not measured.
-[[nodiscard]] FitResult fit_boxes(const camera::Frame& frame, const PixelRange& range,
-                                  const camera::Scene& surroundings_C, std::vector<TrackedBox> boxes,
-                                  const ErrorModel& errors, FitStart start, int steps, int held = 0);
+/// Gauss-Newton steps, each with a new prediction and narrower gates. The first `held` boxes stay where they are and
+/// are not measured.
+[[nodiscard]] FitResult fit_boxes(const FitContext& context, std::vector<TrackedBox> boxes, FitStart start, int steps,
+                                  int held = 0);
 
 }  // namespace snug::box_estimation::internal

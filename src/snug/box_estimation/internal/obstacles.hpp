@@ -5,11 +5,9 @@
 
 namespace snug::box_estimation::internal {
 
-/// Clusters of unexplained points in the region, largest first.
-[[nodiscard]] std::vector<Obstacle> find_obstacles(const camera::Frame& frame, const EstimateInput& input,
-                                                   const PixelRange& range,
+/// Clusters of unexplained points in the region, largest first. `unexplained_points`: of the context's range.
+[[nodiscard]] std::vector<Obstacle> find_obstacles(const FitContext& context, const EstimateInput& input,
                                                    const camera::Grid2<std::uint8_t>& unexplained_points);
-[[nodiscard]] HeightMap make_height_map(const camera::Frame& frame, const EstimateInput& input,
-                                        const PixelRange& range);
+[[nodiscard]] HeightMap make_height_map(const FitContext& context, const EstimateInput& input);
 
 }  // namespace snug::box_estimation::internal

@@ -24,6 +24,7 @@ struct Place {
 [[nodiscard]] std::vector<Place> relocate(const Known& known, const std::vector<Lost>& lost);
 
 /// Of places that do not exclude each other (one for each box, solids apart), those with the largest sum of gains.
-[[nodiscard]] std::vector<Place> best_together(const std::vector<Place>& places, std::size_t lost);
+[[nodiscard]] std::vector<Place> best_together(const std::vector<Place>& places, std::size_t lost,
+                                               const RelocationSettings& settings);
 
 }  // namespace snug::box_estimation::internal

@@ -5,18 +5,15 @@
 
 namespace snug::box_estimation::internal {
 
-/// What is known of a frame when boxes are looked for in it.
+/// What is known of a frame when boxes are searched in it.
 struct Known {
-  const camera::Frame& frame;
+  FitContext context;
   const EstimateInput& input;
-  const PixelRange& range;
-  const camera::Scene& surroundings_C;
   const std::vector<TrackedBox>& boxes;  ///< tracked: they stay where they are
-  const ErrorModel& errors;
-  double tolerance = 0.0;  ///< m, of points from the faces of a fitted box
+  double tolerance = 0.0;                ///< m, of points from the faces of a fitted box
 };
 
-/// A box that is looked for.
+/// A box that is searched.
 struct Wanted {
   Vector3 half = Vector3::Zero();
   Pose X_CP_prior;
@@ -31,9 +28,8 @@ struct Wanted {
                                                            const std::vector<Wanted>& wanted,
                                                            const std::vector<camera::SceneShape>& solids_C);
 
-/// Beyond this gap things do not touch, m.
-inline constexpr double kTouch = 0.006;
-/// m, between a box and the nearest of the solids, at most kTouch; negative: so deep in one of them.
-[[nodiscard]] double least_gap(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C);
+/// m, between a box and the nearest of the solids, at most `touch`; negative: so deep in one of them.
+[[nodiscard]] double least_gap(const Vector3& half, const Pose& X_CP, const std::vector<camera::SceneShape>& solids_C,
+                               double touch);
 
 }  // namespace snug::box_estimation::internal

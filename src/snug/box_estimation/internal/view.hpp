@@ -25,6 +25,15 @@ struct PixelRange {
   [[nodiscard]] int cols() const { return end_col - first_col; }
 };
 
+/// What a fit is made in.
+struct FitContext {
+  const camera::Frame& frame;
+  const PixelRange& range;
+  const camera::Scene& surroundings_C;  ///< with poses in C
+  const ErrorModel& errors;
+  const EstimatorSettings& settings;
+};
+
 /// The pixels in which points of a box in W (corners low and high) can be seen.
 [[nodiscard]] PixelRange pixel_range(const model::CameraParams& camera, const Vector3& low, const Vector3& high);
 /// Those in which a box can be seen, with `border` pixels around, within `range`.

@@ -7,70 +7,17 @@
 #include <numbers>
 
 #include "snug/box_estimation/internal/joint_fit.hpp"
-#include "snug/camera/render.hpp"
+#include "snug/box_estimation/test/scene.hpp"
 
 namespace snug::box_estimation {
 namespace {
 
-/// A container of 0.4 x 0.6 x 0.25 m with its floor at z = 0, a camera 1 m over it.
-struct Cell {
-  model::Scenario scenario;
-  model::CameraParams camera;
-  Cell(const std::string& preset = "structured_light") {
-    model::Container container;
-    container.name = "tote";
-    container.inner_size = Vector3(0.4, 0.6, 0.25);
-    scenario.containers.push_back(container);
-    camera = model::make_camera(preset);
-    camera.name = "test";
-    camera.X_WC = {(Matrix3() << 0, 1, 0, 1, 0, 0, 0, 0, -1).finished(), Vector3(0, 0, 1.0)};
-  }
-};
-
-struct Box {
-  std::string id;
-  Vector3 size;
-  Pose X_WP;
-};
-
-Pose level(double x, double y, double z, double yaw = 0.0) {
-  return {exp_rotation(Vector3(0, 0, yaw)), Vector3(x, y, z)};
-}
-
-/// Three boxes of different heights, 20 mm apart and more.
-std::vector<Box> three_boxes() {
-  return {{"a", Vector3(0.20, 0.15, 0.10), level(-0.05, -0.15, 0.05, 0.1)},
-          {"b", Vector3(0.10, 0.12, 0.06), level(0.08, 0.10, 0.03, -0.4)},
-          {"c", Vector3(0.16, 0.10, 0.08), level(-0.10, 0.15, 0.04, 0.02)}};
-}
-
-camera::Frame look(const Cell& cell, const std::vector<Box>& boxes, std::uint64_t seed) {
-  camera::Scene scene = camera::make_surroundings(cell.scenario);
-  for (const Box& box : boxes) camera::add_box(scene, box.id, box.X_WP, box.size);
-  return camera::render(scene, cell.camera, camera::draw_camera(cell.camera, seed), seed).frame;
-}
-
-Vector3 normals(Rng& rng, double size) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return size * Vector3(x, y, z);
-}
-
-EstimateInput expect(const Cell& cell, const std::vector<Box>& boxes, std::uint64_t seed) {
-  EstimateInput input = make_input(cell.scenario, cell.scenario.containers.front());
-  Rng rng = Rng(seed).split("belief");
-  for (const Box& box : boxes)
-    input.boxes.push_back({box.id,
-                           box.size,
-                           {exp_rotation(normals(rng, 0.02)) * box.X_WP.R, box.X_WP.p + normals(rng, 0.004)},
-                           0.004,
-                           0.02});
-  return input;
-}
+using namespace test;
 
 TEST(EstimateBoxes, FindsBoxesInAPerfectFrameToATenthOfAMillimetre) {
   const Cell cell("ideal");
   const std::vector<Box> boxes = three_boxes();
-  const Estimate estimate = estimate_boxes(look(cell, boxes, 1), expect(cell, boxes, 1));
+  const Estimate estimate = estimate_boxes(frame_of(cell, boxes, 1), expect(cell, boxes, 1));
   ASSERT_EQ(estimate.fault, FrameFault::None);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     SCOPED_TRACE(boxes[i].id);
@@ -89,7 +36,7 @@ TEST(EstimateBoxes, ErrorsAreAsLargeAsTheirCovarianceSays) {
   double sum = 0.0, product = 0.0, stated = 0.0;
   constexpr int kFrames = 40;
   for (std::uint64_t seed = 1; seed <= kFrames; ++seed) {
-    const Estimate estimate = estimate_boxes(look(cell, boxes, seed), expect(cell, boxes, seed));
+    const Estimate estimate = estimate_boxes(frame_of(cell, boxes, seed), expect(cell, boxes, seed));
     const BoxEstimate &a = estimate.boxes[0], &b = estimate.boxes[1];
     product += (a.X_WP.p - boxes[0].X_WP.p).dot(b.X_WP.p - boxes[1].X_WP.p);
     stated += (a.common * b.common.transpose()).topLeftCorner<3, 3>().trace();
@@ -120,7 +67,7 @@ TEST(EstimateBoxes, TellsNeighboursOfOneHeightApart) {
         {"box" + std::to_string(i), Vector3(0.257, 0.061, height), level(0.05, 0.26 - 0.063 * i, 0.5 * height)});
   }
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    const Estimate estimate = estimate_boxes(look(cell, boxes, seed), expect(cell, boxes, seed));
+    const Estimate estimate = estimate_boxes(frame_of(cell, boxes, seed), expect(cell, boxes, seed));
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       EXPECT_EQ(estimate.boxes[i].sight, Sight::Seen) << seed;
       EXPECT_LT((estimate.boxes[i].X_WP.p - boxes[i].X_WP.p).norm(), 10e-3) << seed << " " << boxes[i].id;
@@ -137,7 +84,7 @@ TEST(EstimateBoxes, SaysWhatIsHiddenMissingOrMoved) {
   std::vector<Box> real = boxes;
   real[1].X_WP = level(0.12, 0.22, 0.03, 0.3);  // b was moved by hand
   real.erase(real.begin() + 2);                 // c was taken away
-  const Estimate estimate = estimate_boxes(look(cell, real, 3), input);
+  const Estimate estimate = estimate_boxes(frame_of(cell, real, 3), input);
   EXPECT_EQ(estimate.boxes[1].sight, Sight::Seen);
   EXPECT_LT((estimate.boxes[1].X_WP.p - real[1].X_WP.p).norm(), 2e-3);
   EXPECT_EQ(estimate.boxes[1].findings, std::vector<Finding>{Finding::Moved});
@@ -155,7 +102,7 @@ TEST(EstimateBoxes, TellsTwoSwappedBoxesApart) {
   std::vector<Box> now = before;
   std::swap(now[0].X_WP, now[1].X_WP);
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Estimate estimate = estimate_boxes(look(cell, now, seed), expect(cell, before, seed));
+    const Estimate estimate = estimate_boxes(frame_of(cell, now, seed), expect(cell, before, seed));
     for (std::size_t i = 0; i < now.size(); ++i) {
       EXPECT_EQ(estimate.boxes[i].sight, Sight::Seen) << seed;
       EXPECT_LT((estimate.boxes[i].X_WP.p - now[i].X_WP.p).norm(), 3e-3) << seed << " " << now[i].id;
@@ -172,7 +119,7 @@ TEST(EstimateBoxes, FindsWhatWasUncoveredAndWhatCoveredIt) {
   // Leaning on the floor and on its edge, turned about the vertical.
   const Matrix3 R = exp_rotation(Vector3(0, 0, 0.6)) * exp_rotation(Vector3(0.7, 0, 0));
   boxes[1].X_WP = {R, Vector3(0.0, 0.16, 0.5 * (0.18 * std::sin(0.7) + 0.05 * std::cos(0.7)))};
-  const Estimate estimate = estimate_boxes(look(cell, boxes, 7), input);
+  const Estimate estimate = estimate_boxes(frame_of(cell, boxes, 7), input);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     EXPECT_EQ(estimate.boxes[i].sight, Sight::Seen) << i;
     EXPECT_LT((estimate.boxes[i].X_WP.p - boxes[i].X_WP.p).norm(), 3e-3) << i;
@@ -189,6 +136,7 @@ TEST(EstimateBoxes, SidesAreAsLongAtAnyTurnAndLeaning) {
   const internal::ErrorModel errors(cell.camera);
   const camera::Scene surroundings_C = internal::in_camera(camera::make_surroundings(cell.scenario), cell.camera.X_WC);
   const internal::PixelRange all{0, cell.camera.height, 0, cell.camera.width};
+  const EstimatorSettings settings;
   for (const double lean : {0.0, 0.3, 0.6})
     for (int degrees = 2; degrees < 90; degrees += 5) {  // at 0 and 45 the grid rounds all lines alike
       SCOPED_TRACE(testing::Message() << "turned by " << degrees << " degrees, leaning by " << lean);
@@ -196,8 +144,9 @@ TEST(EstimateBoxes, SidesAreAsLongAtAnyTurnAndLeaning) {
           exp_rotation(Vector3(0, 0, degrees * std::numbers::pi / 180.0)) * exp_rotation(Vector3(lean, 0, 0));
       const Box box{"a", Vector3(0.10, 0.08, 0.09), {R, Vector3(0.04, 0.07, 0.12)}};
       internal::TrackedBox tracked{0.5 * box.size, X_CW * box.X_WP, X_CW * box.X_WP, 1e4 * Matrix6::Identity()};
-      const internal::FitResult fit = internal::fit_boxes(look(cell, {box}, 1), all, surroundings_C, {tracked}, errors,
-                                                          internal::FitStart::Near, 4);
+      const camera::Frame frame = frame_of(cell, {box}, 1);
+      const internal::FitResult fit =
+          internal::fit_boxes({frame, all, surroundings_C, errors, settings}, {tracked}, internal::FitStart::Near, 4);
       int seen = 0;
       for (int k = 0; k < 3; ++k) {
         if (!std::isfinite(fit.size_misfit[0](k))) continue;
@@ -215,7 +164,7 @@ TEST(EstimateBoxes, ReportsWhatNobodyExpectsAsAnObstacleOfItsHeight) {
   const std::vector<Box> boxes = three_boxes();
   std::vector<Box> real = boxes;
   real.push_back({"stranger", Vector3(0.09, 0.09, 0.12), level(0.13, -0.22, 0.06)});
-  const Estimate estimate = estimate_boxes(look(cell, real, 4), expect(cell, boxes, 4));
+  const Estimate estimate = estimate_boxes(frame_of(cell, real, 4), expect(cell, boxes, 4));
   ASSERT_EQ(estimate.obstacles.size(), 1u);
   EXPECT_NEAR(estimate.obstacles[0].high.z(), 0.12, 2e-3);
   EXPECT_NEAR(estimate.obstacles[0].low.x(), 0.085, 5e-3);
@@ -233,14 +182,14 @@ TEST(EstimateBoxes, RefusesFramesThatTellNothing) {
   const Cell cell;
   const std::vector<Box> boxes = three_boxes();
   const EstimateInput input = expect(cell, boxes, 5);
-  camera::Frame empty = look(cell, boxes, 5);
+  camera::Frame empty = frame_of(cell, boxes, 5);
   for (float& depth : empty.depth.values()) depth = 0.0F;
   const Estimate none = estimate_boxes(empty, input);
   EXPECT_EQ(none.fault, FrameFault::TooFewPoints);
   for (const BoxEstimate& box : none.boxes) EXPECT_EQ(box.sight, Sight::Hidden);
   std::vector<Box> blocked = boxes;  // an arm over half of the container
   blocked.push_back({"arm", Vector3(0.4, 0.3, 0.1), level(0.0, 0.15, 0.5)});
-  EXPECT_EQ(estimate_boxes(look(cell, blocked, 5), input).fault, FrameFault::ViewBlocked);
+  EXPECT_EQ(estimate_boxes(frame_of(cell, blocked, 5), input).fault, FrameFault::ViewBlocked);
 }
 
 TEST(EstimateBoxes, EqualRotationsAreTheFourOfACuboid) {
