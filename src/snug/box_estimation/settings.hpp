@@ -6,7 +6,7 @@ namespace snug::box_estimation {
 /// Where a number comes from.
 enum class Basis {
   Derived,   ///< follows from geometry, from other settings, or from a probability, as said
-  Measured,  ///< a spread or a bias that rendered frames of `snug bench camera` have, seeds below 50000
+  Measured,  ///< the spread that rendered frames have; a test measures it again
   Chosen,    ///< by hand on disturbed frames of `snug bench camera`, seeds below 50000 (docs/camera.md, Figures, where
              ///< seeds from 50000 on judge); settings_test.cpp says how far each may be off
 };
@@ -82,9 +82,9 @@ struct FaceSettings {
   void fields(Archive& a) {
     a("border", border, "px", Basis::Chosen, "points nearer to the end of what is seen of a face are left out");
     a("least_points", least_points, "px", Basis::Chosen, "on a face that is fitted");
-    a("bias_left", bias_left, "1", Basis::Measured,
+    a("bias_left", bias_left, "1", Basis::Chosen,
       "part of the interreflection's bias that stays: faces end at corners here and there");
-    a("side_bias_left", side_bias_left, "1", Basis::Measured,
+    a("side_bias_left", side_bias_left, "1", Basis::Chosen,
       "the same of faces seen from the side: their lower ends are corners with what the box stands on");
     a("side_facing", side_facing, "1", Basis::Chosen,
       "cosine to the view below which a face is one seen from the side");
@@ -113,14 +113,14 @@ struct EdgeSettings {
     a("least_lines", least_lines, "px", Basis::Chosen, "across an edge, on which its end is seen");
     a("least_part", least_part, "1", Basis::Chosen, "of the lines across an edge on which its end has to be seen");
     a("window", window, "samples", Basis::Chosen, "around an edge once it is known roughly");
-    a("offset_error", offset_error, "samples", Basis::Measured, "of what all lines of an edge have in common");
-    a("drift_error", drift_error, "px", Basis::Measured, "of the drift across the grid that a fit finds");
+    a("offset_error", offset_error, "samples", Basis::Chosen, "of what all lines of an edge have in common");
+    a("drift_error", drift_error, "px", Basis::Chosen, "of the drift across the grid that a fit finds");
     a("widest_shadow", widest_shadow, "px", Basis::Chosen, "of no points, in which what casts it is looked for");
     a("least_pixels_of_face", least_pixels_of_face, "px", Basis::Chosen,
       "of a face whose edges are looked for, or behind a ridge");
     a("least_facing", least_facing, "1", Basis::Derived,
       "cosine to the view: on flatter faces pixels are more than twice as long");
-    a("ridge_error", ridge_error, "1", Basis::Measured, "of how far points count as a face's own behind a ridge");
+    a("ridge_error", ridge_error, "1", Basis::Chosen, "of how far points count as a face's own behind a ridge");
   }
   bool operator==(const EdgeSettings&) const = default;
 };
@@ -182,7 +182,7 @@ struct SearchSettings {
     a("same_normal", same_normal, "1", Basis::Chosen, "cosine between neighbouring blocks of a patch: 10 degrees");
     a("least_blocks", least_blocks, "", Basis::Chosen, "of a patch");
     a("fit", fit, "m", Basis::Chosen, "by so much a patch may be wider or narrower than a face");
-    a("size_error", size_error, "m", Basis::Measured,
+    a("size_error", size_error, "m", Basis::Chosen,
       "of the side of a rectangle around a patch, a standard deviation");
     a("samples", samples, "", Basis::Chosen, "a side, of a face that is compared with the frame");
     a("least_part", least_part, "1", Basis::Chosen, "of the points where a proposed box should be");
@@ -244,7 +244,7 @@ struct RelocationSettings {
     a("most_misfit", most_misfit, "1", Basis::Chosen, "standard deviations: farther off is not less likely");
     a("unseen", unseen, "1", Basis::Chosen, "log-likelihood of a side of which not both ends are seen");
     a("in_the_air", in_the_air, "1", Basis::Chosen, "log-likelihood: it touches nothing");
-    a("overlap_error", overlap_error, "m", Basis::Measured, "of how deep a box is in another, a standard deviation");
+    a("overlap_error", overlap_error, "m", Basis::Chosen, "of how deep a box is in another, a standard deviation");
     a("most_overlapped", most_overlapped, "1", Basis::Chosen, "standard deviations");
     a("near", near, "1", Basis::Chosen, "log-likelihood: at its old place, and turned as it was");
     a("covered", covered, "1", Basis::Chosen, "log-likelihood: its old place is not seen to be empty");

@@ -12,6 +12,7 @@ import { ItemEvents } from "./events";
 import { Legend } from "./legend";
 import { Player } from "./player";
 import { Plots } from "./plots";
+import { sessionPanel } from "./session";
 import { endPanel, headline, warningLine } from "./summary";
 import { Timeline } from "./timeline";
 
@@ -58,7 +59,8 @@ export class App {
     this.about_ = new About(second ? [replay, second] : [replay], this.view, this.player);
     this.legend_ = new Legend(this.view);
     this.end_ = endPanel(replay, second, this.view, () => this.about_.show("container"));
-    const side = make("div", "side", this.itemEvents.element, ...(this.end_ ? [this.end_] : []));
+    const session = sessionPanel(replay);
+    const side = make("div", "side", ...(session ? [session] : []), this.itemEvents.element, ...(this.end_ ? [this.end_] : []));
     this.itemEvents.onSelect = (box) => this.plots.setBox(box);
     this.plots.onWide = (isWide) => this.element.classList.toggle("wide", isWide);
     this.measureButton_ = button("measure", "Distance between two points: click them (m)", () => this.setMeasuring(!this.isMeasuring_));

@@ -104,7 +104,8 @@ export class ItemEvents {
     const swatch = make("i", "swatch");
     swatch.style.background = this.view.colours.of(this.replay.bodies[body]?.type ?? "");
     const head = button("", "Select this box (again: none)", () => this.select(this.selected === id ? "" : id), "head");
-    head.append(swatch, make("b", "", id), make("span", "type", this.replay.bodies[body]?.type ?? ""));
+    const article = this.replay.bodies[body]?.type ?? "";
+    head.append(swatch, ...(article ? [make("b", "", article), make("span", "type", id)] : [make("b", "", id)]));
     if (state) head.append(make("span", `state ${state}`, up ? `${state}, ${up} up` : state));
     const list = make("div", "events");
     const rest = restOf(this.replay, body);
