@@ -8,7 +8,7 @@ enum class Basis {
   Derived,   ///< follows from geometry, from other settings, or from a probability, as said
   Measured,  ///< the spread that rendered frames have; a test measures it again
   Chosen,    ///< by hand on disturbed frames of `snug bench camera`, seeds below 50000 (docs/camera.md, Figures, where
-             ///< seeds from 50000 on judge); settings_test.cpp says how far each may be off
+             ///< seeds from 50000 on judge); settings_sweep_test.cpp has each a tenth off
 };
 
 // Each struct lists its fields once: name, value, unit, basis, and the reason. `Archive` is called with these five.
@@ -182,8 +182,7 @@ struct SearchSettings {
     a("same_normal", same_normal, "1", Basis::Chosen, "cosine between neighbouring blocks of a patch: 10 degrees");
     a("least_blocks", least_blocks, "", Basis::Chosen, "of a patch");
     a("fit", fit, "m", Basis::Chosen, "by so much a patch may be wider or narrower than a face");
-    a("size_error", size_error, "m", Basis::Chosen,
-      "of the side of a rectangle around a patch, a standard deviation");
+    a("size_error", size_error, "m", Basis::Chosen, "of the side of a rectangle around a patch, a standard deviation");
     a("samples", samples, "", Basis::Chosen, "a side, of a face that is compared with the frame");
     a("least_part", least_part, "1", Basis::Chosen, "of the points where a proposed box should be");
     a("least_score", least_score, "m^2", Basis::Chosen, "area of a proposed box that agrees with the frame");

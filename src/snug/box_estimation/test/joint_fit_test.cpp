@@ -108,8 +108,8 @@ TEST(FitBoxes, AStrongBeliefIsNotMovedByTheFrame) {
   EXPECT_LT((fit.boxes[0].X_CP.p - scene.tracked(kFittedBox, off).X_CP.p).norm(), 1e-5);
 }
 
-/// Where relocation.apart_error comes from: how far apart opposite edges are seen, less how far they are, over frames of
-/// a camera with errors, at any turn.
+/// Where relocation.apart_error comes from: how far apart opposite edges are seen, less how far they are, over frames
+/// of a camera with errors, at any turn.
 TEST(FitBoxes, SidesAreSeenAsFarApartAsTheSettingsSay) {
   Rng rng = Rng(16).split("apart");
   double squares = 0.0;

@@ -58,7 +58,8 @@ TEST(BestTogether, IsAsGoodAsTheBestOfAllSubsets) {
     const auto lost = static_cast<std::size_t>(1 + rng.index(4)), count = static_cast<std::size_t>(rng.index(10));
     std::vector<Place> places;
     for (std::size_t k = 0; k < count; ++k) {
-      places.push_back(place_at(rng.index(lost), rng.uniform(0.0, 0.5), rng.uniform(-200.0, 1000.0)));
+      places.push_back(place_at(static_cast<std::size_t>(rng.index(static_cast<int>(lost))), rng.uniform(0.0, 0.5),
+                                rng.uniform(-200.0, 1000.0)));
     }
     const std::vector<Place> best = best_together(places, lost, settings);
     EXPECT_TRUE(are_possible(best, settings.most_overlap));

@@ -87,7 +87,8 @@ TEST(Median, IsTheMiddleOneInAnyOrder) {
   for (int count = 1; count < 40; ++count) {
     std::vector<double> values(static_cast<std::size_t>(count));
     std::iota(values.begin(), values.end(), 0.0);
-    for (std::size_t i = values.size(); i-- > 1;) std::swap(values[i], values[rng.index(i + 1)]);
+    for (std::size_t i = values.size(); i-- > 1;)
+      std::swap(values[i], values[static_cast<std::size_t>(rng.index(static_cast<int>(i) + 1))]);
     EXPECT_EQ(median(values), count / 2);
   }
 }

@@ -116,7 +116,7 @@ TEST(AsText, SaysTheSameNumbers) {
 
 TEST(MakePage, HasEveryTableOfTheReportWithItsNumbers) {
   const std::string page = make_page(test::example_run(), made_up());
-  report::expect_well_formed(page.substr(page.find("<body>")));
+  report::expect_well_formed(page);
   for (const char* part : {"Clocks", "1. Execution", "2. Rest poses (Table 4)", "3. Poses over the motion (Table 5)",
                            "4. Wrenches (Table 6)", "2.00 <small>± 1.41</small>", "not found: nothing moves", "n.a."}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
@@ -136,7 +136,7 @@ TEST(MakePage, NamesAreNamesWhateverIsInThem) {
   const std::string page = make_page(test::example_run(), validation);
   EXPECT_EQ(page.find("<script"), std::string::npos);
   EXPECT_EQ(page.find("\u202e"), std::string::npos);
-  report::expect_well_formed(page.substr(page.find("<body>")));
+  report::expect_well_formed(page);
 }
 
 TEST(Reported, AreTheReportsOwnMeansAndMoments) {
