@@ -30,7 +30,4 @@ void check_utf8(std::string_view text, std::string_view name);
 /// Without spaces, tabs and carriage returns at both ends.
 [[nodiscard]] std::string_view trim(std::string_view text);
 
-/// Text for the inside of an element of HTML or SVG, or for an attribute value in double quotes.
-[[nodiscard]] std::string escape_markup(std::string_view text);
-
 }  // namespace snug
