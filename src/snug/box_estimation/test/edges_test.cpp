@@ -57,7 +57,9 @@ TEST(FindEdges, MeasureAShiftInThePlaneAndNoChangeOfSize) {
       EXPECT_NEAR(edge.rows.measured(0), edge.rows.J.row(0).dot(twist), 0.5e-3);
     }
     for (const int axis : {0, 1}) {
-      if (const std::optional<double> off = misfit(edges, axis)) EXPECT_NEAR(*off, 0.0, 0.6e-3);
+      if (const std::optional<double> off = misfit(edges, axis)) {
+        EXPECT_NEAR(*off, 0.0, 0.6e-3);
+      }
     }
   }
 }

@@ -148,7 +148,9 @@ TEST(RunRows, GivesTypedRowsInOrderAtAnyNumberOfProcesses) {
     settings.tell = [&](const RowResult& result, const std::string&) {
       EXPECT_EQ(result.row, percents.size());
       percents.push_back(read_row(result, {}, 1).executed_percent);
-      if (result.row == 5) EXPECT_EQ(result.error, "it broke");
+      if (result.row == 5) {
+        EXPECT_EQ(result.error, "it broke");
+      }
     };
     const RunSummary summary = run_rows(study, nullptr, work, settings);
     EXPECT_EQ(summary.failed, 1u);
