@@ -14,7 +14,8 @@ namespace snug::app {
 inline constexpr std::size_t kMostSessions = 20000;
 
 /// The recording that --runs leaves of a session: its number, then what it is of.
-[[nodiscard]] std::string recording_path(const std::string& folder, std::size_t index, const study::SessionPoint& point);
+[[nodiscard]] std::string recording_path(const std::string& folder, std::size_t index,
+                                         const study::SessionPoint& point);
 
 /// Its text is a file of a study (docs/studies.md). `seed`: of the planner; 1 to kMostSessions points.
 [[nodiscard]] study::Study make_compare_study(const CompareOptions& options, std::uint64_t seed,

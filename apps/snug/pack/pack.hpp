@@ -57,8 +57,8 @@ void add_packing_options(CLI::App& verb, PackOptions& options);
                                             const session::SessionOptions& session,
                                             const study::TrialProgress& progress, OutputFile* program);
 /// What the recording of a simulated plant says of how it was made.
-[[nodiscard]] simulated_plant::LiveRecordingOptions recording_of(
-    const simulated_plant::SimulatedPlantOptions& plant, const std::string& agent, OutputFile& file);
+[[nodiscard]] simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
+                                                                 const std::string& agent, OutputFile& file);
 /// A line on a terminal that is written over again, or nothing.
 [[nodiscard]] study::TrialProgress make_progress_line(const std::string& label);
 

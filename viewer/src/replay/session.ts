@@ -83,7 +83,7 @@ export function summarizeSession(header: Header): SessionSummary | null {
   const packed = boxes.filter((box) => box.state === "packed").length;
   const lost = boxes.filter((box) => box.state !== null && box.state !== "packed" && box.state !== "waiting").length;
   const seconds = header.speed?.duration_s ?? 0;
-  const ended = typeof settings.ended === "string" ? settings.ended : "";
+  const ended = result?.ended_by || (typeof settings.ended === "string" ? settings.ended : ""); // older recordings: in the settings
   return {
     filling: result?.filling_degree_percent ?? null,
     perHour: seconds > 0 ? (3600 * packed) / seconds : null,
