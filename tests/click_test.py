@@ -321,7 +321,7 @@ class Click(unittest.TestCase):
         result = subprocess.run([SNUG, "serve", str(CELL), "--click", "tcp://*:5555"], capture_output=True, text=True,
                                 check=False, timeout=60)
         self.assertEqual(result.returncode, 2, result.stderr)
-        self.assertIn("--remote", result.stderr)
+        self.assertIn("--keys", result.stderr)
 
     def test_control_does_a_program_as_simulate_does(self):
         with tempfile.TemporaryDirectory() as folder:

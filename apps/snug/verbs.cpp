@@ -14,6 +14,7 @@
 #include "apps/snug/identify/identify.hpp"
 #include "apps/snug/init/init.hpp"
 #include "apps/snug/items/items.hpp"
+#include "apps/snug/keys/keys.hpp"
 #include "apps/snug/load/load.hpp"
 #include "apps/snug/manual/manual.hpp"
 #include "apps/snug/measure/measure.hpp"
@@ -43,6 +44,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_check(app, action);
   add_serve(app, action);
   add_control(app, action);
+  add_keys(app, action);
   add_report(app, action);
   add_view(app, action);
   add_plot(app, action);

@@ -13,6 +13,7 @@
 #include "snug/cell/joint_pace.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
+#include "snug/core/text.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/remote_plant/program_client.hpp"
 #include "snug/runs/corrected.hpp"
@@ -46,13 +47,14 @@ std::string as_table(const remote_plant::ProgramClientResult& result) {
     for (const click::SensorValue& value : object.object) {
       if (value.type != click::ValueType::Position) continue;
       const Vector3 p = kMm * value.vector;
-      text += fmt::format("{:<16} {:>9.2f} {:>9.2f} {:>9.2f}\n", name, p.x(), p.y(), p.z());
+      text += fmt::format("{:<16} {:>9.2f} {:>9.2f} {:>9.2f}\n", printable(name, 100), p.x(), p.y(), p.z());
     }
   }
   text += fmt::format("\nprogram            {:.2f} s, {} ticks in {:.2f} s, real-time factor {:.0f}\n", result.duration,
                       result.ticks, result.wall, result.simulated / result.wall);
   if (!result.failure.empty())
-    text += fmt::format("failed             toward row {}: {}\n", result.row + 1, result.failure);
+    text += fmt::format("failed             toward row {}: {}\n", result.row + 1,
+                        printable(result.failure, kLongestMessage));
   return text;
 }
 
@@ -81,14 +83,15 @@ int run_control(const ControlOptions& options) {
   plan.path_limits = pace.get();
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
   remote_plant::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
-                                               options.sequence ? &sequence : nullptr};
-  click::Client client(options.endpoint, options.patience);
+                                               options.sequence ? &sequence : nullptr,
+                                               options.patience};
+  click::Client client(options.endpoint, options.patience, click::find_client_keys(options.keys));
   const remote_plant::ProgramClientResult result = remote_plant::run_program(client, scenario, arm, plan, settings);
   if (!result.has_begun)
     throw InputError("command line", "--click", result.failure, "the address of a simulator of this robot");
   print(options.json ? as_json(result) : as_table(result));
   if (result.failure.empty()) return kSuccess;
-  std::fprintf(stderr, "snug: failed: %s\n", result.failure.c_str());
+  std::fprintf(stderr, "snug: failed: %s\n", printable(result.failure, kLongestMessage).c_str());
   return kRunFailed;
 }
 

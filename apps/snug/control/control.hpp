@@ -19,7 +19,8 @@ struct ControlOptions {
   std::string corrections = "none";
   std::string object = {};
   std::string vacuum_event = "vacuum", blow_off_event = "blow_off";
-  double patience = 10.0;  ///< s, for an answer
+  std::optional<std::string> keys;  ///< folder or file: who this is, and who is expected there
+  double patience = 10.0;           ///< s, for an answer
   bool json = false;
 };
 

@@ -45,6 +45,10 @@ void add_control(CLI::App& app, Action& action) {
   verb.add_option("--blow-off-event", options->blow_off_event, "name of the event that switches the blow-off")
       ->type_name("NAME")
       ->capture_default_str();
+  verb.add_option("--keys", options->keys,
+                  "keys by which this program is known there, and knows whom it meets (`snug keys`): a folder, or "
+                  "a file NAME.key_secret in it")
+      ->type_name("DIR");
   verb.add_option("--timeout", options->patience, "how long to wait for an answer")
       ->check(within(0.01, 1e5))
       ->type_name("SECONDS")

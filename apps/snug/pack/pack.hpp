@@ -19,6 +19,8 @@ struct PackOptions {
   std::string agent = "contact-aware";
   std::optional<std::uint64_t> seed;
   std::optional<std::uint64_t> random_seed;  ///< the sequence is drawn: every box of the scenario, in random order
+  double agent_patience = 600.0;             ///< s, for an answer of an agent in Python
+  std::optional<std::string> keys;           ///< folder or file: by which this program is known there
   std::string plant = "simulated";           ///< or where one is served: click://HOST:PORT, click+ipc://PATH
   double patience = 10.0;                    ///< s, for its answers
   std::uint64_t plant_seed = 1;

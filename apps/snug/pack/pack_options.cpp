@@ -116,12 +116,21 @@ void add_pack(CLI::App& app, Action& action) {
       ->check(one_of(packing::agent_names(), "module:Class"))
       ->type_name("NAME|MODULE:CLASS")
       ->capture_default_str();
+  verb.add_option("--agent-timeout", options->agent_patience,
+                  "how long an agent in Python may take to start, and for each answer")
+      ->check(within(0.01, 1e6))
+      ->type_name("SECONDS")
+      ->capture_default_str();
   verb.add_option(
           "--plant", options->plant,
           "what is packed: simulated, in this program, or a cell that `snug serve` serves in another one, here or "
           "elsewhere: click://HOST:PORT, click+ipc://PATH (docs/click.md)")
       ->type_name("simulated|ADDRESS")
       ->capture_default_str();
+  verb.add_option("--keys", options->keys,
+                  "keys by which this program is known there, and knows whom it meets (`snug keys`): a folder, or "
+                  "a file NAME.key_secret in it")
+      ->type_name("DIR");
   verb.add_option("--plant-timeout", options->patience, "how long to wait for an answer of a served plant")
       ->check(within(0.01, 1e5))
       ->type_name("SECONDS")

@@ -75,7 +75,8 @@ study::Trial run_served_trial(const PackOptions& options, const model::Scenario&
   expect_options_of_a_served_plant(options, session);
   const perception::Kind kind = perception::kind_of(options.perception);
   remote_plant::RemotePlant plant(scenario, options.sequence,
-                                  {options.plant, options.patience, kind, options.plant_seed, session.simulation});
+                                  {options.plant, options.patience, kind, options.plant_seed, session.simulation,
+                                   click::find_client_keys(options.keys)});
   Watcher watcher(scenario, plant);
   study::Witness witness;
   for (const model::Item& item : model::find_sequence(scenario, options.sequence)->items) {

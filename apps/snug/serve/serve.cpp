@@ -17,6 +17,7 @@
 #include "apps/snug/common/robot_warnings.hpp"
 #include "apps/snug/view/view.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/model/spin.hpp"
 #include "snug/record/writer.hpp"
 #include "snug/runs/result_json.hpp"
 #include "snug/runs/run_table.hpp"
@@ -38,6 +39,7 @@ std::string sequence_of(const ServeOptions& options, const model::Scenario& scen
 model::Scenario load(const ServeOptions& options) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (options.dt) scenario.time_step = *options.dt;
+  model::check_spins(scenario);
   if (options.seed) scenario.seed = *options.seed;
   if (options.record_period) scenario.record_period = *options.record_period;
   if (!scenario.robot) throw InputError(scenario.source_name, "robot", "", "a robot, to be driven");
@@ -138,6 +140,7 @@ class Serving {
     settings.end_run = [this](int run, const runs::RunResult& result) { end(run, result); };
     simulator_.emplace(simulation_, std::move(settings));
     served_cell::ServerSettings server = options.server;
+    if (options.keys) server.keys = click::load_server_keys(*options.keys);
     server.log = [](const std::string& line) { std::fprintf(stderr, "snug: %s\n", line.c_str()); };
     server.steps_fd = STDIN_FILENO;
     server.read_steps = [this] { return lines_.read(); };

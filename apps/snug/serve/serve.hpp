@@ -27,6 +27,7 @@ struct ServeOptions {
   served_cell::ServedCellSettings cell;
   served_cell::ServerSettings server;
   std::optional<double> batch;        ///< s, simulated
+  std::optional<std::string> keys;    ///< folder: who may drive it
   bool once = false;                  ///< ends after the first run
   std::optional<std::string> record;  ///< HDF5 file; of further runs: with their number before the ending
   bool json = false;

@@ -15,6 +15,7 @@ constexpr const char* kServeExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1 --plant-seed 7 --once
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --async --view
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --robot-object ur10_FTSensor_sr_gripper
+  snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys       # for other machines
 One Control is one step, unless --async. Ctrl-C ends it. docs/click.md describes the protocol as it is served.)";
 
 void add_served_cell(CLI::App& verb, ServeOptions& options) {
@@ -99,7 +100,15 @@ void add_serve(CLI::App& app, Action& action) {
   verb.add_option("--click", options->server.endpoint, "address to serve at: tcp://HOST:PORT or ipc://PATH")
       ->type_name("ADDRESS")
       ->capture_default_str();
-  verb.add_flag("--remote", options->server.allows_remote, "allow an address that other machines can reach");
+  verb.add_option("--keys", options->keys,
+                  "let in only who has a key of this folder (`snug keys DIR` makes it), and encrypt what is said; an "
+                  "address that other machines can reach needs it")
+      ->type_name("DIR");
+  verb.add_option("--lease", options->server.lease,
+                  "a controller that says nothing for longer gives its place to the next one")
+      ->check(within(0.1, 1e6))
+      ->type_name("SECONDS")
+      ->capture_default_str();
   add_served_cell(verb, *options);
   add_served_names(verb, *options);
   add_served_time(verb, *options);

@@ -15,6 +15,7 @@ struct ViewOptions {
   std::vector<std::string> recordings;  ///< one, or one and a second to lay over it; none with a run
   SimulateOptions run;                  ///< shown while it goes on, if it has a scenario
   std::optional<std::string> click;     ///< address at which the live run is served: it is looked at, not simulated
+  std::optional<std::string> keys;      ///< folder or file: by which this program is known there
   double patience = 10.0;               ///< s, for an answer from there
   double speed = 1.0;                   ///< of the run, simulated seconds a second; 0: as fast as it goes
   bool is_paused = false;               ///< before its first step

@@ -18,7 +18,8 @@ constexpr const char* kViewExamples = R"(Examples:
   snug view --live scenarios/box-demonstrator.yaml --program program.csv --sequence 1 -o run.h5
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555
   snug view --live scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555      # in another terminal: looks on
-Ctrl-C ends it. The page is served to this machine only, unless --host names another of its addresses.)";
+Ctrl-C ends it. The page is served to this machine only, unless --host names another of its addresses.
+Who opens that has to know the whole address that is printed, with its token.)";
 
 void check(const ViewOptions& options) {
   const bool is_live = !options.run.scenario.empty();
@@ -61,6 +62,10 @@ void add_view(CLI::App& app, Action& action) {
       ->check(positive())
       ->type_name("SECONDS")
       ->capture_default_str();
+  verb.add_option("--keys", options->keys,
+                  "keys by which this program is known there, and knows whom it meets (`snug keys`): a folder, or "
+                  "a file NAME.key_secret in it")
+      ->type_name("DIR");
   add_program_options(verb, options->run);
   add_physics_options(verb, options->run);
   verb.add_option("-o,--record", options->run.record, "write a recording of the live run")->type_name("FILE.h5");
@@ -68,9 +73,13 @@ void add_view(CLI::App& app, Action& action) {
       ->type_name("FACTOR")
       ->capture_default_str();
   verb.add_flag("--paused", options->is_paused, "start the live run paused");
-  verb.add_option("--host", options->server.host, "address to serve at; others can look in if it is not loopback")
+  verb.add_option("--host", options->server.host,
+                  "address to serve at; if it is not loopback, who has the printed address with its token can look in")
       ->type_name("ADDRESS")
       ->capture_default_str();
+  verb.add_option("--name", options->server.names,
+                  "a name by which browsers ask for it, besides this machine's own: behind a proxy, in a container")
+      ->type_name("NAME");
   verb.add_option("--port", options->server.port, "port to serve at; 0 any that is free")
       ->type_name("N")
       ->capture_default_str();

@@ -10,6 +10,7 @@
 #include "apps/snug/command_line/version.hpp"
 #include "apps/snug/command_line/viewer_page.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/text.hpp"
 #include "snug/remote_plant/watched_cell.hpp"
 #include "snug/runs/recorder.hpp"
 
@@ -85,7 +86,7 @@ int view_served(const ViewOptions& options) {
   const model::Scenario scenario = load_with_overrides(options.run);
   if (scenario.sequences.empty()) throw InputError(scenario.source_name, "sequences", "", "a sequence of boxes");
   remote_plant::WatchedCell cell(scenario, options.run.sequence.value_or(scenario.sequences.front().name),
-                                 *options.click, options.patience);
+                                 *options.click, options.patience, click::find_client_keys(options.keys));
   serve::LiveRun live(std::filesystem::path(options.run.scenario).stem().string(), 0.0);
   serve::Server server(options.server, {std::string(viewer_page()), {}, &live, true});
   Watch watch(cell, live);
@@ -97,7 +98,8 @@ int view_served(const ViewOptions& options) {
   std::string trouble;
   std::thread looking([&] {
     trouble = watch.run();
-    if (!trouble.empty()) std::fprintf(stderr, "snug: the cell is seen no more: %s\n", trouble.c_str());
+    if (!trouble.empty())
+      std::fprintf(stderr, "snug: the cell is seen no more: %s\n", printable(trouble, kLongestMessage).c_str());
   });
   announce(server, options.opens_browser);
   server.run();

@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <zmq.h>
 
+#include <algorithm>
 #include <atomic>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "snug/click/names.hpp"
 #include "snug/click/socket.hpp"
 #include "snug/click/spin_wait.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::click {
 namespace {
@@ -21,12 +23,30 @@ using Reason = Unexpected<std::string>;
 constexpr std::int64_t kLongestAnswer = std::int64_t{16} << 20;  ///< of an answer
 constexpr int kLinger = 200;                                     ///< ms, for what was said last
 
+/// Names are shown on terminals and in tables, and are looked up: they are short text, or the peer is no simulator.
+std::string find_bad_name(const Handshake& handshake) {
+  constexpr std::size_t kLongestName = 100;
+  const auto is_bad = [](const std::string& name) { return name.size() > kLongestName || !is_printable(name); };
+  for (const auto& [name, object] : handshake.objects) {
+    if (is_bad(name)) return name;
+    for (const auto* names : {&object.controls, &object.joints}) {
+      const auto bad = std::ranges::find_if(*names, is_bad);
+      if (bad != names->end()) return *bad;
+    }
+    for (const auto& [event, is_on] : object.events) {
+      if (is_bad(event)) return event;
+    }
+  }
+  return {};
+}
+
 /// The answer as one of the kind that was asked for.
 template <class T>
 Expected<T, std::string> expect(Expected<Message, std::string> answer, const char* what) {
   if (!answer) return Reason(std::move(answer.error()));
   if (auto* expected = std::get_if<T>(&*answer)) return std::move(*expected);
-  if (const auto* error = std::get_if<Error>(&*answer)) return Reason("the simulator says: " + error->text);
+  if (const auto* error = std::get_if<Error>(&*answer))
+    return Reason("the simulator says: " + printable(error->text, kLongestMessage));
   if (std::holds_alternative<Reset>(*answer)) return Reason("the simulator was reset");
   return Reason(fmt::format("the simulator answered {} by a {}", what, name_of(*answer)));
 }
@@ -34,12 +54,17 @@ Expected<T, std::string> expect(Expected<Message, std::string> answer, const cha
 }  // namespace
 
 struct Client::Impl {
-  Impl(const std::string& address, double seconds, const std::string& routing_id)
-      : endpoint(address), patience(seconds) {
+  Impl(const std::string& address, double seconds, const std::optional<ClientKeys>& keys, const std::string& routing_id)
+      : endpoint(address), patience(seconds), has_keys(keys) {
     wire::check_endpoint(endpoint);
     socket = wire::make_socket(context.get(), ZMQ_REQ, kLinger);
     if (!routing_id.empty()) {
       (void)zmq_setsockopt(socket.get(), ZMQ_ROUTING_ID, routing_id.data(), routing_id.size());
+    }
+    if (keys) {
+      wire::set(socket.get(), ZMQ_CURVE_SERVERKEY, keys->server_public_key);
+      wire::set(socket.get(), ZMQ_CURVE_PUBLICKEY, keys->own.public_key);
+      wire::set(socket.get(), ZMQ_CURVE_SECRETKEY, keys->own.secret_key);
     }
     wire::set(socket.get(), ZMQ_MAXMSGSIZE, kLongestAnswer);
     wire::set(socket.get(), ZMQ_IPV6, endpoint.starts_with("tcp://[") ? 1 : 0);
@@ -54,6 +79,7 @@ struct Client::Impl {
 
   std::string endpoint;
   double patience;
+  bool has_keys;
   wire::Context context = wire::make_context();
   wire::Socket socket;
 
@@ -75,12 +101,13 @@ struct Client::Impl {
   }
 };
 
-Client::Client(const std::string& endpoint, double patience, const std::string& routing_id)
-    : impl_(std::make_unique<Impl>(endpoint, patience, routing_id)) {}
+Client::Client(const std::string& endpoint, double patience, const std::optional<ClientKeys>& keys,
+               const std::string& routing_id)
+    : impl_(std::make_unique<Impl>(endpoint, patience, keys, routing_id)) {}
 
-Client Client::watcher(const std::string& endpoint, double patience) {
+Client Client::watcher(const std::string& endpoint, double patience, const std::optional<ClientKeys>& keys) {
   static std::atomic<int> count = 0;
-  return {endpoint, patience, fmt::format("{}-{}-{}", kWatcher, ::getpid(), count++)};
+  return {endpoint, patience, keys, fmt::format("{}-{}-{}", kWatcher, ::getpid(), count++)};
 }
 Client::~Client() = default;
 Client::Client(Client&&) noexcept = default;
@@ -89,7 +116,8 @@ Client& Client::operator=(Client&&) noexcept = default;
 Expected<std::string, std::string> Client::Impl::exchange(const Message& message) {
   const std::string frame = encode(message);
   const auto fail = [&](const char* what) {
-    return Reason(errno == EAGAIN ? fmt::format("{}: nobody answers within {} s", endpoint, patience)
+    return Reason(errno == EAGAIN ? fmt::format("{}: nobody answers{} within {} s", endpoint,
+                                                has_keys ? " who has these keys" : "", patience)
                                   : fmt::format("{}: {}: {}", endpoint, what, zmq_strerror(errno)));
   };
   if (zmq_send(socket.get(), frame.data(), frame.size(), 0) < 0) return fail("sending");
@@ -124,6 +152,9 @@ Expected<Handshake, std::string> Client::shake_hands() {
   if (!handshake) return handshake;
   if (handshake->version != kVersion) {
     return Reason(fmt::format("the simulator speaks version {}, not {}", handshake->version, kVersion));
+  }
+  if (const std::string bad = find_bad_name(*handshake); !bad.empty()) {
+    return Reason(fmt::format("the simulator names something '{}', which is no name", printable(bad, 100)));
   }
   for (const auto& [name, object] : handshake->objects) {
     if (object.controls.size() != object.control_types.size()) {

@@ -2,18 +2,23 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "snug/click/keys.hpp"
 #include "snug/click/message.hpp"
 
 namespace snug::click {
 
 class Client {
  public:
-  /// Throws InputError for an address that is none. Nothing is sent before the first request.
-  explicit Client(const std::string& endpoint, double patience = 10.0) : Client(endpoint, patience, "") {}
+  /// Throws InputError for an address that is none. Nothing is sent before the first request. With keys the simulator
+  /// has to have those of its own that are expected, and what is said is encrypted.
+  explicit Client(const std::string& endpoint, double patience = 10.0, const std::optional<ClientKeys>& keys = {})
+      : Client(endpoint, patience, keys, "") {}
   /// One that only looks: handshakes and sensors, also while a controller is connected to a simulator of snug.
-  [[nodiscard]] static Client watcher(const std::string& endpoint, double patience = 10.0);
+  [[nodiscard]] static Client watcher(const std::string& endpoint, double patience = 10.0,
+                                      const std::optional<ClientKeys>& keys = {});
   ~Client();
   Client(Client&&) noexcept;
   Client& operator=(Client&&) noexcept;
@@ -35,7 +40,8 @@ class Client {
   void report_error(const std::string& text);
 
  private:
-  Client(const std::string& endpoint, double patience, const std::string& routing_id);
+  Client(const std::string& endpoint, double patience, const std::optional<ClientKeys>& keys,
+         const std::string& routing_id);
   [[nodiscard]] Sensed ask(const Message& message, const char* what);
   struct Impl;
   std::unique_ptr<Impl> impl_;

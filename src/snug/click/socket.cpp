@@ -59,6 +59,10 @@ void set(void* socket, int option, std::int64_t value) {
   if (zmq_setsockopt(socket, option, &value, sizeof value) != 0) fail("ZeroMQ option");
 }
 
+void set(void* socket, int option, const std::string& value) {
+  if (zmq_setsockopt(socket, option, value.c_str(), value.size()) != 0) fail("ZeroMQ option");
+}
+
 void check_endpoint(const std::string& endpoint) {
   if (endpoint.starts_with("ipc://") && endpoint.size() > 6) return;
   if (!endpoint.starts_with("tcp://")) refuse(endpoint);

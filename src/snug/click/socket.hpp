@@ -24,6 +24,7 @@ using Socket = std::unique_ptr<void, CloseSocket>;
 [[nodiscard]] Socket make_socket(void* context, int type, int linger_ms = 0);
 void set(void* socket, int option, int value);
 void set(void* socket, int option, std::int64_t value);
+void set(void* socket, int option, const std::string& value);
 
 /// Throws InputError, naming the option --click, unless it is tcp://HOST:PORT or ipc://PATH.
 void check_endpoint(const std::string& endpoint);

@@ -82,6 +82,13 @@ class ProgramClient {
       }
       std::string trouble = link_.send(command(tick.program));
       if (!trouble.empty()) return trouble;
+      if (stands_still()) {
+        const std::string text =
+            fmt::format("the simulator's time stands still at {} s: its answers to Controls show no step for {} s",
+                        latest_, settings_.patience);
+        client_.report_error(text);
+        return text;
+      }
       feel();
       ++result_.ticks;
       if (!tick.program.finished_now || has_ended) continue;
@@ -91,6 +98,16 @@ class ProgramClient {
     }
     if (!has_ended) return "the program did not end within two hours";
     return client_.reset();
+  }
+
+  /// Time that goes back does not go on.
+  bool stands_still() {
+    const auto now = std::chrono::steady_clock::now();
+    if (link_.last().time > latest_ || result_.ticks == 0) {
+      latest_ = link_.last().time;
+      moved_ = now;
+    }
+    return std::chrono::duration<double>(now - moved_).count() > settings_.patience;
   }
 
   control::MachineTick think() {
@@ -151,7 +168,9 @@ class ProgramClient {
   const ProgramClientSettings& settings_;
   JointLink link_;
   std::vector<std::string> boxes_;  ///< objects of the sequence's items; empty for those that cannot be brought
-  int fed_ = -1;                    ///< item that the last command brought
+  double latest_ = 0.0;             ///< s, simulated, seen so far
+  std::chrono::steady_clock::time_point moved_;  ///< when it was seen first
+  int fed_ = -1;                                 ///< item that the last command brought
   cell::ArmState state_;
   motion::ControllerState program_;
   control::JointControllerWork work_;

@@ -16,6 +16,8 @@ struct ProgramClientSettings {
   std::string blow_off_event = "blow_off";  ///< used if there is one
   /// Brings the boxes of this sequence, where the simulator lets it; none: they come by themselves.
   const model::Sequence* sequence = nullptr;
+  /// s of the clock that the simulator's time may stand still while Controls are answered; then it is a failure.
+  double patience = 10.0;
 };
 
 struct ProgramClientResult {

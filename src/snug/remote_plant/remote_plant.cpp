@@ -57,7 +57,7 @@ RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& seq
       scenario_(cell::with_fixed_arrivals(scenario, sequence)),
       sequence_(cell::require_sequence(scenario_, sequence)),
       model_(robot::load_arm(scenario_)),
-      client_(endpoint_of(options.address), options.patience),
+      client_(endpoint_of(options.address), options.patience, options.keys),
       link_(client_, model_, {}),
       perception_(perception::make_perception(options.perception, options.seed, scenario)),
       was_brought_(sequence_.items.size(), false),

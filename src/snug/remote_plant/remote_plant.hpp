@@ -20,6 +20,7 @@ struct RemotePlantOptions {
   std::uint64_t seed = 1;  ///< of the noise of perception alone
   /// How the joints are led to the waypoints: the tracking counts.
   cell::SimulationOptions motions;
+  std::optional<click::ClientKeys> keys = {};  ///< where the served cell asks for them
 };
 
 /// The CLICK address of a plant's: "tcp://HOST:PORT" of "click://HOST:PORT". Throws InputError for other words.

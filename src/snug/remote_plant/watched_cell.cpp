@@ -21,9 +21,9 @@ cell::SimulationOptions with_robot(const model::Scenario& scenario) {
 }  // namespace
 
 WatchedCell::WatchedCell(model::Scenario scenario, const std::string& sequence, const std::string& endpoint,
-                         double patience)
+                         double patience, const std::optional<click::ClientKeys>& keys)
     : simulation_(scenario, sequence, with_robot(scenario)),
-      client_(click::Client::watcher(endpoint, patience)),
+      client_(click::Client::watcher(endpoint, patience, keys)),
       link_(client_, simulation_.arm()->model(), {.needs_vacuum = false, .only_looks = true}) {
   for (const model::Item& item : simulation_.sequence().items) names_.push_back(record::log_name(item.parcel));
   std::string trouble = link_.connect(simulation_.scenario().controller.tick);

@@ -1,6 +1,7 @@
 // WatchedCell: a cell that another program serves over CLICK, as somebody sees it who only looks.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ class WatchedCell {
  public:
   /// Connects to a CLICK address (tcp://HOST:PORT, ipc://PATH), beside its controller. Throws InputError when nobody
   /// answers there, and for a cell without the robot or without a box of the sequence.
-  WatchedCell(model::Scenario scenario, const std::string& sequence, const std::string& endpoint, double patience);
+  WatchedCell(model::Scenario scenario, const std::string& sequence, const std::string& endpoint, double patience,
+              const std::optional<click::ClientKeys>& keys = {});
 
   [[nodiscard]] const cell::Simulation& simulation() const { return simulation_; }
   /// What is sensed now; empty, or why that cannot be known any more.

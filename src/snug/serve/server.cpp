@@ -6,12 +6,14 @@
 #include <atomic>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <thread>
 #include <utility>
 
 #include "snug/core/input_error.hpp"
 #include "snug/serve/internal/guarded_server.hpp"
+#include "snug/serve/internal/visitors.hpp"
 
 namespace snug::serve {
 namespace {
@@ -21,32 +23,12 @@ using Json = nlohmann::ordered_json;
 constexpr int kMaxWatchers = 8;                       // each holds a thread
 constexpr std::chrono::milliseconds kHeartbeat(500);  // how soon a watcher that left is noticed
 
-/// "[::1]:80" and "localhost:80" without port and brackets; nothing when there is anything else.
-std::string host_of(std::string_view header) {
-  const bool is_bracketed = header.starts_with('[');
-  const std::size_t end = is_bracketed ? header.find(']') : std::min(header.find(':'), header.size());
-  if (end == std::string_view::npos) return {};
-  const std::string_view rest = header.substr(end + (is_bracketed ? 1 : 0));
-  const bool is_port =
-      rest.empty() || (rest.front() == ':' && rest.size() <= 6 &&
-                       std::all_of(rest.begin() + 1, rest.end(), [](char c) { return c >= '0' && c <= '9'; }));
-  if (!is_port) return {};
-  return std::string(is_bracketed ? header.substr(1, end - 1) : header.substr(0, end));
-}
-
 /// Not set_content: that packs with brotli at its slowest, seconds for a page.
 void answer(httplib::Response& response, std::shared_ptr<const std::string> bytes, const char* type) {
   const std::size_t size = bytes->size();
   response.set_content_provider(size, type, [bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
     return sink.write(bytes->data() + offset, length);
   });
-}
-
-/// Browsers say where a request comes from. A link on another site's page may lead here; nothing else of it has any
-/// business here: it could not read the answers, but take the places of watchers.
-bool is_from_another_page(const httplib::Request& request) {
-  const std::string site = request.get_header_value("Sec-Fetch-Site");
-  return (site == "cross-site" || site == "same-site") && request.get_header_value("Sec-Fetch-Mode") != "navigate";
 }
 
 }  // namespace
@@ -66,7 +48,7 @@ struct Server::Impl {
   internal::GuardedServer server;
   std::atomic<int> watchers = 0;
   std::atomic<bool> is_stopping = false, is_in_run = false;
-  bool is_local = false;  ///< listens where only this machine can reach it
+  std::optional<internal::Visitors> visitors;  ///< once it is known where the server listens
   int port = 0;
 };
 
@@ -94,7 +76,7 @@ Server::Impl::Impl(const ServerSettings& server_settings, Content server_content
     throw InputError("command line", "--host, --port", settings.host + " port " + std::to_string(settings.port),
                      "an address of this machine and a port that is free");
   }
-  is_local = server.is_at_loopback();
+  visitors.emplace(server.is_at_loopback(), settings.names, port);
   server.widen_queue();
 }
 
@@ -108,25 +90,13 @@ Json Server::Impl::recordings_json() const {
   return answer;
 }
 
-/// Refuses what is sent by mistake or by others. Nothing that is served takes a body. A page of another site can have
-/// its own name resolve to 127.0.0.1; its requests then carry that name.
+/// Refuses what is sent by mistake or by others. Nothing that is served takes a body.
 bool Server::Impl::is_for_us(const httplib::Request& request, httplib::Response& response) const {
   if (request.has_header("Transfer-Encoding") || request.get_header_value<std::uint64_t>("Content-Length") > 0) {
     response.status = 413;  // the body is not read: each connection ends after its answer
     return false;
   }
-  const auto host = request.headers.find("Host");  // get_header_value() ends at a NUL
-  const bool is_named =
-      request.get_header_value_count("Host") == 1 && internal::is_loopback_name(host_of(host->second));
-  if (is_local && !is_named) {
-    response.status = 403;
-    response.set_content("This server answers to the names of this machine only.\n", "text/plain");
-    return false;
-  }
-  if (is_from_another_page(request)) {
-    response.status = 403;
-    return false;
-  }
+  if (visitors->refuse(request, response) != 0) return false;
   if (request.method == "GET" || request.method == "HEAD" || request.method == "POST") return true;
   response.status = 405;
   response.set_header("Allow", "GET, HEAD, POST");
@@ -209,9 +179,11 @@ Server::~Server() { stop(); }
 int Server::port() const { return impl_->port; }
 
 std::string Server::address() const {
-  const std::string& host = impl_->settings.host;
+  const std::string& asked = impl_->settings.host;
+  const bool is_any = asked == "0.0.0.0" || asked == "::" || asked == "*";
+  const std::string host = is_any ? internal::Visitors::own_address() : asked;
   return "http://" + (host.find(':') == std::string::npos ? host : "[" + host + "]") + ":" + std::to_string(port()) +
-         "/";
+         "/" + impl_->visitors->query();
 }
 
 void Server::run() {

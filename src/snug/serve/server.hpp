@@ -11,8 +11,10 @@
 namespace snug::serve {
 
 struct ServerSettings {
-  std::string host = "127.0.0.1";  ///< address to listen at; others than loopback let everybody in who reaches it
+  std::string host = "127.0.0.1";  ///< address to listen at; others than loopback let in who knows the address's token
   int port = 0;                    ///< 0: any that is free
+  /// By which browsers may ask for it, besides those of this machine: behind a proxy, in a container.
+  std::vector<std::string> names = {};
 };
 
 /// What is shown: recordings, or a run that goes on.
@@ -34,7 +36,7 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   [[nodiscard]] int port() const;
-  /// "http://127.0.0.1:8080/"
+  /// "http://127.0.0.1:8080/"; where other machines can reach it "http://192.0.2.7:8080/?token=..."
   [[nodiscard]] std::string address() const;
   /// Answers requests until stop() is called.
   void run();

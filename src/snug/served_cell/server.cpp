@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "snug/click/authenticator.hpp"
 #include "snug/click/socket.hpp"
 #include "snug/click/spin_wait.hpp"
 #include "snug/core/check.hpp"
@@ -105,8 +106,9 @@ struct Server::Impl {
   void serve_kept();
   void step_in_time();
   void ask_for_steps();
-  void lose(const Simulator::Peer& peer);
+  void lose(const Simulator::Peer& peer, const std::string& why = "the controller left");
   [[nodiscard]] bool is_driven();
+  [[nodiscard]] bool is_silent() const;
   void look_for_controller();
   void wait();
   void log(const std::string& line) const {
@@ -118,12 +120,14 @@ struct Server::Impl {
   Pacer pacer;
   ServerTimes times;
   wire::Context context = wire::make_context();
+  std::optional<wire::Authenticator> authenticator;  ///< with keys
   wire::Socket socket, monitor;
   std::string endpoint;
   int stop_fd = -1;
   std::atomic<bool> is_stopping = false;
   internal::Connections connections;
-  Simulator::Peer controller;  ///< while there is one
+  Simulator::Peer controller;          ///< while there is one
+  Clock::time_point controller_heard;  ///< when its last message came
   Clock::time_point next_look = Clock::time_point::max(), look_until;
   std::vector<Request> kept;
   int steps_allowed = 0;  ///< step by step; -1: all
@@ -136,9 +140,9 @@ Server::Impl::Impl(Simulator& to_serve, ServerSettings server_settings)
       settings(std::move(server_settings)),
       pacer(to_serve.handshake().time_step / settings.speed.value_or(1.0)) {
   wire::check_endpoint(settings.endpoint);
-  if (!settings.allows_remote && !wire::is_local(settings.endpoint)) {
+  if (!settings.keys && !wire::is_local(settings.endpoint)) {
     throw InputError("command line", "--click", "'" + settings.endpoint + "', which other machines can reach",
-                     "an address such as tcp://127.0.0.1:5555, or --remote");
+                     "an address such as tcp://127.0.0.1:5555, or --keys DIR (`snug keys DIR` makes them)");
   }
   check_file(settings.endpoint);
   stop_fd = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
@@ -154,6 +158,12 @@ void Server::Impl::bind() {
   wire::set(socket.get(), ZMQ_SNDHWM, kMostUnread);
   wire::set(socket.get(), ZMQ_IPV6, settings.endpoint.starts_with("tcp://[") ? 1 : 0);
   wire::set(socket.get(), ZMQ_TCP_KEEPALIVE, 1);
+  wire::refuse_old_peers(socket.get());
+  if (settings.keys) {
+    authenticator.emplace(context.get(), settings.keys->allowed);
+    wire::set(socket.get(), ZMQ_CURVE_SERVER, 1);
+    wire::set(socket.get(), ZMQ_CURVE_SECRETKEY, settings.keys->own.secret_key);
+  }
   SNUG_CHECK(zmq_socket_monitor(socket.get(), kMonitor, ZMQ_EVENT_DISCONNECTED) == 0, "a socket can be watched");
   monitor = wire::make_socket(context.get(), ZMQ_PAIR);
   SNUG_CHECK(zmq_connect(monitor.get(), kMonitor) == 0, "a monitor can be read");
@@ -182,9 +192,15 @@ void Server::Impl::read_monitor() {
   look_until = next_look + kLookFor;
 }
 
-void Server::Impl::lose(const Simulator::Peer& peer) {
+void Server::Impl::lose(const Simulator::Peer& peer, const std::string& why) {
   std::erase_if(kept, [&](const Request& request) { return request.peer == peer; });
-  if (simulator.leave(peer)) log("the controller left");
+  if (simulator.leave(peer, why)) log(why);
+}
+
+/// Has the controller nothing to say any more? One that waits for its step has said something.
+bool Server::Impl::is_silent() const {
+  if (Clock::now() < controller_heard + std::chrono::duration<double>(settings.lease)) return false;
+  return std::ranges::none_of(kept, [this](const Request& request) { return request.peer == controller; });
 }
 
 /// By a controller that is still there; one that is not is lost.
@@ -207,6 +223,7 @@ bool Server::Impl::read_message() {
   wire::Parts message;
   if (!wire::receive(socket.get(), message)) return false;
   if (message.parts.size() < 2) return true;  // a peer that says nothing
+  if (simulator.is_controller(message.parts.front())) controller_heard = Clock::now();
   Request request;
   request.received = last_message = Clock::now();
   request.peer = std::move(message.parts.front());
@@ -234,9 +251,15 @@ bool Server::Impl::must_wait(const Request& request, Clock::time_point& until) {
   until = Clock::time_point::max();
   const Clock::time_point now = Clock::now();
   const bool would_control = !simulator.is_controller(request.peer) && !Simulator::is_watcher(request.peer);
-  if (would_control && is_driven() && now < request.received + kTakeOver && simulator.is_handshake(request.frame)) {
-    until = request.received + kTakeOver;
-    return true;
+  if (would_control && is_driven() && simulator.is_handshake(request.frame)) {
+    if (is_silent()) {
+      lose(controller, "the controller was silent and another took its place");
+      return false;
+    }
+    if (now < request.received + kTakeOver) {
+      until = request.received + kTakeOver;
+      return true;
+    }
   }
   if (settings.is_async || (!settings.speed && !settings.step_by_step)) return false;
   if (!simulator.is_step(request.peer, request.frame)) return false;
@@ -269,6 +292,7 @@ void Server::Impl::serve(const Request& request) {
   }
   if (!had_controller && simulator.has_controller()) {
     controller = request.peer;
+    controller_heard = request.received;
     log("a controller is there");
   }
   if (had_controller && !simulator.has_controller()) log("the controller ended the session");
@@ -319,12 +343,16 @@ void Server::Impl::ask_for_steps() {
 }
 
 void Server::Impl::wait() {
-  const auto is_asked = [this] { return is_stopping || is_readable(socket.get()) || is_readable(monitor.get()); };
+  void* const door = authenticator ? authenticator->socket() : monitor.get();
+  const auto is_asked = [&] {
+    return is_stopping || is_readable(socket.get()) || is_readable(monitor.get()) ||
+           (authenticator && is_readable(door));
+  };
   if (spin.wait(is_asked, last_message, next_due)) return;
   const bool asks = settings.step_by_step && settings.steps_fd >= 0 && steps_allowed >= 0;
-  std::array<pollfd, 4> sources = {pollfd{stop_fd, POLLIN, 0}, pollfd{fd_of(socket.get()), POLLIN, 0},
+  std::array<pollfd, 5> sources = {pollfd{stop_fd, POLLIN, 0}, pollfd{fd_of(socket.get()), POLLIN, 0},
                                    pollfd{fd_of(monitor.get()), POLLIN, 0},
-                                   pollfd{asks ? settings.steps_fd : -1, POLLIN, 0}};
+                                   pollfd{asks ? settings.steps_fd : -1, POLLIN, 0}, pollfd{fd_of(door), POLLIN, 0}};
   timespec timeout = {};
   const timespec* patience = nullptr;
   if (next_due != Clock::time_point::max()) {
@@ -343,6 +371,7 @@ void Server::Impl::run() {
     serve_kept();
     step_in_time();
     look_for_controller();
+    if (authenticator) authenticator->answer();
     if (!read_message()) wait();
   }
 }

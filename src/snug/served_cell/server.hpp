@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "snug/click/keys.hpp"
 #include "snug/served_cell/pacer.hpp"
 #include "snug/served_cell/simulator.hpp"
 
@@ -12,7 +14,10 @@ namespace snug::served_cell {
 
 struct ServerSettings {
   std::string endpoint = "tcp://127.0.0.1:5555";  ///< or ipc://PATH; port * is any that is free
-  bool allows_remote = false;                     ///< an address that other machines can reach
+  /// Whom it lets in, by their keys, and who it is. An address that other machines can reach needs them.
+  std::optional<click::ServerKeys> keys = {};
+  /// s of the clock: a controller that says nothing for longer gives its place to the next one that shakes hands.
+  double lease = 60.0;
   /// Simulated seconds a second. Async: 1 when absent. Sync: a Control waits for its time; absent, it does not.
   std::optional<double> speed;
   bool is_async = false;      ///< as the simulator
@@ -32,8 +37,8 @@ struct ServerTimes {
 
 class Server {
  public:
-  /// Binds. Throws InputError for an address that cannot be had, that others can reach though they are not to, that
-  /// another server has, or whose file is something else.
+  /// Binds. Throws InputError for an address that cannot be had, that others can reach without keys, that another
+  /// server has, or whose file is something else.
   Server(Simulator& simulator, ServerSettings settings);
   ~Server();
   Server(const Server&) = delete;

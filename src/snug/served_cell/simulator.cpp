@@ -6,6 +6,8 @@
 #include <chrono>
 #include <utility>
 
+#include "snug/core/text.hpp"
+
 namespace snug::served_cell {
 namespace {
 
@@ -81,7 +83,7 @@ std::optional<Simulator::Reply> Simulator::respond(const Peer& peer, std::string
   if (is_watcher(peer)) return show(*message);
   if (controller_ && *controller_ != peer) return reply(Error{kBusy});
   if (const auto* error = std::get_if<Error>(&*message)) {
-    end("the controller reported: " + error->text);
+    end("the controller reported: " + printable(error->text, kLongestMessage));
     clear();
     controller_.reset();
     return std::nullopt;
@@ -197,9 +199,9 @@ void Simulator::step() {
   }
 }
 
-bool Simulator::leave(const Peer& peer) {
+bool Simulator::leave(const Peer& peer, const std::string& why) {
   if (controller_ != peer) return false;
-  end("the controller left");
+  end(why);
   clear();
   controller_.reset();
   is_reset_ = false;

@@ -60,7 +60,7 @@ class Simulator {
   /// A peer that says by its name that it only looks.
   [[nodiscard]] static bool is_watcher(const Peer& peer) { return peer.starts_with(click::kWatcher); }
   /// The peer is gone. True: it was the controller.
-  bool leave(const Peer& peer);
+  bool leave(const Peer& peer, const std::string& why = "the controller left");
   /// The user resets: the controller's next message is answered so.
   void reset(const std::string& why);
   /// Ends the run, if there is one.

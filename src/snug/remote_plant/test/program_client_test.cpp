@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "snug/click/test/stranger.hpp"
 #include "snug/motion/waypoint_name.hpp"
 #include "snug/served_cell/server.hpp"
 
@@ -83,6 +84,25 @@ TEST(ProgramClient, DoesAProgramBitByBitAsTheCellDoes) {
     EXPECT_EQ(served.runs[0].state_hash, simulation.hash(state));
     EXPECT_EQ(served.runs[0].duration, simulation.time(state));
   }
+}
+
+TEST(ProgramClient, EndsWhereTheTimeOfTheSimulatorStandsStill) {
+  const cell::Simulation& simulation = cell_with_robot();
+  served_cell::Simulator simulator(simulation, {});
+  const click::test::Stranger stranger([&](const click::Message& asked) -> click::Message {
+    // Everything as it should be, but a Control is answered as a question would be.
+    const bool is_step = std::holds_alternative<click::Control>(asked);
+    return *click::decode(*simulator.answer("peer", click::encode(is_step ? click::Message(click::SensorRequest{}) : asked)));
+  });
+  const motion::Program program{"test", {motion::named_waypoint("home", simulation.scenario().controller.X_WE_start)}};
+  const motion::PreparedProgram plan = simulation.prepare(program);
+  click::Client client(stranger.endpoint());
+  ProgramClientSettings settings;
+  settings.patience = 0.5;
+  const ProgramClientResult result = run_program(client, simulation.scenario(), *simulation.arm(), plan, settings);
+  EXPECT_TRUE(result.has_begun);
+  EXPECT_NE(result.failure.find("stands still at 0 s"), std::string::npos) << result.failure;
+  EXPECT_LT(result.wall, 30.0);
 }
 
 }  // namespace

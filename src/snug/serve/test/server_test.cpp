@@ -58,7 +58,7 @@ class ServerTest : public ::testing::Test {
  protected:
   void start(Content content, const std::string& host = "127.0.0.1") {
     host_ = host;
-    server_ = std::make_unique<Server>(ServerSettings{host, 0}, std::move(content));
+    server_ = std::make_unique<Server>(ServerSettings{host, 0, {"viewer.example"}}, std::move(content));
     thread_ = std::thread([this] { server_->run(); });
   }
   void TearDown() override {
@@ -200,6 +200,51 @@ TEST_F(ServerTest, AnswersToTheNamesOfThisMachineOnlyAtEveryAddressOfItsOwn) {
     EXPECT_EQ(status(ask("GET", "/", "Host: evil.example\r\n")), 403) << host;
     TearDown();
   }
+}
+
+TEST_F(ServerTest, AnswersToItsOwnNamesOnlyWhereOthersReachIt) {
+  start({kPage, {}, nullptr}, "0.0.0.0");
+  host_ = "127.0.0.1";
+  const std::string address = server_->address();
+  ASSERT_NE(address.find("/?token="), std::string::npos) << address;
+  const std::string path = address.substr(address.rfind('/'));
+  const std::string host = address.substr(7, address.find(':', 7) - 7);
+  char machine[256] = {};
+  ASSERT_EQ(::gethostname(machine, sizeof machine - 1), 0);
+  for (const std::string& name : {host, std::string("127.0.0.1"), std::string("localhost"), std::string(machine),
+                                  std::string("viewer.example"), std::string("Viewer.Example:8080")}) {
+    EXPECT_EQ(status(ask("GET", path, "Host: " + name + "\r\n")), 200) << name;
+  }
+  for (const char* name : {"evil.example", "viewer.example.evil.example", "0.0.0.0", "192.0.2.1", "", "[", "a\tb"}) {
+    EXPECT_EQ(status(ask("GET", path, "Host: " + std::string(name) + "\r\n")), 403) << name;
+  }
+  EXPECT_EQ(status(ask("GET", path, "")), 403);
+}
+
+TEST_F(ServerTest, AsksForTheTokenOfItsAddressWhereOthersReachIt) {
+  start({kPage, {{"a.h5", "one"}}, &live_}, "0.0.0.0");
+  host_ = "127.0.0.1";
+  const std::string token = server_->address().substr(server_->address().find("token=") + 6);
+  EXPECT_EQ(token.size(), 32u);
+  const std::string cookie = "snug" + std::to_string(server_->port()) + "=";
+  const std::string own = "Host: localhost\r\n";
+  const std::string answer = ask("GET", "/?token=" + token);
+  EXPECT_EQ(status(answer), 200);
+  EXPECT_NE(answer.find("Set-Cookie: " + cookie + token + "; Path=/; HttpOnly; SameSite=Strict"), std::string::npos);
+  for (const char* path : {"/", "/recordings.json", "/recording/0", "/live"}) {
+    EXPECT_EQ(status(ask("GET", path)), 403) << path;
+    EXPECT_EQ(status(ask("GET", path, own + "Cookie: " + cookie + "\r\n")), 403) << path;
+    EXPECT_EQ(status(ask("GET", path + ("?token=" + token.substr(1)))), 403) << path;
+    EXPECT_EQ(status(ask("GET", path + ("?token=x&token=" + token))), 403) << path;
+    if (std::string(path) == "/live") continue;  // does not end
+    EXPECT_EQ(status(ask("GET", path, own + "Cookie: a=1; " + cookie + token + "; b=2\r\n")), 200) << path;
+  }
+  live_.begin({});
+  const std::string command = "X-Snug: 1\r\nContent-Length: 0\r\n";
+  EXPECT_EQ(status(ask("POST", "/live/pause", own + command)), 403);
+  EXPECT_FALSE(live_.is_paused());
+  EXPECT_EQ(status(ask("POST", "/live/pause", own + "Cookie: " + cookie + token + "\r\n" + command)), 204);
+  EXPECT_TRUE(live_.is_paused());
 }
 
 TEST_F(ServerTest, AnswersOtherPagesOnlyWhenTheyLinkToIt) {
