@@ -91,6 +91,23 @@ class Study(Scratch):
         self.assertEqual((status["done"], status["rows"]), (120, 120))
         self.assertEqual(self.merged(study, "--dir", "killed"), self.merged(study, "--dir", "whole"))
 
+    def test_a_scenario_that_changes_between_two_calls_is_refused_by_name(self):
+        scenario = self.folder / "cell.yaml"
+        scenario.write_text((ROOT / "scenarios" / "drop.yaml").read_text())
+        study = self.write()
+        (self.folder / study).write_text((self.folder / study).read_text().replace(str(ROOT / "scenarios" / "drop.yaml"), "cell.yaml"))
+        self.snug("study", study, "--chunks", "0")
+        before = scenario.read_text()
+        scenario.write_text(before.replace("friction: 0.3", "friction: 0.7"))
+        refused = self.snug("study", study, code=2)
+        self.assertIn("cell.yaml: got not the file that row 0 was done with", refused.stderr)
+        self.assertEqual(json.loads(self.snug("study", "status", study, "--json").stdout)["done"], 4)
+        scenario.write_text(before)
+        self.snug("study", study)
+        hashes = {row["inputs"] for row in csv.DictReader(self.merged().splitlines())}
+        self.assertEqual(len(hashes), 1)
+        self.assertRegex(hashes.pop(), "^[0-9a-f]{16}$")
+
     def test_page_has_effects_and_commands(self):
         study = self.write(more="outputs: [bodies.0.X_WB.p.2, duration_s]\n")
         self.snug("study", study)

@@ -15,6 +15,7 @@
 #include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/compare/compare_study.hpp"
 #include "apps/snug/report/report.hpp"
+#include "apps/snug/command_line/version.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
@@ -204,6 +205,7 @@ int run_compare(const CompareOptions& options) {
   std::vector<study::ComparedSession> sessions;
   Printer printer(form, points.size());
   study::RunSettings settings;
+  settings.version = version_text();
   const int threads = options.pack.threads.value_or(core_count());
   settings.processes = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(threads), points.size()));
   settings.is_stopped = is_interrupted;

@@ -19,6 +19,7 @@
 #include "snug/study/effects.hpp"
 #include "snug/study/run.hpp"
 #include "snug/study/slurm.hpp"
+#include "version.hpp"
 
 namespace snug::app {
 namespace {
@@ -102,6 +103,7 @@ int run_row(const std::vector<std::string>& words, int threads) {
 int run_study(const StudyOptions& options) {
   const study::Study study = study::load_study(options.file);
   study::RunSettings settings;
+  settings.version = version_text();
   if (options.chunks) std::tie(settings.first_chunk, settings.last_chunk) = parse_chunks(*options.chunks, study);
   const study::Folder folder(study, folder_of(options), true);
   if (options.slurm) return submit_array(options, study, folder);

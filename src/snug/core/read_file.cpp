@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/input_log.hpp"
 
 namespace snug {
 namespace {
@@ -71,7 +72,10 @@ std::string read_file(const std::filesystem::path& path, const std::string& expe
     const ssize_t count = ::read(looked.file.get(), buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw InputError(path.string(), "", std::strerror(errno), expected);
-    if (count == 0) return text;
+    if (count == 0) {
+      note_input(path, text);
+      return text;
+    }
     if (text.size() + static_cast<std::size_t>(count) > most) refuse_size(path, expected, most);
     text.append(buffer, static_cast<std::size_t>(count));
   }
@@ -79,6 +83,7 @@ std::string read_file(const std::filesystem::path& path, const std::string& expe
 
 void check_readable(const std::filesystem::path& path, const std::string& expected, std::size_t most) {
   const Looked looked(path, expected, most);
+  note_input_file(path);
 }
 
 }  // namespace snug

@@ -8,6 +8,7 @@
 
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/input_log.hpp"
 #include "snug/core/text.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/record/internal/archive_layout.hpp"
@@ -107,6 +108,7 @@ struct ArchiveReader::Impl {
       throw InputError(path.string(), "", "a file that is not HDF5, or one that lost its beginning", expected);
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
     check(H5Pset_file_locking(access.get(), false, true), "file access");
+    note_input_file(path);
     file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "cannot open");
     if (is_recording(file.get()))
       throw InputError(path.string(), "", "a recording of a simulation",

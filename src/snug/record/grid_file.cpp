@@ -2,6 +2,7 @@
 #include "snug/record/grid_file.hpp"
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/input_log.hpp"
 #include "snug/record/internal/h5.hpp"
 
 namespace snug::record {
@@ -12,6 +13,7 @@ struct GridFile::Impl {
     guarded("", [&] {
       const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
       check(H5Pset_file_locking(access.get(), false, true), "file access");
+      note_input_file(path);
       file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "an HDF5 file");
     });
   }

@@ -118,10 +118,33 @@ class Analysis {
       for (std::size_t b = a + 1; b < levels_.size(); ++b) effects.interactions.push_back(interaction(a, b));
     }
     std::ranges::stable_sort(effects.interactions, std::ranges::greater{}, &Interaction::share);
+    judge(effects);
     if (effects.interactions.size() > kMostPairs) effects.interactions.resize(kMostPairs);
   }
 
  private:
+  /// Which effects are seen, and of them at most the whole.
+  static void judge(OutputEffects& effects) {
+    const double largest = std::max(std::abs(effects.quantiles.front()), std::abs(effects.quantiles.back()));
+    effects.is_noise = !(effects.deviation > std::max(kAbsoluteNoise, kRelativeNoise * largest));
+    double sum = 0.0;
+    const auto look = [&](auto& effect) {
+      effect.is_seen = effect.is_seen && effect.share > 0.0 && !effects.is_noise;
+      if (effect.is_seen) sum += effect.share;
+    };
+    for (MainEffect& effect : effects.main) look(effect);
+    for (Interaction& pair : effects.interactions) look(pair);
+    if (sum <= 1.0) return;
+    for (MainEffect& effect : effects.main) effect.share /= effect.is_seen ? sum : 1.0;
+    for (Interaction& pair : effects.interactions) pair.share /= pair.is_seen ? sum : 1.0;
+  }
+
+  /// The ratio of both mean squares is 1 by chance, and varies by about sqrt(2 / freedom + 2 / left_freedom).
+  [[nodiscard]] static bool stands_out(double between, double freedom, double left, double left_freedom) {
+    if (freedom <= 0.0 || left_freedom <= 0.0) return false;
+    return between / freedom > left / left_freedom * (1.0 + 2.0 * std::sqrt(2.0 / freedom + 2.0 / left_freedom));
+  }
+
   /// Omega squared: what lies between, less what residual noise puts there on average.
   [[nodiscard]] double share(double between, double freedom, double left, double left_freedom) const {
     if (total_ <= 0.0 || freedom <= 0.0 || left_freedom <= 0.0) return 0.0;
@@ -144,7 +167,9 @@ class Analysis {
       effect.levels.push_back(std::move(level));
     }
     const auto [between, count] = groups.between(mean_);
-    effect.share = share(between, count - 1.0, total_ - between, static_cast<double>(samples_.y.size()) - count);
+    const double left = std::max(0.0, total_ - between), left_freedom = static_cast<double>(samples_.y.size()) - count;
+    effect.share = share(between, count - 1.0, left, left_freedom);
+    effect.is_seen = stands_out(between, count - 1.0, left, left_freedom);
     return effect;
   }
 
@@ -161,9 +186,10 @@ class Analysis {
     const auto [between_other, count_other] = other.between(mean_);
     const auto [between_both, count_both] = both.between(mean_);
     const double freedom = count_both - count_one - count_other + 1.0;
-    return {study_.factors[a].name, study_.factors[b].name,
-            share(between_both - between_one - between_other, freedom, total_ - between_both,
-                  static_cast<double>(samples_.y.size()) - count_both)};
+    const double between = between_both - between_one - between_other, left = std::max(0.0, total_ - between_both);
+    const double left_freedom = static_cast<double>(samples_.y.size()) - count_both;
+    return {study_.factors[a].name, study_.factors[b].name, share(between, freedom, left, left_freedom),
+            stands_out(between, freedom, left, left_freedom)};
   }
 
   const Study& study_;
@@ -184,7 +210,9 @@ std::vector<OutputEffects> find_effects(const Study& study, const Folder& folder
     rows.push_back(result.row);
     const Row row = row_of(study, result.row);
     for (std::size_t f = 0; f < values.size(); ++f) values[f].push_back(row.values[f]);
-    for (const auto& [name, cell] : result.values) {
+    std::vector<std::pair<std::string, Cell>> cells = result.values;
+    cells.insert(cells.end(), result.clock.begin(), result.clock.end());
+    for (const auto& [name, cell] : cells) {
       const auto* number = std::get_if<double>(&cell);
       if (number == nullptr || !std::isfinite(*number)) continue;
       auto index = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());

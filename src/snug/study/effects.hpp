@@ -23,31 +23,38 @@ struct MainEffect {
   /// Part of the output's variance between the levels, less what chance alone would put there (omega squared): 0 or
   /// below: none seen.
   double share = 0.0;
+  bool is_seen = false;  ///< it stands out from chance by two standard deviations, and from rounding
 };
 
 struct Interaction {
   std::string first, second;
   /// The same of what the pair explains beyond both main effects; an estimate that needs many rows in each cell.
   double share = 0.0;
+  bool is_seen = false;
 };
 
 struct OutputEffects {
   std::string output;
   std::uint64_t count = 0;  ///< rows that have it
   double mean = 0.0, deviation = 0.0;
-  std::array<double, 7> quantiles{};      ///< 0, 5, 25, 50, 75, 95, 100 percent
-  std::vector<MainEffect> main;           ///< in the order of the factors
+  bool is_noise = false;              ///< rows differ by no more than the computation itself errs: no effect is seen
+  std::array<double, 7> quantiles{};  ///< 0, 5, 25, 50, 75, 95, 100 percent
+  std::vector<MainEffect> main;       ///< in the order of the factors
   std::vector<Interaction> interactions;  ///< largest share first
   std::vector<std::uint64_t> worst;       ///< rows
   std::vector<double> worst_values;
 };
 
 inline constexpr std::array<int, 7> kQuantilePercents = {0, 5, 25, 50, 75, 95, 100};
+/// Deviations that are noise of the computation: of the largest value, and in the value's own unit. Solvers stop when
+/// they are near enough, so that even runs without anything random differ by that where a factor has no influence.
+inline constexpr double kRelativeNoise = 1e-6, kAbsoluteNoise = 1e-7;
 /// Ranges into which the values of a factor are cut where it has more.
 inline constexpr std::size_t kMostLevels = 6;
 
 /// Of each numeric output: of those that the study names, else of all that vary. Rows that failed count where they have
-/// the number.
+/// the number. The shares that are seen add up to at most 1: where designs are not balanced, factors overlap and each
+/// gets less by the same ratio.
 [[nodiscard]] std::vector<OutputEffects> find_effects(const Study& study, const Folder& folder,
                                                       std::size_t worst_rows = 10);
 

@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <limits>
 #include <map>
-#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "snug/core/csv_cell.hpp"
@@ -44,15 +45,33 @@ std::string as_text(const Cell& cell) {
   return "";
 }
 
-const Cell* find(const RowResult& result, const std::string& name) {
-  const auto found = std::ranges::find(result.values, name, [](const auto& value) { return value.first; });
-  return found != result.values.end() ? &found->second : nullptr;
+const Cell* find(const std::vector<std::pair<std::string, Cell>>& cells, const std::string& name) {
+  const auto found = std::ranges::find(cells, name, [](const auto& value) { return value.first; });
+  return found != cells.end() ? &found->second : nullptr;
+}
+
+const Cell* find(const RowResult& result, const ResultColumn& column) {
+  return find(column.is_of_clock ? result.clock : result.values, column.name);
+}
+
+/// What a column is, as an attribute of its data set.
+void describe(hid_t set, const char* kind) {
+  const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, std::strlen(kind));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  const hid_t attribute = H5Acreate2(set, "kind", type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, kind);
+  H5Aclose(attribute);
+  H5Sclose(space);
+  H5Tclose(type);
 }
 
 /// One column of an HDF5 file while it is written: rows are appended in blocks.
 class Column {
  public:
-  Column(hid_t file, const std::string& name, bool is_text, hsize_t rows) : is_text_(is_text), rows_(rows) {
+  /// `kind`: design, outcome, result or clock.
+  Column(hid_t file, const std::string& name, bool is_text, hsize_t rows, const char* kind)
+      : is_text_(is_text), rows_(rows) {
     type_ = is_text ? H5Tcopy(H5T_C_S1) : H5Tcopy(H5T_IEEE_F64LE);
     if (is_text) {
       H5Tset_size(type_, H5T_VARIABLE);
@@ -61,9 +80,13 @@ class Column {
     const hid_t space = H5Screate_simple(1, &rows_, nullptr);
     std::string link = name;
     std::ranges::replace(link, '/', '|');  // a slash would be a group
-    set_ = H5Dcreate2(file, link.c_str(), type_, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_obj_track_times(how, false);  // the same rows, the same bytes, whenever they are merged
+    set_ = H5Dcreate2(file, link.c_str(), type_, space, H5P_DEFAULT, how, H5P_DEFAULT);
+    H5Pclose(how);
     H5Sclose(space);
     if (set_ < 0) throw OutputError(name, "HDF5 makes no such data set");
+    describe(set_, kind);
   }
   Column(const Column&) = delete;
   Column& operator=(const Column&) = delete;
@@ -141,7 +164,8 @@ std::map<std::string, bool> find_texts(const Study& study, const Folder& folder)
   };
   for_each_row(study, folder, [&](const RowResult& result) {
     for (const auto& [name, cell] : fixed_cells(study, result)) look(name, cell);
-    for (const auto& [name, cell] : result.values) look("values/" + name, cell);
+    for (const auto& [name, cell] : result.values) look("result." + name, cell);
+    for (const auto& [name, cell] : result.clock) look("clock." + name, cell);
   });
   return texts;
 }
@@ -149,8 +173,9 @@ std::map<std::string, bool> find_texts(const Study& study, const Folder& folder)
 }  // namespace
 
 void for_each_row(const Study& study, const Folder& folder, const std::function<void(const RowResult&)>& take) {
+  OneWorld world(folder.path().string());
   for (std::uint64_t chunk = 0; chunk < study.chunks(); ++chunk) {
-    for (const auto& [row, result] : folder.read(chunk)) take(result);
+    for (const auto& [row, result] : folder.read(chunk, &world)) take(result);
   }
 }
 
@@ -172,34 +197,38 @@ Status status_of(const Study& study, const Folder& folder) {
   return status;
 }
 
-std::vector<std::string> columns_of(const Study& study, const Folder& folder) {
-  std::vector<std::string> names;
-  std::unordered_map<std::string, bool> known;
+std::vector<ResultColumn> columns_of(const Study& study, const Folder& folder) {
+  std::vector<ResultColumn> columns, of_clock;
+  std::unordered_set<std::string> known, known_of_clock;
   for_each_row(study, folder, [&](const RowResult& result) {
     for (const auto& [name, cell] : result.values) {
-      if (known.emplace(name, true).second) names.push_back(name);
+      if (known.insert(name).second) columns.push_back({name, false});
+    }
+    for (const auto& [name, cell] : result.clock) {
+      if (known_of_clock.insert(name).second) of_clock.push_back({name, true});
     }
   });
-  return names;
+  columns.insert(columns.end(), of_clock.begin(), of_clock.end());
+  return columns;
 }
 
 void write_csv(const Study& study, const Folder& folder, OutputFile file) {
-  const std::vector<std::string> columns = columns_of(study, folder);
+  const std::vector<ResultColumn> columns = columns_of(study, folder);
   std::string text = "row,point,repeat,row_seed";
   for (const Factor& factor : study.factors) text += "," + csv_cell(factor.name);
   text += ",exit";
-  for (const std::string& name : columns) text += "," + csv_cell(name);
-  text += ",error\n";
+  for (const ResultColumn& column : columns) text += "," + csv_cell((column.is_of_clock ? "clock." : "") + column.name);
+  text += ",error,inputs\n";
   for_each_row(study, folder, [&](const RowResult& result) {
     const Row row = row_of(study, result.row);
     text += fmt::format("{},{},{},{}", row.index, row.point, row.repeat, row.seed);
     for (const std::string& value : row.values) text += "," + as_text(value);
     text += fmt::format(",{}", result.exit_code);
-    for (const std::string& name : columns) {
-      const Cell* const cell = find(result, name);
+    for (const ResultColumn& column : columns) {
+      const Cell* const cell = find(result, column);
       text += "," + (cell != nullptr ? as_text(*cell) : std::string());
     }
-    text += "," + as_text(result.error) + "\n";
+    text += "," + as_text(result.error) + "," + result.inputs + "\n";
     if (text.size() < kMostBuffered) return;
     file.write(text);
     text.clear();
@@ -209,7 +238,7 @@ void write_csv(const Study& study, const Folder& folder, OutputFile file) {
 }
 
 void write_hdf5(const Study& study, const Folder& folder, OutputFile file) {
-  const std::vector<std::string> names = columns_of(study, folder);
+  const std::vector<ResultColumn> names = columns_of(study, folder);
   const std::map<std::string, bool> texts = find_texts(study, folder);
   const hsize_t rows = status_of(study, folder).done;
   const auto is_text = [&](const std::string& name) { return texts.contains(name) && texts.at(name); };
@@ -220,15 +249,21 @@ void write_hdf5(const Study& study, const Folder& folder, OutputFile file) {
     std::vector<std::string> fixed = {"row", "point", "repeat", "row_seed"};
     for (const Factor& factor : study.factors) fixed.push_back(factor.name);
     fixed.emplace_back("exit");
-    for (const std::string& name : fixed) columns.emplace_back(h5, name, is_text(name), rows);
-    for (const std::string& name : names) columns.emplace_back(h5, "result." + name, is_text("values/" + name), rows);
-    columns.emplace_back(h5, "error", true, rows);
+    for (const std::string& name : fixed)
+      columns.emplace_back(h5, name, is_text(name), rows, name == "exit" ? "outcome" : "design");
+    for (const ResultColumn& column : names) {
+      const std::string name = (column.is_of_clock ? "clock." : "result.") + column.name;
+      columns.emplace_back(h5, name, is_text(name), rows, column.is_of_clock ? "clock" : "result");
+    }
+    for (const char* name : {"error", "inputs"}) columns.emplace_back(h5, name, true, rows, "outcome");
     for_each_row(study, folder, [&](const RowResult& result) {
       std::size_t at = 0;
       for (const auto& [name, cell] : fixed_cells(study, result)) columns[at++].add(&cell);
-      for (const std::string& name : names) columns[at++].add(find(result, name));
-      const Cell error = result.error;
-      columns[at].add(&error);
+      for (const ResultColumn& column : names) columns[at++].add(find(result, column));
+      for (const std::string& text : {result.error, result.inputs}) {
+        const Cell cell = text;
+        columns[at++].add(&cell);
+      }
     });
     for (Column& column : columns) column.flush();
   }

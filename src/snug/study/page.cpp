@@ -20,7 +20,7 @@ std::string percent(double part) { return fmt::format("{:.1f} %", 100.0 * std::m
 /// Means of the levels with two standard errors to either side.
 report::Chart chart_of(const MainEffect& effect, std::pair<double, double> range) {
   report::Chart chart;
-  chart.title = fmt::format("{}: {}", effect.factor, percent(effect.share));
+  chart.title = fmt::format("{}: {}", effect.factor, effect.is_seen ? percent(effect.share) : "none");
   chart.shows_means = false;
   chart.range = range;
   for (const Level& level : effect.levels) {
@@ -46,7 +46,8 @@ Markup main_effects(const OutputEffects& effects) {
   return report::heading(3, "Main effects") +
          report::paragraph(
              "Mean of each level with two standard errors; the part of the variance that the factor explains by "
-             "itself.") +
+             "itself; none: not more than chance, or than the computation errs.") +
+         (effects.is_noise ? report::paragraph("Rows differ by no more than the computation itself errs.") : Markup{}) +
          report::side_by_side(charts);
 }
 
@@ -54,7 +55,7 @@ Markup interactions(const OutputEffects& effects) {
   if (effects.interactions.empty()) return {};
   report::Table table{{{"factor", true}, {"factor", true}, {"part of the variance"}}, {}, {}};
   for (const Interaction& pair : effects.interactions) {
-    table.rows.push_back({pair.first, pair.second, percent(pair.share)});
+    table.rows.push_back({pair.first, pair.second, pair.is_seen ? percent(pair.share) : "none"});
   }
   return report::heading(3, "Interactions") +
          report::paragraph("What a pair explains beyond both by themselves; few rows in a cell make it uncertain.") +

@@ -180,7 +180,7 @@ void read_design(const Reader& reader, const YAML::Node& root, Study& study) {
     for (const YAML::Node& node : root["factors"]) {
       study.factors.push_back(read_factor(reader, node, study.design));
       const std::string& name = study.factors.back().name;
-      static const std::vector<std::string> kTaken = {"row", "point", "repeat", "row_seed", "exit", "error"};
+      static const std::vector<std::string> kTaken = {"row", "point", "repeat", "row_seed", "exit", "error", "inputs"};
       if (std::ranges::find(kTaken, name) != kTaken.end())
         reader.refuse(node, "name", "'" + name + "'", "another name: each table has a column of this one");
       if (std::ranges::count(study.factors, name, &Factor::name) > 1)

@@ -30,8 +30,10 @@ class RowValues {
 
  private:
   [[nodiscard]] const Cell* find(const std::string& name) const {
-    for (const auto& [key, value] : result_.values) {
-      if (key == name) return &value;
+    for (const auto* cells : {&result_.values, &result_.clock}) {
+      for (const auto& [key, value] : *cells) {
+        if (key == name) return &value;
+      }
     }
     return nullptr;
   }

@@ -16,11 +16,13 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/input_log.hpp"
 #include "snug/core/text.hpp"
 
 namespace snug::study {
@@ -44,8 +46,8 @@ struct Job {
   int tries = 0;
   std::shared_ptr<Chunk> chunk;
   pid_t process = -1;
-  int out = -1, error = -1;
-  std::string output, words;
+  int out = -1, error = -1, reads = -1;
+  std::string output, words, read;
   Clock::time_point start;
   bool is_over_time = false;
 };
@@ -53,16 +55,27 @@ struct Job {
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
 /// In the new process: never returns.
-[[noreturn]] void be_row(const RowWork& work, std::uint64_t row, int out, int error) {
+[[noreturn]] void be_row(const RowWork& work, std::uint64_t row, int out, int error, int reads) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a row whose caller is gone has nobody to tell
   ::setpgid(0, 0);                     // what a terminal sends goes to the caller, who passes it on
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, 0);
   ::dup2(out, 1);
   ::dup2(error, 2);
-  ::close_range(3, ~0U, 0);  // tables, with their locks
+  constexpr int kReads = 3;
+  if (reads == kReads) {
+    ::fcntl(kReads, F_SETFD, FD_CLOEXEC);
+  } else {
+    ::dup3(reads, kReads, O_CLOEXEC);  // programs that the row starts do not keep it open
+  }
+  ::close_range(kReads + 1, ~0U, 0);  // tables, with their locks
   int code = 1;
   try {
+    const InputLog log([](const std::string& path, std::uint64_t hash) {
+      const std::string line =
+          nlohmann::json{path, hash}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+      (void)!::write(kReads, line.data(), line.size());
+    });
     code = work(row);
   } catch (const InputError& problem) {
     std::fprintf(stderr, "snug: error: %s\n", problem.what());
@@ -76,20 +89,24 @@ struct Job {
 }
 
 void begin(const RowWork& work, Job& job) {
-  int out[2], error[2];
+  int out[2], error[2], reads[2];
   if (::pipe2(out, O_CLOEXEC) != 0) fail("pipe");
   if (::pipe2(error, O_CLOEXEC) != 0) fail("pipe");
+  if (::pipe2(reads, O_CLOEXEC) != 0) fail("pipe");
   std::fflush(stdout);
   std::fflush(stderr);
   job.output.clear();
   job.words.clear();
+  job.read.clear();
   job.is_over_time = false;
   job.start = Clock::now();
   job.process = ::fork();
   if (job.process < 0) fail("fork");
-  if (job.process == 0) be_row(work, job.row, out[1], error[1]);
+  if (job.process == 0) be_row(work, job.row, out[1], error[1], reads[1]);
   ::close(out[1]);
   ::close(error[1]);
+  ::close(reads[1]);
+  job.reads = reads[0];
   job.out = out[0];
   job.error = error[0];
   ++job.tries;
@@ -125,6 +142,27 @@ std::string last_words(const std::string& words) {
   return printable_end(line, kMostError);
 }
 
+/// What the row has read; files that were changed meanwhile are told as read with other bytes.
+Inputs inputs_of(const std::string& version, const std::string& lines, OneWorld& world, std::uint64_t row) {
+  Inputs inputs{version, {}};
+  for (std::size_t begin = 0, end = lines.find('\n'); end != std::string::npos;
+       begin = end + 1, end = lines.find('\n', begin)) {
+    const nlohmann::json json = nlohmann::json::parse(lines.substr(begin, end - begin), nullptr, false);
+    if (!json.is_array() || json.size() != 2 || !json[0].is_string() || !json[1].is_number_unsigned()) continue;
+    const std::string path = json[0].get<std::string>();
+    const std::uint64_t hash = json[1].get<std::uint64_t>();
+    note_input_hash(path, hash);  // of a study in a row of another
+    const bool is_new = inputs.files.emplace(path, hash).second;
+    if (!is_new && inputs.files[path] != hash) {
+      world.add(inputs, row);
+      inputs.files[path] = hash;
+      world.add(inputs, row);  // throws
+    }
+  }
+  world.add(inputs, row);
+  return inputs;
+}
+
 class Runner {
  public:
   /// `folder`: or null, no tables.
@@ -135,6 +173,10 @@ class Runner {
     end_ = std::min(study_.chunks(), settings_.last_chunk == UINT64_MAX ? study_.chunks() : settings_.last_chunk + 1);
     next_chunk_ = settings_.first_chunk;
     next_told_ = next_chunk_ * static_cast<std::uint64_t>(study_.chunk);
+    if (folder_ != nullptr) {
+      world_ = folder_->read_world();
+      world_.expect_now(settings_.version);
+    }
     while (true) {
       if (!is_stopped_ && settings_.is_stopped && settings_.is_stopped()) stop();
       while (static_cast<int>(jobs_.size()) < settings_.processes && find_work()) {
@@ -170,10 +212,10 @@ class Runner {
     const auto chunk = std::make_shared<Chunk>();
     std::map<std::uint64_t, RowResult> done;
     if (folder_ != nullptr) {
-      done = folder_->read(index);
+      done = folder_->read(index, &world_);
       if (done.size() < end - first) {  // without a lock: done is done
         chunk->table = TableWriter::open(folder_->table(index));
-        done = folder_->read(index);
+        done = folder_->read(index, &world_);
       }
     }
     for (const auto& [row, result] : done) tell(result, {});
@@ -197,12 +239,14 @@ class Runner {
     for (const Job& job : jobs_) {
       files.push_back({job.out, POLLIN, 0});
       files.push_back({job.error, POLLIN, 0});
+      files.push_back({job.reads, POLLIN, 0});
     }
     const int patience = study_.time_limit > 0.0 || settings_.is_stopped ? 100 : -1;
     if (::poll(files.data(), files.size(), patience) < 0 && errno != EINTR) fail("poll");
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      if (files[2 * i].revents != 0) take(jobs_[i].out, jobs_[i].output, kMostOutput);
-      if (files[2 * i + 1].revents != 0) take(jobs_[i].error, jobs_[i].words, kMostWords);
+      if (files[3 * i].revents != 0) take(jobs_[i].out, jobs_[i].output, kMostOutput);
+      if (files[3 * i + 1].revents != 0) take(jobs_[i].error, jobs_[i].words, kMostWords);
+      if (files[3 * i + 2].revents != 0) take(jobs_[i].reads, jobs_[i].read, kMostOutput);
     }
     for (std::size_t i = jobs_.size(); i-- > 0;) {
       Job& job = jobs_[i];
@@ -211,7 +255,7 @@ class Runner {
         job.is_over_time = true;
         ::kill(job.process, SIGKILL);
       }
-      if (job.out >= 0 || job.error >= 0) continue;
+      if (job.out >= 0 || job.error >= 0 || job.reads >= 0) continue;
       Job ended = std::move(job);
       jobs_.erase(jobs_.begin() + static_cast<std::ptrdiff_t>(i));
       finish(std::move(ended), taken.count());
@@ -237,12 +281,12 @@ class Runner {
     result.seconds = seconds;
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     if (job.is_over_time) {
-      result.error = "over its time limit";
+      result.error = kOverTime;
     } else if (WIFSIGNALED(status)) {
       result.error = "signal " + std::to_string(WTERMSIG(status)) + ": " + last_words(job.words);
     } else {
       if (result.exit_code != 0) result.error = last_words(job.words);
-      result.values = values_of(study_, job.output);
+      static_cast<ResultValues&>(result) = values_of(study_, job.output);
     }
     if (is_stopped_) return tell(result, job.words);
     if (result.exit_code == 2 && job.row == 0) {
@@ -252,7 +296,9 @@ class Runner {
       throw InputError(study_.source, "row 0", result.error,
                        "rows that can be run: " + command_of(study_, row_of(study_, 0)));
     }
-    if (job.chunk->table) job.chunk->table->append(result);
+    const Inputs inputs = inputs_of(settings_.version, job.read, world_, job.row);
+    result.inputs = inputs.hash();
+    if (job.chunk->table) job.chunk->table->append(result, inputs);
     close(*job.chunk);
     ++summary_.done;
     summary_.failed += result.exit_code != 0 ? 1 : 0;
@@ -286,6 +332,7 @@ class Runner {
       ::waitpid(job.process, nullptr, 0);
       if (job.out >= 0) ::close(job.out);
       if (job.error >= 0) ::close(job.error);
+      if (job.reads >= 0) ::close(job.reads);
     }
     jobs_.clear();
     waiting_.clear();
@@ -299,6 +346,7 @@ class Runner {
   const Folder* const folder_;
   const RowWork& work_;
   const RunSettings& settings_;
+  OneWorld world_{folder_ != nullptr ? folder_->path().string() : study_.source};
   std::uint64_t next_chunk_ = 0, end_ = 0, wanted_ = 0, next_told_ = 0;
   bool is_stopped_ = false;
   std::map<std::uint64_t, std::pair<RowResult, std::string>> untold_;  ///< some row before them is still under way

@@ -22,6 +22,7 @@ struct RunSettings {
   int processes = 1;  ///< rows at a time; tables do not depend on it, but for the order of their lines
   std::uint64_t first_chunk = 0;
   std::uint64_t last_chunk = UINT64_MAX;  ///< included
+  std::string version = {};               ///< of the program that does the rows
   /// Called after every row.
   std::function<void(std::uint64_t done, std::uint64_t wanted)> progress;
   /// Called for every row that has a result, one of an earlier call too, in the order of their indices, as soon as
@@ -43,7 +44,8 @@ struct RunSummary {
 /// Runs what the tables of `folder` lack. A row whose process somebody ends (SIGKILL, SIGTERM, SIGINT, SIGHUP) is tried
 /// three times and then left for another call; any other end is its result. When the very first row of a study cannot
 /// be used (exit code 2), the study's files are removed where `folder` began it, and InputError says what the row said.
-/// Throws OutputError when a table cannot be written.
+/// Throws OutputError when a table cannot be written, and InputError where a file that rows have read, or the program,
+/// is another one than for the rows that are done: rows of two worlds do not mix.
 [[nodiscard]] RunSummary run_study(const Study& study, const Folder& folder, const Verb& verb,
                                    const RunSettings& settings);
 /// The same without tables: every row is run and told.

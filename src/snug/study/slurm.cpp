@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "snug/core/text.hpp"
+
 namespace snug::study {
 
 ArrayPlan plan_array(const Study& study, const Folder& folder, std::uint64_t most_tasks) {
@@ -55,7 +57,7 @@ std::string submit(const std::filesystem::path& script) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
     throw std::runtime_error("there is no sbatch here; the script is " + script.string());
   if (status != 0) throw std::runtime_error("sbatch: " + said);
-  return said;
+  return printable(said, kLongestMessage);
 }
 
 }  // namespace snug::study

@@ -3,29 +3,31 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "snug/core/descriptor.hpp"
 #include "snug/core/file_lock.hpp"
-#include "snug/core/hash.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/output_file.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/study/internal/line.hpp"
 
 namespace snug::study {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr std::string_view kSum = ",\"sum\":\"";
 constexpr const char* kCopy = "study.yaml";
 constexpr std::size_t kMostColumns = 1000;
+
+constexpr const char* kOfClock = "of_clock";
 
 bool tells_of_a_clock(std::string_view name) {
   for (const std::string_view word : {"seconds", "wall", "real_time"}) {
@@ -33,6 +35,33 @@ bool tells_of_a_clock(std::string_view name) {
   }
   return false;
 }
+
+/// Names of values that depend on a clock, as the result says; of those of other programs, and of older ones, by name.
+class ClockNames {
+ public:
+  explicit ClockNames(const Json& json) {
+    if (!json.is_object() || !json.contains(kOfClock) || !json[kOfClock].is_array()) return;
+    names_.emplace();
+    for (const Json& name : json[kOfClock]) {
+      if (name.is_string()) names_->insert(name.get<std::string>());
+    }
+  }
+  [[nodiscard]] bool has_key(const std::string& key) const {
+    return names_ ? key == kOfClock || names_->contains(key) : tells_of_a_clock(key);
+  }
+  /// A path of keys with dots between.
+  [[nodiscard]] bool has_path(const std::string& path) const {
+    for (std::size_t begin = 0; begin <= path.size();) {
+      const std::size_t end = std::min(path.size(), path.find('.', begin));
+      if (has_key(path.substr(begin, end - begin))) return true;
+      begin = end + 1;
+    }
+    return false;
+  }
+
+ private:
+  std::optional<std::set<std::string>> names_;
+};
 
 Cell as_cell(const Json& json) {
   if (json.is_boolean()) return json.get<bool>() ? 1.0 : 0.0;
@@ -42,11 +71,12 @@ Cell as_cell(const Json& json) {
   return {};
 }
 
-void flatten(const Json& json, const std::string& prefix, std::vector<std::pair<std::string, Cell>>& values) {
+void flatten(const Json& json, const std::string& prefix, const ClockNames& clock,
+             std::vector<std::pair<std::string, Cell>>& values) {
   for (const auto& [key, value] : json.items()) {
-    if (tells_of_a_clock(key) || values.size() >= kMostColumns) continue;
+    if (clock.has_key(key) || values.size() >= kMostColumns) continue;
     if (value.is_object()) {
-      flatten(value, prefix + key + ".", values);
+      flatten(value, prefix + key + ".", clock, values);
     } else if (!value.is_array() && !value.is_null()) {
       values.emplace_back(prefix + key, as_cell(value));
     }
@@ -72,32 +102,9 @@ const Json* find(const Json& json, const std::string& path) {
   return nullptr;
 }
 
-std::string sum_of(std::string_view text) {
-  Hash hash;
-  hash.add(text);
-  return fmt::format("{:016x}", hash.value());
-}
-
-}  // namespace
-
-std::vector<std::pair<std::string, Cell>> values_of(const Study& study, const std::string& text) {
-  std::vector<std::pair<std::string, Cell>> values;
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return values;
-  if (study.outputs.empty()) {
-    if (json.is_object()) flatten(json, "", values);
-    return values;
-  }
-  for (const Output& output : study.outputs) {
-    const Json* found = find(json, output.name);
-    values.emplace_back(output.name, found != nullptr ? as_cell(*found) : Cell{});
-  }
-  return values;
-}
-
-std::string format_line(const RowResult& result) {
+Json as_json(const std::vector<std::pair<std::string, Cell>>& cells) {
   Json values = Json::object();
-  for (const auto& [name, value] : result.values) {
+  for (const auto& [name, value] : cells) {
     if (const auto* number = std::get_if<double>(&value)) {
       values[name] = *number;
     } else if (const auto* word = std::get_if<std::string>(&value)) {
@@ -106,29 +113,87 @@ std::string format_line(const RowResult& result) {
       values[name] = nullptr;
     }
   }
-  const Json json{{"row", result.row},
-                  {"exit", result.exit_code},
-                  {"seconds", result.seconds},
-                  {"error", result.error},
-                  {"values", values}};
-  std::string line = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  line.pop_back();
-  return line + std::string(kSum) + sum_of(line) + "\"}\n";
+  return values;
+}
+
+void take_cells(const Json& values, std::vector<std::pair<std::string, Cell>>& cells) {
+  for (const auto& [name, value] : values.items()) cells.emplace_back(name, as_cell(value));
+}
+
+/// A file of a table without following links: in a folder that others can write, a link would lead rows elsewhere, or
+/// take them from there.
+Descriptor open_table(const std::filesystem::path& path, int flags) {
+  Descriptor file(::open(path.c_str(), flags | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666));
+  if (!file.is_open() && errno == ENOENT && (flags & O_CREAT) == 0) return file;
+  if (!file.is_open()) {
+    if (errno == ELOOP) throw InputError(path.string(), "", "a link", "a table of the study itself");
+    throw OutputError(path.string(), std::strerror(errno));
+  }
+  struct stat status = {};
+  if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink != 1) {
+    throw InputError(path.string(), "", "a file with another name, or none that is regular",
+                     "a table of the study itself");
+  }
+  return file;
+}
+
+/// A folder that somebody else owns, or everybody can write, is none for results.
+void expect_own(const std::filesystem::path& path) {
+  struct stat folder = {}, link = {};
+  if (::stat(path.c_str(), &folder) != 0 || ::lstat(path.c_str(), &link) != 0) return;  // what follows will say so
+  const uid_t user = ::geteuid();
+  const bool is_own = user == 0 || (folder.st_uid == user && link.st_uid == user);
+  if (is_own && (folder.st_mode & S_IWOTH) == 0) return;
+  throw InputError(path.string(), "", is_own ? "a folder that everybody can write" : "a folder of somebody else",
+                   "a folder of your own that others cannot write: who can, could lead the study's tables elsewhere");
+}
+
+/// Which of two results of one row counts, where they may both be right: one that passed the time limit says how busy
+/// the machine was.
+bool is_over_time(const RowResult& result) { return result.exit_code == -1 && result.error == kOverTime; }
+
+}  // namespace
+
+ResultValues values_of(const Study& study, const std::string& text) {
+  ResultValues values;
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return values;
+  const ClockNames clock(json);
+  if (study.outputs.empty()) {
+    if (json.is_object()) flatten(json, "", clock, values.values);
+    return values;
+  }
+  for (const Output& output : study.outputs) {
+    const Json* found = find(json, output.name);
+    auto& column = clock.has_path(output.name) ? values.clock : values.values;
+    column.emplace_back(output.name, found != nullptr ? as_cell(*found) : Cell{});
+  }
+  return values;
+}
+
+std::string format_line(const RowResult& result) {
+  Json json{{"row", result.row},
+            {"exit", result.exit_code},
+            {"seconds", result.seconds},
+            {"error", result.error},
+            {"values", as_json(result.values)}};
+  if (!result.clock.empty()) json["clock"] = as_json(result.clock);
+  if (!result.inputs.empty()) json["of"] = result.inputs;
+  return internal::with_sum(json);
 }
 
 std::optional<RowResult> parse_line(const std::string& line) {
-  const std::size_t sum = line.rfind(kSum);
-  if (sum == std::string::npos || line.substr(sum + kSum.size()) != sum_of(line.substr(0, sum)) + "\"}")
-    return std::nullopt;
-  const Json json = Json::parse(line, nullptr, false);
-  if (json.is_discarded()) return std::nullopt;
+  const std::optional<Json> json = internal::without_sum(line);
+  if (!json) return std::nullopt;
   try {
     RowResult result;
-    result.row = json.at("row").get<std::uint64_t>();
-    result.exit_code = json.at("exit").get<int>();
-    result.seconds = json.at("seconds").get<double>();
-    result.error = json.at("error").get<std::string>();
-    for (const auto& [name, value] : json.at("values").items()) result.values.emplace_back(name, as_cell(value));
+    result.row = json->at("row").get<std::uint64_t>();
+    result.exit_code = json->at("exit").get<int>();
+    result.seconds = json->at("seconds").get<double>();
+    result.error = json->at("error").get<std::string>();
+    take_cells(json->at("values"), result.values);
+    if (json->contains("clock")) take_cells(json->at("clock"), result.clock);
+    if (json->contains("of")) result.inputs = json->at("of").get<std::string>();
     return result;
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;  // the sum is right, but somebody else's
@@ -138,6 +203,9 @@ std::optional<RowResult> parse_line(const std::string& line) {
 Folder::Folder(const Study& study, std::filesystem::path path, bool may_make) : study_(study), path_(std::move(path)) {
   std::error_code error;
   const std::filesystem::path copy = path_ / kCopy;
+  if (std::filesystem::is_symlink(std::filesystem::symlink_status(copy, error)))
+    throw InputError(copy.string(), "", "a link", "the file of a study itself");
+  expect_own(path_);
   if (!std::filesystem::exists(copy, error)) {
     if (!may_make) throw InputError(path_.string(), "", "no such study", "the folder of a study that was begun");
     const bool is_begun = std::filesystem::exists(copy.string() + ".snug-part", error);  // by another, at this moment
@@ -145,6 +213,7 @@ Folder::Folder(const Study& study, std::filesystem::path path, bool may_make) : 
       throw InputError(path_.string(), "", "a folder with other things", "a folder of its own for the study");
     has_made_folder_ = std::filesystem::create_directories(path_, error);
     if (error) throw InputError(path_.string(), "", error.message(), "a folder that can be made");
+    expect_own(path_);
     try {
       write_file(OutputFile(copy), study.text);
       has_begun_ = true;
@@ -170,20 +239,64 @@ std::vector<std::filesystem::path> Folder::files() const {
   return files;
 }
 
-std::map<std::uint64_t, RowResult> Folder::read(std::uint64_t chunk) const {
+void Folder::for_each_line(std::uint64_t chunk, const std::function<bool(const std::string& line)>& take) const {
+  const Descriptor file = open_table(table(chunk), O_RDONLY);
+  if (!file.is_open()) return;
+  std::string text;
+  for (char buffer[65536];;) {
+    const ssize_t count = ::read(file.get(), buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw InputError(table(chunk).string(), "", std::strerror(errno), "a table of the study");
+    if (count == 0) return;
+    text.append(buffer, static_cast<std::size_t>(count));
+    std::size_t begin = 0;
+    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
+      if (!take(text.substr(begin, end - begin))) return;
+      begin = end + 1;
+    }
+    text.erase(0, begin);
+  }
+}
+
+std::map<std::uint64_t, RowResult> Folder::read(std::uint64_t chunk, OneWorld* world) const {
   std::map<std::uint64_t, RowResult> rows;
-  std::ifstream file(table(chunk), std::ios::binary);
   const auto size = static_cast<std::uint64_t>(study_.chunk);
-  for (std::string line; std::getline(file, line);) {
+  for_each_line(chunk, [&](const std::string& line) {
+    if (const std::optional<InputsLine> inputs = parse_inputs(line)) {
+      if (world != nullptr) world->add(inputs->inputs, inputs->first_row);
+      return true;
+    }
     std::optional<RowResult> result = parse_line(line);
-    if (!result || result->row / size != chunk || result->row >= study_.rows()) continue;
+    if (!result || result->row / size != chunk || result->row >= study_.rows()) return true;
+    if (world != nullptr && result->inputs.empty()) world->add_unknown(result->row);
     const auto [at, is_new] = rows.try_emplace(result->row, *result);
-    if (is_new || at->second == *result) continue;
+    if (is_new || at->second == *result || is_over_time(*result)) return true;
+    if (is_over_time(at->second)) {
+      at->second = std::move(*result);
+      return true;
+    }
     throw InputError(table(chunk).string(), "row " + std::to_string(result->row), "two different results",
                      "a run that is a function of its words alone (exit codes " + std::to_string(at->second.exit_code) +
                          " and " + std::to_string(result->exit_code) + ")");
-  }
+  });
   return rows;
+}
+
+OneWorld Folder::read_world() const {
+  OneWorld world(path_.string());
+  for (std::uint64_t chunk = 0; chunk < study_.chunks(); ++chunk) {
+    for_each_line(chunk, [&](const std::string& line) {
+      if (const std::optional<InputsLine> inputs = parse_inputs(line)) {
+        world.add(inputs->inputs, inputs->first_row);
+        return true;
+      }
+      const std::optional<RowResult> result = parse_line(line);
+      if (!result) return true;  // cut short, or somebody else's
+      if (result->inputs.empty()) world.add_unknown(result->row);
+      return false;
+    });
+  }
+  return world;
 }
 
 void Folder::remove_if_new() const {
@@ -202,10 +315,13 @@ void Folder::remove_if_new() const {
 }
 
 TableWriter::TableWriter(TableWriter&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), path_(std::move(other.path_)) {}
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      path_(std::move(other.path_)),
+      known_(std::move(other.known_)) {}
 TableWriter& TableWriter::operator=(TableWriter&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(path_, other.path_);
+  std::swap(known_, other.known_);
   return *this;
 }
 TableWriter::~TableWriter() {
@@ -215,9 +331,10 @@ TableWriter::~TableWriter() {
 std::optional<TableWriter> TableWriter::open(const std::filesystem::path& path) {
   TableWriter writer;
   writer.path_ = path;
-  writer.descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  Descriptor file = open_table(path, O_RDWR | O_CREAT | O_APPEND);
+  if (!try_lock(file.get(), LockByte::Writer, LockKind::Exclusive)) return std::nullopt;
+  writer.descriptor_ = ::fcntl(file.get(), F_DUPFD_CLOEXEC, 0);  // with its lock, which is that of the open file
   if (writer.descriptor_ < 0) throw OutputError(path.string(), std::strerror(errno));
-  if (!try_lock(writer.descriptor_, LockByte::Writer, LockKind::Exclusive)) return std::nullopt;
   // What a kill cut short ends here.
   const off_t end = ::lseek(writer.descriptor_, 0, SEEK_END);
   char last = '\n';
@@ -227,8 +344,10 @@ std::optional<TableWriter> TableWriter::open(const std::filesystem::path& path) 
   return writer;
 }
 
-void TableWriter::append(const RowResult& result) {
-  const std::string line = format_line(result);
+void TableWriter::append(const RowResult& result, const Inputs& inputs) {
+  std::string line;
+  if (!result.inputs.empty() && known_.insert(result.inputs).second) line = format_inputs(inputs, result.row);
+  line += format_line(result);
   ssize_t written = 0;
   do {
     written = ::write(descriptor_, line.data(), line.size());

@@ -351,6 +351,8 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
   calibration.add(trial);
   json["calibration"] = study::calibration_json(calibration);
   if (repeated.count > 0) json["monte_carlo"] = as_json(repeated);
+  json["of_clock"] = {"decision_seconds_median", "boxes_per_hour_with_planning", "decision_seconds",
+                      "rehearsal_seconds", "planning_wait"};
   return json.dump(2) + "\n";
 }
 

@@ -12,6 +12,7 @@
 
 #include "snug/core/descriptor.hpp"
 #include "snug/core/file_lock.hpp"
+#include "snug/core/input_log.hpp"
 #include "snug/record/internal/commit_driver.hpp"
 
 namespace snug::record::internal {
@@ -68,6 +69,7 @@ Handle open_for_reading(const std::filesystem::path& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.is_open()) throw H5Error(std::string("cannot open: ") + std::strerror(errno));
   if (is_locked(file.get(), LockByte::Writer)) return open_image(copy_between_commits(file.get()));
+  note_input_file(path);
   const std::string same = "/proc/self/fd/" + std::to_string(file.get());
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), "file access");
   check(H5Pset_file_locking(access.get(), false, true), "file access");

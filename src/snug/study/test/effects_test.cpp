@@ -67,6 +67,50 @@ TEST(Effects, ChanceAloneHasNoShareOnAverage) {
   EXPECT_NEAR(pair, 0.0, 0.017);
 }
 
+TEST(Effects, OfTheNoiseOfTheComputationAreNone) {
+  const test::ScratchFolder scratch;
+  const Study study = test::grid(3, 2, 50);
+  const Folder folder(study, scratch / "f", true);
+  fill(study, folder, [](double x, bool, std::uint64_t) { return 0.3 + 3e-8 * x; });  // a variance of 1e-15
+  const auto effects = find_effects(study, folder);
+  ASSERT_EQ(effects.size(), 1U);
+  EXPECT_TRUE(effects[0].is_noise);
+  EXPECT_FALSE(effects[0].main[0].is_seen);
+  EXPECT_EQ(make_page(study, status_of(study, folder), effects).find("100 %</b>"), std::string::npos);
+}
+
+TEST(Effects, OfChanceAreSeenSeldomAndRealOnesAlways) {
+  int seen = 0, real = 0;
+  for (int round = 0; round < 40; ++round) {
+    const test::ScratchFolder scratch;
+    const Study study = test::grid(6, 10, 200);
+    const Folder folder(study, scratch / "f", true);
+    Rng rng = Rng(static_cast<std::uint64_t>(round)).split("noise");
+    fill(study, folder, [&](double, bool is_left, std::uint64_t) { return rng.normal() + (is_left ? 1.0 : 0.0); });
+    const auto effects = find_effects(study, folder);
+    seen += effects[0].main[0].is_seen ? 1 : 0;
+    real += effects[0].main[1].is_seen ? 1 : 0;
+  }
+  EXPECT_LE(seen, 8) << "two standard deviations: some 5 % by chance";
+  EXPECT_EQ(real, 40);
+}
+
+TEST(Effects, AddUpToAtMostTheWholeInUnbalancedDesigns) {
+  const test::ScratchFolder scratch;
+  const Study study = parse_study(
+      "verb: fake\ndesign: list\nrepeat: 3\nfactors: [{option: --x}, {option: --w}]\npoints: [{x: 0, w: left}, {x: 1, "
+      "w: right}, "
+      "{x: 2, w: up}, {x: 0, w: left}, {x: 1, w: right}]\n",
+      "s.yaml");
+  const Folder folder(study, scratch / "f", true);
+  fill(study, folder, [](double x, bool, std::uint64_t i) { return x + 1e-3 * static_cast<double>(i % 3); });
+  const auto effects = find_effects(study, folder);
+  double sum = 0.0;
+  for (const MainEffect& effect : effects[0].main) sum += effect.is_seen ? effect.share : 0.0;
+  EXPECT_GT(sum, 0.99);
+  EXPECT_LE(sum, 1.0 + 1e-12);
+}
+
 TEST(Effects, RangesOfAFactorHaveAsManyRowsEach) {
   const test::ScratchFolder scratch;
   const Study study = parse_study(

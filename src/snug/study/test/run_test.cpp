@@ -36,7 +36,7 @@ TEST(RunStudy, DoesEveryRowOnceAndMergesTheSameBytesAtAnyNumberOfProcesses) {
     if (first.empty()) first = text;
     EXPECT_EQ(text, first);
   }
-  EXPECT_EQ(first.substr(0, first.find('\n')), "row,point,repeat,row_seed,x,w,exit,y,z,who,deep.b,error");
+  EXPECT_EQ(first.substr(0, first.find('\n')), "row,point,repeat,row_seed,x,w,exit,y,z,who,deep.b,error,inputs");
   EXPECT_NE(first.find("\n0,0,0,"), std::string::npos);
 }
 
@@ -66,7 +66,7 @@ TEST(RunStudy, GoesOnAfterAKillAnywhere) {
     return test::fake(words);
   };
   int kills = 0;
-  for (; kills < 100 && status_of(study, killed).done < study.rows(); ++kills) {
+  for (; kills < 300 && status_of(study, killed).done < study.rows(); ++kills) {
     const pid_t child = ::fork();
     if (child == 0) {
       RunSettings settings;

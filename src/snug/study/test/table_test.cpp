@@ -51,9 +51,22 @@ TEST(Table, KeepsNumbersAndWordsButNoClocksAndNoLists) {
       study, R"({"a": 1.5, "wall": 3, "decision_seconds_median": 2, "real_time_factor": 9, "t": true, "n": null,
                  "in": {"b": "w", "list": [1]}, "list": [1, 2]})");
   const std::vector<std::pair<std::string, Cell>> expected = {{"a", 1.5}, {"t", 1.0}, {"in.b", std::string("w")}};
-  EXPECT_EQ(values, expected);
-  EXPECT_TRUE(values_of(study, "no json").empty());
-  EXPECT_TRUE(values_of(study, "[1]").empty());
+  EXPECT_EQ(values.values, expected);
+  EXPECT_TRUE(values.clock.empty());
+  EXPECT_EQ(values_of(study, "no json"), ResultValues{});
+  EXPECT_EQ(values_of(study, "[1]"), ResultValues{});
+}
+
+TEST(Table, BelievesWhatAResultSaysOfItsClocks) {
+  const std::string json =
+      R"({"rate": 1, "seconds": 2, "in": {"rate": 3, "b": 4}, "wait": {"a": 5}, "of_clock": ["rate", "wait"]})";
+  const ResultValues all = values_of(test::grid(2, 1, 1), json);
+  const std::vector<std::pair<std::string, Cell>> expected = {{"seconds", 2.0}, {"in.b", 4.0}};
+  EXPECT_EQ(all.values, expected) << "seconds are simulated ones: the list says so";
+  const ResultValues named = values_of(test::grid(2, 1, 1, "outputs: [in.b, rate, in.rate, wait.a]\n"), json);
+  const std::vector<std::pair<std::string, Cell>> clock = {{"rate", 1.0}, {"in.rate", 3.0}, {"wait.a", 5.0}};
+  EXPECT_EQ(named.values.size(), 1U);
+  EXPECT_EQ(named.clock, clock);
 }
 
 TEST(Table, KeepsTheOutputsThatAreNamedAlsoThoseInLists) {
@@ -61,11 +74,58 @@ TEST(Table, KeepsTheOutputsThatAreNamedAlsoThoseInLists) {
   const auto values = values_of(study, R"({"wall": 3, "a": 1, "in": {"list": [0, {"c": 5}]}, "list": []})");
   const std::vector<std::pair<std::string, Cell>> expected = {{"a", 1.0},
                                                               {"in.list.1.c", 5.0},
-                                                              {"wall", 3.0},
                                                               {"none", std::monostate{}},
                                                               {"list.9", std::monostate{}},
                                                               {"in", R"({"list":[0,{"c":5}]})"}};
-  EXPECT_EQ(values, expected);
+  EXPECT_EQ(values.values, expected);
+  const std::vector<std::pair<std::string, Cell>> clock = {{"wall", 3.0}};
+  EXPECT_EQ(values.clock, clock);
+}
+
+TEST(Folder, CountsRowsOnceWhoseClocksDiffer) {
+  const test::ScratchFolder scratch;
+  const Study study = test::grid(2, 1, 2);
+  const Folder folder(study, scratch / "f", true);
+  RowResult one = example(), other = example(), late = example();
+  one.row = other.row = late.row = 2;
+  other.seconds = 9.0;
+  one.clock = {{"rate", 1.0}};
+  other.clock = {{"rate", 2.0}};
+  late.exit_code = -1;
+  late.error = kOverTime;
+  late.values.clear();
+  for (const auto& [first, second] : {std::pair(one, other), std::pair(one, late), std::pair(late, one)}) {
+    std::ofstream(folder.table(1)) << format_line(first) << format_line(second);
+    const auto rows = folder.read(1);
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_EQ(rows.at(2), one);
+  }
+}
+
+TEST(Folder, FollowsNoLinks) {
+  const test::ScratchFolder scratch;
+  const Study study = test::grid(2, 1, 2);
+  const Folder folder(study, scratch / "f", true);
+  std::ofstream(scratch / "precious") << "mine\n";
+  std::filesystem::create_symlink(scratch / "precious", folder.table(0));
+  std::filesystem::create_hard_link(scratch / "precious", folder.table(1));
+  for (const std::uint64_t chunk : {0U, 1U}) {
+    EXPECT_THROW((void)TableWriter::open(folder.table(chunk)), InputError);
+    EXPECT_THROW((void)folder.read(chunk), InputError);
+  }
+  EXPECT_EQ(test::read_text(scratch / "precious"), "mine\n");
+  std::filesystem::rename(scratch / "f" / "study.yaml", scratch / "study.yaml");
+  std::filesystem::create_symlink(scratch / "study.yaml", scratch / "f" / "study.yaml");
+  EXPECT_THROW(Folder(study, scratch / "f", true), InputError);
+}
+
+TEST(Folder, IsNoneThatEverybodyCanWrite) {
+  const test::ScratchFolder scratch;
+  const Study study = test::grid(2, 1, 2);
+  std::filesystem::create_directory(scratch / "f");
+  std::filesystem::permissions(scratch / "f", std::filesystem::perms::all);
+  EXPECT_THROW(Folder(study, scratch / "f", true), InputError);
+  EXPECT_TRUE(std::filesystem::is_empty(scratch / "f"));
 }
 
 TEST(Folder, IsOfOneStudyAsItWasBegun) {
