@@ -12,6 +12,7 @@
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
 #include "snug/model/scenario.hpp"
+#include "snug/model/spin.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/csv.hpp"
@@ -51,6 +52,7 @@ std::string list_sequences(const model::Scenario& scenario) {
 model::Scenario load_with_overrides(const SimulateOptions& options) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (options.dt) scenario.time_step = *options.dt;
+  model::check_spins(scenario);
   if (options.seed) scenario.seed = *options.seed;
   if (options.record_period) scenario.record_period = *options.record_period;
   if (options.resume) scenario.initial_state = model::InitialState{*options.resume, options.resume_at};

@@ -14,12 +14,12 @@
 
 #include "apps/snug/command_line/command_line.hpp"
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/version.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/study/effects.hpp"
 #include "snug/study/run.hpp"
 #include "snug/study/slurm.hpp"
-#include "version.hpp"
 
 namespace snug::app {
 namespace {

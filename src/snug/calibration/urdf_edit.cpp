@@ -69,7 +69,8 @@ class UrdfEdit {
   }
 
   std::string finish(const std::string& note, const std::filesystem::path& out_folder) {
-    move_meshes(root(), std::filesystem::absolute(path_).parent_path(), std::filesystem::absolute(out_folder));
+    move_meshes(root(), std::filesystem::absolute(path_).parent_path(),
+                std::filesystem::absolute(out_folder.empty() ? "." : out_folder));
     document_.InsertAfterChild(document_.FirstChild(), document_.NewComment((" " + note + " ").c_str()));
     tinyxml2::XMLPrinter printer;
     document_.Print(&printer);

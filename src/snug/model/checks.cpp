@@ -7,6 +7,7 @@
 #include "snug/geometry/manifold.hpp"
 #include "snug/model/internal/overlap.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
+#include "snug/model/spin.hpp"
 
 namespace snug::model::internal {
 namespace {
@@ -175,6 +176,14 @@ void ScenarioReader::check_materials_meet(const Value& at) const {
   }
 }
 
+void ScenarioReader::check_spins() const {
+  const Body* const fast = find_too_fast_spin(scenario_);
+  if (fast == nullptr) return;
+  body_values_[static_cast<std::size_t>(fast - scenario_.bodies.data())].fail(
+      "a spin of " + to_text(fast->V_WB.angular.norm()) + " rad/s",
+      "less than half a turn in a time step of " + to_text(scenario_.time_step) + " s");
+}
+
 void ScenarioReader::read() {
   const MapReader map =
       root_.map("scenario", {"name",          "gravity",     "time_step",  "duration",   "seed",
@@ -214,6 +223,7 @@ void ScenarioReader::read() {
   const auto contacts = map.find("contacts");
   check_materials_meet(contacts ? *contacts : map.require("materials"));
   check_overlaps();
+  check_spins();
 }
 
 void ScenarioReader::read_items() {

@@ -2,8 +2,12 @@
 #include "snug/packing/instances.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/read_file.hpp"
@@ -97,14 +101,16 @@ std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines,
     throw InputError("command line", "--container", "a length out of range", "lengths above 0, at most 1 km");
   }
   std::vector<LoadProblem> problems;
+  using Kind = std::tuple<std::size_t, std::array<int, 3>, std::array<bool, 3>, std::string>;  // of which problem
+  std::map<std::string, std::size_t> of_orders;
+  std::map<Kind, std::size_t> of_kinds;
   for (const model::OrderLine& line : lines) {
-    auto problem = std::find_if(problems.begin(), problems.end(),
-                                [&](const LoadProblem& known) { return known.name == line.order; });
-    if (problem == problems.end()) {
+    const auto [order, is_new_order] = of_orders.try_emplace(line.order, problems.size());
+    if (is_new_order) {
       problems.push_back({line.order, {}, {}});
-      problem = problems.end() - 1;
-      for (int d = 0; d < 3; ++d) problem->container[static_cast<std::size_t>(d)] = down(container[d]);
+      for (int d = 0; d < 3; ++d) problems.back().container[static_cast<std::size_t>(d)] = down(container[d]);
     }
+    LoadProblem& problem = problems[order->second];
     if (line.handling.no_stack || line.handling.max_load) {
       throw InputError(line.order, line.article, "a box that must not carry any load",
                        "boxes without no_stack and max_load_kg: loads are not looked at here (snug pack does)");
@@ -113,15 +119,10 @@ std::vector<LoadProblem> problems_of(const std::vector<model::OrderLine>& lines,
     type.name = line.article;
     for (int d = 0; d < 3; ++d) type.size[static_cast<std::size_t>(d)] = up(line.size[d]);
     if (line.handling.upright_only) type.may_be_vertical = {false, false, true};
-    const auto twin = std::find_if(problem->types.begin(), problem->types.end(), [&](const CargoType& known) {
-      return known.size == type.size && known.may_be_vertical == type.may_be_vertical && known.name == type.name;
-    });
-    if (twin != problem->types.end()) {
-      twin->count += line.count;
-    } else {
-      type.count = line.count;
-      problem->types.push_back(type);
-    }
+    const auto [kind, is_new] =
+        of_kinds.try_emplace({order->second, type.size, type.may_be_vertical, type.name}, problem.types.size());
+    if (is_new) problem.types.push_back(std::move(type));
+    problem.types[kind->second].count += line.count;
   }
   return problems;
 }

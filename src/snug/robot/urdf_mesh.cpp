@@ -14,8 +14,10 @@ std::filesystem::path find_mesh(const Element& mesh) {
     // Without a ROS workspace a package is the folder of its name above the URDF, if there is one.
     const std::string rest = name.substr(10);
     const std::string package = rest.substr(0, rest.find('/'));
-    for (std::filesystem::path up = std::filesystem::absolute(mesh.source().folder); up.has_relative_path();
-         up = up.parent_path()) {
+    const std::filesystem::path& folder = mesh.source().folder;  // empty: that of a bare name
+    for (std::filesystem::path up = folder.empty() ? std::filesystem::current_path()
+                                                   : std::filesystem::absolute(folder);
+         up.has_relative_path(); up = up.parent_path()) {
       if (std::filesystem::exists(up / rest)) return up / rest;
       if (up.filename() == package && std::filesystem::exists(up.parent_path() / rest)) return up.parent_path() / rest;
     }

@@ -60,6 +60,7 @@ class ScenarioReader {
   void check_drops_fit(const Value& value, const Drops& drops) const;
   void check_materials_meet(const Value& at) const;
   void check_overlaps() const;
+  void check_spins() const;
 
   // read_shapes.cpp
   [[nodiscard]] Pose read_frame_name(const Value& value) const;
