@@ -128,7 +128,9 @@ session::SessionOptions make_session_options(const PackOptions& options, const S
                                              const std::string& sequence) {
   session::SessionOptions session;
   session.agent = options.agent;
-  if (packing::is_python_agent(options.agent)) session.ask = packing::start_python_agent(options.agent, agent_script());
+  if (packing::is_python_agent(options.agent)) {
+    session.ask = packing::start_python_agent(options.agent, agent_script(), {options.agent_patience, is_interrupted});
+  }
   session.decision.seed = options.seed.value_or(loaded.scenario.seed);
   if (options.future == "own") session.future = own_future(loaded, sequence);
   session.decision.time = options.decision_time;

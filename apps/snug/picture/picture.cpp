@@ -149,7 +149,7 @@ volatile std::sig_atomic_t g_is_interrupted = 0;
 
 /// Lets temporary files and the browser go in order.
 void heed_interruption() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_is_interrupted = 1; });
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { g_is_interrupted = 1; });
 }
 
 /// Keeps a second video out of the same folder as long as the result lives.
