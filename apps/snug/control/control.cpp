@@ -83,8 +83,7 @@ int run_control(const ControlOptions& options) {
   plan.path_limits = pace.get();
   const cell::CellArm arm(scenario, plan.settings.task_stiffness);
   remote_plant::ProgramClientSettings settings{options.object, options.vacuum_event, options.blow_off_event,
-                                               options.sequence ? &sequence : nullptr,
-                                               options.patience};
+                                               options.sequence ? &sequence : nullptr, options.patience};
   click::Client client(options.endpoint, options.patience, click::find_client_keys(options.keys));
   const remote_plant::ProgramClientResult result = remote_plant::run_program(client, scenario, arm, plan, settings);
   if (!result.has_begun)

@@ -2,8 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "apps/snug/keys/keys.hpp"
 #include "apps/snug/command_line/options.hpp"
+#include "apps/snug/keys/keys.hpp"
 
 namespace snug::app {
 namespace {
@@ -12,7 +12,7 @@ constexpr const char* kKeysExamples = R"(Examples:
   snug keys keys                         # of a served cell and of one controller
   snug keys keys --add camera            # of one more
   snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys
-  snug control program.csv --click tcp://cell.example:5555 --keys keys
+  snug control program.csv --click tcp://127.0.0.1:5555 --keys keys/controller.key_secret     # elsewhere: its address
 The folder of another machine needs server.key and its own NAME.key_secret, never server.key_secret. A controller is shut
 out by removing its NAME.key and starting the served cell again.)";
 

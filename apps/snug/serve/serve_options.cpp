@@ -15,7 +15,8 @@ constexpr const char* kServeExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1 --plant-seed 7 --once
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --async --view
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --robot-object ur10_FTSensor_sr_gripper
-  snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys       # for other machines
+  snug keys keys
+  snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys   # for other machines
 One Control is one step, unless --async. Ctrl-C ends it. docs/click.md describes the protocol as it is served.)";
 
 void add_served_cell(CLI::App& verb, ServeOptions& options) {

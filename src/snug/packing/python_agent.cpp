@@ -117,10 +117,10 @@ class Interpreter {
   void wait_for(int pipe, short event, Clock::time_point deadline) const {
     constexpr int kMoment = 100;  // ms, between looks whether the program was interrupted
     for (;;) {
-      if ((limits_.is_interrupted && limits_.is_interrupted())) throw AgentError(words_ + ": interrupted before it answered");
+      if ((limits_.is_interrupted && limits_.is_interrupted()))
+        throw AgentError(words_ + ": interrupted before it answered");
       if (Clock::now() >= deadline)
-        throw AgentError(
-            fmt::format("{}: no answer within {} s (--agent-timeout)", words_, patience_.count()));
+        throw AgentError(fmt::format("{}: no answer within {} s (--agent-timeout)", words_, patience_.count()));
       pollfd waiting = {pipe, event, 0};
       if (::poll(&waiting, 1, kMoment) > 0) return;
     }

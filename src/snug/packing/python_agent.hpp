@@ -12,7 +12,7 @@ namespace snug::packing {
 
 /// How long a program that was asked may take.
 struct AgentLimits {
-  double patience = 600.0;                      ///< s, to start, and for each answer
+  double patience = 600.0;                    ///< s, to start, and for each answer
   std::function<bool()> is_interrupted = {};  ///< asked ten times a second: the user ends the program
 };
 
@@ -20,8 +20,8 @@ struct AgentLimits {
 [[nodiscard]] bool is_python_agent(const std::string& words);
 /// Starts the interpreter, SNUG_PYTHON or /usr/bin/python3, in the folder one is in, whose modules it finds. It ends
 /// with the last copy of what is returned, also when it hangs. `script`: python/snug/agent.py of the project. Throws
-/// InputError when module or class cannot be had; asking throws AgentError when the interpreter ends, does not answer in
-/// time, or the program is interrupted meanwhile.
+/// InputError when module or class cannot be had; asking throws AgentError when the interpreter ends, does not answer
+/// in time, or the program is interrupted meanwhile.
 [[nodiscard]] Ask start_python_agent(const std::string& words, const std::filesystem::path& script,
                                      const AgentLimits& limits = {});
 

@@ -40,8 +40,7 @@ class Stranger {
       }
       const auto message = decode(asked.parts.back());
       if (!message || std::holds_alternative<Error>(*message)) continue;
-      for (std::size_t i = 0; i + 1 < asked.parts.size(); ++i)
-        (void)wire::send(socket_.get(), asked.parts[i], true);
+      for (std::size_t i = 0; i + 1 < asked.parts.size(); ++i) (void)wire::send(socket_.get(), asked.parts[i], true);
       (void)wire::send(socket_.get(), encode(answer_(*message)), false);
     }
   }

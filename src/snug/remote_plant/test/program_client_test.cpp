@@ -92,7 +92,8 @@ TEST(ProgramClient, EndsWhereTheTimeOfTheSimulatorStandsStill) {
   const click::test::Stranger stranger([&](const click::Message& asked) -> click::Message {
     // Everything as it should be, but a Control is answered as a question would be.
     const bool is_step = std::holds_alternative<click::Control>(asked);
-    return *click::decode(*simulator.answer("peer", click::encode(is_step ? click::Message(click::SensorRequest{}) : asked)));
+    return *click::decode(
+        *simulator.answer("peer", click::encode(is_step ? click::Message(click::SensorRequest{}) : asked)));
   });
   const motion::Program program{"test", {motion::named_waypoint("home", simulation.scenario().controller.X_WE_start)}};
   const motion::PreparedProgram plan = simulation.prepare(program);
