@@ -189,6 +189,73 @@ bool contact_along(const BoxPair& pair, const BoxAxis& axis, double separation, 
 
 }  // namespace
 
+namespace {
+
+/// The best face of the other box, when it separates as well as the chosen one does; -1: it does not.
+int find_tied_face(const BoxAxes& axes, const BoxAxis& chosen) noexcept {
+  const int first = chosen.axis.kind == AxisKind::FaceA ? 3 : 0;
+  int slot = first;
+  for (int k = first + 1; k < first + 3; ++k) {
+    if (axes.face[static_cast<std::size_t>(k)] > axes.face[static_cast<std::size_t>(slot)]) slot = k;
+  }
+  return axes.face[static_cast<std::size_t>(slot)] >= chosen.separation - allowance(chosen.separation) ? slot : -1;
+}
+
+/// Index of the axis, a column of R, that is parallel to d; -1: none.
+int parallel_axis(const Matrix3& R, const Vector3& d) noexcept {
+  for (int k = 0; k < 3; ++k) {
+    if (R.col(k).cross(d).squaredNorm() < kEdgesParallelSquared) return k;
+  }
+  return -1;
+}
+
+/// The edge along axis k that lies farthest along n, both in the frame of the box.
+int support_edge(int k, const Vector3& n) noexcept { return box_edge(k, n[next(k)] > 0.0, n[next(next(k))] > 0.0); }
+
+/// Two parallel edges that meet with a face of each on either side: neither face has a better claim to the normal than
+/// the other, so it lies halfway between them. Both ends of the edges' common part.
+bool parallel_edge_contact(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& chosen, const PairCall& call,
+                           Manifold& out) noexcept {
+  if (chosen.separation > kBias) return false;
+  const int slot = chosen.axis.kind == AxisKind::Edge ? -1 : find_tied_face(axes, chosen);
+  if (slot < 0) return false;
+  const Vector3 other = face_normal(pair, axes, slot);
+  const double cosine = chosen.n_A.dot(other);
+  if (cosine > kSameNormal || cosine < kOppositeEdges) return false;
+  const Vector3 d = chosen.n_A.cross(other).normalized(), n = (chosen.n_A + other).normalized();
+  const int axis_A = parallel_axis(Matrix3::Identity(), d), axis_B = parallel_axis(pair.R_AB, d);
+  if (axis_A < 0 || axis_B < 0) return false;
+  const int edge_A = support_edge(axis_A, n), edge_B = support_edge(axis_B, Vector3(-(pair.R_AB.transpose() * n)));
+  Vector3 a0, a1, b0, b1;
+  edge_ends(pair.half_A, edge_A, a0, a1);
+  edge_ends(pair.half_B, edge_B, b0, b1);
+  b0 = pair.R_AB * b0 + pair.p_AB, b1 = pair.R_AB * b1 + pair.p_AB;
+  const Vector3 along = (a1 - a0).normalized();
+  const double t0 = along.dot(b0 - a0), t1 = along.dot(b1 - a0);
+  const double low = std::max(0.0, std::min(t0, t1)), high = std::min((a1 - a0).norm(), std::max(t0, t1));
+  if (!(high - low > kMiss)) return false;
+  // The edges meet: what lies between them is along n alone.
+  const Vector3 between = b0 - a0 - t0 * along;
+  const double separation = n.dot(between);
+  if ((between - separation * n).norm() > kEdgeMiss) return false;
+  if (separation < chosen.separation - allowance(chosen.separation)) return false;
+  const Vector3 n_W = call.X_WA.R * n;
+  set_normal(call.swapped, n_W, out);
+  int end = 0;
+  for (const double t : {low, high}) {
+    const Vector3 p_A = a0 + t * along;
+    const double share = (t - t0) / (t1 - t0);
+    const double phi = n.dot(b0 + share * (b1 - b0) - p_A);
+    const std::uint32_t second = end++ == 0 ? 0U : kSecond;
+    if (!(phi <= call.margin)) continue;
+    const Vector3 p_WA = call.X_WA * p_A;
+    emit(call.swapped, p_WA, p_WA + phi * n_W, phi, edge_code(edge_A) | second, edge_code(edge_B) | second, out);
+  }
+  return out.count > 0;
+}
+
+}  // namespace
+
 void collide_boxes(const Box& A, const Box& B, const PairCall& call, Axis& axis, Manifold& out) noexcept {
   out.face_area = 0.0;
   if (axis.kind != AxisKind::None &&
@@ -206,6 +273,7 @@ void collide_boxes(const Box& A, const Box& B, const PairCall& call, Axis& axis,
   const BoxAxis chosen = choose(pair, axes, axis, separation);
   axis = chosen.axis;
   if (is_corner_pair(pair, axes, chosen)) return;
+  if (parallel_edge_contact(pair, axes, chosen, call, out)) return;
   if (contact_along(pair, chosen, separation, call, out)) return;
   if (separation > 0.0) return collide_apart(A, B, pair.R_AB, pair.p_AB, chosen.n_A, call, out);
   // What was chosen for the sake of the past, or by preference, has nothing to show: the best of the other kind.

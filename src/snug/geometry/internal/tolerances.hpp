@@ -25,6 +25,11 @@ inline constexpr double kSnap = 1e-5;
 inline constexpr double kParallelSquared = 1e-14;
 /// A face within this cosine of an edge-edge normal: the contact keeps the polygon over the face.
 inline constexpr double kNearFaceCosine = 0.99;
+/// Parallel edges that meet with faces on either side (README.md, "How an answer is found"): largest and least cosine
+/// between the normals of the two faces, sin^2 of the angle between the edges, and how far [m] they miss each other.
+inline constexpr double kSameNormal = 0.9994, kOppositeEdges = 0.1;
+inline constexpr double kEdgesParallelSquared = 1e-8;
+inline constexpr double kEdgeMiss = 2e-6;
 /// Features meet across an axis when their points miss each other by less than this [m], sideways.
 inline constexpr double kMiss = 1e-9;
 /// Axes whose separations differ by less [m] are tied and the first one wins.

@@ -24,6 +24,45 @@ using std::numbers::pi;
 
 const Shape kBox = Box{{0.1, 0.08, 0.05}};
 
+/// Two plates that lean on each other at an angle of `lean` from upright, their upper edges along y 0.2 um apart.
+Manifold lean_plates(double lean, double gap, bool is_swapped) {
+  const Shape plate = Box{{0.0005, 0.03, 0.044}};
+  const auto placed = [&](double side) {  // the upper edge that meets the other plate is at x = -side gap / 2, z = 0
+    const Matrix3 R = exp_rotation(Vector3(0.0, side * lean, 0.0));
+    return Pose{R, Vector3(-0.5 * side * gap, 0.0, 0.0) - R * Vector3(side * 0.0005, 0.0, 0.044)};
+  };
+  const Pose left = placed(1.0);
+  Pose right = placed(-1.0);
+  right.p.y() += 0.01;
+  return is_swapped ? collide_once(plate, right, plate, left, 1e-3) : collide_once(plate, left, plate, right, 1e-3);
+}
+
+TEST(BoxBox, ParallelEdgesPushHalfwayBetweenTheirFaces) {
+  for (const bool is_swapped : {false, true}) {
+    for (const double lean : {0.1, pi / 12.0, 0.5}) {
+      SCOPED_TRACE(testing::Message() << lean << " rad");
+      const Manifold m = lean_plates(lean, -2e-7, is_swapped);
+      ASSERT_EQ(m.count, 2);
+      EXPECT_LT((m.n_AB_W - Vector3(is_swapped ? -1.0 : 1.0, 0.0, 0.0)).norm(), 1e-9);
+      for (const ManifoldPoint& point : std::span(m.points).first(2)) {
+        EXPECT_NEAR(point.phi, -2e-7, 1e-12);
+        EXPECT_NEAR(point.p_WA.z(), 0.0, 1e-9);
+      }
+      // The common part of the edges: y from -0.02 to 0.03.
+      EXPECT_NEAR(std::abs(m.points[0].p_WA.y() - m.points[1].p_WA.y()), 0.05, 1e-9);
+      EXPECT_NEAR(m.points[0].p_WA.y() + m.points[1].p_WA.y(), 0.01, 1e-9);
+      EXPECT_NE(m.points[0].feature, m.points[1].feature);
+    }
+  }
+}
+
+TEST(BoxBox, ParallelEdgesThatOverlapDeeplyArePushedAlongAFace) {
+  // Halfway between the faces the depth would be larger by 1/cos(lean) than the least one.
+  const Manifold m = lean_plates(0.5, -1e-4, false);
+  ASSERT_GT(m.count, 0);
+  EXPECT_NEAR(least_phi(m), -1e-4 * std::cos(0.5), 1.1e-6);
+}
+
 TEST(BoxBox, FlatOnTableTouchesAtItsFourLowerCorners) {
   const Manifold m = collide_once(kTable, at(0, 0, 0), kBox, at(0.03, -0.02, 0.0999), 1e-3);
   ASSERT_EQ(m.count, 4);

@@ -215,5 +215,21 @@ TEST(ContactReport, SaysSlidesForEveryCornerOfASpinningBox) {
   }
 }
 
+TEST(EdgeContact, SharpPlatesLeanOnEachOther) {
+  // Two plates at 15 degrees on a floor of friction 0.4; where their sharp edges meet 0.128 is needed.
+  const ContactLaw ridge{0.2, 0.0, 0.0, 0.0}, floor{0.4, 0.0, 0.0, 0.0};
+  WorldModel model = world(ridge, floor);
+  model.bodies = {fixed_box({4.0, 4.0, 0.1}, {0.0, 0.0, -0.05})};
+  for (const double side : {1.0, -1.0}) {
+    const Vector3 p_WB(-0.011871000897655446 * side, 0.0, 0.04263014587927026);
+    model.bodies.push_back(box({0.001, 0.063, 0.088}, 0.0018, p_WB));
+    model.bodies.back().X_WB.R = exp_rotation(Vector3(0.0, side * std::numbers::pi / 12.0, 0.0));
+  }
+  model.finalize();
+  Simulation run(model);
+  run.steps(1000);
+  for (const int i : {1, 2}) EXPECT_NEAR(run.body(i).p_WBcm.z(), 0.04263, 1e-4);  // fallen: 0.0005
+}
+
 }  // namespace
 }  // namespace snug::physics::test
