@@ -108,30 +108,6 @@ TEST(FitBoxes, AStrongBeliefIsNotMovedByTheFrame) {
   EXPECT_LT((fit.boxes[0].X_CP.p - scene.tracked(kFittedBox, off).X_CP.p).norm(), 1e-5);
 }
 
-/// Where relocation.apart_error comes from: how far apart opposite edges are seen, less how far they are, over frames
-/// of a camera with errors, at any turn.
-TEST(FitBoxes, SidesAreSeenAsFarApartAsTheSettingsSay) {
-  Rng rng = Rng(16).split("apart");
-  double squares = 0.0;
-  int count = 0;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    Box box = kFittedBox;
-    box.X_WP = level(rng.uniform(-0.08, 0.08), rng.uniform(-0.15, 0.15), 0.05, rng.uniform(-1.5, 1.5));
-    const FitScene scene({box}, "structured_light", seed);
-    const FitResult fit = fit_boxes(scene.context(), {scene.tracked(box)}, FitStart::Near, 4);
-    for (int k = 0; k < 3; ++k) {
-      if (!std::isfinite(fit.size_misfit[0](k))) continue;
-      squares += std::pow(fit.size_misfit[0](k), 2);
-      ++count;
-    }
-  }
-  ASSERT_GT(count, 40);
-  const double deviation = std::sqrt(squares / count);
-  const double stated = EstimatorSettings{}.relocation.apart_error;
-  EXPECT_LT(deviation, stated) << "of " << count;
-  EXPECT_GT(deviation, 0.25 * stated) << "of " << count;
-}
-
 TEST(FitBoxes, NothingToFitIsNothing) {
   const FitScene scene({kFittedBox});
   EXPECT_TRUE(fit_boxes(scene.context(), {}, FitStart::Near, 4).boxes.empty());

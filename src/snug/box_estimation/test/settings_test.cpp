@@ -16,8 +16,6 @@ const char* name_of(Basis basis) {
   switch (basis) {
     case Basis::Derived:
       return "derived";
-    case Basis::Measured:
-      return "measured";
     case Basis::Chosen:
       break;
   }
