@@ -61,14 +61,6 @@ packing::FutureModel own_future(const SourcedScenario& loaded, const std::string
   return future;
 }
 
-void make_folder(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (!std::filesystem::is_directory(path, error)) {
-    throw InputError(path, "--save-belief", "no folder", "a folder, or a place for one");
-  }
-}
-
 /// The files that were asked for, reserved before the work begins.
 struct PackFiles {
   std::optional<OutputFile> program, plan, record;
@@ -85,7 +77,7 @@ struct PackFiles {
     plan = reserve(options.plan);
     record = reserve_recording(options.record);
     if (options.log) log.emplace(*options.log);
-    if (options.save_beliefs) make_folder(*options.save_beliefs);
+    if (options.save_beliefs) make_folder("--save-belief", *options.save_beliefs);
   }
   /// The placements so far: at their path where no earlier file is, else beside it until they are complete.
   void update_plan(const std::string& text) {
