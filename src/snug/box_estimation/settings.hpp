@@ -5,9 +5,9 @@ namespace snug::box_estimation {
 
 /// Where a number comes from.
 enum class Basis {
-  Derived,   ///< follows from geometry, from other settings, or from a probability, as said
-  Chosen,    ///< by hand on disturbed frames of `snug bench camera`, seeds below 50000 (docs/camera.md, Figures, where
-             ///< seeds from 50000 on judge); settings_sweep_test.cpp has each a tenth off
+  Derived,  ///< follows from geometry, from other settings, or from a probability, as said
+  Chosen,   ///< by hand on disturbed frames of `snug bench camera`, seeds below 50000 (docs/camera.md, Figures, where
+            ///< seeds from 50000 on judge); settings_sweep_test.cpp has each a tenth off
 };
 
 // Each struct lists its fields once: name, value, unit, basis, and the reason. `Archive` is called with these five.
@@ -237,8 +237,7 @@ struct RelocationSettings {
     a("seen_through", seen_through, "px", Basis::Chosen, "more than for others, for each point behind the box");
     a("least_gain", least_gain, "px", Basis::Chosen, "less explains nothing");
     a("evidence", evidence, "px", Basis::Chosen, "that one unit of log-likelihood weighs");
-    a("apart_error", apart_error, "m", Basis::Chosen,
-      "of how far apart opposite edges are seen, a standard deviation");
+    a("apart_error", apart_error, "m", Basis::Chosen, "of how far apart opposite edges are seen, a standard deviation");
     a("most_misfit", most_misfit, "1", Basis::Chosen, "standard deviations: farther off is not less likely");
     a("unseen", unseen, "1", Basis::Chosen, "log-likelihood of a side of which not both ends are seen");
     a("in_the_air", in_the_air, "1", Basis::Chosen, "log-likelihood: it touches nothing");

@@ -7,9 +7,9 @@
 
 #include "snug/core/check.hpp"
 #include "snug/core/parallel.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/skills/side_pick.hpp"
-#include "snug/motion/program_csv.hpp"
 
 namespace snug::planning {
 namespace {

@@ -232,7 +232,7 @@ Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::In
   attempt.X_PS = grasp.X_PS;
   attempt.swing = grasp.swing;
   const motion::Waypoint& last = attempt.program.waypoints.back();
-  const skills::PlaceRequest request{box_,        grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
+  const skills::PlaceRequest request{box_,      grasp.X_PS, attempt.planned.X_TP, insertion, packed_top,
                                      last.X_WE, grasp.X_EP};
   auto waypoints = drivable(cell_.layout, last, plan_place(belief_.nominal(), cell_.layout, request), grasp.swing);
   if (!can_follow(cell_.reaches, cell_.layout, last, waypoints)) {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "snug/cell/rest_watch.hpp"
-#include "snug/motion/waypoint_name.hpp"
 #include "snug/motion/program_csv.hpp"
+#include "snug/motion/waypoint_name.hpp"
 
 namespace snug::planning {
 namespace {

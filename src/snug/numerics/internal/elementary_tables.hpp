@@ -1,4 +1,5 @@
-// Constants of the elementary functions, to more digits than a number holds. Written by tools/make_elementary_tables.py.
+// Constants of the elementary functions, to more digits than a number holds. Written by
+// tools/make_elementary_tables.py.
 // clang-format off
 #pragma once
 

@@ -82,7 +82,8 @@ TEST_P(PlanGrasp, BringsEveryFaceOfEveryTypeUpInNearlyAllCellsThatCouldBe) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Controllers, PlanGrasp,
-                         testing::Values(motion::Tracking(motion::LaggedTracking{}), motion::Tracking(motion::FastTracking{})));
+                         testing::Values(motion::Tracking(motion::LaggedTracking{}),
+                                         motion::Tracking(motion::FastTracking{})));
 
 }  // namespace
 }  // namespace snug::planning

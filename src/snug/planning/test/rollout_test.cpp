@@ -7,9 +7,9 @@
 
 #include "snug/cell/joint_pace.hpp"
 #include "snug/model/test/shortened.hpp"
+#include "snug/motion/program_csv.hpp"
 #include "snug/planning/reach.hpp"
 #include "snug/planning/rollout.hpp"
-#include "snug/motion/program_csv.hpp"
 
 namespace snug::planning {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "snug/cell/drawn_scenario.hpp"
-#include "snug/session/test/scripted_plant.hpp"
 #include "snug/motion/program_csv.hpp"
+#include "snug/session/test/scripted_plant.hpp"
 
 namespace snug::session {
 namespace {
