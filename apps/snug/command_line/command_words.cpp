@@ -38,8 +38,11 @@ std::string command_of(const CLI::App& app) {
     names.push_back(known->get_name());
     expected += (names.size() == 1 ? " " : ", ") + names.back();
   }
+  const std::string hint = hint_of(word, names);
+  // A message has an end: the nearest verb is worth more than the list of all.
+  if (app.get_parent() == nullptr && !hint.empty()) expected = "one of `" + command_of(app) + " --help`";
   throw InputError("command line", app.get_parent() == nullptr ? "verb" : "verb after " + app.get_name(),
-                   word.empty() ? "nothing" : "'" + word + "'", expected + hint_of(word, names));
+                   word.empty() ? "nothing" : "'" + word + "'", expected + hint);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "snug/study/calibration_json.hpp"
+#include "snug/study/row_values.hpp"
 
 namespace snug::study {
 namespace {
@@ -52,23 +53,19 @@ struct RowWriter {
 /// The values of a table's row; what is not there stays as it is.
 class RowReader {
  public:
-  explicit RowReader(const RowResult& result) : result_(result) {}
+  explicit RowReader(const RowResult& result) : values_(result) {}
 
-  void operator()(const char* name, double& value) {
-    if (const double* number = std::get_if<double>(find(name))) value = *number;
-  }
-  void operator()(const char* name, int& value) {
-    if (const double* number = std::get_if<double>(find(name))) value = static_cast<int>(*number);
-  }
-  void operator()(const char* name, std::string& value) { value = word(name); }
+  void operator()(const char* name, double& value) { value = values_.number(name, value); }
+  void operator()(const char* name, int& value) { value = static_cast<int>(values_.number(name, value)); }
+  void operator()(const char* name, std::string& value) { value = values_.word(name); }
   void operator()(const char* name, std::optional<session::StopReason>& reason) {
-    const std::string text = word(name);
+    const std::string text = values_.word(name);
     const auto found = std::ranges::find_if(kStopReasons, [&](auto one) { return text == session::name_of(one); });
     if (found != kStopReasons.end()) reason = *found;
   }
-  void operator()(const char* name, Calibration& calibration) { calibration = read_calibration(list(name)); }
+  void operator()(const char* name, Calibration& calibration) { calibration = read_calibration(values_.list(name)); }
   void operator()(const char* name, std::vector<PackedBox>& packed) {
-    for (const Json& json : list(name)) {
+    for (const Json& json : values_.list(name)) {
       const auto p = json.at("p").get<std::array<double, 3>>();
       const auto q = json.at("quat_wxyz").get<std::array<double, 4>>();
       packed.push_back({json.at("id").get<std::string>(),
@@ -77,21 +74,7 @@ class RowReader {
   }
 
  private:
-  [[nodiscard]] const Cell* find(const char* name) const {
-    const auto found = std::ranges::find(result_.values, name, &std::pair<std::string, Cell>::first);
-    return found != result_.values.end() ? &found->second : nullptr;
-  }
-  [[nodiscard]] std::string word(const char* name) const {
-    const auto* text = std::get_if<std::string>(find(name));
-    return text != nullptr ? *text : std::string();
-  }
-  /// A list that tables keep as text.
-  [[nodiscard]] Json list(const char* name) const {
-    Json json = Json::parse(word(name), nullptr, false);
-    return json.is_array() ? json : Json::array();
-  }
-
-  const RowResult& result_;
+  RowValues values_;
 };
 
 }  // namespace
@@ -134,6 +117,7 @@ SessionRow make_row(const Trial& trial, const SessionPoint& point) {
 std::string format_row(SessionRow row) {
   RowWriter writer;
   row.fields(writer);
+  writer.json["of_clock"] = {"decision_seconds_median", "boxes_per_hour_with_planning"};
   return writer.json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -146,7 +146,9 @@ TEST(Elementary, HaveTheSpecialValuesOfC) {
 
 TEST(Elementary, AreExactWhereTheResultIsANumber) {
   for (int i = -20; i <= 20; ++i) {
-    if (i >= 0) EXPECT_EQ(own::log10(static_cast<double>(std::pow(Wide{10.0}, i))), i);
+    if (i >= 0) {
+      EXPECT_EQ(own::log10(static_cast<double>(std::pow(Wide{10.0}, i))), i);
+    }
     EXPECT_EQ(own::cbrt(static_cast<double>(i) * i * i), i);
     EXPECT_EQ(own::pow(i, 3), static_cast<double>(i) * i * i);
     EXPECT_EQ(own::exp2(i), std::ldexp(1.0, i));

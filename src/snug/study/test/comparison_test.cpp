@@ -37,7 +37,7 @@ SessionRow round_trip(const SessionRow& row, const SessionPoint& point) {
   Study study;
   study.outputs = session_outputs();
   RowResult result;
-  result.values = values_of(study, format_row(row));
+  static_cast<ResultValues&>(result) = values_of(study, format_row(row));
   const std::optional<RowResult> stored = parse_line(format_line(result).substr(0, format_line(result).size() - 1));
   EXPECT_TRUE(stored && *stored == result);
   return read_row(*stored, point, row.seed);
@@ -48,6 +48,7 @@ TEST(SessionRow, ComesBackFromItsProcessAndItsTableAsItWas) {
   const SessionRow back = round_trip(row, row.point);
   EXPECT_EQ(back.executed_percent, row.executed_percent) << "to the last digit";
   EXPECT_EQ(back.stop_reason, row.stop_reason);
+  EXPECT_EQ(back.decision_seconds_median, row.decision_seconds_median) << "a column of the clock";
   EXPECT_EQ(back.point.plant_seed, 3u);
   EXPECT_EQ(back.calibration.bins[9].motions, 4);
   EXPECT_NEAR(back.calibration.bins[9].predicted, 3.8, 1e-12);
