@@ -8,6 +8,8 @@ namespace snug::camera {
 namespace {
 
 bool is_size(double value) { return value > 0.0 && value < 1e4; }
+/// Each by itself: the least of numbers with a NaN among them may be any of them.
+bool is_size(const Vector3& values) { return is_size(values.x()) && is_size(values.y()) && is_size(values.z()); }
 
 geometry::Shape make_shape(const record::ShapeInfo& info, const std::string& body, const std::string& name) {
   const auto refuse = [&](const std::string& got) {
@@ -15,7 +17,7 @@ geometry::Shape make_shape(const record::ShapeInfo& info, const std::string& bod
   };
   switch (info.kind) {
     case record::ShapeKind::Box:
-      if (!is_size(info.half.minCoeff()) || !is_size(info.half.maxCoeff())) refuse("a box without size");
+      if (!is_size(info.half)) refuse("a box without size");
       return geometry::Box{info.half};
     case record::ShapeKind::Capsule:
       if (!is_size(info.radius) || !(info.half_length >= 0.0 && info.half_length < 1e4))

@@ -77,8 +77,9 @@ JsonValue parse_json(std::string_view text, const std::string& where, int line) 
   try {
     return from_library(Json::parse(text));
   } catch (const Json::parse_error& error) {
-    const std::string_view before = text.substr(0, std::min(text.size(), error.byte));
-    line += static_cast<int>(std::ranges::count(before.substr(0, before.empty() ? 0 : before.size() - 1), '\n'));
+    // Bytes count from 1; that of a text which ends too early is one behind its end.
+    const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
+    line += static_cast<int>(std::ranges::count(before, '\n'));
     throw InputError(where + ":" + std::to_string(line), "", "", "JSON text");
   }
 }

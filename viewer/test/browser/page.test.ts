@@ -86,7 +86,8 @@ describe("the page", () => {
     const { page, close } = await open(browser, pageWith("item-events", [smallHeader(100)]));
     await page.click(".item-events .events button");
     expect(await page.evaluate(() => window.snug.time)).toBeCloseTo(0.3, 6);
-    expect(await page.textContent(".box.selected b")).toBe("box");
+    expect(await page.textContent(".box.selected b")).toBe("B1"); // the article, before the id
+    expect(await page.textContent(".box.selected .type")).toBe("box");
     await close();
   });
 

@@ -46,31 +46,6 @@ TEST(FindBorders, AStepIsAnEdgeOfDepthFromTwoAndAHalfMillimetresOn) {
   }
 }
 
-/// A floor that meets a wall which faces the camera more: they look at each other where they meet, not at a roof's
-/// ridge.
-TEST(FindBorders, ACornerIsWhereSurfacesLookAtEachOther) {
-  const double lean = 0.6;
-  for (const double sign : {1.0, -1.0}) {
-    Scene scene;
-    add_box(scene, "a",
-            Pose{exp_rotation(Vector3(0, sign * lean, 0)), Vector3(0, 0, 1.0)} *
-                Pose{Matrix3::Identity(), Vector3(-2, 0, 0.05)},
-            Vector3(4, 9, 0.1));
-    add_box(scene, "b",
-            Pose{exp_rotation(Vector3(0, -sign * lean, 0)), Vector3(0, 0, 1.0)} *
-                Pose{Matrix3::Identity(), Vector3(2, 0, 0.05)},
-            Vector3(4, 9, 0.1));
-    const CastView view = view_of();
-    const Grid2<std::uint8_t> borders = find_borders(cast(scene, view), 1);
-    const int corners = count(borders, kCornerRight);
-    EXPECT_TRUE(corners == view.rows || corners == 0) << corners;
-    EXPECT_EQ(count(borders, kJumpRight), 0) << "they meet";
-    const bool is_valley =
-        1.0 / cast(scene, view).inverse_depth(50, 70) > 1.0 / cast(scene, view).inverse_depth(50, 20);
-    EXPECT_EQ(corners > 0, is_valley);
-  }
-}
-
 TEST(FindBorders, WhereNothingIsSeenBehindIsAnEdge) {
   Scene scene;
   add_box(scene, "box", {Matrix3::Identity(), Vector3(0, 0, 1.0)}, Vector3(0.2, 0.2, 0.1));
