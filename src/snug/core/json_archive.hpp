@@ -39,7 +39,7 @@ class JsonWriter {
   static constexpr bool kReads = false;
   template <class T>
   void operator()(const char* key, const T& value) {
-    object_.emplace_back(key, write_json(value));
+    object_.push_back({key, write_json(value)});
   }
   [[nodiscard]] JsonValue take() { return {std::move(object_)}; }
 

@@ -43,7 +43,7 @@ JsonValue from_library(const Json& from) {
   }
   if (from.is_object()) {
     JsonValue::Object to;
-    for (const auto& [key, one] : from.items()) to.emplace_back(key, from_library(one));
+    for (const auto& [key, one] : from.items()) to.push_back({key, from_library(one)});
     return {std::move(to)};
   }
   if (from.is_number_unsigned()) return {from.get<std::uint64_t>()};
@@ -59,8 +59,8 @@ JsonValue from_library(const Json& from) {
 const JsonValue* JsonValue::find(std::string_view key) const {
   const auto* object = std::get_if<Object>(&value);
   if (object == nullptr) return nullptr;
-  const auto found = std::ranges::find(*object, key, &Object::value_type::first);
-  return found == object->end() ? nullptr : &found->second;
+  const auto found = std::ranges::find(*object, key, &Member::key);
+  return found == object->end() ? nullptr : &found->value;
 }
 
 std::string_view JsonValue::kind() const {
@@ -72,6 +72,8 @@ std::string_view JsonValue::kind() const {
 std::string format_json(const JsonValue& value) {
   return to_library(value).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
+
+bool JsonValue::operator==(const JsonValue& other) const { return value == other.value; }
 
 JsonValue parse_json(std::string_view text, const std::string& where, int line) {
   try {

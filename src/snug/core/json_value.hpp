@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -12,7 +11,8 @@ namespace snug {
 
 struct JsonValue {
   using Array = std::vector<JsonValue>;
-  using Object = std::vector<std::pair<std::string, JsonValue>>;
+  struct Member;  // a type of its own: a pair of an incomplete type is none for every compiler
+  using Object = std::vector<Member>;
   /// Whole numbers below 0 are the second, others the third.
   std::variant<std::monostate, std::int64_t, std::uint64_t, bool, double, std::string, Array, Object> value;
 
@@ -21,7 +21,13 @@ struct JsonValue {
   [[nodiscard]] bool is_null() const { return std::holds_alternative<std::monostate>(value); }
   /// For messages: "a number", "an object".
   [[nodiscard]] std::string_view kind() const;
-  bool operator==(const JsonValue&) const = default;
+  bool operator==(const JsonValue& other) const;
+};
+
+struct JsonValue::Member {
+  std::string key;
+  JsonValue value;
+  bool operator==(const Member&) const = default;
 };
 
 /// Numbers in the shortest form that reads back exactly; those that are not finite as "inf", "-inf" and "nan".

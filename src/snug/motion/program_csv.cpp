@@ -128,7 +128,9 @@ std::optional<Vector3> find_on_grid(const Matrix3& R) {
   return std::nullopt;
 }
 
+/// 0 stays 0: beside it are numbers that nobody would write.
 double step(double value, int ulps) {
+  if (value == 0.0) return 0.0;
   const double toward = ulps > 0 ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
   for (int i = 0; i < std::abs(ulps); ++i) value = std::nextafter(value, toward);
   return value;
@@ -140,10 +142,11 @@ std::optional<Vector3> find_exact(const Vector3& r, const Matrix3& R) {
     const Vector3 decimal = (r * scale).array().round().matrix() / scale;
     if (gives(decimal, R)) return decimal;
   }
-  constexpr int kReach = 3;  // ulps: what logarithm and exponential lose together of most vectors
-  for (int x = -kReach; x <= kReach; ++x) {
-    for (int y = -kReach; y <= kReach; ++y) {
-      for (int z = -kReach; z <= kReach; ++z) {
+  constexpr std::array kUlps = {0,  1, -1, 2,
+                                -2, 3, -3};  // what logarithm and exponential lose together of most vectors
+  for (const int x : kUlps) {
+    for (const int y : kUlps) {
+      for (const int z : kUlps) {
         const Vector3 near(step(r.x(), x), step(r.y(), y), step(r.z(), z));
         if (gives(near, R)) return near;
       }

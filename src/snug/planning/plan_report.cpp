@@ -103,7 +103,7 @@ std::string format_plan_json(const PlanRequest& request, const Plan& plan) {
   JsonValue::Object object = std::get<JsonValue::Object>(writer.take().value);
   JsonValue::Array tried;
   for (const Tried& one : plan.tried) tried.push_back(json_of(one));
-  object.emplace_back("tried", JsonValue{std::move(tried)});
+  object.push_back({"tried", {std::move(tried)}});
   return format_json({std::move(object)}) + "\n";
 }
 

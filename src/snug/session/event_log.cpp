@@ -103,7 +103,7 @@ SessionEvent parse_event(std::string_view text, const std::string& where, int li
   std::vector<std::string> names(kKinds.begin(), kKinds.end());
   for (std::size_t i = 0; i < kKinds.size(); ++i) {
     if (name != kKinds[i]) continue;
-    std::erase_if(std::get<JsonValue::Object>(value.value), [](const auto& part) { return part.first == "event"; });
+    std::erase_if(std::get<JsonValue::Object>(value.value), [](const auto& part) { return part.key == "event"; });
     return read_alternative(i, reader);
   }
   const std::string nearest(find_nearest(name, names));
