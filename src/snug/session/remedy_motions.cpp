@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "snug/cup/pick_length.hpp"
+#include "snug/planning/rollout.hpp"
 #include "snug/skills/primitives.hpp"
 #include "snug/skills/surroundings.hpp"
 
