@@ -34,7 +34,6 @@ class Executor {
   [[nodiscard]] bool has_completed() const { return robot_.end.reason == plant::EndReason::Completed; }
   /// Of the last motion.
   [[nodiscard]] const std::vector<motion::Waypoint>& waypoints() const { return order_.waypoints; }
-  [[nodiscard]] const plant::Guards& guards() const { return order_.guards; }
   /// The vacuum says that something hangs from the cup.
   [[nodiscard]] bool is_holding() const;
   /// How the last motion ended, for people.

@@ -46,6 +46,33 @@ TEST(FindBorders, AStepIsAnEdgeOfDepthFromTwoAndAHalfMillimetresOn) {
   }
 }
 
+/// Two slabs whose front faces meet at 1 m, each turned by `lean` about the line where they meet: below 0 a valley.
+Grid2<std::uint8_t> borders_of_fold(double lean) {
+  Scene scene;
+  for (const double side : {-1.0, 1.0}) {
+    add_box(scene, side < 0.0 ? "left" : "right",
+            Pose{exp_rotation(Vector3(0, -side * lean, 0)), Vector3(0, 0, 1.0)} *
+                Pose{Matrix3::Identity(), Vector3(2.0 * side, 0, 0.05)},
+            Vector3(4, 9, 0.1));
+  }
+  return find_borders(cast(scene, view_of()), 1);
+}
+
+/// A pixel is 1 m / 200 = 5 mm wide. One pixel beyond the fold the planes are 2 tan(lean) 2.5 mm apart: 1.5 mm at
+/// 0.3 rad, no edge of depth.
+TEST(FindBorders, ACornerIsWhereSurfacesLookAtEachOther) {
+  const Grid2<std::uint8_t> valley = borders_of_fold(-0.3), ridge = borders_of_fold(0.3);
+  EXPECT_EQ(count(valley, kCornerRight), valley.rows());
+  EXPECT_EQ(count(ridge, kCornerRight), 0);
+  EXPECT_EQ(count(valley, kJumpRight) + count(ridge, kJumpRight), 0) << "they meet";
+}
+
+/// 3.4 mm at 0.6 rad, beyond kEdgeOfDepth: pixels of this width do not tell a ridge from an edge.
+TEST(FindBorders, ARidgeTooSteepForItsPixelsIsAnEdgeOfDepth) {
+  const Grid2<std::uint8_t> ridge = borders_of_fold(0.6);
+  EXPECT_EQ(count(ridge, kJumpRight), ridge.rows());
+}
+
 TEST(FindBorders, WhereNothingIsSeenBehindIsAnEdge) {
   Scene scene;
   add_box(scene, "box", {Matrix3::Identity(), Vector3(0, 0, 1.0)}, Vector3(0.2, 0.2, 0.1));
