@@ -74,7 +74,7 @@ TEST_P(DemonstratorSequence, SpendsLessThanHalfOfItsTimeOnTheReferenceMotions) {
   }
   EXPECT_NEAR(total, reported.reference, 1.1);  // the figures are rounded to seconds, the point model starts elsewhere
   EXPECT_NEAR(worst_jump, 0.0215, 0.001);       // interfaces 2.3: jumps of the reference up to 21-22 mm
-  // The ideal controller adds the waits and half a tick a row.
+  // Exact tracking adds the waits and half a tick a row.
   const double ideal = duration_of(reported.sequence, false, false, ExactTracking{});
   EXPECT_GT(ideal, total);
   EXPECT_LT(ideal, reported.plain - 60.0);
