@@ -15,8 +15,8 @@ namespace snug::report {
 namespace {
 
 constexpr double kLabel = 150.0, kPlot = 300.0, kMean = 104.0;  // widths of its three columns, px
-constexpr double kLine = 22.0, kFirst = 14.0, kAxis = 22.0;    // heights: of a line, above the first, of the axis
-constexpr std::size_t kLongestLabel = 24;                      // letters that fit into the first column
+constexpr double kLine = 22.0, kFirst = 14.0, kAxis = 22.0;     // heights: of a line, above the first, of the axis
+constexpr std::size_t kLongestLabel = 24;                       // letters that fit into the first column
 
 struct Axis {
   double low = 0.0, high = 1.0;
