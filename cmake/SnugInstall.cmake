@@ -67,7 +67,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libexpected-dev")
 # What the modules link; a project that uses few of them needs few.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev, libhdf5-dev, zlib1g-dev, \
-libzstd-dev, libcpp-httplib-dev, libssl-dev, libsiconos-numerics-dev, libtinyxml2-dev, libassimp-dev, libceres-dev, libnlopt-cxx-dev, \
+libzstd-dev, libcpp-httplib-dev, libssl-dev, libtinyxml2-dev, libassimp-dev, libceres-dev, libnlopt-cxx-dev, \
 libzmq3-dev, libprotobuf-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "snug's contact physics, suction cup, packing and robot cell as C++ libraries")
 include(CPack)

@@ -11,7 +11,7 @@ set -eu
 
 program="make cmake ninja-build g++ pkg-config ccache python3
   libeigen3-dev libexpected-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libhdf5-dev libcli11-dev
-  zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev libsiconos-numerics-dev
+  zlib1g-dev libzstd-dev libcpp-httplib-dev libssl-dev libgtest-dev
   libtinyxml2-dev libassimp-dev libceres-dev libnlopt-cxx-dev libpng-dev libzmq3-dev libprotobuf-dev protobuf-compiler"
 node="nodejs npm"                   # unless there is a node of 18 or newer already
 python="pybind11-dev python3-dev python3-numpy python3-venv"  # make python

@@ -2,13 +2,13 @@
 #include "snug/numerics/qp.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "snug/core/check.hpp"
-#include "snug/numerics/internal/lemke.hpp"
 
 namespace snug::numerics {
 namespace {
@@ -16,6 +16,9 @@ namespace {
 // A row counts as fulfilled up to this, in the metric of H, relative to the size of what is subtracted: some thousand
 // times the rounding of eight products.
 constexpr double kRowTolerance = 1e-12;
+// A row depends on active ones where less than this of its unit length is across them: far above the rounding of their
+// factors, and a multiplier of its inverse is no use to anybody.
+constexpr double kDependent = 1e-9;
 // Accepted residual of the KKT conditions. Above it the result is Failed, never silently poor.
 constexpr double kResidualTolerance = 1e-6;
 // Weight of the distance from the point before in the search for the smallest violation, and how often at most.
@@ -43,20 +46,25 @@ Eigen::Index QpProblem::grow() {
 }
 
 struct QpSolver::Work {
-  internal::Lemke lemke;
   QpRows rows;         ///< in y = L'x, each of unit length
   QpRowVector bounds;  ///< of these
   QpRowVector lengths;
-  std::vector<int> added;
-  std::vector<double> M, q, z, w;
+  std::vector<int> active;                   ///< rows that hold with equality, independent of each other
+  std::vector<double> z;                     ///< their multipliers
+  Eigen::HouseholderQR<QpMatrix> active_qr;  ///< of the active rows as columns
   QpProblem phase_one;
   QpResult phase_one_result;
 
-  Work() : M(kMaxQpRows * kMaxQpRows), q(kMaxQpRows), z(kMaxQpRows), w(kMaxQpRows) { added.reserve(kMaxQpRows); }
+  Work() {
+    active.reserve(kMaxQpVariables + 1);
+    z.reserve(kMaxQpVariables + 1);
+  }
 
   enum class End { Solved, NoSolution, NotFinite, NotConvex };
   [[nodiscard]] End solve_dual(const QpProblem& problem, QpResult& result);
-  [[nodiscard]] bool solve_added(const QpVector& y_free, QpVector& y);
+  [[nodiscard]] bool add(int added, const QpVector& y_free, QpVector& y);
+  void factor_active();
+  void solve_active(const QpVector& y_free, QpVector& y);
   void fill_phase_one(const QpProblem& problem, double scale);
   void find_violation(const QpProblem& problem, QpResult& result);
 };
@@ -88,29 +96,68 @@ double kkt_residual(const QpProblem& problem, const QpResult& result) {
 
 }  // namespace
 
-/// The rows added so far: min |y - y_free|^2 / 2 with rows y >= bounds; its dual in z is the complementarity problem.
-bool QpSolver::Work::solve_added(const QpVector& y_free, QpVector& y) {
-  const int k = static_cast<int>(added.size());
-  for (int j = 0; j < k; ++j) {
-    const auto row = rows.row(added[static_cast<std::size_t>(j)]);
-    for (int i = 0; i < k; ++i) {
-      M[static_cast<std::size_t>(j * k + i)] = row.dot(rows.row(added[static_cast<std::size_t>(i)]));
+/// The active rows once more from y_free: what the steps summed up loses digits.
+void QpSolver::Work::solve_active(const QpVector& y_free, QpVector& y) {
+  factor_active();
+  const Eigen::Index k = static_cast<Eigen::Index>(active.size());
+  QpVector gaps(k);
+  for (Eigen::Index j = 0; j < k; ++j) {
+    const int row = active[static_cast<std::size_t>(j)];
+    gaps[j] = bounds[row] - rows.row(row).dot(y_free);
+  }
+  const auto R = active_qr.matrixQR().topRows(k).template triangularView<Eigen::Upper>();
+  R.transpose().solveInPlace(gaps);
+  y.setZero();
+  y.head(k) = gaps;
+  y.applyOnTheLeft(active_qr.householderQ());
+  y += y_free;
+  R.solveInPlace(gaps);
+  std::copy(gaps.begin(), gaps.end(), z.begin());
+}
+
+void QpSolver::Work::factor_active() {
+  QpMatrix columns(rows.cols(), static_cast<Eigen::Index>(active.size()));
+  for (std::size_t j = 0; j < active.size(); ++j) {
+    columns.col(static_cast<Eigen::Index>(j)) = rows.row(active[j]).transpose();
+  }
+  active_qr.compute(columns);
+}
+
+/// Steps to the point nearest to y_free that holds the active rows and `added`; active rows that do not bear there are
+/// dropped on the way, as each one's multiplier reaches zero. False: there is no such point.
+bool QpSolver::Work::add(int added, const QpVector& y_free, QpVector& y) {
+  double z_added = 0.0;
+  while (true) {
+    const Eigen::Index k = static_cast<Eigen::Index>(active.size()), n = rows.cols();
+    factor_active();
+    QpVector direction = rows.row(added).transpose();  // split by Q: along the active rows, and across them
+    direction.applyOnTheLeft(active_qr.householderQ().adjoint());
+    QpVector change = direction.head(k);  // of the active rows' multipliers, negative, for one unit of the added one's
+    active_qr.matrixQR().topRows(k).triangularView<Eigen::Upper>().solveInPlace(change);
+    direction.head(k).setZero();
+    const double curvature = direction.squaredNorm();
+    const bool is_dependent = k == n || curvature <= kDependent * kDependent;
+    direction.applyOnTheLeft(active_qr.householderQ());
+    const double gap = bounds[added] - rows.row(added).dot(y);
+    double step = is_dependent ? std::numeric_limits<double>::infinity() : gap / curvature;
+    std::size_t dropped = active.size();
+    for (std::size_t j = 0; j < active.size(); ++j) {
+      const double slope = change[static_cast<Eigen::Index>(j)];
+      if (!(slope > 0.0) || !(z[j] < step * slope)) continue;
+      step = std::max(0.0, z[j] / slope);
+      dropped = j;
     }
-    q[static_cast<std::size_t>(j)] = row.dot(y_free) - bounds[added[static_cast<std::size_t>(j)]];
+    if (!std::isfinite(step)) return false;
+    z_added += step;
+    if (!is_dependent) y += step * direction;
+    for (std::size_t j = 0; j < active.size(); ++j) z[j] -= step * change[static_cast<Eigen::Index>(j)];
+    if (dropped == active.size()) break;
+    active.erase(active.begin() + static_cast<std::ptrdiff_t>(dropped));
+    z.erase(z.begin() + static_cast<std::ptrdiff_t>(dropped));
   }
-  if (!lemke.solve(k, M.data(), q.data(), z.data(), w.data())) return false;
-  // Rows that do not hold it back are dropped: those that remain are independent, and the cost has risen for good.
-  std::size_t kept = 0;
-  for (std::size_t j = 0; j < added.size(); ++j) {
-    if (!(z[j] > 0.0)) continue;
-    added[kept] = added[j];
-    z[kept++] = z[j];
-  }
-  added.resize(kept);
-  y = y_free;
-  for (std::size_t j = 0; j < kept; ++j) {
-    y += z[j] * rows.row(added[j]).transpose();
-  }
+  active.push_back(added);
+  z.push_back(z_added);
+  solve_active(y_free, y);
   return y.allFinite();
 }
 
@@ -118,12 +165,13 @@ QpSolver::Work::End QpSolver::Work::solve_dual(const QpProblem& problem, QpResul
   const Eigen::Index n = problem.g.size(), m = problem.b.size();
   result.multipliers.setZero(m);
   result.rounds = 0;
-  added.clear();
+  active.clear();
+  z.clear();
   if (!is_finite(problem)) return End::NotFinite;
-  const Eigen::LLT<QpMatrix> factor(problem.H);
+  const Eigen::LLT<QpMatrix> cholesky(problem.H);
   const double largest = problem.H.diagonal().maxCoeff();
-  if (factor.info() != Eigen::Success || !(largest > 0.0)) return End::NotConvex;
-  const QpMatrix& L = factor.matrixLLT();  // its lower half
+  if (cholesky.info() != Eigen::Success || !(largest > 0.0)) return End::NotConvex;
+  const QpMatrix& L = cholesky.matrixLLT();  // its lower half
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!(L(i, i) > 1e-8 * std::sqrt(largest))) return End::NotConvex;
   }
@@ -162,18 +210,17 @@ QpSolver::Work::End QpSolver::Work::solve_dual(const QpProblem& problem, QpResul
       break;
     }
     // Violated although it is among those solved for: rounding. The residual will say whether it matters.
-    if (std::find(added.begin(), added.end(), static_cast<int>(worst)) != added.end()) {
+    if (std::ranges::find(active, static_cast<int>(worst)) != active.end()) {
       is_solved = true;
       break;
     }
-    added.push_back(static_cast<int>(worst));
-    if (!solve_added(y_free, y)) return End::NoSolution;
+    if (!add(static_cast<int>(worst), y_free, y)) return End::NoSolution;
   }
   if (!is_solved) return End::NoSolution;
   result.x = y;
   L.transpose().triangularView<Eigen::Upper>().solveInPlace(result.x);
-  for (std::size_t j = 0; j < added.size(); ++j) {
-    result.multipliers[added[j]] = std::max(0.0, z[j]) / lengths[added[j]];
+  for (std::size_t j = 0; j < active.size(); ++j) {
+    result.multipliers[active[j]] = std::max(0.0, z[j]) / lengths[active[j]];
   }
   return End::Solved;
 }
