@@ -86,6 +86,32 @@ class RepeatedDecisions(unittest.TestCase):
         events = [json.loads(line) for line in lines[:-1]]
         self.assertGreaterEqual(sum(event["event"] == "item ended" for event in events), 2)
         self.assertEqual(events[0]["event"], "session started")
+        self.go_on(events)
+
+    def go_on(self, events):
+        """The session that was killed, from its log: nothing that was done with comes again, and the rest comes."""
+        whole, recording = self.folder / "whole.jsonl", self.folder / "rest.h5"
+        words = ("pack", CELL, "--sequence", "1", *QUICK, "--resume", self.log)
+        refused = snug(*words, "--log", self.log)
+        self.assertEqual(refused.returncode, 2, "the log that is gone on with is no output")
+        result = snug(*words, "--log", whole, "-o", recording, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        session = json.loads(result.stdout)
+        told = [json.loads(line) for line in whole.read_text().splitlines()]
+        self.assertEqual(len(session["items"]), len({item["box"] for item in session["items"]}), "each once")
+        self.assertEqual([item["box"] for item in session["items"]], told[0]["items"][:len(session["items"])], "in the order of the sequence")
+        counted = [i for i, event in enumerate(events) if event["event"] == "counted"]
+        self.assertEqual(told[:counted[-1] + 1], events[:counted[-1] + 1], "told again as it was")
+        times = [event["time"] for event in told if event["event"] == "counted"]
+        self.assertEqual(times, sorted(times))
+        before = sum(event["event"] == "item ended" for event in events[:counted[-1] + 1])
+        self.assertGreater(len(session["items"]), before)
+        self.assertGreater(session["executed_boxes"], before // 2)
+        self.assertEqual(session["boxes_lost"], 0)
+        self.assertEqual(snug("report", recording, "-o", self.folder / "rest.html").returncode, 0)
+        other = snug("pack", CELL, "--sequence", "2", *QUICK, "--resume", self.log)
+        self.assertEqual(other.returncode, 2)
+        self.assertIn("--resume: sequence", other.stderr)
 
 
 if __name__ == "__main__":

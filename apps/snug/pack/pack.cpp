@@ -61,6 +61,16 @@ packing::FutureModel own_future(const SourcedScenario& loaded, const std::string
   return future;
 }
 
+/// The plant as the session before left it.
+simulated_plant::TakenUp take_up(const session::ResumePoint& point) {
+  simulated_plant::TakenUp begin{point.time, point.item_count(), {}};
+  for (const session::event::Standing& box : point.boxes) {
+    const std::vector<model::ParcelId>& items = point.started().items;
+    begin.boxes.emplace_back(items[box.item.slot()], box.X_WP);
+  }
+  return begin;
+}
+
 /// The files that were asked for, reserved before the work begins.
 struct PackFiles {
   std::optional<OutputFile> program, plan, record;
@@ -72,7 +82,9 @@ struct PackFiles {
     add_file(outputs, "--plan", options.plan);
     add_file(outputs, "-o", options.record);
     add_file(outputs, "--log", options.log);
-    expect_distinct(files_of(options.scenario, options.changes, scenario), outputs);
+    NamedFiles inputs = files_of(options.scenario, options.changes, scenario);
+    add_file(inputs, "--resume", options.resume);
+    expect_distinct(inputs, outputs);
     program = reserve(options.program);
     plan = reserve(options.plan);
     record = reserve_recording(options.record);
@@ -167,7 +179,11 @@ int run_pack(const PackOptions& options) {
     scenario.sequences.push_back(draw_order(scenario, options.sequence, *options.random_seed));
   }
   session::SessionOptions session = make_session_options(options, loaded, options.sequence);
-  const simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
+  simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
+  if (options.resume) {
+    session.resume = session::find_resume_point(session::load_log(*options.resume), *options.resume);
+    plant.taken_up = take_up(*session.resume);
+  }
   const bool is_served = options.plant != "simulated";
   PackFiles files(options, scenario);
   if (files.log) session.log = [&files](const session::SessionEvent& one) { files.log->write(one); };

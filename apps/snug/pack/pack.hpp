@@ -38,6 +38,7 @@ struct PackOptions {
   std::optional<int> monte_carlo;
   std::optional<std::string> program, plan, record;
   std::optional<std::string> log;           ///< of events
+  std::optional<std::string> resume;        ///< log of the session that is gone on with
   std::optional<std::string> save_beliefs;  ///< folder
   bool json = false;
 };

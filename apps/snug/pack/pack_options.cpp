@@ -25,6 +25,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --program out.csv --plan out.json --monte-carlo 10
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --save-belief beliefs --log session.jsonl
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --resume session.jsonl --log whole.jsonl
   snug simulate scenarios/box-demonstrator.yaml --program program.csv --sequence 1
 Programs of such a run need the same --items, --container and --pallet in simulate, check and export; recordings hold them.)";
 
@@ -145,6 +146,10 @@ void add_pack(CLI::App& app, Action& action) {
   verb.add_option("-o,--record", options->record, "write a recording of what happened in the plant")
       ->type_name("FILE.h5");
   verb.add_option("--log", options->log, "write the events of the session, a line of JSON each, when they happen")
+      ->type_name("FILE.jsonl");
+  verb.add_option("--resume", options->resume,
+                  "go on with a session that was killed or interrupted, by its log: items that were done with stay, "
+                  "that which was under way comes anew; all else has to be said as it was")
       ->type_name("FILE.jsonl");
   verb.add_option("--save-belief", options->save_beliefs,
                   "write what is believed before each decision into this folder: `snug plan` repeats the decision")

@@ -291,16 +291,31 @@ struct ItemLost {
   }
 };
 
+/// Where a box of an item that came is believed to be.
+struct Standing {
+  model::ItemIndex item;
+  Pose X_WP;
+  Vector3 size;  ///< m, as measured
+  template <class Archive>
+  void fields(Archive& a) {
+    a("item", item);
+    a("X_WP", X_WP);
+    a("size", size);
+  }
+};
+
 /// After every item, and in the end.
 struct Counted {
   double time = 0.0;
   double planned_percent = 0.0;
   std::vector<ObstacleReport> obstacles;
+  std::vector<Standing> boxes;  ///< of the items that are done with
   template <class Archive>
   void fields(Archive& a) {
     a("time", time);
     a("planned_percent", planned_percent);
     a("obstacles", obstacles);
+    a("boxes", boxes);
   }
 };
 

@@ -1,6 +1,7 @@
 // Session: packs a plant, item after item: perceive, decide, rehearse, send, perceive, recover.
 #include "snug/session/session.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "snug/core/check.hpp"
@@ -31,6 +32,43 @@ planning::AgentSettings agent_of(const model::Scenario& scenario, const SessionO
   return agent;
 }
 
+void expect_same(const event::SessionStarted& before, const event::SessionStarted& now) {
+  const auto expect = [](const char* key, const std::string& was, const std::string& is) {
+    if (was != is) throw InputError("--resume", key, "'" + is + "'", "'" + was + "', as the log says");
+  };
+  expect("sequence", before.sequence, now.sequence);
+  expect("agent", before.agent, now.agent);
+  expect("plant", before.plant, now.plant);
+  if (before.items != now.items) throw InputError("--resume", "items", "others", "the items of the log");
+}
+
+/// The cell and the agenda as they were when the last item was done with; the log has everything up to then.
+void go_on(Run& run, const ResumePoint& point) {
+  perception::Observation seen;
+  for (const event::Standing& box : point.boxes) {
+    perception::PoseEstimate& one = seen.seen.emplace_back();
+    one.item = run.belief.now().items[box.item.slot()].id;
+    one.X_WP = box.X_WP;
+    one.size = box.size - Vector3::Constant(run.belief.now().scenario.parcel_clearance);
+  }
+  run.belief.see(seen);
+  int under_way = 0;
+  for (const SessionEvent& one : point.events) {
+    if (std::holds_alternative<event::ItemStarted>(one)) ++under_way;
+    if (const auto* sent = std::get_if<event::Sent>(&one)) {
+      auto& all = run.belief.edit().sent;
+      if (std::ranges::find(all, sent->item) == all.end()) all.push_back(sent->item);
+    }
+    const auto* ended = std::get_if<event::ItemEnded>(&one);
+    if (ended != nullptr && --under_way == 0) {
+      internal::account_for(run, ended->item, ended->end);
+      std::erase(run.agenda.order, ended->item);
+    }
+    if (const auto* lost = std::get_if<event::ItemLost>(&one)) std::erase(run.agenda.packed, lost->item);
+    run.log(one);
+  }
+}
+
 /// Who decides in which order: at once, or item by item as they come.
 void prepare(Run& run, const std::string& plant) {
   planning::BeliefSnapshot& belief = run.belief.edit();
@@ -39,11 +77,17 @@ void prepare(Run& run, const std::string& plant) {
   event::SessionStarted started{belief.sequence, belief.agent.name, plant, {}, false, belief.simulation.tracking};
   for (const packing::Item& item : belief.items) started.items.emplace_back(item.id);
   started.places_are_chosen = internal::decides_before(run.options);
-  run.log(started);
   if (started.places_are_chosen) {
+    run.log(started);
     internal::decide_before(run);
   } else {
     for (std::size_t i = 0; i < belief.items.size(); ++i) run.agenda.order.emplace_back(i);
+    if (run.options.resume) {
+      expect_same(run.options.resume->started(), started);
+      go_on(run, *run.options.resume);
+    } else {
+      run.log(started);
+    }
   }
   run.decisions.prepare(belief);
 }
@@ -71,6 +115,7 @@ SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
   const EventSink log = [&](const SessionEvent& one) {
     result.add(one);
     if (options.log) options.log(one);
+    if (const auto* session = std::get_if<event::SessionStarted>(&one)) total = static_cast<int>(session->items.size());
     const auto* started = std::get_if<event::ItemStarted>(&one);
     if (started != nullptr && !started->because_of) ++begun;
     if (!std::holds_alternative<event::Counted>(one) || told == begun) return;
@@ -86,7 +131,7 @@ SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
           Decisions({options.decision.time, options.threads}, options.ask, options.save_beliefs),
           std::nullopt};
   prepare(run, plant.describe().name);
-  total = static_cast<int>(run.agenda.order.size());
+  if (!run.options.resume) total = static_cast<int>(run.agenda.order.size());
   execute(run);
   return result.result();
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "snug/session/event_log.hpp"
+#include "snug/session/resume.hpp"
 
 namespace snug::session {
 
@@ -23,6 +23,8 @@ struct SessionOptions {
   cell::SimulationOptions simulation{.tracking = motion::FastTracking{}};  ///< of rollouts
   std::function<bool()> is_interrupted;  ///< asked before every item; true ends the session; may be empty
   EventSink log;                         ///< told of every event when it happens; may be empty
+  /// Goes on from here: the events are told again, their items do not come again. The plant has to be as they say.
+  std::optional<ResumePoint> resume;
   /// Folder that gets a file of every belief that is decided on (planning/belief_json.hpp), before it is decided on.
   std::optional<std::filesystem::path> save_beliefs;
 };
@@ -32,7 +34,8 @@ using Progress = std::function<void(const SessionResult& so_far, int item, int i
 
 /// Packs a sequence. Agents that re-arrange or know the sequence (manual, offline) make their plan first, and its boxes
 /// are brought in its order. Throws InputError for an unknown sequence, agent, or a scenario that cannot be packed, and
-/// what the plant throws; whatever is planned ahead then has ended.
+/// what the plant throws, and for a point that is of another sequence or plant; whatever is planned ahead then has
+/// ended.
 [[nodiscard]] SessionResult pack(const model::Scenario& scenario, const std::string& sequence,
                                  const SessionOptions& options, plant::Plant& plant, const Progress& progress = {});
 

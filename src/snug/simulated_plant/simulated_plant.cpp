@@ -34,7 +34,22 @@ SimulatedPlant::SimulatedPlant(const model::Scenario& scenario, const std::strin
       perception_(perception::make_perception(options.perception, options.seed, scenario)),
       was_brought_(simulation_.sequence().items.size(), false),
       runner_(plant::runner_settings(simulation_.scenario(), !motion::is_fast(options.simulation.tracking))) {
+  if (options.taken_up) take_up(*options.taken_up);
   feedback_ = sensors();
+}
+
+void SimulatedPlant::take_up(const TakenUp& begin) {
+  cell::CellAnchor anchor;
+  anchor.X_WE = X_WE();
+  for (const auto& [id, X_WP] : begin.boxes) {
+    const int item = item_of(id.value);
+    if (item < 0) throw InputError("--resume", "item", "'" + id.value + "'", "an item of the sequence");
+    anchor.boxes.push_back({item, X_WP});
+    was_brought_[static_cast<std::size_t>(item)] = true;
+  }
+  state_ = simulation_.take_up(anchor);
+  state_.world.step_index = std::llround(begin.time / simulation_.world().model.settings.dt);
+  brought_count_ = begin.brought;
 }
 
 plant::Description SimulatedPlant::describe() const {

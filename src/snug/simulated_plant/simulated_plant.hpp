@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "snug/cell/rest_watch.hpp"
@@ -19,6 +20,13 @@ namespace snug::simulated_plant {
 
 class LiveRecording;
 
+/// A cell that is taken up where a session before left it.
+struct TakenUp {
+  double time = 0.0;                                    ///< s
+  int brought = 0;                                      ///< items that came before, by which faults are counted
+  std::vector<std::pair<model::ParcelId, Pose>> boxes;  ///< X_WP of those that stand in it, at rest
+};
+
 struct SimulatedPlantOptions {
   std::uint64_t seed = 1;  ///< of what is drawn; 0: the cell is exactly what the scenario says
   perception::Kind perception = perception::Kind::Exact;
@@ -26,6 +34,7 @@ struct SimulatedPlantOptions {
   /// What is otherwise in this cell than in the scenario that the planner has, before the seed draws from it.
   std::vector<model::KeyValue> set;
   cell::SimulationOptions simulation{.tracking = motion::FastTracking{}};
+  std::optional<TakenUp> taken_up;
 };
 
 /// The cell that a seed stands for.
@@ -72,6 +81,7 @@ class SimulatedPlant final : public plant::Plant {
     bool has_objects = false;  ///< foreign ones were put in
     cell::CellTick before;     ///< the tick that it follows
   };
+  void take_up(const TakenUp& begin);
   void step();
   void tick();
   /// Guards, and whatever else ends the motion, by the last tick.

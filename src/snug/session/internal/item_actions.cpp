@@ -70,13 +70,26 @@ void review(Run& run) {
   });
 }
 
+/// The boxes of items that are done with.
+std::vector<event::Standing> standing(const Run& run) {
+  std::vector<event::Standing> boxes;
+  const planning::BeliefSnapshot& belief = run.belief.now();
+  for (std::size_t i = 0; i < belief.boxes.size(); ++i) {
+    const model::ItemIndex item(i);
+    const bool is_to_come = std::ranges::find(run.agenda.order.begin() + static_cast<std::ptrdiff_t>(run.agenda.next),
+                                              run.agenda.order.end(), item) != run.agenda.order.end();
+    if (belief.boxes[i] && !is_to_come) boxes.push_back({item, belief.boxes[i]->X_WP, belief.items[i].size});
+  }
+  return boxes;
+}
+
 void count(Run& run) {
   const model::Scenario& scenario = run.belief.now().scenario;
   std::vector<std::string> packed;
   for (const model::ItemIndex item : run.agenda.packed) packed.push_back(run.belief.now().items[item.slot()].id);
   const model::Container& container = *model::find_container(scenario, scenario.target);
   run.log(event::Counted{run.executor.time(), model::compute_filling_degree_percent(scenario, container, packed),
-                         run.belief.obstacles().reports()});
+                         run.belief.obstacles().reports(), standing(run)});
 }
 
 bool is_taken_away(ItemEnd end) {
@@ -101,6 +114,15 @@ void say_why_it_ends(Run& run) {
 }
 
 }  // namespace
+
+void account_for(Run& run, model::ItemIndex item, ItemEnd end) {
+  planning::BeliefSnapshot& belief = run.belief.edit();
+  const bool is_packed = end == ItemEnd::Placed || end == ItemEnd::Accepted;
+  if (!is_packed && end != ItemEnd::NotBrought) belief.skipped.push_back(item);
+  if (end == ItemEnd::NoPlace) --belief.skips_left;
+  ++run.agenda.reported;
+  if (is_packed) run.agenda.packed.push_back(item);
+}
 
 Signal take_next_item(Run& run) {
   Agenda& agenda = run.agenda;
@@ -195,14 +217,9 @@ Signal finish_item(Run& run) {
     agenda.finished = std::move(task);
     return Signal::NextOnAgenda;
   }
-  planning::BeliefSnapshot& belief = run.belief.edit();
-  const bool is_packed = task.end == ItemEnd::Placed || task.end == ItemEnd::Accepted;
   if (is_taken_away(task.end)) run.belief.forget(task.item);  // the next arrival takes it away
-  if (!is_packed && task.end != ItemEnd::NotBrought) belief.skipped.push_back(task.item);
-  if (task.end == ItemEnd::NoPlace) --belief.skips_left;
-  ++agenda.reported;
-  if (is_packed) agenda.packed.push_back(task.item);
-  if (belief.chosen.empty() && belief.skips_left < 0) {
+  account_for(run, task.item, task.end);
+  if (run.belief.now().chosen.empty() && run.belief.now().skips_left < 0) {
     stop(run, StopReason::NoPlace, fmt::format("{}: {}", task.id, task.reason));
   }
   run.log(event::ItemEnded{run.executor.time(), task.item, task.end, task.reason});

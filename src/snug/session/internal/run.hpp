@@ -72,6 +72,8 @@ void send_to_aligner(Run& run, model::ItemIndex item, bool may_hang_as_planned);
 void forget_displacement(Run& run);
 /// A trouble of the item on top and its remedy, said in the log.
 void note_remedy(Run& run, Trouble trouble, Remedy remedy, std::string detail, bool is_of_motion);
+/// An item is done with: packed, skipped, or lost.
+void account_for(Run& run, model::ItemIndex item, ItemEnd end);
 void end_item(ItemTask& task, ItemEnd end, std::string reason);
 /// It lies where it was left, or is gone.
 void give_up(Run& run, Trouble trouble);

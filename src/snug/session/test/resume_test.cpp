@@ -1,0 +1,118 @@
+// Resumed sessions: what was done with stays, the rest comes, and the log is of the whole.
+#include "snug/session/resume.hpp"
+
+#include <gtest/gtest.h>
+
+#include "snug/core/input_error.hpp"
+#include "snug/session/session.hpp"
+#include "snug/session/test/scripted_plant.hpp"
+
+namespace snug::session {
+namespace {
+
+using test::quick_options;
+using test::ScriptedPlant;
+using test::two_boxes;
+
+/// All events of a session of two boxes that nothing disturbs.
+EventLog whole_log() {
+  ScriptedPlant plant;
+  EventLog log;
+  SessionOptions options = quick_options();
+  options.log = [&](const SessionEvent& one) { log.events.push_back(one); };
+  (void)session::pack(two_boxes(), "1", options, plant);
+  return log;
+}
+
+/// Up to the event of this kind that is the `count`-th.
+template <class Kind>
+EventLog killed_after(EventLog log, int count) {
+  for (std::size_t i = 0; i < log.events.size(); ++i) {
+    if (std::holds_alternative<Kind>(log.events[i]) && --count == 0) {
+      log.events.resize(i + 1);
+      return log;
+    }
+  }
+  ADD_FAILURE() << "no such event";
+  return log;
+}
+
+TEST(Resume, BringsOnlyWhatWasNotDoneWith) {
+  SessionOptions options = quick_options();
+  EventLog told;
+  options.log = [&](const SessionEvent& one) { told.events.push_back(one); };
+  options.resume = find_resume_point(killed_after<event::MotionStarted>(whole_log(), 2), "log");
+  ASSERT_EQ(options.resume->item_count(), 1);
+  ASSERT_EQ(options.resume->boxes.size(), 1U);
+  ScriptedPlant plant;
+  std::vector<int> numbers;
+  const SessionResult result =
+      session::pack(two_boxes(), "1", options, plant, [&](const SessionResult&, int item, int items) {
+        numbers.push_back(item);
+        EXPECT_EQ(items, 2);
+      });
+  EXPECT_EQ(plant.brought, (std::vector<std::string>{"BOX028"}));
+  EXPECT_EQ(numbers, (std::vector<int>{1, 2}));
+  ASSERT_EQ(result.items.size(), 2U);
+  EXPECT_TRUE(result.items[0].is_packed() && result.items[1].is_packed());
+  EXPECT_EQ(result.stop_reason, StopReason::AllPacked);
+  const ResumePoint end = [&] {
+    EventLog before_the_end = killed_after<event::Counted>(told, 2);
+    return find_resume_point(before_the_end, "told");
+  }();
+  EXPECT_EQ(end.item_count(), 2) << "its own log can be gone on with";
+}
+
+TEST(Resume, ASessionThatIsKilledBeforeItsFirstItemIsDoneBeginsAnew) {
+  SessionOptions options = quick_options();
+  options.resume = find_resume_point(killed_after<event::MotionStarted>(whole_log(), 1), "log");
+  EXPECT_EQ(options.resume->item_count(), 0);
+  ScriptedPlant plant;
+  EXPECT_EQ(session::pack(two_boxes(), "1", options, plant).items.size(), 2U);
+  EXPECT_EQ(plant.brought.size(), 2U);
+}
+
+TEST(Resume, RefusesLogsThatNothingFollows) {
+  EXPECT_THROW((void)find_resume_point({}, "log"), InputError);
+  EXPECT_THROW((void)find_resume_point(whole_log(), "log"), InputError) << "it came to its end";
+  EventLog headless = whole_log();
+  headless.events.erase(headless.events.begin());
+  EXPECT_THROW((void)find_resume_point(headless, "log"), InputError);
+  EventLog planned = killed_after<event::Counted>(whole_log(), 1);
+  std::get<event::SessionStarted>(planned.events.front()).places_are_chosen = true;
+  EXPECT_THROW((void)find_resume_point(planned, "log"), InputError);
+}
+
+TEST(Resume, RefusesEventsThatAreNotOfOneSession) {
+  const EventLog good = killed_after<event::Counted>(whole_log(), 1);
+  EventLog twice = good;
+  twice.events.push_back(good.events.front());
+  EXPECT_THROW((void)find_resume_point(twice, "log"), InputError);
+  EventLog ended = good;
+  ended.events.push_back(event::ItemEnded{});
+  EXPECT_THROW((void)find_resume_point(ended, "log"), InputError);
+  for (const int item : {2, 1000, -7}) {
+    EventLog stranger = good;
+    stranger.events.push_back(event::ItemLost{model::ItemIndex(item), ItemEnd::Gone, {}});
+    EXPECT_THROW((void)find_resume_point(stranger, "log"), InputError) << item;
+    EventLog box = good;
+    std::get<event::Counted>(box.events.back()).boxes.push_back({model::ItemIndex(item), {}, Vector3::Ones()});
+    EXPECT_THROW((void)find_resume_point(box, "log"), InputError) << item;
+  }
+}
+
+TEST(Resume, RefusesTheLogOfAnotherSession) {
+  const ResumePoint point = find_resume_point(killed_after<event::Counted>(whole_log(), 1), "log");
+  for (auto event::SessionStarted::*key :
+       {&event::SessionStarted::sequence, &event::SessionStarted::agent, &event::SessionStarted::plant}) {
+    SessionOptions options = quick_options();
+    options.resume = point;
+    std::get<event::SessionStarted>(options.resume->events.front()).*key = "another";
+    ScriptedPlant plant;
+    EXPECT_THROW((void)session::pack(two_boxes(), "1", options, plant), InputError);
+    EXPECT_TRUE(plant.brought.empty());
+  }
+}
+
+}  // namespace
+}  // namespace snug::session
