@@ -26,6 +26,11 @@ double least_us(std::size_t count, Work work) {
   return least;
 }
 
+Vector3 random_vector(Rng& rng) {
+  const double z = rng.normal(), y = rng.normal(), x = rng.normal();
+  return {x, y, z};
+}
+
 }  // namespace
 
 ArmCosts measure_arm_costs(const model::Scenario& scenario) {
@@ -34,8 +39,8 @@ ArmCosts measure_arm_costs(const model::Scenario& scenario) {
   robot::ArmModel disturbed = arm;  // deviations as a calibration finds: every branch needs Newton steps
   Rng rng = Rng(1).split("arm bench");
   for (robot::Joint& joint : disturbed.joints) {
-    joint.X_SJ.p += 1e-3 * Vector3(rng.normal(), rng.normal(), rng.normal());
-    joint.X_SJ.R = joint.X_SJ.R * exp_rotation(3e-3 * Vector3(rng.normal(), rng.normal(), rng.normal()));
+    joint.X_SJ.p += 1e-3 * random_vector(rng);
+    joint.X_SJ.R = joint.X_SJ.R * exp_rotation(3e-3 * random_vector(rng));
   }
   const robot::InverseKinematics exact(disturbed);
   std::vector<robot::JointVector> q(200);

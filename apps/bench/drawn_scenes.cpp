@@ -35,7 +35,8 @@ std::string drawn_hull(Rng& rng) {
   const double x = rng.uniform(0.03, 0.12), y = rng.uniform(0.03, 0.12), z = rng.uniform(0.03, 0.12);
   std::string points;
   for (int i = 6 + rng.index(18); i > 0; --i) {
-    Vector3 p(rng.normal(), rng.normal(), rng.normal());
+    Vector3 p;
+    for (const int axis : {2, 1, 0}) p[axis] = rng.normal();
     p = (p.normalized() * std::cbrt(rng.uniform(0.3, 1.0))).cwiseProduct(Vector3(x, y, z));
     points += fmt::format("{}[{}, {}, {}]", points.empty() ? "" : ", ", p.x(), p.y(), p.z());
   }

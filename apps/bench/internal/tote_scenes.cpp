@@ -88,7 +88,10 @@ void disturb(const model::Scenario& scenario, Rng& rng, Disturbance disturbance,
   const model::Container& container = *model::find_container(scenario, scenario.target);
   const bool is_tipped = disturbance == Disturbance::Tipped;
   Matrix3 R = exp_rotation(Vector3(0, 0, rng.uniform(-std::numbers::pi, std::numbers::pi))) * box.X_WP.R;
-  if (is_tipped) R = exp_rotation(Vector3(rng.uniform(-2, 2), rng.uniform(-2, 2), 0)) * R;
+  if (is_tipped) {
+    const double y = rng.uniform(-2, 2), x = rng.uniform(-2, 2);
+    R = exp_rotation(Vector3(x, y, 0)) * R;
+  }
   const Vector3 reach = R.cwiseAbs() * (0.5 * box.parcel->size);
   const auto within = [&](double half, double r) {
     const double room = std::max(0.0, half - r - 0.003);
@@ -106,7 +109,8 @@ ToteScene make_tote_scene(const model::Scenario& scenario, std::uint64_t seed, i
   Rng rng = Rng(seed).split("tote scene");
   std::vector<Placed> placed = plan(scenario, rng, count);
   for (Placed& one : placed) {  // a little off, and a little above
-    one.X_WP.p += Vector3(rng.uniform(-0.4e-3, 0.4e-3), rng.uniform(-0.4e-3, 0.4e-3), 0.5e-3);
+    const double y = rng.uniform(-0.4e-3, 0.4e-3), x = rng.uniform(-0.4e-3, 0.4e-3);
+    one.X_WP.p += Vector3(x, y, 0.5e-3);
     one.X_WP.R = exp_rotation(Vector3(0, 0, rng.uniform(-0.004, 0.004))) * one.X_WP.R;
   }
   settle(scenario, placed, kSettle);

@@ -158,7 +158,8 @@ DropPlan plan_drops(const model::Scenario& scenario) {
       const double c = std::abs(std::cos(box.yaw)), s = std::abs(std::sin(box.yaw));
       room = 0.5 * (container.inner_size - Vector3(c * size.x() + s * size.y(), s * size.x() + c * size.y(), 0.0));
     } while (room.x() < 0.0 || room.y() < 0.0);
-    box.p_TP_xy = Vector3(rng.uniform(-room.x(), room.x()), rng.uniform(-room.y(), room.y()), 0.0);
+    const double y = rng.uniform(-room.y(), room.y()), x = rng.uniform(-room.x(), room.x());
+    box.p_TP_xy = Vector3(x, y, 0.0);
     plan.boxes.push_back(box);
   }
   return plan;

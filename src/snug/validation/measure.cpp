@@ -141,8 +141,8 @@ std::vector<Tracked> tracked_bodies(const SimulatedRun& run, const std::vector<P
 /// Where motion capture's frame is: somewhere on the floor, upright, turned at random.
 Pose draw_world(Rng rng) {
   const double yaw = rng.uniform(-std::numbers::pi, std::numbers::pi);
-  return {exp_rotation(Vector3(0.0, 0.0, yaw)),
-          Vector3(rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0), rng.uniform(0.5, 1.0))};
+  const double z = rng.uniform(0.5, 1.0), y = rng.uniform(-2.0, 2.0), x = rng.uniform(-2.0, 2.0);
+  return {exp_rotation(Vector3(0.0, 0.0, yaw)), Vector3(x, y, z)};
 }
 
 record::MotionCaptureLog measure_poses(const SimulatedRun& run, const model::MotionCaptureParams& params,

@@ -54,7 +54,10 @@ Outcome pack(const model::Scenario& scenario, const std::vector<Item>& items, co
     const bool anew = !decision->candidates.front().rearranged.empty();
     outcome.rearranged += anew ? 1 : 0;
     state = with_candidate(state, item, decision->candidates.front());
-    if (!anew) state.boxes.back().X_TP.p.head<2>() += options.noise * Eigen::Vector2d(rng.normal(), rng.normal());
+    if (!anew) {
+      const double y = rng.normal(), x = rng.normal();
+      state.boxes.back().X_TP.p.head<2>() += options.noise * Eigen::Vector2d(x, y);
+    }
   }
   outcome.boxes = static_cast<int>(state.boxes.size());
   outcome.percent = filling_percent(state);

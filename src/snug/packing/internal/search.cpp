@@ -165,7 +165,10 @@ Policy shaken(const Policy& policy, std::uint64_t seed, int number) {
   Policy result = policy;
   if (number == 0) return result;
   Rng rng = Rng(seed + 7919U * static_cast<std::uint64_t>(number)).split("opinion");
-  for (double& weight : result.weights) weight = weight * std::exp(0.4 * rng.normal()) + 0.1 * rng.normal();
+  for (double& weight : result.weights) {
+    weight *= std::exp(0.4 * rng.normal());
+    weight += 0.1 * rng.normal();
+  }
   return result;
 }
 
