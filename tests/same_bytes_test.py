@@ -32,6 +32,15 @@ class SameBytes(unittest.TestCase):
         called = symbols(SNUG, "--undefined-only") & symbols(libm(), "--defined-only")
         self.assertEqual(sorted(called - EXACT), [], "to be added to src/snug/numerics/elementary.hpp and c_math.cpp")
 
+    def test_the_python_module_has_the_same_functions_and_binds_to_them(self):
+        modules = list((Path(SNUG).resolve().parent / "python" / "snug").glob("_core*.so"))
+        if not modules:
+            self.skipTest("the Python module is not built")
+        called = symbols(modules[0], "--undefined-only") & symbols(libm(), "--defined-only")
+        self.assertEqual(sorted(called - EXACT), [])
+        told = subprocess.run(["readelf", "-dW", modules[0]], capture_output=True, text=True, check=True).stdout
+        self.assertRegex(told, r"\(SYMBOLIC\)|Flags:.*SYMBOLIC|\(FLAGS\).*SYMBOLIC")
+
     def test_libraries_get_the_programs_functions(self):
         own = symbols(SNUG, "--defined-only")
         self.assertEqual({"sin", "cos", "exp", "log", "pow", "atan2"} - own, set())
