@@ -61,7 +61,7 @@ def verbs():
 
 
 class Commands(unittest.TestCase):
-    """A folder as a reader has it who has followed README: the shipped scenarios, a program, two recordings, measurements."""
+    """A folder as a reader has it who has followed docs/commands.md: the shipped scenarios, a program, two recordings, measurements."""
 
     server = None
 
