@@ -92,7 +92,8 @@ Json Server::Impl::recordings_json() const {
 
 /// Refuses what is sent by mistake or by others. Nothing that is served takes a body.
 bool Server::Impl::is_for_us(const httplib::Request& request, httplib::Response& response) const {
-  if (request.has_header("Transfer-Encoding") || request.get_header_value<std::uint64_t>("Content-Length") > 0) {
+  const bool is_empty = request.get_header_value("Content-Length").find_first_not_of('0') == std::string::npos;
+  if (request.has_header("Transfer-Encoding") || !is_empty) {
     response.status = 413;  // the body is not read: each connection ends after its answer
     return false;
   }

@@ -173,10 +173,16 @@ std::optional<std::string> read_first(const File& file, std::uint64_t address, L
   return file.read({address + start.size() - prefix.size(), size});
 }
 
+#if H5_VERSION_GE(1, 12, 0)
+using ObjectInfo = H5O_info1_t;  // with the address, which later structures hide
+#else
+using ObjectInfo = H5O_info_t;
+#endif
+
 }  // namespace
 
 void check_header(hid_t place, const char* path) {
-  H5O_info_t info;
+  ObjectInfo info;
   check(H5Oget_info_by_name2(place, path, &info, H5O_INFO_BASIC, H5P_DEFAULT), path);
   const Handle file(H5Iget_file_id(place), "file of an object");
   const Handle access(H5Fget_access_plist(file.get()), "file access");

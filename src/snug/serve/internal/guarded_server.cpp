@@ -147,7 +147,14 @@ void GuardedServer::serve_connection(socket_t socket) {
   const bool is_last = true;  // what follows a request may be its body, which a page of another site can write
   // Answers are whole: the library sends what lies behind them to who asks for a range that ends there.
   const auto without_ranges = [](httplib::Request& request) { request.ranges.clear(); };
-  if (!process_request(stream, is_last, is_closed, without_ranges)) return;
+  const auto answer = [&](auto& to) {  // later versions of the library ask for addresses, which nothing here reads
+    if constexpr (requires { process_request(to, is_last, is_closed, without_ranges); }) {
+      return process_request(to, is_last, is_closed, without_ranges);
+    } else {
+      return process_request(to, std::string(), 0, std::string(), 0, is_last, is_closed, without_ranges);
+    }
+  };
+  if (!answer(stream)) return;
   // Closed with something unread, the client's system would throw the answer away.
   ::shutdown(socket, SHUT_WR);
   const Clock::time_point deadline = Clock::now() + kFarewell;
