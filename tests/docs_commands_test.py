@@ -27,7 +27,7 @@ LONG_COMMANDS = re.compile(r"snug (bench|view|compare|study examples|identify (d
 # `--slurm` submits jobs to a scheduler, which a test of studies has of its own; the rest is not of this program.
 LEFT_OUT = re.compile(r"^(make|cmake|git|apt|apt-get|sudo|npm|pip|bash|export|cd|ffmpeg|xacro|bench/|scripts/|SNUG|#)|completion|--slurm|\\| man |\.\.\./")
 PREPARED = ("program.csv", "plan.json", "run.h5", "again.h5", "measured.h5")
-MAY_FAIL = re.compile(r"snug (check|bench|perceive|export .*--format (urscript|ros-trajectory))")  # what they say no to is a result (exit code 1)
+MAY_FAIL = re.compile(r"snug (check|bench|perceive|shake|export .*--format (urscript|ros-trajectory))")  # what they say no to is a result (exit code 1)
 
 
 def commands_of(text, shell_only):

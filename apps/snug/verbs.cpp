@@ -26,6 +26,7 @@
 #include "apps/snug/program/program.hpp"
 #include "apps/snug/report/report.hpp"
 #include "apps/snug/serve/serve.hpp"
+#include "apps/snug/shake/shake.hpp"
 #include "apps/snug/simulate/simulate.hpp"
 #include "apps/snug/study/study.hpp"
 #include "apps/snug/validate/validate.hpp"
@@ -52,6 +53,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_export(app, action);
   add_items(app, action);
   add_load(app, action);
+  add_shake(app, action);
   add_cup(app, action);
   add_camera(app, action);
   add_perceive(app, action);

@@ -1,0 +1,272 @@
+// shake: a container with its load, driven with accelerations: which boxes shift, tip or fall.
+#include "snug/runs/shake.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "snug/cell/world_builder.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/core/parallel.hpp"
+#include "snug/core/rng.hpp"
+#include "snug/physics/world.hpp"
+
+namespace snug::runs {
+namespace {
+
+constexpr double kSettle = 0.5;           ///< s
+constexpr double kFilmStiffness = 2.0e3;  ///< N/m, a box
+constexpr double kFilmForce = 150.0;      ///< N, a box
+constexpr double kStrapForce = 600.0;     ///< N, all together
+constexpr double kFallen = 0.10;          ///< m, under the floor, or beyond the walls with the middle
+constexpr double kOnTop = 0.010;          ///< m, between a top and what stands on it
+
+/// The target and the boxes of the load alone: robots, benches and feeders do not travel.
+model::Scenario travelling(model::Scenario scenario, const std::vector<model::PlacementEntry>& load, double friction,
+                           const std::optional<double>& time_step) {
+  std::erase_if(scenario.containers, [&](const model::Container& one) { return one.name != scenario.target; });
+  scenario.bodies.clear();
+  scenario.aligner.reset();
+  scenario.drops.reset();
+  scenario.solver.sleep.enabled = false;  // what drives it begins while it is at rest
+  scenario.time_step = time_step.value_or(scenario.time_step * scenario.rehearsal.coarse_steps);
+  const auto scale = [friction](model::ContactParams& params) {
+    params.friction *= friction;
+    if (params.edge_friction) *params.edge_friction *= friction;
+  };
+  for (model::ContactPair& pair : scenario.contact_pairs) scale(pair.params);
+  if (scenario.default_contact) scale(*scenario.default_contact);
+  model::Sequence sequence;
+  sequence.name = "load";
+  for (const model::PlacementEntry& one : load) sequence.items.emplace_back().parcel = one.parcel;
+  scenario.sequences = {sequence};
+  return scenario;
+}
+
+cell::WorldOptions world_options(const model::Scenario& scenario) {
+  cell::WorldOptions options;
+  options.sequence = &scenario.sequences.front();
+  return options;
+}
+
+struct Extents {
+  Vector3 low, high;
+};
+
+/// In plan view.
+bool overlap(const Extents& a, const Extents& b) {
+  return a.low.x() < b.high.x() && b.low.x() < a.high.x() && a.low.y() < b.high.y() && b.low.y() < a.high.y();
+}
+
+class Truck {
+ public:
+  Truck(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load, const ShakeOptions& options)
+      : options_(options),
+        world_(cell::build_world(scenario, world_options(scenario))),
+        work_(world_.model),
+        X_WT_(model::find_container(scenario, scenario.target)->X_WT),
+        inner_(model::find_container(scenario, scenario.target)->inner_size),
+        state_(cell::make_initial_state(scenario, world_)) {
+    for (std::size_t i = 0; i < load.size(); ++i) {
+      physics::set_present(state_, world_.parcels[i], true);
+      physics::set_pose(world_.model, state_, world_.parcels[i], X_WT_ * load[i].X_TP);
+      ids_.push_back(load[i].parcel);
+    }
+    find_tops(scenario, load);
+  }
+
+  /// The run of what stands by itself; what the motions begin with.
+  ShakeRun settle() {
+    reference_ = poses();
+    ShakeRun run = drive({"at rest", {{0.0, Vector3::Zero()}, {kSettle, Vector3::Zero()}}});
+    reference_ = poses();
+    rested_ = state_;
+    return run;
+  }
+  ShakeRun shake(const ShakeMotion& motion) {
+    state_ = rested_;
+    return drive(motion);
+  }
+
+ private:
+  [[nodiscard]] std::vector<Pose> poses() const {
+    std::vector<Pose> poses;
+    for (const physics::BodyId body : world_.parcels) {
+      poses.push_back(X_WT_.inverse() * physics::pose_of(world_.model, state_, body));
+    }
+    return poses;
+  }
+
+  /// Boxes that carry no other.
+  void find_tops(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load) {
+    std::vector<Extents> extents;
+    for (const model::PlacementEntry& one : load) {
+      const Vector3 size = model::collision_size(scenario, *model::find_parcel(scenario, one.parcel));
+      const Vector3 half = 0.5 * one.X_TP.R.cwiseAbs() * size;
+      extents.push_back({one.X_TP.p - half, one.X_TP.p + half});
+    }
+    for (const Extents& own : extents) {
+      is_top_.push_back(std::ranges::none_of(extents, [&](const Extents& other) {
+        return std::abs(other.low.z() - own.high.z()) <= kOnTop && overlap(own, other);
+      }));
+    }
+  }
+
+  /// The forces that come of the motion of the container, and of what holds the load.
+  void push(const ShakeSample& now) {
+    const Matrix3 R_tilt = exp_rotation(Vector3(now.roll, now.pitch, 0.0));
+    const Vector3 gravity_T = X_WT_.R.transpose() * world_.model.gravity;
+    const Vector3 felt_T = R_tilt.transpose() * gravity_T - gravity_T - now.acceleration_T;
+    const auto tops = static_cast<double>(std::ranges::count(is_top_, true));
+    wrenches_.clear();
+    for (std::size_t i = 0; i < world_.parcels.size(); ++i) {
+      const physics::BodyId body = world_.parcels[i];
+      if (!state_.bodies[static_cast<std::size_t>(body.index)].is_present) continue;
+      Vector3 force_T = world_.model.bodies[static_cast<std::size_t>(body.index)].inertia.mass * felt_T;
+      if (options_.hold == LoadHold::Film) {
+        Vector3 back = reference_[i].p - (X_WT_.inverse() * physics::pose_of(world_.model, state_, body)).p;
+        back.z() = 0.0;
+        const double pull = std::min(kFilmForce, kFilmStiffness * back.norm());
+        if (back.norm() > 1e-9) force_T += pull * back.normalized();
+      }
+      if (options_.hold == LoadHold::Straps && is_top_[i]) force_T.z() -= kStrapForce / tops;
+      wrenches_.push_back({body, {X_WT_.R * force_T, Vector3::Zero()}});
+    }
+  }
+
+  ShakeRun drive(const ShakeMotion& motion) {
+    ShakeRun run;
+    run.motion = motion.name;
+    for (const std::string& id : ids_) run.boxes.push_back({id, 0.0, 0.0, 0.0, false});
+    run.worst_X_TP = poses();
+    const double dt = world_.model.settings.dt;
+    const auto steps = static_cast<std::int64_t>(std::ceil(motion.duration() / dt));
+    for (std::int64_t k = 0; k < steps; ++k) {
+      push(motion.at((static_cast<double>(k) + 0.5) * dt));
+      physics::WorldInput input;
+      input.wrenches = wrenches_;
+      const physics::StepReport report = physics::step(world_.model, input, state_, work_);
+      const bool is_sound =
+          report.status == physics::StepStatus::Converged || report.status == physics::StepStatus::NotConverged;
+      if (!is_sound) {
+        run.is_sound = false;
+        run.worst = std::numeric_limits<double>::infinity();
+        run.worst_time = static_cast<double>(k) * dt;
+        break;
+      }
+      measure(static_cast<double>(k + 1) * dt, run);
+    }
+    const std::vector<Pose> now = poses();
+    for (std::size_t i = 0; i < now.size(); ++i) run.boxes[i].remaining = (now[i].p - reference_[i].p).norm();
+    return run;
+  }
+
+  void measure(double time, ShakeRun& run) {
+    double worst = 0.0;
+    std::vector<std::size_t> fallen;
+    for (std::size_t i = 0; i < run.boxes.size(); ++i) {
+      ShakenBox& box = run.boxes[i];
+      if (box.fell) continue;
+      const Pose X_TP = X_WT_.inverse() * physics::pose_of(world_.model, state_, world_.parcels[i]);
+      const double shift = (X_TP.p - reference_[i].p).norm();
+      const double tilt = tilt_between(X_TP.R, reference_[i].R);
+      box.shift = std::max(box.shift, shift);
+      box.tilt = std::max(box.tilt, tilt);
+      box.fell = X_TP.p.z() < -kFallen || std::abs(X_TP.p.x()) > 0.5 * inner_.x() + kFallen ||
+                 std::abs(X_TP.p.y()) > 0.5 * inner_.y() + kFallen;
+      if (box.fell) fallen.push_back(i);
+      worst = std::max({worst, shift / options_.shift, tilt / options_.tilt});
+    }
+    if (!fallen.empty()) worst = std::numeric_limits<double>::infinity();
+    if (worst > run.worst) {
+      run.worst = worst;
+      run.worst_time = time;
+      run.worst_X_TP = poses();
+    }
+    for (const std::size_t i : fallen) physics::set_present(state_, world_.parcels[i], false);
+  }
+
+  /// rad, how far the container's vertical moved in the box: turning about it does not count.
+  [[nodiscard]] static double tilt_between(const Matrix3& R_TP, const Matrix3& R_TP_before) {
+    const Vector3 now = R_TP.row(2).transpose(), before = R_TP_before.row(2).transpose();
+    return std::atan2(now.cross(before).norm(), now.dot(before));
+  }
+
+  const ShakeOptions& options_;
+  cell::CellWorld world_;
+  physics::Workspace work_;
+  Pose X_WT_;
+  Vector3 inner_;
+  physics::WorldState state_, rested_;
+  std::vector<std::string> ids_;
+  std::vector<bool> is_top_;
+  std::vector<Pose> reference_;
+  std::vector<physics::ExternalWrench> wrenches_;
+};
+
+void check(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
+           const ShakeOptions& options) {
+  if (model::find_container(scenario, scenario.target) == nullptr) {
+    throw InputError(scenario.source_name, "target", "nothing", "a container with a load");
+  }
+  if (load.empty()) throw InputError("load", "", "no boxes", "one at least");
+  const auto require = [](bool holds, const char* key, double value, const char* expected) {
+    require_number(holds, "shake", key, value, expected);
+  };
+  require(options.draws >= 0 && options.draws <= 1000, "draws", options.draws, "0 .. 1000");
+  require(options.shift > 0.0 && options.shift <= 10.0, "shift", options.shift, "above 0, at most 10 m");
+  require(options.tilt > 0.0 && options.tilt <= 3.2, "tilt", options.tilt, "above 0, at most 180 degrees");
+  if (!options.time_step) return;
+  require(*options.time_step > 0.0 && *options.time_step <= 0.02, "time step", *options.time_step,
+          "above 0, at most 0.02 s");
+}
+
+}  // namespace
+
+const char* name_of(LoadHold hold) {
+  switch (hold) {
+    case LoadHold::None:
+      return "none";
+    case LoadHold::Film:
+      return "film";
+    case LoadHold::Straps:
+      return "straps";
+  }
+  return "";
+}
+
+ShakeResult shake(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
+                  const std::vector<ShakeMotion>& profile, const ShakeOptions& options) {
+  check(scenario, load, options);
+  std::vector<double> frictions{1.0};
+  Rng rng = Rng(options.seed).split("shake friction");
+  const double half_width = scenario.uncertainty.friction;
+  for (int i = 0; i < options.draws; ++i) frictions.push_back(1.0 + rng.uniform(-half_width, half_width));
+  const std::size_t motions = profile.size() + 1;
+  ShakeResult result;
+  result.inner_size = model::find_container(scenario, scenario.target)->inner_size;
+  for (const model::PlacementEntry& one : load) {
+    result.boxes.push_back(one.parcel);
+    result.sizes.push_back(model::collision_size(scenario, *model::find_parcel(scenario, one.parcel)));
+  }
+  result.runs.resize(motions * frictions.size());
+  parallel_for(static_cast<int>(frictions.size()), options.threads, [&](int draw, int) {
+    const auto d = static_cast<std::size_t>(draw);
+    const model::Scenario own = travelling(scenario, load, frictions[d], options.time_step);
+    Truck truck(own, load, options);
+    for (std::size_t m = 0; m < motions; ++m) {
+      ShakeRun& run = result.runs[m * frictions.size() + d];
+      run = m == 0 ? truck.settle() : truck.shake(profile[m - 1]);
+      run.friction = frictions[d];
+    }
+  });
+  for (std::size_t i = 0; i < result.runs.size(); ++i) {
+    if (result.runs[i].worst > result.runs[result.worst].worst) result.worst = i;
+  }
+  result.seconds = kSettle * static_cast<double>(frictions.size());
+  for (const ShakeMotion& motion : profile) result.seconds += motion.duration() * static_cast<double>(frictions.size());
+  return result;
+}
+
+}  // namespace snug::runs

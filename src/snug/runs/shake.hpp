@@ -1,0 +1,71 @@
+// shake: a container with its load, driven with accelerations: which boxes shift, tip or fall.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/core/expected.hpp"
+#include "snug/model/placements.hpp"
+#include "snug/model/scenario.hpp"
+#include "snug/runs/shake_profile.hpp"
+
+namespace snug::runs {
+
+/// What holds a load beside walls and friction, as simple models.
+enum class LoadHold {
+  None,
+  Film,   ///< stretch film: each box is drawn back level to where it stood by 2 N a millimetre, by 150 N at most
+  Straps  ///< over the top: the boxes that carry no other are pressed down by 600 N together
+};
+[[nodiscard]] const char* name_of(LoadHold hold);
+
+struct ShakeOptions {
+  LoadHold hold = LoadHold::None;
+  int draws = 4;                         ///< of friction, beside the scenario's own
+  std::uint64_t seed = 1;                ///< of the draws
+  double shift = 0.020;                  ///< m, that a box may move at any time from where it stood
+  double tilt = 0.105;                   ///< rad, that it may tip
+  std::optional<double> time_step = {};  ///< s; absent: the scenario's times rehearsal.coarse_steps
+  int threads = 1;                       ///< results do not depend on it
+};
+
+/// One box, over one motion.
+struct ShakenBox {
+  std::string id;
+  double shift = 0.0;      ///< m, the largest
+  double remaining = 0.0;  ///< m, in the end
+  double tilt = 0.0;       ///< rad, the largest change of what is up
+  bool fell = false;       ///< out of the container, or off the pallet
+  bool operator==(const ShakenBox&) const = default;
+};
+
+/// One motion with one friction.
+struct ShakeRun {
+  std::string motion;     ///< of the profile; "at rest": before any
+  double friction = 1.0;  ///< times the scenario's
+  std::vector<ShakenBox> boxes;
+  double worst = 0.0;            ///< largest shift or tilt over its limit; infinity where a box fell
+  double worst_time = 0.0;       ///< s
+  std::vector<Pose> worst_X_TP;  ///< of the boxes then
+  bool is_sound = true;          ///< false: a step did not come to finite numbers, and counts as fallen
+  bool operator==(const ShakeRun&) const = default;
+};
+
+struct ShakeResult {
+  std::vector<std::string> boxes;
+  std::vector<Vector3> sizes;  ///< m
+  Vector3 inner_size = Vector3::Zero();
+  std::vector<ShakeRun> runs;  ///< motion by motion, friction by friction
+  std::size_t worst = 0;       ///< of runs
+  double seconds = 0.0;        ///< simulated
+  [[nodiscard]] bool holds() const { return runs.empty() || runs[worst].worst <= 1.0; }
+};
+
+/// The load at rest for half a second, then each motion of the profile from there. In the frame of the container: what
+/// accelerates it acts on each box as a force the other way. A container stays as it is, fixed on what carries it.
+/// Throws InputError for a load without boxes, a scenario without target and options out of range.
+[[nodiscard]] ShakeResult shake(const model::Scenario& scenario, const std::vector<model::PlacementEntry>& load,
+                                const std::vector<ShakeMotion>& profile, const ShakeOptions& options);
+
+}  // namespace snug::runs

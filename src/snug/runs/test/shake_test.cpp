@@ -1,0 +1,167 @@
+// Shake: closed forms of sliding and tipping, symmetry, profiles, files that are broken.
+#include "snug/runs/shake.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::runs {
+namespace {
+
+/// A pallet 1 m square with friction mu, and one box of this size in its middle.
+model::Scenario pallet(double friction, const Vector3& size) {
+  const std::string text =
+      "name: pallet\ntime_step: 0.001\nmaterials: [{name: box}, {name: slab}]\n"
+      "contacts:\n  pairs:\n"
+      "    - {between: [box, slab], friction: " +
+      std::to_string(friction) +
+      ", restitution: 0}\n"
+      "    - {between: [box, box], friction: " +
+      std::to_string(friction) +
+      ", restitution: 0}\n"
+      "parcel_types: [{name: b, size: [" +
+      std::to_string(size.x()) + ", " + std::to_string(size.y()) + ", " + std::to_string(size.z()) +
+      "], mass: 2.0}]\n"
+      "parcels: [{id: A, type: b, material: box}, {id: B, type: b, material: box}]\n"
+      "containers: [{name: slab, inner_size: [1.0, 1.0, 0.5], material: slab, walls: false}]\ntarget: "
+      "slab\n";
+  return model::parse_scenario(text, "pallet.yaml");
+}
+
+std::vector<model::PlacementEntry> in_the_middle(const Vector3& size) {
+  return {{"A", {Matrix3::Identity(), Vector3(0.0, 0.0, 0.5 * size.z())}, 0}};
+}
+
+/// Straight up to `acceleration`, held for a second.
+std::vector<ShakeMotion> pulse(const Vector3& acceleration) {
+  return {{"pulse", {{0.0, Vector3::Zero()}, {0.001, acceleration}, {0.4, acceleration}}}};
+}
+
+ShakeOptions exact() {
+  ShakeOptions options;
+  options.draws = 0;
+  options.time_step = 0.001;
+  return options;
+}
+
+TEST(Shake, ABoxStaysBelowTheFrictionsAccelerationAndSlidesBeyondItAsNewtonSays) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  const model::Scenario scenario = pallet(0.3, size);
+  for (const Vector3& axis : {Vector3(Vector3::UnitX()), Vector3(-Vector3::UnitY())}) {
+    const ShakeResult below = shake(scenario, in_the_middle(size), pulse(0.29 * 9.81 * axis), exact());
+    EXPECT_TRUE(below.holds());
+    EXPECT_LT(below.runs.back().boxes[0].shift, 1e-4);
+    const ShakeResult beyond = shake(scenario, in_the_middle(size), pulse(0.4 * 9.81 * axis), exact());
+    EXPECT_FALSE(beyond.holds());
+    // a - mu g for 0.4 s: 78 mm; the ramp and a step of 1 ms are worth 0.5 mm.
+    EXPECT_NEAR(beyond.runs.back().boxes[0].shift, 0.5 * 0.1 * 9.81 * 0.4 * 0.4, 1.5e-3);
+    EXPECT_LT(beyond.runs.back().boxes[0].tilt, 0.01);
+  }
+}
+
+TEST(Shake, ASlenderBoxTipsWhereItsLeverIsTooShort) {
+  const Vector3 size(0.1, 0.1, 0.4);  // tips at g / 4
+  const model::Scenario scenario = pallet(0.8, size);
+  const ShakeResult stands = shake(scenario, in_the_middle(size), pulse({0.22 * 9.81, 0.0, 0.0}), exact());
+  EXPECT_TRUE(stands.holds());
+  const ShakeResult falls = shake(scenario, in_the_middle(size), pulse({0.35 * 9.81, 0.0, 0.0}), exact());
+  EXPECT_FALSE(falls.holds());
+  EXPECT_GT(falls.runs[falls.worst].boxes[0].tilt, 0.105);
+  EXPECT_EQ(falls.runs[falls.worst].motion, "pulse");
+}
+
+TEST(Shake, ATiltSlidesABoxWhereItsTangentIsBeyondTheFriction) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  const model::Scenario scenario = pallet(0.3, size);
+  ShakeProfileOptions options;
+  for (const double level : {0.27, 0.4}) {
+    options.level = level;
+    const ShakeResult result = shake(scenario, in_the_middle(size), make_shake_profile("tilt", options), exact());
+    EXPECT_EQ(result.holds(), level < 0.3) << level;
+  }
+}
+
+TEST(Shake, FilmAndStrapsHoldMore) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  const model::Scenario scenario = pallet(0.3, size);
+  const auto profile = pulse({0.5 * 9.81, 0.0, 0.0});
+  ShakeOptions options = exact();
+  EXPECT_FALSE(shake(scenario, in_the_middle(size), profile, options).holds());
+  for (const LoadHold hold : {LoadHold::Film, LoadHold::Straps}) {
+    options.hold = hold;
+    EXPECT_TRUE(shake(scenario, in_the_middle(size), profile, options).holds()) << name_of(hold);
+  }
+}
+
+TEST(Shake, SaysOfALoadThatDoesNotStandThatItFellAtRest) {
+  const Vector3 size(0.4, 0.4, 0.1);
+  auto load = in_the_middle(size);
+  load.push_back({"B", {Matrix3::Identity(), Vector3(0.25, 0.0, 0.15)}, 0});  // hangs over by 65 %
+  const ShakeResult result = shake(pallet(0.3, size), load, pulse(Vector3::Zero()), exact());
+  EXPECT_FALSE(result.holds());
+  EXPECT_EQ(result.runs[0].motion, "at rest");
+  EXPECT_GT(result.runs[0].worst, 1.0);
+}
+
+TEST(Shake, GivesTheSameBytesAtAnyNumberOfThreads) {
+  const Vector3 size(0.3, 0.2, 0.1);
+  ShakeOptions options;
+  options.draws = 3;
+  const auto run = [&](int threads) {
+    options.threads = threads;
+    return shake(pallet(0.3, size), in_the_middle(size), pulse({3.2, 0.0, 0.0}), options).runs;
+  };
+  EXPECT_EQ(run(1), run(3));
+}
+
+TEST(Shake, RefusesLoadsAndOptionsThatCannotBe) {
+  const Vector3 size(0.3, 0.2, 0.1);
+  const model::Scenario scenario = pallet(0.3, size);
+  EXPECT_THROW((void)shake(scenario, {}, {}, exact()), InputError);
+  ShakeOptions options = exact();
+  options.shift = 0.0;
+  EXPECT_THROW((void)shake(scenario, in_the_middle(size), {}, options), InputError);
+  options = exact();
+  options.time_step = std::nan("");
+  EXPECT_THROW((void)shake(scenario, in_the_middle(size), {}, options), InputError);
+}
+
+TEST(ShakeProfile, GoesStraightBetweenItsSamples) {
+  const auto motions = parse_shake_profile("# a comment\ntime_s,ay,roll_deg\n0,0,0\n2, 4,90\n", "a.csv");
+  ASSERT_EQ(motions.size(), 1U);
+  EXPECT_EQ(motions[0].at(0.5).acceleration_T, Vector3(0.0, 1.0, 0.0));
+  EXPECT_DOUBLE_EQ(motions[0].at(1.0).roll, 0.25 * std::numbers::pi);
+  EXPECT_EQ(motions[0].at(7.0).acceleration_T, Vector3(0.0, 4.0, 0.0));
+  EXPECT_EQ(motions[0].at(-1.0).acceleration_T, Vector3(Vector3::Zero()));
+}
+
+TEST(ShakeProfile, SaysWhereAFileIsWrong) {
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      (void)parse_shake_profile(text, "p.csv");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const char* text : {"", "time_s,ax\n", "time_s,ax\n0,1\n", "ax\n1\n2\n", "time_s,ax\n0,0\n0,1\n",
+                           "time_s,ax\n0,0\n1,nan\n", "time_s,ax\n0,0\n1,1,1\n", "time_s,ax,ax\n0,0,0\n1,1,1\n",
+                           "time_s,ax\n0,0\n1,1e9\n", "time_s,bx\n0,0\n1,1\n", "time_s,ax\n1,0\n2,0\n"}) {
+    EXPECT_NE(message(text).find("p.csv"), std::string::npos) << text;
+  }
+  EXPECT_NE(message("time_s,ax\n0,0\n1,x\n").find("p.csv:3"), std::string::npos);
+}
+
+TEST(ShakeProfile, KnowsItsNamesAndTheLongerSideLooksForward) {
+  ShakeProfileOptions options;
+  for (const std::string& name : shake_profile_names()) EXPECT_EQ(make_shake_profile(name, options).size(), 4U) << name;
+  EXPECT_THROW((void)make_shake_profile("trukc", options), InputError);
+  options.size = Vector3(0.37, 0.57, 0.25);
+  EXPECT_NEAR(make_shake_profile("truck", options)[0].at(0.5).acceleration_T.y(), -0.8 * 9.81, 1e-12);
+}
+
+}  // namespace
+}  // namespace snug::runs
