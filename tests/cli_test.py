@@ -1076,13 +1076,13 @@ class OtherCells(unittest.TestCase):
     def test_other_items_do_not_change_what_is_expected_unless_asked(self):
         words = ("pack", CELL, "--sequence", "1", "--container", "220x240x120", *self.QUICK, "--json")
         plans = []
-        for more in ([], ["--items", self.orders], ["--items", self.orders, "--future", "all"]):
+        for more in ([], ["--items", self.orders], ["--items", self.orders, "--future", "catalogue"]):
             packed = json.loads(snug(*words, *more).stdout)
             plans.append([item.get("planned") for item in packed["items"]])
         self.assertTrue(any(plans[0]))
         self.assertEqual(plans[0], plans[1])
         self.assertEqual(len(plans[2]), len(plans[0]))
-        self.assert_refused(snug(*words, "--future", "som"), "--future", "own", "all")
+        self.assert_refused(snug(*words, "--future", "som"), "--future", "order", "catalogue", "none")
 
     def test_without_samples_nothing_is_said_of_samples(self):
         item = self.pack("--sequence", "two")["items"][0]

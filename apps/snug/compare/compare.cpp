@@ -150,7 +150,7 @@ int run_session(const CompareOptions& options, const SourcedScenario& loaded, co
   pack.sequence = point.sequence;
   pack.plant_seed = point.plant_seed;
   pack.threads = threads;
-  const session::SessionOptions session = make_session_options(pack, loaded, point.sequence);
+  const session::SessionOptions session = make_session_options(pack, loaded);
   const simulated_plant::SimulatedPlantOptions plant = make_plant_options(pack, session);
   std::optional<OutputFile> recording;
   study::TrialFiles files;

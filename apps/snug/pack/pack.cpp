@@ -7,9 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <span>
+#include <optional>
 
 #include "apps/snug/command_line/interrupt.hpp"
 #include "apps/snug/command_line/outputs.hpp"
@@ -40,25 +39,11 @@ std::string choose_robot(const PackOptions& options, const model::Scenario& scen
   return is_there ? scenario.robot->name : std::string();
 }
 
-/// Any parcel of the files that the sequence's boxes come from.
-packing::FutureModel own_future(const SourcedScenario& loaded, const std::string& name) {
-  packing::FutureModel future;
-  const model::Sequence* sequence = model::find_sequence(loaded.scenario, name);
-  if (sequence == nullptr) return future;  // refused later, with the names that there are
-  std::size_t begin = 0;
-  for (const std::size_t end : loaded.ends) {
-    const auto parcels = std::span(loaded.scenario.parcels).subspan(begin, end - begin);
-    begin = end;
-    const bool is_source = std::ranges::any_of(sequence->items, [&](const model::Item& item) {
-      return std::ranges::find(parcels, item.parcel, &model::Parcel::id) != parcels.end();
-    });
-    if (!is_source) continue;
-    packing::FutureModel part = packing::make_future_model(loaded.scenario, parcels);
-    std::ranges::move(part.kinds, std::back_inserter(future.kinds));
-    std::ranges::move(part.weights, std::back_inserter(future.weights));
-    future.comes_once = part.comes_once;
-  }
-  return future;
+/// None: the session's own, the boxes of the order.
+std::optional<packing::FutureModel> choose_future(const std::string& which, const model::Scenario& scenario) {
+  if (which == "catalogue") return packing::make_catalogue_future(scenario);
+  if (which == "none") return packing::FutureModel{};
+  return std::nullopt;
 }
 
 /// The plant as the session before left it.
@@ -128,15 +113,14 @@ model::Sequence draw_order(const model::Scenario& scenario, const std::string& n
   return packing::draw_sequence(scenario, name, settings, Rng(seed).split("sequence " + name));
 }
 
-session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
-                                             const std::string& sequence) {
+session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded) {
   session::SessionOptions session;
   session.agent = options.agent;
   if (packing::is_python_agent(options.agent)) {
     session.ask = packing::start_python_agent(options.agent, agent_script(), {options.agent_patience, is_interrupted});
   }
   session.decision.seed = options.seed.value_or(loaded.scenario.seed);
-  if (options.future == "own") session.future = own_future(loaded, sequence);
+  session.future = choose_future(options.future, loaded.scenario);
   session.decision.time = options.decision_time;
   session.threads = options.threads.value_or(core_count());
   session.decision.threads = session.threads;
@@ -178,7 +162,7 @@ int run_pack(const PackOptions& options) {
   if (options.random_seed) {
     scenario.sequences.push_back(draw_order(scenario, options.sequence, *options.random_seed));
   }
-  session::SessionOptions session = make_session_options(options, loaded, options.sequence);
+  session::SessionOptions session = make_session_options(options, loaded);
   simulated_plant::SimulatedPlantOptions plant = make_plant_options(options, session);
   if (options.resume) {
     session.resume = session::find_resume_point(session::load_log(*options.resume), *options.resume);
@@ -220,6 +204,10 @@ int run_pack(const PackOptions& options) {
   if (files.plan) files.finish_plan(study::format_plan(result, true));
   print(options.json ? study::format_json(trial, repeated) : study::format_summary(trial, repeated));
   std::string failure = result.failure.text;
+  const std::vector<std::string> rejected = session::rejected_items(result);
+  if (failure.empty() && !rejected.empty()) {
+    failure = fmt::format("the load is not as it has to be: {}", fmt::join(rejected, "; "));
+  }
   if (failure.empty() && repeated.failed > 0) {
     failure = fmt::format("{} of {} repeated runs did not reach their end", repeated.failed, repeated.count);
   }

@@ -30,7 +30,7 @@ struct PackOptions {
   std::optional<int> skips;
   std::string controller = "fast";  ///< or lagged
   std::optional<double> tempo;      ///< only with fast; absent: 1
-  std::string future = "own";
+  std::string future = "order";
   std::string perception = "exact";
   std::vector<std::string> plant_set;  ///< "KEY=VALUE", of the plant's scenario alone
   std::string fault;                   ///< "drop@3,noseal@5"
@@ -48,8 +48,7 @@ void add_pack(CLI::App& app, Action& action);
 void add_packing_options(CLI::App& verb, PackOptions& options);
 /// Every box of the scenario in an order drawn by seed and name. Throws InputError where a sequence has this name.
 [[nodiscard]] model::Sequence draw_order(const model::Scenario& scenario, const std::string& name, std::uint64_t seed);
-[[nodiscard]] session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded,
-                                                           const std::string& sequence);
+[[nodiscard]] session::SessionOptions make_session_options(const PackOptions& options, const SourcedScenario& loaded);
 /// Throws InputError for words that say nothing.
 [[nodiscard]] simulated_plant::SimulatedPlantOptions make_plant_options(const PackOptions& options,
                                                                         const session::SessionOptions& session);

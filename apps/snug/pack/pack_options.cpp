@@ -94,9 +94,9 @@ void add_packing_options(CLI::App& verb, PackOptions& options) {
       ->check(whole(0, 1000))
       ->type_name("N");
   verb.add_option("--future", options.future,
-                  "what an item is expected to be followed by: boxes of the files that the sequence's come from (own), "
-                  "or all boxes of the scenario and of --items")
-      ->check(one_of({"own", "all"}))
+                  "what an item is expected to be followed by: the other boxes of its order, in any order (order), any "
+                  "boxes of the scenario and of --items, again and again (catalogue), or nothing that is known (none)")
+      ->check(one_of({"order", "catalogue", "none"}))
       ->type_name("WHICH")
       ->capture_default_str();
 }

@@ -67,7 +67,13 @@ std::vector<std::string> agent_names() {
   return names;
 }
 
-Expected<Decision, NoPlace> Agent::decide_pressed(const ContainerState& /*state*/, const Item& /*item*/) {
+Expected<Decision, NoPlace> Agent::decide_with_costs(const ContainerState& state, const Item& item,
+                                                     const PlaceCost& /*cost*/) {
+  return decide(state, item);
+}
+
+Expected<Decision, NoPlace> Agent::decide_pressed(const ContainerState& /*state*/, const Item& /*item*/,
+                                                  const PlaceCost& /*cost*/) {
   return tl::unexpected(NoPlace::NoSpace);
 }
 

@@ -29,6 +29,10 @@ struct FutureModel {
 /// Every parcel of the scenario, equally likely and once at most, as in any sequence: types as frequent as the scenario
 /// has them, sizes as measured.
 [[nodiscard]] FutureModel make_future_model(const model::Scenario& scenario);
+/// The boxes of the order alone, once each, in any order. Throws InputError for an unknown parcel.
+[[nodiscard]] FutureModel make_order_future(const model::Scenario& scenario, const model::Sequence& order);
+/// Every parcel of the scenario, equally likely, again and again: nothing is known of the order.
+[[nodiscard]] FutureModel make_catalogue_future(const model::Scenario& scenario);
 /// The same of some of its parcels.
 [[nodiscard]] FutureModel make_future_model(const model::Scenario& scenario, std::span<const model::Parcel> parcels);
 
@@ -39,14 +43,23 @@ struct Decision {
   bool operator==(const Decision&) const = default;
 };
 
-/// Same state, item and settings: same decision. Knows nothing of later items unless it was made with them.
+/// What standing so costs beside the room that it takes, percent of the container: turning the box, for example.
+/// Absent: nothing.
+using PlaceCost = std::function<double(const Placement&)>;
+
+/// Same state, item, costs and settings: same decision. Knows nothing of later items unless it was made with them.
 class Agent {
  public:
   virtual ~Agent() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
   [[nodiscard]] virtual Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) = 0;
+  /// The same where places cost something, before candidates are cut to `max_candidates`. Agents that do not weigh
+  /// costs decide without.
+  [[nodiscard]] virtual Expected<Decision, NoPlace> decide_with_costs(const ContainerState& state, const Item& item,
+                                                                      const PlaceCost& cost);
   /// Other places, planned with `last_interference`, where none of decide() can be had; for most agents there are none.
-  [[nodiscard]] virtual Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item);
+  [[nodiscard]] virtual Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item,
+                                                                   const PlaceCost& cost);
   /// Percent filled in the end, on average over what may come, when everything stays where it lies; nothing for agents
   /// that do not look ahead.
   [[nodiscard]] virtual std::optional<double> expected_percent(const ContainerState& state);

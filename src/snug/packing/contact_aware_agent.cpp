@@ -1,6 +1,8 @@
 // Agent contact-aware: no look-ahead, no clearance, flips; candidates race each other in roll-outs over possible
 // futures.
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string_view>
 #include <unordered_set>
 
@@ -14,9 +16,49 @@ namespace {
 /// Places looked at in one second on one core of the reference machine (2.5 GHz), with everything that a roll-out does
 /// around them: turns a decision time into work, so that a decision does not depend on the clock.
 constexpr double kPlacesPerSecond = 6.0e6;
-constexpr int kEntrants = 64;
-/// Futures that a container met as it is: 0.3 % of it, standard error.
-constexpr int kFutures = 256;
+constexpr std::size_t kEntrants = 64;
+constexpr std::size_t kUnturned = 12;  ///< of these at least, for which the box is not turned
+constexpr std::size_t kOther = 8;      ///< of these, the best by the policy that was not chosen
+constexpr double kFree = 0.004;        ///< m, beside a box that stands free: more than boxes are planned to press
+/// Futures that a container met as it is: 0.4 % of it, standard error.
+constexpr int kFutures = 128;
+
+/// Places of one kind: the same axis of the box is up, and it stands pressed in between or not.
+int kind_of(const Candidate& candidate) {
+  const auto is_tight = [&](Side low, Side high) {
+    return std::max(candidate.side_gap[static_cast<std::size_t>(low)],
+                    candidate.side_gap[static_cast<std::size_t>(high)]) < kFree;
+  };
+  const bool is_pressed = is_tight(Side::LowX, Side::HighX) || is_tight(Side::LowY, Side::HighY);
+  return 2 * static_cast<int>(candidate.placement.orientation.up) + (is_pressed ? 1 : 0);
+}
+
+/// The first `most` of them, except that each kind of place keeps its first few: where none of the best can be had, a
+/// place of another kind often can.
+std::vector<Candidate> cut(std::vector<Candidate> ranked, std::size_t most) {
+  if (ranked.size() <= most) return ranked;
+  std::array<std::size_t, 6> kept{};
+  std::vector<bool> stays(ranked.size(), false);
+  std::size_t staying = 0;
+  const std::size_t each = most / 8;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    std::size_t& of_kind = kept[static_cast<std::size_t>(kind_of(ranked[i]))];
+    if (of_kind >= each) continue;
+    ++of_kind;
+    ++staying;
+    stays[i] = true;
+  }
+  for (std::size_t i = 0; i < ranked.size() && staying < most; ++i) {
+    if (stays[i]) continue;
+    stays[i] = true;
+    ++staying;
+  }
+  std::vector<Candidate> left;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    if (stays[i]) left.push_back(std::move(ranked[i]));
+  }
+  return left;
+}
 
 std::vector<Piece> pieces_of(const Planning& planning, const FutureModel& future) {
   std::vector<Piece> pieces;
@@ -47,21 +89,35 @@ double largest_volume(const Prospect& prospect) {
   return largest;
 }
 
+/// Those that go on in roll-outs: the one of which more gets in decides. The tuned one knows edges that add up; maximal
+/// contact knows nothing and is as good where boxes are unlike those that it was tuned on.
+std::vector<Policy> policies_for(const Planning& planning, std::span<const Item> kinds) {
+  std::vector<Policy> policies(2, make_policy(planning, kinds));
+  policies.back().weights = contact_weights();
+  return policies;
+}
+
 class ContactAwareAgent : public Agent {
  public:
   explicit ContactAwareAgent(AgentInput input) : input_(std::move(input)) {}
   std::string_view name() const override { return name_of(AgentKind::ContactAware); }
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
-    Expected<Decision, NoPlace> decision = decide(state, item, plan_for_contact(state, input_.settings));
+    return decide_with_costs(state, item, {});
+  }
+
+  Expected<Decision, NoPlace> decide_with_costs(const ContainerState& state, const Item& item,
+                                                const PlaceCost& cost) override {
+    Expected<Decision, NoPlace> decision = decide_planned(state, item, plan_for_contact(state, input_.settings), cost);
     const bool is_full =
         !decision && (decision.error() == NoPlace::NoSpace || decision.error() == NoPlace::NoStablePlace);
     if (!is_full) return decision;
-    Expected<Decision, NoPlace> pressed = decide_pressed(state, item);
+    Expected<Decision, NoPlace> pressed = decide_pressed(state, item, cost);
     return pressed ? pressed : decision;
   }
 
-  Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item) override {
+  Expected<Decision, NoPlace> decide_pressed(const ContainerState& state, const Item& item,
+                                             const PlaceCost& cost) override {
     if (!input_.run.tries_places) return tl::unexpected(NoPlace::NoSpace);
     PackingSettings settings = input_.settings;
     settings.planned_interference = settings.last_interference;
@@ -69,7 +125,7 @@ class ContactAwareAgent : public Agent {
     if (planning.planned_interference <= plan_for_contact(state, input_.settings).planned_interference) {
       return tl::unexpected(NoPlace::NoSpace);
     }
-    Expected<Decision, NoPlace> decision = decide(state, item, planning);
+    Expected<Decision, NoPlace> decision = decide_planned(state, item, planning, cost);
     if (decision) decision->is_pressed = true;
     return decision;
   }
@@ -80,9 +136,13 @@ class ContactAwareAgent : public Agent {
     Outlook outlook = look_ahead(planning, state, nullptr);
     outlook.race.first_futures = kFutures;
     const std::vector<Layout> entrants{to_layout(planning, make_rules(planning, kinds), state)};
-    return outlook.percent(
-        race(entrants, make_policy(planning, kinds), outlook.prospect, outlook.free_volume, outlook.race, nullptr)
-            .front());
+    double best = 0.0;
+    for (const Policy& policy : policies_for(planning, kinds)) {
+      const Standing standing =
+          race(entrants, policy, outlook.prospect, outlook.free_volume, outlook.race, nullptr).front();
+      best = std::max(best, outlook.percent(standing));
+    }
+    return best;
   }
 
  private:
@@ -112,7 +172,25 @@ class ContactAwareAgent : public Agent {
     return outlook;
   }
 
-  Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item, const Planning& planning) {
+  /// One decision: what everything below looks at.
+  struct Question {
+    const Planning& planning;
+    const ContainerState& state;
+    const Item& item;
+    const PlaceCost& cost;
+    const Choice& choice;
+    const Layout& layout;
+  };
+  /// What races, and what it is charged.
+  struct Field {
+    std::vector<Candidate> candidates;
+    std::vector<Layout> entrants;
+    std::vector<double> costs;  ///< percent
+    NoPlace reason = NoPlace::NoStablePlace;
+  };
+
+  Expected<Decision, NoPlace> decide_planned(const ContainerState& state, const Item& item, const Planning& planning,
+                                             const PlaceCost& cost) {
     const Choice choice = make_choice(planning, item);
     if (const auto no = refuse(planning, item, choice)) return tl::unexpected(*no);
     std::vector<Item> kinds = input_.future.kinds;
@@ -121,47 +199,78 @@ class ContactAwareAgent : public Agent {
     CandidatePoseList list;
     Refusal worst = Refusal::None;
     layout.find_poses(choice.piece, list, &worst);
-    std::vector<CandidatePose>& poses = list.poses;
-    if (poses.empty()) return tl::unexpected(reason_of(worst));
-    const Policy policy = make_policy(planning, kinds);
-    order_by_cost(layout, policy, choice.piece, poses);
-    return rank(planning, state, item, choice, layout, policy, poses);
+    if (list.poses.empty()) return tl::unexpected(reason_of(worst));
+    const Question question{planning, state, item, cost, choice, layout};
+    Outlook outlook = look_ahead(planning, state, &item);
+    const std::vector<Policy> policies = policies_for(planning, kinds);
+    std::int64_t used = 0;
+    const std::size_t chosen =
+        choose_policy(layout, choice.piece, policies, outlook.prospect, outlook.free_volume, outlook.race, used);
+    outlook.race.effort = std::max<std::int64_t>(0, outlook.race.effort - used);
+    const Field field = make_field(question, policies, chosen, list.poses);
+    if (field.candidates.empty()) return tl::unexpected(field.reason);
+    return settle_race(policies[chosen], outlook, field);
   }
 
-  Expected<Decision, NoPlace> rank(const Planning& planning, const ContainerState& state, const Item& item,
-                                   const Choice& choice, const Layout& layout, const Policy& policy,
-                                   const std::vector<CandidatePose>& poses) {
-    std::vector<Candidate> candidates;
-    std::vector<Layout> entrants;
-    NoPlace reason = NoPlace::NoStablePlace;
-    for (const CandidatePose& pose : poses) {
-      if (entrants.size() >= kEntrants) break;
-      auto candidate = place_item(planning, layout, item, choice, pose, input_.is_reachable);
+  /// The best poses by the chosen policy, and some that only another order would have brought in: those by the other
+  /// policy, and those for which the box is not turned.
+  Field make_field(const Question& ask, const std::vector<Policy>& policies, std::size_t chosen,
+                   const std::vector<CandidatePose>& poses) const {
+    Field field;
+    std::vector<CandidatePose> taken;
+    const auto take = [&](const CandidatePose& pose) {
+      if (std::ranges::find(taken, pose) != taken.end()) return;
+      taken.push_back(pose);
+      auto candidate = place_item(ask.planning, ask.layout, ask.item, ask.choice, pose, input_.is_reachable);
       if (!candidate) {
-        reason = candidate.error();
-        continue;
+        field.reason = candidate.error();
+        return;
       }
-      candidates.push_back(*candidate);
-      entrants.push_back(layout);
-      entrants.back().add(Layout::block_at(choice.piece, pose));
-    }
-    if (candidates.empty()) return tl::unexpected(reason);
-    return settle_race(planning, state, item, policy, candidates, entrants);
+      field.costs.push_back(ask.cost ? ask.cost(candidate->placement) : 0.0);
+      field.candidates.push_back(std::move(*candidate));
+      field.entrants.push_back(ask.layout);
+      field.entrants.back().add(Layout::block_at(ask.choice.piece, pose));
+    };
+    const auto take_from = [&](const std::vector<CandidatePose>& ordered, std::size_t most, bool unturned_only) {
+      for (const CandidatePose& pose : ordered) {
+        if (field.entrants.size() >= most) break;
+        if (!unturned_only || is_unturned(ask, pose)) take(pose);
+      }
+    };
+    std::vector<CandidatePose> by_chosen = poses, by_other = poses;
+    order_by_cost(ask.layout, policies[chosen], ask.choice.piece, by_chosen);
+    order_by_cost(ask.layout, policies[1 - chosen], ask.choice.piece, by_other);
+    take_from(by_chosen, kEntrants - kUnturned - kOther, false);
+    take_from(by_other, std::min<std::size_t>(field.entrants.size() + kOther, kEntrants), false);
+    if (ask.cost) take_from(by_chosen, std::min<std::size_t>(field.entrants.size() + kUnturned, kEntrants), true);
+    take_from(by_chosen, kEntrants, false);
+    return field;
   }
 
-  Decision settle_race(const Planning& planning, const ContainerState& state, const Item& item, const Policy& policy,
-                       const std::vector<Candidate>& candidates, const std::vector<Layout>& entrants) {
+  /// The box can stand there with the face up that is up now.
+  static bool is_unturned(const Question& ask, const CandidatePose& pose) {
+    const auto& ways = ask.choice.orientations[static_cast<std::size_t>(pose.orientation)];
+    return std::ranges::any_of(ways, [&](const Orientation& way) { return count_flips(ask.item.arrival, way) == 0; });
+  }
+
+  Decision settle_race(const Policy& policy, const Outlook& outlook, const Field& field) const {
     Decision decision;
-    const Outlook outlook = look_ahead(planning, state, &item);
+    std::vector<double> charges;
+    for (const double cost : field.costs) charges.push_back(0.01 * cost * outlook.room);
     const std::vector<Standing> order =
-        race(entrants, policy, outlook.prospect, outlook.free_volume, outlook.race, &decision.roll_outs);
+        race(field.entrants, policy, outlook.prospect, outlook.free_volume, outlook.race, &decision.roll_outs, charges);
+    const Standing& first = *std::ranges::find(order, 0, &Standing::entrant);
+    std::vector<Candidate> ranked;
     for (const Standing& standing : order) {
-      if (static_cast<int>(decision.candidates.size()) >= input_.settings.max_candidates) break;
-      Candidate candidate = candidates[static_cast<std::size_t>(standing.entrant)];
-      candidate.expected_percent = outlook.percent(standing);
-      candidate.score = candidate.expected_percent;
-      decision.candidates.push_back(candidate);
+      Candidate& candidate = ranked.emplace_back(field.candidates[static_cast<std::size_t>(standing.entrant)]);
+      // What is beyond doubt alone: the mean of a place that met a few futures is mostly luck.
+      const double cost = field.costs[static_cast<std::size_t>(standing.entrant)];
+      candidate.score = outlook.percent(first) - field.costs.front() + 100.0 * standing.sure / outlook.room;
+      // What dropped out earlier is not worth more than what stayed, whatever its few futures say.
+      if (ranked.size() > 1) candidate.score = std::min(candidate.score, ranked[ranked.size() - 2].score);
+      candidate.expected_percent = candidate.score + cost;
     }
+    decision.candidates = cut(std::move(ranked), static_cast<std::size_t>(input_.settings.max_candidates));
     return decision;
   }
 

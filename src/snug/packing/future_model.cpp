@@ -1,4 +1,7 @@
 // FutureModel: which kinds of items come how often.
+#include <string_view>
+#include <unordered_set>
+
 #include "snug/packing/agent.hpp"
 
 namespace snug::packing {
@@ -14,6 +17,27 @@ FutureModel make_future_model(const model::Scenario& scenario, std::span<const m
     future.weights.push_back(1.0);
   }
   future.comes_once = true;
+  return future;
+}
+
+FutureModel make_order_future(const model::Scenario& scenario, const model::Sequence& order) {
+  std::unordered_set<std::string_view> wanted;
+  for (const model::Item& item : order.items) wanted.insert(item.parcel);
+  FutureModel future;
+  for (const model::Parcel& parcel : scenario.parcels) {  // in their order, whatever the order's: it is not known
+    if (!wanted.contains(parcel.id)) continue;
+    model::Item item;
+    item.parcel = parcel.id;
+    future.kinds.push_back(make_item(scenario, item));
+    future.weights.push_back(1.0);
+  }
+  future.comes_once = true;
+  return future;
+}
+
+FutureModel make_catalogue_future(const model::Scenario& scenario) {
+  FutureModel future = make_future_model(scenario);
+  future.comes_once = false;
   return future;
 }
 

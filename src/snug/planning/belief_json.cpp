@@ -56,6 +56,7 @@ BeliefForm form_of(const BeliefSnapshot& belief) {
   form.obstacles = belief.obstacles;
   form.obstacle_bodies = belief.obstacle_bodies;
   form.sent = belief.sent;
+  for (const FailedMotion& one : belief.failed) form.failed.push_back({one});
   form.skipped = belief.skipped;
   form.skips_left = belief.skips_left;
   form.next = belief.next;
@@ -95,6 +96,10 @@ class Restorer {
     }
     if (form_.next) expect_item(*form_.next, "next");
     belief_.sent = form_.sent;
+    for (const FailedForm& one : form_.failed) {
+      expect_item(one.motion.item, "failed");
+      belief_.failed.push_back(one.motion);
+    }
     belief_.skipped = form_.skipped;
     belief_.skips_left = form_.skips_left;
     belief_.next = form_.next;

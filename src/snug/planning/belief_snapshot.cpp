@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 #include <utility>
 
 #include "snug/cell/drawn_scenario.hpp"
@@ -18,12 +19,22 @@ model::Scenario coarse(model::Scenario scenario, int factor) {
   return scenario;
 }
 
+/// Without boxes and orders that do not come: they would take time and change what is drawn of those that do.
+model::Scenario order_alone(model::Scenario scenario, const std::string& sequence) {
+  std::unordered_set<std::string> wanted;
+  for (const model::Item& item : cell::require_sequence(scenario, sequence).items) wanted.insert(item.parcel);
+  if (wanted.empty()) return scenario;
+  std::erase_if(scenario.parcels, [&](const model::Parcel& one) { return !wanted.contains(one.id); });
+  std::erase_if(scenario.sequences, [&](const model::Sequence& one) { return one.name != sequence; });
+  return scenario;
+}
+
 }  // namespace
 
 std::vector<World> draw_worlds(const model::Scenario& scenario, const std::string& sequence, std::uint64_t seed,
                                int samples) {
   const Rng rng(seed);
-  const model::Scenario nominal = cell::with_fixed_arrivals(scenario, sequence);
+  const model::Scenario nominal = cell::with_fixed_arrivals(order_alone(scenario, sequence), sequence);
   const int steps = scenario.rehearsal.coarse_steps;
   std::vector<World> worlds{{coarse(nominal, steps), {}, 1.0}};
   for (int i = 0; i < samples; ++i) {

@@ -11,6 +11,8 @@
 #include "snug/geometry/bounds.hpp"
 #include "snug/model/ids.hpp"
 #include "snug/packing/agent.hpp"
+#include "snug/skills/insertion.hpp"
+#include "snug/skills/item_plan.hpp"
 
 namespace snug::planning {
 
@@ -58,6 +60,17 @@ struct AgentSettings {
   bool operator==(const AgentSettings&) const = default;
 };
 
+/// A motion that was sent and was ended by a load, a joint or the clock: it would be again, so it is not sent again.
+struct FailedMotion {
+  model::ItemIndex item;
+  packing::Placement planned;
+  skills::InsertionSkill skill = skills::InsertionSkill::TopDown;
+  skills::Reorientation reorientation = skills::Reorientation::None;
+  /// It failed before the box hung as it was to, by more force than was foreseen: boxes of its type are not turned so.
+  bool while_turning = false;
+  bool operator==(const FailedMotion&) const = default;
+};
+
 struct BeliefSnapshot {
   model::Scenario scenario;     ///< as it was given
   std::string sequence;         ///< name
@@ -74,6 +87,7 @@ struct BeliefSnapshot {
   std::vector<geometry::Aabb> obstacles;          ///< W: what is in the container and is no item, with its uncertainty
   std::vector<geometry::Aabb> obstacle_bodies;    ///< W: as the worlds have them, cut back beside boxes
   std::vector<model::ItemIndex> sent;             ///< items that motions were sent for, in that order
+  std::vector<FailedMotion> failed;               ///< in that order
   std::vector<model::ItemIndex> skipped;          ///< items that came and are not packed, in that order
   int skips_left = 0;                             ///< items without a place that may still be skipped; below 0: none
   std::optional<model::ItemIndex> next;           ///< the item that follows: the tool goes on to where it is picked

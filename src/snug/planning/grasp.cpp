@@ -364,6 +364,7 @@ Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orient
   best.episodes.resize(request.rollouts.size());
   bool is_first = true;
   for (const skills::Reorientation reorientation : reorientations) {
+    if (std::ranges::find(request.refused, reorientation) != request.refused.end()) continue;
     GraspPlanner planner(request, orientation);
     if (!planner.make(reorientation)) continue;
     Grasp grasp = planner.take();

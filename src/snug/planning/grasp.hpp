@@ -23,7 +23,7 @@ enum class GraspProblem {
   SideTooLow,    ///< the side is too low for the cup
   OutOfReach,    ///< of the robot
   DoesNotStand,  ///< where it was put down
-  NoSurface,     ///< nothing flat to turn it on
+  NoSurface,     ///< nothing flat to turn it on, or every way of turning it was refused
   Rollout,       ///< the nominal rollout ended early: see its episode
 };
 [[nodiscard]] const char* describe(GraspProblem problem);
@@ -63,6 +63,7 @@ struct GraspRequest {
   double packed_top = 0.0;  ///< m, z in T of the highest box in the container
   int threads = 1;
   const ToolReach& reaches;
+  std::vector<skills::Reorientation> refused = {};  ///< not to be tried
 };
 /// The first reorientation with which the box is held in every rollout, or the one that does so in most.
 [[nodiscard]] Grasp plan_grasp(const GraspRequest& request, const packing::Orientation& orientation);

@@ -128,8 +128,9 @@ struct JsonEnum<skills::Reorientation> {
 template <>
 struct JsonEnum<planning::AttemptFailure> {
   using F = planning::AttemptFailure;
-  static constexpr std::array all{F::None,      F::Grasp,    F::OutOfReach, F::Rollout,     F::HoldMargin,   F::Gone,
-                                  F::SticksOut, F::OffPlace, F::Tilted,     F::OthersMoved, F::OthersCameOut};
+  static constexpr std::array all{F::None,       F::Grasp,       F::OutOfReach,    F::Rollout,
+                                  F::HoldMargin, F::Gone,        F::SticksOut,     F::OffPlace,
+                                  F::Tilted,     F::OthersMoved, F::OthersCameOut, F::SentBefore};
 };
 
 }  // namespace snug

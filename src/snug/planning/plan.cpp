@@ -19,6 +19,19 @@ using Clock = std::chrono::steady_clock;
 /// Percent: a utility that is larger by less is none.
 constexpr double kSameUtility = 1e-9;
 
+constexpr std::size_t kMostFree = 6;  ///< places that are tried where all others failed
+constexpr double kFree = 0.004;       ///< m, beside a box that presses on nothing
+
+/// On one side of either axis there is room: nothing is pressed in.
+bool stands_free(const packing::Candidate& candidate) {
+  const auto room = [&](packing::Side low, packing::Side high) {
+    return std::max(candidate.side_gap[static_cast<std::size_t>(low)],
+                    candidate.side_gap[static_cast<std::size_t>(high)]);
+  };
+  return room(packing::Side::LowX, packing::Side::HighX) > kFree &&
+         room(packing::Side::LowY, packing::Side::HighY) > kFree;
+}
+
 /// In the end, when the item stays where it lies in the container; nothing: the agent does not know, or it may not.
 std::optional<double> expected_percent(const Scene& scene, model::ItemIndex item, packing::Agent& agent) {
   if (scene.locate(item) != Location::Container || !scene.fit_of(item).is_in) return std::nullopt;
@@ -43,7 +56,8 @@ class Planner {
     const packing::ContainerState state = scene_.container_state(plan_.item);
     const std::optional<double> here = expected_percent(scene_, plan_.item, agent_);
     least_utility_ = here ? *here + scene_.rules().recovery.gain_elsewhere : 0.0;
-    auto decision = agent_.decide(state, plan_.standing);
+    const packing::PlaceCost cost = [&](const packing::Placement& one) { return cost_of(scene_, standing_, one); };
+    auto decision = agent_.decide_with_costs(state, plan_.standing, cost);
     if (!decision) {
       plan_.decision_seconds += seconds_since(start);
       plan_.outcome = packing::is_hopeless(decision.error()) ? PlanOutcome::Infeasible : PlanOutcome::NoPlace;
@@ -56,7 +70,7 @@ class Planner {
     rehearse(decision->candidates);
     if (!plan_.best && !decision->is_pressed) {
       start = Clock::now();
-      auto pressed = agent_.decide_pressed(state, plan_.standing);
+      auto pressed = agent_.decide_pressed(state, plan_.standing, cost);
       if (pressed) sort_by_utility(scene_, standing_, pressed->candidates);
       plan_.decision_seconds += seconds_since(start);
       if (pressed) rehearse(pressed->candidates);
@@ -73,9 +87,11 @@ class Planner {
     const model::ItemIndex next = *belief_.next;
     const Pose X_WP = scene_.arrival_of(next);
     if (!belief_.agent.is_asked) {  // others are asked of what is, not of what is expected
-      auto decision = work_.agent_for(belief_, next, budget_).decide(state, belief_.items[next.slot()]);
+      const StandingBox box{next, X_WP, Location::Aligner};
+      const packing::PlaceCost cost = [&](const packing::Placement& one) { return cost_of(scene_, box, one); };
+      auto decision =
+          work_.agent_for(belief_, next, budget_).decide_with_costs(state, belief_.items[next.slot()], cost);
       if (decision) {
-        const StandingBox box{next, X_WP, Location::Aligner};
         sort_by_utility(scene_, box, decision->candidates);
         const auto outline = outline_of(scene_, box, decision->candidates.front().placement.orientation);
         if (outline) return outline->X_WE;
@@ -110,8 +126,10 @@ class Planner {
     best_utility_ = least_utility_;
     const int before = plan_.attempts;
     bool has_ended = false, cannot_win = false;
+    std::vector<const packing::Candidate*> untried;
     for (const packing::Candidate& candidate : candidates) {
       if (has_ended) {
+        if (!cannot_win && !plan_.best && stands_free(candidate)) untried.push_back(&candidate);
         note(candidate, 0.0, cannot_win ? Verdict::CannotWin : Verdict::SearchEnded);
         continue;
       }
@@ -124,6 +142,11 @@ class Planner {
       }
       try_insertions(candidate, cost, rehearsal, before);
       has_ended = is_enough(plan_.attempts - before);
+    }
+    // Nothing is left out while there is room for it: where the best places all failed, those where nothing is beside
+    // it.
+    for (std::size_t i = 0; i < untried.size() && i < kMostFree && !plan_.best; ++i) {
+      try_insertions(*untried[i], cost_of(scene_, standing_, untried[i]->placement), rehearsal, plan_.attempts);
     }
     if (plan_.best && plan_.best->success_rate < scene_.rules().rehearsal.least_rate) {
       plan_.tried[best_].verdict = Verdict::TooRarely;
@@ -139,6 +162,10 @@ class Planner {
     for (const skills::Insertion& insertion : skills::choose_insertions(placed, rehearsal.box().size, params)) {
       if (is_enough(plan_.attempts - before)) return;
       Attempt attempt = rehearsal.attempt(placed, insertion, scene_.packed_top(plan_.item));
+      if (attempt.failure == AttemptFailure::SentBefore) {
+        note(placed, cost, Verdict::SentBefore).reason = attempt.text;
+        continue;
+      }
       if (!attempt.was_rehearsed) {
         note(placed, cost, Verdict::GraspKnown).reason = attempt.text;
         return;
@@ -232,6 +259,8 @@ const char* name_of(Verdict verdict) {
       return "too rarely";
     case Verdict::Failed:
       return "failed";
+    case Verdict::SentBefore:
+      return "sent before";
     case Verdict::GraspKnown:
       return "cannot be held so";
     case Verdict::CannotWin:

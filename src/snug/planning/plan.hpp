@@ -24,6 +24,7 @@ enum class Verdict {
   LessUtility,  ///< it succeeded, another one is worth more
   TooRarely,    ///< best, but in fewer samples than `rehearsal.least_rate`
   Failed,       ///< in the nominal world
+  SentBefore,   ///< not tried: it was sent, and ended by what it met
   GraspKnown,   ///< not tried: the box cannot be held so, as an attempt before showed
   CannotWin,    ///< not tried: were it certain, it would not be worth more than the best
   SearchEnded,  ///< not tried: the best is good enough, or too many were tried
@@ -44,7 +45,8 @@ struct Tried {
   std::string reason;                             ///< why it failed, for people
   bool operator==(const Tried&) const = default;
   [[nodiscard]] bool was_rehearsed() const {
-    return verdict != Verdict::GraspKnown && verdict != Verdict::CannotWin && verdict != Verdict::SearchEnded;
+    return verdict != Verdict::SentBefore && verdict != Verdict::GraspKnown && verdict != Verdict::CannotWin &&
+           verdict != Verdict::SearchEnded;
   }
 };
 

@@ -13,6 +13,8 @@
 namespace snug::planning {
 namespace {
 
+constexpr double kSamePlace = 0.004;  ///< m: places that are nearer are planned as the same
+
 /// Along the floor.
 double level_distance(const Pose& X, const Pose& X_planned) { return (X.p - X_planned.p).head<2>().norm(); }
 
@@ -53,6 +55,8 @@ const char* name_of(AttemptFailure failure) {
       return "others moved";
     case AttemptFailure::OthersCameOut:
       return "others came out";
+    case AttemptFailure::SentBefore:
+      return "sent before";
   }
   return "";
 }
@@ -104,11 +108,13 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
   if (turned > cell_.limits.tilt) {
     fail(AttemptFailure::Tilted, fmt::format("{:.0f} degrees from its place", turned * 180.0 / std::numbers::pi));
   }
+  double tipped = 0.0;  // rad, of another box
   for (std::size_t i = 0; i < before.size(); ++i) {
     const model::ItemIndex item(i);
     if (!before[i] || item == box_.item) continue;
     const std::optional<Pose> after = rollout.pose_of(item);
     if (after) outcome.forces.displacement = std::max(outcome.forces.displacement, (after->p - before[i]->p).norm());
+    if (after) tipped = std::max(tipped, lean_of(after->R) - lean_of(before[i]->R));
     if (fit_of(item, *before[i]).is_in && !(after && fit_of(item, *after).is_in)) {
       fail(AttemptFailure::OthersCameOut, "another box would come out of the container");
     }
@@ -116,6 +122,10 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
   if (outcome.forces.displacement > cell_.limits.displacement) {
     fail(AttemptFailure::OthersMoved,
          fmt::format("another box would move {:.0f} mm", 1e3 * outcome.forces.displacement));
+  }
+  if (tipped > cell_.limits.tilt) {
+    fail(AttemptFailure::OthersMoved,
+         fmt::format("another box would lean {:.0f} degrees more", tipped * 180.0 / std::numbers::pi));
   }
   return outcome;
 }
@@ -127,7 +137,7 @@ const Grasp& Rehearsal::grasp_for(const packing::Placement& placement, double pa
   const motion::Waypoint from =
       motion::make_waypoint(motion::MotionClass::Home, {}, belief_.robot.X_WE, belief_.robot.io);
   grasps_.push_back(plan_grasp({belief_.nominal(), cell_.layout, rollouts_, states_, weights_, from, box_, task_.X_WP,
-                                task_.location, packed_top, threads_, cell_.reaches},
+                                task_.location, packed_top, threads_, cell_.reaches, refused_reorientations()},
                                placement.orientation));
   return grasps_.back();
 }
@@ -209,10 +219,37 @@ Rehearsal::Outcome Rehearsal::execute(std::size_t world, const Grasp& grasp,
   return outcome;
 }
 
+/// The same place and insertion, whichever way the box was brought up.
+bool Rehearsal::was_sent_in_vain(const Attempt& attempt) const {
+  return std::ranges::any_of(belief_.failed, [&](const FailedMotion& one) {
+    return one.item == box_.item && !one.while_turning && one.skill == attempt.skill &&
+           one.planned.orientation.up == attempt.planned.orientation.up &&
+           (one.planned.X_TP.p - attempt.planned.X_TP.p).norm() < kSamePlace;
+  });
+}
+
+/// Ways of turning boxes of this type that met more force than was foreseen.
+std::vector<skills::Reorientation> Rehearsal::refused_reorientations() const {
+  std::vector<skills::Reorientation> refused;
+  const std::string& type = belief_.items[box_.item.slot()].type;
+  for (const FailedMotion& one : belief_.failed) {
+    const packing::Item& failed = belief_.items[one.item.slot()];
+    const bool is_alike = one.item == box_.item || (!type.empty() && failed.type == type);
+    if (one.while_turning && is_alike) refused.push_back(one.reorientation);
+  }
+  return refused;
+}
+
 Attempt Rehearsal::attempt(const packing::Candidate& candidate, const skills::Insertion& insertion, double packed_top) {
   Attempt attempt;
   attempt.planned = candidate.placement;
   attempt.skill = insertion.skill;
+  if (was_sent_in_vain(attempt)) {
+    attempt.was_rehearsed = false;
+    attempt.failure = AttemptFailure::SentBefore;
+    attempt.text = "sent before, and ended by what it met";
+    return attempt;
+  }
   const std::size_t known = grasps_.size();
   const Grasp& grasp = grasp_for(candidate.placement, packed_top);
   attempt.was_rehearsed = grasp.problem == GraspProblem::None || grasps_.size() > known;

@@ -22,22 +22,23 @@ struct AttemptForces {
 /// Why an attempt did not succeed in a rollout.
 enum class AttemptFailure {
   None,
-  Grasp,         ///< see Attempt::grasp_problem
-  OutOfReach,    ///< the robot cannot follow the way to its place
-  Rollout,       ///< it ended early: force, protective stop, arm contact
-  HoldMargin,    ///< PlaceLimits::hold_factor
-  Gone,          ///< the box left the cell
-  SticksOut,     ///< over the rim or beyond a wall
-  OffPlace,      ///< PlaceLimits::position
-  Tilted,        ///< PlaceLimits::tilt
-  OthersMoved,   ///< PlaceLimits::displacement
-  OthersCameOut  ///< of the container
+  Grasp,          ///< see Attempt::grasp_problem
+  OutOfReach,     ///< the robot cannot follow the way to its place
+  Rollout,        ///< it ended early: force, protective stop, arm contact
+  HoldMargin,     ///< PlaceLimits::hold_factor
+  Gone,           ///< the box left the cell
+  SticksOut,      ///< over the rim or beyond a wall
+  OffPlace,       ///< PlaceLimits::position
+  Tilted,         ///< PlaceLimits::tilt
+  OthersMoved,    ///< PlaceLimits::displacement
+  OthersCameOut,  ///< of the container
+  SentBefore      ///< not rehearsed: this motion was sent, and ended by what it met (FailedMotion)
 };
 [[nodiscard]] const char* name_of(AttemptFailure failure);
 
 /// One grasp and insertion that bring one box to one place, rehearsed in every world but not yet sent.
 struct Attempt {
-  bool was_rehearsed = true;  ///< false: known from an attempt before that the box cannot be held so
+  bool was_rehearsed = true;                      ///< false: the box cannot be held so, or failed so when it was sent
   AttemptFailure failure = AttemptFailure::None;  ///< in the nominal world, else the first of a sampled one
   std::string text;                               ///< what failed, for people
   bool succeeded = false;                         ///< in the nominal world
@@ -85,6 +86,8 @@ class Rehearsal {
     RolloutEnd end = RolloutEnd::Completed;
     AttemptForces forces;
   };
+  [[nodiscard]] bool was_sent_in_vain(const Attempt& attempt) const;
+  [[nodiscard]] std::vector<skills::Reorientation> refused_reorientations() const;
   const Grasp& grasp_for(const packing::Placement& placement, double packed_top);
   [[nodiscard]] Outcome judge(const Rollout& rollout, const std::vector<std::optional<Pose>>& before,
                               const Pose& X_TP) const;

@@ -14,6 +14,15 @@ double moved(const planning::Scene& scene, model::ItemIndex item, const std::vec
   return std::max(0.0, (box->X_WP.p - was->p).norm() - planning::slack_of(*box));
 }
 
+/// It leans by more than the limit and did not before: moved, however little its middle was.
+bool was_tipped(const planning::Scene& scene, model::ItemIndex item, const std::vector<std::optional<Pose>>& before) {
+  const std::optional<Pose>& was = before[item.slot()];
+  const std::optional<planning::BelievedBox>& box = scene.box(item);
+  if (!was || !box || !box->was_seen || scene.locate(item) != planning::Location::Container) return false;
+  const double limit = scene.cell.limits.tilt;
+  return planning::lean_of(box->X_WP.R) > limit && planning::lean_of(was->R) <= limit;
+}
+
 }  // namespace
 
 Trouble trouble_of(plant::EndReason reason) {
@@ -57,7 +66,8 @@ std::optional<model::ItemIndex> find_moved(const planning::Scene& scene, const A
   std::optional<model::ItemIndex> highest;
   for (const model::ItemIndex other : scene.belief.sent) {
     if (other == item || agenda.is_under_way(other)) continue;
-    if (moved(scene, other, before) <= scene.cell.limits.displacement) continue;
+    const bool is_moved = moved(scene, other, before) > scene.cell.limits.displacement;
+    if (!is_moved && !was_tipped(scene, other, before)) continue;
     if (!highest || scene.X_WP(other).p.z() > scene.X_WP(*highest).p.z()) highest = other;
   }
   return highest;

@@ -24,7 +24,7 @@ struct Assessment {
 /// A box that stands over the rim or beyond a wall, another one first; none: none does.
 [[nodiscard]] std::optional<model::ItemIndex> find_sticking_out(const planning::Scene& scene, const Agenda& agenda,
                                                                 model::ItemIndex item);
-/// Of the others that were moved beyond the limit the highest: it may lie on the rest; none: none was.
+/// Of the others that were moved beyond the limit, or tipped, the highest: it may lie on the rest; none: none was.
 [[nodiscard]] std::optional<model::ItemIndex> find_moved(const planning::Scene& scene, const Agenda& agenda,
                                                          model::ItemIndex item,
                                                          const std::vector<std::optional<Pose>>& before);

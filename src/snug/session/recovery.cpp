@@ -4,6 +4,15 @@
 namespace snug::session {
 namespace {
 
+/// One that leans takes room meant for others and carries nothing: it is not accepted while anything can be done.
+Remedy level_or_move(const Situation& at, const settings::RecoverySettings& settings) {
+  const bool may_move = at.tries < settings.most_tries;
+  if (at.lies_on_others && at.can_be_picked && may_move) return Remedy::PickAgain;
+  if (!at.was_pressed) return Remedy::PressLevel;
+  if (at.can_be_picked && may_move) return Remedy::PickAgain;
+  return at.can_return && may_move ? Remedy::ReturnToAligner : Remedy::Accept;
+}
+
 Remedy where_it_lies(const Situation& at, const settings::RecoverySettings& settings) {
   const bool may_pick = at.can_be_picked && at.tries < settings.most_tries;
   const bool may_return = at.can_return && at.tries < settings.most_tries;
@@ -111,7 +120,7 @@ Remedy choose_remedy(const Situation& at, const settings::RecoverySettings& sett
       if (at.was_pressed) return where_it_lies(at, settings);
       return Remedy::PressLevel;
     case Trouble::NeighbourMoved:
-      return where_it_lies(at, settings);
+      return at.fits && at.leans ? level_or_move(at, settings) : where_it_lies(at, settings);
     case Trouble::Gone:
     case Trouble::WrongItem:
       return Remedy::Skip;

@@ -25,6 +25,8 @@ const char* name_of(ItemEnd end) {
       return "wrong item";
     case ItemEnd::NotBrought:
       return "not brought";
+    case ItemEnd::Rejected:
+      return "rejected";
   }
   return "";
 }
@@ -66,6 +68,14 @@ const char* name_of(SessionFailureKind kind) {
       return "plant lost";
   }
   return "";
+}
+
+std::vector<std::string> rejected_items(const SessionResult& result) {
+  std::vector<std::string> rejected;
+  for (const ItemReport& item : result.items) {
+    if (item.end == ItemEnd::Rejected) rejected.push_back(item.id + " " + item.reason);
+  }
+  return rejected;
 }
 
 int recovery_count(const SessionResult& result) {

@@ -24,7 +24,8 @@ enum class ItemEnd {
   Left,        ///< it lies where it cannot be picked, or the tries were used up
   Gone,        ///< it is not seen any more
   WrongItem,   ///< another one came in its place; it was taken away
-  NotBrought   ///< the plant did not bring it
+  NotBrought,  ///< the plant did not bring it
+  Rejected,    ///< it lies in the container, but not as a box of a finished load has to
 };
 [[nodiscard]] const char* name_of(ItemEnd end);
 
@@ -111,6 +112,8 @@ struct SessionResult {
   std::vector<ObstacleReport> obstacles;       ///< that were seen, those that are gone again too
   std::optional<double> percent_before_skips;  ///< planned_percent when the first item without a place was skipped
 };
+/// "BOX023 leans by 26.5 degrees (6.0 are allowed)", of each item that the check of the finished load rejected.
+[[nodiscard]] std::vector<std::string> rejected_items(const SessionResult& result);
 [[nodiscard]] int recovery_count(const SessionResult& result);
 
 }  // namespace snug::session

@@ -22,13 +22,14 @@ void check(const model::Scenario& scenario, const std::string& sequence, const m
   }
 }
 
-planning::AgentSettings agent_of(const model::Scenario& scenario, const SessionOptions& options) {
+planning::AgentSettings agent_of(const model::Scenario& scenario, const model::Sequence& order,
+                                 const SessionOptions& options) {
   planning::AgentSettings agent;
   agent.name = options.agent;
   agent.is_asked = static_cast<bool>(options.ask);
   agent.seed = options.decision.seed;
   agent.tries_places = !internal::decides_before(options);  // what is planned before has no other place to try
-  agent.future = options.future ? *options.future : packing::make_future_model(scenario);
+  agent.future = options.future ? *options.future : packing::make_order_future(scenario, order);
   return agent;
 }
 
@@ -72,7 +73,7 @@ void go_on(Run& run, const ResumePoint& point) {
 /// Who decides in which order: at once, or item by item as they come.
 void prepare(Run& run, const std::string& plant) {
   planning::BeliefSnapshot& belief = run.belief.edit();
-  belief.agent = agent_of(belief.scenario, run.options);
+  belief.agent = agent_of(belief.scenario, *model::find_sequence(belief.scenario, belief.sequence), run.options);
   belief.skips_left = run.options.skips.value_or(belief.scenario.recovery.skips);
   event::SessionStarted started{belief.sequence, belief.agent.name, plant, {}, false, belief.simulation.tracking};
   for (const packing::Item& item : belief.items) started.items.emplace_back(item.id);

@@ -18,7 +18,7 @@ struct SessionOptions {
   int threads = 1;           ///< results do not depend on it
   int samples = 8;           ///< sampled worlds in which every motion is rehearsed beside the nominal one; 0: none
   std::optional<int> skips;  ///< in the place of the scenario's (settings::RecoverySettings)
-  /// What may follow an item; absent: any parcel of the scenario.
+  /// What may follow an item; absent: the other boxes of the order, in any order.
   std::optional<packing::FutureModel> future;
   cell::SimulationOptions simulation{.tracking = motion::FastTracking{}};  ///< of rollouts
   std::function<bool()> is_interrupted;  ///< asked before every item; true ends the session; may be empty

@@ -1,6 +1,7 @@
 // packing_bench: counts and filling degrees of the agents on paper, without executing anything.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "snug/core/rng.hpp"
 #include "snug/packing/agent.hpp"
+#include "snug/packing/bench/streams.hpp"
 
 namespace {
 
@@ -23,6 +25,8 @@ struct Options {
   int skips = 0;
   PackingSettings settings;
   DecisionRun run;
+  std::string stream;  ///< family of draw_stream; empty: the demonstrator's boxes
+  int count = 5;       ///< streams
 };
 
 struct Outcome {
@@ -79,6 +83,46 @@ std::vector<Item> random_sequence(const model::Scenario& scenario, int seed) {
   return items;
 }
 
+/// Percent filled at the first box without a place.
+double pack_stream(const bench::Stream& stream, const Options& options) {
+  AgentInput input{stream.settings, stream.future, stream.items, {}, {}, options.run};
+  const bool is_greedy = options.agent == "contact";
+  const auto agent = is_greedy ? nullptr : make_agent(options.agent, std::move(input));
+  ContainerState state = stream.container;
+  for (const Item& item : stream.items) {
+    std::optional<Candidate> best;
+    if (is_greedy) {
+      best = bench::place_by_contact(stream, state, item);
+    } else if (auto decision = agent->decide(state, item)) {
+      best = decision->candidates.front();
+    }
+    if (!best) break;
+    state = with_candidate(std::move(state), item, *best);
+  }
+  return filling_percent(state);
+}
+
+int pack_streams(const Options& options) {
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < options.count; ++i) {
+    const Rng rng = Rng(static_cast<std::uint64_t>(options.first + i)).split("stream " + options.stream);
+    const auto stream = bench::draw_stream(options.stream, rng);
+    if (!stream) {
+      std::fprintf(stderr, "no family '%s'\n", options.stream.c_str());
+      return 2;
+    }
+    const double percent = pack_stream(*stream, options);
+    std::printf("%.1f ", percent);
+    std::fflush(stdout);
+    sum += percent;
+    squares += percent * percent;
+  }
+  const double mean = sum / options.count;
+  std::printf(" %s %s: mean %.2f sd %.2f n %d\n", options.stream.c_str(), options.agent.c_str(), mean,
+              std::sqrt(std::max(0.0, squares / options.count - mean * mean)), options.count);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -95,12 +139,15 @@ int main(int argc, char** argv) {
     if (key == "--threads") o.run.threads = std::atoi(value);
     if (key == "--planned-interference") o.settings.planned_interference = std::atof(value);
     if (key == "--first") o.first = std::atoi(value);
+    if (key == "--stream") o.stream = value;
+    if (key == "--count") o.count = std::atoi(value);
     if (key == "--skips") o.skips = std::atoi(value);
     if (key == "--last-interference") {
       o.settings.last_interference = std::atof(value);
       o.run.tries_places = true;
     }
   }
+  if (!o.stream.empty()) return pack_streams(o);
   const model::Scenario scenario = model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml");
   for (int s = 0; s < o.seeds; ++s, ++o.run.seed) {
     double sum = 0.0, slowest = 0.0, mean_time = 0.0;

@@ -64,6 +64,14 @@ Weights default_weights() {
   return w;
 }
 
+Weights contact_weights() {
+  Weights w{};
+  w[Touch] = -1.0;
+  w[Base] = 1e-3;
+  w[Top] = 1e-4;
+  return w;
+}
+
 WasteTable::WasteTable(const std::vector<int>& lengths, int longest) {
   const int last = longest / kTicksPerMillimetre;
   std::vector<char> reached(static_cast<std::size_t>(last) + 1, 0);
@@ -108,6 +116,7 @@ Features see(const Layout& layout, const Policy& policy, const Piece& piece, con
   f[Flush] = s.flush / (2.0 * (width + depth));
   f[Support] = pose.support;
   f[Footprint] = 10.0 * area / (static_cast<double>(rules.size_x) * rules.size_y);
+  f[Touch] = (s.contact + pose.support * area) / (2.0 * (area + (width + depth) * height));
   for (const int gap : s.gap) f[Sliver] += gap > kTouch && gap < rules.min_side ? 1.0 : 0.0;
   return f;
 }

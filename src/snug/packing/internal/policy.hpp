@@ -9,12 +9,27 @@
 namespace snug::packing::internal {
 
 /// What is seen of a piece at a pose, each as a volume in parts of the container's (or a plain ratio).
-enum Feature { Base, Top, Buried, SideWaste, HeightWaste, Contact, Flush, Support, Footprint, Sliver, kFeatureCount };
+enum Feature {
+  Base,
+  Top,
+  Buried,
+  SideWaste,
+  HeightWaste,
+  Contact,
+  Flush,
+  Support,
+  Footprint,
+  Sliver,
+  Touch,
+  kFeatureCount
+};
 using Features = std::array<double, kFeatureCount>;
 /// Added up with these; lower is better. Found as docs/theory/packing.md says.
 using Weights = std::array<double, kFeatureCount>;
 
 [[nodiscard]] Weights default_weights();
+/// Maximal contact: as much of the whole surface as can be touches boxes, floor and walls; of equals the lowest.
+[[nodiscard]] Weights contact_weights();
 
 /// What is left of a length when it is filled as well as sums of these lengths can: one entry a millimetre.
 class WasteTable {

@@ -2,13 +2,19 @@
 #include "snug/packing/internal/roll_out.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "snug/core/parallel.hpp"
 
 namespace snug::packing::internal {
 
 namespace {
+
+constexpr double kSteps = 1e12;     ///< of a m^3: volumes that differ by less are equal; the rounding of sums is less
+constexpr int kChoiceFutures = 12;  ///< that policies meet before one is chosen, at most
+constexpr double kChoiceEffort = 0.15;  ///< fraction of the effort that choosing may take
 
 /// Draws an index by weight; -1 when no weight is left.
 int draw(const std::vector<double>& weights, Rng& rng) {
@@ -23,6 +29,13 @@ int draw(const std::vector<double>& weights, Rng& rng) {
     if (at < 0.0) return last;
   }
   return last;
+}
+
+/// m^3, of the mean gain. What was met by a few futures alone is not known to be nothing.
+double error_of_gain(const Standing& one) {
+  if (one.entrant == 0 || one.roll_outs < 2) return 0.0;
+  const double n = one.roll_outs;
+  return std::sqrt(std::max(0.0, one.gain_squares / n - one.gain * one.gain) / (n - 1.0));
 }
 
 /// One heat: every entrant that is left meets the same futures.
@@ -44,11 +57,20 @@ struct Heat {
           roll_out(entrants[static_cast<std::size_t>(standing.entrant)], policy, prospect,
                    futures[static_cast<std::size_t>(job % per)], skips, work[static_cast<std::size_t>(thread)]);
     });
+    const auto first = std::ranges::find(field, 0, &Standing::entrant) - field.begin();
     for (std::size_t i = 0; i < field.size(); ++i) {
-      double sum = field[i].mean * field[i].roll_outs;
-      for (int j = 0; j < per; ++j) sum += volume[i * static_cast<std::size_t>(per) + static_cast<std::size_t>(j)];
-      field[i].roll_outs += per;
-      field[i].mean = sum / field[i].roll_outs;
+      Standing& one = field[i];
+      double sum = one.mean * one.roll_outs, gains = one.gain * one.roll_outs;
+      for (int j = 0; j < per; ++j) {
+        const double own = volume[i * static_cast<std::size_t>(per) + static_cast<std::size_t>(j)];
+        const double more = own - volume[static_cast<std::size_t>(first * per + j)];
+        sum += own;
+        gains += more;
+        one.gain_squares += more * more;
+      }
+      one.roll_outs += per;
+      one.mean = sum / one.roll_outs;
+      one.gain = gains / one.roll_outs;
     }
   }
 
@@ -104,7 +126,23 @@ double roll_out(Layout layout, const Policy& policy, const Prospect& prospect, c
 }
 
 std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& policy, const Prospect& prospect,
-                           double free_volume, const RaceSettings& settings, std::int64_t* roll_outs) {
+                           double free_volume, const RaceSettings& settings, std::int64_t* roll_outs,
+                           const std::vector<double>& charges) {
+  const auto charge = [&](const Standing& one) {
+    return charges.empty() ? 0.0 : charges[static_cast<std::size_t>(one.entrant)];
+  };
+  const auto worth = [&](const Standing& one) { return std::round(kSteps * (one.mean - charge(one))); };
+  // Of m gains that are nothing but chance the largest is about sqrt(2 ln m) standard errors: m met in the last heat.
+  double doubt = 0.0;
+  // More than the first entrant, costs taken off; of a gain what is beyond doubt, all of a loss.
+  const auto sure_gain = [&](const Standing& one) {
+    const double net = one.gain - charge(one) + (charges.empty() ? 0.0 : charges.front());
+    return std::round(kSteps * (net > 0.0 ? std::max(0.0, net - doubt * error_of_gain(one)) : net));
+  };
+  // Of those that cannot be told apart the cheapest, then the one that the policy likes better.
+  const auto comes_before = [&](const Standing& a, const Standing& b) {
+    return std::tuple(-sure_gain(a), charge(a), a.entrant) < std::tuple(-sure_gain(b), charge(b), b.entrant);
+  };
   std::vector<Standing> field(entrants.size());
   for (std::size_t i = 0; i < field.size(); ++i) field[i].entrant = static_cast<int>(i);
   const int threads = std::max(1, settings.threads);
@@ -123,17 +161,49 @@ std::vector<Standing> race(const std::vector<Layout>& entrants, const Policy& po
     heat.run(running, drawn);
     if (roll_outs != nullptr) *roll_outs += static_cast<std::int64_t>(running.size()) * futures;
     std::stable_sort(running.begin(), running.end(),
-                     [](const Standing& a, const Standing& b) { return a.mean > b.mean; });
+                     [&](const Standing& a, const Standing& b) { return worth(a) > worth(b); });
     std::copy(running.begin(), running.end(), field.begin());
     // What a roll-out costs now decides how many the next round affords.
     const double each = static_cast<double>(heat.effort() - before) / (static_cast<double>(running.size()) * futures);
     const double rest = static_cast<double>(settings.effort - heat.effort()) / (rounds - round - 1.0);
     left = std::max<std::size_t>(2, (left + 1) / 2);
     left = std::min(left, field.size());
-    if (round + 1 == rounds || rest <= 0.0) break;
+    const bool is_last = round + 1 == rounds || rest <= 0.0;
+    if (is_last) {
+      doubt = settings.doubt * std::sqrt(2.0 * std::log(std::max(2.0, static_cast<double>(running.size()))));
+      std::sort(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(running.size()), comes_before);
+      break;
+    }
+    const auto first = std::ranges::find(field, 0, &Standing::entrant);
+    const auto last_kept = field.begin() + static_cast<std::ptrdiff_t>(left) - 1;
+    if (first > last_kept) std::rotate(last_kept, first, first + 1);
     futures = std::clamp(static_cast<int>(rest / (std::max(1.0, each) * static_cast<double>(left))), 1, 5000);
   }
+  for (Standing& one : field) one.sure = sure_gain(one) / kSteps;
   return field;
+}
+
+std::size_t choose_policy(const Layout& layout, const Piece& piece, const std::vector<Policy>& policies,
+                          const Prospect& prospect, double free_volume, const RaceSettings& settings,
+                          std::int64_t& used) {
+  std::vector<double> sums(policies.size(), 0.0);
+  RollOutWork work;
+  Rng rng = Rng(settings.seed).split("policies");
+  const double most = kChoiceEffort * static_cast<double>(settings.effort);
+  for (int i = 0; i < kChoiceFutures; ++i) {
+    const Future future = draw_future(prospect, free_volume, rng);
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      CandidatePose pose;
+      if (!choose(layout, policies[p], piece, work, pose)) return 0;
+      Layout next = layout;
+      next.add(Layout::block_at(piece, pose));
+      sums[p] += roll_out(std::move(next), policies[p], prospect, future, settings.skips, work);
+    }
+    if (static_cast<double>(work.looked_at) * (i + 2.0) / (i + 1.0) > most) break;
+  }
+  used += work.looked_at;
+  for (double& sum : sums) sum = std::round(kSteps * sum);
+  return static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
 }
 
 }  // namespace snug::packing::internal

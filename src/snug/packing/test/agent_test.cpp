@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <limits>
 
 #include "snug/core/input_error.hpp"
@@ -208,6 +210,42 @@ TEST(NoPlace, IsHopelessWhereAnEmptyContainerWouldNotHelp) {
   for (const NoPlace reason : {NoPlace::NoSpace, NoPlace::NoStablePlace, NoPlace::OverLoad, NoPlace::NotReachable}) {
     EXPECT_FALSE(is_hopeless(reason)) << describe(reason);
   }
+}
+
+TEST(ContactAware, TurnsNoBoxForNothingAndKeepsPlacesOfEveryKind) {
+  std::vector<Item> items;
+  for (int i = 0; i < 4; ++i) items.push_back(test::make_box("B" + std::to_string(i), Vector3(0.2, 0.15, 0.1)));
+  const FutureModel future{items, std::vector<double>(4, 1.0), true};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto agent = make_agent("contact-aware", {{}, future, {}, {}, {}, {0.02, seed, 1, false}});
+    ContainerState state = make_container_state(test::demonstrator().containers.front());
+    const PlaceCost cost = [](const Placement& placement) { return placement.flips > 0 ? 0.5 : 0.0; };
+    for (const Item& item : items) {
+      const auto decision = agent->decide_with_costs(state, item, cost);
+      ASSERT_TRUE(decision.has_value());
+      EXPECT_EQ(decision->candidates.front().placement.flips, 0) << "seed " << seed << " " << item.id;
+      std::set<model::UpAxis> ups;
+      for (const Candidate& one : decision->candidates) ups.insert(one.placement.orientation.up);
+      EXPECT_EQ(ups.size(), 3U);
+      EXPECT_LE(decision->candidates.size(), 24U);
+      state = with_candidate(std::move(state), item, decision->candidates.front());
+    }
+    EXPECT_EQ(state.boxes.size(), 4U);
+  }
+}
+
+TEST(FutureModel, OfAnOrderHasItsBoxesAloneAndOfACatalogueAllAgainAndAgain) {
+  const model::Scenario scenario = test::demonstrator();
+  model::Sequence order;
+  for (const int i : {7, 2, 5}) {
+    order.items.emplace_back().parcel = scenario.parcels[static_cast<std::size_t>(i)].id;
+  }
+  const FutureModel future = make_order_future(scenario, order);
+  ASSERT_EQ(future.kinds.size(), 3U);
+  EXPECT_EQ(future.kinds[0].id, scenario.parcels[2].id) << "not in the order in which they come";
+  EXPECT_TRUE(future.comes_once);
+  EXPECT_EQ(make_catalogue_future(scenario).kinds.size(), scenario.parcels.size());
+  EXPECT_FALSE(make_catalogue_future(scenario).comes_once);
 }
 
 TEST(FutureModel, HoldsTheParcelsAskedForAlone) {

@@ -107,6 +107,33 @@ TEST(RollOut, GoesOnAfterPiecesWithoutAPlaceAsOftenAsMayBeSkipped) {
   EXPECT_DOUBLE_EQ(filled(2), 4.0 * small);
 }
 
+TEST(Race, KeepsTheFirstOfEqualsUnlessItCostsMore) {
+  Rng rng = Rng(3).split("equals");
+  Prospect prospect;
+  for (int i = 0; i < 4; ++i) prospect.kinds.push_back(tiny_piece(rng));
+  prospect.weights.assign(4, 1.0);
+  const std::vector<Layout> entrants(6, Layout(tiny_rules()));
+  const RaceSettings settings{7, 1, 20000, 8};
+  const auto first = [&](const std::vector<double>& charges) {
+    return race(entrants, plain_policy(), prospect, 45.0, settings, nullptr, charges).front().entrant;
+  };
+  EXPECT_EQ(first({}), 0);
+  EXPECT_EQ(first({0.0, 1.0, 1.0, 1.0, 1.0, 1.0}), 0);
+  EXPECT_EQ(first({2.0, 1.0, 3.0, 1.0, 1.0, 1.0}), 1) << "the cheapest, and of these the first";
+}
+
+TEST(Race, ALayoutThatIsClearlyWorseDoesNotWinByBeingFirst) {
+  Rng rng = Rng(4).split("worse");
+  Prospect prospect;
+  for (int i = 0; i < 4; ++i) prospect.kinds.push_back(tiny_piece(rng));
+  prospect.weights.assign(4, 1.0);
+  std::vector<Layout> entrants(5, Layout(tiny_rules()));
+  entrants[0].add({0, 0, 0, 5 * kCell, 3 * kCell, 2 * kCell});  // two thirds are gone
+  const auto order = race(entrants, plain_policy(), prospect, 45.0, {7, 1, 20000, 8}, nullptr);
+  EXPECT_EQ(order.front().entrant, 1);
+  EXPECT_GT(order.front().sure, 1.0);
+}
+
 TEST(Race, LeavesTheSameOrderAtAnyNumberOfThreads) {
   Rng rng = Rng(2).split("race");
   Prospect prospect;

@@ -135,6 +135,18 @@ struct RobotForm {
   }
 };
 
+struct FailedForm {
+  FailedMotion motion;
+  template <class Archive>
+  void fields(Archive& a) {
+    a("item", motion.item);
+    a("planned", motion.planned);
+    a("skill", motion.skill);
+    a("reorientation", motion.reorientation);
+    a("while_turning", motion.while_turning);
+  }
+};
+
 struct BeliefForm {
   ScenarioForm scenario;
   std::uint64_t seed = 1;
@@ -146,6 +158,7 @@ struct BeliefForm {
   int stiffenings = 0;
   std::vector<geometry::Aabb> obstacles, obstacle_bodies;
   std::vector<model::ItemIndex> sent, skipped;
+  std::vector<FailedForm> failed;
   int skips_left = 0;
   std::optional<model::ItemIndex> next;
   RobotForm robot;
@@ -162,6 +175,7 @@ struct BeliefForm {
     a("obstacles", obstacles);
     a("obstacle_bodies", obstacle_bodies);
     a("sent", sent);
+    a("failed", failed);
     a("skipped", skipped);
     a("skips_left", skips_left);
     a("next", next);

@@ -39,6 +39,11 @@ inline BeliefSnapshot random_belief(std::uint64_t seed) {
   const Pose X_WP = X_WT * Pose{Matrix3::Identity(), Vector3(rng.uniform(-0.05, 0.05), rng.uniform(-0.1, 0.1), 0.05)};
   belief.boxes[0] = BelievedBox{X_WP, Matrix6::Identity() * rng.uniform(), rng.uniform() < 0.5};
   belief.sent.emplace_back(0);
+  belief.failed.push_back({model::ItemIndex(1),
+                           {belief.items[1].id, {Matrix3::Identity(), Vector3(rng.uniform(), 0.1, 0.05)}, {}, 0},
+                           skills::InsertionSkill::Tilted,
+                           skills::Reorientation::Pivot,
+                           rng.uniform() < 0.5});
   belief.next = model::ItemIndex(0);
   belief.obstacles = {{Vector3(0.0, 0.0, 0.0), Vector3(rng.uniform(0.01, 0.1), 0.1, 0.1)}};
   belief.obstacle_bodies = belief.obstacles;
@@ -48,7 +53,8 @@ inline BeliefSnapshot random_belief(std::uint64_t seed) {
   for (World& world : belief.worlds) {
     world.X_WP[0] = X_WP;
     world.X_WP[0]->p.x() += 0.01 * rng.normal();
-    world.scenario.parcels[static_cast<std::size_t>(rng.index(5))].size.x() += 0.001 * rng.uniform();
+    auto& parcels = world.scenario.parcels;
+    parcels[static_cast<std::size_t>(rng.index(static_cast<int>(parcels.size())))].size.x() += 0.001 * rng.uniform();
     if (&world != belief.worlds.data()) world.weight = rng.uniform(0.5, 1.5);
     set_obstacles(belief, world);
     stiffen(belief.scenario.belief, 0, belief.stiffenings, world);

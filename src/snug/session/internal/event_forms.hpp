@@ -69,7 +69,7 @@ struct JsonEnum<session::Remedy> {
 };
 template <>
 struct JsonEnum<session::ItemEnd> {
-  static constexpr auto all = all_up_to<session::ItemEnd, session::ItemEnd::NotBrought>();
+  static constexpr auto all = all_up_to<session::ItemEnd, session::ItemEnd::Rejected>();
 };
 template <>
 struct JsonEnum<session::StopReason> {

@@ -2,13 +2,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
 #include <utility>
 
+#include "snug/packing/load_check.hpp"
 #include "snug/session/internal/run.hpp"
 #include "snug/session/remedy_motions.hpp"
 
 namespace snug::session::internal {
 namespace {
+
+constexpr double kStill = 0.005;  ///< m, less than which a box that is at rest is seen to move
 
 event::Planned event_of(const Decided& decided, double time) {
   const planning::Plan& plan = decided.plan;
@@ -90,6 +95,42 @@ void count(Run& run) {
   const model::Container& container = *model::find_container(scenario, scenario.target);
   run.log(event::Counted{run.executor.time(), model::compute_filling_degree_percent(scenario, container, packed),
                          run.belief.obstacles().reports(), standing(run)});
+}
+
+/// The load as it is seen when the robot stands at its start: what does not lie as a finished load has to is not
+/// packed. `before`: where boxes were believed to be before the robot went there, which takes a second and touches
+/// nothing.
+void check_load(Run& run, const std::vector<std::optional<Pose>>& before) {
+  if (run.agenda.packed.empty()) return;
+  const perception::Observation seen = run.executor.perceive(run.belief.expectations());
+  if (seen.fault != perception::LookFault::None) return;
+  run.belief.see(seen);
+  run.belief.forget_let_go();
+  review(run);
+  const planning::Scene scene = run.scene();
+  packing::ContainerState load = scene.container_state();
+  load.obstacles.clear();
+  packing::LoadLimits limits;
+  limits.tilt = scene.cell.limits.tilt;
+  limits.min_support = std::min(limits.min_support, scene.rules().packing.min_support);
+  std::map<std::string, std::string> reasons;
+  for (const packing::LoadFinding& one : packing::check_finished_load(load, limits)) {
+    reasons.emplace(one.item, packing::describe(one));
+  }
+  for (const model::ItemIndex item : run.agenda.packed) {
+    const auto& box = scene.box(item);
+    if (!box || !box->was_seen || !before[item.slot()]) continue;
+    const double moved = (box->X_WP.p - before[item.slot()]->p).norm() - planning::slack_of(*box);
+    if (moved <= kStill) continue;
+    reasons.emplace(scene.belief.items[item.slot()].id, fmt::format("still moves ({:.0f} mm)", 1e3 * moved));
+  }
+  std::erase_if(run.agenda.packed, [&](model::ItemIndex item) {
+    const auto found = reasons.find(scene.belief.items[item.slot()].id);
+    const auto& box = scene.box(item);
+    if (found == reasons.end() || !box || !box->was_seen) return false;
+    run.log(event::ItemLost{item, ItemEnd::Rejected, found->second});
+    return true;
+  });
 }
 
 bool is_taken_away(ItemEnd end) {
@@ -262,15 +303,17 @@ Signal resume_item(Run& run) {
 }
 
 Signal go_home(Run& run) {
-  say_why_it_ends(run);
   event::SessionEnded ended;
   if (run.executor.has_moved()) {
+    const std::vector<std::optional<Pose>> before = run.scene().believed_poses();
     move_home(run);
+    if (run.executor.has_completed()) check_load(run, before);
     if (!run.executor.has_completed()) {
       ended.failure = SessionFailureKind::NotHome;
       ended.text = "on the way home: " + run.executor.describe_end();
     }
   }
+  say_why_it_ends(run);
   count(run);
   ended.time = run.executor.time();
   run.log(ended);

@@ -21,6 +21,23 @@ bool was_stopped_by_load(const Executor& executor) {
   return at == motion::MotionClass::Place || at == motion::MotionClass::PlaceSlow;
 }
 
+/// A motion that met too much is not sent again; a way of turning boxes that did is not taken for others of their type.
+void learn_from_end(Run& run) {
+  const ItemTask& task = run.agenda.top();
+  const plant::End& end = run.executor.robot().end;
+  const bool would_again = end.reason == plant::EndReason::ForceGuard || end.reason == plant::EndReason::HoldGuard ||
+                           end.reason == plant::EndReason::ProtectiveStop || end.reason == plant::EndReason::Timeout;
+  if (!would_again || !end.waypoint) return;
+  const planning::Attempt& attempt = *task.plan->best;
+  const motion::MotionClass at = run.executor.waypoints()[end.waypoint->slot()].motion_class;
+  const bool is_turning =
+      at == motion::MotionClass::Twist || at == motion::MotionClass::TwistDrag || at == motion::MotionClass::PreTwist;
+  const bool is_placing =
+      at == motion::MotionClass::Place || at == motion::MotionClass::PlaceSlow || at == motion::MotionClass::PrePlace;
+  if (!is_placing && !(is_turning && end.reason == plant::EndReason::ForceGuard)) return;
+  run.belief.edit().failed.push_back({task.item, attempt.planned, attempt.skill, attempt.reorientation, is_turning});
+}
+
 /// One observation that shows nothing unexpected is believed. False: it is perceived again when the tool stands.
 bool perceive_plainly(Run& run, model::ItemIndex own) {
   const perception::Observation seen = run.executor.perceive(run.belief.expectations());
@@ -93,6 +110,7 @@ Signal end_motion(Run& run) {
     run.log(event::PlanDropped{run.executor.time(), dropped->plan.item, dropped->waited});
   }
   if (was_stopped_by_load(run.executor)) run.belief.stiffen();
+  learn_from_end(run);
   if (run.executor.has_completed() && !is_last_stage(task)) return Signal::StageEnded;
   run.log(event::SendEnded{task.item, run.executor.robot().end});
   task.recovery = {};

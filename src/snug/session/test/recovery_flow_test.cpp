@@ -307,9 +307,29 @@ TEST(RecoveryFlow, ABoxIsPlacedWithinTheLimitsAndOffItsPlaceBeyondThem) {
   };
   EXPECT_EQ(trouble_of(Vector3(0.99 * limits.position, 0.0, 0.0), 0.0), Trouble::None);
   EXPECT_EQ(trouble_of(Vector3(0.0, 1.01 * limits.position, 0.0), 0.0), Trouble::OffPlace);
-  EXPECT_EQ(trouble_of(Vector3(0.0, 0.0, 0.01), 0.0), Trouble::None) << "level distance counts";
+  EXPECT_EQ(trouble_of(Vector3(0.0, 0.0, 0.005), 0.0), Trouble::None) << "level distance counts";
   EXPECT_EQ(trouble_of(Vector3::Zero(), 0.99 * limits.tilt), Trouble::None);
   EXPECT_EQ(trouble_of(Vector3::Zero(), -1.01 * limits.tilt), Trouble::OffPlace) << "it lies flat";
+}
+
+TEST(RecoveryFlow, ANeighbourThatLeansWhateverIsDoneIsNotCountedInTheEnd) {
+  ScriptedPlant plant;
+  plant.happens = [&](int) {
+    if (plant.item != "BOX028" && plant.visible.empty()) return;
+    Pose X_WP = container_pose();
+    X_WP.R = X_WP.R * exp_rotation(Vector3(0.35, 0.0, 0.0));
+    X_WP.p.z() += model::find_parcel(two_boxes(), "BOX027")->size.z();
+    plant.visible["BOX027"] = X_WP;
+  };
+  const SessionResult result = pack_items(plant, 2);
+  EXPECT_FALSE(plant.pressed.empty()) << "something was tried";
+  EXPECT_EQ(result.items[0].end, ItemEnd::Rejected) << describe(result.items[0]);
+  EXPECT_NE(result.items[0].reason.find("leans by 20.1 degrees"), std::string::npos) << result.items[0].reason;
+  EXPECT_EQ(rejected_items(result), std::vector<std::string>{"BOX027 " + result.items[0].reason});
+  EXPECT_EQ(result.stop_reason, StopReason::NoMoreItems);
+  const model::Scenario scenario = two_boxes();
+  const model::Container& container = *model::find_container(scenario, scenario.target);
+  EXPECT_NEAR(result.planned_percent, model::compute_filling_degree_percent(scenario, container, {"BOX028"}), 1e-9);
 }
 
 TEST(RecoveryFlow, AnItemOnTheBenchWhenTheViewIsBlockedIsNoItemWithoutAPlace) {
@@ -343,6 +363,7 @@ TEST(RecoveryFlow, TheTimeForABoxThatIsPackedAnewCountsForTheItemThatMovedIt) {
   SessionOptions options = quick_options();
   options.agent = "contact-aware";
   options.decision.time = 0.02;
+  options.future = packing::make_future_model(two_boxes());  // more may come than the order has
   const SessionResult result = pack_items(plant, 2, {}, options);
   ASSERT_TRUE(has(result.items[1], Trouble::NeighbourMoved, Remedy::PickAgain));
   for (const ItemReport& item : result.items) EXPECT_NEAR(item.seconds.total(), item.done - item.begin, 1e-9);

@@ -108,7 +108,11 @@ TEST(RemedyTable, ABoxThatFitsIsNeverLeftOrTakenAway) {
                             at.trouble == Trouble::NoSeal || at.trouble == Trouble::VacuumLost;
     if (lies_there && at.fits) wrong += remedy == Remedy::Skip ? 1 : 0;
     const bool is_worth_it = at.lies_turned || at.gain_elsewhere > kRules.gain_elsewhere;
-    if (lies_there && at.fits && !is_worth_it) wrong += remedy == Remedy::Accept ? 0 : 1;
+    const bool leans = at.trouble == Trouble::NeighbourMoved && at.leans;
+    if (lies_there && at.fits && !is_worth_it && !leans) wrong += remedy == Remedy::Accept ? 0 : 1;
+    // A neighbour that leans stays so where nothing else can be done alone.
+    const bool may_move = at.tries < kRules.most_tries && (at.can_be_picked || at.can_return);
+    if (leans && at.fits) wrong += (remedy == Remedy::Accept) == (at.was_pressed && !may_move) ? 0 : 1;
   });
   EXPECT_EQ(wrong, 0);
 }
@@ -127,8 +131,8 @@ void expect_names(Enum last, Name name) {
 TEST(SessionWords, EveryValueHasANameOfItsOwn) {
   expect_names(Trouble::PlantFault, [](Trouble one) { return name_of(one); });
   expect_names(Remedy::Stop, [](Remedy one) { return name_of(one); });
-  expect_names(ItemEnd::NotBrought, [](ItemEnd one) { return name_of(one); });
-  expect_names(planning::AttemptFailure::OthersCameOut, [](planning::AttemptFailure one) { return name_of(one); });
+  expect_names(ItemEnd::Rejected, [](ItemEnd one) { return name_of(one); });
+  expect_names(planning::AttemptFailure::SentBefore, [](planning::AttemptFailure one) { return name_of(one); });
   expect_names(StopReason::Interrupted, [](StopReason one) { return name_of(one); });
   expect_names(SessionFailureKind::PlantLost, [](SessionFailureKind one) { return name_of(one); });
   expect_names(planning::Location::Elsewhere, [](planning::Location one) { return name_of(one); });
@@ -147,6 +151,8 @@ TEST(SessionWords, AnItemSaysHowItEndedAndWhyUnlessThatIsTheSame) {
   EXPECT_TRUE(item.is_packed());
   item.end = ItemEnd::Accepted;
   EXPECT_TRUE(item.is_packed());
+  item.end = ItemEnd::Rejected;
+  EXPECT_FALSE(item.is_packed());
   item.end = ItemEnd::Left;
   EXPECT_FALSE(item.is_packed());
   SessionResult result;

@@ -60,6 +60,21 @@ TEST(ChooseRemedy, ABoxThatWasMovedIsPickedAgainWhereThatIsWorthIt) {
   }
 }
 
+TEST(ChooseRemedy, ANeighbourThatLeansIsPressedThenPickedAgainAndAcceptedOnlyWhereNeitherCanBe) {
+  Situation situation = at(Trouble::NeighbourMoved);
+  situation.fits = situation.leans = true;
+  EXPECT_EQ(remedy_for(situation), Remedy::PressLevel);
+  situation.was_pressed = true;
+  EXPECT_EQ(remedy_for(situation), Remedy::PickAgain);
+  situation.can_be_picked = false;
+  EXPECT_EQ(remedy_for(situation), Remedy::Accept);
+  situation.can_return = true;
+  EXPECT_EQ(remedy_for(situation), Remedy::ReturnToAligner);
+  situation.lies_on_others = situation.can_be_picked = true;
+  situation.was_pressed = false;
+  EXPECT_EQ(remedy_for(situation), Remedy::PickAgain) << "pressed on, it would push the others away";
+}
+
 TEST(ChooseRemedy, ANeighbourThatLiesOnOthersIsTakenOffAndPressedOnlyWhereItCannotBe) {
   Situation situation = at(Trouble::SticksOut);
   situation.lies_on_others = true;

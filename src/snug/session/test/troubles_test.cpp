@@ -99,6 +99,7 @@ SessionOptions foresighted_options() {
   SessionOptions options = quick_options();
   options.agent = "contact-aware";
   options.decision.time = 0.02;
+  options.future = packing::make_future_model(two_boxes());  // more may come than the order has
   return options;
 }
 

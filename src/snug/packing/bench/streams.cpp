@@ -1,0 +1,167 @@
+// Streams: lines of boxes as the literature on packing online draws them, and a greedy of one line to compare with.
+#include "snug/packing/bench/streams.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+#include "snug/packing/internal/agents.hpp"
+
+namespace snug::packing::bench {
+namespace {
+
+constexpr double kUnit = 0.05;  ///< m, a cell of the 10^3 containers
+constexpr int kCells = 10;
+
+using Cells = std::array<int, 3>;
+struct Cut {
+  Cells low{}, size{};
+};
+
+Item make_item_of(const Vector3& size, std::size_t number) {
+  Item item;
+  item.id = "B" + std::to_string(number);
+  item.size = size;
+  item.mass = 1000.0 * 0.2 * size.prod();
+  return item;
+}
+
+Vector3 metres(const Cells& cells) { return kUnit * Vector3(cells[0], cells[1], cells[2]); }
+
+/// Nothing but geometry.
+PackingSettings plain_settings(double min_support) {
+  PackingSettings settings;
+  settings.max_flips = 2;
+  settings.planned_interference = settings.last_interference = 0.0;
+  settings.min_support = min_support;
+  settings.com_margin = 0.0;
+  settings.level_slack = 0.0;
+  settings.min_slenderness = 0.0;
+  settings.max_item_mass = 1e6;
+  settings.min_pick_face = 0.0;
+  return settings;
+}
+
+/// Every side of every kind equally likely, again and again.
+FutureModel cube_kinds(int least, int most) {
+  FutureModel future;
+  for (int a = least; a <= most; ++a) {
+    for (int b = least; b <= most; ++b) {
+      for (int c = least; c <= most; ++c) {
+        future.kinds.push_back(make_item_of(metres({a, b, c}), 1000 + future.kinds.size()));
+        future.weights.push_back(1.0);
+      }
+    }
+  }
+  return future;
+}
+
+/// The container cut by planes until every side is 2 to 5.
+std::vector<Cut> cut_container(Rng& rng) {
+  std::vector<Cut> open{{{0, 0, 0}, {kCells, kCells, kCells}}}, done;
+  while (!open.empty()) {
+    Cut one = open.back();
+    open.pop_back();
+    std::vector<std::size_t> axes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (one.size[axis] > 5) axes.push_back(axis);
+    }
+    if (axes.empty()) {
+      done.push_back(one);
+      continue;
+    }
+    const std::size_t axis = axes[static_cast<std::size_t>(rng.index(static_cast<int>(axes.size())))];
+    const int at = 2 + rng.index(one.size[axis] - 3);
+    Cut rest = one;
+    one.size[axis] = at;
+    rest.low[axis] += at;
+    rest.size[axis] -= at;
+    open.push_back(one);
+    open.push_back(rest);
+  }
+  return done;
+}
+
+bool stands_on(const Cut& upper, const Cut& lower) {
+  if (lower.low[2] + lower.size[2] != upper.low[2]) return false;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (upper.low[axis] >= lower.low[axis] + lower.size[axis]) return false;
+    if (lower.low[axis] >= upper.low[axis] + upper.size[axis]) return false;
+  }
+  return true;
+}
+
+/// At random, none before what it stands on.
+std::vector<Cut> stacked(std::vector<Cut> cuts, Rng& rng) {
+  std::vector<Cut> order;
+  while (!cuts.empty()) {
+    std::vector<std::size_t> ready;
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      if (std::ranges::none_of(cuts, [&](const Cut& other) { return stands_on(cuts[i], other); })) ready.push_back(i);
+    }
+    const std::size_t next = ready[static_cast<std::size_t>(rng.index(static_cast<int>(ready.size())))];
+    order.push_back(cuts[next]);
+    cuts.erase(cuts.begin() + static_cast<std::ptrdiff_t>(next));
+  }
+  return order;
+}
+
+}  // namespace
+
+std::optional<Stream> draw_stream(const std::string& family, Rng rng) {
+  Stream stream;
+  stream.container.inner_size = Vector3::Constant(kCells * kUnit);
+  if (family == "rs" || family == "rs-support") {
+    stream.settings = plain_settings(family == "rs" ? 0.0 : 0.6);
+    stream.future = cube_kinds(1, 5);
+    for (std::size_t i = 0; i < 120; ++i) {
+      stream.items.push_back(make_item_of(metres({1 + rng.index(5), 1 + rng.index(5), 1 + rng.index(5)}), i));
+    }
+  } else if (family == "cut1" || family == "cut2") {
+    stream.settings = plain_settings(0.0);
+    stream.future = cube_kinds(2, 5);
+    std::vector<Cut> cuts = cut_container(rng);
+    if (family == "cut2") {
+      cuts = stacked(std::move(cuts), rng);
+    } else {
+      std::ranges::stable_sort(cuts, {}, [](const Cut& one) { return one.low[2]; });
+    }
+    for (const Cut& cut : cuts) stream.items.push_back(make_item_of(metres(cut.size), stream.items.size()));
+  } else if (family == "cartons") {
+    stream.container.inner_size = Vector3(0.6, 0.4, 0.3);
+    stream.settings = plain_settings(0.6);
+    stream.settings.com_margin = 0.005;
+    const auto draw = [&rng](std::size_t number) {
+      const auto side = [&rng] { return 0.001 * (60 + 5 * rng.index(49)); };
+      const double a = side(), b = side(), c = side();
+      return make_item_of({a, b, c}, number);
+    };
+    for (std::size_t i = 0; i < 100; ++i) stream.items.push_back(draw(i));
+    for (std::size_t i = 0; i < 100; ++i) {
+      stream.future.kinds.push_back(draw(1000 + i));
+      stream.future.weights.push_back(1.0);
+    }
+  } else {
+    return std::nullopt;
+  }
+  return stream;
+}
+
+std::optional<Candidate> place_by_contact(const Stream& stream, const ContainerState& state, const Item& item) {
+  using namespace internal;
+  const Planning planning = plan_for_contact(state, stream.settings);
+  const Choice choice = make_choice(planning, item);
+  const Layout layout = to_layout(planning, make_rules(planning, {}), state);
+  Policy policy = make_policy(planning, {});
+  policy.weights = contact_weights();
+  CandidatePoseList list;
+  layout.find_poses(choice.piece, list);
+  order_by_cost(layout, policy, choice.piece, list.poses);
+  for (const CandidatePose& pose : list.poses) {
+    if (auto candidate = place_item(planning, layout, item, choice, pose, {})) return *candidate;
+  }
+  return std::nullopt;
+}
+
+}  // namespace snug::packing::bench

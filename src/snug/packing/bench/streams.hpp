@@ -1,0 +1,29 @@
+// Streams: lines of boxes as the literature on packing online draws them, and a greedy of one line to compare with.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snug/core/rng.hpp"
+#include "snug/packing/agent.hpp"
+
+namespace snug::packing::bench {
+
+/// One line of boxes, the container it goes into and what an agent may know of it.
+struct Stream {
+  ContainerState container;
+  std::vector<Item> items;
+  FutureModel future;
+  PackingSettings settings;
+};
+
+/// `family`: rs, rs-support (sides 1 to 5 of a 10^3 container, drawn independently), cut1, cut2 (the container cut into
+/// sides 2 to 5; by height, by what stands on what), cartons (60 to 300 mm, 600x400x300). None: no such family.
+[[nodiscard]] std::optional<Stream> draw_stream(const std::string& family, Rng rng);
+
+/// The place of which most of the surface touches boxes, floor and walls.
+[[nodiscard]] std::optional<Candidate> place_by_contact(const Stream& stream, const ContainerState& state,
+                                                        const Item& item);
+
+}  // namespace snug::packing::bench

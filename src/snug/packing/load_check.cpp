@@ -1,0 +1,173 @@
+// check_finished_load: whether a finished load is one: every box level, inside, supported, and carrying what it may.
+#include "snug/packing/load_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace snug::packing {
+namespace {
+
+constexpr double kGravity = 9.81;  ///< m/s^2
+
+double shared(double low_a, double high_a, double low_b, double high_b) {
+  return std::max(0.0, std::min(high_a, high_b) - std::max(low_a, low_b));
+}
+
+/// m^2, in plan view.
+double shared_area(const Extent& a, const Extent& b) {
+  return shared(a.low.x(), a.high.x(), b.low.x(), b.high.x()) * shared(a.low.y(), a.high.y(), b.low.y(), b.high.y());
+}
+
+double face_of(const Extent& box) { return (box.high - box.low).head<2>().prod(); }
+
+bool carries(const Extent& lower, const Extent& upper, double slack) {
+  return lower.high.z() < 0.5 * (upper.low.z() + upper.high.z()) && std::abs(upper.low.z() - lower.high.z()) <= slack &&
+         shared_area(lower, upper) > 0.0;
+}
+
+/// rad, from standing on a face; turned about the vertical as it may be.
+double lean_of(const Matrix3& R_TP) { return std::acos(std::min(1.0, R_TP.row(2).cwiseAbs().maxCoeff())); }
+
+std::vector<Extent> extents_of(const ContainerState& state) {
+  std::vector<Extent> extents;
+  for (const PlacedBox& box : state.boxes) extents.push_back(upright_extent(box));
+  return extents;
+}
+
+double support_of(const std::vector<Extent>& all, std::size_t own, double slack) {
+  const Extent& me = all[own];
+  if (std::abs(me.low.z()) <= slack) return 1.0;
+  double held = 0.0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i != own && carries(all[i], me, slack)) held += shared_area(all[i], me);
+  }
+  return std::min(1.0, held / face_of(me));
+}
+
+/// m, that a box lies beyond a wall, and over the rim.
+std::array<double, 2> outside_of(const ContainerState& state, const PlacedBox& box) {
+  const Extent around = bounding_extent(box);
+  double beyond = -around.low.z();
+  for (int axis = 0; axis < 2; ++axis) {
+    const double half = 0.5 * state.inner_size[axis];
+    beyond = std::max({beyond, around.high[axis] - half, -half - around.low[axis]});
+  }
+  return {beyond, around.high.z() - state.inner_size.z()};
+}
+
+}  // namespace
+
+const char* name_of(LoadFault fault) {
+  switch (fault) {
+    case LoadFault::Leans:
+      return "leans";
+    case LoadFault::Outside:
+      return "outside";
+    case LoadFault::Unsupported:
+      return "unsupported";
+    case LoadFault::Overloaded:
+      return "overloaded";
+  }
+  return "";
+}
+
+std::string describe(const LoadFinding& finding) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  switch (finding.fault) {
+    case LoadFault::Leans:
+      return fmt::format("leans by {:.1f} degrees ({:.1f} are allowed)", kDegrees * finding.value,
+                         kDegrees * finding.limit);
+    case LoadFault::Outside:
+      return fmt::format("sticks out by {:.0f} mm ({:.0f} are allowed)", 1e3 * finding.value, 1e3 * finding.limit);
+    case LoadFault::Unsupported:
+      return fmt::format("{:.0f} % of its lower face are supported ({:.0f} are needed)", 100.0 * finding.value,
+                         100.0 * finding.limit);
+    case LoadFault::Overloaded:
+      return fmt::format("carries {:.2f} kg ({:.2f} are allowed)", finding.value, finding.limit);
+  }
+  return "";
+}
+
+std::vector<double> loads_on(const ContainerState& state, double support_slack) {
+  const std::vector<Extent> all = extents_of(state);
+  std::vector<std::size_t> highest_first(all.size());
+  std::iota(highest_first.begin(), highest_first.end(), std::size_t{0});
+  std::ranges::stable_sort(highest_first,
+                           [&](std::size_t a, std::size_t b) { return all[a].low.z() > all[b].low.z(); });
+  std::vector<double> loads(all.size(), 0.0);
+  for (const std::size_t upper : highest_first) {
+    if (std::abs(all[upper].low.z()) <= support_slack) continue;
+    double area = 0.0;
+    for (const Extent& lower : all)
+      area += carries(lower, all[upper], support_slack) ? shared_area(lower, all[upper]) : 0.0;
+    if (area <= 0.0) continue;
+    const double weight = state.boxes[upper].item.mass + loads[upper];
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i != upper && carries(all[i], all[upper], support_slack)) {
+        loads[i] += weight * shared_area(all[i], all[upper]) / area;
+      }
+    }
+  }
+  return loads;
+}
+
+std::vector<LoadFinding> check_finished_load(const ContainerState& state, const LoadLimits& limits) {
+  const std::vector<Extent> all = extents_of(state);
+  const std::vector<double> loads = loads_on(state, limits.support_slack);
+  std::vector<LoadFinding> findings;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const PlacedBox& box = state.boxes[i];
+    const double lean = lean_of(box.X_TP.R), support = support_of(all, i, limits.support_slack);
+    const auto [beyond, above] = outside_of(state, box);
+    const std::optional<double> most = box.item.no_stack ? std::optional(0.0) : box.item.max_load;
+    const double allowed = most ? *most * (1.0 + limits.load_slack) : std::numeric_limits<double>::infinity();
+    if (lean > limits.tilt) {
+      findings.push_back({box.item.id, LoadFault::Leans, lean, limits.tilt});
+    } else if (beyond > limits.outside) {
+      findings.push_back({box.item.id, LoadFault::Outside, beyond, limits.outside});
+    } else if (above > limits.above) {
+      findings.push_back({box.item.id, LoadFault::Outside, above, limits.above});
+    } else if (support < limits.min_support) {
+      findings.push_back({box.item.id, LoadFault::Unsupported, support, limits.min_support});
+    } else if (loads[i] > allowed + 1e-9) {
+      findings.push_back({box.item.id, LoadFault::Overloaded, loads[i], most.value_or(0.0)});
+    }
+  }
+  return findings;
+}
+
+double least_level_acceleration(const ContainerState& state, double friction, double gap) {
+  const std::vector<Extent> all = extents_of(state);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Extent& me = all[i];
+    const Vector3 p_Tcm = state.boxes[i].X_TP * state.boxes[i].item.com;
+    for (int axis = 0; axis < 2; ++axis) {
+      const int across = 1 - axis;
+      for (const double direction : {1.0, -1.0}) {
+        const auto edge = [&](const Extent& box) { return direction > 0.0 ? box.high[axis] : -box.low[axis]; };
+        const auto far_edge = [&](const Extent& box) { return direction > 0.0 ? box.low[axis] : -box.high[axis]; };
+        const bool at_wall =
+            state.has_walls && 0.5 * state.inner_size[axis] - edge(me) <= gap && state.inner_size.z() >= p_Tcm.z();
+        const bool at_box = std::ranges::any_of(all, [&](const Extent& other) {
+          const double free = far_edge(other) - edge(me);
+          return &other != &me && free >= -gap && free <= gap && other.high.z() >= p_Tcm.z() &&
+                 other.low.z() <= p_Tcm.z() &&
+                 shared(me.low[across], me.high[across], other.low[across], other.high[across]) > 0.0;
+        });
+        if (at_wall || at_box) continue;  // what it leans on is judged by itself
+        const double lever = edge(me) - direction * p_Tcm[axis], height = std::max(1e-6, p_Tcm.z() - me.low.z());
+        least = std::min(least, kGravity * std::min(friction, std::max(0.0, lever / height)));
+      }
+    }
+  }
+  return least;
+}
+
+}  // namespace snug::packing
