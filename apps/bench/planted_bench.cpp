@@ -109,7 +109,11 @@ class PlantedBench {
     const model::MotionCaptureParams& camera = sensors_.motion_capture;
     model::SceneTask task;
     task.path = task.scenario = options_.scenario;
-    task.program = model::TaskProgram{options_.program, kSequence, corrections_of(experiment), {}};
+    task.program.emplace();
+    task.program->file = options_.program;
+    task.program->sequence = kSequence;
+    task.program->corrections = corrections_of(experiment);
+    task.program->motion = model::TaskMotion::Program;
     task.simulation_time = experiment.clip;
     for (std::size_t i = 0; i < experiment.boxes; ++i) task.tracked.push_back({boxes_[i], {}, {}, {}});
     task.start.from = model::StartFrom::Scenario;

@@ -185,6 +185,10 @@ void Simulation::depart(const motion::PreparedProgram& plan, int row, CellState&
 }
 
 bool Simulation::feed(int item, int quarter, CellState& state) const {
+  return feed(item, pose_at_aligner(scenario_, sequence_.items[static_cast<std::size_t>(item)], quarter), state);
+}
+
+bool Simulation::feed(int item, const Pose& X_WP, CellState& state) const {
   const physics::BodyId body = world_.parcels[static_cast<std::size_t>(item)];
   if (state.world.bodies[static_cast<std::size_t>(body.index)].is_present) return false;
   const double now = time(state);
@@ -195,7 +199,7 @@ bool Simulation::feed(int item, int quarter, CellState& state) const {
       state.event_log.box_removed(state.waiting_item, now);
     }
   }
-  place(body, pose_at_aligner(scenario_, sequence_.items[static_cast<std::size_t>(item)], quarter), state);
+  place(body, X_WP, state);
   state.waiting_item = item;
   state.event_log.box_appeared(item, now);
   return true;
@@ -222,7 +226,7 @@ CellTick Simulation::advance(const motion::PreparedProgram& plan, CellState& sta
   tick.command = {out.io.vacuum, out.io.blow_off};
   const motion::Waypoint& waypoint = plan.program.waypoints[static_cast<std::size_t>(std::max(0, out.row))];
   if (!arm_) {
-    advance_tool(waypoint, start, out.tool, state, work, tick);
+    advance_tool(&waypoint, start, out.tool, state, work, tick);
     feel(plan, state, work);
     return tick;
   }
@@ -251,7 +255,19 @@ CellTick Simulation::advance(const OutsideCommand& command, CellState& state, Ce
   return tick;
 }
 
-void Simulation::advance_tool(const motion::Waypoint& waypoint, const motion::ToolState& start,
+CellTick Simulation::advance(const ToolCommand& command, CellState& state, CellWorkspace& work) const {
+  SNUG_CHECK(arm_ == nullptr && command.tool.X_WE.p.allFinite() && command.tool.X_WE.R.allFinite(),
+             "a tool that is led moves by itself, to a finite pose");
+  CellTick tick;
+  tick.tool = state.controller.command;
+  tick.command = command.cup;
+  advance_tool(nullptr, tick.tool, command.tool, state, work, tick);
+  state.controller.command = tick.tool;
+  tick.X_WE_reference = tick.tool.X_WE;
+  return tick;
+}
+
+void Simulation::advance_tool(const motion::Waypoint* waypoint, const motion::ToolState& start,
                               const motion::ToolState& end, CellState& state, CellWorkspace& work,
                               CellTick& tick) const {
   for (int k = 0; k < substeps_ && !tick.failure; ++k) {
@@ -260,7 +276,7 @@ void Simulation::advance_tool(const motion::Waypoint& waypoint, const motion::To
                            : motion::interpolate(start, end, scenario_.controller.tick,
                                                  static_cast<double>(k + 1) / static_cast<double>(substeps_));
     work.targets.assign(1, {world_.tool, next.X_WE});
-    advance_step(&waypoint, tick.tool, state, work, tick);
+    advance_step(waypoint, tick.tool, state, work, tick);
     tick.tool = next;
   }
 }

@@ -83,6 +83,12 @@ struct OutsideCommand {
   cup::CupCommand cup;
 };
 
+/// Where a tool that moves by itself is at the end of a tick, and what the cup is told throughout.
+struct ToolCommand {
+  motion::ToolState tool;
+  cup::CupCommand cup;
+};
+
 class Simulation {
  public:
   /// Throws InputError for a scenario without tool or aligner, an unknown sequence, and a controller tick that is no
@@ -117,10 +123,15 @@ class Simulation {
   /// One controller tick, the joints following targets from outside, and its physics steps. With a robot only; every
   /// target is finite and there is one for each joint (checked).
   CellTick advance(const OutsideCommand& command, CellState& state, CellWorkspace& work) const;
+  /// One controller tick, the tool on a path from outside, such as a recorded one, and its physics steps. Without a
+  /// robot only; the pose is finite (checked).
+  CellTick advance(const ToolCommand& command, CellState& state, CellWorkspace& work) const;
   /// The item comes to the aligner as for a program, turned by this many quarter turns where the sequence leaves that
   /// open
   /// (`choose_quarter`); one that waits there and is not held is taken away. False: it came before.
   bool feed(int item, int quarter, CellState& state) const;
+  /// The same, standing where it was seen to stand.
+  bool feed(int item, const Pose& X_WP, CellState& state) const;
   /// "robot/forearm_link touches tote with 12 N"
   [[nodiscard]] std::string describe_touch(const ArmTouch& touch) const;
   /// To be called when a run ends: touches of the arm that go on become events as if they ended now.
@@ -153,7 +164,7 @@ class Simulation {
   /// work.targets: where tool and links are at the end of the step. `waypoint`: aimed at, for events.
   void advance_step(const motion::Waypoint* waypoint, const motion::ToolState& tool, CellState& state,
                     CellWorkspace& work, CellTick& tick) const;
-  void advance_tool(const motion::Waypoint& waypoint, const motion::ToolState& start, const motion::ToolState& end,
+  void advance_tool(const motion::Waypoint* waypoint, const motion::ToolState& start, const motion::ToolState& end,
                     CellState& state, CellWorkspace& work, CellTick& tick) const;
   void note_touch(const ArmTouch& touch, bool has_ended, CellState& state) const;
   void advance_arm(const ArmTask& task, const control::JointMotion& start, const control::JointWay& way,

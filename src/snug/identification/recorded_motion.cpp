@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <span>
 
@@ -93,6 +94,86 @@ void merge_rest(const model::SceneTask& task, std::size_t together, RecordedBody
   }
 }
 
+/// What one recording has of the task's bodies, on the clock of `run`.
+RecordedMotion motion_of(const model::SceneTask& task, const validation::SimulatedRun& run,
+                         const record::ArchiveRecording& recording, const validation::Measurement& measured,
+                         const std::string& where) {
+  constexpr double kMeanOver = 1.0 / 60.0;  // s: boxes move at some Hz
+  constexpr double kRestOver = 0.5;         // s
+  if (!measured.has_poses())
+    throw InputError(where, recording.name, "poses whose clock is not found", "a run of this program");
+  RecordedMotion motion;
+  motion.name = recording.name;
+  motion.world_position_error = measured.base_position_error;
+  motion.world_rotation_error = measured.base_rotation_error;
+  const double end = task.simulation_time.value_or(run.times.back());
+  const std::vector<double>& times = measured.pose_times;
+  const double period =
+      (times.back() - times.front()) / static_cast<double>(std::max<std::size_t>(1, times.size() - 1));
+  const auto each = static_cast<std::size_t>(std::clamp(std::round(kMeanOver / period), 1.0, 1e6));
+  motion.period = period;
+  const double half = 0.5 * period * static_cast<double>(each);
+  const auto at_rest = 2 * static_cast<std::size_t>(0.5 * kRestOver / (2.0 * half)) + 1;  // means, an odd number
+  std::vector<std::size_t> firsts;                                                        // of the samples of each mean
+  for (std::size_t k = 0; k + each <= times.size(); k += each) {
+    const double middle = 0.5 * (times[k] + times[k + each - 1]);
+    if (middle < half || middle > end - half) continue;
+    firsts.push_back(k);
+    motion.times.push_back(middle);
+  }
+  for (const model::RecordedObject& object : task.tracked) {
+    const int index = record::find_body(run.header, object.body);
+    if (index < 0 || measured.bodies[static_cast<std::size_t>(index)].empty())
+      throw InputError(where, recording.name, "no poses of '" + object.body + "'", "those of every tracked object");
+    RecordedBody& body = motion.tracked.emplace_back();
+    body.body = object.body;
+    const std::vector<record::PoseSample>& poses = measured.bodies[static_cast<std::size_t>(index)];
+    for (const std::size_t first : firsts) body.poses.push_back(mean_pose(std::span(poses).subspan(first, each)));
+    body.averaged.assign(body.poses.size(), static_cast<int>(each));
+    merge_rest(task, at_rest, body);
+  }
+  if (motion.times.size() < 2)
+    throw InputError(where, recording.name, "hardly any poses", "some of the time simulated");
+  return motion;
+}
+
+/// m, root mean square over the recording, on the clock found for the robot; infinite where none is.
+double tool_distance(const validation::SimulatedRun& run, const record::ArchiveRecording& recording,
+                     const validation::Measurement& measured) {
+  const auto clock = std::ranges::find(measured.clocks, "robot", &validation::SourceClock::source);
+  if (clock == measured.clocks.end() || !clock->fit) return std::numeric_limits<double>::infinity();
+  validation::PoseCursor cursor(run.times, run.tool);
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < recording.robot.times.size(); ++k) {
+    const double time = clock->fit->to_reference(recording.robot.times[k]);
+    const record::PoseSample X_WE = cursor.at(time, std::numeric_limits<double>::infinity());
+    if (!record::is_tracked(X_WE)) continue;
+    sum += (X_WE.p - recording.robot.tool[k].p).squaredNorm();
+    count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : std::numeric_limits<double>::infinity();
+}
+
+/// The recording itself leads the tool.
+RecordedMotion led_motion(const model::SceneTask& task, const record::ArchiveRecording& recording,
+                          const std::string& where) {
+  if (!has_drive(recording))
+    throw InputError(where, '/' + recording.name, "no tool poses with actual_digital_output_bits of the robot",
+                     "both, to lead the tool as recorded; or program: {motion: program}");
+  const model::Scenario scenario = model::load_scenario(task.scenario);
+  const model::Sequence* sequence = model::find_sequence(scenario, task.program->sequence);
+  if (sequence == nullptr)
+    throw InputError(task.path.string(), "program", "sequence '" + task.program->sequence + "'",
+                     "a sequence of the scenario");
+  std::vector<std::string> parcels;
+  for (const model::Item& item : sequence->items) parcels.push_back(item.parcel);
+  const validation::SimulatedRun run = run_of_log(recording, parcels);
+  const validation::Measurement measured = validation::align(run, recording, {}, where);
+  RecordedMotion motion = motion_of(task, run, recording, measured, where);
+  motion.drive = make_drive(recording, run, measured, scenario.controller.tick);
+  return motion;
+}
+
 }  // namespace
 
 std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const std::string& text,
@@ -138,47 +219,20 @@ std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const st
 std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task, const record::Recording& simulated,
                                                const std::vector<record::ArchiveRecording>& recordings,
                                                const std::string& where) {
-  constexpr double kMeanOver = 1.0 / 60.0;  // s: boxes move at some Hz
-  constexpr double kRestOver = 0.5;         // s
-  const validation::SimulatedRun run = validation::make_run(simulated, "simulation");
+  std::optional<validation::SimulatedRun> run;
+  if (task.program->motion != model::TaskMotion::Recorded) run = validation::make_run(simulated, "simulation");
   std::vector<RecordedMotion> motions;
   for (const record::ArchiveRecording& recording : recordings) {
     if (recording.motion_capture.times.empty()) continue;
-    const validation::Measurement measured = validation::align(run, recording, {}, where);
-    if (!measured.has_poses())
-      throw InputError(where, recording.name, "poses whose clock is not found", "a run of this program");
-    RecordedMotion& motion = motions.emplace_back();
-    motion.name = recording.name;
-    motion.world_position_error = measured.base_position_error;
-    motion.world_rotation_error = measured.base_rotation_error;
-    const double end = task.simulation_time.value_or(run.times.back());
-    const std::vector<double>& times = measured.pose_times;
-    const double period =
-        (times.back() - times.front()) / static_cast<double>(std::max<std::size_t>(1, times.size() - 1));
-    const auto each = static_cast<std::size_t>(std::clamp(std::round(kMeanOver / period), 1.0, 1e6));
-    motion.period = period;
-    const double half = 0.5 * period * static_cast<double>(each);
-    const auto at_rest = 2 * static_cast<std::size_t>(0.5 * kRestOver / (2.0 * half)) + 1;  // means, an odd number
-    std::vector<std::size_t> firsts;  // of the samples of each mean
-    for (std::size_t k = 0; k + each <= times.size(); k += each) {
-      const double middle = 0.5 * (times[k] + times[k + each - 1]);
-      if (middle < half || middle > end - half) continue;
-      firsts.push_back(k);
-      motion.times.push_back(middle);
+    if (run) {
+      const validation::Measurement measured = validation::align(*run, recording, {}, where);
+      const bool may_lead = task.program->motion == model::TaskMotion::Auto && has_drive(recording);
+      if (!may_lead || tool_distance(*run, recording, measured) <= kSameTool) {
+        motions.push_back(motion_of(task, *run, recording, measured, where));
+        continue;
+      }
     }
-    for (const model::RecordedObject& object : task.tracked) {
-      const int index = record::find_body(run.header, object.body);
-      if (index < 0 || measured.bodies[static_cast<std::size_t>(index)].empty())
-        throw InputError(where, recording.name, "no poses of '" + object.body + "'", "those of every tracked object");
-      RecordedBody& body = motion.tracked.emplace_back();
-      body.body = object.body;
-      const std::vector<record::PoseSample>& poses = measured.bodies[static_cast<std::size_t>(index)];
-      for (const std::size_t first : firsts) body.poses.push_back(mean_pose(std::span(poses).subspan(first, each)));
-      body.averaged.assign(body.poses.size(), static_cast<int>(each));
-      merge_rest(task, at_rest, body);
-    }
-    if (motion.times.size() < 2)
-      throw InputError(where, recording.name, "hardly any poses", "some of the time simulated");
+    motions.push_back(led_motion(task, recording, where));
   }
   if (motions.empty()) throw InputError(where, "", "no poses", "at least one recording of a sequence");
   return motions;
@@ -190,10 +244,13 @@ std::vector<RecordedMotion> load_motions(const model::SceneTask& task,
   std::optional<internal::CapturedRun> run;  // whose clock archives are brought to
   for (const std::filesystem::path& file : files) {
     if (task.program && file.extension() == ".h5") {
-      if (!run)
-        run = internal::capture_program(model::load_scenario(task.scenario), *task.program, task.simulation_time);
-      for (RecordedMotion& motion :
-           motions_of_archive(task, run->recording, record::load_archive(file).recordings, file.string()))
+      const std::vector<record::ArchiveRecording> recordings = record::load_archive(file).recordings;
+      if (!run) {
+        run.emplace();
+        if (task.program->motion != model::TaskMotion::Recorded)
+          run = internal::capture_program(model::load_scenario(task.scenario), *task.program, task.simulation_time);
+      }
+      for (RecordedMotion& motion : motions_of_archive(task, run->recording, recordings, file.string()))
         motions.push_back(std::move(motion));
       continue;
     }

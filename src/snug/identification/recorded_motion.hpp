@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/identification/recorded_drive.hpp"
 #include "snug/model/scene_task.hpp"
 #include "snug/record/archive.hpp"
 #include "snug/record/recording.hpp"
@@ -30,6 +31,8 @@ struct RecordedMotion {
   double world_rotation_error = 0.0;    ///< rad, the same
   std::vector<RecordedBody> tracked;    ///< in the order of the task
   std::vector<RecordedBody> kinematic;  ///< in the order of the task
+  /// Of a program's run: what leads the tool instead of the program; none: the program does.
+  std::optional<RecordedDrive> drive = {};
   bool operator==(const RecordedMotion&) const = default;
 };
 
@@ -46,8 +49,13 @@ struct RecordedMotion {
 [[nodiscard]] std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const std::string& text,
                                                         const std::string& name);
 
+inline constexpr double kSameTool =
+    1e-3;  ///< m: a controller, or only its lag, that is not the recorded one's is cm off
+
 /// What an archive recorded of the task's bodies, on the clock of the simulation of the task's scenario: one motion for
 /// each recording of a sequence, as means over about a sixtieth of a second, or half a second where the body rests.
+/// With TaskMotion::Recorded, and with Auto where the tool of `simulated` is further than kSameTool from the recorded
+/// one (root mean square), the recording leads the tool, and its robot's clock is that of the simulation.
 /// Throws InputError for a tracked body that was not recorded, and where no clock is found.
 [[nodiscard]] std::vector<RecordedMotion> motions_of_archive(const model::SceneTask& task,
                                                              const record::Recording& simulated,

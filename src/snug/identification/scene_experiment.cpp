@@ -28,6 +28,7 @@ constexpr double kOwnStep = 0.01;       // of what is expected of an own unknown
 
 struct SceneExperiment::KnownRun {
   Eigen::VectorXd values;
+  std::size_t lead = 0;  ///< see lead_of
   internal::ProgramRun run;
 };
 
@@ -192,36 +193,46 @@ std::optional<model::Scenario> SceneExperiment::find_scenario(const Eigen::Vecto
   }
 }
 
-const internal::ProgramRun* SceneExperiment::find_run(const Eigen::VectorXd& point, double until) const {
+std::size_t SceneExperiment::lead_of(std::size_t motion) const {
+  return motions_[motion].drive ? motion : motions_.size();
+}
+
+const internal::ProgramRun* SceneExperiment::find_run(const Eigen::VectorXd& point, std::size_t lead,
+                                                      double until) const {
   for (const KnownRun& known : runs_)
-    if (known.values == point && known.run.until >= until) return &known.run;
+    if (known.lead == lead && known.values == point && known.run.until >= until) return &known.run;
   return nullptr;
 }
 
 std::vector<MotionError> SceneExperiment::evaluate_program(std::span<const Eigen::VectorXd> points,
                                                            std::span<const Job> jobs, double until) const {
-  std::vector<double> ends(points.size(), 0.0);
-  for (const Job& job : jobs)
-    ends[job.point] = std::max(
-        ends[job.point], internal::end_of(task_, motions_[job.motion], internal::OwnValues(task_, job.own), until));
+  // A run for each point and each that leads the tool: the program, or a recording.
+  std::map<std::pair<std::size_t, std::size_t>, double> ends;
+  for (const Job& job : jobs) {
+    double& end = ends[{job.point, lead_of(job.motion)}];
+    end = std::max(end, internal::end_of(task_, motions_[job.motion], internal::OwnValues(task_, job.own), until));
+  }
   // A little more than asked for, so that a start that is a little later needs no other run.
   constexpr double kMore = 0.05;  // s
-  std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (ends[i] > 0.0 && find_run(points[i], ends[i]) == nullptr) open.push_back(i);
+  std::vector<std::pair<std::size_t, std::size_t>> open;
+  for (const auto& [key, end] : ends)
+    if (find_run(points[key.first], key.second, end) == nullptr) open.push_back(key);
   std::vector<KnownRun> made(open.size());
   parallel_for(static_cast<int>(open.size()), threads_, [&](int index, int) {
-    const std::size_t i = open[static_cast<std::size_t>(index)];
+    const auto [point, lead] = open[static_cast<std::size_t>(index)];
     KnownRun& known = made[static_cast<std::size_t>(index)];
-    known.values = points[i];
+    known.values = points[point];
+    known.lead = lead;
+    const RecordedDrive* drive = lead < motions_.size() ? &*motions_[lead].drive : nullptr;
     std::string failure;
-    if (const std::optional<model::Scenario> scenario = find_scenario(points[i], failure))
-      known.run = internal::run_program(*scenario, task_, ends[i] + kMore);
+    if (const std::optional<model::Scenario> scenario = find_scenario(points[point], failure))
+      known.run = internal::run_program(*scenario, task_, drive, ends.at({point, lead}) + kMore);
     else
       known.run = {{}, std::numeric_limits<double>::infinity(), 0.0, failure};
   });
   for (KnownRun& known : made) {
-    std::erase_if(runs_, [&](const KnownRun& other) { return other.values == known.values; });
+    std::erase_if(runs_,
+                  [&](const KnownRun& other) { return other.lead == known.lead && other.values == known.values; });
     runs_.push_back(std::move(known));
   }
   std::vector<MotionError> errors(jobs.size());
@@ -229,12 +240,13 @@ std::vector<MotionError> SceneExperiment::evaluate_program(std::span<const Eigen
     const auto j = static_cast<std::size_t>(index);
     const Job& job = jobs[j];
     const internal::OwnValues own(task_, job.own);
-    const internal::ProgramRun& run = *find_run(points[job.point], ends[job.point]);
+    const internal::ProgramRun& run =
+        *find_run(points[job.point], lead_of(job.motion), ends.at({job.point, lead_of(job.motion)}));
     errors[j] =
         compare(internal::motion_of(run, motions_[job.motion], samples_[job.motion], own), job.motion, job.own, until);
   });
   // The latest are asked for again: a step of a search is where the next one starts.
-  const std::size_t most = std::max<std::size_t>(kKnownRuns, points.size());
+  const std::size_t most = std::max<std::size_t>(kKnownRuns, ends.size());
   if (runs_.size() > most) runs_.erase(runs_.begin(), runs_.end() - static_cast<std::ptrdiff_t>(most));
   return errors;
 }

@@ -59,9 +59,9 @@ class SceneExperiment {
     Eigen::VectorXd own = {};  ///< its own unknowns; empty: all zero
   };
   /// `points`: values of all parameters of the task, in its order. Each job is a simulation, but those of a point that
-  /// differ in nothing that moves a body share one, and all of a program share one run. The result does not depend on
-  /// the number of threads. What cannot be simulated says so. Samples after `until`, s on the recording's clock, count
-  /// nothing. The latest runs of programs are kept. One call at a time.
+  /// differ in nothing that moves a body share one, and all that a program leads share one run. The result does not
+  /// depend on the number of threads. What cannot be simulated says so. Samples after `until`, s on the recording's
+  /// clock, count nothing. The latest runs of programs are kept. One call at a time.
   [[nodiscard]] std::vector<MotionError> evaluate(std::span<const Eigen::VectorXd> points, std::span<const Job> jobs,
                                                   double until = std::numeric_limits<double>::infinity()) const;
   /// Errors that the noise of the start alone sets: each recording is replaced by its own simulation, the poses of its
@@ -102,7 +102,10 @@ class SceneExperiment {
                                                          std::span<const Job> jobs, double until) const;
   /// None: these values are no scenario's.
   [[nodiscard]] std::optional<model::Scenario> find_scenario(const Eigen::VectorXd& values, std::string& failure) const;
-  [[nodiscard]] const internal::ProgramRun* find_run(const Eigen::VectorXd& point, double until) const;
+  /// The recording that leads the tool in the simulation of this one, or their number: the program does.
+  [[nodiscard]] std::size_t lead_of(std::size_t motion) const;
+  [[nodiscard]] const internal::ProgramRun* find_run(const Eigen::VectorXd& point, std::size_t lead,
+                                                     double until) const;
   [[nodiscard]] MotionError compare(const internal::SimulatedMotion& simulated, std::size_t motion,
                                     const Eigen::VectorXd& own, double until) const;
   void check_bodies() const;

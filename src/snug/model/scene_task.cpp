@@ -116,12 +116,24 @@ void read_search(const Value& value, SearchSettings& search) {
 }
 
 TaskProgram read_program(const Value& value, const std::filesystem::path& path) {
-  const MapReader map = value.map("program", {"file", "sequence", "corrections", "cup"});
+  const MapReader map =
+      value.map("program", {"file", "sequence", "corrections", "cup", "motion", "controller", "tempo", "robot"});
   TaskProgram program;
   program.file = beside(map.require("file"), path);
   program.sequence = map.require("sequence").name();
   if (const auto layer = map.find("corrections")) program.corrections = layer->name();
   if (const auto cup = map.find("cup")) program.with_phases = cup->choice({"holding", "phases"}) == 1;
+  if (const auto motion = map.find("motion"))
+    program.motion = static_cast<TaskMotion>(motion->choice({"auto", "program", "recorded"}));
+  if (const auto word = map.find("controller")) {
+    constexpr const char* kWords[] = {"lagged", "exact", "fast"};
+    program.controller = kWords[word->choice({"lagged", "exact", "fast"})];
+  }
+  if (const auto tempo = map.find("tempo")) {
+    if (program.controller && *program.controller != "fast") tempo->fail("controller: fast, or none");
+    program.tempo = tempo->number_within(0.1, 1.0, "a fraction of the speeds");
+  }
+  if (const auto robot = map.find("robot")) program.robot = robot->name();
   return program;
 }
 

@@ -92,12 +92,24 @@ struct SearchSettings {
   bool operator==(const SearchSettings&) const = default;
 };
 
+/// What moves the tool in a run of a whole cell.
+enum class TaskMotion {
+  Auto,      ///< the program where its tool goes as the recorded one, else the recording
+  Program,   ///< the controller, on the program
+  Recorded,  ///< the tool's recorded poses and the vacuum's recorded switch
+};
+
 /// A run of a whole cell instead of bodies alone.
 struct TaskProgram {
   std::filesystem::path file;
   std::string sequence;
   std::string corrections;          ///< name of a layer of the scenario, or empty
   std::optional<bool> with_phases;  ///< the cup's vacuum phases; absent: as the corrections were made for
+  TaskMotion motion = TaskMotion::Auto;
+  std::optional<std::string> controller;  ///< lagged, exact, fast; absent: as the program was packed
+  std::optional<double> tempo;            ///< with fast; absent: that it was packed with
+  /// Name of the scenario's robot, or "none"; absent: the scenario's where a recording has joints.
+  std::optional<std::string> robot;
   bool operator==(const TaskProgram&) const = default;
 };
 

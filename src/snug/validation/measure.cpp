@@ -248,7 +248,9 @@ record::RobotLog measure_robot(const SimulatedRun& run, const model::EncoderPara
       log.columns[j].push_back(q + params.position_noise * noise.normal());
       log.columns[joints + j].push_back(qd + params.velocity_noise * noise.normal());
     }
-    log.columns.back().push_back(run.vacuum[at.before]);
+    const int blow_off = run.blow_off.empty() ? 0 : run.blow_off[at.before];
+    log.columns.back().push_back(run.vacuum[at.before] +
+                                 2 * blow_off);  // digital outputs 0 and 1, as urscript has them
     log.tool.emplace_back(
         disturbed(cursor.at(time, kAnyGap).pose(), noise, params.tool_position_noise, params.tool_rotation_noise));
   }

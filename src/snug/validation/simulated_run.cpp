@@ -28,6 +28,7 @@ void append(SimulatedRun& run, const Frame& frame) {
   run.wrench.push_back(frame.F_flange);
   run.attached.push_back(frame.cup.attached_body);
   run.vacuum.push_back(frame.cup.vacuum_command ? 1 : 0);
+  run.blow_off.push_back(frame.cup.blow_off_command ? 1 : 0);
 }
 
 void require_frames(const SimulatedRun& run, const std::string& where) {

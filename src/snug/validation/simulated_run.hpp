@@ -23,6 +23,7 @@ struct SimulatedRun {
   std::vector<Wrench> wrench;                            ///< on the flange, in F
   std::vector<int> attached;                             ///< body that the cup holds, or -1
   std::vector<std::uint8_t> vacuum;                      ///< command, 0 or 1
+  std::vector<std::uint8_t> blow_off;                    ///< the same; empty: never
   std::vector<std::vector<record::JointSample>> joints;  ///< by joint of the header
   std::vector<record::Event> events;
   std::string result;  ///< JSON, or empty

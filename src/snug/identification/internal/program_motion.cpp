@@ -5,9 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "snug/cell/aligner_feed.hpp"
+#include "snug/cell/simulation.hpp"
 #include "snug/motion/program_csv.hpp"
+#include "snug/motion/tracking.hpp"
 #include "snug/motion/waypoint.hpp"
 #include "snug/record/archive.hpp"
+#include "snug/runs/corrected.hpp"
 #include "snug/runs/run.hpp"
 #include "snug/validation/simulated_run.hpp"
 
@@ -20,6 +24,9 @@ runs::RunResult run_observed(const model::Scenario& scenario, const model::TaskP
                              std::optional<double> until, runs::RunObserver& observer) {
   runs::RunOptions options;
   options.program = motion::load_program(program.file);
+  options.simulation.tracking =
+      motion::choose_tracking(program.controller, program.tempo, options.program->tracking, program.file.string());
+  if (program.robot && *program.robot != "none") options.simulation.robot = *program.robot;
   options.sequence = program.sequence;
   options.corrections = program.corrections;
   options.until = until;
@@ -55,6 +62,72 @@ class PoseCapture final : public runs::RunObserver {
   double end = -1.0;  ///< s, of the last frame
 };
 
+/// Where the item stands, in the simulation, that was seen to stand there: where the scenario says, unless it was seen
+/// further from there than motion capture errs; its height and tilt are the support's.
+Pose arrival_pose(const cell::Simulation& simulation, std::size_t item, const Pose& X_WP_seen) {
+  constexpr double kPlace = 1.5e-3, kTurn = 0.012;  // m, rad: five times what a frame of markers is set to
+  Pose nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Pose X_WP = cell::pose_at_aligner(simulation.scenario(), simulation.sequence().items[item], quarter);
+    const double angle = log_rotation(X_WP.R.transpose() * X_WP_seen.R).norm();
+    if (angle >= least) continue;
+    least = angle;
+    nearest = X_WP;
+  }
+  const Vector3 shift = X_WP_seen.p - nearest.p;
+  if (shift.norm() <= kPlace && least <= kTurn) return nearest;
+  const double yaw = log_rotation(X_WP_seen.R * nearest.R.transpose()).z();
+  return {exp_rotation(Vector3(0.0, 0.0, yaw)) * nearest.R, nearest.p + Vector3(shift.x(), shift.y(), 0.0)};
+}
+
+/// The tool on the recorded path, from its first tick on.
+ProgramRun run_led(const model::Scenario& scenario, const model::SceneTask& task, const RecordedDrive& drive,
+                   double until) {
+  cell::SimulationOptions options;
+  options.cup = runs::cup_for(scenario, task.program->corrections);
+  if (task.program->with_phases)
+    options.cup = *task.program->with_phases ? cup::CupMode::Phases : cup::CupMode::Holding;
+  const cell::Simulation simulation(scenario, task.program->sequence, options);
+  cell::CellState state = simulation.take_up({{}, drive.tool.front().X_WE, {}});
+  cell::CellWorkspace work = simulation.make_workspace();
+  std::vector<int> items;  // of the tracked bodies
+  const auto item_of = [&](const std::string& parcel) {
+    const auto& all = simulation.sequence().items;
+    const auto found = std::ranges::find(all, parcel, &model::Item::parcel);
+    return found == all.end() ? -1 : static_cast<int>(found - all.begin());
+  };
+  ProgramRun run;
+  for (const model::RecordedObject& object : task.tracked) items.push_back(item_of(object.body));
+  run.tracks.resize(items.size());
+  run.until = until;
+  std::size_t arrived = 0;
+  for (std::size_t k = 1; k < drive.tool.size() && simulation.time(state) < until; ++k) {
+    for (; arrived < drive.arrivals.size() && drive.arrivals[arrived].time <= simulation.time(state); ++arrived) {
+      const RecordedDrive::Arrival& arrival = drive.arrivals[arrived];
+      const int item = item_of(arrival.parcel);
+      if (item < 0) continue;
+      (void)simulation.feed(item, arrival_pose(simulation, static_cast<std::size_t>(item), arrival.X_WP), state);
+    }
+    const cell::CellTick tick =
+        simulation.advance(cell::ToolCommand{drive.tool[k], {drive.vacuum[k], drive.blow_off[k]}}, state, work);
+    run.end = simulation.time(state);
+    for (std::size_t b = 0; b < items.size(); ++b) {
+      if (items[b] < 0) continue;
+      const physics::BodyId body = simulation.world().parcels[static_cast<std::size_t>(items[b])];
+      const bool is_there = state.world.bodies[static_cast<std::size_t>(body.index)].is_present;
+      run.tracks[b].add(run.end, is_there
+                                     ? record::PoseSample(physics::pose_of(simulation.world().model, state.world, body))
+                                     : record::lost_pose());
+    }
+    if (!tick.failure) continue;
+    if (k == 1) run.failure = tick.failure.text;
+    return run;
+  }
+  run.end = std::numeric_limits<double>::infinity();
+  return run;
+}
+
 record::PoseSample midway(const record::PoseSample& a, const record::PoseSample& b) {
   if (!record::is_tracked(a) || !record::is_tracked(b)) return record::lost_pose();
   const Matrix3 R = a.pose().R;
@@ -84,7 +157,9 @@ void Track::add(double time, const record::PoseSample& pose) {
   poses.push_back(pose);
 }
 
-ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& task, double until) {
+ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& task, const RecordedDrive* drive,
+                       double until) {
+  if (drive != nullptr) return run_led(scenario, task, *drive, until);
   PoseCapture capture(task);
   const runs::RunResult result = run_observed(scenario, *task.program, until, capture);
   ProgramRun run;

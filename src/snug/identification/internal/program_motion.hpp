@@ -32,7 +32,9 @@ struct ProgramRun {
   double end = 0.0;           ///< s, reached
   std::string failure;        ///< empty, or why nothing is to be compared
 };
-[[nodiscard]] ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& task, double until);
+/// `drive`: leads the tool, or none: the program does.
+[[nodiscard]] ProgramRun run_program(const model::Scenario& scenario, const model::SceneTask& task,
+                                     const RecordedDrive* drive, double until);
 /// s, of the simulation: what has to be run for this recording, up to `until` on its clock.
 [[nodiscard]] double end_of(const model::SceneTask& task, const RecordedMotion& motion, const OwnValues& own,
                             double until);
