@@ -146,11 +146,11 @@ class Comparison {
 
   [[nodiscard]] double middle() const { return middle_; }
 
-  [[nodiscard]] Products products(double shift, double rate) const {
+  [[nodiscard]] Products products(const ClockFit& clock) const {
     Products sum;
     for (std::size_t c = 0; c < curves_.size(); ++c) {
       for (std::size_t i = 0; i < reference_.times.size(); ++i) {
-        const double a = reference_.channels[c][i] - offset_a_of(c), b = value(c, i, shift, rate) - offset_b_of(c);
+        const double a = reference_.channels[c][i] - offset_a_of(c), b = value(c, i, clock) - offset_b_of(c);
         if (!std::isfinite(a) || !std::isfinite(b)) continue;
         sum.ab += a * b;
         sum.aa += a * a;
@@ -162,12 +162,12 @@ class Comparison {
   }
 
   /// Constant differences of the channels, and the size of a usual residual.
-  void centre(double shift, double rate) {
+  void centre(const ClockFit& clock) {
     std::vector<double> sizes;
     for (std::size_t c = 0; c < curves_.size(); ++c) {
       std::vector<double> differences, references;
       for (std::size_t i = 0; i < reference_.times.size(); i += 4) {
-        const double difference = value(c, i, shift, rate) - reference_.channels[c][i];
+        const double difference = value(c, i, clock) - reference_.channels[c][i];
         if (!std::isfinite(difference)) continue;
         differences.push_back(difference);
         references.push_back(reference_.channels[c][i]);
@@ -186,14 +186,14 @@ class Comparison {
   }
 
   /// Normal equations by block of time; weights of Cauchy's bound the influence of spikes.
-  [[nodiscard]] std::vector<Block> blocks(double shift, double rate) const {
+  [[nodiscard]] std::vector<Block> blocks(const ClockFit& clock) const {
     const double first = reference_.times.front();
     std::vector<Block> blocks(static_cast<std::size_t>((reference_.times.back() - first) / kBlock) + 1);
     for (std::size_t i = 0; i < reference_.times.size(); ++i) {
       Block& block = blocks[static_cast<std::size_t>((reference_.times[i] - first) / kBlock)];
       const double lever = reference_.times[i] - middle_;
       for (std::size_t c = 0; c < curves_.size(); ++c) {
-        const double at = reference_.times[i] + shift + rate * lever;
+        const double at = clock.to_measured(reference_.times[i]);
         const double slope = slopes_[c][i];
         const double residual = curves_[c].at(at) - offsets_[c] - reference_.channels[c][i];
         if (!std::isfinite(slope) || !std::isfinite(residual) || slope == 0.0) continue;
@@ -208,9 +208,24 @@ class Comparison {
     return blocks;
   }
 
+  [[nodiscard]] double first() const { return reference_.times.front(); }
+
+  /// Bounded squares of residuals from one time to another, s.
+  [[nodiscard]] double cost(const ClockFit& clock, double from, double to) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < reference_.times.size(); ++i) {
+      if (reference_.times[i] < from || reference_.times[i] > to) continue;
+      for (std::size_t c = 0; c < curves_.size(); ++c) {
+        const double residual = (value(c, i, clock) - offsets_[c] - reference_.channels[c][i]) / scale_;
+        if (std::isfinite(residual)) sum += std::log1p(residual * residual);
+      }
+    }
+    return sum;
+  }
+
  private:
-  [[nodiscard]] double value(std::size_t c, std::size_t i, double shift, double rate) const {
-    return curves_[c].at(reference_.times[i] + shift + rate * (reference_.times[i] - middle_));
+  [[nodiscard]] double value(std::size_t c, std::size_t i, const ClockFit& clock) const {
+    return curves_[c].at(clock.to_measured(reference_.times[i]));
   }
   [[nodiscard]] double offset_a_of(std::size_t c) const {
     return reference_offsets_.empty() ? 0.0 : reference_offsets_[c];
@@ -233,8 +248,8 @@ ClockFit refine(Comparison& comparison, double shift, bool with_rate) {
   std::vector<Block> blocks;
   Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
   for (int step = 0; step < kSteps; ++step) {
-    comparison.centre(fit.shift, fit.rate);
-    blocks = comparison.blocks(fit.shift, fit.rate);
+    comparison.centre(fit);
+    blocks = comparison.blocks(fit);
     Block sum;
     for (const Block& block : blocks) {
       sum.H += block.H;
@@ -271,8 +286,190 @@ ClockFit refine(Comparison& comparison, double shift, bool with_rate) {
   const Eigen::Matrix2d covariance = inverse * scatter * inverse;
   fit.shift_error = std::sqrt(few * covariance(0, 0));
   fit.rate_error = with_rate ? std::sqrt(few * covariance(1, 1)) : 0.0;
-  fit.correlation = comparison.products(fit.shift, fit.rate).likeness();
+  fit.correlation = comparison.products(fit).likeness();
   return fit;
+}
+
+/// The shift that one block of time asks for beyond the fit.
+struct BlockShift {
+  double time = 0.0;    ///< s, reference clock: its end
+  double lever = 0.0;   ///< s, of its information from the middle
+  double shift = 0.0;   ///< s
+  double weight = 0.0;  ///< information, up to a common factor
+};
+
+std::vector<BlockShift> shifts_of(const Comparison& comparison, const ClockFit& fit) {
+  const std::vector<Block> blocks = comparison.blocks(fit);
+  double most = 0.0;
+  for (const Block& block : blocks) most = std::max(most, block.H(0, 0));
+  std::vector<BlockShift> shifts;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const Block& block = blocks[k];
+    if (!(block.H(0, 0) > 0.01 * most)) continue;
+    shifts.push_back({comparison.first() + kBlock * static_cast<double>(k + 1), block.H(0, 1) / block.H(0, 0),
+                      -block.g[0] / block.H(0, 0), block.H(0, 0)});
+  }
+  return shifts;
+}
+
+/// Variance of a block's shift times its weight, by what neighbours differ by: one slip among many changes nothing.
+double scatter_of(const std::vector<BlockShift>& shifts) {
+  std::vector<double> sizes;
+  for (std::size_t k = 1; k < shifts.size(); ++k)
+    sizes.push_back(std::abs(shifts[k].shift - shifts[k - 1].shift) /
+                    std::sqrt(1.0 / shifts[k].weight + 1.0 / shifts[k - 1].weight));
+  const double size = internal::median(sizes) / 0.6745;
+  return size * size;
+}
+
+/// Shift, rate and the sizes of steps by least squares over blocks; what the rate is beyond `rate_before` is expected
+/// to be small.
+struct BlockFit {
+  Eigen::VectorXd x;
+  Eigen::MatrixXd covariance;
+  double chi2 = 0.0;
+};
+
+BlockFit fit_blocks(const std::vector<BlockShift>& shifts, const std::vector<double>& steps, double scatter,
+                    double rate_before, double usual_rate) {
+  const auto n = static_cast<Eigen::Index>(2 + steps.size());
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
+  const auto row_of = [&](const BlockShift& one) {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(n);
+    row[0] = 1.0;
+    row[1] = one.lever;
+    for (std::size_t k = 0; k < steps.size(); ++k)
+      row[static_cast<Eigen::Index>(2 + k)] = one.time > steps[k] ? 1.0 : 0.0;
+    return row;
+  };
+  constexpr double kLeast = 1e-5;  // s: no block knows better
+  const auto variance = [&](const BlockShift& one) { return scatter / one.weight + kLeast * kLeast; };
+  for (const BlockShift& one : shifts) {
+    const Eigen::VectorXd row = row_of(one);
+    H += row * row.transpose() / variance(one);
+    b += row * (one.shift / variance(one));
+  }
+  const double prior = 1.0 / (usual_rate * usual_rate);
+  H(1, 1) += prior;
+  b[1] -= prior * rate_before;
+  BlockFit fit;
+  fit.covariance = H.inverse();
+  fit.x = fit.covariance * b;
+  fit.chi2 = prior * std::pow(rate_before + fit.x[1], 2);
+  for (const BlockShift& one : shifts) fit.chi2 += std::pow(one.shift - row_of(one).dot(fit.x), 2) / variance(one);
+  return fit;
+}
+
+/// Where the step is, within the blocks around it.
+double place_step(const Comparison& comparison, ClockFit fit, std::size_t index) {
+  constexpr double kGrid = 0.25;  // s
+  const double about = fit.steps[index].time;
+  double best = about, least = std::numeric_limits<double>::infinity();
+  for (double time = about - kBlock; time <= about + kBlock; time += kGrid) {
+    fit.steps[index].time = time;
+    const double cost = comparison.cost(fit, about - 2.0 * kBlock, about + 2.0 * kBlock);
+    if (cost >= least) continue;
+    least = cost;
+    best = time;
+  }
+  return best;
+}
+
+void apply(const BlockFit& change, ClockFit& fit) {
+  fit.shift += change.x[0];
+  fit.rate += change.x[1];
+  for (std::size_t k = 0; k < fit.steps.size(); ++k) fit.steps[k].size += change.x[static_cast<Eigen::Index>(2 + k)];
+}
+
+/// Slips, one after the other, as long as one explains far more than chance; with them shift and rate anew.
+void find_steps(Comparison& comparison, const ClockOptions& options, ClockFit& fit) {
+  constexpr std::size_t kMostSteps = 5, kFewestBlocks = 8;
+  constexpr double kGain = 25.0, kLeastSize = 5e-4;
+  if (shifts_of(comparison, fit).size() < kFewestBlocks) return;
+  const ClockFit before = fit;
+  for (bool goes_on = true; goes_on && fit.steps.size() < kMostSteps;) {
+    goes_on = false;
+    const std::vector<BlockShift> shifts = shifts_of(comparison, fit);
+    const double scatter = scatter_of(shifts);
+    std::vector<double> times;
+    for (const ClockStep& step : fit.steps) times.push_back(step.time);
+    const double now = fit_blocks(shifts, times, scatter, fit.rate, options.usual_rate).chi2;
+    double gain = 0.0, size = 0.0, at = 0.0;
+    times.push_back(0.0);
+    for (std::size_t k = 1; k + 2 < shifts.size(); ++k) {
+      times.back() = shifts[k].time;
+      const BlockFit tried = fit_blocks(shifts, times, scatter, fit.rate, options.usual_rate);
+      if (now - tried.chi2 <= gain) continue;
+      gain = now - tried.chi2;
+      size = tried.x[tried.x.size() - 1];
+      at = shifts[k].time;
+    }
+    if (gain < kGain || std::abs(size) < kLeastSize) break;
+    goes_on = true;
+    fit.steps.push_back({at, 0.0, 0.0});
+    for (int round = 0; round < 3; ++round) {
+      comparison.centre(fit);
+      const std::vector<BlockShift> anew = shifts_of(comparison, fit);
+      times.back() = fit.steps.back().time;
+      apply(fit_blocks(anew, times, scatter_of(anew), fit.rate, options.usual_rate), fit);
+      fit.steps.back().time = place_step(comparison, fit, fit.steps.size() - 1);
+    }
+  }
+  if (fit.steps.empty()) return;
+  const auto too_small = [](const ClockStep& step) { return std::abs(step.size) < kLeastSize; };
+  // A ramp that no clock has can be cut into steps, too.
+  constexpr double kAnyRate = 1.0;
+  const std::vector<BlockShift> plain = shifts_of(comparison, before), stepped = shifts_of(comparison, fit);
+  const double scatter_then = scatter_of(stepped);
+  const bool is_ramp = fit_blocks(plain, {}, scatter_then, before.rate, kAnyRate).chi2 <
+                       fit_blocks(stepped, {}, scatter_then, fit.rate, options.usual_rate).chi2;
+  if (is_ramp || std::ranges::any_of(fit.steps, too_small) || std::abs(fit.rate) > options.highest_rate) {
+    fit = before;
+    return;
+  }
+  std::ranges::sort(fit.steps, {}, &ClockStep::time);
+  std::vector<double> times;
+  for (const ClockStep& step : fit.steps) times.push_back(step.time);
+  BlockFit last;
+  double scatter = 0.0;
+  for (int round = 0; round < 4; ++round) {
+    comparison.centre(fit);
+    const std::vector<BlockShift> shifts = shifts_of(comparison, fit);
+    scatter = scatter_of(shifts);
+    last = fit_blocks(shifts, times, scatter, fit.rate, options.usual_rate);
+    apply(last, fit);
+  }
+  const auto blocks = static_cast<double>(shifts_of(comparison, fit).size());
+  const double few = std::max(1.0, last.chi2 / std::max(1.0, blocks - static_cast<double>(last.x.size())));
+  fit.shift_error = std::sqrt(few * last.covariance(0, 0));
+  fit.rate_error = std::sqrt(few * last.covariance(1, 1));
+  for (std::size_t k = 0; k < fit.steps.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(2 + k);
+    fit.steps[k].error = std::sqrt(few * last.covariance(at, at));
+  }
+  fit.correlation = comparison.products(fit).likeness();
+}
+
+/// Clocks are expected to run nearly alike; blocks that err together know less than so many that do not.
+void temper(const Comparison& comparison, const ClockOptions& options, ClockFit& fit) {
+  const std::vector<BlockShift> shifts = shifts_of(comparison, fit);
+  double squares = 0.0, neighbours = 0.0;
+  for (std::size_t k = 0; k < shifts.size(); ++k) {
+    squares += shifts[k].weight * shifts[k].shift * shifts[k].shift;
+    if (k > 0) neighbours += std::sqrt(shifts[k].weight * shifts[k - 1].weight) * shifts[k].shift * shifts[k - 1].shift;
+  }
+  const double correlation = squares > 0.0 ? neighbours / squares : 0.0;
+  constexpr double kMost = 0.9;
+  if (correlation > 2.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(4, shifts.size())))) {
+    const double shared = std::min(correlation, kMost), more = std::sqrt((1.0 + shared) / (1.0 - shared));
+    fit.shift_error *= more;
+    fit.rate_error *= more;
+  }
+  if (!(fit.rate_error > 0.0)) return;
+  const double prior = options.usual_rate * options.usual_rate, own = fit.rate_error * fit.rate_error;
+  fit.rate *= prior / (prior + own);
+  fit.rate_error *= std::sqrt(prior / (prior + own));
 }
 
 /// The signals with each channel bounded by twice what its moving values stay below 95 % of the time: a few spikes (a
@@ -334,10 +531,14 @@ Expected<ClockFit, NoClock> fit_clock(const Signals& as_predicted, const Signals
   const Coarse coarse = search_grid(reference, measured, options);
   if (coarse.likeness < 0.5 * kLeastLikeness) return Unexpected<NoClock>(NoClock::TooUnlike);
   Comparison comparison(reference, measured, options);
-  comparison.centre(coarse.shift, 0.0);
+  ClockFit tried;
+  tried.middle = comparison.middle();
+  tried.shift = coarse.shift;
+  comparison.centre(tried);
   double shift = coarse.shift, likeness = -1.0;
   for (double at = coarse.shift - 1.5 * kCoarse; at <= coarse.shift + 1.5 * kCoarse; at += kFine) {
-    const double here = comparison.products(at, 0.0).likeness();
+    tried.shift = at;
+    const double here = comparison.products(tried).likeness();
     if (here > likeness) {
       likeness = here;
       shift = at;
@@ -345,7 +546,11 @@ Expected<ClockFit, NoClock> fit_clock(const Signals& as_predicted, const Signals
   }
   ClockFit fit = refine(comparison, shift, true);
   const bool is_clock = std::abs(fit.rate) <= options.highest_rate && fit.rate_error <= options.highest_rate;
+  const double plain_rate = std::abs(fit.rate);
   if (!is_clock) fit = refine(comparison, shift, false);
+  constexpr double kMostLikeSteps = 1e-3;  // what is slower or faster than that did not slip a few times
+  if (options.finds_steps && plain_rate < kMostLikeSteps) find_steps(comparison, options, fit);
+  if (fit.steps.empty()) temper(comparison, options, fit);
   if (!(fit.correlation >= kLeastLikeness)) return Unexpected<NoClock>(NoClock::TooUnlike);
   return fit;
 }

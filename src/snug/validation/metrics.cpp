@@ -25,7 +25,7 @@ constexpr double kPositionOutlier = 0.15;                           // m
 constexpr double kRotationOutlier = 15.0 * std::numbers::pi / 180;  // rad
 constexpr double kPositionMedian = 3.0, kRotationMedian = 10.0;     // s
 constexpr double kNearest = 0.5 / 125.0;                            // s: half a period of the demonstrator's controller
-constexpr double kMargin = 5.0;                                     // s around a window that its cleaning sees
+constexpr std::size_t kFilterReach = 25;                            // samples to both sides
 constexpr double kLongestGap = 0.02;                                // s: of two measured samples that belong together
 
 /// [first, last) of the times within [start, end].
@@ -103,9 +103,10 @@ struct Columns {
   std::array<std::vector<double>, 6> values;  ///< position, rotation vector
 };
 
-/// The demonstrator's cleaning: constant runs and outliers are taken away, gaps filled, everything smoothed.
+/// The demonstrator's cleaning, which sees the window alone: constant runs and outliers are taken away, gaps filled,
+/// everything smoothed.
 Columns cleaned_as_reported(const Measurement& measurement, std::size_t body, const Window& window) {
-  const auto [first, last] = span_of(measurement.pose_times, window.start - kMargin, window.end + kMargin);
+  const auto [first, last] = span_of(measurement.pose_times, window.start, window.end);
   Columns columns;
   Vector3 w = Vector3::Zero();
   PoseSample before = record::lost_pose();
@@ -195,25 +196,24 @@ void compare_wrenches(const WrenchSeries& series, Errors& errors) {
   errors.rms_torque = root_mean_square(series.torque_error);
 }
 
-/// Differences at the simulation's instants from the smoothed measurement nearest to each.
+/// The measurement nearest to each of the simulation's instants; then what those are smoothed to, less the simulation.
+/// The filter's 51 samples are of the simulation's, so 0.4 s at its 125 Hz.
 WrenchSeries wrench_series_as_reported(const SimulatedRun& run, const Measurement& measurement, const Window& window) {
-  WrenchSeries series;
-  const auto [from, to] = span_of(measurement.wrench_times, window.start - 0.2, window.end + 0.2);
+  const auto [first, last] = span_of(run.times, window.start, window.end);
+  const std::size_t from = first > kFilterReach ? first - kFilterReach : 0;
+  const std::size_t to = std::min(last + kFilterReach, run.times.size());
   std::array<std::vector<double>, 6> columns;
-  std::vector<double> times;
   for (std::size_t i = from; i < to; ++i) {
-    times.push_back(measurement.wrench_times[i]);
-    const Vector6 values = as_vector(measurement.wrenches[i]);
-    for (int k = 0; k < 6; ++k) columns[static_cast<std::size_t>(k)].push_back(values[k]);
+    const std::optional<std::size_t> k = find_nearest_time(measurement.wrench_times, run.times[i], kNearest);
+    const Vector6 values = k ? as_vector(measurement.wrenches[*k]) : Vector6(Vector6::Constant(kNaN));
+    for (int axis = 0; axis < 6; ++axis) columns[static_cast<std::size_t>(axis)].push_back(values[axis]);
   }
   for (std::vector<double>& column : columns) column = internal::smooth(column);
-  const auto [first, last] = span_of(run.times, window.start, window.end);
+  WrenchSeries series;
   for (std::size_t i = first; i < last; ++i) {
-    const std::optional<std::size_t> k = find_nearest_time(times, run.times[i], kNearest);
-    if (!k) continue;
-    Vector6 measured;
-    for (std::size_t axis = 0; axis < 6; ++axis) measured[static_cast<int>(axis)] = columns[axis][*k];
-    const Vector6 error = measured - as_vector(run.wrench[i]);
+    Vector6 error = -as_vector(run.wrench[i]);
+    for (std::size_t axis = 0; axis < 6; ++axis) error[static_cast<int>(axis)] += columns[axis][i - from];
+    if (!error.allFinite()) continue;
     series.force_error.push_back(error.head<3>().norm());
     series.torque_error.push_back(error.tail<3>().norm());
   }

@@ -59,6 +59,13 @@ Json means_as_json(const Means& means) {
           {"bodies", means.bodies}};
 }
 
+Json steps_as_json(const ClockFit& fit) {
+  Json steps = Json::array();
+  for (const ClockStep& step : fit.steps)
+    steps.push_back({{"at_s", step.time}, {"size_s", step.size}, {"standard_error_s", number(step.error)}});
+  return steps;
+}
+
 Json repetition_as_json(const Measurement& measurement) {
   Json json = {{"name", measurement.name}, {"note", measurement.note}, {"clocks", Json::array()}};
   for (const SourceClock& clock : measurement.clocks) {
@@ -70,6 +77,7 @@ Json repetition_as_json(const Measurement& measurement) {
                   {"at_s", fit.middle},
                   {"rate_ppm", 1e6 * fit.rate},
                   {"rate_standard_error_ppm", fit.is_by_hand ? Json(nullptr) : number(1e6 * fit.rate_error)},
+                  {"steps", steps_as_json(fit)},
                   {"correlation", fit.is_by_hand ? Json(nullptr) : number(fit.correlation)},
                   {"by_hand", fit.is_by_hand}});
     } else {
@@ -155,6 +163,9 @@ std::string as_text(const Validation& validation) {
         text += fmt::format("  {}: shift {:.5f} +- {:.5f} s, rate {:.1f} +- {:.1f} ppm, correlation {:.3f}\n",
                             clock.source, clock.fit->shift, clock.fit->shift_error, 1e6 * clock.fit->rate,
                             1e6 * clock.fit->rate_error, clock.fit->correlation);
+      if (!clock.fit) continue;
+      for (const ClockStep& step : clock.fit->steps)
+        text += fmt::format("    slips by {:+.5f} +- {:.5f} s at {:.1f} s\n", step.size, step.error, step.time);
     }
   }
   text += fmt::format("\n{:<9} {:<9} {:<26} {:>15} {:>15} {:>15}\n", "box", "simulated", "measured", "rest mm / deg",

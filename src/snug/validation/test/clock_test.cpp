@@ -124,6 +124,43 @@ TEST(FitClock, ARateThatNoClockHasIsNotFitted) {
   EXPECT_EQ(fit->rate, 0.0);
 }
 
+/// Of 2, 8 and 20 ms, up and down, in the middle and near the ends, beside rates of up to 50 ppm.
+TEST(FitClock, TellsSlipsFromDrift) {
+  Rng rng = Rng(8).split("slips");
+  const Signals reference = sampled(125.0, 0.0, 0.0, 0.0, rng);
+  int round = 0;
+  double worst = 0.0;
+  for (const double size : {0.002, -0.008, 0.020}) {
+    for (const double at : {60.0, 190.0}) {
+      SCOPED_TRACE(testing::Message() << size << " s at " << at << " s");
+      const double rate = 1e-6 * rng.uniform(-50.0, 50.0);
+      Signals measured = sampled(120.0, 1.0, rate, 0.005, rng.split(std::to_string(round++)));
+      for (double& time : measured.times)
+        if (time > at + 1.0) time += size;
+      const auto fit = fit_clock(reference, measured);
+      ASSERT_TRUE(fit);
+      worst = std::max(worst, std::abs(fit->rate - rate) / fit->rate_error);
+      ASSERT_EQ(fit->steps.size(), 1U);
+      EXPECT_NEAR(fit->steps[0].size, size, 5e-4);
+      EXPECT_NEAR(fit->steps[0].time, at, 6.0);  // a block; nothing may move for that long
+      EXPECT_NEAR(fit->to_reference(fit->to_measured(at + 30.0)), at + 30.0, 1e-9);
+      EXPECT_NEAR(fit->to_reference(fit->to_measured(at - 30.0)), at - 30.0, 1e-9);
+    }
+  }
+  EXPECT_LT(worst, 3.5);  // of six: exceeded once in 350
+}
+
+TEST(FitClock, FindsNoSlipWhereThereIsNone) {
+  Rng rng = Rng(9).split("no slips");
+  const Signals reference = sampled(125.0, 0.0, 0.0, 0.0, rng);
+  for (int round = 0; round < 6; ++round) {
+    const double rate = 1e-6 * rng.uniform(-100.0, 100.0);
+    const auto fit = fit_clock(reference, sampled(120.0, 0.3, rate, 0.02, rng.split(std::to_string(round))));
+    ASSERT_TRUE(fit);
+    EXPECT_TRUE(fit->steps.empty()) << round;
+  }
+}
+
 TEST(FitClock, RefusesWhatHasNothingInCommon) {
   Rng rng = Rng(6).split("unlike");
   const Signals reference = sampled(125.0, 0.0, 0.0, 0.0, rng);
