@@ -109,7 +109,7 @@ int run_identify_stiffness(const IdentifyStiffnessOptions& options) {
                                 file_name(options.input), fit.poses, name_of(fit.method), fit.chi2_per_dof)}));
   print(options.json ? format_json(fit, held_back, poses.noise_is_given)
                      : format_table(fit, held_back, poses.noise_is_given));
-  return kSuccess;
+  return fit.is_explained ? kSuccess : kRunFailed;
 }
 
 int run_identify_damping(const IdentifyDampingOptions& options) {

@@ -40,6 +40,12 @@ struct IdentifyPluckOptions : IdentifyOptions {
   std::uint64_t seed = 1;
 };
 
+struct IdentifyPayloadOptions : IdentifyOptions {
+  std::string input;
+  std::optional<double> force_bias, torque_bias;  ///< N, Nm: what taring left
+  bool rigid_lip = false;                         ///< the lip does not give
+};
+
 struct IdentifySceneOptions {
   std::string task;
   std::vector<std::string> recordings;                        ///< those of the task unless given
@@ -50,6 +56,7 @@ struct IdentifySceneOptions {
   std::optional<std::string> output;                          ///< the task with the values found
   std::optional<std::string> scenario;                        ///< the scenario with the values found
   std::optional<int> threads;                                 ///< absent: all cores
+  bool profile = false;                                       ///< intervals by the profile of the sum of squares
   bool json = false;
 };
 
@@ -57,6 +64,7 @@ void add_identify(CLI::App& app, Action& action);
 [[nodiscard]] int run_identify_stiffness(const IdentifyStiffnessOptions& options);
 [[nodiscard]] int run_identify_damping(const IdentifyDampingOptions& options);
 [[nodiscard]] int run_identify_scene(const IdentifySceneOptions& options);
+[[nodiscard]] int run_identify_payload(const IdentifyPayloadOptions& options);
 [[nodiscard]] int run_identify_pluck(const IdentifyPluckOptions& options);
 
 }  // namespace snug::app

@@ -36,6 +36,14 @@ Examples:
   snug identify pluck --scenario scenarios/box-demonstrator.yaml --parcel BOX013 -o pluck.json
   snug identify damping pluck.json)";
 
+constexpr const char* kPayloadHelp =
+    R"(A lift of 1.5 s tells the mass to 2 % and the centre of mass to 5 mm, where the motion tells it: straight up tells nothing of
+where the centre is along the weight. Columns of the table: t, x, y, z, qw, qx, qy, qz (the gripper's end in the world),
+fx, fy, fz, tx, ty, tz (of the cup on the box, in the gripper's frame about its end: up for a hanging box), perhaps lip_x ..
+lip_qz. The cup's stiffness, that of --scenario, says where the lip is under the wrench; --rigid-lip: where it is unloaded.
+Example:
+  snug identify payload lift.csv --scenario scenarios/box-demonstrator.yaml --json)";
+
 constexpr const char* kSceneHelp =
     R"(The task names a scenario, the bodies that were recorded, and which numbers of the scenario are open, with bounds. First
 comes what each of them changes; combinations that the recordings cannot tell are named and left alone. Then the search, and
@@ -131,6 +139,28 @@ void add_pluck(CLI::App& verb, Action& action) {
   part.callback([options, &action] { action = [options] { return run_identify_pluck(*options); }; });
 }
 
+void add_payload(CLI::App& verb, Action& action) {
+  CLI::App& part = *verb.add_subcommand("payload", "mass and centre of mass of a held box, from one lift");
+  const auto options = std::make_shared<IdentifyPayloadOptions>();
+  part.add_option("lift", options->input, "what sensor and joints recorded")->required()->type_name("LIFT.csv");
+  part.add_option("--scenario", options->scenario,
+                  "whose cup holds the box; without, the cup that scenarios have by default")
+      ->type_name("SCENARIO.yaml");
+  part.add_flag("--rigid-lip", options->rigid_lip, "the lip does not give, as of a hard gripper");
+  const auto deviation = [&](const char* name, std::optional<double>& field, const char* what, const char* unit) {
+    part.add_option(name, field, what)->check(positive())->type_name(unit);
+  };
+  deviation("--force-noise", options->force_noise, "standard deviation of a reading; default 0.3", "N");
+  deviation("--torque-noise", options->torque_noise, "the same; default 0.02", "NM");
+  deviation("--position-noise", options->position_noise, "of the lip; default 0.0002", "M");
+  deviation("--rotation-noise", options->rotation_noise, "of the lip; default 0.004", "RAD");
+  deviation("--force-bias", options->force_bias, "what taring left, standard deviation; default 0.015", "N");
+  deviation("--torque-bias", options->torque_bias, "the same; default 0.001", "NM");
+  part.add_flag("--json", options->json, "the result as one JSON object on stdout");
+  part.footer(kPayloadHelp);
+  part.callback([options, &action] { action = [options] { return run_identify_payload(*options); }; });
+}
+
 void add_scene(CLI::App& verb, Action& action) {
   CLI::App& part = *verb.add_subcommand("scene", "numbers of a scenario, from recordings of its bodies");
   const auto options = std::make_shared<IdentifySceneOptions>();
@@ -149,6 +179,8 @@ void add_scene(CLI::App& verb, Action& action) {
       ->check(whole(1, kMostThreads))
       ->type_name("N");
   part.add_option("-o,--output", options->output, "the task with the values found")->type_name("TASK.yaml");
+  part.add_flag("--profile", options->profile,
+                "95 % intervals by the profile likelihood: each value with all others fitted again (takes longer)");
   part.add_option("--scenario", options->scenario, "the scenario with the values found")->type_name("SCENARIO.yaml");
   part.add_flag("--json", options->json, "the result as one JSON object on stdout");
   part.footer(kSceneHelp);
@@ -163,6 +195,7 @@ void add_identify(CLI::App& app, Action& action) {
   add_stiffness(verb, action);
   add_damping(verb, action);
   add_pluck(verb, action);
+  add_payload(verb, action);
   add_scene(verb, action);
   verb.footer(
       "`snug identify stiffness --help` and so on tell files and methods; docs/theory/identification.md the rest.");

@@ -74,6 +74,7 @@ int run_identify_scene(const IdentifySceneOptions& options) {
   identification::SceneFitOptions fit_options;
   if (options.log) fit_options.log = *options.log;
   fit_options.progress = make_progress();
+  fit_options.with_profile = options.profile;
   const SceneFit fit = identification::identify_scene(experiment, fit_options);
   if (fit_options.progress) std::fprintf(stderr, "\r\033[K");
   if (output) {

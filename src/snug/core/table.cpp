@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "snug/core/csv_fields.hpp"
@@ -36,6 +37,11 @@ std::vector<std::size_t> find_columns(const std::vector<std::string>& header, co
   return places;
 }
 
+bool is_gap(const std::string& cell) {
+  if (cell.find_first_not_of(" \t") == std::string::npos) return true;
+  return cell == "nan" || cell == "NaN" || cell == "NAN" || cell == "-nan" || cell == "NA";
+}
+
 double read_number(const std::string& cell, const std::string& where, const std::string& column) {
   double value = 0.0;
   const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
@@ -45,10 +51,8 @@ double read_number(const std::string& cell, const std::string& where, const std:
   return value;
 }
 
-}  // namespace
-
-Table parse_table(const std::string& text, const std::string& name, const std::vector<std::string>& columns,
-                  const std::vector<std::string>& optional) {
+Table parse(const std::string& text, const std::string& name, const std::vector<std::string>& columns,
+            const std::vector<std::string>& optional, bool may_have_gaps) {
   check_utf8(text, name);
   Table table{name, columns, {}, {}};
   std::vector<std::size_t> places;
@@ -73,11 +77,23 @@ Table parse_table(const std::string& text, const std::string& name, const std::v
                        std::to_string(width) + ", as in the header");
     std::vector<double>& row = table.rows.emplace_back();
     for (std::size_t i = 0; i < places.size(); ++i)
-      row.push_back(read_number(cells[places[i]], where, table.columns[i]));
+      row.push_back(may_have_gaps && is_gap(cells[places[i]]) ? std::numeric_limits<double>::quiet_NaN()
+                                                              : read_number(cells[places[i]], where, table.columns[i]));
     table.lines.push_back(number);
   }
   if (places.empty()) throw InputError(name + ":1", "", "no header", joined(columns));
   return table;
+}
+
+}  // namespace
+
+Table parse_table(const std::string& text, const std::string& name, const std::vector<std::string>& columns,
+                  const std::vector<std::string>& optional) {
+  return parse(text, name, columns, optional, false);
+}
+
+Table parse_table_with_gaps(const std::string& text, const std::string& name, const std::vector<std::string>& columns) {
+  return parse(text, name, columns, {}, true);
 }
 
 Table load_table(const std::filesystem::path& path, const std::vector<std::string>& columns,

@@ -26,5 +26,8 @@ struct Table {
                                const std::vector<std::string>& optional = {});
 [[nodiscard]] Table parse_table(const std::string& text, const std::string& name,
                                 const std::vector<std::string>& columns, const std::vector<std::string>& optional = {});
+/// The same, but a cell may be empty or say nan where nothing was measured: it is then not a number.
+[[nodiscard]] Table parse_table_with_gaps(const std::string& text, const std::string& name,
+                                          const std::vector<std::string>& columns);
 
 }  // namespace snug

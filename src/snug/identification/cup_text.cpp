@@ -56,6 +56,19 @@ std::string errors_as_text(double chi2_per_dof, const HeldBackError& held_back, 
   return text;
 }
 
+std::string as_text(const SensorBias& bias) {
+  constexpr double kNoConstant = 2.0;
+  const Vector6 value = as_vector(bias.bias), error = as_vector(bias.error);
+  std::string text = fmt::sprintf(
+      "sensor against %s: %+.2f %+.2f %+.2f N, %+.3f %+.3f %+.3f Nm too much (errors %.2g N, %.2g Nm), %s\n",
+      bias.is_against_gravity ? "gravity" : "the law", value[0], value[1], value[2], value[3], value[4], value[5],
+      error.head<3>().maxCoeff(), error.tail<3>().maxCoeff(),
+      bias.is_removed ? "taken out: the sensor is not tared" : "left in");
+  if (bias.is_against_gravity && bias.misfit > kNoConstant)
+    text += fmt::sprintf("sensor and gravity differ by more than a constant: chi2 per number %.1f\n", bias.misfit);
+  return text;
+}
+
 std::string indices(const std::vector<int>& list) {
   std::string text;
   for (const int index : list) text += (text.empty() ? "" : ", ") + std::to_string(index);
@@ -75,6 +88,16 @@ std::string format_json(const StiffnessFit& fit, const HeldBackError& held_back,
   json["outliers"] = fit.outliers;
   json["residual_position_mm"] = 1e3 * fit.position;
   json["residual_rotation_deg"] = kDegrees * fit.rotation;
+  json["is_explained"] = fit.is_explained;
+  if (fit.bias) {
+    const Vector6 bias = as_vector(fit.bias->bias), error = as_vector(fit.bias->error);
+    json["sensor_bias"] = {{"against", fit.bias->is_against_gravity ? "gravity" : "the law of the cup"},
+                           {"wrench_E", std::vector<double>(bias.data(), bias.data() + 6)},
+                           {"standard_error", std::vector<double>(error.data(), error.data() + 6)},
+                           {"chi2_of_6", fit.bias->statistic},
+                           {"is_removed", fit.bias->is_removed}};
+    if (fit.bias->is_against_gravity) json["sensor_bias"]["chi2_per_number_without"] = fit.bias->misfit;
+  }
   if (fit.symmetry)
     json["symmetry"] = {{"supported", fit.symmetry->is_supported},
                         {"p_value", fit.symmetry->p_value},
@@ -97,6 +120,9 @@ std::string format_table(const StiffnessFit& fit, const HeldBackError& held_back
   text += errors_as_text(fit.chi2_per_dof, held_back, noise_is_given);
   text += fmt::sprintf("residuals: %.3f mm, %.3f degrees rms, measured less predicted pose\n", 1e3 * fit.position,
                        kDegrees * fit.rotation);
+  if (fit.bias) text += as_text(*fit.bias);
+  if (!fit.is_explained)
+    text += "NOT explained: the law of the cup with this noise does not explain these data; no number is to be used\n";
   if (fit.symmetry)
     text += fmt::sprintf("symmetry: the same from all sides is %s (p = %.3g; worst: %s)\n",
                          fit.symmetry->is_supported ? "supported" : "NOT supported", fit.symmetry->p_value,

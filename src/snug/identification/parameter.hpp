@@ -23,6 +23,10 @@ struct Parameter {
   bool operator==(const Parameter&) const = default;
 };
 
+/// chi2 per degree of freedom from which nothing is called identified, and from which nothing is known: the model, with
+/// the noise declared, does not explain the data.
+inline constexpr double kExplained = 1.5, kMisfit = 4.0;
+
 /// By the standard error relative to `scale`, the size that the parameter matters against.
 [[nodiscard]] Verdict judge(double standard_error, double scale);
 

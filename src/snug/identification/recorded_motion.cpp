@@ -48,7 +48,18 @@ BodyColumns add_object(std::vector<std::string>& columns, const model::RecordedO
   return at;
 }
 
+/// Lost where the row has none of the seven numbers.
 record::PoseSample pose_at(const Table& table, std::size_t row, std::size_t first) {
+  constexpr std::size_t kNumbers = 7;
+  std::size_t missing = 0, gap = first;
+  for (std::size_t k = first; k < first + kNumbers; ++k) {
+    if (!std::isnan(table.rows[row][k])) continue;
+    if (missing++ == 0) gap = k;
+  }
+  if (missing == kNumbers) return record::lost_pose();
+  if (missing > 0)
+    throw InputError(table.where(row), table.columns[gap], "nothing beside other numbers of the same pose",
+                     "a number, or a pose that is lost as a whole");
   return Pose{internal::rotation_at(table, row, first + 3), internal::vector_at(table, row, first)};
 }
 
@@ -185,7 +196,7 @@ std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const st
   std::vector<BodyColumns> tracked, kinematic;
   for (const model::RecordedObject& object : task.tracked) tracked.push_back(add_object(names, object, where));
   for (const model::RecordedObject& object : task.kinematic) kinematic.push_back(add_object(names, object, where));
-  const Table table = parse_table(text, name, names);
+  const Table table = parse_table_with_gaps(text, name, names);
   std::vector<RecordedMotion> motions;
   std::map<double, std::size_t> place;  // of each number in the recording column
   const std::string file = std::filesystem::path(name).filename().string();
@@ -200,6 +211,8 @@ std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const st
     }
     RecordedMotion& motion = motions[found->second];
     const double time = table.rows[row][0];
+    if (std::isnan(time) || std::isnan(key))
+      throw InputError(table.where(row), task.time_column, "nothing", "a number in every row");
     if (!motion.times.empty() && time <= motion.times.back())
       throw InputError(table.where(row), task.time_column, fmt::format("{} after {}", time, motion.times.back()),
                        "times that grow within a recording");
@@ -208,7 +221,11 @@ std::vector<RecordedMotion> parse_motions(const model::SceneTask& task, const st
     for (std::size_t i = 0; i < kinematic.size(); ++i) add_row(table, row, kinematic[i], motion.kinematic[i]);
   }
   if (motions.empty()) throw InputError(name, "", "no rows", "at least one recording");
-  for (const RecordedMotion& motion : motions) {
+  for (RecordedMotion& motion : motions) {
+    for (const RecordedBody& body : motion.tracked)
+      if (!task.program && task.start.from != model::StartFrom::Scenario && !record::is_tracked(body.poses.front()))
+        throw InputError(name, motion.name, "no pose of '" + body.body + "' in its first row",
+                         "one, from which the body starts; or start: {from: scenario}");
     const bool has_result = motion.tracked.front().result.has_value();
     if (motion.times.size() < 2 && !(task.only_final_state && has_result))
       throw InputError(name, motion.name, "a single row", "at least two rows of each recording");
@@ -254,6 +271,9 @@ std::vector<RecordedMotion> load_motions(const model::SceneTask& task,
         motions.push_back(std::move(motion));
       continue;
     }
+    if (task.program && task.program->motion == model::TaskMotion::Recorded)
+      throw InputError(task.path.string(), "motion", "recorded, with the table " + file.string(),
+                       "an archive (.h5) with the robot's log, or motion: program");
     for (RecordedMotion& motion : parse_motions(task, read_file(file, "a recording (CSV)"), file.string()))
       motions.push_back(std::move(motion));
   }

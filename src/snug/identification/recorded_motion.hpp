@@ -20,6 +20,7 @@ struct RecordedBody {
   std::vector<Twist> twists;                 ///< as long, or empty: not recorded
   std::optional<record::PoseSample> result;  ///< where it came to rest, when the recording says so
   std::vector<int> averaged = {};            ///< samples that each pose is the mean of; empty: one each
+  int rejected = 0;                          ///< samples that jumped away from their neighbours, and count as lost
   bool operator==(const RecordedBody&) const = default;
 };
 

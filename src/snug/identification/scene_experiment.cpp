@@ -15,6 +15,7 @@
 #include "snug/identification/internal/at_rest.hpp"
 #include "snug/identification/internal/motion_error.hpp"
 #include "snug/identification/internal/program_motion.hpp"
+#include "snug/identification/internal/recording_checks.hpp"
 #include "snug/identification/internal/scene_motion.hpp"
 #include "snug/model/number_edit.hpp"
 
@@ -52,7 +53,11 @@ SceneExperiment::SceneExperiment(model::SceneTask task, std::vector<RecordedMoti
     }
   }
   check_bodies();
-  for (const RecordedMotion& motion : motions_) {
+  for (RecordedMotion& motion : motions_) {
+    if (!task_.program) {
+      internal::check_conventions(task_, base_, motion);
+      internal::reject_jumps(task_, motion);
+    }
     samples_.push_back(internal::compared_samples(task_, motion));
     if (samples_of(samples_.size() - 1) == 0)
       throw InputError(task_.path.string(), motion.name, "no pose of a tracked object in the time simulated",

@@ -17,7 +17,6 @@ namespace {
 
 using internal::SceneSearch;
 
-constexpr double kMisfit = 9.0;         // chi2 per degree of freedom: three times the noise is no noise
 constexpr double kRescue = 2.0;         // the same: worth looking elsewhere before saying so
 constexpr double kUnknownError = 0.25;  // of what the bounds span: the data do not say where in them
 constexpr double kShareNamed = 0.3;     // of a direction's length, for a parameter to be named in it
@@ -84,16 +83,21 @@ Sensed sense(const SceneSearch& search) {
   return sensed;
 }
 
-std::string advice_of(const model::TaskParameter& parameter, Verdict verdict, bool is_at_bound, bool is_refused) {
+std::string advice_of(const model::TaskParameter& parameter, Verdict verdict, bool is_at_bound, bool is_refused,
+                      bool is_unexplained) {
   if (is_refused)
     return "it or a combination with others does not show in these recordings: record motions that it changes, or fix "
            "it";
   if (is_at_bound) return "it ended at its bound: widen the bounds, or something else is wrong";
   if (verdict == Verdict::Identified) return "";
+  if (is_unexplained)
+    return "the simulation misses the recordings by more than the noise declared: more noise, or what the scenario "
+           "leaves out";
   return "more recordings, or motions that " + parameter.name + " changes more";
 }
 
 void judge_all(const SceneSearch& search, const Sensed& sensed, SceneFit& fit) {
+  const bool is_unexplained = fit.is_systematic || fit.chi2_per_dof > kExplained;
   const std::vector<model::TaskParameter>& parameters = search.experiment().task().parameters;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const model::TaskParameter& of = parameters[i];
@@ -104,23 +108,203 @@ void judge_all(const SceneSearch& search, const Sensed& sensed, SceneFit& fit) {
     parameter.value = fit.values[at];
     if (of.is_fixed) {
       parameter.verdict = Verdict::NotIdentifiable;
+      parameter.standard_error = std::numeric_limits<double>::quiet_NaN();
       parameter.advice = "held fixed by the task";
       fit.parameters.push_back(parameter);
       continue;
     }
     const bool is_refused = std::find(sensed.known.begin(), sensed.known.end(), i) == sensed.known.end();
     const bool is_at_bound = std::min(parameter.value - of.low, of.high - parameter.value) <= kAtBound * span;
-    parameter.standard_error =
-        is_refused ? std::numeric_limits<double>::infinity() : std::sqrt(std::max(0.0, fit.covariance(at, at)));
+    const double variance = fit.covariance(at, at);
+    parameter.standard_error = is_refused       ? std::numeric_limits<double>::infinity()
+                               : variance > 0.0 ? std::sqrt(variance)
+                                                : std::numeric_limits<double>::quiet_NaN();
     const double scale = std::max(std::abs(parameter.value), kVerdictSpan * span);
     parameter.verdict = is_refused || !fit.is_trusted || !(parameter.standard_error > 0.0)
                             ? Verdict::NotIdentifiable
                             : judge(parameter.standard_error, scale);
-    if (is_at_bound && parameter.verdict == Verdict::Identified) parameter.verdict = Verdict::Weak;
-    parameter.advice = fit.is_trusted ? advice_of(of, parameter.verdict, is_at_bound, is_refused)
+    const bool is_doubtful = is_at_bound || fit.is_systematic || fit.chi2_per_dof > kExplained;
+    if (is_doubtful && parameter.verdict == Verdict::Identified) parameter.verdict = Verdict::Weak;
+    parameter.advice = fit.is_trusted ? advice_of(of, parameter.verdict, is_at_bound, is_refused, is_unexplained)
                                       : "the simulation misses these recordings by far more than noise: another start, "
                                         "a wider search, or what the scenario leaves out";
     fit.parameters.push_back(parameter);
+  }
+}
+
+/// What least squares came to, and what can be told there.
+struct Found {
+  SceneSearch::Kept kept;
+  Sensed sensed;
+  std::string message;
+};
+
+bool has_all(const std::vector<std::size_t>& list, const std::vector<std::size_t>& wanted) {
+  return std::ranges::all_of(wanted, [&](std::size_t one) { return std::ranges::find(list, one) != list.end(); });
+}
+
+/// Least squares from the search's best() of what can be told there; what cannot is where the task has it. Where that
+/// ends it is judged anew: what can be told there joins, what cannot goes back.
+Found fit_near(SceneSearch& search, const std::vector<std::size_t>& free, Sensed sensed, bool may_rescue) {
+  constexpr int kRounds = 4;
+  const Eigen::VectorXd start = search.experiment().start();
+  Found found;
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::VectorXd values = search.best();
+    for (const std::size_t one : free)
+      if (!has_all(sensed.known, {one})) values[static_cast<Eigen::Index>(one)] = start[static_cast<Eigen::Index>(one)];
+    search.move_to(values);
+    search.restrict_to(sensed.known);
+    if (!sensed.known.empty())
+      found.message = may_rescue && round == 0 ? search.search_squares(kRescue) : search.search_near();
+    found.kept = search.keep();
+    search.restrict_to(free);
+    Sensed there = sense(search);
+    search.go_back(found.kept);
+    const bool is_same = there.known == sensed.known;
+    if (!is_same && round + 1 == kRounds) {
+      there.known = sensed.known;  // it goes to and fro: what was fitted last, with the error it has there
+    }
+    found.sensed = there;
+    if (is_same) break;
+    sensed = std::move(there);
+  }
+  return found;
+}
+
+/// Whether `a` is the better answer: by its misfit where that differs by more than chance may, else by what it tells.
+bool is_better(const Found& a, const Found& b) {
+  constexpr double kSame = 0.05;  // of the misfit
+  if (a.kept.misfit < (1.0 - kSame) * b.kept.misfit) return true;
+  return a.kept.misfit <= (1.0 + kSame) * b.kept.misfit && a.sensed.known.size() > b.sensed.known.size();
+}
+
+/// From the start, and where that leaves parameters untold or the recordings unexplained, from the best of points
+/// spread over all bounds: a wall that the first simulation does not reach is reached from there.
+Found fit_everywhere(SceneSearch& search, const std::vector<std::size_t>& free) {
+  constexpr int kPoints = 20;  // for each parameter
+  constexpr std::size_t kStarts = 3;
+  constexpr double kLong = 300.0;  // s, of simulation for a look around: then only the start counts
+  const Eigen::VectorXd start = search.best();
+  const Sensed at_start = sense(search);
+  const bool tells_all = at_start.known.size() == free.size();
+  Found best = fit_near(search, free, at_start, tells_all);
+  const double look = static_cast<double>(2 * free.size() + 1) * search.experiment().longest();
+  const bool is_done = best.sensed.known.size() == free.size() && best.kept.misfit <= kRescue;
+  if (tells_all || is_done || look > kLong) return best;
+  search.move_to(start);
+  search.restrict_to(free);
+  for (const Eigen::VectorXd& point : search.spread_points(kPoints * static_cast<int>(free.size()), kStarts)) {
+    search.move_to(point);
+    search.restrict_to(free);
+    const Sensed there = sense(search);
+    if (best.kept.misfit <= kRescue && has_all(best.sensed.known, there.known)) continue;
+    Found found = fit_near(search, free, there, false);
+    if (is_better(found, best)) best = std::move(found);
+  }
+  search.go_back(best.kept);
+  return best;
+}
+
+/// What parameters that are not told may be off by, uniform within their bounds, goes on to those that were fitted.
+void add_untold(SceneSearch& search, const std::vector<std::size_t>& free, SceneFit& fit) {
+  const SceneSearch::Kept kept = search.keep();
+  if (kept.free.size() == free.size()) return;
+  search.restrict_to(free);
+  const Eigen::MatrixXd H = search.differentiate().information;
+  search.go_back(kept);
+  std::vector<Eigen::Index> told, untold;  // of `free`
+  for (std::size_t j = 0; j < free.size(); ++j)
+    (std::ranges::find(kept.free, free[j]) != kept.free.end() ? told : untold).push_back(static_cast<Eigen::Index>(j));
+  const std::vector<model::TaskParameter>& parameters = search.experiment().task().parameters;
+  const auto index = [&](Eigen::Index j) { return static_cast<Eigen::Index>(free[static_cast<std::size_t>(j)]); };
+  const auto span = [&](Eigen::Index j) {
+    const model::TaskParameter& one = parameters[free[static_cast<std::size_t>(j)]];
+    return one.high - one.low;
+  };
+  // In units of the spans, where a direction that nothing tells is one of small numbers.
+  const auto block = [&](const std::vector<Eigen::Index>& rows, const std::vector<Eigen::Index>& columns) {
+    Eigen::MatrixXd part(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
+    for (Eigen::Index i = 0; i < part.rows(); ++i)
+      for (Eigen::Index j = 0; j < part.cols(); ++j) {
+        const Eigen::Index r = rows[static_cast<std::size_t>(i)], c = columns[static_cast<std::size_t>(j)];
+        part(i, j) = H(r, c) * span(r) * span(c);
+      }
+    return part;
+  };
+  Eigen::MatrixXd remains = block(untold, untold);
+  Eigen::MatrixXd G(static_cast<Eigen::Index>(told.size()), static_cast<Eigen::Index>(untold.size()));
+  if (!told.empty()) {
+    const Eigen::MatrixXd across = block(told, untold);
+    G = -numerics::solve_symmetric(block(told, told), across);
+    remains += numerics::transposed_product(across, G);
+  }
+  remains.diagonal().array() += 12.0;  // a uniform distribution's variance is a twelfth of its span squared
+  const Eigen::MatrixXd spread = numerics::invert_symmetric(remains);
+  const Eigen::MatrixXd cross = numerics::product(G, spread);
+  const Eigen::MatrixXd more = numerics::product(cross, G.transpose());
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    for (std::size_t j = 0; j < told.size(); ++j)
+      fit.covariance(index(told[i]), index(told[j])) +=
+          more(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) * span(told[i]) * span(told[j]);
+    for (std::size_t j = 0; j < untold.size(); ++j) {
+      const double value =
+          cross(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) * span(told[i]) * span(untold[j]);
+      fit.covariance(index(told[i]), index(untold[j])) = fit.covariance(index(untold[j]), index(told[i])) = value;
+    }
+  }
+  for (std::size_t i = 0; i < untold.size(); ++i)
+    for (std::size_t j = 0; j < untold.size(); ++j)
+      fit.covariance(index(untold[i]), index(untold[j])) =
+          spread(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) * span(untold[i]) * span(untold[j]);
+}
+
+/// Where the rise crosses `level`, from the middle outwards; its root is nearly linear.
+double find_crossing(const std::vector<double>& values, const std::vector<double>& rises, double middle, double level) {
+  double before = middle, root_before = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::isnan(rises[k])) break;
+    const double root = std::sqrt(std::max(0.0, rises[k])), wanted = std::sqrt(level);
+    if (root >= wanted)
+      return before + (values[k] - before) * (wanted - root_before) / std::max(root - root_before, 1e-300);
+    before = values[k];
+    root_before = root;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+void make_profiles(SceneSearch& search, double inflation, SceneFit& fit) {
+  constexpr double kLevel = 3.841;  // chi-square of one number, 95 %
+  const std::vector<model::TaskParameter>& parameters = search.experiment().task().parameters;
+  for (std::size_t k = 0; k < search.free().size(); ++k) {
+    const std::size_t i = search.free()[k];
+    const model::TaskParameter& of = parameters[i];
+    const double middle = fit.values[static_cast<Eigen::Index>(i)];
+    const double error = std::sqrt(fit.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+    Profile profile;
+    profile.name = of.name;
+    std::vector<double> values[2], rises[2];
+    for (const int side : {0, 1}) {
+      const double bound = side == 0 ? of.low : of.high;
+      for (const double z : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0}) {
+        const double value = middle + (side == 0 ? -z : z) * error;
+        const bool is_beyond = side == 0 ? value <= bound : value >= bound;
+        values[side].push_back(is_beyond ? bound : value);
+        if (is_beyond) break;
+      }
+      rises[side] = search.profile(k, values[side]);
+      for (double& rise : rises[side]) rise /= inflation;
+    }
+    profile.low = find_crossing(values[0], rises[0], middle, kLevel);
+    if (std::isinf(profile.low)) profile.low = -profile.low;
+    profile.high = find_crossing(values[1], rises[1], middle, kLevel);
+    profile.values.assign(values[0].rbegin(), values[0].rend());
+    profile.rises.assign(rises[0].rbegin(), rises[0].rend());
+    profile.values.push_back(middle);
+    profile.rises.push_back(0.0);
+    profile.values.insert(profile.values.end(), values[1].begin(), values[1].end());
+    profile.rises.insert(profile.rises.end(), rises[1].begin(), rises[1].end());
+    fit.profiles.push_back(std::move(profile));
   }
 }
 
@@ -128,30 +312,40 @@ void judge_all(const SceneSearch& search, const Sensed& sensed, SceneFit& fit) {
 
 SceneFit identify_scene(const SceneExperiment& experiment, const SceneFitOptions& options) {
   const model::SceneTask& task = experiment.task();
-  SceneSearch search(experiment, options, free_parameters(task));
+  const bool is_squares = task.loss == model::TaskLoss::Squares;
+  const std::vector<std::size_t> free = free_parameters(task);
+  SceneSearch search(experiment, options, free);
   SceneFit fit;
   fit.values = experiment.start();
   fit.covariance = Eigen::MatrixXd::Zero(fit.values.size(), fit.values.size());
   fit.before = search.errors_at(fit.values).fitted;
   Sensed sensed;
-  if (!search.free().empty()) {
+  if (!free.empty() && is_squares) {
+    const Found found = fit_everywhere(search, free);
+    sensed = found.sensed;
+    fit.message = found.message;
+  } else if (!free.empty()) {
     sensed = sense(search);
-    fit.sensitivity = sensed.rows;
-    fit.unknown = sensed.unknown;
     search.restrict_to(sensed.known);
+    if (!sensed.known.empty()) fit.message = search.search_distance();
   }
-  if (!search.free().empty()) {
-    fit.message = task.loss == model::TaskLoss::Distance ? search.search_distance() : search.search_squares(kRescue);
-    fit.values = search.best();
-    if (options.with_errors) fit.covariance = search.covariance();
-  }
+  fit.sensitivity = sensed.rows;
+  fit.unknown = sensed.unknown;
+  fit.values = search.best();
   const internal::SplitErrors errors = search.errors_at(fit.values);
+  if (options.with_errors && !search.free().empty()) fit.covariance = search.covariance();
+  if (options.with_errors && is_squares) add_untold(search, free, fit);
+  if (options.with_errors && options.with_profile && is_squares) make_profiles(search, errors.inflation(), fit);
   fit.fitted = errors.fitted;
   fit.held_back = errors.held_back;
   fit.held_back_error = errors.held_back_error;
   fit.chi2_per_dof = errors.chi2_per_dof;
   fit.unpredictable = search.unpredictable();
-  fit.is_trusted = task.loss == model::TaskLoss::Distance || fit.chi2_per_dof <= kMisfit;
+  for (const RecordedMotion& motion : experiment.motions())
+    for (const RecordedBody& body : motion.tracked)
+      if (body.rejected > 0) fit.rejected.push_back({motion.name, body.body, body.rejected});
+  fit.is_systematic = is_squares && errors.is_systematic();
+  fit.is_trusted = !is_squares || fit.chi2_per_dof <= kMisfit;
   fit.evaluations = search.evaluations();
   judge_all(search, sensed, fit);
   return fit;

@@ -12,7 +12,7 @@
 
 namespace snug::identification {
 
-/// What one step of a parameter does to the simulations, at the start.
+/// What one step of a parameter does to the simulations, at the values found.
 struct Sensitivity {
   std::string name;
   double step = 0.0;
@@ -26,6 +26,21 @@ struct Sensitivity {
 struct UnknownDirection {
   std::vector<std::pair<std::string, double>> shares;
   double error = 0.0;  ///< standard error along it, in spans of the bounds
+};
+
+/// Samples that jumped away from their neighbours: left out.
+struct Rejected {
+  std::string recording, body;
+  int samples = 0;
+};
+
+/// How the sum of squares rises with one parameter, all others fitted again at each value.
+struct Profile {
+  std::string name;
+  std::vector<double> values,
+      rises;  ///< rises: in units of the misfit's own variance, 3.84 at the ends of the interval
+  /// 95 % interval; infinite where the sum does not rise enough within four standard errors and the bounds.
+  double low = 0.0, high = 0.0;
 };
 
 /// From this time on a body's motion hangs on less than the parameters' errors (it tips one way or the other): it was
@@ -45,23 +60,29 @@ struct SceneFitOptions {
   /// Evaluated points are added to it, and those of an earlier run are not computed again; empty: none.
   std::filesystem::path log;
   std::function<void(const SceneFitProgress&)> progress;
-  bool with_errors = true;  ///< standard errors, which need more simulations
+  bool with_errors = true;    ///< standard errors, which need more simulations
+  bool with_profile = false;  ///< SceneFit::profiles, which need many more; least squares only
 };
 
 struct SceneFit {
   std::vector<Parameter> parameters;  ///< all of the task, in its order
   Eigen::VectorXd values;             ///< of all parameters
-  Eigen::MatrixXd covariance;         ///< of all; zero where one was not fitted
-  double chi2_per_dof = 0.0;          ///< with the noise declared
-  double held_back_error = 0.0;       ///< mm, cost on what was kept out of the fit; not a number when nothing was
+  /// Of all; zero where one is fixed. What is not told stays where it is, known to what its bounds say (uniform), and
+  /// what it does to the others is in their errors.
+  Eigen::MatrixXd covariance;
+  double chi2_per_dof = 0.0;     ///< with the noise declared
+  double held_back_error = 0.0;  ///< mm, cost on what was kept out of the fit; not a number when nothing was
   SceneError before, fitted,
       held_back;  ///< at the start and at the end; of the recordings fitted, and of those held back
   std::vector<Sensitivity> sensitivity;
   std::vector<UnknownDirection> unknown;
   std::vector<Unpredictable> unpredictable;
+  std::vector<Profile> profiles;
+  std::vector<Rejected> rejected;
   int evaluations = 0;
-  bool is_trusted = true;  ///< false: the simulation misses the recordings by far more than noise
-  std::string message;     ///< how the search ended
+  bool is_systematic = false;  ///< residuals hang together: no noise; nothing is then called identified
+  bool is_trusted = true;      ///< false: the simulation misses the recordings by far more than noise
+  std::string message;         ///< how the search ended
 };
 
 /// Held back: each so many-th recording of the task; where there are too few recordings, the end of each.

@@ -27,6 +27,32 @@ ordered_json as_json(const SceneError& error) {
           {"failed", error.failed}};
 }
 
+struct Correlated {
+  std::string a, b;
+  double value = 0.0;
+};
+
+/// Of parameters whose errors hang together by `least` or more, in the order of the task.
+std::vector<Correlated> correlations(const SceneFit& fit, double least) {
+  std::vector<Correlated> list;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
+      const double size = std::sqrt(fit.covariance(a, a) * fit.covariance(b, b));
+      if (!(size > 0.0)) continue;
+      const double value = fit.covariance(a, b) / size;
+      if (std::abs(value) >= least) list.push_back({fit.parameters[j].name, fit.parameters[i].name, value});
+    }
+  }
+  return list;
+}
+
+/// "0.21 +- 0.002", or what is known of the error instead.
+std::string error_text(double error) {
+  if (std::isnan(error)) return "+- unknown  ";
+  return std::isinf(error) ? "not told    " : fmt::format("+- {:<9.2g}", error);
+}
+
 std::string as_text(const SceneError& error) {
   std::string text =
       fmt::format("{:.3f} mm, {:.3f} degrees, right orientation {:.1f} %, cost {:.4f} mm, {} recording{}",
@@ -50,6 +76,7 @@ ordered_json as_json(const SceneFit& fit) {
   json["held_back_error"] = number(fit.held_back_error);
   json["cost"] = fit.fitted.cost;
   json["is_trusted"] = fit.is_trusted;
+  json["is_systematic"] = fit.is_systematic;
   json["before"] = as_json(fit.before);
   json["fitted"] = as_json(fit.fitted);
   if (fit.held_back.recordings > 0) json["held_back"] = as_json(fit.held_back);
@@ -70,6 +97,22 @@ ordered_json as_json(const SceneFit& fit) {
   json["unpredictable"] = ordered_json::array();
   for (const Unpredictable& one : fit.unpredictable)
     json["unpredictable"].push_back({{"recording", one.recording}, {"body", one.body}, {"from_s", one.from}});
+  json["rejected_samples"] = ordered_json::array();
+  for (const Rejected& one : fit.rejected)
+    json["rejected_samples"].push_back({{"recording", one.recording}, {"body", one.body}, {"samples", one.samples}});
+  json["correlations"] = ordered_json::array();
+  for (const Correlated& pair : correlations(fit, 0.0))
+    json["correlations"].push_back({{"a", pair.a}, {"b", pair.b}, {"correlation", pair.value}});
+  if (!fit.profiles.empty()) json["profiles"] = ordered_json::array();
+  for (const Profile& profile : fit.profiles) {
+    ordered_json rises = ordered_json::array();
+    for (const double rise : profile.rises) rises.push_back(number(rise));
+    json["profiles"].push_back({{"name", profile.name},
+                                {"low_95", number(profile.low)},
+                                {"high_95", number(profile.high)},
+                                {"values", profile.values},
+                                {"rises", rises}});
+  }
   json["covariance"] = ordered_json::array();
   for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
     ordered_json row = ordered_json::array();
@@ -83,7 +126,7 @@ ordered_json as_json(const SceneFit& fit) {
 
 std::string as_text(const SceneFit& fit) {
   std::string text =
-      "what one step of each parameter changes at the start (rms), and its standard error alone / with all others\n";
+      "what one step of each parameter changes at the values found (rms), its standard error alone / with all others\n";
   for (const Sensitivity& row : fit.sensitivity)
     text += fmt::format("  {:<20} step {:<9.4g} {:>9.3f} mm {:>9.3f} deg   {:>9.3g} / {:.3g}\n", row.name, row.step,
                         row.position_mm, row.rotation_deg, row.error_alone, row.error_together);
@@ -95,7 +138,13 @@ std::string as_text(const SceneFit& fit) {
   text += fmt::format("before: {}\nfitted: {}\n", as_text(fit.before), as_text(fit.fitted));
   if (fit.held_back.recordings > 0) text += fmt::format("held back: {}\n", as_text(fit.held_back));
   if (std::isfinite(fit.held_back_error)) text += fmt::format("held-back error: {:.4f} mm\n", fit.held_back_error);
-  text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task\n", fit.chi2_per_dof);
+  constexpr double kSmall = 0.5;
+  text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task{}\n", fit.chi2_per_dof,
+                      fit.chi2_per_dof > kExplained ? ": more than noise, nothing is called identified"
+                      : fit.chi2_per_dof < kSmall   ? ": the noise is less than the task says, and so are the errors"
+                                                    : "");
+  if (fit.is_systematic)
+    text += "residuals hang together: what is left is no noise, and nothing is called identified\n";
   struct LeftOut {
     double from = 0.0;  // s, the earliest
     int recordings = 0;
@@ -109,12 +158,21 @@ std::string as_text(const SceneFit& fit) {
   for (const auto& [body, one] : left_out)
     text += fmt::format("left out: {} from {:.2f} s on, in {} recordings: its motion cannot be predicted from there\n",
                         body, one.from, one.recordings);
+  for (const Rejected& one : fit.rejected)
+    text += fmt::format("rejected: {} samples of {} in {} that jump away from their neighbours\n", one.samples,
+                        one.body, one.recording);
   if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
   for (const Parameter& parameter : fit.parameters) {
-    text += fmt::format("  {:<20} {:>12.6g} +- {:<9.2g} {}\n", parameter.name, parameter.value,
-                        parameter.standard_error, name_of(parameter.verdict));
+    const bool is_fixed = std::isnan(parameter.standard_error) && parameter.advice.starts_with("held fixed");
+    text += fmt::format("  {:<20} {:>12.6g} {} {}\n", parameter.name, parameter.value,
+                        is_fixed ? "fixed       " : error_text(parameter.standard_error),
+                        is_fixed ? "" : name_of(parameter.verdict));
     if (!parameter.advice.empty()) text += fmt::format("  {:<20} {}\n", "", parameter.advice);
   }
+  for (const Correlated& pair : correlations(fit, 0.8))
+    text += fmt::format("correlation of {} and {}: {:+.3f}\n", pair.a, pair.b, pair.value);
+  for (const Profile& profile : fit.profiles)
+    text += fmt::format("95 % of {} by its profile: {:.6g} to {:.6g}\n", profile.name, profile.low, profile.high);
   text += fmt::format("{} evaluations; {}\n", fit.evaluations, fit.message);
   return text;
 }

@@ -8,6 +8,7 @@
 #include "snug/cup/law.hpp"
 #include "snug/identification/internal/compliance.hpp"
 #include "snug/identification/internal/pose_misfit.hpp"
+#include "snug/identification/internal/sensor_bias.hpp"
 #include "snug/numerics/dense.hpp"
 #include "snug/numerics/least_squares.hpp"
 #include "snug/spatial/matrix6.hpp"
@@ -29,6 +30,13 @@ using numerics::transposed_product;
 constexpr std::size_t kFewest = 4;        // poses; 24 numbers against 5 or 21
 constexpr std::size_t kForSymmetry = 10;  // poses; fewer leave the test of 16 conditions without power
 constexpr int kFolds = 5;
+constexpr double kWeakNumber = 0.25;  // of a number: its error from which it is weak
+constexpr double kBiased = 38.0;      // chi-square of 6 degrees of freedom: one in a million
+constexpr double kConstant = 2.0;     // chi2 per number of what a bias leaves of sensor less gravity
+constexpr std::size_t kForBias = 10;  // poses
+constexpr const char* kNotExplained =
+    "the law of the cup with the noise declared does not explain these poses: more noise, a sensor that is not tared, "
+    "or another cup";
 
 /// Everything that a fit needs, made once for all choices of poses.
 struct Setup {
@@ -214,15 +222,24 @@ const char* advice_for(const Form::Number& number) {
   return "tilted poses with the same load near and far from the lip: shear and bending in different proportions";
 }
 
-std::vector<Parameter> make_parameters(const Form& form, const Matrix6& K, const Eigen::MatrixXd& covariance) {
+std::vector<Parameter> make_parameters(const Form& form, const Matrix6& K, const Eigen::MatrixXd& covariance,
+                                       double chi2) {
   const Eigen::VectorXd theta = form.numbers_of(K), scale = form.scale_in(K);
   std::vector<Parameter> parameters;
   for (Eigen::Index i = 0; i < form.size(); ++i) {
     const Form::Number& number = form.numbers[static_cast<std::size_t>(i)];
     const double error = std::sqrt(std::max(0.0, covariance(i, i)));
-    const Verdict verdict = judge(error, scale[i]);
-    parameters.push_back(
-        {number.name, theta[i], error, number.unit, verdict, verdict == Verdict::Identified ? "" : advice_for(number)});
+    Verdict verdict = judge(error, scale[i]);
+    // The scale says whether the cup's behaviour is known, not whether this number is: 5 +- 4.9 is no number.
+    const bool is_of_any_cup = number.row == number.column || number.row + number.column == 4;
+    if (verdict == Verdict::Identified && is_of_any_cup && error > kWeakNumber * std::abs(theta[i]))
+      verdict = Verdict::Weak;
+    if (verdict == Verdict::Identified && chi2 > kExplained) verdict = Verdict::Weak;
+    if (chi2 > kMisfit) verdict = Verdict::NotIdentifiable;
+    parameters.push_back({number.name, theta[i], error, number.unit, verdict,
+                          verdict == Verdict::Identified ? ""
+                          : chi2 > kExplained            ? kNotExplained
+                                                         : advice_for(number)});
   }
   return parameters;
 }
@@ -285,44 +302,125 @@ const char* name_of(StiffnessMethod method) {
 
 const char* name_of(WrenchSource source) { return source == WrenchSource::Sensor ? "sensor" : "gravity"; }
 
-StiffnessFit identify_stiffness(const StaticPoses& poses, const StiffnessOptions& options) {
-  if (poses.poses.size() < kFewest)
-    throw InputError(poses.source, "", std::to_string(poses.poses.size()) + " poses",
-                     std::to_string(kFewest) + " or more");
+namespace {
+
+struct Sum {
+  double chi2 = 0.0;
+  int poses = 0;
+};
+
+Sum sum_misfit(const Setup& setup, const std::vector<double>& weight, const Matrix6& K) {
+  Sum sum;
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    if (weight[i] == 0.0) continue;
+    ++sum.poses;
+    sum.chi2 +=
+        internal::compute_misfit(setup.balances[i], K, setup.noise, setup.poses.frames, nullptr).residual.squaredNorm();
+  }
+  return sum;
+}
+
+/// The bias as an unknown beside the numbers of the cup: a step, a fit of what that leaves, and again.
+SensorBias fit_bias(const StaticPoses& poses, const StiffnessOptions& options, const std::vector<double>& weight,
+                    const Matrix6& K_start) {
+  constexpr int kSteps = 5;
+  SensorBias found;
+  Matrix6 K = K_start;
+  double before = 0.0;
+  for (int step = 0; step < kSteps; ++step) {
+    const StaticPoses unbiased = internal::without_bias(poses, found.bias);
+    const Setup setup = make_setup(unbiased, options, WrenchSource::Sensor);
+    if (step > 0) K = fit(setup, weight).K;
+    const double chi2 = sum_misfit(setup, weight, K).chi2;
+    if (step == 0) before = chi2;
+    found.statistic = std::max(0.0, before - chi2);
+    const internal::BiasStep next =
+        internal::step_bias(setup.balances, weight, K, setup.noise, poses.frames, setup.form);
+    if (step + 1 < kSteps) found.bias = wrench_from(Vector6(as_vector(found.bias) + next.bias));
+    found.error = wrench_from(next.error);
+  }
+  return found;
+}
+
+/// The bias of the sensor, if it has one to speak of; found against gravity where the loads are known.
+std::optional<SensorBias> find_sensor_bias(const StaticPoses& poses, const StiffnessOptions& options,
+                                           const std::vector<double>& weight, const Matrix6& K) {
+  if (poses.poses.size() < kForBias) return std::nullopt;
+  std::optional<SensorBias> bias = internal::compare_with_gravity(poses);
+  const bool is_constant = bias && bias->misfit <= kConstant;
+  if (!bias) bias = fit_bias(poses, options, weight, K);
+  bias->is_removed = bias->statistic > kBiased && (is_constant || !bias->is_against_gravity);
+  return bias;
+}
+
+StiffnessFit fit_poses(const StaticPoses& poses, const StiffnessOptions& options, WrenchSource source) {
   StiffnessFit result;
   result.method = options.method;
-  result.wrench = choose_source(poses, options);
+  result.wrench = source;
   const Setup setup = make_setup(poses, options, result.wrench);
   for (const std::size_t odd : internal::find_odd_poses(setup.linear, setup.noise, setup.form, setup.prior))
     result.outliers.push_back(static_cast<int>(odd));
   const std::vector<double> weight = weights_without(poses.poses.size(), result.outliers);
   const Estimate estimate = fit(setup, weight);
-
-  double chi2 = 0.0;
+  const Sum sum = sum_misfit(setup, weight, estimate.K);
+  result.poses = sum.poses;
   for (std::size_t i = 0; i < weight.size(); ++i) {
     if (weight[i] == 0.0) continue;
-    ++result.poses;
-    chi2 += internal::compute_misfit(setup.balances[i], estimate.K, setup.noise, poses.frames, nullptr)
-                .residual.squaredNorm();
     const Vector6 error = internal::compute_prediction_error(setup.balances[i], estimate.K, poses.frames);
     result.position += error.head<3>().squaredNorm();
     result.rotation += error.tail<3>().squaredNorm();
   }
   result.degrees_of_freedom = std::max(1, 6 * result.poses - static_cast<int>(setup.form.size()));
-  result.chi2_per_dof = chi2 / result.degrees_of_freedom;
+  result.chi2_per_dof = sum.chi2 / result.degrees_of_freedom;
   result.position = std::sqrt(result.position / result.poses);
   result.rotation = std::sqrt(result.rotation / result.poses);
-  const double inflation = std::max(1.0, result.chi2_per_dof);
   result.K = estimate.K;
-  result.covariance = inflation * estimate.covariance;
+  result.covariance = estimate.covariance;
+  return result;
+}
+
+}  // namespace
+
+StiffnessFit identify_stiffness(const StaticPoses& measured, const StiffnessOptions& options) {
+  if (measured.poses.size() < kFewest)
+    throw InputError(measured.source, "", std::to_string(measured.poses.size()) + " poses",
+                     std::to_string(kFewest) + " or more");
+  const WrenchSource source = choose_source(measured, options);
+  StiffnessFit result = fit_poses(measured, options, source);
+  StaticPoses poses = measured;
+  if (source == WrenchSource::Sensor) {
+    const std::vector<double> weight = weights_without(poses.poses.size(), result.outliers);
+    const std::optional<SensorBias> bias = find_sensor_bias(poses, options, weight, result.K);
+    if (bias && bias->is_removed) {
+      poses = internal::without_bias(measured, bias->bias);
+      result = fit_poses(poses, options, source);
+      result.degrees_of_freedom = std::max(1, result.degrees_of_freedom - 6);
+    }
+    result.bias = bias;
+  }
+  const Setup setup = make_setup(poses, options, source);
+  const std::vector<double> weight = weights_without(poses.poses.size(), result.outliers);
+  if (result.bias && result.bias->is_removed) {
+    const internal::BiasStep at =
+        internal::step_bias(setup.balances, weight, result.K, setup.noise, poses.frames, setup.form);
+    const Vector6 error = as_vector(result.bias->error);
+    const Eigen::MatrixXd of_bias = result.bias->is_against_gravity ? Eigen::MatrixXd(error.cwiseAbs2().asDiagonal())
+                                                                    : Eigen::MatrixXd(at.covariance);
+    result.covariance += congruence(at.change, of_bias);
+  }
+  const double inflation = std::max(1.0, result.chi2_per_dof);
+  result.covariance *= inflation;
+  result.is_explained = result.chi2_per_dof <= kMisfit;
   result.elasticity = internal::nearest_elasticity(result.K);
-  result.parameters = make_parameters(setup.form, result.K, result.covariance);
+  result.parameters = make_parameters(setup.form, result.K, result.covariance, result.chi2_per_dof);
   if (static_cast<std::size_t>(result.poses) >= kForSymmetry) result.symmetry = test_symmetry(setup, weight, inflation);
   return result;
 }
 
-HeldBackError compute_held_back_error(const StaticPoses& poses, const StiffnessOptions& options,
+HeldBackError compute_held_back_error(const StaticPoses& measured, const StiffnessOptions& options,
                                       const StiffnessFit& whole) {
+  const StaticPoses poses =
+      whole.bias && whole.bias->is_removed ? internal::without_bias(measured, whole.bias->bias) : measured;
   const Setup setup = make_setup(poses, options, whole.wrench);
   const std::vector<double> used = weights_without(poses.poses.size(), whole.outliers);
   HeldBackError error;

@@ -45,6 +45,17 @@ struct SymmetryTest {
   bool operator==(const SymmetryTest&) const = default;
 };
 
+/// What the force/torque sensor reads too much, in the gripper's frame about the lip.
+struct SensorBias {
+  Wrench bias;                      ///< N, Nm
+  Wrench error;                     ///< standard errors
+  bool is_against_gravity = false;  ///< found from known loads; else an unknown beside the cup's numbers
+  double statistic = 0.0;           ///< chi-square with 6 degrees of freedom when there is none
+  double misfit = 0.0;              ///< against gravity: what a constant leaves of the difference, chi2 per number
+  bool is_removed = false;          ///< the fit is of the wrenches without it
+  bool operator==(const SensorBias&) const = default;
+};
+
 struct StiffnessFit {
   StiffnessMethod method = StiffnessMethod::Compliance;
   WrenchSource wrench = WrenchSource::Sensor;
@@ -59,9 +70,14 @@ struct StiffnessFit {
   std::vector<int> outliers;             ///< indices of poses left out: beyond 6 standard deviations of the rest
   int poses = 0;                         ///< used
   std::optional<SymmetryTest> symmetry;  ///< of the symmetric form, with enough poses
+  std::optional<SensorBias> bias;        ///< of the sensor's wrenches, with enough poses
+  /// False: more than twice the noise is left (chi2_per_dof above 4): the law of the cup does not explain these data.
+  bool is_explained = true;
 };
 
-/// Standard errors follow from the noise declared, and grow with the root of chi2_per_dof where that is above 1.
+/// Standard errors follow from the noise declared, and grow with the root of chi2_per_dof where that is above 1. Above
+/// 1.5 nothing is called identified, above 4 nothing is called known at all. A bias of the sensor is removed where it
+/// is no chance (one in a million), and its error is in those of the numbers.
 /// docs/theory/identification.md. Throws InputError when the data cannot be used: too few poses, no wrench of the kind
 /// asked for, wrenches that pull against the deformation.
 [[nodiscard]] StiffnessFit identify_stiffness(const StaticPoses& poses, const StiffnessOptions& options = {});

@@ -108,7 +108,7 @@ struct TaskProgram {
   TaskMotion motion = TaskMotion::Auto;
   std::optional<std::string> controller;  ///< lagged, exact, fast; absent: as the program was packed
   std::optional<double> tempo;            ///< with fast; absent: that it was packed with
-  /// Name of the scenario's robot, or "none"; absent: the scenario's where a recording has joints.
+  /// Name of the scenario's robot, through whose joints the program goes; "none", absent: the tool moves by itself.
   std::optional<std::string> robot;
   bool operator==(const TaskProgram&) const = default;
 };

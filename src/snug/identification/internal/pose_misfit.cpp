@@ -97,7 +97,7 @@ Misfit compute_misfit(const Balance& balance, const Matrix6& K, const NoiseAtS1&
   Vector6 shift = Vector6::Zero();
   Pose H = balance.H;
   Misfit misfit;
-  Matrix6 whitening;  // inverse of the lower factor of the covariance
+  Matrix6& whitening = misfit.whitening;  // inverse of the lower factor of the covariance
   for (int i = 0;; ++i) {
     const Matrix6 A = (cup::spring_tangent(H, K) - balance.wanted_tangent(H)) * noise.to_S1 * twist_of_shift(shift);
     const Vector6 gap = cup::spring_wrench(H, K) - balance.wanted(H) - A * shift;

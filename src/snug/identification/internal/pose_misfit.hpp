@@ -36,6 +36,7 @@ struct Balance {
 struct Misfit {
   Vector6 residual;  ///< of unit covariance when only noise is left; its square is the misfit
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian;  ///< by the numbers of the form; the gradient it gives is exact
+  Matrix6 whitening;  ///< of what the wrench is off by at S1; minus its derivative by it
 };
 /// The nearest balanced pose and wrench (Gauss-Helmert iteration, docs/theory/identification.md, section 4).
 [[nodiscard]] Misfit compute_misfit(const Balance& balance, const Matrix6& K, const NoiseAtS1& noise,

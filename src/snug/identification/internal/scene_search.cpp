@@ -217,18 +217,68 @@ std::string SceneSearch::search_distance() {
   return message;
 }
 
-double SceneSearch::chi2_per_dof(const std::vector<MotionError>& errors) const {
+bool SplitErrors::is_systematic() const {
+  constexpr double kChance = 4.0, kLeast = 0.05;
+  return correlation > std::max(kLeast, kChance / std::sqrt(std::max(1.0, numbers)));
+}
+
+double SplitErrors::inflation() const {
+  constexpr double kLongest = 0.98;  // correlation of neighbours: a hundred samples that err together
+  const double chance = 4.0 * std::sqrt(2.0 / std::max(1.0, numbers));
+  if (!is_systematic() && !(chi2_per_dof > 1.0 + chance)) return std::max(1.0, chi2_per_dof);
+  // What noise does not explain has what correlation there is: so many neighbours say the same wrong thing.
+  const double excess = std::max({0.0, chi2_per_dof - 1.0, correlation * chi2_per_dof});
+  const double shared = excess > 0.0 ? std::clamp(correlation * chi2_per_dof / excess, 0.0, kLongest) : 0.0;
+  return 1.0 + excess * (1.0 + shared) / (1.0 - shared);
+}
+
+void SceneSearch::judge_misfit(const std::vector<MotionError>& errors, SplitErrors& split) const {
   const RowCounts& rows = result_ ? result_->straight : fitted_rows_;
   const RowWeights weights = result_ ? result_->weights : equal_weights(experiment_, fitted_);
-  double sum = 0.0;
+  double sum = 0.0, next = 0.0, of_samples = 0.0;
   for (std::size_t i = 0; i < fitted_.size(); ++i) {
     const MotionError& error = errors[fitted_[i]];
-    if (!error.failure.empty()) return std::numeric_limits<double>::infinity();
+    if (!error.failure.empty()) {
+      split.chi2_per_dof = std::numeric_limits<double>::infinity();
+      return;
+    }
     Eigen::VectorXd r = error.residuals;
     weigh(experiment_, fitted_[i], rows[i], weights[i], r);
     sum += r.squaredNorm();
+    for (const SceneExperiment::BodyRows& body : experiment_.rows_of(fitted_[i])) {
+      of_samples += r.segment(body.first, body.count).squaredNorm();
+      for (Eigen::Index k = body.first; k + body.each < body.first + body.count; ++k) next += r[k] * r[k + body.each];
+    }
   }
-  return sum / std::max(1.0, total(experiment_, fitted_, rows, weights) - static_cast<double>(free_.size()));
+  split.numbers = total(experiment_, fitted_, rows, weights);
+  split.correlation = of_samples > 0.0 ? next / of_samples : 0.0;
+  split.chi2_per_dof = sum / std::max(1.0, split.numbers - static_cast<double>(free_.size()));
+}
+
+void SceneSearch::move_to(const Eigen::VectorXd& values) {
+  best_ = values;
+  best_cost_ = misfit_ = std::numeric_limits<double>::infinity();
+  result_.reset();
+}
+
+void SceneSearch::go_back(const Kept& kept) {
+  restrict_to(std::vector<std::size_t>(kept.free));
+  best_ = kept.best;
+  result_ = kept.result;
+  misfit_ = kept.misfit;
+}
+
+std::vector<Eigen::VectorXd> SceneSearch::spread_points(int count, std::size_t kept) {
+  const Kept before = keep();
+  const std::vector<Eigen::VectorXd> tried = scattered(count);
+  const std::vector<double> found = costs(tried, "scatter");
+  go_back(before);
+  std::vector<std::size_t> order(tried.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return found[a] < found[b]; });
+  std::vector<Eigen::VectorXd> points;
+  for (std::size_t k = 0; k < std::min(kept, order.size()); ++k) points.push_back(full(tried[order[k]]));
+  return points;
 }
 
 SplitErrors SceneSearch::errors_at(const Eigen::VectorXd& values) const {
@@ -265,7 +315,7 @@ SplitErrors SceneSearch::errors_at(const Eigen::VectorXd& values) const {
     }
     split.held_back_error = 1e3 * experiment_.task().position_noise * std::sqrt(sum / std::max(1.0, samples));
   }
-  split.chi2_per_dof = chi2_per_dof(errors);
+  judge_misfit(errors, split);
   return split;
 }
 
@@ -290,13 +340,14 @@ Eigen::MatrixXd SceneSearch::covariance() {
     of_free = distance_covariance();
   } else {
     const Fitted at = result_ ? *result_ : unfitted(free_of(best_));
-    const double chi2 = errors_at(best_).chi2_per_dof;
+    const SplitErrors errors = errors_at(best_);
+    const double chi2 = errors.chi2_per_dof;
     const numerics::BatchedProblem there = problem(at, kAlways, {});
     const double counted = total(experiment_, fitted_, at.straight, at.weights);
     const double excess = (chi2 - 1.0) * counted - 2.0 * std::sqrt(2.0 * counted);  // more than chance, twice
     of_free = numerics::squares_covariance(
                   there, result_ ? at.derivatives : numerics::differentiate(there, at.x, at.own), excess) *
-              std::max(1.0, std::isfinite(chi2) ? chi2 : 1.0);
+              (std::isfinite(chi2) ? errors.inflation() : 1.0);
   }
   const auto all = static_cast<Eigen::Index>(experiment_.task().parameters.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);

@@ -19,12 +19,31 @@ struct SplitErrors {
   SceneError fitted, held_back;
   double held_back_error = 0.0;  ///< mm; not a number when nothing is held back
   double chi2_per_dof = 0.0;     ///< of what is fitted
+  double numbers = 0.0;          ///< that chi2 is of
+  double correlation = 0.0;      ///< of each residual with the next one of its body and axis
+  /// Whether residuals hang together by more than chance and a twentieth: then it is no noise that is left.
+  [[nodiscard]] bool is_systematic() const;
+  /// What the squares of standard errors are to be enlarged by (docs/theory/identification.md, 9).
+  [[nodiscard]] double inflation() const;
 };
 
 /// Own unknowns are fitted to each recording, then its errors are returned.
 [[nodiscard]] std::vector<MotionError> evaluate_all(const SceneExperiment& experiment, const Eigen::VectorXd& values);
 
 class SceneSearch {
+  /// What least squares are at: parameters, what recordings have of their own, how well they are known.
+  struct Fitted {
+    Eigen::VectorXd x, step;
+    std::vector<Eigen::VectorXd> own;
+    RowCounts rows;      ///< that are fitted
+    RowCounts straight;  ///< that can be predicted
+    RowWeights weights;
+    double misfit = 1.0;  ///< sum of squares of a row, at least 1
+    numerics::BatchedDerivatives derivatives;
+    std::string message;
+    bool is_solved = false;
+  };
+
  public:
   SceneSearch(const SceneExperiment& experiment, const SceneFitOptions& options, std::vector<std::size_t> free);
 
@@ -48,6 +67,17 @@ class SceneSearch {
   /// Scatter, then least squares from the start and from the best point found. Where chi2 per degree of freedom stays
   /// above `rescue`, points are scattered even if none were asked for.
   std::string search_squares(double rescue);
+  /// Least squares from where best() is, and nowhere else. Returns how it ended.
+  std::string search_near();
+  /// Of search_near or search_squares: bounded, per number; infinite where there was none.
+  [[nodiscard]] double misfit() const { return misfit_; }
+  /// Values of all parameters, the cheapest of `count` points spread over the bounds of the free ones.
+  [[nodiscard]] std::vector<Eigen::VectorXd> spread_points(int count, std::size_t kept);
+  /// Everything that was found so far is forgotten but the recordings: best() is there.
+  void move_to(const Eigen::VectorXd& values);
+  /// Rise of the sum of squares, all other free parameters and own unknowns fitted, with the free parameter `index` at
+  /// each of these values; not a number where nothing could be simulated.
+  [[nodiscard]] std::vector<double> profile(std::size_t index, const std::vector<double>& values);
   /// Of all parameters; zero where one is not free. Squares: inverse information, as far as the sum of squares rises as
   /// it says, enlarged by chi2 per degree of freedom above 1. Distance: from the scatter of the recordings' slopes and
   /// the curvature of the mean.
@@ -55,20 +85,17 @@ class SceneSearch {
   [[nodiscard]] SplitErrors errors_at(const Eigen::VectorXd& values) const;
   [[nodiscard]] std::vector<Unpredictable> unpredictable() const;
 
- private:
-  /// What least squares are at: parameters, what recordings have of their own, how well they are known.
-  struct Fitted {
-    Eigen::VectorXd x, step;
-    std::vector<Eigen::VectorXd> own;
-    RowCounts rows;      ///< that are fitted
-    RowCounts straight;  ///< that can be predicted
-    RowWeights weights;
-    double misfit = 1.0;  ///< sum of squares of a row, at least 1
-    numerics::BatchedDerivatives derivatives;
-    std::string message;
-    bool is_solved = false;
+  /// What was found, to come back to.
+  struct Kept {
+    Eigen::VectorXd best;
+    std::optional<Fitted> result;
+    std::vector<std::size_t> free;
+    double misfit = std::numeric_limits<double>::infinity();
   };
+  [[nodiscard]] Kept keep() const { return {best_, result_, free_, misfit_}; }
+  void go_back(const Kept& kept);
 
+ private:
   [[nodiscard]] Eigen::VectorXd full(const Eigen::VectorXd& free_values) const;
   [[nodiscard]] Eigen::VectorXd free_of(const Eigen::VectorXd& values) const;
   /// Around a point, of the rows named; `prior`: standard deviations of the parameters about it, or empty.
@@ -101,7 +128,7 @@ class SceneSearch {
   [[nodiscard]] Eigen::MatrixXd distance_covariance();
   /// Shifts of the free parameters at which the mean cost has risen by more than its roughness.
   [[nodiscard]] Eigen::VectorXd curvature_steps(const Eigen::VectorXd& middle);
-  [[nodiscard]] double chi2_per_dof(const std::vector<MotionError>& errors) const;
+  void judge_misfit(const std::vector<MotionError>& errors, SplitErrors& split) const;
   /// Of the rows that can be predicted, each bounded: what starts are compared by.
   [[nodiscard]] double bounded_misfit(const Fitted& at) const;
   /// Samples that rows of a body are the means of.
@@ -116,6 +143,7 @@ class SceneSearch {
   std::optional<Fitted> result_;            ///< of least squares, the best
   Eigen::VectorXd best_, lower_, upper_, step_;
   double best_cost_;
+  double misfit_ = std::numeric_limits<double>::infinity();
   mutable int evaluations_ = 0;
   SearchLog log_;
 };

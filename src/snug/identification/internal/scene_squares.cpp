@@ -21,7 +21,8 @@ constexpr double kMostStep = 0.05;                                 // of the spa
 constexpr double kLarger = 6.0;                                    // steps, where what they do is rough
 constexpr double kLongSimulation = 100.0;  // s, for one difference of each parameter: then the Jacobian stays
 constexpr int kFixedJacobianSteps = 10;    // of a search with it, a simulation each
-constexpr double kGoodEnough = 1.2;        // misfit, for no other start to be tried
+constexpr int kProfileIterations = 10;
+constexpr double kGoodEnough = 1.2;  // misfit, for no other start to be tried
 
 }  // namespace
 
@@ -271,10 +272,54 @@ double SceneSearch::bounded_misfit(const Fitted& at) const {
   return sum / std::max(1.0, total(experiment_, fitted_, at.straight, at.weights));
 }
 
+std::string SceneSearch::search_near() {
+  Fitted found = least_squares_from(free_of(best_));
+  misfit_ = found.is_solved ? bounded_misfit(found) : std::numeric_limits<double>::infinity();
+  if (!found.is_solved) return "no simulation from there: " + found.message;
+  best_ = full(found.x);
+  const std::string message = found.message;
+  result_ = std::move(found);
+  return message;
+}
+
+std::vector<double> SceneSearch::profile(std::size_t index, const std::vector<double>& values) {
+  std::vector<double> rises(values.size(), std::numeric_limits<double>::quiet_NaN());
+  if (!result_) return rises;
+  const Kept kept = keep();
+  std::vector<std::size_t> others = free_;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(index));
+  const auto cost_at = [&](double value) {
+    Fitted at = *kept.result;
+    const Eigen::VectorXd step = at.step;
+    best_ = kept.best;
+    best_[static_cast<Eigen::Index>(kept.free[index])] = value;
+    restrict_to(others);
+    at.x = free_of(best_);
+    at.step.resize(at.x.size());
+    for (std::size_t j = 0, k = 0; j < kept.free.size(); ++j)
+      if (j != index) at.step[static_cast<Eigen::Index>(k++)] = step[static_cast<Eigen::Index>(j)];
+    const numerics::BatchedProblem there = problem(at, kAlways, {});
+    if (others.empty() && experiment_.own_deviation().size() == 0) {
+      double sum = 0.0;
+      for (const Eigen::VectorXd& r : numerics::differentiate(there, at.x, at.own).residuals)
+        sum += r.size() == 0 ? std::numeric_limits<double>::quiet_NaN() : r.squaredNorm();
+      return sum;
+    }
+    numerics::BatchedOptions options;
+    options.max_iterations = kProfileIterations;
+    options.tolerance = kSettledLast / std::max(1.0, total(experiment_, fitted_, at.rows, at.weights));
+    return numerics::solve_batched(there, options).cost;
+  };
+  const double least = cost_at(kept.best[static_cast<Eigen::Index>(kept.free[index])]);
+  for (std::size_t k = 0; k < values.size(); ++k) rises[k] = cost_at(values[k]) - least;
+  go_back(kept);
+  return rises;
+}
+
 std::string SceneSearch::search_squares(double rescue) {
   const model::SearchSettings& settings = experiment_.task().search;
   const Eigen::VectorXd start = free_of(best_);
-  double least = std::numeric_limits<double>::infinity();
+  double& least = misfit_ = std::numeric_limits<double>::infinity();
   std::string message;
   const auto go_from = [&](const Eigen::VectorXd& from) {
     Fitted found = least_squares_from(from);

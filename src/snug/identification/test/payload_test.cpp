@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "snug/cup/law.hpp"
+#include "snug/identification/payload_file.hpp"
+#include "snug/identification/test/helpers.hpp"
 #include "snug/identification/virtual_lift.hpp"
 
 namespace snug::identification {
@@ -116,6 +119,58 @@ TEST(Payload, IsNearlyExactWithoutNoise) {
   // What is left: sums for integrals at 2 ms and a cup without its damping in the law of the lip's place.
   EXPECT_NEAR(found.load_S.mass, 0.9, 2e-3);
   EXPECT_LE((found.load_S.com - lift.load_S.com).norm(), 1e-3) << found.load_S.com.transpose();
+}
+
+/// A rigid lip that lifts a box straight up, as a table: 10 draws of the noise.
+std::string straight_lift(double mass, const Vector3& com_S, double length, Rng& rng) {
+  std::string text = "t,x,y,z,qw,qx,qy,qz,fx,fy,fz,tx,ty,tz\n";
+  const Matrix3 R_WE = Vector3(1.0, -1.0, -1.0).asDiagonal();
+  for (int k = 0; k <= 750; ++k) {
+    const double t = 0.002 * k, w = 2.0 * 3.14159265 / 1.5;
+    const double height = 0.3 * (t / 1.5 - std::sin(w * t) / (1.5 * w)), acceleration = 0.3 / 1.5 * w * std::sin(w * t);
+    const Vector3 force = R_WE.transpose() * Vector3(0.0, 0.0, mass * (9.81 + acceleration));
+    const Vector3 torque = (com_S + Vector3(0.0, 0.0, length)).cross(force);
+    text += std::to_string(t) + ",0.4,0.1," + std::to_string(0.5 + height) + ",0,1,0,0";
+    for (int i = 0; i < 3; ++i) text += "," + std::to_string(force[i] + 0.3 * rng.normal());
+    for (int i = 0; i < 3; ++i) text += "," + std::to_string(torque[i] + 0.02 * rng.normal());
+    text += "\n";
+  }
+  return text;
+}
+
+TEST(PayloadFile, SaysWhatALiftStraightUpDoesNotTell) {
+  const CupFrames frames = frames_of(kCup);
+  const Pose X_ES = frames.X_ES2 * frames.X_SS1.inverse();
+  Rng rng = Rng(5).split("straight");
+  PayloadSettings settings;
+  settings.frames = frames;
+  for (int draw = 0; draw < 10; ++draw) {
+    SCOPED_TRACE(draw);
+    const Vector3 com(rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), rng.uniform(0.03, 0.1));
+    const double mass = rng.uniform(0.4, 1.5);
+    const std::vector<PayloadSample> lift =
+        with_rigid_lip(parse_lift(straight_lift(mass, com, X_ES.p.z(), rng), "lift.csv"), frames);
+    const std::vector<Parameter> told = judge_payload(estimate_of(lift, settings));
+    EXPECT_EQ(told[0].verdict, Verdict::Identified);
+    EXPECT_NEAR(told[0].value, mass, 0.02 * mass);
+    for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+      EXPECT_EQ(told[1 + axis].verdict, Verdict::Identified);
+      EXPECT_NEAR(told[1 + axis].value, com[static_cast<Eigen::Index>(axis)], 0.005);
+    }
+    EXPECT_EQ(told[3].verdict, Verdict::NotIdentifiable);
+    EXPECT_NE(told[3].advice.find("straight up"), std::string::npos);
+  }
+}
+
+TEST(PayloadFile, ThatCannotBeUsedIsRefusedWithFileAndLine) {
+  const std::string head = "t,x,y,z,qw,qx,qy,qz,fx,fy,fz,tx,ty,tz\n";
+  const auto refused = [&](const std::string& text, const char* part) {
+    test::expect_refused([&] { (void)parse_lift(text, "lift.csv"); }, part);
+  };
+  refused(head + "0,0,0,0,1,0,0,0,0,0,5,0,0,0\n", "0.2 s or more");
+  refused(head + "0,0,0,0,1,0,0,0,0,0,5,0,0,0\n0,0,0,0,1,0,0,0,0,0,5,0,0,0\n", "lift.csv:3");
+  refused(head + "0,0,0,0,2,0,0,0,0,0,5,0,0,0\n", "quaternion");
+  refused("t,x\n0,0\n", "fx");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <string>
 
 #include "snug/cell/scene.hpp"
@@ -18,6 +19,7 @@
 #include "snug/identification/internal/followed_rows.hpp"
 #include "snug/identification/internal/motion_error.hpp"
 #include "snug/identification/internal/program_motion.hpp"
+#include "snug/identification/test/helpers.hpp"
 #include "snug/model/number_edit.hpp"
 
 namespace snug::identification {
@@ -137,6 +139,185 @@ parameters:
   EXPECT_EQ(fit.values[1], 1.5);  // left alone
   EXPECT_TRUE(std::isinf(fit.parameters[1].standard_error));
   EXPECT_NEAR(fit.values[0], 0.3, 0.01);
+}
+
+/// A box slides over a floor towards a wall.
+constexpr const char* kSliding = R"(name: sliding
+duration: 1.0
+gravity: [0, 0, -9.81]
+materials: [{name: box}, {name: floor}, {name: wall}]
+contacts:
+  pairs:
+    - {between: [box, floor], friction: 0.3, restitution: 0.0}
+    - {between: [box, wall], friction: 0.0, restitution: 0.3}
+bodies:
+  - {name: floor, kind: static, size: [8, 2, 0.1], material: floor, pose: {position: [0, 0, -0.05]}}
+  - {name: wall, kind: static, size: [0.1, 2, 0.4], material: wall, pose: {position: [0.75, 0, 0.21]}}
+  - name: parcel
+    size: [0.2, 0.2, 0.1]
+    mass: 0.55
+    material: box
+    pose: {position: [0, 0, 0.05]}
+    twist: {linear: [1.0, 0, 0]}
+)";
+
+TEST_F(SceneFitTest, GivesTheErrorOfAFrozenPartnerToTheOtherOne) {
+  std::ofstream(folder_ / "scene.yaml") << kSliding;
+  // On a plane only their product shows; gravity starts 5 % off.
+  const model::SceneTask both = task(R"(search: {local: 60, held_back: 0}
+parameters:
+  - {name: mu, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.6]}
+  - {name: g, form: scale, path: "gravity[2]", value: 1.05, bounds: [0.7, 1.3]}
+)");
+  const SceneFit fit = identify_scene(SceneExperiment(both, {record({{"contacts.pairs[0].friction", 0.22}}, 12)}, 2));
+  EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.2);
+  EXPECT_NE(fit.parameters[0].verdict, Verdict::Identified);
+  EXPECT_LT(std::abs(fit.values[0] - 0.22), 3.0 * fit.parameters[0].standard_error);
+  EXPECT_LT(fit.covariance(0, 1) / std::sqrt(fit.covariance(0, 0) * fit.covariance(1, 1)), -0.95);
+}
+
+TEST_F(SceneFitTest, FindsWhatTheFirstSimulationDoesNotReach) {
+  std::ofstream(folder_ / "scene.yaml") << kSliding;
+  const std::vector<model::NumberEdit> truth{{"contacts.pairs[0].friction", 0.22},
+                                             {"bodies.parcel.twist.linear[0]", 2.1},
+                                             {"contacts.pairs[1].restitution", 0.4}};
+  const model::SceneTask wall = task(R"(search: {local: 100, held_back: 0}
+parameters:
+  - {name: mu, path: "contacts.pairs[0].friction", value: 0.3, bounds: [0.05, 0.6]}
+  - {name: v0, path: "bodies.parcel.twist.linear[0]", value: 1.4, bounds: [1.3, 2.5]}
+  - {name: e, path: "contacts.pairs[1].restitution", value: 0.2, bounds: [0, 0.9]}
+)");
+  SceneFitOptions options;
+  options.with_profile = true;
+  const SceneFit fit = identify_scene(SceneExperiment(wall, {record(truth, 13), record(truth, 14)}, 2), options);
+  EXPECT_TRUE(fit.unknown.empty());
+  EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.15);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(fit.parameters[i].verdict, Verdict::Identified) << fit.parameters[i].name;
+    EXPECT_LT(std::abs(fit.parameters[i].value - truth[i].value), 4.0 * fit.parameters[i].standard_error);
+    // The sum of squares is a parabola here: the profile's interval is that of two standard errors.
+    ASSERT_EQ(fit.profiles.size(), 3U);
+    const double half = 0.5 * (fit.profiles[i].high - fit.profiles[i].low);
+    EXPECT_NEAR(half / (1.96 * fit.parameters[i].standard_error), 1.0, 0.3) << fit.parameters[i].name;
+  }
+}
+
+TEST_F(SceneFitTest, LeavesOutSamplesThatJumpAndCountsThem) {
+  const std::vector<model::NumberEdit> truth{{"contacts.pairs[0].friction", 0.41}};
+  RecordedMotion motion = record(truth, 15);
+  std::vector<record::PoseSample>& poses = motion.tracked[0].poses;
+  poses[40].p.x() += 0.3;
+  poses[41].p.z() -= 0.05;
+  poses[90] = Pose{poses[90].pose().R * exp_rotation(Vector3(0.0, 0.0, 3.1)), poses[90].p};
+  const SceneFit fit = identify_scene(SceneExperiment(task(kTwo), {motion, record(truth, 16)}, 2));
+  ASSERT_EQ(fit.rejected.size(), 1U);
+  EXPECT_EQ(fit.rejected[0].samples, 3);
+  EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.15);
+  EXPECT_LT(std::abs(fit.values[0] - 0.41), 4.0 * fit.parameters[0].standard_error);
+}
+
+TEST_F(SceneFitTest, NamesUnitsAndConventionsThatAreNotOurs) {
+  const RecordedMotion good = record({}, 17);
+  const auto refused = [&](const std::function<void(RecordedMotion&)>& spoil, const char* part) {
+    RecordedMotion bad = good;
+    spoil(bad);
+    test::expect_refused([&] { (void)SceneExperiment(task(kTwo), {bad}, 1); }, part);
+  };
+  const auto each = [](RecordedMotion& motion, const std::function<void(record::PoseSample&)>& change) {
+    for (record::PoseSample& pose : motion.tracked[0].poses) change(pose);
+  };
+  refused(
+      [](RecordedMotion& motion) {
+        for (double& time : motion.times) time *= 1e3;
+      },
+      "milliseconds");
+  refused(
+      [&](RecordedMotion& motion) {
+        each(motion, [](record::PoseSample& pose) { pose.p = 1e3 * (pose.p + Vector3(0.5, 0.0, 0.0)); });
+      },
+      "millimetres");
+  refused(
+      [&](RecordedMotion& motion) {  // x, y, z, w where w, x, y, z is read
+        each(motion, [](record::PoseSample& pose) {
+          pose.quat = Quaternion(pose.quat.x(), pose.quat.y(), pose.quat.z(), pose.quat.w());
+        });
+      },
+      "x, y, z, w");
+  refused(
+      [&](RecordedMotion& motion) {
+        each(motion, [](record::PoseSample& pose) {
+          pose = Pose{pose.pose().R * exp_rotation(Vector3(0.0, 0.0, 3.14)), pose.p};
+        });
+      },
+      "180 degrees");
+  refused(
+      [&](RecordedMotion& motion) {
+        for (std::size_t k = 60; k < motion.tracked[0].poses.size(); ++k) {
+          record::PoseSample& pose = motion.tracked[0].poses[k];
+          pose = Pose{pose.pose().R * exp_rotation(Vector3(3.14, 0.0, 0.0)), pose.p};
+        }
+      },
+      "half turn about its x axis");
+}
+
+TEST_F(SceneFitTest, ReadsRowsInWhichMarkersWereLost) {
+  const std::string columns = "t,x,y,z,qw,qx,qy,qz\n";
+  const auto read = [&](const std::string& row) {
+    return parse_motions(task(kTwo), columns + "0,0,0,0.12,1,0,0,0\n0.1,0.1,0,0.1,1,0,0,0\n" + row + "\n", "a.csv");
+  };
+  for (const char* row : {"0.2,,,,,,,", "0.2,nan,nan,nan,nan,nan,nan,nan"}) {
+    const std::vector<RecordedMotion> motions = read(row);
+    ASSERT_EQ(motions[0].times.size(), 3U);
+    EXPECT_FALSE(record::is_tracked(motions[0].tracked[0].poses[2]));
+  }
+  test::expect_refused([&] { (void)read("0.2,0.1,,0.1,1,0,0,0"); }, "beside other numbers");
+  test::expect_refused([&] { (void)read(",0.1,0,0.1,1,0,0,0"); }, "every row");
+}
+
+/// A robot's log with a tool on a circle, and a box that comes after 2 s and is picked after 4 s.
+TEST(RecordedDrive, IsThePathOfTheLogWithItsSwitchAndTheBoxesThatCame) {
+  const auto tool_at = [](double t) {
+    return Pose{exp_rotation(Vector3(0.0, 0.0, 0.3 * std::sin(t))),
+                Vector3(0.3 * std::cos(0.5 * t), 0.3 * std::sin(0.5 * t), 0.2)};
+  };
+  Rng rng = Rng(3).split("log");
+  record::ArchiveRecording recording;
+  recording.robot.names = {"actual_digital_output_bits"};
+  recording.robot.columns.resize(1);
+  for (int k = 0; k < 1000; ++k) {
+    const double t = 0.003 + 0.008 * k;
+    recording.robot.times.push_back(50.0 + t);
+    Pose X = tool_at(t);
+    X.p += 3e-5 * Vector3(rng.normal(), rng.normal(), rng.normal());
+    recording.robot.tool.emplace_back(X);
+    recording.robot.columns[0].push_back(t > 4.0 ? 1.0 : 0.0);
+  }
+  ASSERT_TRUE(has_drive(recording));
+  const validation::SimulatedRun run = run_of_log(recording, {"BOX"});
+  validation::Measurement measured;
+  measured.bodies.resize(1);
+  const Pose X_WP{Matrix3::Identity(), tool_at(4.0).p - Vector3(0.0, 0.0, 0.1)};
+  for (int k = 0; k < 720; ++k) {
+    const double t = k / 120.0;
+    measured.pose_times.push_back(t);
+    measured.bodies[0].push_back(t < 2.0 ? record::lost_pose() : record::PoseSample(X_WP));
+  }
+  const RecordedDrive drive = make_drive(recording, run, measured, 0.008);
+  double worst = 0.0, worst_speed = 0.0;
+  for (std::size_t k = 4; k + 4 < drive.tool.size(); ++k) {
+    const double t = 0.003 + 0.008 * static_cast<double>(k);
+    worst = std::max(worst, (drive.tool[k].X_WE.p - tool_at(t).p).norm());
+    const Vector3 v = 0.15 * Vector3(-std::sin(0.5 * t), std::cos(0.5 * t), 0.0);
+    worst_speed = std::max(worst_speed, (drive.tool[k].V_WE.linear - v).norm());
+  }
+  EXPECT_LT(worst, 9e-5);        // 30 um of noise, less by sqrt(3): five deviations of the furthest of 1000
+  EXPECT_LT(worst_speed, 0.01);  // what the same noise does to slopes over 48 ms
+  ASSERT_EQ(drive.arrivals.size(), 1U);
+  EXPECT_NEAR(drive.arrivals[0].time, 2.0, 0.009);
+  EXPECT_LT((drive.arrivals[0].X_WP.p - X_WP.p).norm(), 1e-12);
+  std::size_t first = 0;
+  while (!drive.vacuum[first]) ++first;
+  EXPECT_NEAR(0.008 * static_cast<double>(first), 4.0 - 0.003, 0.0081);
 }
 
 TEST_F(SceneFitTest, FindsOwnStartVelocityAndDelayOfEachRecording) {

@@ -239,6 +239,72 @@ TEST(Stiffness, EnlargesErrorsWhenThereIsMoreThanNoise) {
                 0.1 * said.parameters[i].standard_error);
 }
 
+/// A constant in the gripper's frame.
+StaticPoses biased(StaticPoses poses, const Vector6& bias_E) {
+  for (StaticPose& pose : poses.poses) {
+    pose.wrench_S->head<3>() += pose.X_ES.R.transpose() * bias_E.head<3>();
+    pose.wrench_S->tail<3>() += pose.X_ES.R.transpose() * bias_E.tail<3>();
+  }
+  return poses;
+}
+
+TEST(Stiffness, TakesOutABiasOfTheSensorFoundAgainstGravityOrAsAnUnknown) {
+  const Vector6 bias = (Vector6() << 2.0, -1.5, 3.0, 0.05, -0.1, 0.02).finished();
+  for (const bool knows_loads : {true, false}) {
+    SCOPED_TRACE(knows_loads);
+    int far = 0;
+    for (std::uint64_t seed = 21; seed < 31; ++seed) {
+      StaticPoses poses = biased(noisy(virtual_poses(60), seed), bias);
+      if (!knows_loads)
+        for (StaticPose& pose : poses.poses) pose.load = {};
+      const StiffnessFit fit = identify_stiffness(poses);
+      ASSERT_TRUE(fit.bias && fit.bias->is_removed) << seed;
+      EXPECT_EQ(fit.bias->is_against_gravity, knows_loads);
+      EXPECT_LT((as_vector(fit.bias->bias) - bias).cwiseQuotient(as_vector(fit.bias->error)).cwiseAbs().maxCoeff(),
+                4.5);
+      EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.3);
+      EXPECT_TRUE(fit.is_explained);
+      for (std::size_t i = 0; i < 5; ++i)
+        far += std::abs(fit.parameters[i].value - kTrueNumbers[i]) > 3.0 * fit.parameters[i].standard_error ? 1 : 0;
+    }
+    EXPECT_LE(far, 1);  // of 50
+  }
+}
+
+TEST(Stiffness, HasNoBiasWhereThereIsNone) {
+  for (std::uint64_t seed = 31; seed < 41; ++seed) {
+    StaticPoses poses = noisy(virtual_poses(60), seed);
+    EXPECT_FALSE(identify_stiffness(poses).bias->is_removed);
+    for (StaticPose& pose : poses.poses) pose.load = {};
+    EXPECT_FALSE(identify_stiffness(poses).bias->is_removed);
+  }
+}
+
+TEST(Stiffness, SaysWhenTheLawDoesNotExplainTheData) {
+  StaticPoses poses = virtual_poses(80);
+  poses.noise = {0.00025, 0.00175, 0.15, 0.01};
+  Rng rng = Rng(41).split("noise");
+  add_noise(poses, poses.noise, rng);
+  for (StaticPose& pose : poses.poses) {
+    pose.load = {};
+    pose.wrench_S->z() *= 1.0 + 0.4 * std::abs(pose.wrench_S->z()) / 5.0;  // stiffer the more it is stretched
+    pose.wrench_S->head<2>() *= 1.0 - 0.3 * std::abs(pose.wrench_S->z()) / 10.0;
+  }
+  const StiffnessFit fit = identify_stiffness(poses);
+  EXPECT_GT(fit.chi2_per_dof, kMisfit);
+  EXPECT_FALSE(fit.is_explained);
+  for (const Parameter& parameter : fit.parameters) EXPECT_EQ(parameter.verdict, Verdict::NotIdentifiable);
+}
+
+TEST(Stiffness, CallsANumberWeakWhoseErrorIsAsLargeAsItself) {
+  // Twelve poses with the noise of the reference: c is known to less than 5 % of sqrt(k_lat k_bend), 112, not to 25 %
+  // of itself, -5.
+  const model::CupElasticity hardly_coupled{2300.0, 5500.0, 5.5, 2.8, -5.0};
+  const StiffnessFit fit = identify_stiffness(noisy(virtual_poses(12, cup::as_matrix(hardly_coupled)), 42));
+  ASSERT_GT(fit.parameters[4].standard_error, 0.25 * std::abs(fit.parameters[4].value));
+  EXPECT_NE(fit.parameters[4].verdict, Verdict::Identified);
+}
+
 TEST(Stiffness, IsTheSameTwice) {
   const StaticPoses poses = noisy(virtual_poses(80), 4);
   for (const StiffnessMethod method :
