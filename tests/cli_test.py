@@ -17,6 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
 CUP_DATA = ROOT.parent / "shared" / "data" / "cup"
+RELEASES = ROOT.parent / "shared" / "data" / "releases" / "releases.csv"
 
 
 def snug(*words, stdin=""):
@@ -385,6 +386,19 @@ class Cup(unittest.TestCase):
         answer, = self.answers("settle", [LOAD])
         self.assertTrue(answer["stable"])
         self.assertAlmostEqual(answer["E_o_S"][2], 0.05 + 9.81 / 1000.0, delta=1e-9)  # the solver's tolerance
+
+    def test_a_cup_estimated_from_a_data_sheet_is_one_that_a_scenario_takes(self):
+        words = ("cup", "estimate", "--diameter", 40, "--bellows", 1.5, "--material", "silicone", "--lip", "foam", "--stroke", 12, "--mass-max", 5)
+        with tempfile.TemporaryDirectory() as folder:
+            scenario = Path(folder) / "scene.yaml"
+            result = snug(*words, "--vacuum", "-60kPa")
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            scenario.write_text(DROP.read_text() + "\n" + result.stdout)
+            self.assertEqual(snug("simulate", scenario, "--until", "0.01", "--json").returncode, 0)
+        found = json.loads(snug(*words, "--vacuum", "-0.6bar", "--json").stdout)
+        self.assertTrue(all(p["low"] <= p["value"] <= p["high"] for p in [*found["parameters"], found["pull_off_N"]]))
+        self.assertEqual(snug(*words, "--vacuum", "-60").returncode, 2)
+        self.assertIn("pull-off", snug("cup", "catalogue").stdout)
 
     def test_blank_lines_are_skipped_and_the_answers_keep_their_order(self):
         cases = [dict(DEFORMATION, id=number) for number in (5, 3, 9)]
@@ -860,7 +874,7 @@ class Identify(unittest.TestCase):
 
     def test_help_names_the_parts_and_has_examples(self):
         self.assertIn("stiffness", snug("identify", "--help").stdout)
-        for part in ("stiffness", "damping", "pluck", "scene"):
+        for part in ("stiffness", "damping", "pluck", "release", "scene"):
             self.assertIn("Examples:", snug("identify", part, "--help").stdout)
 
     @unittest.skipUnless(CUP_DATA.exists(), f"no reference data at {CUP_DATA}")
@@ -886,6 +900,29 @@ class Identify(unittest.TestCase):
         self.assertEqual(again.stdout, result.stdout, "the same input must give the same bytes")
         table = snug("identify", "stiffness", CUP_DATA / "identification.json", "--parameters", "21")
         self.assertIn("k_x_ry", table.stdout)
+
+    @unittest.skipUnless(RELEASES.exists(), f"no recorded releases at {RELEASES}")
+    def test_what_recorded_releases_say_is_evaluated_as_it_was_fitted(self):
+        block = self.path / "release.yaml"
+        result = snug("identify", "release", RELEASES, "-o", block, "--json")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        found = json.loads(result.stdout)
+        self.assertEqual({p["name"] for p in found["parameters"]}, {
+            "growth", "shut_stiffness", "open_stiffness", "damping", "pressure_gauge_start", "volume", "valve_delay", "valve_time", "blow_flow",
+            "peel_impulse"})
+        self.assertLess(found["rms_mm"], 0.6)
+        self.assertLess(found["opening_ms_error"], 5.0)
+        scenario = self.path / "scene.yaml"
+        scenario.write_text(DROP.read_text() + "\n" + block.read_text())
+        evaluated = json.loads(snug("identify", "release", RELEASES, "--evaluate", "--scenario", scenario, "--json").stdout)
+        self.assertAlmostEqual(evaluated["rms_mm"], found["rms_mm"], delta=0.02)  # the block has four digits
+
+    def test_recordings_of_releases_that_cannot_be_used_are_refused(self):
+        record = self.path / "releases.csv"
+        record.write_text("mass_kg,rep,t_s,E_z_m,B_z_m\n0.5,1,0.0,0.17,0.12\n")
+        result = snug("identify", "release", record)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("releases.csv:2", result.stderr)
 
     def test_axial_pluck_tells_the_axial_damping_and_a_swing_does_not(self):
         verdicts = {}

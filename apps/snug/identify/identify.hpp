@@ -46,6 +46,11 @@ struct IdentifyPayloadOptions : IdentifyOptions {
   bool rigid_lip = false;                         ///< the lip does not give
 };
 
+struct IdentifyReleaseOptions : IdentifyOptions {
+  std::vector<std::string> inputs;
+  bool evaluate = false;  ///< only what the cup of the scenario predicts
+};
+
 struct IdentifySceneOptions {
   std::string task;
   std::vector<std::string> recordings;                        ///< those of the task unless given
@@ -63,6 +68,7 @@ struct IdentifySceneOptions {
 void add_identify(CLI::App& app, Action& action);
 [[nodiscard]] int run_identify_stiffness(const IdentifyStiffnessOptions& options);
 [[nodiscard]] int run_identify_damping(const IdentifyDampingOptions& options);
+[[nodiscard]] int run_identify_release(const IdentifyReleaseOptions& options);
 [[nodiscard]] int run_identify_scene(const IdentifySceneOptions& options);
 [[nodiscard]] int run_identify_payload(const IdentifyPayloadOptions& options);
 [[nodiscard]] int run_identify_pluck(const IdentifyPluckOptions& options);

@@ -44,6 +44,16 @@ lip_qz. The cup's stiffness, that of --scenario, says where the lip is under the
 Example:
   snug identify payload lift.csv --scenario scenarios/box-demonstrator.yaml --json)";
 
+constexpr const char* kReleaseHelp =
+    R"(Each recording: a box at rest under a vertical cup, from the moment at which the vacuum is switched off (blow-off on).
+Columns mass_kg, rep, t_s, E_z_m (gripper), B_z_m (box), and S_z_m (lip) if it was tracked; further ones are ignored.
+Three masses or more. Each mass in turn is left out and predicted; standard errors are the jackknife over masses.
+The model: docs/theory/cup.md, section 6. Units: docs/scenario.md, cup.
+Examples:
+  snug identify release releases.csv --json
+  snug identify release releases.csv -o cup.yaml
+  snug identify release releases.csv --evaluate --scenario scenarios/box-demonstrator.yaml)";
+
 constexpr const char* kSceneHelp =
     R"(The task names a scenario, the bodies that were recorded, and which numbers of the scenario are open, with bounds. First
 comes what each of them changes; combinations that the recordings cannot tell are named and left alone. Then the search, and
@@ -161,6 +171,19 @@ void add_payload(CLI::App& verb, Action& action) {
   part.callback([options, &action] { action = [options] { return run_identify_payload(*options); }; });
 }
 
+void add_release(CLI::App& verb, Action& action) {
+  CLI::App& part = *verb.add_subcommand("release", "how the cup lets go, from recorded releases");
+  const auto options = std::make_shared<IdentifyReleaseOptions>();
+  part.add_option("recordings", options->inputs, "recorded releases")->required()->type_name("FILE.csv");
+  part.add_flag("--evaluate", options->evaluate, "fit nothing: only what the cup predicts");
+  part.add_option("--scenario", options->scenario,
+                  "whose cup is evaluated, or is the first guess (default: scenarios/box-demonstrator.yaml)")
+      ->type_name("SCENARIO.yaml");
+  add_result(part, *options);
+  part.footer(kReleaseHelp);
+  part.callback([options, &action] { action = [options] { return run_identify_release(*options); }; });
+}
+
 void add_scene(CLI::App& verb, Action& action) {
   CLI::App& part = *verb.add_subcommand("scene", "numbers of a scenario, from recordings of its bodies");
   const auto options = std::make_shared<IdentifySceneOptions>();
@@ -196,6 +219,7 @@ void add_identify(CLI::App& app, Action& action) {
   add_damping(verb, action);
   add_pluck(verb, action);
   add_payload(verb, action);
+  add_release(verb, action);
   add_scene(verb, action);
   verb.footer(
       "`snug identify stiffness --help` and so on tell files and methods; docs/theory/identification.md the rest.");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/cup/release.hpp"
+
 namespace snug::cell {
 namespace {
 
@@ -91,7 +93,7 @@ void Gripper::let_go(GripperEvent event, GripperState& state, std::vector<Grippe
   if (event.kind == GripperEvent::Kind::HoldLost || mode_ == cup::CupMode::Holding) state.cup.pressure_gauge = 0.0;
 }
 
-void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
+void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE, double dt,
                          const cup::SuctionCup& cup, GripperState& state, std::vector<GripperEvent>& events) const {
   const physics::ElementQuery query = query_of(*world_, world_state, state.cup.body, X_WE, V_WE);
   state.F_S = cup.lip_wrench(query);
@@ -99,7 +101,9 @@ void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_W
   GripperEvent event;
   event.angle = state.cup.bend;
   const bool is_holding = state.cup.phase == cup::CupPhase::Holding;
-  if (!is_holding && mode_ == cup::CupMode::Holding) {
+  const bool is_recorded = !is_holding && state.cup.release_time > 0.0;
+  if (is_recorded && !cup::peel_lip(params_, state.F_S, dt, state.cup)) return;
+  if (is_recorded || (!is_holding && mode_ == cup::CupMode::Holding)) {
     event.kind = GripperEvent::Kind::Released;
     let_go(event, state, events);
     return;
@@ -130,41 +134,60 @@ void Gripper::check_hold(const physics::WorldState& world_state, const Pose& X_W
   }
 }
 
+void Gripper::advance_gas(const physics::WorldState& world_state, const Pose& X_WE, const cup::CupCommand& command,
+                          double dt, GripperState& state) const {
+  double length = 0.0;
+  if (state.cup.phase != cup::CupPhase::Free) {
+    const Vector3 p_WS =
+        physics::pose_of(world_->model, world_state, physics::BodyId{state.cup.body}) * state.cup.X_PS.p;
+    length = (X_WE.R.transpose() * (p_WS - X_WE.p)).z();
+    // Recordings are of releases with blow-off: others are those of the phases.
+    const bool begins = state.cup.phase == cup::CupPhase::Holding && command.blow_off && params_.release.is_used();
+    if (!command.vacuum && (begins || state.cup.release_time > 0.0)) {
+      cup::advance_release(params_, command.blow_off, length, dt, state.cup);
+      return;
+    }
+    cup::follow_length(params_, length, state.cup);
+  }
+  if (command.vacuum) state.cup.release_time = state.cup.peel_impulse = 0.0;
+  cup::advance_pressure(params_, command, dt, state.cup);
+}
+
 void Gripper::prepare(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
                       const cup::CupCommand& command, double dt, GripperState& state, GripperStep& out,
                       std::vector<GripperEvent>& events) const {
   out.element = nullptr;
   out.body = out.ignored = -1;
-  if (mode_ == cup::CupMode::Phases) {
-    if (state.cup.phase != cup::CupPhase::Free) {
-      const Vector3 p_WS =
-          physics::pose_of(world_->model, world_state, physics::BodyId{state.cup.body}) * state.cup.X_PS.p;
-      cup::follow_length(params_, (X_WE.R.transpose() * (p_WS - X_WE.p)).z(), state.cup);
-    }
-    cup::advance_pressure(params_, command, dt, state.cup);
-  }
+  if (mode_ == cup::CupMode::Phases) advance_gas(world_state, X_WE, command, dt, state);
   state.vacuum_time = command.vacuum ? state.vacuum_time + dt : 0.0;
   if (!command.vacuum) state.has_reported = false;
   if (command.vacuum) state.is_letting_go = false;
-  const auto present_cup = [&] { return cup::cup_at(params_of(state), state.cup.pressure_gauge, state.cup.X_PS); };
+  const auto present_cup = [&] {
+    if (state.cup.release_time > 0.0 && state.cup.phase == cup::CupPhase::Releasing)
+      return cup::releasing_cup(params_, state.cup.pressure_gauge, state.cup.length, state.cup.X_PS);
+    return cup::cup_at(params_of(state), state.cup.pressure_gauge, state.cup.X_PS);
+  };
   if (state.cup.phase != cup::CupPhase::Free) {
     if (!command.vacuum && state.cup.phase == cup::CupPhase::Holding) {
       state.cup.phase = cup::CupPhase::Releasing;
       state.is_letting_go = true;
     }
     out.cup = present_cup();
-    check_hold(world_state, X_WE, V_WE, out.cup, state, events);
+    check_hold(world_state, X_WE, V_WE, dt, out.cup, state, events);
   }
   if (state.cup.phase == cup::CupPhase::Free) {
     const Target target = find_target(world_state, X_WE);
     out.ignored = target.body;
     try_to_seal(target, X_WE, command, state, events);
-    const double length = cup::unloaded_length(params_of(state), state.cup.pressure_gauge);
+    const bool opens = state.cup.release_time > 0.0;  // the bellows of a cup that has just let go as recorded
+    const double length = opens ? params_.hold_length + params_.release.growth
+                                : cup::unloaded_length(params_of(state), state.cup.pressure_gauge);
     if (state.cup.phase == cup::CupPhase::Free && mode_ == cup::CupMode::Phases && target.body >= 0 &&
         target.hit.length < length) {
-      out.push = cup::LipPush(params_.free_stiffness_ratio * params_.stiffness.axial,
-                              params_.free_damping_ratio * params_.damping.axial, length, target.hit.X_PS.p,
-                              -target.hit.X_PS.R.col(2));
+      out.push =
+          cup::LipPush(opens ? params_.release.open_stiffness : params_.free_stiffness_ratio * params_.stiffness.axial,
+                       opens ? params_.release.damping : params_.free_damping_ratio * params_.damping.axial, length,
+                       target.hit.X_PS.p, -target.hit.X_PS.R.col(2));
       out.element = &out.push;
       out.body = target.body;
     }

@@ -66,8 +66,10 @@ class Gripper {
   [[nodiscard]] Target find_target(const physics::WorldState& world_state, const Pose& X_WE) const;
   void try_to_seal(const Target& target, const Pose& X_WE, const cup::CupCommand& command, GripperState& state,
                    std::vector<GripperEvent>& events) const;
-  void check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
+  void check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE, double dt,
                   const cup::SuctionCup& cup, GripperState& state, std::vector<GripperEvent>& events) const;
+  void advance_gas(const physics::WorldState& world_state, const Pose& X_WE, const cup::CupCommand& command, double dt,
+                   GripperState& state) const;
   void let_go(GripperEvent event, GripperState& state, std::vector<GripperEvent>& events) const;
 
   model::CupParams params_;

@@ -179,6 +179,13 @@ HoldLoss find_hold_loss(const model::CupParams& params, double pressure_gauge, c
   return HoldLoss::None;
 }
 
+double find_lacking_force(const model::CupParams& params, double pressure_gauge, const Wrench& F_S) {
+  const double peel = F_S.torque.head<2>().norm() / (params.limits.peel_full * params.lip_radius);
+  const double slip = std::hypot(F_S.force.head<2>().norm(), F_S.torque.z() / params.lip_radius);
+  const double needed = params.lip_friction > 0.0 ? std::max(peel, slip / params.lip_friction) : peel;
+  return needed - lip_force(params, pressure_gauge, F_S);
+}
+
 double find_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_S) {
   // The limits of find_hold_loss are of the form `load <= share * (suction + pull)` with load and pull proportional to
   // the wrench.

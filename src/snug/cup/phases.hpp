@@ -33,6 +33,8 @@ struct CupState {
   Pose X_PS;                    ///< lip on it
   double bend = 0.0;            ///< rad, of the last step
   double leak = 0.0;            ///< share of the vacuum's set point lost because the lip lifts, 0 .. 1
+  double release_time = 0.0;    ///< s, since the vacuum went off on a held box
+  double peel_impulse = 0.0;    ///< Ns, of what the lip's contact has lacked since the vacuum went off
   double length = 0.0;          ///< m, E to lip along Ez when the pressure was last known; 0: not sealed then
   bool operator==(const CupState&) const = default;
 };
@@ -84,6 +86,10 @@ enum class HoldLoss { None, Tension, Shear, Peel, Bending };
 /// Is this wrench (on the package, in S about the lip) more than the vacuum and the friction of the lip can carry?
 [[nodiscard]] HoldLoss find_hold_loss(const model::CupParams& params, double pressure_gauge, const Wrench& F_S,
                                       double bend);
+
+/// Normal force, N, that the lip's contact lacks to carry this wrench without lifting, peeling off or slipping; not
+/// above zero where it carries it. find_hold_loss says Tension, Peel or Shear where this is positive.
+[[nodiscard]] double find_lacking_force(const model::CupParams& params, double pressure_gauge, const Wrench& F_S);
 
 /// How many times this wrench, in the same proportions, the vacuum and the friction of the lip can carry: 1 is where
 /// find_hold_loss begins to say no (the bend is not looked at), infinity where it never does.

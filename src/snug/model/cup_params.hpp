@@ -87,6 +87,38 @@ struct HoldLimits {
   bool operator==(const HoldLimits&) const = default;
 };
 
+/// How a cup lets go, as recorded releases show it (docs/theory/cup.md, section 6). Used with vacuum phases where
+/// `growth` is above 0 and the blow-off goes on as the vacuum goes off, in place of release_push and of what CupParams
+/// says of the axial direction without vacuum. Defaults: rounded from releases of seven masses (docs/decisions/0068).
+struct ReleaseParams {
+  double growth = 0.0;                    ///< m, length of the free open bellows less that of the shut one
+  double shut_stiffness = 7000.0;         ///< N/m, axial, of folds that the vacuum presses together
+  double open_stiffness = 900.0;          ///< N/m, axial, of the open bellows
+  double damping = 16.0;                  ///< Ns/m, axial, shut and open
+  double pressure_gauge_start = -1.60e4;  ///< Pa, once the valve moves; what is deeper is let in at once
+  double volume = 2.5e-4;                 ///< m^3, behind the bellows
+  double valve_delay = 0.004;             ///< s, from the switch until the valve moves
+  double valve_time = 0.040;              ///< s, from then until it is open
+  double blow_flow = 2.0e-3;              ///< m^3/s at ambient pressure, of the blow-off through the open valve
+  double peel_impulse = 0.13;             ///< Ns, of what the lip's contact lacks, until the lip has come off
+
+  [[nodiscard]] bool is_used() const { return growth > 0.0; }
+  template <class Archive>
+  void fields(Archive& a) {
+    a("growth", growth, Range::NotNegative);
+    a("shut_stiffness", shut_stiffness, Range::Positive);
+    a("open_stiffness", open_stiffness, Range::Positive);
+    a("damping", damping, Range::NotNegative);
+    a("pressure_gauge_start", pressure_gauge_start, Range::Any);
+    a("volume", volume, Range::Positive);
+    a("valve_delay", valve_delay, Range::NotNegative);
+    a("valve_time", valve_time, Range::NotNegative);
+    a("blow_flow", blow_flow, Range::NotNegative);
+    a("peel_impulse", peel_impulse, Range::NotNegative);
+  }
+  bool operator==(const ReleaseParams&) const = default;
+};
+
 /// Frames: E the gripper's end, z toward the package; S the lip, z into the package. At rest and holding, S lies
 /// hold_length along Ez. The spring acts between S1 (fixed to S) and S2 (fixed to E), both centre_from_lip before the
 /// lip when undeformed: p_SS1 = (0, 0, -centre_from_lip), p_ES2 = (0, 0, hold_length - centre_from_lip).
@@ -99,8 +131,9 @@ struct CupParams {
   double free_stiffness_ratio = 0.25;  ///< stiffness without vacuum / stiffness under vacuum
   double free_damping_ratio = 0.25;    ///< damping without vacuum / damping under vacuum
   /// Share of the growth from hold_length to free_length that a cup has which lets go: 1 pushes with all of it, 0 lets
-  /// go without a push. Counts with vacuum phases alone.
+  /// go without a push. Counts with vacuum phases alone, and where `release` is not used.
   double release_push = 1.0;
+  ReleaseParams release;
   double lip_radius = 0.035;          ///< m, unloaded
   double effective_diameter = 0.060;  ///< m, of the disc on which the vacuum acts
   double lip_friction = 0.5;          ///< Coulomb coefficient of lip on cardboard
@@ -118,6 +151,7 @@ struct CupParams {
     a("free_stiffness_ratio", free_stiffness_ratio, Range::Positive);
     a("free_damping_ratio", free_damping_ratio, Range::NotNegative);
     a("release_push", release_push, Range::Fraction);
+    a("release", release);
     a("lip_radius", lip_radius, Range::Positive);
     a("effective_diameter", effective_diameter, Range::Positive);
     a("lip_friction", lip_friction, Range::NotNegative);

@@ -199,6 +199,10 @@ void ScenarioReader::read_cup(const Value& value) {
     value.fail("pressure_gauge_hold " + to_text(vacuum.pressure_gauge_hold) + ", pressure_gauge_collapse " +
                    to_text(vacuum.pressure_gauge_collapse),
                "-ambient_pressure_abs < hold <= collapse < 0 (vacuum is negative)");
+  if (cup.release.growth > 1.0) value.fail("release.growth " + to_text(cup.release.growth) + " m", "metres, below 1");
+  if (!(-vacuum.ambient_pressure_abs < cup.release.pressure_gauge_start && cup.release.pressure_gauge_start < 0.0))
+    value.fail("release.pressure_gauge_start " + to_text(cup.release.pressure_gauge_start),
+               "-ambient_pressure_abs < pressure_gauge_start < 0 (vacuum is negative)");
   const HoldLimits& limits = cup.limits;
   if (!(limits.warn_bend <= limits.fail_bend && limits.peel_onset <= limits.peel_full))
     value.fail("a first limit above the last", "warn_bend_deg <= fail_bend_deg and peel_onset <= peel_full");
