@@ -10,7 +10,7 @@ SOURCES = $(shell find src apps bench tests examples python -name '*.hpp' -o -na
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)
 
-.PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python package check \
+.PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python package reproducible check \
   format-check clang fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
 
 help: ## list the verbs
@@ -46,7 +46,7 @@ demo: build ## pack the five sequences of the report as they come, and write a r
 test: setup-test ## build and run every test; MODULE=cup for one module's
 	@scripts/test.sh $(MODULE)
 
-acceptance: build ## run the demonstrator's own programs in FOLDER, print README's table of them
+acceptance: build ## run the demonstrator's own programs in FOLDER, print the table of docs/results.md
 	@python3 tools/acceptance.py "$(FOLDER)"
 
 python: setup-python ## build the Python module and install it: into VENV=DIR, else for /usr/bin/python3
@@ -56,8 +56,12 @@ python: setup-python ## build the Python module and install it: into VENV=DIR, e
 install: build ## install the program, its scenarios and the libraries under PREFIX (/usr/local)
 	@cmake --install build --prefix "$(PREFIX)"
 
-package: setup-package build ## make Debian packages of the program and of the libraries, in build/
-	@cd build && cpack -G DEB
+package: setup-package build ## make Debian packages of the program and of the libraries, and what they consist of (SPDX), in build/
+	@export SOURCE_DATE_EPOCH="$${SOURCE_DATE_EPOCH:-$$(git log -1 --format=%ct 2>/dev/null || echo 0)}" && cd build && cpack -G DEB && \
+	  python3 ../tools/sbom.py snug --version "$$(sed -n 's/^CMAKE_PROJECT_VERSION:.*=//p' CMakeCache.txt)" -o snug.spdx.json && echo "build/snug.spdx.json"
+
+reproducible: setup-package setup-program ## build the packages twice, in different folders, and compare them byte by byte
+	@python3 tools/reproducible.py
 
 check: format-check test ## format check, warnings as errors, every test: before each push
 

@@ -16,6 +16,19 @@ endif()
 # Same input, same bytes: no fused multiply-add unless written, and no reordering of sums. File names in messages start at
 # the project's folder, so that a program tells nothing of the machine that built it.
 set(SNUG_CODEGEN -ffp-contract=off -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+# An error in memory becomes an end of the program: canaries, stacks that are touched page by page, marked targets of jumps, checked
+# copies, and tables of functions that nobody can write once the program runs (docs/dependencies.md says what is loaded).
+set(SNUG_HARDENING -fstack-protector-strong)
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+  list(APPEND SNUG_HARDENING -fstack-clash-protection)
+  add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack,--as-needed)
+endif()
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  list(APPEND SNUG_HARDENING -fcf-protection=full)
+endif()
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT SNUG_SANITIZE)
+  list(APPEND SNUG_HARDENING -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+endif()
 # The libraries go into the program and into the Python module: code that may stand anywhere and exports nothing has the speed of
 # a program's.
 set(SNUG_LIBRARY_CODEGEN -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)
@@ -31,7 +44,7 @@ set(SNUG_FAST_BUILD_WARNINGS -Wno-subobject-linkage -Wno-stringop-overflow -Wno-
 # snug_compile_options(target [LIBRARY] [COLD]): LIBRARY is what shares the libraries' precompiled headers. COLD is code in which
 # no run spends its time (files read and written, words, tests): a fast build compiles it with -O1, a third of the work less.
 function(snug_compile_options target)
-  target_compile_options(${target} PRIVATE ${SNUG_WARNINGS} ${SNUG_CODEGEN})
+  target_compile_options(${target} PRIVATE ${SNUG_WARNINGS} ${SNUG_CODEGEN} ${SNUG_HARDENING})
   if("LIBRARY" IN_LIST ARGN)
     target_compile_options(${target} PRIVATE ${SNUG_LIBRARY_CODEGEN})
   endif()
