@@ -38,7 +38,7 @@ def verbs():
 class Shell(unittest.TestCase):
     def test_bash_offers_verbs_parts_options_and_choices(self):
         self.assertIn("simulate", complete("sim"))
-        self.assertEqual(sorted(complete("cup", "")), ["evaluate", "settle"])
+        self.assertEqual(sorted(complete("cup", "")), ["catalogue", "estimate", "evaluate", "settle"])
         self.assertEqual(complete("pack", "scenario.yaml", "--sequ"), ["--sequence"])
         self.assertEqual(complete("pack", "--agent", "mar"), ["margin"])
         self.assertEqual(complete("pack", "--agent", "margin", "--perc"), ["--perception"])

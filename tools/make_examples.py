@@ -134,6 +134,59 @@ def readings(rng, mass, com, offset):
     return "\n".join(rows) + "\n"
 
 
+def releases(rng):
+    """Boxes of four masses leave a vertical cup: they hang until the pressure no longer carries them, and fall with a push that dies away."""
+    rows = ["mass_kg,rep,t_s,E_z_m,B_z_m"]
+    for mass in (0.4, 0.8, 1.2, 1.6):
+        opens = 0.003 + 0.016 * math.log(160.0 / (9.81 * mass))
+        for rep in (1, 2):
+            drop, speed, step = 0.050 + 9.81 * mass / 6000.0, 0.0, 1 / 3600
+            for i in range(501):
+                if i % 10 == 0:
+                    rows.append(f"{mass},{rep},{i * step:.6f},0.1700000,{0.17 - drop + rng.gauss(0, 3e-5):.7f}")
+                after = i * step - opens
+                speed += step * (9.81 + 4.0 / mass * math.exp(-after / 0.01)) if after > 0.0 else 0.0
+                drop += step * speed
+    return "\n".join(rows) + "\n"
+
+
+def lift(rng, mass, com, inertia):
+    """A box on a lip that does not give, 75 mm below the gripper's end, moved to and fro and tilted for two seconds."""
+    def tilt(t):
+        return [0.25 * math.sin(5.0 * t), 0.2 * math.sin(7.0 * t), 0.3 * math.sin(4.0 * t)]
+
+    def pose(t):
+        return times(DOWN, rotation_of(tilt(t))), [0.15 * math.sin(4.0 * t), 0.1 * math.sin(6.0 * t), 0.3 + 0.1 * math.sin(3.0 * t)]
+
+    def centre(t):
+        rotation, xyz = pose(t)
+        return [x + c for x, c in zip(xyz, turned(rotation, com))]
+
+    def turning(t, h=1e-4):
+        before, after = pose(t - h)[0], pose(t + h)[0]
+        return [x / (2 * h) for x in vector_of(times(after, [list(c) for c in zip(*before)]))]
+
+    def momentum(t):
+        rotation = pose(t)[0]
+        inside = turned([list(c) for c in zip(*rotation)], turning(t))
+        return turned(rotation, [i * w for i, w in zip(inertia, inside)])
+
+    cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    rows, h = ["t,x,y,z,qw,qx,qy,qz,fx,fy,fz,tx,ty,tz"], 1e-3
+    for i in range(201):
+        t = 0.01 * i
+        rotation, xyz = pose(t)
+        back = [list(c) for c in zip(*rotation)]
+        acceleration = [(a - 2 * b + c) / h ** 2 for a, b, c in zip(centre(t + h), centre(t), centre(t - h))]
+        force = [mass * a for a in acceleration[:2]] + [mass * (acceleration[2] + 9.81)]
+        change = [(a - b) / (2 * h) for a, b in zip(momentum(t + h), momentum(t - h))]
+        torque = [a + b for a, b in zip(change, cross([c - x for c, x in zip(centre(t), xyz)], force))]
+        wrench = [w + rng.gauss(0, s) for w, s in zip(turned(back, force) + turned(back, torque), [0.1] * 3 + [0.005] * 3)]
+        w, x, y, z = quaternion_of(rotation_of(tilt(t)))  # behind half a turn about x
+        rows.append(",".join(f"{number:.7f}" for number in [t, *xyz, -x, w, -z, y, *wrench]))
+    return "\n".join(rows) + "\n"
+
+
 def board(rng):
     """A board that the tool holds 0.1 m below it, 1 m under the scenario's camera; noise 0.3 mm, 0.5 mrad."""
     camera = rotation_of([math.pi, 0, math.pi / 2]), [0.505, -0.350, 0.720]
@@ -199,6 +252,8 @@ def main(arguments):
     (folder / "orders.json").write_text(orders(rng))
     (folder / "containers.txt").write_text(CONTAINERS)
     (folder / "board.csv").write_text(board(random.Random(8)))
+    (folder / "releases.csv").write_text(releases(random.Random(9)))
+    (folder / "lift.csv").write_text(lift(random.Random(10), 1.1, [0.01, -0.015, 0.125], [0.003, 0.004, 0.005]))
     return 0
 
 

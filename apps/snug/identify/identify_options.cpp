@@ -42,7 +42,7 @@ where the centre is along the weight. Columns of the table: t, x, y, z, qw, qx, 
 fx, fy, fz, tx, ty, tz (of the cup on the box, in the gripper's frame about its end: up for a hanging box), perhaps lip_x ..
 lip_qz. The cup's stiffness, that of --scenario, says where the lip is under the wrench; --rigid-lip: where it is unloaded.
 Example:
-  snug identify payload lift.csv --scenario scenarios/box-demonstrator.yaml --json)";
+  snug identify payload scenarios/examples/lift.csv --rigid-lip --json)";
 
 constexpr const char* kReleaseHelp =
     R"(Each recording: a box at rest under a vertical cup, from the moment at which the vacuum is switched off (blow-off on).
@@ -50,9 +50,9 @@ Columns mass_kg, rep, t_s, E_z_m (gripper), B_z_m (box), and S_z_m (lip) if it w
 Three masses or more. Each mass in turn is left out and predicted; standard errors are the jackknife over masses.
 The model: docs/theory/cup.md, section 6. Units: docs/scenario.md, cup.
 Examples:
-  snug identify release releases.csv --json
-  snug identify release releases.csv -o cup.yaml
-  snug identify release releases.csv --evaluate --scenario scenarios/box-demonstrator.yaml)";
+  snug identify release scenarios/examples/releases.csv --json
+  snug identify release scenarios/examples/releases.csv -o cup.yaml
+  snug identify release scenarios/examples/releases.csv --evaluate)";
 
 constexpr const char* kSceneHelp =
     R"(The task names a scenario, the bodies that were recorded, and which numbers of the scenario are open, with bounds. First

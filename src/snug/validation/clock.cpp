@@ -217,7 +217,7 @@ class Comparison {
       if (reference_.times[i] < from || reference_.times[i] > to) continue;
       for (std::size_t c = 0; c < curves_.size(); ++c) {
         const double residual = (value(c, i, clock) - offsets_[c] - reference_.channels[c][i]) / scale_;
-        if (std::isfinite(residual)) sum += std::log1p(residual * residual);
+        if (std::isfinite(residual)) sum += std::log(1.0 + residual * residual);
       }
     }
     return sum;
