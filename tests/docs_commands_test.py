@@ -21,7 +21,7 @@ LONG = 1.0  # s: ten times what reading the largest shipped scenario takes
 WAIT = 3600.0 if os.environ.get("SNUG_LONG") else LONG
 
 # Of these the beginning is enough: minutes of computing, or servers that end with Ctrl-C.
-LONG_COMMANDS = re.compile(r"snug (bench|view|compare|study examples|identify (damping|release|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
+LONG_COMMANDS = re.compile(r"snug (bench|view|compare|study examples|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
                            r"pack .*--monte-carlo|pack (?!.*(small\.csv|kitchen\.h5|my-cell)))")
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
 # `--slurm` submits jobs to a scheduler, which a test of studies has of its own; the rest is not of this program.

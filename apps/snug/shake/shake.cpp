@@ -208,8 +208,8 @@ std::string format_page(const runs::ShakeResult& result, const ShakeOptions& opt
 int run_shake(const ShakeOptions& options) {
   const Load load = load_of(options);
   NamedFiles inputs;
-  add_file(inputs, "the load", options.load);
   if (options.scenario) inputs = files_of(*options.scenario, options.changes, load.scenario);
+  add_file(inputs, "the load", options.load);
   std::optional<OutputFile> page = reserve(inputs, options.page);
   const std::vector<runs::ShakeMotion> profile = profile_of(options, load.scenario);
   const runs::ShakeResult result = runs::shake(load.scenario, load.boxes, profile, run_options(options));

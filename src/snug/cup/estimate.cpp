@@ -38,7 +38,7 @@ const FoldKind& fold_kind(double folds) {
   throw InputError("cup estimate", "bellows", fmt::format("{:g}", folds), "0 (flat), 1.5 or 2.5 folds");
 }
 
-/// Stiffness over that of silicone of the same shape, by usual hardness (Shore A 50 to 60, polyurethane 60 to 70).
+/// Stiffness over that of silicone of the same shape, assumed by hardness (Shore A 50 to 60, polyurethane 60 to 70).
 double hardness(CupMaterial material) {
   switch (material) {
     case CupMaterial::Silicone:
@@ -82,7 +82,7 @@ void estimate_sizes(const CupSheet& sheet, const FoldKind& kind, CupEstimate& es
                               kind.stroke_low * d,
                               kind.stroke * d + 0.5 * foam,
                               kind.stroke_high * d + foam,
-                              "usual of this many folds"};
+                              "assumed for this many folds"};
   cup.free_length = std::max(kind.free_length * d + foam, stroke.value + 0.1 * d);
   cup.hold_length = cup.free_length - stroke.value;
   cup.centre_from_lip = 0.5 * cup.hold_length;
@@ -95,11 +95,11 @@ void estimate_sizes(const CupSheet& sheet, const FoldKind& kind, CupEstimate& es
   cup.vacuum.bellows_area = 0.25 * std::numbers::pi * std::pow(kind.area * d, 2);
   cup.seal.reach = 0.1 * d;
   cup.seal.max_overhang = sheet.lip == LipKind::Foam ? 0.2 * d : 0.05 * d;
-  const std::string maker = "between what pressure acts on in makers' figures and the whole lip";
+  const std::string maker = "assumed: from the inner rim of the lip to the whole lip";
   const auto force = [&](double share) {
     return -sheet.pressure_gauge * 0.25 * std::numbers::pi * std::pow(share * d, 2);
   };
-  const Estimate friction{"lip_friction", "-", 0.4, 0.5, 0.7, "dry cardboard; usual of makers' tables"};
+  const Estimate friction{"lip_friction", "-", 0.4, 0.5, 0.7, "assumed of dry cardboard"};
   estimate.pull_off = {"pull_off",       "N", force(kind.area_low), force(kind.area), force(kind.area_high),
                        "pressure x area"};
   estimate.lateral = {"lateral",
@@ -108,11 +108,11 @@ void estimate_sizes(const CupSheet& sheet, const FoldKind& kind, CupEstimate& es
                       friction.value * estimate.pull_off.value,
                       friction.high * estimate.pull_off.high,
                       "friction x pull-off"};
-  estimate.estimates = {
-      {"free_length", "m", 0.8 * cup.free_length, cup.free_length, 1.2 * cup.free_length, "usual of this many folds"},
-      stroke,
-      {"effective_diameter", "m", kind.area_low * d, kind.area * d, kind.area_high * d, maker},
-      friction};
+  estimate.estimates = {{"free_length", "m", 0.8 * cup.free_length, cup.free_length, 1.2 * cup.free_length,
+                         "assumed for this many folds"},
+                        stroke,
+                        {"effective_diameter", "m", kind.area_low * d, kind.area * d, kind.area_high * d, maker},
+                        friction};
 }
 
 void estimate_stiffness(const CupSheet& sheet, const FoldKind& kind, CupEstimate& estimate) {
@@ -185,8 +185,8 @@ std::string format_estimate(const CupSheet& sheet, const CupEstimate& estimate) 
                         force->value, force->low, force->high, force->source);
   if (estimate.hanging_factor)
     text += fmt::format(
-        "# {:g} kg: the low end holds {:.2g} times its weight hanging, {:.2g} times on its side (makers ask for 2 and "
-        "4)\n",
+        "# {:g} kg: the low end holds {:.2g} times its weight hanging, {:.2g} times on its side (usual "
+        "safety factors: 2 and 4)\n",
         *sheet.mass_max, *estimate.hanging_factor, *estimate.side_factor);
   for (const Estimate& one : estimate.estimates)
     text += fmt::format("#   {:<21} {:>9.4g} {:<7} {:.3g} to {:.3g}: {}\n", one.name, one.value, one.unit, one.low,

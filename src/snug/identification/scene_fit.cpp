@@ -123,7 +123,7 @@ void judge_all(const SceneSearch& search, const Sensed& sensed, SceneFit& fit) {
     parameter.verdict = is_refused || !fit.is_trusted || !(parameter.standard_error > 0.0)
                             ? Verdict::NotIdentifiable
                             : judge(parameter.standard_error, scale);
-    const bool is_doubtful = is_at_bound || fit.is_systematic || fit.chi2_per_dof > kExplained;
+    const bool is_doubtful = is_at_bound || is_unexplained;
     if (is_doubtful && parameter.verdict == Verdict::Identified) parameter.verdict = Verdict::Weak;
     parameter.advice = fit.is_trusted ? advice_of(of, parameter.verdict, is_at_bound, is_refused, is_unexplained)
                                       : "the simulation misses these recordings by far more than noise: another start, "

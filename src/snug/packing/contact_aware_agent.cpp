@@ -19,18 +19,12 @@ constexpr double kPlacesPerSecond = 6.0e6;
 constexpr std::size_t kEntrants = 64;
 constexpr std::size_t kUnturned = 12;  ///< of these at least, for which the box is not turned
 constexpr std::size_t kOther = 8;      ///< of these, the best by the policy that was not chosen
-constexpr double kFree = 0.004;        ///< m, beside a box that stands free: more than boxes are planned to press
 /// Futures that a container met as it is: 0.4 % of it, standard error.
 constexpr int kFutures = 128;
 
 /// Places of one kind: the same axis of the box is up, and it stands pressed in between or not.
 int kind_of(const Candidate& candidate) {
-  const auto is_tight = [&](Side low, Side high) {
-    return std::max(candidate.side_gap[static_cast<std::size_t>(low)],
-                    candidate.side_gap[static_cast<std::size_t>(high)]) < kFree;
-  };
-  const bool is_pressed = is_tight(Side::LowX, Side::HighX) || is_tight(Side::LowY, Side::HighY);
-  return 2 * static_cast<int>(candidate.placement.orientation.up) + (is_pressed ? 1 : 0);
+  return 2 * static_cast<int>(candidate.placement.orientation.up) + (stands_free(candidate) ? 0 : 1);
 }
 
 /// The first `most` of them, except that each kind of place keeps its first few: where none of the best can be had, a

@@ -44,6 +44,8 @@ struct ContainerState {
 [[nodiscard]] Extent bounding_extent(const PlacedBox& box);
 /// The extent of the box put upright in its nearest standing orientation at the same centre.
 [[nodiscard]] Extent upright_extent(const PlacedBox& box);
+/// rad, from standing on a face, however it is turned about the vertical. R: of a frame whose z points up.
+[[nodiscard]] double lean_of(const Matrix3& R);
 /// Angle from the nearest standing orientation, rad.
 [[nodiscard]] double tilt(const PlacedBox& box);
 

@@ -1,6 +1,9 @@
 // FutureModel: which kinds of items come how often.
+#include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <unordered_set>
+#include <vector>
 
 #include "snug/packing/agent.hpp"
 
@@ -23,16 +26,10 @@ FutureModel make_future_model(const model::Scenario& scenario, std::span<const m
 FutureModel make_order_future(const model::Scenario& scenario, const model::Sequence& order) {
   std::unordered_set<std::string_view> wanted;
   for (const model::Item& item : order.items) wanted.insert(item.parcel);
-  FutureModel future;
-  for (const model::Parcel& parcel : scenario.parcels) {  // in their order, whatever the order's: it is not known
-    if (!wanted.contains(parcel.id)) continue;
-    model::Item item;
-    item.parcel = parcel.id;
-    future.kinds.push_back(make_item(scenario, item));
-    future.weights.push_back(1.0);
-  }
-  future.comes_once = true;
-  return future;
+  std::vector<model::Parcel> parcels;  // in the scenario's order: that of the sequence is not known
+  std::ranges::copy_if(scenario.parcels, std::back_inserter(parcels),
+                       [&](const model::Parcel& parcel) { return wanted.contains(parcel.id); });
+  return make_future_model(scenario, parcels);
 }
 
 FutureModel make_catalogue_future(const model::Scenario& scenario) {

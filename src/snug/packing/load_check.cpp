@@ -10,6 +10,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "snug/core/check.hpp"
+
 namespace snug::packing {
 namespace {
 
@@ -30,9 +32,6 @@ bool carries(const Extent& lower, const Extent& upper, double slack) {
   return lower.high.z() < 0.5 * (upper.low.z() + upper.high.z()) && std::abs(upper.low.z() - lower.high.z()) <= slack &&
          shared_area(lower, upper) > 0.0;
 }
-
-/// rad, from standing on a face; turned about the vertical as it may be.
-double lean_of(const Matrix3& R_TP) { return std::acos(std::min(1.0, R_TP.row(2).cwiseAbs().maxCoeff())); }
 
 std::vector<Extent> extents_of(const ContainerState& state) {
   std::vector<Extent> extents;
@@ -117,7 +116,9 @@ std::vector<double> loads_on(const ContainerState& state, double support_slack) 
   return loads;
 }
 
-std::vector<LoadFinding> check_finished_load(const ContainerState& state, const LoadLimits& limits) {
+std::vector<LoadFinding> check_finished_load(const ContainerState& state, const LoadLimits& limits,
+                                             std::span<const PoseDoubt> doubts) {
+  SNUG_CHECK(doubts.empty() || doubts.size() == state.boxes.size(), "a doubt of every box, or none");
   const std::vector<Extent> all = extents_of(state);
   const std::vector<double> loads = loads_on(state, limits.support_slack);
   std::vector<LoadFinding> findings;
@@ -125,13 +126,14 @@ std::vector<LoadFinding> check_finished_load(const ContainerState& state, const 
     const PlacedBox& box = state.boxes[i];
     const double lean = lean_of(box.X_TP.R), support = support_of(all, i, limits.support_slack);
     const auto [beyond, above] = outside_of(state, box);
+    const PoseDoubt doubt = doubts.empty() ? PoseDoubt{} : doubts[i];
     const std::optional<double> most = box.item.no_stack ? std::optional(0.0) : box.item.max_load;
     const double allowed = most ? *most * (1.0 + limits.load_slack) : std::numeric_limits<double>::infinity();
-    if (lean > limits.tilt) {
+    if (lean - doubt.angle > limits.tilt) {
       findings.push_back({box.item.id, LoadFault::Leans, lean, limits.tilt});
-    } else if (beyond > limits.outside) {
+    } else if (beyond - doubt.position > limits.outside) {
       findings.push_back({box.item.id, LoadFault::Outside, beyond, limits.outside});
-    } else if (above > limits.above) {
+    } else if (above - doubt.position > limits.above) {
       findings.push_back({box.item.id, LoadFault::Outside, above, limits.above});
     } else if (support < limits.min_support) {
       findings.push_back({box.item.id, LoadFault::Unsupported, support, limits.min_support});

@@ -1,6 +1,7 @@
 // check_finished_load: whether a finished load is one: every box level, inside, supported, and carrying what it may.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,17 @@ struct LoadFinding {
 /// "leans by 27.6 degrees (6.0 are allowed)".
 [[nodiscard]] std::string describe(const LoadFinding& finding);
 
+/// By how much the pose of a box may be off: it fails only by more than that.
+struct PoseDoubt {
+  double position = 0.0;  ///< m
+  double angle = 0.0;     ///< rad
+};
+
 /// Every box that fails, with its first fault in the order of LoadFault; in the order of the state. Support and loads
-/// count boxes by their upright extents: of a box that leans its neighbours are judged as if it stood.
-[[nodiscard]] std::vector<LoadFinding> check_finished_load(const ContainerState& state, const LoadLimits& limits);
+/// count boxes by their upright extents: of a box that leans its neighbours are judged as if it stood. `doubts`: box by
+/// box, or none.
+[[nodiscard]] std::vector<LoadFinding> check_finished_load(const ContainerState& state, const LoadLimits& limits,
+                                                           std::span<const PoseDoubt> doubts = {});
 
 /// kg that rest on each box, those that stand on others included: masses go down through the areas that they share.
 [[nodiscard]] std::vector<double> loads_on(const ContainerState& state, double support_slack);

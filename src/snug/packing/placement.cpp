@@ -22,6 +22,15 @@ ContainerState with_candidate(ContainerState state, const Item& item, const Cand
   return state;
 }
 
+bool stands_free(const Candidate& candidate) {
+  constexpr double kFree = 0.004;  // m
+  const auto room = [&](Side low, Side high) {
+    return std::max(candidate.side_gap[static_cast<std::size_t>(low)],
+                    candidate.side_gap[static_cast<std::size_t>(high)]);
+  };
+  return room(Side::LowX, Side::HighX) >= kFree && room(Side::LowY, Side::HighY) >= kFree;
+}
+
 bool is_hopeless(NoPlace reason) {
   return reason == NoPlace::TooBig || reason == NoPlace::TooHeavy || reason == NoPlace::NotPickable;
 }

@@ -39,6 +39,9 @@ struct Candidate {
   bool operator==(const Candidate&) const = default;
 };
 
+/// On one side of either axis nothing is within 4 mm, more than boxes are planned to press: it is not pressed in.
+[[nodiscard]] bool stands_free(const Candidate& candidate);
+
 /// Why an item has no place.
 enum class NoPlace {
   TooBig,         ///< in no allowed orientation does it fit into the empty container

@@ -20,17 +20,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kSameUtility = 1e-9;
 
 constexpr std::size_t kMostFree = 6;  ///< places that are tried where all others failed
-constexpr double kFree = 0.004;       ///< m, beside a box that presses on nothing
-
-/// On one side of either axis there is room: nothing is pressed in.
-bool stands_free(const packing::Candidate& candidate) {
-  const auto room = [&](packing::Side low, packing::Side high) {
-    return std::max(candidate.side_gap[static_cast<std::size_t>(low)],
-                    candidate.side_gap[static_cast<std::size_t>(high)]);
-  };
-  return room(packing::Side::LowX, packing::Side::HighX) > kFree &&
-         room(packing::Side::LowY, packing::Side::HighY) > kFree;
-}
 
 /// In the end, when the item stays where it lies in the container; nothing: the agent does not know, or it may not.
 std::optional<double> expected_percent(const Scene& scene, model::ItemIndex item, packing::Agent& agent) {

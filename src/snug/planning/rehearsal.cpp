@@ -114,7 +114,7 @@ Rehearsal::Outcome Rehearsal::judge(const Rollout& rollout, const std::vector<st
     if (!before[i] || item == box_.item) continue;
     const std::optional<Pose> after = rollout.pose_of(item);
     if (after) outcome.forces.displacement = std::max(outcome.forces.displacement, (after->p - before[i]->p).norm());
-    if (after) tipped = std::max(tipped, lean_of(after->R) - lean_of(before[i]->R));
+    if (after) tipped = std::max(tipped, packing::lean_of(after->R) - packing::lean_of(before[i]->R));
     if (fit_of(item, *before[i]).is_in && !(after && fit_of(item, *after).is_in)) {
       fail(AttemptFailure::OthersCameOut, "another box would come out of the container");
     }

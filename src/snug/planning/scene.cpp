@@ -40,8 +40,6 @@ CellPlan make_cell_plan(const model::Scenario& scenario, const motion::Tracking&
 
 double slack_of(const BelievedBox& box) { return 2.0 * std::sqrt(std::max(0.0, box.covariance(0, 0))); }
 
-double lean_of(const Matrix3& R_WP) { return std::acos(std::min(1.0, R_WP.row(2).cwiseAbs().maxCoeff())); }
-
 bool is_upright(const Matrix3& R_WP, double max_lean) { return R_WP.row(2).cwiseAbs().maxCoeff() > std::cos(max_lean); }
 
 const model::Sequence& Scene::sequence() const { return *model::find_sequence(belief.nominal(), belief.sequence); }
@@ -167,8 +165,7 @@ double Scene::travel_bottom(model::ItemIndex without) const {
 }
 
 double Scene::tilt_of(model::ItemIndex item) const {
-  const Matrix3 R_TP = cell.layout.X_WT.R.transpose() * X_WP(item).R;
-  return std::acos(std::min(1.0, R_TP.row(2).cwiseAbs().maxCoeff()));
+  return packing::lean_of(cell.layout.X_WT.R.transpose() * X_WP(item).R);
 }
 
 double Scene::size_error(model::ItemIndex item) const {

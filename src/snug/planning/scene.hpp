@@ -73,8 +73,6 @@ struct Scene {
 [[nodiscard]] geometry::Aabb in_container(const Pose& X_WT, const geometry::Aabb& region);
 /// Two standard deviations of where the box was seen, m.
 [[nodiscard]] double slack_of(const BelievedBox& box);
-/// rad, from standing on a face.
-[[nodiscard]] double lean_of(const Matrix3& R_WP);
 /// Standing on one of its faces, or leaning by at most `max_lean` [rad], so that it can be picked from above.
 [[nodiscard]] bool is_upright(const Matrix3& R_WP, double max_lean);
 

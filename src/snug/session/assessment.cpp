@@ -20,7 +20,7 @@ bool was_tipped(const planning::Scene& scene, model::ItemIndex item, const std::
   const std::optional<planning::BelievedBox>& box = scene.box(item);
   if (!was || !box || !box->was_seen || scene.locate(item) != planning::Location::Container) return false;
   const double limit = scene.cell.limits.tilt;
-  return planning::lean_of(box->X_WP.R) > limit && planning::lean_of(was->R) <= limit;
+  return packing::lean_of(box->X_WP.R) > limit && packing::lean_of(was->R) <= limit;
 }
 
 }  // namespace

@@ -47,6 +47,18 @@ TEST(FinishedLoad, NamesTheBoxThatLeansWithItsAngle) {
   }
 }
 
+TEST(FinishedLoad, FailsABoxOnlyByMoreThanItsPoseMayBeOff) {
+  ContainerState state = cubes({{0.158, 0, 0.05}, {-0.158, 0, 0.05}});  // both 8 mm beyond a wall
+  const std::vector<PoseDoubt> doubts = {{0.0, 0.0}, {0.0035, 0.0}};
+  const auto findings = check_finished_load(state, {}, doubts);  // 5 mm are allowed
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].item, "B0");
+  state = cubes({{0, 0, 0.07}});  // in the air, and perhaps leaning: the second fault is found behind the first
+  state.boxes[0].X_TP.R = exp_rotation(Vector3(0.0, 0.12, 0.0));
+  EXPECT_EQ(check_finished_load(state, {}).at(0).fault, LoadFault::Leans);
+  EXPECT_EQ(check_finished_load(state, {}, std::vector<PoseDoubt>{{0.0, 0.05}}).at(0).fault, LoadFault::Unsupported);
+}
+
 TEST(FinishedLoad, ABoxThatIsTurnedAboutTheVerticalDoesNotLean) {
   ContainerState state = cubes({{0, 0, 0.05}});
   state.boxes[0].X_TP.R = exp_rotation(Vector3(0.0, 0.0, 0.4));

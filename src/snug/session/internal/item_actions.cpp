@@ -98,12 +98,18 @@ void count(Run& run) {
                          run.belief.obstacles().reports(), standing(run)});
 }
 
-/// By how much what is seen may be off: three standard deviations, of a position [m] or an angle [rad].
-double doubt_of(packing::LoadFault fault, const planning::BelievedBox& box) {
-  const Vector6 variance = box.covariance.diagonal();
-  if (fault == packing::LoadFault::Outside) return 3.0 * std::sqrt(variance.head<3>().maxCoeff());
-  if (fault == packing::LoadFault::Leans) return 3.0 * std::sqrt(variance.tail<3>().maxCoeff());
-  return 0.0;
+/// Box by box, three standard deviations of what is seen.
+std::vector<packing::PoseDoubt> doubts_of(const Run& run, const packing::ContainerState& load) {
+  std::vector<packing::PoseDoubt> doubts;
+  for (const packing::PlacedBox& one : load.boxes) {
+    packing::PoseDoubt& doubt = doubts.emplace_back();
+    const std::optional<model::ItemIndex> item = run.belief.find(one.item.id);
+    if (!item || !run.belief.box(*item)) continue;
+    const Vector6 variance = run.belief.box(*item)->covariance.diagonal().cwiseMax(0.0);
+    doubt.position = 3.0 * std::sqrt(variance.head<3>().maxCoeff());
+    doubt.angle = 3.0 * std::sqrt(variance.tail<3>().maxCoeff());
+  }
+  return doubts;
 }
 
 /// The load as it is seen when the robot stands at its start: what does not lie as a finished load has to is not
@@ -123,10 +129,7 @@ void check_load(Run& run, const std::vector<std::optional<Pose>>& before) {
   limits.tilt = scene.cell.limits.tilt;
   limits.min_support = std::min(limits.min_support, scene.rules().packing.min_support);
   std::map<std::string, std::string> reasons;
-  for (const packing::LoadFinding& one : packing::check_finished_load(load, limits)) {
-    const auto item = run.belief.find(one.item);
-    const double doubt = item && scene.box(*item) ? doubt_of(one.fault, *scene.box(*item)) : 0.0;
-    if (doubt > 0.0 && one.value - doubt <= one.limit) continue;  // it may well be as it has to be
+  for (const packing::LoadFinding& one : packing::check_finished_load(load, limits, doubts_of(run, load))) {
     reasons.emplace(one.item, packing::describe(one));
   }
   for (const model::ItemIndex item : run.agenda.packed) {

@@ -90,7 +90,12 @@ TEST(Recovery, AForeignObjectIsPlannedAroundUntilItIsGone) {
   ASSERT_TRUE(seen.gone);
   EXPECT_GT(*seen.gone, seen.seen);
   EXPECT_EQ(trial.executed_boxes, 4) << trial.session.stopped;
-  EXPECT_GE(trial.items_as_planned, 3);  // beside the object it is tight: one may end a little off its place
+  // In this cell the last one slides 20 mm from its place, where 20 are a trouble, and is accepted there: the object is
+  // gone by then, and nothing else moves.
+  ASSERT_EQ(trial.items.size(), 4U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(trial.items[i].is_as_planned) << trial.items[i].id;
+  EXPECT_LT(trial.items[3].position_error, 0.025);
+  EXPECT_LT(trial.items[3].displacement, 0.001);
   const std::vector<record::Event> events = events_of(trial.session);
   EXPECT_EQ(std::ranges::count(events, "obstacle", &record::Event::kind), 2);
 }
