@@ -1,4 +1,4 @@
-// A million random pairs against the reference; SNUG_ADVERSARIAL_PAIRS=10000000 takes minutes.
+// Pairs of other seeds than those of the quick test; SNUG_ADVERSARIAL_PAIRS=10000000 takes minutes.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -9,12 +9,12 @@
 namespace snug::geometry {
 namespace {
 
-TEST(Collide, AgreesWithTheReferenceOnAMillionAdversarialPairs) {
+TEST(Collide, AgreesWithTheReferenceOnAsManyAdversarialPairsAsAsked) {
   const char* asked = std::getenv("SNUG_ADVERSARIAL_PAIRS");
-  const test::FuzzResult result = test::run_fuzz(1'000'000'000, asked != nullptr ? std::atoll(asked) : 1'000'000);
+  const test::FuzzResult result = test::run_fuzz(1'000'000'000, asked != nullptr ? std::atoll(asked) : 400'000);
   std::cout << test::to_text(result);
   EXPECT_EQ(result.failure_count, 0);
-  for (const test::Worst& worst : result.worst) EXPECT_GT(worst.contacts, 10'000);
+  for (const test::Worst& worst : result.worst) EXPECT_GT(worst.contacts, 4'000);
 }
 
 }  // namespace
