@@ -997,9 +997,12 @@ class Identify(unittest.TestCase):
     def test_scene_finds_a_planted_friction_and_writes_task_and_scenario(self):
         task, found, scenario, log = self.small_task(), self.path / "found.yaml", self.path / "cell.yaml", self.path / "log.csv"
         words = ("identify", "scene", task, "--local", 60, "--log", log)
-        result = snug(*words, "-o", found, "--scenario", scenario, "--json")
+        page = self.path / "found.html"
+        result = snug(*words, "-o", found, "--scenario", scenario, "--page", page, "--json")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         fit = json.loads(result.stdout)
+        self.assertLess(fit["held_back"]["cost"], fit["held_back_before"]["cost"])
+        self.assertIn("held back", page.read_text())
         for key in ("chi2_per_dof", "held_back_error", "cost"):
             self.assertIsInstance(fit[key], float)
         friction = fit["parameters"][0]

@@ -60,6 +60,7 @@ struct IdentifySceneOptions {
   std::optional<std::string> log;                             ///< of points tried
   std::optional<std::string> output;                          ///< the task with the values found
   std::optional<std::string> scenario;                        ///< the scenario with the values found
+  std::optional<std::string> page;                            ///< what was found and what it improved
   std::optional<int> threads;                                 ///< absent: all cores
   bool profile = false;                                       ///< intervals by the profile of the sum of squares
   bool json = false;

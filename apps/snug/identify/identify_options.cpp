@@ -60,7 +60,7 @@ comes what each of them changes; combinations that the recordings cannot tell ar
 standard errors. Each fifth recording is held back and predicted. Task files: docs/identification.md.
 Examples:
   snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --evaluate --json
-  snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --local 10 --log points.csv -o found.yaml)";
+  snug identify scene scenarios/tosses/task.yaml --recordings scenarios/tosses/example.csv --local 10 --log points.csv --page found.html)";
 
 void add_scenario(CLI::App& part, IdentifyOptions& options) {
   part.add_option("--scenario", options.scenario,
@@ -204,7 +204,11 @@ void add_scene(CLI::App& verb, Action& action) {
   part.add_option("-o,--output", options->output, "the task with the values found")->type_name("TASK.yaml");
   part.add_flag("--profile", options->profile,
                 "95 % intervals by the profile likelihood: each value with all others fitted again (takes longer)");
-  part.add_option("--scenario", options->scenario, "the scenario with the values found")->type_name("SCENARIO.yaml");
+  part.add_option("--scenario", options->scenario,
+                  "the scenario with the values found, and with what they leave uncertain")
+      ->type_name("SCENARIO.yaml");
+  part.add_option("--page", options->page, "what was found, and what it improves on the recordings held back")
+      ->type_name("FILE.html");
   part.add_flag("--json", options->json, "the result as one JSON object on stdout");
   part.footer(kSceneHelp);
   part.callback([options, &action] { action = [options] { return run_identify_scene(*options); }; });

@@ -12,7 +12,9 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/write_file.hpp"
+#include "snug/identification/fitted_scenario.hpp"
 #include "snug/identification/scene_fit.hpp"
+#include "snug/identification/scene_page.hpp"
 #include "snug/identification/scene_text.hpp"
 
 namespace snug::app {
@@ -63,9 +65,11 @@ int run_identify_scene(const IdentifySceneOptions& options) {
   for (const std::filesystem::path& file : task.recordings) inputs.push_back({"a recording", file});
   add_file(outputs, "-o", options.output);
   add_file(outputs, "--scenario", options.scenario);
+  add_file(outputs, "--page", options.page);
   add_file(outputs, "--log", options.log);
   expect_distinct(inputs, outputs);
-  std::optional<OutputFile> output = reserve(options.output), scenario = reserve(options.scenario);
+  std::optional<OutputFile> output = reserve(options.output), scenario = reserve(options.scenario),
+                            page = reserve(options.page);
   apply(options, task.search);
   const int threads = options.threads.value_or(core_count());
   std::vector<identification::RecordedMotion> motions = identification::load_motions(task, task.recordings);
@@ -82,7 +86,11 @@ int run_identify_scene(const IdentifySceneOptions& options) {
     write_file(std::move(*output), model::text_with_values(experiment.task(), values,
                                                            std::filesystem::path(*options.output).parent_path()));
   }
-  if (scenario) write_file(std::move(*scenario), experiment.scenario_at(fit.values).source_text);
+  if (scenario || page) {
+    const model::Scenario found = identification::fitted_scenario(experiment, fit);
+    if (scenario) write_file(std::move(*scenario), found.source_text);
+    if (page) write_file(std::move(*page), identification::make_page(experiment, fit, found));
+  }
   print(options.json ? format_json(fit) : format_table(fit));
   return fit.is_trusted ? kSuccess : kRunFailed;
 }

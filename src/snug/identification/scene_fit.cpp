@@ -318,7 +318,9 @@ SceneFit identify_scene(const SceneExperiment& experiment, const SceneFitOptions
   SceneFit fit;
   fit.values = experiment.start();
   fit.covariance = Eigen::MatrixXd::Zero(fit.values.size(), fit.values.size());
-  fit.before = search.errors_at(fit.values).fitted;
+  const internal::SplitErrors at_start = search.errors_at(fit.values);
+  fit.before = at_start.fitted;
+  fit.held_back_before = at_start.held_back;
   Sensed sensed;
   if (!free.empty() && is_squares) {
     const Found found = fit_everywhere(search, free);

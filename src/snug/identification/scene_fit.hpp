@@ -70,10 +70,10 @@ struct SceneFit {
   /// Of all; zero where one is fixed. What is not told stays where it is, known to what its bounds say (uniform), and
   /// what it does to the others is in their errors.
   Eigen::MatrixXd covariance;
-  double chi2_per_dof = 0.0;     ///< with the noise declared
-  double held_back_error = 0.0;  ///< mm, cost on what was kept out of the fit; not a number when nothing was
-  SceneError before, fitted,
-      held_back;  ///< at the start and at the end; of the recordings fitted, and of those held back
+  double chi2_per_dof = 0.0;               ///< with the noise declared
+  double held_back_error = 0.0;            ///< mm, cost on what was kept out of the fit; not a number when nothing was
+  SceneError before, fitted;               ///< of the recordings fitted, at the start and at the end
+  SceneError held_back_before, held_back;  ///< of those held back
   std::vector<Sensitivity> sensitivity;
   std::vector<UnknownDirection> unknown;
   std::vector<Unpredictable> unpredictable;

@@ -79,7 +79,10 @@ ordered_json as_json(const SceneFit& fit) {
   json["is_systematic"] = fit.is_systematic;
   json["before"] = as_json(fit.before);
   json["fitted"] = as_json(fit.fitted);
-  if (fit.held_back.recordings > 0) json["held_back"] = as_json(fit.held_back);
+  if (fit.held_back.recordings > 0) {
+    json["held_back_before"] = as_json(fit.held_back_before);
+    json["held_back"] = as_json(fit.held_back);
+  }
   json["sensitivity"] = ordered_json::array();
   for (const Sensitivity& row : fit.sensitivity)
     json["sensitivity"].push_back({{"name", row.name},
@@ -136,7 +139,9 @@ std::string as_text(const SceneFit& fit) {
     text += fmt::format(" (of what their bounds span; error {:.2g} of it)\n", direction.error);
   }
   text += fmt::format("before: {}\nfitted: {}\n", as_text(fit.before), as_text(fit.fitted));
-  if (fit.held_back.recordings > 0) text += fmt::format("held back: {}\n", as_text(fit.held_back));
+  if (fit.held_back.recordings > 0)
+    text +=
+        fmt::format("held back, before: {}\nheld back: {}\n", as_text(fit.held_back_before), as_text(fit.held_back));
   if (std::isfinite(fit.held_back_error)) text += fmt::format("held-back error: {:.4f} mm\n", fit.held_back_error);
   constexpr double kSmall = 0.5;
   text += fmt::format("misfit: chi2 per degree of freedom {:.3g} with the noise of the task{}\n", fit.chi2_per_dof,

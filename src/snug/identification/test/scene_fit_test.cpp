@@ -15,10 +15,12 @@
 #include "snug/core/file_lock.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/rng.hpp"
+#include "snug/identification/fitted_scenario.hpp"
 #include "snug/identification/free_flight.hpp"
 #include "snug/identification/internal/followed_rows.hpp"
 #include "snug/identification/internal/motion_error.hpp"
 #include "snug/identification/internal/program_motion.hpp"
+#include "snug/identification/scene_page.hpp"
 #include "snug/identification/test/helpers.hpp"
 #include "snug/model/number_edit.hpp"
 
@@ -112,6 +114,24 @@ TEST_F(SceneFitTest, FindsPlantedFrictionAndRestitutionWithIntervalsThatCover) {
   EXPECT_NEAR(fit.chi2_per_dof, 1.0, 0.15);
   EXPECT_TRUE(fit.is_trusted);
   EXPECT_LT(fit.held_back_error, 1.0);  // mm; with noise of 0.35 mm in all
+}
+
+TEST_F(SceneFitTest, WritesWhatStaysUncertainWhereAllNumbersOfAKindWereFound) {
+  const SceneExperiment experiment(task(kTwo), {record({}, 1)}, 1);
+  SceneFit fit;
+  fit.values = experiment.start();
+  fit.parameters = {{"friction", 0.3, 0.003, "", Verdict::Identified, ""},
+                    {"restitution", 0.2, 0.01, "", Verdict::Identified, ""}};
+  const model::Scenario found = fitted_scenario(experiment, fit);
+  EXPECT_NEAR(found.uncertainty.friction, std::sqrt(3.0) * 0.01, 1e-4);  // the only pair
+  model::Uncertainty others = found.uncertainty;
+  others.friction = model::Uncertainty{}.friction;
+  EXPECT_EQ(others, model::Uncertainty{});
+  EXPECT_EQ(model::parse_scenario(found.source_text, "again").uncertainty, found.uncertainty);
+  const std::string page = make_page(experiment, fit, found);
+  EXPECT_NE(page.find("0.0173"), std::string::npos) << page;
+  fit.parameters[0].verdict = Verdict::NotIdentifiable;
+  EXPECT_EQ(fitted_scenario(experiment, fit).uncertainty, model::Uncertainty{});
 }
 
 TEST_F(SceneFitTest, GivesTheSameBytesAtAnyNumberOfThreads) {
