@@ -68,8 +68,8 @@ check: format-check test ## format check, warnings as errors, every test: before
 format-check: setup-lint
 	@clang-format --dry-run --Werror $(SOURCES)
 
-clang: setup-lint ## a second compiler reads every source, each with its own includes only
-	@$(call configure-build,clang)
+clang: setup-lint ## a second compiler reads every source and header, each with its own includes only
+	@$(call configure-build,clang) && python3 -B tools/check_headers.py . clang++
 
 fix: setup-lint ## format every source, apply the safe clang-tidy fixes
 	@clang-format -i $(SOURCES)

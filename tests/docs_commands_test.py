@@ -139,7 +139,15 @@ class Commands(unittest.TestCase):
         allowed = (0, 1) if MAY_FAIL.search(line) else (0,)
         self.assertIn(process.returncode, allowed, f"{line}\n{errors}")
 
-    def run_all(self, lines):
+    def is_repeated(self, line, later, known):
+        """Whether a line is among those that another test runs, and makes nothing that a later one reads."""
+        made = [word for word in shlex.split(line) if "." in word and not (self.path / word).exists()]
+        return line in known and not any(word in other for word in made for other in later)
+
+    def run_all(self, lines, known=frozenset()):
+        lines = list(lines)
+        if not SNUG_LONG:
+            lines = [line for at, line in enumerate(lines) if not self.is_repeated(line, lines[at + 1:], known)]
         with socket.socket() as any_free:  # tests run side by side, and all documents name the same port
             any_free.bind(("127.0.0.1", 0))
             port = any_free.getsockname()[1]
@@ -164,9 +172,12 @@ class Commands(unittest.TestCase):
 
     def test_of_help(self):
         text = help_of([])
-        self.assertGreater(self.run_all(commands_of(text[text.index("Examples:"):], False)), 2)
+        known = {line for path in documents() for line in commands_of(path.read_text(encoding="utf-8"), True)}
+        lines = list(commands_of(text[text.index("Examples:"):], False))
+        self.assertGreater(len(lines), 2)
+        self.run_all(lines, known)
         for words in verbs():
-            self.run_all(line for line in commands_of(help_of(words), False) if line.split()[1:2] != ["VERB"])
+            self.run_all((line for line in commands_of(help_of(words), False) if line.split()[1:2] != ["VERB"]), known)
 
 
 class Help(unittest.TestCase):

@@ -174,7 +174,11 @@ class Robot:
                  "popup")
         scope = {name: getattr(self, name) for name in names}
         scope.update(_halt=self._halt, __builtins__={})
+        code = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+        if code[-1] != "end":  # clients of a controller refuse what stands behind it
+            raise ScriptError(f"the last line is no 'end': {code[-1]}")
         exec(translate(text), scope)  # pylint: disable=exec-used
+        scope["snug_program"]()  # a controller runs what it was sent
 
     def _halt(self):
         raise Halted(self.messages[-1] if self.messages else "")

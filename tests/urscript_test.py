@@ -122,6 +122,14 @@ class UrScript(unittest.TestCase):
         fast, slow = self.run_script(text, evacuation=0.1), self.run_script(text, evacuation=1.1)
         self.assertAlmostEqual(slow.time - fast.time, 2.0, delta=0.05)  # once to come, once to go
 
+    def test_the_cup_is_empty_before_it_lifts_and_outputs_are_defined_before_the_arm_moves(self):
+        for vent in (0.0, 0.3, 1.2):
+            text = self.export(PROGRAM, "--vent-time", vent)
+            robot = self.run_script(text, evacuation=0.1)
+            lift = next(after for before, after in zip(robot.moves, robot.moves[1:]) if before.vacuum and not after.vacuum)
+            self.assertGreaterEqual(lift.begin - robot.switched[0], 0.1 + vent)
+            self.assertLess(text.index("set_standard_digital_out(1, False)"), text.index("movej("))
+
     def test_inputs_and_outputs_are_those_asked_for(self):
         text = self.export(PROGRAM, "--vacuum-output", 3, "--blow-off-output", 4, "--vacuum-input", 5)
         robot = self.run_script(text, vacuum_output=3, vacuum_input=5)

@@ -224,6 +224,7 @@ class Cup:
     def potential(self, H: _Array) -> float:
         """J"""
     def settle(self, mass: float, com: _Array, tool: _Array, gravity: _Array) -> Dict[str, Any]: ...
+    def payload(self, times: _Array, gripper: _Array, wrenches: _Array, rigid_lip: bool = ...) -> Dict[str, Any]: ...
 
 class Arm:
     """An arm from a scenario's robot or a URDF."""

@@ -47,3 +47,20 @@ class Cup(_core.Cup):
             status ("converged", ...), lip (pose X_ES), is_stable, residual (N), load_fraction, bend (rad).
         """
         return super().settle(mass, com, tool, gravity)
+
+    def payload(self, times: Any, gripper: Any, wrenches: Any, rigid_lip: bool = False) -> Dict[str, Any]:
+        """Mass, centre of mass and inertia of what the cup holds, from a lift of 0.2 s or more (`snug identify payload`).
+
+        Args:
+            times: (n,), s, growing.
+            gripper: (n, 7), poses X_WE of the gripper's end.
+            wrenches: (n, 6), force and torque of the cup on the box, in E about E, N and Nm: up for a hanging box.
+            rigid_lip: the lip does not give, as of a hard gripper.
+
+        Returns:
+            parameters: a list of name, value, standard_error, unit, verdict ("identified", "weak", "not identifiable") and, where
+            it is not identified, what to record instead. Mass in kg, centre of mass in S in m, inertia about it in kg m^2.
+
+        Raises InputError for other shapes, numbers that are not finite, times that do not grow, and too short a lift.
+        """
+        return super().payload(times, gripper, wrenches, rigid_lip)

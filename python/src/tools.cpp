@@ -1,8 +1,11 @@
 // Cup and Arm: the law of the suction cup, and the kinematics of a robot's arm.
+#include <fmt/format.h>
+
 #include "core.hpp"
 #include "handles.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/cup/statics.hpp"
+#include "snug/identification/payload_file.hpp"
 #include "snug/robot/inverse.hpp"
 #include "snug/robot/load_arm.hpp"
 
@@ -32,6 +35,31 @@ struct Cup {
     dict["load_fraction"] = result.load_fraction;
     dict["bend"] = result.bend;
     return dict;
+  }
+
+  [[nodiscard]] py::object payload(const Array& times, const Array& gripper, const Array& wrenches,
+                                   bool rigid_lip) const {
+    const auto count = static_cast<std::size_t>(times.size());
+    const auto expect = [&](const Array& array, const char* what, py::ssize_t width) {
+      if (array.ndim() != 2 || array.shape(0) != times.size() || array.shape(1) != width)
+        throw InputError("argument", what, "another shape", fmt::format("({}, {}), a row for each time", count, width));
+    };
+    expect(gripper, "gripper", 7);
+    expect(wrenches, "wrenches", 6);
+    std::vector<identification::PayloadSample> lift(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      lift[i].time = times.data()[i];
+      lift[i].X_WE = as_pose(Array(7, gripper.data() + 7 * i), "gripper");
+      lift[i].wrench_E = Eigen::Map<const Vector6>(wrenches.data() + 6 * i);
+    }
+    identification::check_lift(lift, "argument");
+    identification::PayloadSettings settings;
+    settings.K = K;
+    settings.frames = identification::frames_of(params);
+    if (rigid_lip) lift = identification::with_rigid_lip(std::move(lift), settings.frames);
+    identification::PayloadEstimator estimator(settings);
+    for (const identification::PayloadSample& sample : lift) estimator.add(sample);
+    return from_json(identification::format_payload_json(estimator.estimate()));
   }
 };
 
@@ -85,7 +113,9 @@ void bind_tools(py::module_& m) {
           py::arg("H"))
       .def(
           "potential", [](const Cup& c, const Array& H) { return cup::potential(as_pose(H, "H"), c.K); }, py::arg("H"))
-      .def("settle", &Cup::settle, py::arg("mass"), py::arg("com"), py::arg("tool"), py::arg("gravity"));
+      .def("settle", &Cup::settle, py::arg("mass"), py::arg("com"), py::arg("tool"), py::arg("gravity"))
+      .def("payload", &Cup::payload, py::arg("times"), py::arg("gripper"), py::arg("wrenches"),
+           py::arg("rigid_lip") = false);
   py::class_<Arm>(m, "Arm")
       .def(py::init([](const ScenarioHandle& s) { return std::make_unique<Arm>(robot::load_arm(**s)); }),
            py::arg("scenario"))

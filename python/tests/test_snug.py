@@ -251,6 +251,18 @@ class TestTools:
         pulled = cup.wrench([0, 0, 1e-4, 1, 0, 0, 0])
         assert pulled[2] == pytest.approx(-cup.stiffness[2, 2] * 1e-4, rel=1e-3)
 
+    def test_a_lift_tells_the_payload(self, demonstrator):
+        lift = np.genfromtxt(ROOT / "scenarios" / "examples" / "lift.csv", delimiter=",", skip_header=1)
+        found = snug.Cup(demonstrator).payload(lift[:, 0], lift[:, 1:8], lift[:, 8:14])
+        numbers = {one["name"]: one for one in found["parameters"]}
+        assert numbers["mass"]["verdict"] == "identified"
+        assert numbers["mass"]["value"] * 9.81 == pytest.approx(-np.median(lift[:, 10]), rel=0.05)
+        for wrong in ((lift[::-1, 0], lift[:, 1:8], lift[:, 8:14]), (lift[:, 0], lift[:, 1:7], lift[:, 8:14]),
+                      (lift[:, 0], lift[:, 1:8], lift[1:, 8:14]), (lift[:2, 0], lift[:2, 1:8], lift[:2, 8:14]),
+                      (lift[:, 0], lift[:, 1:8], lift[:, 8:14] * np.nan)):
+            with pytest.raises(snug.InputError):
+                snug.Cup(demonstrator).payload(*wrong)
+
     def test_a_load_settles_by_its_weight(self, demonstrator):
         cup = snug.Cup(demonstrator)
         settled = cup.settle(1.0)

@@ -50,6 +50,7 @@ constexpr std::array kOptionFormats = {
     OptionFormats{"--blow-off-output", "urscript"},
     OptionFormats{"--vacuum-input", "urscript"},
     OptionFormats{"--vacuum-timeout", "urscript"},
+    OptionFormats{"--vent-time", "urscript"},
 };
 
 /// Throws InputError for an option that was given and means nothing to the format.
@@ -129,6 +130,11 @@ void add_export(CLI::App& app, Action& action) {
   verb.add_option("--vacuum-timeout", options->script.vacuum_timeout,
                   "of urscript: the program halts when the vacuum has not changed by then")
       ->check(within(0.1, 600.0))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  verb.add_option("--vent-time", options->script.vent_time,
+                  "of urscript: from when the input says that the vacuum fell until it is gone")
+      ->check(within(0.0, 60.0))
       ->type_name("SECONDS")
       ->capture_default_str();
   verb.add_option("--urdf", options->urdf,

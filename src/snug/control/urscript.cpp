@@ -97,12 +97,11 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
     const motion::Waypoint& waypoint = waypoints[row.row];
     const motion::MotionLimits& limits = plan.row_limits[row.row];
     body += fmt::format("  # {} {}\n", row.row + 1, motion::name_of(waypoint));
-    const std::optional<motion::IO> before = row.row == 0 ? std::nullopt : std::optional(row.before);
-    body += format_outputs(before, waypoint.io, options);
+    body += format_outputs(row.before, waypoint.io, options);
     if (waypoint.io.vacuum != row.before.vacuum) {
       body += format_wait(waypoint);
       body += "  " + format_payload(program, program.loads[row.row]);
-      script.nominal_duration += plan.settings.vacuum_wait;
+      script.nominal_duration += plan.settings.vacuum_wait + (waypoint.io.vacuum ? 0.0 : options.vent_time);
     } else if (waits(row.before, waypoint.io) && plan.settings.vacuum_wait > 0.0) {  // a puff: nothing to sense
       body += fmt::format("  sleep({:.3f})\n", plan.settings.vacuum_wait);
       script.nominal_duration += plan.settings.vacuum_wait;
@@ -125,10 +124,12 @@ UrScript format_urscript(const RobotProgram& program, const UrScriptOptions& opt
   text +=
       fmt::format("  # {:.1f} s nominal from the start pose: {} moves from stop to stop (blends make them shorter),\n",
                   script.nominal_duration, script.moves);
-  text += fmt::format("  # {} s at each change of vacuum. Simulated: {:.1f} s, with a controller that lags behind.\n",
-                      plan.settings.vacuum_wait, script.simulated_duration);
-  text += wait_function(options) + format_start(program, program.q_start);
-  text += body + "end\nsnug_program()\n";
+  text += fmt::format(
+      "  # {} s at each change of vacuum, {} s more until it is gone. Simulated: {:.1f} s, with a controller that lags "
+      "behind.\n",
+      plan.settings.vacuum_wait, options.vent_time, script.simulated_duration);
+  text += wait_function(options) + format_start(program, program.q_start, options);
+  text += body + "end\n";
   return script;
 }
 

@@ -13,6 +13,8 @@ struct UrScriptOptions {
   int blow_off_output = 1;      ///< standard digital output
   int vacuum_input = 0;         ///< standard digital input, on while there is vacuum
   double vacuum_timeout = 3.0;  ///< s, after which a vacuum that does not come or go halts the program
+  /// s, from when the input says that the vacuum fell below its threshold until it is gone.
+  double vent_time = 0.3;
 };
 
 struct UrScript {
@@ -23,8 +25,9 @@ struct UrScript {
   double simulated_duration = 0.0;
 };
 
-/// A URScript function. movej to the start; then for each row its outputs; where the vacuum changes, a wait until its
-/// input says so, and set_payload of gripper and load; and movel to its pose in the controller's base frame with the
+/// A URScript function, and nothing behind its end: as a program it runs when it is sent. Outputs off, movej to the
+/// start; then for each row its outputs; where the vacuum changes, a wait until its input says so and, where it goes,
+/// `vent_time` more, and set_payload of gripper and load; and movel to its pose in the controller's base frame with the
 /// row's acceleration and speed, by duration where the turn decides, since movel limits the translation only. Rows
 /// reached within a precision of 0.05 m and more are blended, by less than half of the moves on either side, so that
 /// blends do not overlap. A row less than 0.05 mm and 0.1 mrad from the one before gets no move. Throws InputError for

@@ -183,7 +183,7 @@ class ServoWriter {
     follow(sample);
     const motion::Waypoint& waypoint = program_.plan.program.waypoints[static_cast<std::size_t>(row)];
     script_.text += fmt::format("  # {} {}\n", row + 1, motion::name_of(waypoint));
-    const motion::IO before = io_.value_or(motion::IO{});
+    const motion::IO before = io_;
     const motion::IO& io = run_.samples[sample].io;
     const bool changes_vacuum = io.vacuum != before.vacuum;
     const std::optional<std::size_t> stop =
@@ -225,8 +225,8 @@ class ServoWriter {
   const UrScriptOptions& options_;
   std::vector<TimedJoints> states_;
   KnotLimits limits_;
-  std::size_t at_ = 0;            ///< state that the script has come to
-  std::optional<motion::IO> io_;  ///< none before the first row
+  std::size_t at_ = 0;  ///< state that the script has come to
+  motion::IO io_;       ///< what the outputs have
   UrServoScript script_;
 };
 
@@ -254,8 +254,8 @@ UrServoScript format_servo_urscript(const JointRun& run, const RobotProgram& pro
   text += fmt::format(
       "  # Simulated: {:.1f} s. Here: {:.1f} s on polynomials between {} knots, and waits for the vacuum.\n",
       script.simulated_duration, script.followed_duration, script.knots);
-  text += wait_function(options) + follow_functions(q_start) + format_start(program, q_start);
-  script.text = text + script.text + "end\nsnug_program()\n";
+  text += wait_function(options) + follow_functions(q_start) + format_start(program, q_start, options);
+  script.text = text + script.text + "end\n";
   return script;
 }
 

@@ -42,11 +42,23 @@ std::vector<PayloadSample> parse_lift(const std::string& text, const std::string
     if (lip_at)
       sample.X_ES = Pose{internal::rotation_at(table, row, *lip_at + 3), internal::vector_at(table, row, *lip_at)};
   }
+  check_lift(lift, name);
+  return lift;
+}
+
+void check_lift(const std::vector<PayloadSample>& lift, const std::string& name) {
+  for (std::size_t i = 0; i < lift.size(); ++i) {
+    const PayloadSample& one = lift[i];
+    if (!std::isfinite(one.time) || !one.X_WE.p.allFinite() || !one.X_WE.R.allFinite() || !one.wrench_E.allFinite())
+      throw InputError(name, fmt::format("row {}", i), "a number that is not finite", "finite numbers");
+    if (i > 0 && one.time <= lift[i - 1].time)
+      throw InputError(name, fmt::format("row {}", i), fmt::format("time {} after {}", one.time, lift[i - 1].time),
+                       "times that grow");
+  }
   const double window = PayloadSettings{}.window;
   if (lift.size() < 3 || lift.back().time - lift.front().time < window)
     throw InputError(name, "", fmt::format("{} rows", lift.size()),
                      fmt::format("a lift of {} s or more, of the gripper that holds a box", window));
-  return lift;
 }
 
 std::vector<PayloadSample> load_lift(const std::filesystem::path& path) {

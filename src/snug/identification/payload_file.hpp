@@ -17,6 +17,10 @@ namespace snug::identification {
 [[nodiscard]] std::vector<PayloadSample> load_lift(const std::filesystem::path& path);
 [[nodiscard]] std::vector<PayloadSample> parse_lift(const std::string& text, const std::string& name);
 
+/// Throws InputError, naming `name` and the row, for numbers that are not finite, times that do not grow, and less than
+/// the time of a window.
+void check_lift(const std::vector<PayloadSample>& lift, const std::string& name);
+
 /// The same lift on a lip that does not give: S stays where it is unloaded.
 [[nodiscard]] std::vector<PayloadSample> with_rigid_lip(std::vector<PayloadSample> lift, const CupFrames& frames);
 

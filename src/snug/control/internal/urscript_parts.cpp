@@ -62,8 +62,11 @@ std::string wait_function(const UrScriptOptions& options) {
       "      sync()\n"
       "      waited = waited + get_steptime()\n"
       "    end\n"
+      "    if is_wanted == False:\n"
+      "      sleep({:.3f})\n"
+      "    end\n"
       "  end\n",
-      options.vacuum_input, options.vacuum_timeout);
+      options.vacuum_input, options.vacuum_timeout, options.vent_time);
 }
 
 std::string format_wait(const motion::Waypoint& waypoint) {
@@ -71,8 +74,9 @@ std::string format_wait(const motion::Waypoint& waypoint) {
                      quotable(motion::name_of(waypoint)));
 }
 
-std::string format_start(const RobotProgram& program, const robot::JointVector& q) {
-  return fmt::format("  set_tcp({})\n  {}  movej({}, a={}, v={})\n", format_tcp(program),
+std::string format_start(const RobotProgram& program, const robot::JointVector& q, const UrScriptOptions& options) {
+  return fmt::format("{}  set_tcp({})\n  {}  movej({}, a={}, v={})\n",
+                     format_outputs(std::nullopt, motion::IO{}, options), format_tcp(program),
                      format_payload(program, std::nullopt), format_list(q), kJointAcceleration, kJointSpeed);
 }
 

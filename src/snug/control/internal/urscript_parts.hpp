@@ -22,6 +22,7 @@ void check_is_ur(const robot::ArmModel& arm);
 /// The wait until the input says that the vacuum is what the waypoint wants.
 [[nodiscard]] std::string format_wait(const motion::Waypoint& waypoint);
 /// Tool and payload, and the way to the joints where the program begins.
-[[nodiscard]] std::string format_start(const RobotProgram& program, const robot::JointVector& q);
+[[nodiscard]] std::string format_start(const RobotProgram& program, const robot::JointVector& q,
+                                       const UrScriptOptions& options);
 
 }  // namespace snug::control::internal
