@@ -141,8 +141,9 @@ class Commands(unittest.TestCase):
 
     def is_repeated(self, line, later, known):
         """Whether a line is among those that another test runs, and makes nothing that a later one reads."""
-        made = [word for word in shlex.split(line) if "." in word and not (self.path / word).exists()]
-        return line in known and not any(word in other for word in made for other in later)
+        made = [word for word in shlex.split(line)[2:] if not word.startswith("-") and not (self.path / word).exists()]
+        read = {word for other in later for word in re.split(r"[\s/]", other)}
+        return line in known and read.isdisjoint(made)
 
     def run_all(self, lines, known=frozenset()):
         lines = list(lines)
