@@ -10,7 +10,9 @@ void add_body_targets(const model::Scenario& scenario, const CellWorld& world, d
   for (std::size_t i = 0; i < scenario.bodies.size(); ++i) {
     const model::Body& body = scenario.bodies[i];
     if (body.kind != model::BodyKind::Kinematic || (!body.path && body.V_WB == Twist{})) continue;
-    targets.push_back({world.bodies[i], model::kinematic_pose_at(body, end)});
+    physics::KinematicTarget target{world.bodies[i], model::kinematic_pose_at(body, end), std::nullopt};
+    if (body.path) target.V_WB_end = model::kinematic_twist_at(body, end);
+    targets.push_back(target);
   }
 }
 

@@ -147,6 +147,8 @@ struct AppliedWrench {
 
 /// Where a kinematic body that has appeared is at `time` [s].
 [[nodiscard]] Pose kinematic_pose_at(const Body& body, double time);
+/// Its twist: linear part at the origin of B, in W.
+[[nodiscard]] Twist kinematic_twist_at(const Body& body, double time);
 
 /// Boxes that fall into a container one after the other: type, yaw and place uniform, whole box inside the walls.
 /// Boxes have the nominal size and mass of their type and uniform density.

@@ -20,6 +20,7 @@ using internal::to_text;
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;  // about 500 000 points
 constexpr double kFewDigits = 1e-3;                        // of the norm of a quaternion written with few digits
 constexpr double kLatestTime = 1e6;                        // s
+constexpr double kSamePlace = 1e-12;                       // m and rad: rows between which a body rests
 constexpr double kFastest = 1000.0;                        // m/s and rad/s: more is a slip
 
 enum Column { Time, X, Y, Z, Qw, Qx, Qy, Qz, Roll, Pitch, Yaw, kColumnCount };
@@ -137,18 +138,102 @@ void check_follows(const PathPoint& before, const PathPoint& point, const std::s
                      "at most " + to_text(kFastest) + " of both: metres, seconds?");
 }
 
+/// From one row to the next.
+struct Chord {
+  double dt = 0.0;                   ///< s
+  Vector3 linear = Vector3::Zero();  ///< m/s, mean, in W
+  Vector3 turn = Vector3::Zero();    ///< rad, rotation vector, the same in the frames of both rows
+  [[nodiscard]] bool rests() const { return linear.norm() * dt <= kSamePlace && turn.norm() <= kSamePlace; }
+};
+
+Chord chord_of(const PathPoint& from, const PathPoint& to) {
+  const double dt = to.time - from.time;
+  return {dt, (to.X_WB.p - from.X_WB.p) / dt, log_rotation(from.X_WB.R.transpose() * to.X_WB.R)};
+}
+
+/// Rate of the rotation vector for an angular velocity in the turned frame: the inverse right Jacobian of exp
+/// (Chirikjian 2011, section 10.7).
+Vector3 rate_of_vector(const Vector3& turn, const Vector3& w_B) {
+  const double angle = turn.norm();
+  const double half = 0.5 * angle;
+  const double c = angle > 1e-4 ? (1.0 - half / std::tan(half)) / (angle * angle) : 1.0 / 12.0;
+  return w_B + 0.5 * turn.cross(w_B) + c * turn.cross(turn.cross(w_B));
+}
+
+/// Angular velocity in the turned frame for a rate of the rotation vector.
+Vector3 velocity_of_vector(const Vector3& turn, const Vector3& rate) {
+  const double angle = turn.norm(), square = angle * angle;
+  const bool is_large = angle > 1e-4;
+  const double a = is_large ? (1.0 - std::cos(angle)) / square : 0.5;
+  const double b = is_large ? (angle - std::sin(angle)) / (square * angle) : 1.0 / 6.0;
+  return rate - a * turn.cross(rate) + b * turn.cross(turn.cross(rate));
+}
+
+/// Of a parabola at the middle of two chords, or at the free end of the first of them.
+Vector3 slope_between(const Vector3& before, const Vector3& after, double dt_before, double dt_after) {
+  return (dt_after * before + dt_before * after) / (dt_before + dt_after);
+}
+Vector3 slope_at_end(const Vector3& first, const Vector3& second, double dt_first, double dt_second) {
+  const Vector3 slope = first + (first - second) * dt_first / (dt_first + dt_second);
+  return slope.dot(first) > 0.0 ? slope : Vector3(Vector3::Zero());
+}
+
+/// Velocity at a row: linear in W, angular in the frame of the row.
+Twist velocity_at(const std::vector<PathPoint>& points, std::size_t i) {
+  const bool is_first = i == 0, is_last = i + 1 == points.size();
+  if (points.size() == 1) return {};
+  if (!is_first && !is_last) {
+    const Chord before = chord_of(points[i - 1], points[i]), after = chord_of(points[i], points[i + 1]);
+    if (before.rests() || after.rests()) return {};
+    return {slope_between(before.linear, after.linear, before.dt, after.dt),
+            slope_between(before.turn / before.dt, after.turn / after.dt, before.dt, after.dt)};
+  }
+  const Chord near = is_first ? chord_of(points[0], points[1]) : chord_of(points[i - 1], points[i]);
+  if (near.rests()) return {};
+  if (points.size() == 2) return {near.linear, near.turn / near.dt};
+  const Chord far = is_first ? chord_of(points[1], points[2]) : chord_of(points[i - 2], points[i - 1]);
+  return {slope_at_end(near.linear, far.linear, near.dt, far.dt),
+          slope_at_end(near.turn / near.dt, far.turn / far.dt, near.dt, far.dt)};
+}
+
+/// Cubic Hermite polynomial from 0 to `whole` within `dt`, with these slopes: value and slope at the share s of dt.
+struct Hermite {
+  Vector3 value, slope;
+};
+Hermite hermite(const Vector3& whole, const Vector3& slope_0, const Vector3& slope_1, double dt, double s) {
+  const double t = 1.0 - s;
+  return {s * s * (3.0 - 2.0 * s) * whole + dt * s * t * (t * slope_0 - s * slope_1),
+          6.0 * s * t / dt * whole + t * (1.0 - 3.0 * s) * slope_0 + s * (3.0 * s - 2.0) * slope_1};
+}
+
+struct PathMotion {
+  Pose X_WB;
+  Twist V_WB;
+};
+
+PathMotion motion_at(const PosePath& path, double time) {
+  const std::vector<PathPoint>& points = path.points;
+  const auto after = std::lower_bound(points.begin(), points.end(), time,
+                                      [](const PathPoint& point, double t) { return point.time < t; });
+  if (after == points.begin()) return {points.front().X_WB, {}};
+  if (after == points.end()) return {points.back().X_WB, {}};
+  const auto to = static_cast<std::size_t>(after - points.begin());
+  const PathPoint &A = points[to - 1], &E = points[to];
+  const Chord chord = chord_of(A, E);
+  if (chord.rests()) return {time == E.time ? E.X_WB : A.X_WB, {}};
+  const double s = (time - A.time) / chord.dt;
+  const Twist V_A = velocity_at(points, to - 1), V_E = velocity_at(points, to);
+  const Hermite place = hermite(E.X_WB.p - A.X_WB.p, V_A.linear, V_E.linear, chord.dt, s);
+  const Hermite turn = hermite(chord.turn, V_A.angular, rate_of_vector(chord.turn, V_E.angular), chord.dt, s);
+  const Pose X_WB = time == E.time ? E.X_WB : Pose{A.X_WB.R * exp_rotation(turn.value), A.X_WB.p + place.value};
+  return {X_WB, {place.slope, X_WB.R * velocity_of_vector(turn.value, turn.slope)}};
+}
+
 }  // namespace
 
-Pose pose_at(const PosePath& path, double time) {
-  const auto after = std::upper_bound(path.points.begin(), path.points.end(), time,
-                                      [](double t, const PathPoint& point) { return t < point.time; });
-  if (after == path.points.begin()) return path.points.front().X_WB;
-  const PathPoint& from = *(after - 1);
-  if (after == path.points.end() || time == from.time) return from.X_WB;
-  const double share = (time - from.time) / (after->time - from.time);
-  const Vector3 turn = log_rotation(from.X_WB.R.transpose() * after->X_WB.R);
-  return {from.X_WB.R * exp_rotation(share * turn), from.X_WB.p + share * (after->X_WB.p - from.X_WB.p)};
-}
+Pose pose_at(const PosePath& path, double time) { return motion_at(path, time).X_WB; }
+
+Twist twist_at(const PosePath& path, double time) { return motion_at(path, time).V_WB; }
 
 PosePath parse_pose_path(std::string_view text, std::string_view name, const Pose& X_WF) {
   text = without_byte_order_mark(text);

@@ -64,6 +64,8 @@ Pose kinematic_pose_at(const Body& body, double time) {
   return {exp_rotation(elapsed * body.V_WB.angular) * body.X_WB.R, body.X_WB.p + elapsed * body.V_WB.linear};
 }
 
+Twist kinematic_twist_at(const Body& body, double time) { return body.path ? twist_at(*body.path, time) : body.V_WB; }
+
 HolderState holder_at(const Spring& spring, double time) {
   HolderState state{spring.X_WH, {}};
   for (const HolderMove& move : spring.moves) {

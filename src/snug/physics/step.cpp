@@ -71,6 +71,15 @@ void start_kinematic(const BodyState& state, const KinematicTarget& target, doub
   work.velocity = work.velocity_start;
   work.angular = work.angular_start;
   work.speed = work.velocity_start.norm() + work.angular_start.norm() * radius;
+  if (target.V_WB_end) {  // the mean of both ends stays what leads to the end
+    work.velocity = target.V_WB_end->linear;
+    work.angular = target.V_WB_end->angular;
+    work.velocity_start = 2.0 * work.velocity_start - work.velocity;
+    work.angular_start = 2.0 * work.angular_start - work.angular;
+    for (const auto& [v, w] :
+         {std::pair(work.velocity, work.angular), std::pair(work.velocity_start, work.angular_start)})
+      work.speed = std::max(work.speed, v.norm() + w.norm() * radius);
+  }
   work.is_moving = work.speed > 0.0;
 }
 
@@ -114,6 +123,7 @@ BodyId find_not_finite(const WorldInput& input, const WorldState& state, Scratch
   if (body < state.bodies.size()) return BodyId{static_cast<int>(body)};
   for (const KinematicTarget& target : input.kinematic) {
     if (!target.X_WB_end.p.allFinite() || !target.X_WB_end.R.allFinite()) return target.body;
+    if (target.V_WB_end && !as_vector(*target.V_WB_end).allFinite()) return target.body;
   }
   for (const ExternalWrench& wrench : input.wrenches) {
     if (!as_vector(wrench.wrench_W).allFinite()) return wrench.body;
@@ -271,8 +281,8 @@ void end_step(const WorldModel& model, const WorldInput& input, WorldState& stat
   for (const KinematicTarget& target : input.kinematic) {
     const auto i = static_cast<std::size_t>(target.body.index);
     BodyState& body = state.bodies[i];
-    body.velocity = work.bodies[i].velocity_start;
-    body.angular_velocity = work.bodies[i].angular_start;
+    body.velocity = work.bodies[i].velocity;
+    body.angular_velocity = work.bodies[i].angular;
     if (stays(body, body.quat_WB.toRotationMatrix(), target.X_WB_end)) continue;
     body.p_WBcm = target.X_WB_end.p;
     body.quat_WB = Quaternion(target.X_WB_end.R).normalized();

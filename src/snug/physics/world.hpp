@@ -194,6 +194,9 @@ struct WorldState {
 struct KinematicTarget {
   BodyId body;
   Pose X_WB_end;  ///< at the end of the step
+  /// Twist at the end of the step, linear part at the origin of B, in W. Absent: the mean of the step, as if the speed
+  /// changed at its start; what rides on a body that speeds up lags by dt/2 of the change.
+  std::optional<Twist> V_WB_end = std::nullopt;
 };
 
 /// A force element between a kinematic carrier and a dynamic body.

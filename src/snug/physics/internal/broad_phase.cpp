@@ -43,8 +43,8 @@ FatBox tight_box(const geometry::Shape& shape, const Matrix3& R_WG, const Vector
 /// Where the box can be during this step, as the body moves now.
 FatBox swept_box(const WorldModel& model, std::size_t body, const BodyWork& moving, const FatBox& tight) {
   const double dt = model.settings.dt;
-  const Vector3 way = dt * moving.velocity_start + dt * dt * model.gravity;
-  const double turn = dt * moving.angular_start.norm() * model.masses[body].radius;
+  const Vector3 way = 0.5 * dt * (moving.velocity_start + moving.velocity) + dt * dt * model.gravity;
+  const double turn = 0.5 * dt * (moving.angular_start + moving.angular).norm() * model.masses[body].radius;
   return {tight.lower + way.cwiseMin(0.0) - Vector3::Constant(turn),
           tight.upper + way.cwiseMax(0.0) + Vector3::Constant(turn)};
 }

@@ -63,7 +63,7 @@ void fill_side(const Side& side, const Patch& patch, const Vector3& p_WQ, int co
 
 /// Relative velocity that a moving kinematic body brings in.
 void add_bias(const BodyWork& body, const Patch& patch, const Vector3& arm, double sign, Row& row) {
-  const Vector3 v = sign * (body.velocity_start + body.angular_start.cross(arm));
+  const Vector3 v = sign * (body.velocity + body.angular.cross(arm));
   row.bias[0] += patch.n.dot(v);
   row.bias[1] += patch.t1.dot(v);
   row.bias[2] += patch.t2.dot(v);

@@ -21,8 +21,8 @@ ElementQuery carrier_query(const WorldInput& input, const Scratch& work, const E
   }
   ElementQuery query;
   query.X_WE = X_WC * use.X_CE;
-  query.V_WE.angular = carrier.angular_start;
-  query.V_WE.linear = carrier.velocity_start + carrier.angular_start.cross(X_WC.R * use.X_CE.p);
+  query.V_WE.angular = 0.5 * (carrier.angular_start + carrier.angular);
+  query.V_WE.linear = 0.5 * (carrier.velocity_start + carrier.velocity) + query.V_WE.angular.cross(X_WC.R * use.X_CE.p);
   return query;
 }
 

@@ -39,7 +39,7 @@ void add_side(const Scratch& work, const BodyWork& body, const std::array<Vector
               Row& row) {
   if (body.active < 0) {
     if (!body.is_moving) return;
-    for (int i = 0; i < 2; ++i) row.bias[i + 1] += sign * axes[static_cast<std::size_t>(i)].dot(body.angular_start);
+    for (int i = 0; i < 2; ++i) row.bias[i + 1] += sign * axes[static_cast<std::size_t>(i)].dot(body.angular);
     return;
   }
   const Whitening& whitening = work.whitening[static_cast<std::size_t>(body.active)];

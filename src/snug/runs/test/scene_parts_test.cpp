@@ -130,25 +130,71 @@ TEST(KinematicPath, IsFollowedToRounding) {
                    exp_rotation({roll * kPi / 180, 0, 0}));
   };
   EXPECT_EQ(physics::pose_of(run.world().model, run.state(), arm).p, Vector3(1, 0, 0.3));
+  // Three rows none of which turns back: the origin follows the parabola through them.
+  const auto parabola = [](double t) {
+    const Vector3 a(1, 0, 0.3), b(1.5, 0.2, 0.3), c(1.5, -0.4, 0.8);
+    return Vector3((t - 0.35) * (t - 0.9) / (0.25 * 0.8) * a - (t - 0.1) * (t - 0.9) / (0.25 * 0.55) * b +
+                   (t - 0.1) * (t - 0.35) / (0.8 * 0.55) * c);
+  };
+  Twist before;
   for (int i = 1; i <= 1000; ++i) {
     (void)run.advance();
     const double t = i * 1e-3;
     const Pose X = physics::pose_of(run.world().model, run.state(), arm);
-    Vector3 p(1, 0, 0.3);
-    Matrix3 R = Matrix3::Identity();
-    if (t >= 0.1) {
-      const double s = std::min(1.0, (t - 0.1) / 0.25);
-      p = Vector3(1 + 0.5 * s, 0.2 * s, 0.3);
-      R = turn(0, 0, 90 * s);
+    const Twist V = physics::twist_of(run.world().model, run.state(), arm);
+    ASSERT_LT((X.p - parabola(std::clamp(t, 0.1, 0.9))).norm(), 1e-12) << t;
+    if (i <= 100) ASSERT_LT((X.R - turn(0, 0, 0)).norm(), 1e-12) << t;
+    if (i == 350) ASSERT_LT((X.R - turn(0, 0, 90)).norm(), 1e-12) << t;
+    if (i >= 900) ASSERT_LT((X.R - turn(30, -20, 90)).norm(), 1e-12) << t;
+    // No jump in speed between the first and the last row: 0.1 rad/s a step is 100 rad/s^2; straight lines jump by 6.
+    if (i > 101 && i < 900) {
+      ASSERT_LT((V.linear - before.linear).norm(), 0.02) << t;
+      ASSERT_LT((V.angular - before.angular).norm(), 0.1) << t;
     }
-    if (t >= 0.35) {
-      const double s = std::min(1.0, (t - 0.35) / 0.55);
-      p = Vector3(1.5, 0.2 - 0.6 * s, 0.3 + 0.5 * s);
-      const Vector3 whole = log_rotation(turn(0, 0, 90).transpose() * turn(30, -20, 90));
-      R = turn(0, 0, 90) * exp_rotation(s * whole);
-    }
-    ASSERT_LT((X.p - p).norm(), 1e-12) << t;
-    ASSERT_LT((X.R - R).norm(), 1e-12) << t;
+    before = V;
+  }
+}
+
+TEST(KinematicPath, OfTwentyRowsASecondCarriesABoxWithoutSlip) {
+  // 0.6 m in 1.2 s with least jerk: at most 0.245 g, where friction 0.3 holds.
+  const ScratchFolder folder;
+  std::string table = "time,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 24; ++i) {
+    const double s = i / 24.0;
+    table += fmt::format("{:.6f},{:.9f},0,0,1,0,0,0\n", 0.2 + 1.2 * s, 0.6 * s * s * s * (10 - 15 * s + 6 * s * s));
+  }
+  (void)write(folder, "way.csv", table);
+  const fs::path file = write(folder, "scene.yaml",
+                              scene_text(1.6, R"(
+- {name: tray, kind: kinematic, size: [0.6, 0.4, 0.1], material: m, path: {file: way.csv}}
+- {name: b, size: [0.3, 0.2, 0.1], mass: 3, material: m, pose: {position: [0, 0, 0.1]}})",
+                                         "{friction: 0.3, restitution: 0}"));
+  Scene run(model::load_scenario(file));
+  const physics::BodyId tray = find_body(run.world(), "tray"), box = find_body(run.world(), "b");
+  for (int i = 1; i <= 1600; ++i) {
+    ASSERT_EQ(run.advance().status, physics::StepStatus::Converged);
+    const Vector3 apart = physics::pose_of(run.world().model, run.state(), box).p -
+                          physics::pose_of(run.world().model, run.state(), tray).p;
+    ASSERT_NEAR(apart.x(), 0.0, 1e-5) << i;  // measured: 5e-7; straight lines between the rows: 15e-3
+  }
+}
+
+TEST(KinematicPath, RestsBetweenEqualRows) {
+  const ScratchFolder folder;
+  (void)write(
+      folder, "way.csv",
+      "time,x,y,z,yaw_deg,pitch_deg,roll_deg\n0,0,0,1,0,0,0\n0.2,1,0,1,90,0,0\n0.4,1,0,1,90,0,0\n0.6,0,0,1,0,0,0\n");
+  const fs::path file =
+      write(folder, "scene.yaml",
+            scene_text(0.6, "- {name: arm, kind: kinematic, size: [0.1, 0.1, 0.1], material: m, path: {file: way.csv}}",
+                       "{friction: 0.3, restitution: 0}"));
+  Scene run(model::load_scenario(file));
+  const physics::BodyId arm = find_body(run.world(), "arm");
+  for (int i = 1; i <= 400; ++i) {
+    (void)run.advance();
+    const double x = physics::pose_of(run.world().model, run.state(), arm).p.x();
+    ASSERT_LE(x, 1.0 + 1e-12) << i;  // does not overshoot
+    if (i >= 200) ASSERT_NEAR(x, 1.0, 1e-12) << i;
   }
 }
 
