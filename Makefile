@@ -11,7 +11,7 @@ configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(J
 run-tests = ctest --preset $(1) -j $(JOBS)
 
 .PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python package reproducible check \
-  format-check clang fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
+  format-check clang headers fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
 
 help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -68,8 +68,11 @@ check: format-check test ## format check, warnings as errors, every test: before
 format-check: setup-lint
 	@clang-format --dry-run --Werror $(SOURCES)
 
-clang: setup-lint ## a second compiler reads every source and header, each with its own includes only
-	@$(call configure-build,clang) && python3 -B tools/check_headers.py . clang++
+clang: setup-lint ## a second compiler reads every source, each with its own includes only
+	@$(call configure-build,clang)
+
+headers: setup-program ## public headers that no source includes first compile alone
+	@python3 -B tools/check_headers.py .
 
 fix: setup-lint ## format every source, apply the safe clang-tidy fixes
 	@clang-format -i $(SOURCES)

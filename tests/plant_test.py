@@ -120,11 +120,11 @@ class ServedPlant(unittest.TestCase):
         process, address = self.serve("--sequence", "two", "--plant-seed", 7, "--once", "--speed", 4, "--json", "-o", recording)
         packing = subprocess.Popen([SNUG, "pack", CELL, "--items", self.items, "--sequence", "two", "--plant", address,
                                     *map(str, QUICK)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-        packing.stdout.read(1)  # it is connected when it prints its head
+        self.assertTrue(packing.stdout.read(1), "it is connected when it prints its head")
         time.sleep(1.5)
         packing.kill()
         packing.communicate()
-        run = json.loads(process.stdout.read())
+        run = json.loads(process.communicate(timeout=120)[0])
         self.assertEqual((run["ended_by"], run["failure"]), ("the controller left", ""))
         page = subprocess.run([SNUG, "report", recording, "-o", self.folder / "out.html"], capture_output=True)
         self.assertEqual(page.returncode, 0, page.stderr)

@@ -32,6 +32,7 @@ class Check:
 CHECKS = (
     Check("format", "make format-check"),
     Check("tests", "make test", results="build/test-results.xml", minutes=17.0),
+    Check("headers", "make headers", minutes=1.0, may_be_left_out=True),
     Check("clang", "make clang", minutes=12.5, may_be_left_out=True),
     Check("sanitizers", "make san-fast", results="build-sanitize/test-results.xml", minutes=10.0, may_be_left_out=True),
 )

@@ -87,9 +87,9 @@ int run_identify_scene(const IdentifySceneOptions& options) {
                                                            std::filesystem::path(*options.output).parent_path()));
   }
   if (scenario || page) {
-    const model::Scenario found = identification::fitted_scenario(experiment, fit);
-    if (scenario) write_file(std::move(*scenario), found.source_text);
-    if (page) write_file(std::move(*page), identification::make_page(experiment, fit, found));
+    const identification::FittedScenario found = identification::fitted_scenario(experiment, fit);
+    if (scenario) write_file(std::move(*scenario), found.scenario.source_text);
+    if (page) write_file(std::move(*page), identification::make_page(experiment, fit, found.changes));
   }
   print(options.json ? format_json(fit) : format_table(fit));
   return fit.is_trusted ? kSuccess : kRunFailed;

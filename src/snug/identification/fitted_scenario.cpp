@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -60,44 +61,61 @@ std::size_t count_numbers(const model::Scenario& scenario, const std::string& ke
   return key == "cup_length" ? 2 : 8;
 }
 
-struct Width {
-  double most = 0.0;
-  std::set<std::string> paths;  ///< of the numbers that were found
+/// What was found of the numbers that a key is about.
+struct Found {
+  const Kind* kind = nullptr;
+  double width = 0.0;           ///< the largest half width
+  std::set<std::string> paths;  ///< of the numbers
 };
 
-}  // namespace
+/// Of the number at `path`: the half width of a uniform draw with the same standard deviation, as its key has it.
+std::optional<double> half_width(const model::Scenario& scenario, const Kind& kind, const std::string& path,
+                                 const model::TaskParameter& asked, const Parameter& parameter) {
+  const std::optional<double> number = model::find_number(scenario, path, asked.where);
+  if (!number || *number == 0.0) return std::nullopt;
+  double width = std::numbers::sqrt3 * parameter.standard_error;
+  if (asked.form == model::ParameterForm::Scale) width *= std::abs(*number / parameter.value);
+  return kind.is_share ? std::min(1.0, width / std::abs(*number)) : width;
+}
 
-model::Scenario fitted_scenario(const SceneExperiment& experiment, const SceneFit& fit) {
-  model::Scenario scenario = experiment.scenario_at(fit.values);
-  std::vector<std::pair<const Kind*, Width>> widths;
+std::map<std::string, Found> find_widths(const SceneExperiment& experiment, const SceneFit& fit,
+                                         const model::Scenario& scenario) {
+  std::map<std::string, Found> by_key;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    const Parameter& found = fit.parameters[i];
+    const Parameter& parameter = fit.parameters[i];
     const model::TaskParameter& asked = experiment.task().parameters[i];
-    const bool is_known = found.verdict != Verdict::NotIdentifiable && std::isfinite(found.standard_error);
+    const bool is_known = parameter.verdict != Verdict::NotIdentifiable && std::isfinite(parameter.standard_error);
     if (asked.is_fixed || !is_known) continue;
     for (const std::string& path : asked.paths) {
       const Kind* kind = find_kind(path);
-      const std::optional<double> number =
-          kind == nullptr ? std::nullopt : model::find_number(scenario, path, asked.where);
-      if (!number || *number == 0.0) continue;
-      double width = std::numbers::sqrt3 * found.standard_error;
-      if (asked.form == model::ParameterForm::Scale) width *= std::abs(*number / found.value);
-      if (kind->is_share) width = std::min(1.0, width / std::abs(*number));
-      const auto is_same = [&](const auto& one) { return std::string(one.first->key) == kind->key; };
-      auto known = std::ranges::find_if(widths, is_same);
-      if (known == widths.end()) known = widths.insert(widths.end(), {kind, {}});
-      known->second.most = std::max(known->second.most, width);
-      if (!path.ends_with(".edge_friction")) known->second.paths.insert(path);
+      if (kind == nullptr) continue;
+      const std::optional<double> width = half_width(scenario, *kind, path, asked, parameter);
+      if (!width) continue;
+      Found& found = by_key[kind->key];
+      found.kind = kind;
+      found.width = std::max(found.width, *width);
+      // Edges have a friction of their own; the pair's is another number.
+      if (!path.ends_with(".edge_friction")) found.paths.insert(path);
     }
   }
-  std::vector<model::KeyValue> changes;
-  for (const auto& [kind, width] : widths) {
-    const bool has_all = width.paths.size() >= count_numbers(scenario, kind->key);
-    const double now = scenario.uncertainty.*kind->value;
-    changes.emplace_back(std::string("uncertainty.") + kind->key,
-                         fmt::format("{:.3g}", has_all ? width.most : std::max(now, width.most)));
+  return by_key;
+}
+
+}  // namespace
+
+FittedScenario fitted_scenario(const SceneExperiment& experiment, const SceneFit& fit) {
+  FittedScenario fitted{experiment.scenario_at(fit.values), {}};
+  std::vector<model::KeyValue> values;
+  for (const auto& [key, found] : find_widths(experiment, fit, fitted.scenario)) {
+    const bool has_all = found.paths.size() >= count_numbers(fitted.scenario, key);
+    const double before = fitted.scenario.uncertainty.*found.kind->value;
+    const double after = has_all ? found.width : std::max(before, found.width);
+    if (after == before) continue;
+    values.emplace_back("uncertainty." + key, fmt::format("{:.3g}", after));
+    fitted.changes.push_back({key, before, after});
   }
-  return changes.empty() ? scenario : model::with_values(scenario, changes, experiment.task().path.string());
+  if (!values.empty()) fitted.scenario = model::with_values(fitted.scenario, values, experiment.task().path.string());
+  return fitted;
 }
 
 }  // namespace snug::identification

@@ -56,28 +56,20 @@ Markup numbers(const SceneExperiment& experiment, const SceneFit& fit) {
   return report::heading(2, "Numbers") + report::paragraph(misfit) + as_markup(table);
 }
 
-Markup what_is_left(const SceneExperiment& experiment, const SceneFit& fit, const model::Scenario& scenario) {
-  const model::Uncertainty before = experiment.scenario_at(fit.values).uncertainty;
-  const model::Uncertainty& after = scenario.uncertainty;
-  report::Table table{{{"key of uncertainty", true}, {"before"}, {"found"}}, {}, {}};
-  const auto add = [&](const char* key, double model::Uncertainty::*value) {
-    if (before.*value != after.*value)
-      table.rows.push_back({report::code(key), four_digits(before.*value), four_digits(after.*value)});
-  };
-  add("friction", &model::Uncertainty::friction);
-  add("contact_stiffness", &model::Uncertainty::contact_stiffness);
-  add("contact_travel", &model::Uncertainty::contact_travel);
-  add("cup_stiffness", &model::Uncertainty::cup_stiffness);
-  add("cup_length", &model::Uncertainty::cup_length);
+Markup what_is_left(const std::vector<UncertaintyChange>& changes) {
   const Markup title = report::heading(2, "What stays uncertain");
-  if (table.rows.empty()) return title + report::paragraph("The scenario's own uncertainty stays as it is.");
+  if (changes.empty()) return title + report::paragraph("The scenario's own uncertainty stays as it is.");
+  report::Table table{{{"key of uncertainty", true}, {"before"}, {"found"}}, {}, {}};
+  for (const UncertaintyChange& change : changes)
+    table.rows.push_back({report::code(change.key), four_digits(change.before), four_digits(change.after)});
   return title + report::paragraph("Half widths of uniform draws, for plants, sampled worlds and Monte Carlo runs.") +
          as_markup(table);
 }
 
 }  // namespace
 
-std::string make_page(const SceneExperiment& experiment, const SceneFit& fit, const model::Scenario& scenario) {
+std::string make_page(const SceneExperiment& experiment, const SceneFit& fit,
+                      const std::vector<UncertaintyChange>& changes) {
   std::vector<report::KeyFigure> figures;
   if (fit.held_back.recordings > 0) {
     figures.push_back({"error on recordings held back", fmt::format("{:.2f} mm", fit.held_back.position_mm),
@@ -86,9 +78,9 @@ std::string make_page(const SceneExperiment& experiment, const SceneFit& fit, co
   int identified = 0;
   for (const Parameter& one : fit.parameters) identified += one.verdict == Verdict::Identified ? 1 : 0;
   figures.push_back({"numbers identified", std::to_string(identified), fmt::format("of {}", fit.parameters.size())});
-  return report::make_page("Identification of " + experiment.task().scenario.filename().string(),
-                           report::key_figures(figures) + improvement(fit) + numbers(experiment, fit) +
-                               what_is_left(experiment, fit, scenario));
+  return report::make_page(
+      "Identification of " + experiment.task().scenario.filename().string(),
+      report::key_figures(figures) + improvement(fit) + numbers(experiment, fit) + what_is_left(changes));
 }
 
 }  // namespace snug::identification

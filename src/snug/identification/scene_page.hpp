@@ -2,15 +2,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "snug/identification/scene_fit.hpp"
-#include "snug/model/scenario.hpp"
+#include "snug/identification/fitted_scenario.hpp"
 
 namespace snug::identification {
 
 /// Errors before and after, on the recordings that were fitted and on those that were held back; each number with its
-/// standard error and verdict; what is left uncertain in `scenario`, that of the fit.
+/// standard error and verdict; what the fit leaves uncertain.
 [[nodiscard]] std::string make_page(const SceneExperiment& experiment, const SceneFit& fit,
-                                    const model::Scenario& scenario);
+                                    const std::vector<UncertaintyChange>& changes);
 
 }  // namespace snug::identification

@@ -41,6 +41,8 @@ constexpr auto kTakeOver = std::chrono::milliseconds(200);  // for the news that
 // ZeroMQ tells that a connection is closed just before it closes it: then it is looked at again and again.
 constexpr auto kLookAgain = std::chrono::milliseconds(2);
 constexpr auto kLookFor = std::chrono::seconds(1);
+// Then, and without news, seldom: on a machine that stands still the closing takes longer than that.
+constexpr auto kLookSeldom = std::chrono::milliseconds(500);
 constexpr const char* kMonitor = "inproc://events";
 
 /// ZeroMQ removes a file that is in the way: only a socket that nobody listens at may be.
@@ -128,7 +130,7 @@ struct Server::Impl {
   internal::Connections connections;
   Simulator::Peer controller;          ///< while there is one
   Clock::time_point controller_heard;  ///< when its last message came
-  Clock::time_point next_look = Clock::time_point::max(), look_until;
+  Clock::time_point next_look, look_until;
   std::vector<Request> kept;
   int steps_allowed = 0;  ///< step by step; -1: all
   Clock::time_point next_due = Clock::time_point::max(), last_message;
@@ -212,7 +214,7 @@ bool Server::Impl::is_driven() {
 void Server::Impl::look_for_controller() {
   const Clock::time_point now = Clock::now();
   if (now >= next_look) {
-    next_look = now < look_until ? now + kLookAgain : Clock::time_point::max();
+    next_look = now + (now < look_until ? Clock::duration(kLookAgain) : Clock::duration(kLookSeldom));
     (void)is_driven();
   }
   if (simulator.has_controller()) next_due = std::min(next_due, next_look);

@@ -1,4 +1,4 @@
-// Two hundred thousand random pairs against the reference; the slow test does more.
+// Two hundred thousand random pairs against the reference; the slow test does a million.
 #include <gtest/gtest.h>
 
 #include "fuzz.hpp"

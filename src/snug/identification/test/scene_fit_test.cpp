@@ -122,16 +122,17 @@ TEST_F(SceneFitTest, WritesWhatStaysUncertainWhereAllNumbersOfAKindWereFound) {
   fit.values = experiment.start();
   fit.parameters = {{"friction", 0.3, 0.003, "", Verdict::Identified, ""},
                     {"restitution", 0.2, 0.01, "", Verdict::Identified, ""}};
-  const model::Scenario found = fitted_scenario(experiment, fit);
+  const FittedScenario fitted = fitted_scenario(experiment, fit);
+  const model::Scenario& found = fitted.scenario;
   EXPECT_NEAR(found.uncertainty.friction, std::sqrt(3.0) * 0.01, 1e-4);  // the only pair
   model::Uncertainty others = found.uncertainty;
   others.friction = model::Uncertainty{}.friction;
   EXPECT_EQ(others, model::Uncertainty{});
   EXPECT_EQ(model::parse_scenario(found.source_text, "again").uncertainty, found.uncertainty);
-  const std::string page = make_page(experiment, fit, found);
+  const std::string page = make_page(experiment, fit, fitted.changes);
   EXPECT_NE(page.find("0.0173"), std::string::npos) << page;
   fit.parameters[0].verdict = Verdict::NotIdentifiable;
-  EXPECT_EQ(fitted_scenario(experiment, fit).uncertainty, model::Uncertainty{});
+  EXPECT_EQ(fitted_scenario(experiment, fit).scenario.uncertainty, model::Uncertainty{});
 }
 
 TEST_F(SceneFitTest, GivesTheSameBytesAtAnyNumberOfThreads) {

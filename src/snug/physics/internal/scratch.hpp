@@ -19,10 +19,9 @@ namespace snug::physics::internal {
 /// Pose and velocity of a body during the step, world frame.
 struct BodyWork {
   Matrix3 R_WB = Matrix3::Identity();
-  Vector3 p_WB = Vector3::Zero();    ///< origin of B
-  Vector3 p_WBcm = Vector3::Zero();  ///< the point its velocity belongs to
-  Vector3 velocity_start =
-      Vector3::Zero();  ///< of that point; kinematic bodies: with `velocity`, the mean over the step
+  Vector3 p_WB = Vector3::Zero();            ///< origin of B
+  Vector3 p_WBcm = Vector3::Zero();          ///< the point its velocity belongs to
+  Vector3 velocity_start = Vector3::Zero();  ///< of that point; kinematic: half of this and `velocity` is the mean
   Vector3 angular_start = Vector3::Zero();
   Vector3 velocity = Vector3::Zero();  ///< at the end of the step; before the solver: without contacts
   Vector3 angular = Vector3::Zero();
