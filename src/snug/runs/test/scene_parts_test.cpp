@@ -143,9 +143,15 @@ TEST(KinematicPath, IsFollowedToRounding) {
     const Pose X = physics::pose_of(run.world().model, run.state(), arm);
     const Twist V = physics::twist_of(run.world().model, run.state(), arm);
     ASSERT_LT((X.p - parabola(std::clamp(t, 0.1, 0.9))).norm(), 1e-12) << t;
-    if (i <= 100) ASSERT_LT((X.R - turn(0, 0, 0)).norm(), 1e-12) << t;
-    if (i == 350) ASSERT_LT((X.R - turn(0, 0, 90)).norm(), 1e-12) << t;
-    if (i >= 900) ASSERT_LT((X.R - turn(30, -20, 90)).norm(), 1e-12) << t;
+    if (i <= 100) {
+      ASSERT_LT((X.R - turn(0, 0, 0)).norm(), 1e-12) << t;
+    }
+    if (i == 350) {
+      ASSERT_LT((X.R - turn(0, 0, 90)).norm(), 1e-12) << t;
+    }
+    if (i >= 900) {
+      ASSERT_LT((X.R - turn(30, -20, 90)).norm(), 1e-12) << t;
+    }
     // No jump in speed between the first and the last row: 0.1 rad/s a step is 100 rad/s^2; straight lines jump by 6.
     if (i > 101 && i < 900) {
       ASSERT_LT((V.linear - before.linear).norm(), 0.02) << t;
@@ -194,7 +200,9 @@ TEST(KinematicPath, RestsBetweenEqualRows) {
     (void)run.advance();
     const double x = physics::pose_of(run.world().model, run.state(), arm).p.x();
     ASSERT_LE(x, 1.0 + 1e-12) << i;  // does not overshoot
-    if (i >= 200) ASSERT_NEAR(x, 1.0, 1e-12) << i;
+    if (i >= 200) {
+      ASSERT_NEAR(x, 1.0, 1e-12) << i;
+    }
   }
 }
 
