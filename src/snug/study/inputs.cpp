@@ -71,7 +71,6 @@ void OneWorld::add(const Inputs& inputs, std::uint64_t row) {
                      fmt::format("by {}, and row {} by an older snug", told(inputs.version), *unknown_), kExpected);
   }
   if (!version_) version_.emplace(inputs.version, row);
-  if (version_->first == inputs.version) version_->second = std::min(version_->second, row);
   if (version_->first != inputs.version) {
     throw InputError(
         folder_, fmt::format("row {}", row),
@@ -79,18 +78,15 @@ void OneWorld::add(const Inputs& inputs, std::uint64_t row) {
         kExpected);
   }
   for (const auto& [path, hash] : inputs.files) {
-    Seen& seen = files_.try_emplace(path, Seen{hash, row}).first->second;
-    if (seen.hash == hash) {
-      seen.row = std::min(seen.row, row);  // rows end in any order, and messages do not depend on it
-      continue;
-    }
+    const Seen& seen = files_.try_emplace(path, Seen{hash, row}).first->second;
+    if (seen.hash == hash) continue;
     throw InputError(folder_, fmt::format("row {}", row), fmt::format("with another '{}' than row {}", path, seen.row),
                      kExpected);
   }
 }
 
 void OneWorld::add_unknown(std::uint64_t row) {
-  unknown_ = std::min(unknown_.value_or(row), row);
+  if (!unknown_) unknown_ = row;
   if (!version_) return;
   throw InputError(folder_, fmt::format("row {}", row),
                    fmt::format("by an older snug, and row {} by {}", version_->second, told(version_->first)),
