@@ -10,6 +10,7 @@
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/parallel.hpp"
+#include "snug/core/rng.hpp"
 #include "snug/core/units.hpp"
 #include "snug/identification/free_flight.hpp"
 #include "snug/identification/internal/at_rest.hpp"
@@ -65,6 +66,7 @@ SceneExperiment::SceneExperiment(model::SceneTask task, std::vector<RecordedMoti
   }
   (void)scenario_at(start());
   find_flights();
+  find_driven();
 }
 
 Eigen::VectorXd SceneExperiment::start() const {
@@ -128,6 +130,20 @@ void SceneExperiment::find_flights() {
   for (std::size_t m = 0; m < motions_.size(); ++m)
     for (const RecordedBody& body : motions_[m].tracked)
       flights_[m].push_back(internal::count_flight_rows(scenario, body, task_.start));
+}
+
+void SceneExperiment::find_driven() {
+  driven_.assign(motions_.size(), std::vector<std::vector<DrivenPath>>(1 + kDraws));
+  if (task_.program) return;
+  for (std::size_t m = 0; m < motions_.size(); ++m) {
+    std::vector<std::vector<DrivenPath>>& draws = driven_[m];
+    Rng rng = Rng(task_.search.seed).split("driven bodies").split(motions_[m].name);
+    for (const RecordedBody& body : motions_[m].kinematic) {
+      if (std::ranges::none_of(body.poses, record::is_tracked)) continue;
+      draws[0].push_back(smooth_path(motions_[m].times, body));
+      for (int k = 1; k <= kDraws; ++k) draws[static_cast<std::size_t>(k)].push_back(draw_again(draws[0].back(), rng));
+    }
+  }
 }
 
 Eigen::VectorXd SceneExperiment::own_deviation() const { return internal::own_deviation(task_); }
@@ -272,6 +288,7 @@ std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen:
     const Vector6 start = as_vector(own.start);
     std::vector<double> moving(start.data(), start.data() + start.size());
     moving.push_back(own.delay);
+    moving.push_back(jobs[j].draw);
     const auto [at, is_new] = known.insert({{{jobs[j].point, jobs[j].motion}, std::move(moving)}, first.size()});
     if (is_new) first.push_back(j);
     simulation_of.push_back(at->second);
@@ -283,8 +300,9 @@ std::vector<MotionError> SceneExperiment::evaluate_scenes(std::span<const Eigen:
     if (!scenarios[job.point])
       simulated[i].failure = failures[job.point];
     else
-      simulated[i] = internal::simulate_scene(*scenarios[job.point], task_, motions_[job.motion], flights_[job.motion],
-                                              internal::OwnValues(task_, job.own), until);
+      simulated[i] = internal::simulate_scene(*scenarios[job.point], task_, motions_[job.motion],
+                                              driven_[job.motion][static_cast<std::size_t>(job.draw)],
+                                              flights_[job.motion], internal::OwnValues(task_, job.own), until);
   });
   std::vector<MotionError> errors(jobs.size());
   parallel_for(static_cast<int>(jobs.size()), threads_, [&](int index, int) {
@@ -304,7 +322,8 @@ std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& 
   parallel_for(static_cast<int>(motions_.size()), threads_, [&](int index, int) {
     const auto m = static_cast<std::size_t>(index);
     RecordedMotion twin = motions_[m];
-    const internal::SimulatedMotion exact = internal::simulate_scene(scenario, task_, twin, flights_[m], own, kAll);
+    const internal::SimulatedMotion exact =
+        internal::simulate_scene(scenario, task_, twin, driven_of(m), flights_[m], own, kAll);
     RecordedMotion noisy = twin;
     Rng rng = Rng(seed).split("floor " + twin.name);
     for (std::size_t b = 0; b < twin.tracked.size() && exact.failure.empty(); ++b) {
@@ -325,7 +344,8 @@ std::vector<MotionError> SceneExperiment::evaluate_floor(const Eigen::VectorXd& 
                     pose.p + internal::normal3(rng, flight.position_rms)};
       }
     }
-    internal::SimulatedMotion again = internal::simulate_scene(scenario, task_, noisy, flights_[m], own, kAll);
+    internal::SimulatedMotion again =
+        internal::simulate_scene(scenario, task_, noisy, driven_of(m), flights_[m], own, kAll);
     if (!exact.failure.empty()) again.failure = exact.failure;
     errors[m] = internal::compare(task_, twin, internal::compared_samples(task_, twin), again, own, kAll);
   });

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/identification/driven_path.hpp"
 #include "snug/identification/recorded_motion.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/model/scene_task.hpp"
@@ -57,7 +58,9 @@ class SceneExperiment {
     std::size_t point = 0;     ///< of `points`
     std::size_t motion = 0;    ///< recording
     Eigen::VectorXd own = {};  ///< its own unknowns; empty: all zero
+    int draw = 0;              ///< of the driven bodies' paths: 0, the smoothed ones, to kDraws, with noise anew
   };
+  static constexpr int kDraws = 8;
   /// `points`: values of all parameters of the task, in its order. Each job is a simulation, but those of a point that
   /// differ in nothing that moves a body share one, and all that a program leads share one run. The result does not
   /// depend on the number of threads. What cannot be simulated says so. Samples after `until`, s on the recording's
@@ -73,7 +76,9 @@ class SceneExperiment {
 
   [[nodiscard]] const model::SceneTask& task() const { return task_; }
   [[nodiscard]] const std::vector<RecordedMotion>& motions() const { return motions_; }
-  [[nodiscard]] Eigen::VectorXd start() const;          ///< values of the task
+  [[nodiscard]] Eigen::VectorXd start() const;  ///< values of the task
+  /// Of the bodies that a recording drives, smoothed; none in a program's run.
+  [[nodiscard]] const std::vector<DrivenPath>& driven_of(std::size_t motion) const { return driven_[motion].front(); }
   [[nodiscard]] Eigen::VectorXd own_deviation() const;  ///< expected of the own unknowns; empty when there are none
   /// Numbers measured in a recording: residuals less those of own unknowns against what is expected of them.
   [[nodiscard]] Eigen::Index samples_of(std::size_t motion) const;
@@ -112,13 +117,15 @@ class SceneExperiment {
   /// Unless the task says how far off the recorded world may be, the recordings do.
   void expect_world_errors();
   void find_flights();
+  void find_driven();
 
   model::SceneTask task_;
   std::vector<RecordedMotion> motions_;
   int threads_ = 1;
   model::Scenario base_;
-  std::vector<std::vector<double>> base_numbers_;  ///< of each parameter's paths, for scales and offsets
-  std::vector<std::vector<std::size_t>> flights_;  ///< rows before the first touch, of each motion's bodies
+  std::vector<std::vector<double>> base_numbers_;             ///< of each parameter's paths, for scales and offsets
+  std::vector<std::vector<std::vector<DrivenPath>>> driven_;  ///< of each motion and draw
+  std::vector<std::vector<std::size_t>> flights_;             ///< rows before the first touch, of each motion's bodies
   std::vector<std::vector<std::vector<std::size_t>>> samples_;  ///< that are compared, of each motion's bodies
   mutable std::vector<KnownRun> runs_;                          ///< the latest last
 };

@@ -346,6 +346,10 @@ SceneFit identify_scene(const SceneExperiment& experiment, const SceneFitOptions
   for (const RecordedMotion& motion : experiment.motions())
     for (const RecordedBody& body : motion.tracked)
       if (body.rejected > 0) fit.rejected.push_back({motion.name, body.body, body.rejected});
+  for (std::size_t m = 0; m < experiment.motions().size(); ++m)
+    for (const DrivenPath& path : experiment.driven_of(m))
+      fit.smoothed.push_back({experiment.motions()[m].name, path.body, path.position_noise(), path.rotation_noise(),
+                              path.position.bandwidth(), path.rotation.bandwidth()});
   fit.is_systematic = is_squares && errors.is_systematic();
   fit.is_trusted = !is_squares || fit.chi2_per_dof <= kMisfit;
   fit.evaluations = search.evaluations();

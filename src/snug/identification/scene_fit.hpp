@@ -34,6 +34,14 @@ struct Rejected {
   int samples = 0;
 };
 
+/// A driven body's path (DrivenPath): the noise found in its samples, and up to which frequency it was followed.
+struct Smoothing {
+  std::string recording, body;
+  double position_noise = 0.0;                                ///< m, of each axis
+  double rotation_noise = 0.0;                                ///< rad
+  double position_bandwidth = 0.0, rotation_bandwidth = 0.0;  ///< Hz
+};
+
 /// How the sum of squares rises with one parameter, all others fitted again at each value.
 struct Profile {
   std::string name;
@@ -79,6 +87,7 @@ struct SceneFit {
   std::vector<Unpredictable> unpredictable;
   std::vector<Profile> profiles;
   std::vector<Rejected> rejected;
+  std::vector<Smoothing> smoothed;
   int evaluations = 0;
   bool is_systematic = false;  ///< residuals hang together: no noise; nothing is then called identified
   bool is_trusted = true;      ///< false: the simulation misses the recordings by far more than noise

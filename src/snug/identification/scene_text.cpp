@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace snug::identification {
 namespace {
@@ -103,6 +104,14 @@ ordered_json as_json(const SceneFit& fit) {
   json["rejected_samples"] = ordered_json::array();
   for (const Rejected& one : fit.rejected)
     json["rejected_samples"].push_back({{"recording", one.recording}, {"body", one.body}, {"samples", one.samples}});
+  json["smoothed"] = ordered_json::array();
+  for (const Smoothing& one : fit.smoothed)
+    json["smoothed"].push_back({{"recording", one.recording},
+                                {"body", one.body},
+                                {"position_noise_mm", 1e3 * one.position_noise},
+                                {"rotation_noise_deg", 180.0 / std::numbers::pi * one.rotation_noise},
+                                {"position_bandwidth_hz", one.position_bandwidth},
+                                {"rotation_bandwidth_hz", one.rotation_bandwidth}});
   json["correlations"] = ordered_json::array();
   for (const Correlated& pair : correlations(fit, 0.0))
     json["correlations"].push_back({{"a", pair.a}, {"b", pair.b}, {"correlation", pair.value}});
@@ -166,6 +175,10 @@ std::string as_text(const SceneFit& fit) {
   for (const Rejected& one : fit.rejected)
     text += fmt::format("rejected: {} samples of {} in {} that jump away from their neighbours\n", one.samples,
                         one.body, one.recording);
+  for (const Smoothing& one : fit.smoothed)
+    text += fmt::format("smoothed: {} in {}, noise of {:.3f} mm and {:.3f} deg found, {:.3g} and {:.3g} Hz followed\n",
+                        one.body, one.recording, 1e3 * one.position_noise,
+                        180.0 / std::numbers::pi * one.rotation_noise, one.position_bandwidth, one.rotation_bandwidth);
   if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
   for (const Parameter& parameter : fit.parameters) {
     const bool is_fixed = std::isnan(parameter.standard_error) && parameter.advice.starts_with("held fixed");

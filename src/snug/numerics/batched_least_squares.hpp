@@ -66,6 +66,10 @@ struct BatchedResult {
                                                const std::vector<Eigen::VectorXd>& own);
 /// J^T J of the shared unknowns with those of each term eliminated.
 [[nodiscard]] Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index shared);
+/// How far the minimum of the shared unknowns moves, to first order, when each term's residuals change by this much and
+/// its own unknowns follow. A term whose change has another size counts as unchanged.
+[[nodiscard]] Eigen::VectorXd shared_step(const BatchedDerivatives& at, const std::vector<Eigen::VectorXd>& changes,
+                                          Eigen::Index shared);
 /// Of the shared unknowns at the start of a problem, which is a minimum, residuals in units of their noise: the inverse
 /// of shared_information, larger where the sum of squares rises by less than that says or strays from a parabola, as it
 /// does where residuals jump. `excess`: of the sum of squares at the start over what noise explains; where the sum is

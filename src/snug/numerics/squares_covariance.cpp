@@ -1,4 +1,4 @@
-// shared_information, squares_covariance: how well least squares of simulations know their shared unknowns.
+// shared_information, shared_step, squares_covariance: how well least squares of simulations know their shared unknowns.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -84,6 +84,22 @@ Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n)
     information += shared.transpose() * shared;
   }
   return information;
+}
+
+Eigen::VectorXd shared_step(const BatchedDerivatives& at, const std::vector<Eigen::VectorXd>& changes,
+                            Eigen::Index n) {
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
+  for (std::size_t i = 0; i < at.jacobians.size(); ++i) {
+    const Eigen::MatrixXd& J = at.jacobians[i];
+    if (J.cols() < n || changes[i].size() != J.rows()) continue;
+    Eigen::MatrixXd shared = J.leftCols(n);
+    if (J.cols() > n) {
+      const Eigen::MatrixXd own = J.rightCols(J.cols() - n);
+      shared -= own * solve_by_qr(own, shared);
+    }
+    slope += shared.transpose() * changes[i];
+  }
+  return -solve_symmetric(shared_information(at, n), slope).col(0);
 }
 
 Eigen::MatrixXd squares_covariance(const BatchedProblem& at, const BatchedDerivatives& found, double excess) {

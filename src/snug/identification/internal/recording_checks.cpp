@@ -47,8 +47,8 @@ void check_start(const model::SceneTask& task, const model::Body& body, const Re
   const auto refuse = [&](const std::string& got, const char* expected) {
     throw InputError(task.path.string(), "'" + recorded.body + "' in " + motion.name, got, expected);
   };
-  constexpr double kFar = 10.0, kNear = 3.0;  // m
-  if ((first->p - body.X_WB.p).norm() > kFar && (1e-3 * first->p - body.X_WB.p).norm() < kNear)
+  constexpr double kFarAway = 10.0, kNear = 3.0;  // m
+  if ((first->p - body.X_WB.p).norm() > kFarAway && (1e-3 * first->p - body.X_WB.p).norm() < kNear)
     refuse(fmt::format("a position of {:.4g}, {:.4g}, {:.4g}", first->p.x(), first->p.y(), first->p.z()),
            "metres; these look like millimetres");
   if (task.start.from != model::StartFrom::Scenario) return;

@@ -35,18 +35,13 @@ FlightStart start_of(const model::Scenario& scenario, const model::SceneTask& ta
   return start;
 }
 
-/// Kinematic bodies go where the recording has them.
-void drive(model::Scenario& scenario, const RecordedMotion& motion) {
-  for (const RecordedBody& recorded : motion.kinematic) {
+/// Kinematic bodies go where the recording has them. `origin`: the recording's time at time 0 of the simulation, s.
+void drive(model::Scenario& scenario, std::span<const DrivenPath> driven, double origin) {
+  for (const DrivenPath& path : driven) {
     for (model::Body& body : scenario.bodies) {
-      if (body.name != recorded.body) continue;
-      model::PosePath path;
-      for (std::size_t k = 0; k < motion.times.size(); ++k)
-        if (record::is_tracked(recorded.poses[k]))
-          path.points.push_back({motion.times[k] - motion.times.front(), recorded.poses[k].pose()});
-      if (path.points.empty()) continue;
-      body.X_WB = path.points.front().X_WB;
-      body.path = std::move(path);
+      if (body.name != path.body) continue;
+      body.path = pose_path_of(path, origin);
+      body.X_WB = body.path->points.front().X_WB;
     }
   }
 }
@@ -144,14 +139,16 @@ std::size_t count_flight_rows(const model::Scenario& scenario, const RecordedBod
 }
 
 SimulatedMotion simulate_scene(const model::Scenario& given, const model::SceneTask& task, const RecordedMotion& motion,
-                               const std::vector<std::size_t>& flights, const OwnValues& own, double until) {
-  model::Scenario driven;
-  const bool is_driven = !motion.kinematic.empty();
-  if (is_driven) {
-    driven = given;
-    drive(driven, motion);
+                               std::span<const DrivenPath> driven, const std::vector<std::size_t>& flights,
+                               const OwnValues& own, double until) {
+  // What stands in the recording happened a delay earlier.
+  const double origin = (task.start.from == model::StartFrom::Scenario ? 0.0 : motion.times.front()) + own.delay;
+  model::Scenario with_paths;
+  if (!driven.empty()) {
+    with_paths = given;
+    drive(with_paths, driven, origin);
   }
-  const model::Scenario& scenario = is_driven ? driven : given;
+  const model::Scenario& scenario = driven.empty() ? given : with_paths;
   cell::Scene scene(scenario);
   const physics::WorldModel& world = scene.world().model;
   std::vector<physics::BodyId> ids;
@@ -162,7 +159,6 @@ SimulatedMotion simulate_scene(const model::Scenario& given, const model::SceneT
     physics::set_twist(world, scene.state(), ids[b],
                        {start.V_WB.linear + own.start.linear, start.V_WB.angular + own.start.angular});
   }
-  const double origin = task.start.from == model::StartFrom::Scenario ? 0.0 : motion.times.front();
   const std::size_t count = sample_count(task, motion);
   const bool has_result = task.only_final_state && motion.tracked.front().result.has_value();
   SimulatedMotion simulated;
@@ -175,9 +171,8 @@ SimulatedMotion simulate_scene(const model::Scenario& given, const model::SceneT
   before = now;
   double time = 0.0;
   for (std::size_t k = 0; k < count && motion.times[k] <= until; ++k) {
-    // What stood in the recording then happened a delay earlier.
     const bool is_end = has_result && k + 1 == count && task.simulation_time.has_value();
-    const double wanted = is_end ? *task.simulation_time : motion.times[k] - origin - own.delay;
+    const double wanted = is_end ? *task.simulation_time : motion.times[k] - origin;
     while (time < wanted - 1e-9) {
       before = now;
       const physics::StepReport report = scene.advance();

@@ -3,9 +3,11 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "snug/identification/driven_path.hpp"
 #include "snug/identification/recorded_motion.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/model/scene_task.hpp"
@@ -44,10 +46,11 @@ using ComparedSamples = std::vector<std::vector<std::size_t>>;
 [[nodiscard]] std::size_t count_flight_rows(const model::Scenario& scenario, const RecordedBody& body,
                                             const model::StartSettings& start);
 
-/// `flights`: rows of free flight of each tracked body, with StartFrom::FreeFlight. `until`: s, on the recording's
-/// clock: what comes later is not simulated.
+/// `driven`: paths of the bodies that the recording drives. `flights`: rows of free flight of each tracked body, with
+/// StartFrom::FreeFlight. `until`: s, on the recording's clock: what comes later is not simulated.
 [[nodiscard]] SimulatedMotion simulate_scene(const model::Scenario& scenario, const model::SceneTask& task,
-                                             const RecordedMotion& motion, const std::vector<std::size_t>& flights,
-                                             const OwnValues& own, double until);
+                                             const RecordedMotion& motion, std::span<const DrivenPath> driven,
+                                             const std::vector<std::size_t>& flights, const OwnValues& own,
+                                             double until);
 
 }  // namespace snug::identification::internal

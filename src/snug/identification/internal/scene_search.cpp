@@ -345,9 +345,9 @@ Eigen::MatrixXd SceneSearch::covariance() {
     const numerics::BatchedProblem there = problem(at, kAlways, {});
     const double counted = total(experiment_, fitted_, at.straight, at.weights);
     const double excess = (chi2 - 1.0) * counted - 2.0 * std::sqrt(2.0 * counted);  // more than chance, twice
-    of_free = numerics::squares_covariance(
-                  there, result_ ? at.derivatives : numerics::differentiate(there, at.x, at.own), excess) *
-              (std::isfinite(chi2) ? errors.inflation() : 1.0);
+    const numerics::BatchedDerivatives found = result_ ? at.derivatives : numerics::differentiate(there, at.x, at.own);
+    of_free = numerics::squares_covariance(there, found, excess) * (std::isfinite(chi2) ? errors.inflation() : 1.0) +
+              driven_covariance(at, found);
   }
   const auto all = static_cast<Eigen::Index>(experiment_.task().parameters.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);
@@ -356,6 +356,34 @@ Eigen::MatrixXd SceneSearch::covariance() {
       result(static_cast<Eigen::Index>(free_[i]), static_cast<Eigen::Index>(free_[j])) =
           of_free(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
   return result;
+}
+
+Eigen::MatrixXd SceneSearch::driven_covariance(const Fitted& at, const numerics::BatchedDerivatives& found) const {
+  const Eigen::Index n = at.x.size();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  if (std::ranges::all_of(fitted_, [&](std::size_t m) { return experiment_.driven_of(m).empty(); })) return covariance;
+  const std::vector<Eigen::VectorXd> points{full(at.x)};
+  const auto residuals_of = [&](int draw) {
+    std::vector<SceneExperiment::Job> jobs;
+    for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], at.own[i], draw});
+    std::vector<Eigen::VectorXd> residuals;
+    for (MotionError& error : experiment_.evaluate(points, jobs)) {
+      const std::size_t i = residuals.size();
+      weigh(experiment_, fitted_[i], at.rows[i], at.weights[i], error.residuals);
+      residuals.push_back(std::move(error.residuals));
+    }
+    return residuals;
+  };
+  const std::vector<Eigen::VectorXd> smoothed = residuals_of(0);
+  for (int draw = 1; draw <= SceneExperiment::kDraws; ++draw) {
+    std::vector<Eigen::VectorXd> changes = residuals_of(draw);
+    for (std::size_t i = 0; i < changes.size(); ++i)
+      if (changes[i].size() == smoothed[i].size()) changes[i] -= smoothed[i];
+    const Eigen::VectorXd step = numerics::shared_step(found, changes, n);
+    covariance += step * step.transpose() / SceneExperiment::kDraws;
+  }
+  evaluations_ += 1 + SceneExperiment::kDraws;
+  return covariance;
 }
 
 Eigen::VectorXd SceneSearch::curvature_steps(const Eigen::VectorXd& middle) {
