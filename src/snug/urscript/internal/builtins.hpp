@@ -1,0 +1,51 @@
+// Built-in functions of URScript: their names and parameters, and what they do.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "snug/urscript/internal/motion.hpp"
+#include "snug/urscript/internal/value.hpp"
+
+namespace snug::urscript::internal {
+
+/// What a call sees. `arguments`: as many as the function has parameters; those that were not given are nothing.
+struct CallContext {
+  Host& host;
+  Motion& motion;
+  double time = 0.0;           ///< s, of the program
+  std::int64_t period = 0;     ///< periods so far
+  bool may_move = true;        ///< false: a secondary program
+  std::size_t value_size = 0;  ///< at most, of what is returned
+  std::vector<Value> arguments = {};
+  /// Set: the thread waits, until this is true; then it has set the result. Asked once a period.
+  std::function<bool(CallContext&, Value&)> wait = {};
+  [[nodiscard]] bool has(std::size_t index) const { return arguments[index].kind != Value::Kind::None; }
+  [[nodiscard]] double number(std::size_t index, double otherwise) const {
+    return has(index) ? number_of(arguments[index], "argument") : otherwise;
+  }
+};
+
+struct Builtin {
+  std::string_view name;
+  std::string_view parameters;  ///< "pose a v": in order
+  int required = 0;
+  Value (*call)(CallContext&) = nullptr;
+};
+
+/// -1: none.
+[[nodiscard]] int find_builtin(std::string_view name);
+[[nodiscard]] std::string nearest_builtin(std::string_view name);
+[[nodiscard]] const Builtin& builtin(int index);
+[[nodiscard]] std::span<const std::string> parameters_of(int index);
+
+// By topic; each a list that find_builtin knows.
+[[nodiscard]] std::span<const Builtin> math_builtins();
+[[nodiscard]] std::span<const Builtin> motion_builtins();
+[[nodiscard]] std::span<const Builtin> robot_builtins();
+[[nodiscard]] std::span<const Builtin> io_builtins();
+
+}  // namespace snug::urscript::internal

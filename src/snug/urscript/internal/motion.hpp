@@ -1,0 +1,88 @@
+// Motion: where the joints of a controller's arm are to be, period by period.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "snug/urscript/host.hpp"
+
+namespace snug::urscript::internal {
+
+/// What a move may take: speed and acceleration of the leading joint (rad) or of the tool (m), or a duration; the
+/// radius of its blend with the next one.
+struct MoveSettings {
+  double acceleration = 1.4;
+  double speed = 1.05;
+  double duration = 0.0;  ///< s; 0: by speed and acceleration
+  double blend = 0.0;     ///< m
+};
+
+/// Pushes of force_mode: in these directions of the frame the tool moves until the force is met.
+struct ForceMode {
+  Pose X_BaseT;
+  std::array<bool, 3> is_compliant{};
+  Vector3 force = Vector3::Zero();  ///< N, of the tool on its surroundings, in the axes of T
+  Vector3 speed = Vector3::Zero();  ///< m/s, at most
+};
+
+/// Moves are paths of joints, sampled each period, that end at rest. A move that begins while another one still goes to
+/// its end is added to what is left of that one: so blends are continuous in position and speed. All throw Fault where
+/// the arm does not reach.
+class Motion {
+ public:
+  void move_joints(const Host& host, const Joints& to, const MoveSettings& settings);
+  void move_line(const Host& host, const Pose& X_BaseE, const MoveSettings& settings);
+  /// Through `via` to `to`; turns evenly from the beginning to the end.
+  void move_arc(const Host& host, const Pose& via, const Pose& to, const MoveSettings& settings);
+  /// Straight in joints, in this time, at the speed that it takes.
+  void servo(const Host& host, const Joints& to, double duration);
+  void speed_joints(const Joints& speed, double acceleration);
+  /// m/s and rad/s of the TCP in Base.
+  void speed_tool(const std::array<double, 6>& speed, double acceleration);
+  void brake(const Host& host, double acceleration);
+  /// Stands at once.
+  void stop(const Host& host);
+  void start_force(const ForceMode& mode) { force_ = mode; }
+  void end_force(const Host& host);
+
+  /// Whether the next move may begin: the last one has ended, or is within its blend.
+  [[nodiscard]] bool may_go_on() const;
+  [[nodiscard]] bool is_still() const { return moves_.empty() && mode_ == Mode::Path; }
+  [[nodiscard]] bool has_speed(const Joints& speed) const;
+  /// `share`: of a period that passes for moves, 0 .. 1. Writes the host's target.
+  void step(Host& host, double share);
+
+ private:
+  enum class Mode { Path, JointSpeed, ToolSpeed };
+  struct Move {
+    std::vector<Joints> way;  ///< at each period, less its end
+    double time = 0.0;        ///< periods
+    double blend_from = 0.0;  ///< periods
+  };
+  using At = std::function<Joints(double share)>;
+
+  [[nodiscard]] Joints end_of(const Host& host);
+  void add(const Host& host, const std::vector<Joints>& way, double blend_from);
+  /// A path over shares of its length, `length` long; `joints_at` throws.
+  void follow(const Host& host, double length, const MoveSettings& settings, double distance_per_length,
+              const At& joints_at);
+  [[nodiscard]] Joints path_now() const;
+  void push(const Host& host, Joints& q);
+
+  Mode mode_ = Mode::Path;
+  std::deque<Move> moves_;
+  std::optional<Joints> end_;  ///< where all moves end; none: where the host's target stands
+  bool is_servo_ = false;      ///< the path ends with speed
+  Joints speed_{};             ///< JointSpeed: now; rad/s
+  Joints wanted_speed_{};
+  std::array<double, 6> tool_speed_{}, wanted_tool_speed_{};
+  double acceleration_ = 1.0;
+  Joints written_{};  ///< the last target
+  bool has_written_ = false;
+  std::optional<ForceMode> force_;
+  Vector3 pushed_ = Vector3::Zero();  ///< m, in Base
+};
+
+}  // namespace snug::urscript::internal
