@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/snug/command_line/outputs.hpp"
 #include "apps/snug/command_line/shipped.hpp"
 #include "snug/model/items_file.hpp"
 #include "snug/model/other_container.hpp"
@@ -60,6 +61,7 @@ SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges
     model::add_items(scenario, find_shipped(items));
     loaded.ends.push_back(scenario.parcels.size());
   }
+  print_warnings(scenario.warnings);
   return loaded;
 }
 

@@ -17,22 +17,28 @@ namespace snug::model {
 namespace {
 
 /// Takes what it adds off `left`; false when that is not enough: a mesh may have any number of instances.
-bool collect_points(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, std::size_t& left,
-                    MeshParts& mesh) {
+bool collect_parts(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, std::size_t& left,
+                   MeshParts& mesh) {
   const aiMatrix4x4 transform = above * node.mTransformation;
   for (unsigned m = 0; m < node.mNumMeshes; ++m) {
     const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
     if (part.mNumVertices > left) return false;
     left -= part.mNumVertices;
-    std::vector<Vector3>& points = mesh.parts.emplace_back();
+    auto& [points, triangles] = mesh.parts.emplace_back();
     points.reserve(part.mNumVertices);
     for (unsigned v = 0; v < part.mNumVertices; ++v) {
       const aiVector3D p = transform * part.mVertices[v];
       points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
     }
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      for (unsigned k = 1; k + 1 < face.mNumIndices; ++k)
+        triangles.push_back({static_cast<int>(face.mIndices[0]), static_cast<int>(face.mIndices[k]),
+                             static_cast<int>(face.mIndices[k + 1])});
+    }
   }
   for (unsigned c = 0; c < node.mNumChildren; ++c) {
-    if (!collect_points(scene, *node.mChildren[c], transform, left, mesh)) return false;
+    if (!collect_parts(scene, *node.mChildren[c], transform, left, mesh)) return false;
   }
   return true;
 }
@@ -196,7 +202,7 @@ MeshParts read_mesh_parts(const std::filesystem::path& path) {
     return mesh;
   }
   std::size_t left = 1'000'000 + size / 2;
-  if (!collect_points(*scene, *scene->mRootNode, aiMatrix4x4(), left, mesh)) return {{}, kTooMuch};
+  if (!collect_parts(*scene, *scene->mRootNode, aiMatrix4x4(), left, mesh)) return {{}, kTooMuch};
   return mesh;
 }
 

@@ -10,15 +10,16 @@
 #include <vector>
 
 #include "snug/geometry/convex_hull.hpp"
+#include "snug/model/mesh_pieces.hpp"
 
 namespace snug::model {
 
-/// Points of each part (mesh) of a file, with the transforms of the file's nodes, in the file's own axes. STL, OBJ or
-/// DAE of at most kLargestMesh bytes, that takes at most some 20 times its size and 100 MB to read. In files above 1 MB
-/// points may be there several times. On failure: why, and no parts.
+/// Each part (mesh) of a file, with the transforms of the file's nodes, in the file's own axes, polygons as fans of
+/// triangles. STL, OBJ or DAE of at most kLargestMesh bytes, that takes at most some 20 times its size and 100 MB to
+/// read. In files above 1 MB points may be there several times. On failure: why, and no parts.
 inline constexpr std::size_t kLargestMesh = std::size_t{64} << 20U;
 struct MeshParts {
-  std::vector<std::vector<Vector3>> parts;
+  std::vector<MeshPart> parts;
   std::string error;
 };
 [[nodiscard]] MeshParts read_mesh_parts(const std::filesystem::path& path);

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "snug/geometry/convex_hull.hpp"
 #include "snug/model/internal/mass_properties.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
@@ -59,7 +61,26 @@ geometry::Shape read_cylinder(const Value& value) {
   return geometry::Cylinder{0.5 * map.require("length").size(), map.require("radius").size()};
 }
 
-/// The convex hull of each part of a mesh file.
+/// A mesh whose hull holds more than it encloses by this fraction of the hull is said to be concave.
+constexpr double kConcave = 0.01;
+
+/// What the hull that stands for a piece fills in, or nothing.
+std::optional<std::string> describe_filled(const MeshPart& piece, const geometry::ConvexHull& hull) {
+  const SurfaceMeasures solid = measure_surface(hull);
+  const SurfaceMeasures surface = measure_surface(piece);
+  const auto litres = [](double volume) { return fmt::format("{:.3g} l", 1e3 * volume); };
+  const std::string filled = "its convex hull of " + litres(solid.volume) + ", which is what bodies touch,";
+  if (surface.is_closed) {
+    const double lost = 1.0 - std::abs(surface.volume) / solid.volume;
+    if (!(lost > kConcave)) return std::nullopt;
+    return fmt::format("encloses {}; {} fills hollows of {} ({:.0f} %)", litres(std::abs(surface.volume)), filled,
+                       litres(lost * solid.volume), 100.0 * lost);
+  }
+  if (std::abs(surface.area / solid.area - 1.0) <= kConcave) return std::nullopt;
+  return "is no closed surface, and " + filled + " may fill hollows";
+}
+
+/// The convex hulls of the loose pieces of each part of a mesh file.
 std::vector<geometry::Shape> read_mesh(const Value& value) {
   constexpr std::size_t kMostParts = 64;
   const std::string expected = "a mesh file (STL, OBJ, DAE)";
@@ -77,13 +98,24 @@ std::vector<geometry::Shape> read_mesh(const Value& value) {
   std::vector<geometry::Shape> hulls;
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
     double extent = 0.0;
-    for (Vector3& point : mesh.parts[i]) extent = std::max(extent, (point *= scale).norm());
+    for (Vector3& point : mesh.parts[i].points) extent = std::max(extent, (point *= scale).norm());
     const std::string part = "part " + std::to_string(i + 1) + " of " + quote(path.string());
     if (!(extent <= kLargestSize))
       file.fail(part + ", which reaches " + to_text(extent) + " m", "metres; for millimetres give scale: 0.001");
-    auto hull = make_simple_hull(mesh.parts[i]);
-    if (!hull) file.fail(part + ", which spans no volume", "parts with a volume");
-    hulls.emplace_back(*std::move(hull));
+    // What is left of the 64 after one for each later part.
+    const std::size_t most = kMostParts - std::min(kMostParts - 1, hulls.size() + mesh.parts.size() - i - 1);
+    const std::vector<MeshPart> pieces = split_loose_pieces(mesh.parts[i], most);
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      auto hull = make_simple_hull(pieces[k].points);
+      if (!hull) file.fail(part + ", which spans no volume", "parts with a volume");
+      if (const auto filled = describe_filled(pieces[k], *hull)) {
+        const std::string piece = pieces.size() == 1 ? "" : fmt::format(", loose piece {},", k + 1);
+        file.document().warnings.push_back(fmt::format(
+            "{}: part {} of {}{} {}; cut it into convex pieces that are closed and share no corner, or write `shapes`",
+            file.path(), i + 1, quote(path.filename().string()), piece, *filled));
+      }
+      hulls.emplace_back(*std::move(hull));
+    }
   }
   return hulls;
 }

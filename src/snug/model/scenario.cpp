@@ -35,6 +35,7 @@ Scenario parse_text(std::string_view text, std::string_view name, std::set<std::
     throw InputError(where_of(name, error.mark), "", error.msg, "YAML that can be parsed");
   }
   scenario.side_files = document.side_files;
+  scenario.warnings = document.warnings;
   if (known_keys != nullptr) known_keys->insert(document.known_keys.begin(), document.known_keys.end());
   return scenario;
 }

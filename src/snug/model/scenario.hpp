@@ -93,6 +93,7 @@ struct Scenario {
   std::string source_name;                        ///< file or label it was read from
   std::string source_text;                        ///< the text itself, for recordings
   std::vector<std::filesystem::path> side_files;  ///< what it names and has read: meshes, tables of poses
+  std::vector<std::string> warnings;              ///< what was taken otherwise than its writer may think
 
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< m/s^2
   double time_step = 0.001;                    ///< s

@@ -37,7 +37,7 @@ geometry::ConvexHull read_mesh_hull(const Element& mesh) {
   const model::MeshParts parts = model::read_mesh_parts(path);
   if (!parts.error.empty()) mesh.fail("'" + path.string() + "': " + parts.error, "a mesh (STL, DAE, OBJ)");
   std::vector<Vector3> points;
-  for (const std::vector<Vector3>& part : parts.parts) points.insert(points.end(), part.begin(), part.end());
+  for (const model::MeshPart& part : parts.parts) points.insert(points.end(), part.points.begin(), part.points.end());
   const Vector3 scale = mesh.vector3_or("scale", Vector3::Ones());
   for (Vector3& point : points) point = point.cwiseProduct(scale);
   const auto hull = model::make_simple_hull(points);

@@ -6,7 +6,10 @@
 namespace snug::runs {
 
 RunResult run(const model::Scenario& scenario, const RunOptions& options) {
-  return options.program ? internal::run_program(scenario, options) : internal::run_scene(scenario, options);
+  RunResult result =
+      options.program ? internal::run_program(scenario, options) : internal::run_scene(scenario, options);
+  result.warnings.insert(result.warnings.begin(), scenario.warnings.begin(), scenario.warnings.end());
+  return result;
 }
 
 }  // namespace snug::runs

@@ -23,6 +23,7 @@ struct Document {
   std::string name;                  ///< file or label, for messages
   std::set<std::string> known_keys;  ///< "kind.key" of every key that any mapping read so far may have
   std::vector<std::filesystem::path> side_files = {};  ///< that were found beside it
+  std::vector<std::string> warnings = {};              ///< what a reader took otherwise than its writer may think
 };
 
 /// Bounds of a length, m: outside of them a value is taken for a slip (millimetres, say) and refused.

@@ -117,8 +117,8 @@ TEST(ReadMeshParts, LeavesMaterialsAndOtherFilesUnopened) {
   const MeshParts mesh = read_mesh_parts(folder / "mesh.obj");
   EXPECT_EQ(mesh.error, "");
   ASSERT_EQ(mesh.parts.size(), 2U) << "one for each material";
-  EXPECT_EQ(mesh.parts[0].size(), 4U);
-  EXPECT_EQ(mesh.parts[1].size(), 4U);
+  EXPECT_EQ(mesh.parts[0].points.size(), 4U);
+  EXPECT_EQ(mesh.parts[1].points.size(), 4U);
 }
 
 }  // namespace
