@@ -23,6 +23,10 @@ const char* remedy_of(ContactLimit limit) {
          "than half a wall pushes out on its other side";
 }
 
+std::string name_of(physics::BodyId id, const CellWorld& world) {
+  return id.is_valid() ? world.model.bodies[static_cast<std::size_t>(id.index)].name : std::string("?");
+}
+
 }  // namespace
 
 double SolverMonitor::allowed(ContactLimit limit) const {
@@ -51,6 +55,10 @@ void SolverMonitor::add(const physics::StepReport& report, double time) {
   check(ContactLimit::CompliantDepth, report.worst_compliant_depth, report.worst_compliant_pair, time);
   if (report.status == physics::StepStatus::NotConverged) {
     ++summary_.not_converged;
+    if (report.is_infeasible && summary_.infeasible++ == 0) {
+      summary_.infeasible_time = time;
+      infeasible_ = report.residual_pair;
+    }
     check(ContactLimit::Residual, report.residual, report.residual_pair, time);
   }
   if (report.contacts == 0) return;
@@ -59,11 +67,12 @@ void SolverMonitor::add(const physics::StepReport& report, double time) {
 }
 
 PassedLimit SolverMonitor::named(const Passed& passed, const CellWorld& world) const {
-  const auto name_of = [&world](physics::BodyId id) {
-    return id.is_valid() ? world.model.bodies[static_cast<std::size_t>(id.index)].name : std::string("?");
-  };
-  return {passed.limit,          name_of(passed.pair.a), name_of(passed.pair.b),
-          allowed(passed.limit), passed.worst,           passed.worst_time,
+  return {passed.limit,
+          name_of(passed.pair.a, world),
+          name_of(passed.pair.b, world),
+          allowed(passed.limit),
+          passed.worst,
+          passed.worst_time,
           passed.since};
 }
 
@@ -73,6 +82,8 @@ SolverSummary SolverMonitor::summary(const CellWorld& world) const {
     summary.mean_sweeps = static_cast<double>(sweeps_) / static_cast<double>(steps_with_contacts_);
   }
   for (const Passed& passed : passed_) summary.passed.push_back(named(passed, world));
+  summary.infeasible_a = name_of(infeasible_.a, world);
+  summary.infeasible_b = name_of(infeasible_.b, world);
   return summary;
 }
 
@@ -118,18 +129,27 @@ Failure find_depth_failure(const SolverSummary& summary) {
 }
 
 std::vector<std::string> describe_warnings(const SolverSummary& summary) {
+  std::vector<std::string> warnings;
+  if (summary.infeasible > 0) {
+    warnings.push_back(fmt::format(
+        "{} of {} steps had no solution, the first at t = {:.3f} s between '{}' and '{}': a body that moves whatever "
+        "it "
+        "meets presses rigid ones together; end its way earlier or make a pair compliant (contacts: stiffness)",
+        summary.infeasible, summary.steps, summary.infeasible_time, summary.infeasible_a, summary.infeasible_b));
+  }
   const PassedLimit* worst = nullptr;
   for (const PassedLimit& passed : summary.passed) {
     if (passed.limit != ContactLimit::Residual) continue;
     if (worst == nullptr || passed.worst > worst->worst) worst = &passed;
   }
-  if (worst == nullptr) return {};
-  return {
+  if (worst == nullptr) return warnings;
+  warnings.push_back(
       fmt::format("{} of {} steps were not solved; worst: {:.2g} m/s at t = {:.3f} s between '{}' and '{}': forces "
                   "and motions then are rough; a smaller time_step or more alike masses help (limit: "
                   "solver.contact_limits.residual, {:.3g} m/s)",
                   summary.not_converged, summary.steps, worst->worst, worst->worst_time, worst->body_a, worst->body_b,
-                  worst->allowed)};
+                  worst->allowed));
+  return warnings;
 }
 
 Failure find_failure(const CellWorld& world, const physics::WorldState& state, const physics::Workspace& work,

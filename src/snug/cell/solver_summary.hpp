@@ -26,11 +26,14 @@ struct PassedLimit {
 struct SolverSummary {
   std::int64_t steps = 0;
   std::int64_t not_converged = 0;
-  double worst_residual = 0.0;         ///< m/s
-  double worst_penetration = 0.0;      ///< m, rigid contacts
-  double worst_compliant_depth = 0.0;  ///< m, compliant contacts
-  double mean_sweeps = 0.0;            ///< over steps with contacts
-  std::vector<PassedLimit> passed;     ///< in the order in which it happened, one for each limit and pair
+  std::int64_t infeasible = 0;             ///< of these: nothing could keep rigid bodies apart
+  double infeasible_time = 0.0;            ///< s, of the first
+  std::string infeasible_a, infeasible_b;  ///< bodies of its worst contact
+  double worst_residual = 0.0;             ///< m/s
+  double worst_penetration = 0.0;          ///< m, rigid contacts
+  double worst_compliant_depth = 0.0;      ///< m, compliant contacts
+  double mean_sweeps = 0.0;                ///< over steps with contacts
+  std::vector<PassedLimit> passed;         ///< in the order in which it happened, one for each limit and pair
 };
 
 /// Gathers a SolverSummary step by step.
@@ -57,6 +60,7 @@ class SolverMonitor {
   SolverSummary summary_;
   std::vector<Passed> passed_;
   std::size_t taken_ = 0;
+  physics::BodyPair infeasible_;
   std::int64_t sweeps_ = 0;
   std::int64_t steps_with_contacts_ = 0;
 };

@@ -244,7 +244,10 @@ struct StepReport {
   BodyPair worst_penetration_pair;
   double worst_compliant_depth = 0.0;  ///< m, compliant contacts, at the start of the step
   BodyPair worst_compliant_pair;
-  BodyPair residual_pair;         ///< of the contact with the largest residual; with NotConverged only
+  BodyPair residual_pair;  ///< of the contact with the largest residual; with NotConverged only
+  /// With NotConverged: it was proved that no velocities keep all rigid contacts apart, as under a press that a moving
+  /// kinematic body closes; the search for them ended there (contact.md, section 4).
+  bool is_infeasible = false;
   double element_residual = 0.0;  ///< m/s, of the implicit force elements
   BodyId culprit;                 ///< with NotFinite and LostBody
 };

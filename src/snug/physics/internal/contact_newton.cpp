@@ -12,6 +12,7 @@ constexpr int kRounds = 5;  ///< in which groups are found anew, since contacts 
 
 int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, NewtonScratch& work) noexcept {
   int iterations = 0;
+  work.is_infeasible = false;
   for (int round = 0; round < kRounds; ++round) {
     const bool is_first = round == 0;
     const double enough = is_first ? residuals.wanted : residuals.accepted;
@@ -20,8 +21,10 @@ int newton_rows(const Residuals& residuals, Row* first, Row* end, double* u, New
     for (std::size_t i = 0; i < work.groups.count(); ++i) {
       most = std::max(most, solve_group(residuals, work.groups.open(i), u, work.group, &work.groups, !is_first));
       work.groups.close();
+      work.is_infeasible |= work.group.is_infeasible;
     }
     iterations += most;
+    if (work.is_infeasible) return iterations;
   }
   if (worst_residual(first, end, u) <= residuals.accepted) return iterations;
   return iterations + solve_group(residuals, {first, end}, u, work.group, nullptr, true);

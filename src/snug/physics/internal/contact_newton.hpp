@@ -32,6 +32,7 @@ struct GroupScratch {
   std::unique_ptr<NewtonRow[]> rows;
   std::vector<double> u, u_free, u_start, error, step;  ///< 6 per active body
   std::unique_ptr<ClusterScratch> clusters;
+  bool is_infeasible = false;  ///< the group that was solved last: no velocities keep its contacts apart
 };
 
 struct ClusterScratch {
@@ -44,6 +45,7 @@ struct NewtonScratch {
 
   RowGroups groups;
   GroupScratch group;
+  bool is_infeasible = false;  ///< the rows that were solved last
 };
 
 /// Improves lambda of a group's rows and u (consistent with each other) until the residual is accepted, or keeps the

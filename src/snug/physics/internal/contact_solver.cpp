@@ -127,9 +127,11 @@ SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals,
       if (result.iterations < patience.least || (!is_slow && result.iterations < kMostSweeps)) continue;
       is_newton_done = true;
       result.iterations += newton_rows(residuals, first, end, u, newton);
+      result.is_infeasible = newton.is_infeasible;
     }
     result.residual = worst_residual(first, end, u);
     if (result.residual <= residuals.accepted) return result;
+    if (result.is_infeasible) break;
   }
   result.has_converged = false;
   return result;

@@ -44,6 +44,13 @@ constexpr Care kThorough{0.01, 6, 300, 0.0};  ///< where that fails
 constexpr Care kLast{0.001, 20, 1000, 0.0};   ///< where that ends near the tolerance
 constexpr double kNear = 100.0;               ///< of the tolerance
 
+/// Penalty, in units of 1 / W, under which the least violation of all contacts is looked for: its impulses cancel on
+/// each body to about 1 / penalty where they are a proof.
+constexpr double kProofPenalty = 1e6;
+/// A proof holds for velocities up to this many times those at hand: wedges that escape faster count as stuck.
+constexpr double kFastEscape = 100.0;
+constexpr double kProved = 10.0;  ///< of the tolerance: the least violation that a proof shows
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// J u without what kinematic bodies bring in.
@@ -92,8 +99,12 @@ class GroupProblem {
 
   void augment(const Care& care);
   bool solve_stage(double penalty, double tolerance, const Care& care);
+  void relax_law(const Row& row, NewtonRow& newton, double penalty);
   double evaluate(double penalty);
   double search_line(double penalty, double error, int max_halvings);
+  bool presses() const;
+  bool is_infeasible();
+  void share_violation();
 
   double tolerance_, wanted_;
   Row* first_;
@@ -102,7 +113,8 @@ class GroupProblem {
   GroupScratch& work_;
   RowGroups* groups_;
   double residual_ = 0.0, best_ = 0.0;
-  bool has_room_ = true;  ///< for the linear system
+  bool has_room_ = true;   ///< for the linear system
+  bool is_proof_ = false;  ///< only rigid contacts, without friction
   int iterations_ = 0;
   int sweeps_ = 0;
 };
@@ -229,15 +241,25 @@ void GroupProblem::run_cycles(int count) {
   measure();
 }
 
+/// The augmented law at work_.u.
+void GroupProblem::relax_law(const Row& row, NewtonRow& newton, double penalty) {
+  if (is_proof_ && !(row.is_rigid && row.kind == RowKind::Contact)) {
+    (void)open_law(newton.law);
+    return;
+  }
+  double xi[3];
+  contact_velocity(row, work_.u.data(), xi);
+  const double tangential = is_proof_ ? 0.0 : penalty * row.step_t;
+  augmented_law(row, penalty / rigid_mobility(row), tangential, newton.center, xi, newton.law);
+}
+
 /// Momentum error u - u_free - sum (J T)^T lambda(u) of every body at work.u; returns its norm.
 double GroupProblem::evaluate(double penalty) {
   for (const int body : bodies()) {
     for (int k = 6 * body; k < 6 * body + 6; ++k) work_.error[at(k)] = work_.u[at(k)] - work_.u_free[at(k)];
   }
   each_row([&](const Row& row, NewtonRow& newton) {
-    double xi[3];
-    contact_velocity(row, work_.u.data(), xi);
-    augmented_law(row, penalty / rigid_mobility(row), penalty * row.step_t, newton.center, xi, newton.law);
+    relax_law(row, newton, penalty);
     if (newton.law.lambda[0] <= 0.0) return;
     const double d[3] = {-newton.law.lambda[0], -newton.law.lambda[1], -newton.law.lambda[2]};
     apply(row, d, work_.error.data());
@@ -271,6 +293,57 @@ bool GroupProblem::solve_stage(double penalty, double tolerance, const Care& car
     if (error < 0.0) return false;
   }
   return error <= tolerance;
+}
+
+/// Whether a body that the solver does not move presses on a rigid contact: without, bodies at rest (but for bounces)
+/// are a solution of the normal laws.
+bool GroupProblem::presses() const {
+  return std::any_of(first_, end_, [&](const Row& row) {
+    return row.is_rigid && row.kind == RowKind::Contact &&
+           row.bias[0] < std::min(0.0, row.target) - kProved * tolerance_;
+  });
+}
+
+/// Proves that no velocities satisfy the normal laws: u of the least violation is found; its impulses lambda >= 0 have
+/// `J^T lambda = g`, nearly zero, and `lambda . (target - bias) = s`. Then for all u within |u| <= U the sum of lambda
+/// times violations is at least `s - |g| U`, so one is at least that over the sum of lambda (Farkas' lemma).
+bool GroupProblem::is_infeasible() {
+  if (!presses()) return false;
+  is_proof_ = true;
+  double mobility = 0.0, fastest = 0.0;
+  each_row([&](const Row& row, NewtonRow& newton) {
+    std::fill_n(newton.center, 3, 0.0);
+    mobility = std::max(mobility, rigid_mobility(row));
+    fastest = std::max(fastest, std::abs(row.bias[0] - row.target) / std::sqrt(rigid_mobility(row)));
+  });
+  for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
+  (void)solve_stage(kProofPenalty, 1e-3 * tolerance_ / std::sqrt(mobility), kThorough);
+  (void)evaluate(kProofPenalty);
+  double gap = 0.0, free = 0.0, found = 0.0;  // squares
+  for (const int body : bodies()) {
+    for (int k = 6 * body; k < 6 * body + 6; ++k) {
+      const double u = work_.u[at(k)], u_free = work_.u_free[at(k)], g = u - u_free - work_.error[at(k)];
+      gap += g * g, free += u_free * u_free, found += u * u;
+    }
+  }
+  double sum = 0.0, scaled = 0.0;
+  each_row([&](const Row& row, const NewtonRow& newton) {
+    sum += newton.law.lambda[0];
+    if (newton.law.lambda[0] > 0.0) scaled += newton.law.lambda[0] * (row.target - row.bias[0]);
+  });
+  is_proof_ = false;
+  const double speed = kFastEscape * std::max({std::sqrt(free), std::sqrt(found), fastest});
+  return scaled - std::sqrt(gap) * speed > kProved * tolerance_ * sum;
+}
+
+/// What an infeasible group is left with: contacts as stiff dampers, which share what is violated.
+void GroupProblem::share_violation() {
+  each_row([](const Row&, NewtonRow& newton) { std::fill_n(newton.center, 3, 0.0); });
+  for (const int body : bodies()) std::copy_n(u_ + 6 * body, 6, work_.u.data() + 6 * body);
+  (void)solve_stage(kFirstPenalty, 0.1 * tolerance_, kQuick);  // the best is kept in any case
+  each_row([](Row& row, const NewtonRow& newton) { std::copy_n(newton.law.lambda, 3, row.lambda); });
+  apply_impulses();
+  measure();
 }
 
 /// The augmented Lagrangian: slower, and the one that always worked. Where a stage gains much, statuses are nearly
@@ -343,15 +416,19 @@ void GroupProblem::solve_from_here(bool is_nearly_solved) {
   } else {
     run_cycles(kCycles);
   }
-  if (!is_solved() && has_parts) solve_clusters();
+  work_.is_infeasible = !is_solved() && has_room_ && is_infeasible();
+  if (work_.is_infeasible) share_violation();
+  if (!is_solved() && !work_.is_infeasible && has_parts) solve_clusters();
   restore_best();
-  if (!is_solved()) augment(kQuick);
+  if (!is_solved() && !work_.is_infeasible) augment(kQuick);
 }
 
 int GroupProblem::solve(bool is_nearly_solved) {
+  work_.is_infeasible = false;
   start();
   if (!std::isfinite(best_)) return 0;  // the caller says so
   solve_from_here(is_nearly_solved);
+  if (work_.is_infeasible) return iterations_;
   if (!is_solved() && has_room_) {
     start_anew();
     solve_from_here(false);

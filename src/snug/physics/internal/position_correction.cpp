@@ -129,13 +129,14 @@ double PositionCorrection::sweep(const Sweep& sweep, double* shift) {
 }
 
 void PositionCorrection::run(const StepSettings& settings, const Row* first, const Row* end, const Contact* contacts,
-                             const double* u, double* shift) noexcept {
+                             const double* u, bool is_infeasible, double* shift) noexcept {
   const double worst = find_errors(settings, first, end, contacts, u);
   if (worst <= settings.position_slop) return;
   const bool is_heap = runs_.size() > kHeap;
   const double least = std::max(0.1 * settings.position_slop, is_heap ? kPrecision * worst : 0.0);
+  const int most = is_infeasible || worst <= kLarge ? kSweeps : kMostSweeps;
   double change = 0.0;
-  for (int i = 0; i < kSweeps || (worst > kLarge && change > kCoarse && i < kMostSweeps); ++i) {
+  for (int i = 0; i < kSweeps || (change > kCoarse && i < most); ++i) {
     change = sweep({i < kSweeps, is_heap && i >= kPlainSweeps ? kRelaxation : 1.0, least}, shift);
     if (change <= least) break;
     take_moved();

@@ -18,9 +18,10 @@ class PositionCorrection {
  public:
   PositionCorrection(std::size_t bodies, std::size_t rows);
 
-  /// Adds to `shift`, 6 numbers per active body in whitened coordinates, zero at first.
+  /// Adds to `shift`, 6 numbers per active body in whitened coordinates, zero at first. `is_infeasible`: the overlaps
+  /// cannot all be mended, and more than the first sweeps only push them to and fro.
   void run(const StepSettings& settings, const Row* first, const Row* end, const Contact* contacts, const double* u,
-           double* shift) noexcept;
+           bool is_infeasible, double* shift) noexcept;
 
  private:
   /// The normal axis of a rigid contact.

@@ -97,7 +97,7 @@ struct Contact {
   double phi = 0.0;
   double approach = 0.0;  ///< normal relative velocity at the start of the step, m/s
   int patch = 0;
-  int point = 0;  ///< of the pair's manifold; swept: -1
+  int point = 0;            ///< of the pair's manifold; swept: -1
 };
 
 /// Of one pair.
@@ -109,8 +109,9 @@ struct Island {
   int first_row = 0;
   int end_row = 0;
   bool has_element = false;
-  bool has_turning = false;  ///< rows that resist turning
-  bool is_carried = false;   ///< once solved: by something that the solver does not move
+  bool has_turning = false;    ///< rows that resist turning
+  bool is_infeasible = false;  ///< once solved: no velocities keep its contacts apart
+  bool is_carried = false;     ///< once solved: by something that the solver does not move
 };
 
 /// What a body moves by in a step.
@@ -241,6 +242,7 @@ struct SolveResult {
   int iterations = 0;  ///< sweeps of Gauss-Seidel and steps of Newton's method
   double residual = 0.0;
   bool has_converged = true;
+  bool is_infeasible = false;  ///< proved: StepReport::is_infeasible
 };
 [[nodiscard]] SolveResult solve_rows(const StepSettings& settings, const Residuals& residuals, Row* first, Row* end,
                                      double* u, NewtonScratch& newton) noexcept;

@@ -41,7 +41,7 @@ void read_velocities(Scratch& work, const Island& island) {
   }
 }
 
-void solve_plain_island(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island,
+void solve_plain_island(const WorldModel& model, const WorldState& state, Scratch& work, Island& island,
                         IslandWorker& worker) {
   StepReport& report = worker.report;
   build_rows(model, state, work, island, true);
@@ -52,6 +52,7 @@ void solve_plain_island(const WorldModel& model, const WorldState& state, Scratc
   report.sweeps = std::max(report.sweeps, result.iterations);
   report.residual = std::max(report.residual, result.residual);
   if (!result.has_converged) report.status = StepStatus::NotConverged;
+  island.is_infeasible = result.is_infeasible;
 }
 
 /// Copies the free velocities of the island's plain bodies into work.u (the solver changes them in place).
@@ -104,6 +105,7 @@ void solve_element_island(const WorldModel& model, const WorldInput& input, cons
     }
   }
   report.residual = std::max(report.residual, result.residual);
+  work.islands[static_cast<std::size_t>(index)].is_infeasible = result.is_infeasible;
   if (!result.has_converged || !agrees) report.status = StepStatus::NotConverged;
   report.element_residual = std::max(report.element_residual, error);
   name_culprit(culprit, report);
@@ -145,7 +147,9 @@ void solve_island(const WorldModel& model, const WorldInput& input, WorldState& 
   Row* first = work.rows.begin() + island.first_row;
   Row* end = work.rows.begin() + island.end_row;
   island.is_carried = keep_impulses(first, end, state, work);
-  worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), work.shift.data());
+  worker.report.is_infeasible |= island.is_infeasible;
+  worker.positions.run(model.settings, first, end, work.contacts.begin(), work.u.data(), island.is_infeasible,
+                       work.shift.data());
   read_velocities(work, island);
 }
 
@@ -175,6 +179,7 @@ void add_report(const StepReport& part, StepReport& report) {
   report.residual = std::max(report.residual, part.residual);
   report.element_residual = std::max(report.element_residual, part.element_residual);
   if (part.status != StepStatus::Converged) report.status = part.status;
+  report.is_infeasible |= part.is_infeasible;
   name_culprit(part.culprit, report);
 }
 
