@@ -147,7 +147,11 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
   row.gamma = 0.0;
   row.gap_end = 0.0;
   row.is_bounce = false;
-  row.is_rigid = law.stiffness <= 0.0;
+  row.is_rigid = law.stiffness <= 0.0 && !contact.is_covered;
+  if (contact.is_covered) {
+    row.target = kNever;
+    return;
+  }
   if (!row.is_rigid) {
     fill_compliant_law(law, dt, patch, contact, free_velocity, bearing, row);
     return;
@@ -194,6 +198,11 @@ void cut_to_cone(Row& row) {
   row.lambda[2] *= scale;
 }
 
+void drop_impulse(Row& row) {
+  row.is_changed |= row.lambda[0] != 0.0;
+  std::fill_n(row.lambda, 3, 0.0);
+}
+
 }  // namespace
 
 void build_rows(const WorldModel& model, const WorldState& state, Scratch& work, const Island& island, bool is_first) {
@@ -227,6 +236,7 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
         std::copy(impulse.begin(), impulse.end(), row->lambda);
       }
       row->is_changed = !is_kept;
+      if (contact.is_covered) drop_impulse(*row);
       cut_to_cone(*row);
     }
     if (patch.row_count > patch.contact_count)

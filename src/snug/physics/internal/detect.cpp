@@ -73,7 +73,7 @@ PairVisit find_contacts(const PairBodies& bodies, double reach, double dt, const
     visit.reach_from = std::max(visit.reach_from, phi);
     const Vector3 p_WQ = 0.5 * (p_WA + p_WB);
     Contact& contact = contacts[visit.count++];
-    contact = {p_WQ, phi, approach_at(p_WQ, n, a, b), 0, i};
+    contact = {p_WQ, phi, approach_at(p_WQ, n, a, b), 0, i, false};
     visit.touches |= is_touching(contact, dt);
   }
   if (visit.count == 0) pair.turning = {};
@@ -323,6 +323,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   while (walk_pairs(model, input, state, work, reach, margin)) {  // waking a group brings its pairs in
   }
   fill_visited(model, reach, state, work);
+  mark_covered_contacts(model, state, work);
   report_depth(model, work, report);
 }
 

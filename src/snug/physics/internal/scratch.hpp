@@ -12,6 +12,7 @@
 #include "snug/physics/internal/contact_row.hpp"
 #include "snug/physics/internal/element_bodies.hpp"
 #include "snug/physics/internal/position_correction.hpp"
+#include "snug/physics/internal/shared_supports.hpp"
 #include "snug/physics/world.hpp"
 
 namespace snug::physics::internal {
@@ -98,6 +99,7 @@ struct Contact {
   double approach = 0.0;  ///< normal relative velocity at the start of the step, m/s
   int patch = 0;
   int point = 0;            ///< of the pair's manifold; swept: -1
+  bool is_covered = false;  ///< bears nothing: others around it, of the same face and plane, do
 };
 
 /// Of one pair.
@@ -175,6 +177,7 @@ struct Scratch {
   std::vector<int> island_order;  ///< those with most rows first
   bool has_too_many_contacts = false;
   bool has_belts = false;  ///< the model: surfaces that run
+  SharedSupports shared_supports;
 
   BoundedVector<PairState> merged_pairs;                ///< broad phase
   std::vector<std::uint64_t> keys, old_keys, new_keys;  ///< of pairs: all, those before, those of boxes that moved
@@ -196,6 +199,9 @@ bool update_pairs(const WorldModel& model, WorldState& state, Scratch& work);
 /// Manifolds of all pairs that matter, wakes what is touched, fills work.patches and work.contacts.
 void detect_contacts(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,
                      StepReport& report);
+/// Of faces that lie on several fixed geoms in one plane, contacts within the convex hull of all: rigid bodies need
+/// them for nothing, and they would make what bears depend on the order of the file.
+void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& work);
 /// Marks a sleeping group as moving, from within a step.
 void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int group);
 /// Velocities at the end of the step without contacts (bodies with force elements: done in solve_islands).

@@ -1,0 +1,235 @@
+// Shared supports: a face that lies on several fixed geoms in one plane bears on the rim of them all, as on one slab.
+#include <algorithm>
+#include <cmath>
+
+#include "snug/physics/internal/scratch.hpp"
+
+namespace snug::physics::internal {
+namespace {
+
+constexpr double kParallel = 1e-9;  ///< 1 - cosine between normals of one plane: 45 urad
+constexpr double kFlush = 1e-6;     ///< m, between supports of one plane, and between points of one face
+constexpr double kOnRim = 1e-7;     ///< m, a point as near to the rim, or inside, bears nothing
+
+/// Whether the patch may share what it bears with others: rigid, between a moving body and one that stands still. Where
+/// edges have a friction of their own, it counts how many points a patch has.
+bool may_share(const WorldModel& model, const Scratch& work, const Patch& patch) {
+  const BodyWork& a = work.bodies[static_cast<std::size_t>(patch.body_a)];
+  const BodyWork& b = work.bodies[static_cast<std::size_t>(patch.body_b)];
+  if ((a.active >= 0) == (b.active >= 0) || a.is_moving == b.is_moving || patch.is_swept) return false;
+  const int fixed = a.active >= 0 ? patch.body_b : patch.body_a;
+  const ContactLaw& law = model.laws[patch.law];
+  return model.bodies[static_cast<std::size_t>(fixed)].kind != BodyKind::Dynamic && law.stiffness <= 0.0 &&
+         !law.edge_friction;
+}
+
+/// A patch seen from the moving body.
+struct View {
+  bool is_b = false;  ///< the moving body is B of the pair
+  int moving = 0, fixed = 0;
+  Vector3 n_W;  ///< from the support to the body
+};
+
+View view_of(const Scratch& work, const Patch& patch) {
+  const bool is_b = work.bodies[static_cast<std::size_t>(patch.body_b)].active >= 0;
+  return {is_b, is_b ? patch.body_b : patch.body_a, is_b ? patch.body_a : patch.body_b,
+          is_b ? patch.n : Vector3(-patch.n)};
+}
+
+/// Where the plane of a support lies along its normal, m.
+double height_of(const WorldState& state, const Scratch& work, const Patch& patch, const View& view) {
+  const BodyWork& fixed = work.bodies[static_cast<std::size_t>(view.fixed)];
+  const Contact& contact = work.contacts[static_cast<std::size_t>(patch.first_contact)];
+  const PairPoint& point = state.pairs[patch.pair].points[static_cast<std::size_t>(contact.point)];
+  return view.n_W.dot(fixed.p_WB + fixed.R_WB * (view.is_b ? point.p_A : point.p_B));
+}
+
+double distance(const SupportPoint& p, const SupportPoint& q) { return std::hypot(p.x - q.x, p.y - q.y); }
+
+/// Distance of r to the left of the line from p to q, m.
+double left_of(const SupportPoint& p, const SupportPoint& q, const SupportPoint& r) {
+  return ((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x)) / distance(p, q);
+}
+
+/// Whether all points are of one plane, which gaps then are linear over: height = h0 + g . (x, y).
+bool is_flat(const std::vector<SupportPoint>& points) {
+  // The plane of least squares, about the mean.
+  Vector3 mean = Vector3::Zero();
+  for (const SupportPoint& p : points) mean += Vector3(p.x, p.y, p.height) / static_cast<double>(points.size());
+  double xx = 0.0, xy = 0.0, yy = 0.0, xh = 0.0, yh = 0.0;
+  for (const SupportPoint& p : points) {
+    const double x = p.x - mean.x(), y = p.y - mean.y(), h = p.height - mean.z();
+    xx += x * x, xy += x * y, yy += y * y, xh += x * h, yh += y * h;
+  }
+  const double ridge = 1e-12 * (xx + yy);  // points on a line: any plane through it
+  const double det = (xx + ridge) * (yy + ridge) - xy * xy;
+  if (!(det > 0.0)) return false;
+  const double gx = ((yy + ridge) * xh - xy * yh) / det, gy = ((xx + ridge) * yh - xy * xh) / det;
+  return std::all_of(points.begin(), points.end(), [&](const SupportPoint& p) {
+    return std::abs(p.height - mean.z() - gx * (p.x - mean.x()) - gy * (p.y - mean.y())) <= kFlush;
+  });
+}
+
+/// The next corner of the convex hull behind `from`, counter-clockwise: no point lies to the right of the line there,
+/// none on it farther away. -1: all points are where `from` is.
+int next_corner(const std::vector<SupportPoint>& points, const SupportPoint& from) {
+  int next = -1;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double reach = distance(from, points[i]);
+    if (reach <= kOnRim) continue;
+    const auto index = static_cast<int>(i);
+    if (next < 0) {
+      next = index;
+      continue;
+    }
+    const SupportPoint& known = points[static_cast<std::size_t>(next)];
+    const double left = left_of(from, known, points[i]);
+    const double farther = reach - distance(from, known);
+    const bool is_beyond = std::abs(left) <= kOnRim && farther > kOnRim;
+    const bool is_same = distance(known, points[i]) <= kOnRim && points[i].rank < known.rank;
+    if (left < -kOnRim || is_beyond || is_same) next = index;
+  }
+  return next;
+}
+
+/// Corners of the convex hull stay; all others are covered. Of points in one place that of the least rank stays.
+void cover_inner_points(std::vector<SupportPoint>& points, Scratch& work) {
+  double x = 0.0, y = 0.0;
+  for (SupportPoint& p : points) {
+    x += p.x / static_cast<double>(points.size()), y += p.y / static_cast<double>(points.size());
+    work.contacts[static_cast<std::size_t>(p.contact)].is_covered = true;
+  }
+  const auto before = [&](const SupportPoint& p, const SupportPoint& q) {  // the farthest from the mean is a corner
+    const double far_p = std::hypot(p.x - x, p.y - y), far_q = std::hypot(q.x - x, q.y - y);
+    return std::abs(far_p - far_q) > kOnRim ? far_p > far_q : p.rank < q.rank;
+  };
+  const auto first = std::min_element(points.begin(), points.end(), before);
+  int corner = static_cast<int>(first - points.begin());
+  for (std::size_t count = 0; corner >= 0 && count < points.size(); ++count) {
+    const SupportPoint& at = points[static_cast<std::size_t>(corner)];
+    work.contacts[static_cast<std::size_t>(at.contact)].is_covered = false;
+    corner = next_corner(points, at);
+    if (corner >= 0 && distance(points[static_cast<std::size_t>(corner)], *first) <= kOnRim) break;
+  }
+}
+
+/// Columns n, t1, t2 of a patch, for the impulse on the moving body.
+Matrix3 axes_of(const Patch& patch, bool is_b) {
+  Matrix3 axes;
+  axes << patch.n, patch.t1, patch.t2;
+  return is_b ? axes : Matrix3(-axes);
+}
+
+/// A covered contact that bore in the step before, as a corner that has slid to the next support, gives its impulse to
+/// the nearest that bears: the search for the impulses starts where it ended.
+void hand_on_impulses(const std::vector<SupportPoint>& points, WorldState& state, Scratch& work) {
+  for (const SupportPoint& from : points) {
+    const Contact& covered = work.contacts[static_cast<std::size_t>(from.contact)];
+    if (!covered.is_covered) continue;
+    Patch& patch = work.patches[static_cast<std::size_t>(covered.patch)];
+    auto& impulse = state.pairs[patch.pair].impulses[static_cast<std::size_t>(covered.point)];
+    if (impulse[0] == 0.0) continue;
+    const SupportPoint* nearest = nullptr;
+    for (const SupportPoint& to : points) {
+      if (work.contacts[static_cast<std::size_t>(to.contact)].is_covered) continue;
+      if (nearest == nullptr || distance(from, to) < distance(from, *nearest)) nearest = &to;
+    }
+    const Contact& bearing = work.contacts[static_cast<std::size_t>(nearest->contact)];
+    Patch& other = work.patches[static_cast<std::size_t>(bearing.patch)];
+    Eigen::Map<Vector3> given(impulse.data());
+    Eigen::Map<Vector3> taken(state.pairs[other.pair].impulses[static_cast<std::size_t>(bearing.point)].data());
+    taken +=
+        axes_of(other, view_of(work, other).is_b).transpose() * (axes_of(patch, view_of(work, patch).is_b) * given);
+    given.setZero();
+    patch.is_kept = other.is_kept = false;  // their rows begin from the state
+  }
+}
+
+/// Points of the patches of one plane, in the frame of the moving body, x and y along the plane.
+void add_points(const WorldState& state, const Scratch& work, const Patch& patch, const View& view, int rank,
+                std::vector<SupportPoint>& points) {
+  const Vector3 n = work.bodies[static_cast<std::size_t>(view.moving)].R_WB.transpose() * view.n_W;
+  int smallest = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(n[i]) < std::abs(n[smallest])) smallest = i;
+  const Vector3 ex = n.cross(Vector3::Unit(smallest)).normalized(), ey = n.cross(ex);
+  for (int i = patch.first_contact; i < patch.first_contact + patch.contact_count; ++i) {
+    const PairPoint& point =
+        state.pairs[patch.pair].points[static_cast<std::size_t>(work.contacts[static_cast<std::size_t>(i)].point)];
+    const Vector3& p = view.is_b ? point.p_B : point.p_A;
+    points.push_back({ex.dot(p), ey.dot(p), n.dot(p), i, rank});
+  }
+}
+
+/// The order of supports in space, which does not depend on the order of the file.
+bool comes_before(const Scratch& work, int body, int other) {
+  const Vector3& p = work.bodies[static_cast<std::size_t>(body)].p_WB;
+  const Vector3& q = work.bodies[static_cast<std::size_t>(other)].p_WB;
+  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+}
+
+/// The supports of one body that lie in the plane of the first of the chain, taken off the chain.
+void share_plane(WorldState& state, Scratch& work, int& chain) {
+  SharedSupports& shared = work.shared_supports;
+  shared.points.clear();
+  shared.plane.clear();
+  const Patch& first = work.patches[static_cast<std::size_t>(chain)];
+  const View view = view_of(work, first);
+  const double height = height_of(state, work, first, view);
+  int* link = &chain;
+  while (*link >= 0) {
+    const int index = *link;
+    const Patch& patch = work.patches[static_cast<std::size_t>(index)];
+    const View other = view_of(work, patch);
+    if (1.0 - view.n_W.dot(other.n_W) > kParallel || std::abs(height_of(state, work, patch, other) - height) > kFlush) {
+      link = &shared.next[static_cast<std::size_t>(index)];
+      continue;
+    }
+    *link = shared.next[static_cast<std::size_t>(index)];
+    shared.plane.push_back(index);
+  }
+  if (shared.plane.size() < 2) return;
+  const auto fixed_of = [&](int index) { return view_of(work, work.patches[static_cast<std::size_t>(index)]).fixed; };
+  std::sort(shared.plane.begin(), shared.plane.end(), [&](int p, int q) {
+    if (comes_before(work, fixed_of(p), fixed_of(q))) return true;
+    return !comes_before(work, fixed_of(q), fixed_of(p)) && p < q;
+  });
+  for (std::size_t i = 0; i < shared.plane.size(); ++i) {
+    const Patch& patch = work.patches[static_cast<std::size_t>(shared.plane[i])];
+    add_points(state, work, patch, view_of(work, patch), static_cast<int>(i), shared.points);
+  }
+  if (!is_flat(shared.points)) return;
+  cover_inner_points(shared.points, work);
+  hand_on_impulses(shared.points, state, work);
+}
+
+}  // namespace
+
+SharedSupports::SharedSupports(std::size_t bodies, std::size_t patches, std::size_t contacts)
+    : first(bodies, -1), next(patches, -1) {
+  plane.reserve(patches);
+  points.reserve(contacts);
+  touched.reserve(bodies);
+}
+
+void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& work) {
+  SharedSupports& shared = work.shared_supports;
+  shared.touched.clear();
+  for (std::size_t i = 0; i < work.patches.size(); ++i) {
+    const Patch& patch = work.patches[i];
+    if (!may_share(model, work, patch)) continue;
+    for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k)
+      work.contacts[static_cast<std::size_t>(k)].is_covered = false;
+    const int moving = view_of(work, patch).moving;
+    int& first = shared.first[static_cast<std::size_t>(moving)];
+    if (first < 0) shared.touched.push_back(moving);
+    shared.next[i] = first;
+    first = static_cast<int>(i);
+  }
+  for (const int body : shared.touched) {
+    int& chain = shared.first[static_cast<std::size_t>(body)];
+    while (chain >= 0) share_plane(state, work, chain);
+  }
+}
+
+}  // namespace snug::physics::internal
