@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/common/choose_camera.hpp"
 #include "apps/snug/common/recorded_instant.hpp"
 #include "snug/camera/frame_file.hpp"
@@ -81,7 +82,7 @@ int run_camera(const CameraOptions& options) {
   record::RecordingReader reader(options.recording);
   expect_recorded(reader, options.recording, options.time);
   const model::Scenario scenario =
-      options.scenario ? model::load_scenario(*options.scenario)
+      options.scenario ? model::load_scenario(find_scenario(*options.scenario))
                        : model::parse_scenario(reader.header().scenario_text, "scenario of " + options.recording);
   model::CameraParams params = choose_camera(scenario, options.camera, options.scenario.value_or(options.recording));
   camera::CameraDraw draw;

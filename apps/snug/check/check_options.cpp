@@ -25,7 +25,9 @@ Examples:
 void add_check(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("check", "say whether the robot can do a program, and what is in the way");
   const auto options = std::make_shared<CheckOptions>();
-  verb.add_option("scenario", options->scenario, "scenario file with a robot")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("scenario", options->scenario, "scenario file with a robot, or name of one that comes with snug")
+      ->required()
+      ->type_name("SCENARIO.yaml");
   add_scenario_changes(verb, options->changes);
   verb.add_option("--program", options->program, "waypoint file (13 columns)")->required()->type_name("FILE.csv");
   verb.add_option("--sequence", options->sequence, "item sequence, to look at the held boxes too")->type_name("NAME");

@@ -41,7 +41,7 @@ OptionWords words_of(const ScenarioChanges& changes) {
 }
 
 NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, const model::Scenario& scenario) {
-  NamedFiles files = {{"the scenario", find_shipped(file)}};
+  NamedFiles files = {{"the scenario", find_scenario(file)}};
   for (const std::string& items : changes.items) files.push_back({"--items", find_shipped(items)});
   if (scenario.robot) files.push_back({"the robot's URDF", robot::urdf_path(scenario)});
   for (const std::filesystem::path& side : scenario.side_files) files.push_back({"a file of the scenario", side});
@@ -49,7 +49,7 @@ NamedFiles files_of(const std::string& file, const ScenarioChanges& changes, con
 }
 
 SourcedScenario load_with_sources(const std::string& file, const ScenarioChanges& changes) {
-  SourcedScenario loaded{model::load_scenario(find_shipped(file)), {}};
+  SourcedScenario loaded{model::load_scenario(find_scenario(file)), {}};
   model::Scenario& scenario = loaded.scenario;
   std::vector<model::KeyValue> values;
   for (const std::string& words : changes.set) values.push_back(model::parse_key_value(words, "--set"));

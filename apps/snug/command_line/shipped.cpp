@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "snug/core/input_error.hpp"
+#include "snug/model/scenario_names.hpp"
 
 namespace snug::app {
 namespace {
@@ -45,6 +46,11 @@ std::string find_shipped(const std::string& file) {
   const fs::path folder = look_for_folder();
   if (folder.empty() || !fs::is_regular_file(folder / path, error)) return file;
   return (folder / path).string();
+}
+
+std::string find_scenario(const std::string& words) {
+  const fs::path folder = look_for_folder();
+  return model::find_scenario_file(words, folder.empty() ? fs::path{} : folder / "scenarios").string();
 }
 
 }  // namespace snug::app

@@ -17,4 +17,8 @@ namespace snug::app {
 /// any folder; else `file`, for the reader to complain about.
 [[nodiscard]] std::string find_shipped(const std::string& file);
 
+/// Which file a SCENARIO on the command line means: a file, or the name of a shipped one such as `box-demonstrator`.
+/// Throws InputError with the nearest name for a name that is neither.
+[[nodiscard]] std::string find_scenario(const std::string& words);
+
 }  // namespace snug::app

@@ -21,7 +21,10 @@ constexpr const char* kCompareExamples = R"(Examples:
 void add_compare(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("compare", "agents x sequences x plants: filling, items lost, recoveries");
   const auto options = std::make_shared<CompareOptions>();
-  verb.add_option("scenario", options->pack.scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("scenario", options->pack.scenario,
+                  "scenario file, or name of one that comes with snug (drop, box-demonstrator)")
+      ->required()
+      ->type_name("SCENARIO.yaml");
   verb.add_option("--sequences", options->sequences,
                   "all, or names separated by commas (default: all; with --random none but the random ones)")
       ->type_name("NAMES");

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shipped.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/write_file.hpp"
 #include "snug/cup/law.hpp"
@@ -25,7 +26,7 @@ using identification::MeasurementNoise;
 using identification::Parameter;
 
 model::CupParams cup_of(const IdentifyOptions& options) {
-  return options.scenario ? model::load_scenario(*options.scenario).cup : model::CupParams{};
+  return options.scenario ? model::load_scenario(find_scenario(*options.scenario)).cup : model::CupParams{};
 }
 
 /// What was said on the command line goes before what the file says.
@@ -149,7 +150,7 @@ int run_identify_pluck(const IdentifyPluckOptions& options) {
   SpatialInertia box{0.55, Vector3(0.0, 0.0, -0.032), Vector3(0.0021, 0.0022, 0.0038).asDiagonal()};
   model::CupParams cup;
   if (options.scenario) {
-    const model::Scenario scenario = model::load_scenario(*options.scenario);
+    const model::Scenario scenario = model::load_scenario(find_scenario(*options.scenario));
     cup = scenario.cup;
     if (!options.parcel.empty()) {
       const model::Parcel* parcel = model::find_parcel(scenario, options.parcel);

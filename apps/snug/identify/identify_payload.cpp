@@ -1,5 +1,6 @@
 // identify payload: mass and centre of mass of a held box from one lift.
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/identify/identify.hpp"
 #include "snug/cup/law.hpp"
 #include "snug/identification/payload_file.hpp"
@@ -8,7 +9,8 @@
 namespace snug::app {
 
 int run_identify_payload(const IdentifyPayloadOptions& options) {
-  const model::CupParams cup = options.scenario ? model::load_scenario(*options.scenario).cup : model::CupParams{};
+  const model::CupParams cup =
+      options.scenario ? model::load_scenario(find_scenario(*options.scenario)).cup : model::CupParams{};
   identification::PayloadSettings settings;
   settings.K = cup::as_matrix(cup.stiffness);
   settings.frames = identification::frames_of(cup);

@@ -83,7 +83,7 @@ void show_release(const CupReleaseFit& fit) {
 }  // namespace
 
 int run_identify_release(const IdentifyReleaseOptions& options) {
-  const std::string scenario = find_shipped(options.scenario.value_or("scenarios/box-demonstrator.yaml"));
+  const std::string scenario = find_scenario(options.scenario.value_or("box-demonstrator"));
   const model::CupParams cup = model::load_scenario(scenario).cup;
   if (options.evaluate && options.output)
     throw InputError("command line", "--output", "with --evaluate", "nothing to write: --evaluate fits nothing");

@@ -132,8 +132,8 @@ int run_items_reduce(const ItemsReduceOptions& options) {
 }
 
 int run_items_sequence(const ItemsSequenceOptions& options) {
-  const model::Scenario scenario = model::load_scenario(find_shipped(options.scenario));
-  NamedFiles inputs = {{"the scenario", options.scenario}};
+  const model::Scenario scenario = model::load_scenario(find_scenario(options.scenario));
+  NamedFiles inputs = {{"the scenario", find_scenario(options.scenario)}};
   add_file(inputs, "--types", options.types);
   std::optional<OutputFile> output = reserve(inputs, options.output);
   const model::Scenario drawn_from = options.types ? with_new_boxes(scenario, options) : scenario;

@@ -57,7 +57,10 @@ void add_reduce(CLI::App& parent, Action& action) {
 void add_sequence(CLI::App& parent, Action& action) {
   CLI::App& verb = *parent.add_subcommand("sequence", "random orders of a scenario's boxes");
   const auto options = std::make_shared<ItemsSequenceOptions>();
-  verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("scenario", options->scenario,
+                  "scenario file, or name of one that comes with snug (drop, box-demonstrator)")
+      ->required()
+      ->type_name("SCENARIO.yaml");
   verb.add_option("--fill", options->fill_percent, "volume of the boxes, of the target container's")
       ->capture_default_str()
       ->check(within(1e-3, 1000.0))

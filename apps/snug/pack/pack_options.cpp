@@ -105,7 +105,10 @@ void add_pack(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand(
       "pack", "pack a simulated plant: decide where each box goes, rehearse, send, perceive, recover");
   const auto options = std::make_shared<PackOptions>();
-  verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("scenario", options->scenario,
+                  "scenario file, or name of one that comes with snug (drop, box-demonstrator)")
+      ->required()
+      ->type_name("SCENARIO.yaml");
   verb.add_option("--sequence", options->sequence, "item sequence of the scenario")->required()->type_name("NAME");
   verb.add_option("--random-seed", options->random_seed,
                   "the sequence is every box of the scenario in an order drawn by this seed and the name: random-1, "

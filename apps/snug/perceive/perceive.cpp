@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "apps/snug/command_line/outputs.hpp"
+#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/common/choose_camera.hpp"
 #include "snug/box_estimation/estimate_text.hpp"
 #include "snug/camera/frame_file.hpp"
@@ -48,11 +49,13 @@ box_estimation::EstimateInput make_input(const PerceiveOptions& options, const m
 }  // namespace
 
 int run_perceive(const PerceiveOptions& options) {
-  NamedFiles inputs = {{"the frame", options.frame}, {"--scenario", options.scenario}, {"--expect", options.expect}},
+  NamedFiles inputs = {{"the frame", options.frame},
+                       {"--scenario", find_scenario(options.scenario)},
+                       {"--expect", options.expect}},
              outputs;
   add_file(outputs, "-o", options.output);
   expect_distinct(inputs, outputs);
-  const model::Scenario scenario = model::load_scenario(options.scenario);
+  const model::Scenario scenario = model::load_scenario(find_scenario(options.scenario));
   const box_estimation::EstimateInput input = make_input(options, scenario);
   std::optional<OutputFile> output = reserve(options.output);
   const camera::Frame frame = camera::load_frame(options.frame, make_hints(options, scenario));

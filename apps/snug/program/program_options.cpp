@@ -9,7 +9,10 @@ namespace snug::app {
 void add_program(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("program", "turn placements into a program of waypoints");
   const auto options = std::make_shared<ProgramOptions>();
-  verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("scenario", options->scenario,
+                  "scenario file, or name of one that comes with snug (drop, box-demonstrator)")
+      ->required()
+      ->type_name("SCENARIO.yaml");
   verb.add_option("placements", options->placements, "boxes and where each shall rest in the container")
       ->required()
       ->type_name("PLACEMENTS.yaml");

@@ -97,7 +97,9 @@ void add_serve(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("serve", "let a controller in another program drive the cell (CLICK)");
   const auto options = std::make_shared<ServeOptions>();
   const auto is_quiet = std::make_shared<bool>(false);
-  verb.add_option("scenario", options->scenario, "scenario file with a robot")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("scenario", options->scenario, "scenario file with a robot, or name of one that comes with snug")
+      ->required()
+      ->type_name("SCENARIO.yaml");
   verb.add_option("--click", options->server.endpoint, "address to serve at: tcp://HOST:PORT or ipc://PATH")
       ->type_name("ADDRESS")
       ->capture_default_str();

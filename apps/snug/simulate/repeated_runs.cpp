@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "apps/snug/command_line/shipped.hpp"
 #include "apps/snug/study/study.hpp"
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
@@ -43,7 +44,7 @@ study::Study make_study(const SimulateOptions& options, std::uint64_t seed, int 
   study::Study study;
   study.name = study.source = "--monte-carlo";
   study.verb = "simulate";
-  study.scenario = options.scenario;
+  study.scenario = find_scenario(options.scenario);
   study.options = common_words(options, seed);
   study.seed_option.clear();
   study.factors = {{.name = "draw", .option = "--draw", .key = {}, .values = {}}};

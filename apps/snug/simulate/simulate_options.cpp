@@ -64,7 +64,10 @@ void add_physics_options(CLI::App& verb, SimulateOptions& options) {
 void add_simulate(CLI::App& app, Action& action) {
   CLI::App& verb = *app.add_subcommand("simulate", "run a scenario and say what became of every box");
   const auto options = std::make_shared<SimulateOptions>();
-  verb.add_option("scenario", options->scenario, "scenario file")->required()->type_name("SCENARIO.yaml");
+  verb.add_option("scenario", options->scenario,
+                  "scenario file, or name of one that comes with snug (drop, box-demonstrator)")
+      ->required()
+      ->type_name("SCENARIO.yaml");
   add_program_options(verb, *options);
   add_physics_options(verb, *options);
   CLI::Option* repeated = verb.add_option("--monte-carlo", options->monte_carlo,
