@@ -17,7 +17,7 @@ else
 fi
 rm -rf "$folder/snug"
 mkdir -p "$folder/snug"
-cp "$build"/python/snug/* "$folder/snug/"
+cp -R "$build"/python/snug/. "$folder/snug/"
 cd / # not the sources
 version="$("$python" -c 'import snug; print(snug.__version__)')"
 echo "snug $version: import it with $python (in $folder)" >&2

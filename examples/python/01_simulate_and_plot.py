@@ -1,11 +1,11 @@
-"""Simulates a scene and plots the heights of its bodies. Words: scenario, picture to write."""
+"""Simulates a scene and plots the heights of its bodies. Words: scenario, picture to write (drop, heights.png)."""
 import sys
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import snug
 
-scenario, picture = sys.argv[1:3]
+scenario, picture = sys.argv[1:3] or ("drop", "heights.png")
 world, times, heights = snug.World(snug.load_scenario(scenario)), [], []
 while world.time < 2.0:
     world.step(10)

@@ -13,3 +13,9 @@ class Lowest:
             return sum(self.half[i] - abs(middle[i]) for i in (0, 1))
 
         return sorted(candidates, key=lambda c: (round(c.low[2] + c.extents[2], 3), from_corner(c)))
+
+
+if __name__ == "__main__":
+    import snug
+
+    print(snug.pack(snug.load_scenario("box-demonstrator"), "1", agent=Lowest(), samples=0, robot="none"))

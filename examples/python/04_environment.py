@@ -1,9 +1,10 @@
-"""Plays episodes in many environments at once, each with its own friction. Words: scenario."""
+"""Plays episodes in many environments at once, each with its own friction. Words: scenario
+(box-demonstrator)."""
 import sys
 import numpy as np
 import snug
 
-many = snug.env.VectorPacking(snug.load_scenario(sys.argv[1]), 16, threads=2,
+many = snug.env.VectorPacking(snug.load_scenario((sys.argv[1:] or ["box-demonstrator"])[0]), 16, threads=2,
                               parameters=[{"friction_scale": 0.8 + 0.025 * i} for i in range(16)])
 observation, _ = many.reset(seed=1)
 ends = []

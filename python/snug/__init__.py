@@ -16,10 +16,11 @@ from __future__ import annotations
 
 from . import _core, agent
 from ._core import (Arm, Cell, CellSnapshot, Packer, Program, Scenario, World, WorldSnapshot,
-                    agent_names, load_program, load_scenario, parse_program, parse_scenario)
+                    agent_names, load_program, parse_program, parse_scenario)
 from ._errors import InputError
 from ._tools import Cup, matrix, pose
 from ._results import Result, Recording, pack, report, simulate
+from ._scenarios import load_scenario, scenario_names
 
 _core.set_input_error(InputError)
 
@@ -28,4 +29,4 @@ __version__: str = _core.__version__
 
 __all__ = ["Arm", "Cell", "CellSnapshot", "Cup", "InputError", "Packer", "Program", "Recording", "Result", "Scenario",
            "World", "WorldSnapshot", "agent", "agent_names", "env", "load_program", "load_scenario", "matrix", "pack", "parse_program",
-           "parse_scenario", "pose", "report", "simulate"]
+           "parse_scenario", "pose", "report", "scenario_names", "simulate"]

@@ -47,8 +47,10 @@ class Scenario:
         """Another target: a container of the scenario by name, or an open box "LxWxH" in mm."""
     def with_pallet(self, words: str) -> Scenario:
         """A slab without walls, "LxW" or "LxWxH" in mm, as the target."""
-    def with_items(self, path: _Path) -> Scenario:
-        """With the boxes and sequences of a file: orders (.csv, .json) or items (.yaml)."""
+    def with_items(self, items: Any) -> Scenario:
+        """With the boxes and sequences of a file: orders (.csv, .json) or items (.yaml); or of a table of orders: a DataFrame of
+        pandas or a list of dicts or dataclasses with the columns order, article, length_mm, width_mm, height_mm, mass_kg and so on
+        (docs/formats.md, orders)."""
     def __eq__(self, other: object) -> bool: ...
 
 class Program:
@@ -343,9 +345,13 @@ _Batch = Tuple[Dict[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray]
 class VectorEnvironment:
     def __init__(self, scenarios: Sequence[Scenario], settings: Sequence[Dict[str, Any]],
                  parameters: Sequence[Dict[str, Any]], threads: int, maps: bool, boxes: bool) -> None: ...
-    def reset(self, seeds: Sequence[int]) -> Dict[str, np.ndarray]: ...
-    def step_candidates(self, actions: _Array) -> _Batch: ...
-    def step_places(self, actions: _Array) -> _Batch: ...
+    def reset(self, mask: _Array, seeds: _Array) -> Dict[str, np.ndarray]:
+        """Those of the mask begin anew, all are observed."""
+    def step_candidates(self, actions: _Array, next_seeds: _Array) -> _Batch:
+        """next_seeds: of the episodes that begin in this step."""
+    def step_places(self, actions: _Array, next_seeds: _Array) -> _Batch: ...
+    @property
+    def candidates(self) -> List[int]: ...
     @property
     def rows(self) -> int: ...
     @property
@@ -365,8 +371,10 @@ def set_input_error(type: Type[Exception]) -> None: ...
 def as_pose(transform: _Array) -> np.ndarray: ...
 def agent_names() -> List[str]:
     """Built-in agents."""
-def load_scenario(path: _Path) -> Scenario:
-    """Reads a scenario file. Raises InputError with file, line and key."""
+def load_scenario(words: str, shipped: _Path) -> Scenario:
+    """Reads a scenario by file, or by name from those in the folder `shipped`."""
+def list_scenarios(shipped: _Path) -> List[str]:
+    """Names of the scenarios in a folder."""
 def parse_scenario(text: str, name: str = ...) -> Scenario:
     """The same from text; `name` stands for the file in messages."""
 def load_program(path: _Path) -> Program:

@@ -4,13 +4,27 @@ from __future__ import annotations
 import html
 import os
 from pathlib import Path
-from typing import Any, Callable, Dict, Optional, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from . import _core
 from ._errors import refused
 from .agent import answerer
 
 PathLike = Union[str, "os.PathLike[str]"]
+
+
+def _flat(value: Any, name: str = "") -> Iterator[Tuple[str, Any]]:
+    """Pairs of a name and a number or word."""
+    parts: Optional[Iterable[Tuple[Any, Any]]] = None
+    if isinstance(value, dict):
+        parts = value.items()
+    elif isinstance(value, list):
+        parts = enumerate(value)
+    if parts is None:
+        yield name, value
+        return
+    for key, part in parts:
+        yield from _flat(part, f"{name}.{key}" if name else str(key))
 
 
 class Result(Dict[str, Any]):
@@ -26,6 +40,25 @@ class Result(Dict[str, Any]):
             return self[name]
         except KeyError:
             raise AttributeError(f"a result without '{name}'; it has {', '.join(self)}") from None
+
+    def __repr__(self) -> str:
+        def short(value: Any) -> str:
+            many = isinstance(value, (list, dict)) and len(value) > 0
+            return f"{len(value)} of them" if many else f"{value:.6g}" if isinstance(value, float) else repr(value)
+
+        return f"snug.Result({', '.join(f'{key}: {short(value)}' for key, value in self.items())})"
+
+    def records(self, key: str = "items") -> List[Dict[str, Any]]:
+        """The entries of a list of the result ("items", "boxes", "bodies", "events"), each as one flat dict: what pandas and
+        csv read. Names of what is nested are joined with dots, numbers of a list counted from 0: "X_TP.p.2".
+
+        Raises InputError for a key that holds no list of entries.
+        """
+        entries = self.get(key)
+        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+            lists = [name for name, value in self.items() if isinstance(value, list) and isinstance((value or [{}])[0], dict)]
+            raise refused("key", f"'{key}'", f"a list of entries: {', '.join(lists)}")
+        return [dict(_flat(entry)) for entry in entries]
 
 
 def pack(scenario: _core.Scenario, sequence: str, *, agent: Any = "contact-aware", seed: Optional[int] = None,

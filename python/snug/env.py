@@ -1,6 +1,6 @@
 """Packing as environments in the form of Gymnasium, which need not be installed: one, and many at once on threads.
 
-    env = snug.env.Packing(snug.load_scenario("scenarios/box-demonstrator.yaml"), mode="executed", sequence="1")
+    env = snug.env.Packing(snug.load_scenario("box-demonstrator"), mode="executed", sequence="1")
     observation, info = env.reset(seed=7)
     observation, reward, terminated, truncated, info = env.step(0)
 
@@ -10,51 +10,17 @@ items are packed, when the next one has no place, and when a placement fails; it
 """
 from __future__ import annotations
 
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
 
 from . import _core, spaces
-from ._errors import refused
+from ._env_parts import action_space, check_options, choices, container_size, observation_space
+from ._vector_env import VectorPacking
+
+__all__ = ["Packing", "VectorPacking"]
 
 Observation = Dict[str, np.ndarray]
-_ORIENTATIONS = 24
-_FAR = 100.0  # m or kg: more than any number of an observation
-
-
-def _observation_space(core: Any, maps: bool, boxes: bool) -> Any:
-    def numbers(*shape: int) -> Any:
-        return spaces.Box(-_FAR, _FAR, shape, np.float32)
-
-    parts = {"item": numbers(6), "candidates": numbers(core.max_candidates, 8),
-             "action_mask": spaces.Box(0, 1, (core.max_candidates,), np.int8)}
-    if maps:
-        parts["height_map"] = numbers(core.rows, core.columns)
-    if boxes:
-        parts["boxes"] = numbers(core.most_boxes, 7)
-    return spaces.Dict(parts)
-
-
-def _action_space(core: Any, action: str, inner_size: np.ndarray) -> Any:
-    if action == "candidate":
-        return spaces.Discrete(core.max_candidates)
-    half = 0.5 * np.asarray(inner_size[:2])
-    return spaces.Box(np.array([0.0, -half[0], -half[1]], np.float32),
-                      np.array([_ORIENTATIONS - 1, half[0], half[1]], np.float32), dtype=np.float32)
-
-
-def _choices(observation: str, action: str) -> Tuple[bool, bool]:
-    if observation not in ("height_map", "boxes", "both"):
-        raise refused("observation", f"'{observation}'", "height_map, boxes or both")
-    if action not in ("candidate", "place"):
-        raise refused("action", f"'{action}'", "candidate or place")
-    return observation != "boxes", observation != "height_map"
-
-
-def _container(scenario: _core.Scenario) -> np.ndarray:
-    if scenario.container is None:
-        raise refused("scenario", f"{scenario.source} without a target", "a container to be packed")
-    return scenario.container["inner_size"]
 
 
 def _whole(number: Any) -> int:
@@ -101,19 +67,22 @@ class Packing(spaces.Env):
                  observation: str = "height_map", action: str = "candidate",
                  parameters: Optional[Mapping[str, float]] = None, render_mode: Optional[str] = None,
                  **settings: float):
-        self._maps, self._boxes = _choices(observation, action)
-        inner_size = _container(scenario)
+        self._maps, self._boxes = choices(observation, action)
+        inner_size = container_size(scenario)
         self._by_candidate = action == "candidate"
         self.scenario = scenario
+        self.mode = mode
         self.render_mode = render_mode
         self._core = _core.Environment(scenario, {"mode": mode, "sequence": sequence, **settings},
                                        dict(parameters or {}), self._maps, self._boxes)
-        self.observation_space = _observation_space(self._core, self._maps, self._boxes)
-        self.action_space = _action_space(self._core, action, inner_size)
+        self.observation_space = observation_space(self._core, self._maps, self._boxes)
+        self.action_space = action_space(self._core, action, inner_size)
 
     def reset(self, *, seed: Optional[int] = None,
               options: Optional[Dict[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
-        """A new episode. With a seed the same episodes follow; without, the next of the last seed's."""
+        """A new episode. With a seed the same episodes follow; without, the next of the last seed's (drawn by chance at first).
+        There are no options."""
+        check_options(options)
         super().reset(seed=seed)
         return self._core.reset(int(self.np_random.integers(2**63))), self._info("", 0.0, True)
 
@@ -129,6 +98,14 @@ class Packing(spaces.Env):
             result = self._core.step_place(_whole(orientation), float(x), float(y))
         observation, reward, terminated, truncated, reason, displacement, is_placed = result
         return observation, reward, terminated, truncated, self._info(reason, displacement, is_placed)
+
+    def action_masks(self) -> np.ndarray:
+        """(max_candidates,), bool: which candidates there are for the item that waits; the `action_mask` of the last observation,
+        as MaskablePPO of sb3-contrib asks for it."""
+        return np.arange(self._core.max_candidates) < self._core.candidates
+
+    def __repr__(self) -> str:
+        return f"<snug.env.Packing of {self.scenario.name}: mode {self.mode}, {self._core.packed_percent:.1f} % packed>"
 
     def snapshot(self) -> Any:
         """All that changes, for `restore`; going on from it gives the same bytes."""
@@ -155,70 +132,3 @@ class Packing(spaces.Env):
         core = self._core
         return {"reason": reason, "is_placed": is_placed, "displacement": displacement,
                 "packed_percent": core.packed_percent, "time": core.time, "candidates": core.candidates}
-
-
-class VectorPacking:
-    """Many containers at once, each with its own scenario, settings, parameters and seed, stepped on threads without
-    the interpreter's lock. What happens does not depend on the number of threads.
-
-    Args:
-        scenario: one for all, or a list of `count`; their containers must have one shape.
-        count: how many environments.
-        threads: at work in a step.
-        parameters: a mapping for all, or a list of `count` (see Packing).
-        The rest as of Packing, for all.
-
-    An environment that has ended begins anew in the next step, whose action it does not look at and whose reward is 0
-    (Gymnasium's next-step reset): the last observation of an episode is the one that its last step returned.
-    Arrays that a step returns are new ones: nothing is written into those that were returned before.
-    """
-
-    def __init__(self, scenario: Any, count: int, mode: str = "geometric", *, threads: int = 1,
-                 sequence: Optional[str] = None, observation: str = "height_map", action: str = "candidate",
-                 parameters: Any = None, **settings: float):
-        maps, boxes = _choices(observation, action)
-        scenarios = list(scenario) if isinstance(scenario, (list, tuple)) else [scenario] * count
-        own = list(parameters) if isinstance(parameters, (list, tuple)) else [parameters or {}] * count
-        if len(scenarios) != count or len(own) != count:
-            raise refused("count", str(count), f"as many scenarios ({len(scenarios)}) and parameters ({len(own)})")
-        inner_size = _container(scenarios[0]) if scenarios else np.zeros(3)
-        self.num_envs = count
-        self._by_candidate = action == "candidate"
-        self._core = _core.VectorEnvironment(scenarios, [{"mode": mode, "sequence": sequence, **settings}] * count,
-                                             [dict(one) for one in own], threads, maps, boxes)
-        self.single_observation_space = _observation_space(self._core, maps, boxes)
-        self.single_action_space = _action_space(self._core, action, inner_size)
-
-    def reset(self, *, seed: Any = 0) -> Tuple[Observation, Dict[str, Any]]:
-        """New episodes; seed: a number, from which those of the environments count up, or one for each."""
-        seeds: Sequence[int] = list(seed) if np.ndim(seed) > 0 else [int(seed) + i for i in range(self.num_envs)]
-        for one in seeds:
-            if not 0 <= int(one) < 2**64:
-                raise refused("seed", str(one), "whole numbers from 0, below 2^64")
-        return self._core.reset([int(one) for one in seeds]), {}
-
-    def step(self, actions: Any) -> Tuple[Observation, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]:
-        """Observations with the environments along the first axis; rewards, terminated, truncated of shape (count,)."""
-        if self._by_candidate:
-            observation, reward, terminated, truncated = self._core.step_candidates(actions)
-        else:
-            observation, reward, terminated, truncated = self._core.step_places(actions)
-        return observation, reward, terminated, truncated, {}
-
-    @property
-    def reasons(self) -> List[str]:
-        """Why each episode ended in the last step; "" while it goes on."""
-        return self._core.reasons
-
-    @property
-    def packed_percent(self) -> np.ndarray:
-        """Of each container."""
-        return self._core.packed_percent
-
-    @property
-    def hashes(self) -> List[int]:
-        """As Packing.hash, of each."""
-        return self._core.hashes
-
-    def close(self) -> None:
-        """Nothing to be closed."""

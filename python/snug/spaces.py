@@ -8,8 +8,21 @@ import numpy as np
 try:
     from gymnasium import Env  # type: ignore[import]
     from gymnasium.spaces import Box, Dict, Discrete  # type: ignore[import]
+    from gymnasium.utils.seeding import np_random as _np_random  # type: ignore[import]
+    from gymnasium.vector import VectorEnv  # type: ignore[import]
+    from gymnasium.vector.utils import batch_space  # type: ignore[import]
 
     HAS_GYMNASIUM = True
+
+    def generator(seed: Optional[int]) -> np.random.Generator:
+        """Random numbers of an environment that was reset with a seed."""
+        return _np_random(seed)[0]
+
+    def autoreset_mode(mode: str) -> Any:
+        """Gymnasium's word for a mode; the text itself before Gymnasium 1.1, which has none."""
+        import gymnasium.vector as vector  # type: ignore[import]
+
+        return vector.AutoresetMode[mode.upper()] if hasattr(vector, "AutoresetMode") else mode
 except ImportError:
     HAS_GYMNASIUM = False
 
@@ -97,3 +110,44 @@ except ImportError:
 
         def contains(self, x: Any) -> bool:
             return set(x) == set(self.spaces) and all(space.contains(x[key]) for key, space in self.spaces.items())
+
+    class MultiDiscrete(_Space):
+        """Arrays of whole numbers, each from 0 to its `nvec` - 1."""
+
+        def __init__(self, nvec: Any):
+            super().__init__()
+            self.nvec = np.asarray(nvec, np.int64)
+            self.shape = self.nvec.shape
+            self.dtype = np.dtype(np.int64)
+
+        def sample(self) -> np.ndarray:
+            return self._random.integers(self.nvec)
+
+        def contains(self, x: Any) -> bool:
+            x = np.asarray(x)
+            return x.shape == self.shape and bool(np.all(x >= 0) and np.all(x < self.nvec))
+
+    class VectorEnv(Env):  # type: ignore[no-redef]
+        """The base of vector environments, without Gymnasium."""
+
+        num_envs: int = 0
+        closed: bool = False
+
+        def close(self, **_: Any) -> None:
+            self.closed = True
+
+    def batch_space(space: Any, n: int) -> Any:
+        """The space of n of them, along the first axis."""
+        if isinstance(space, Dict):
+            return Dict({key: batch_space(part, n) for key, part in space.spaces.items()})
+        if isinstance(space, Discrete):
+            return MultiDiscrete(np.full(n, space.n))
+        return Box(np.stack([space.low] * n), np.stack([space.high] * n), dtype=space.dtype)
+
+    def generator(seed: Optional[int]) -> np.random.Generator:
+        """Random numbers of an environment that was reset with a seed."""
+        return np.random.default_rng(seed)
+
+    def autoreset_mode(mode: str) -> Any:
+        """Gymnasium's word for a mode, where it is installed."""
+        return mode

@@ -180,16 +180,16 @@ struct Many {
   bool maps, boxes;
   std::atomic<bool> busy{false};
 
-  py::dict reset(const std::vector<std::uint64_t>& seeds) {
+  py::dict reset(const std::vector<std::uint8_t>& mask, const std::vector<std::uint64_t>& seeds) {
     const Use use(busy);
     const Arrays arrays(all.environment(0), all.count(), maps, boxes, true);
     {
       const py::gil_scoped_release release;
-      all.reset(seeds, [&](int i, const Environment& e) { e.observe(arrays.of(i)); });
+      all.reset(mask, seeds, [&](int i, const Environment& e) { e.observe(arrays.of(i)); });
     }
     return arrays.as_dict();
   }
-  py::tuple step(const std::vector<Action>& actions) {
+  py::tuple step(const std::vector<Action>& actions, const std::vector<std::uint64_t>& next_seeds) {
     const Use use(busy);
     const Arrays arrays(all.environment(0), all.count(), maps, boxes, true);
     py::array_t<double> reward(all.count());
@@ -200,7 +200,7 @@ struct Many {
                                          {reinterpret_cast<std::uint8_t*>(truncated.mutable_data()), n}};
     {
       const py::gil_scoped_release release;
-      all.step(actions, results, [&](int i, const Environment& e) { e.observe(arrays.of(i)); });
+      all.step(actions, next_seeds, results, [&](int i, const Environment& e) { e.observe(arrays.of(i)); });
     }
     return py::make_tuple(arrays.as_dict(), reward, terminated, truncated);
   }
@@ -273,9 +273,22 @@ void bind_environment(py::module_& m) {
                     bool, bool>(),
            py::arg("scenarios"), py::arg("settings"), py::arg("parameters"), py::arg("threads"), py::arg("maps"),
            py::arg("boxes"))
-      .def("reset", &Many::reset, py::arg("seeds"))
-      .def("step_candidates", [](Many& v, const Array& actions) { return v.step(actions_of(actions, true)); })
-      .def("step_places", [](Many& v, const Array& actions) { return v.step(actions_of(actions, false)); })
+      .def("reset", &Many::reset, py::arg("mask"), py::arg("seeds"))
+      .def("step_candidates",
+           [](Many& v, const Array& actions, const std::vector<std::uint64_t>& next) {
+             return v.step(actions_of(actions, true), next);
+           })
+      .def("step_places",
+           [](Many& v, const Array& actions, const std::vector<std::uint64_t>& next) {
+             return v.step(actions_of(actions, false), next);
+           })
+      .def_property_readonly("candidates",
+                             [](const Many& v) {
+                               std::vector<int> counts;
+                               for (int i = 0; i < v.all.count(); ++i)
+                                 counts.push_back(static_cast<int>(v.all.environment(i).candidates().size()));
+                               return counts;
+                             })
       .def_property_readonly("rows", [](const Many& v) { return v.all.environment(0).rows(); })
       .def_property_readonly("columns", [](const Many& v) { return v.all.environment(0).columns(); })
       .def_property_readonly("most_boxes", [](const Many& v) { return v.all.environment(0).most_boxes(); })

@@ -1,4 +1,6 @@
 // Packing agents: the built-in ones, item by item, without a cell.
+#include <fmt/format.h>
+
 #include "core.hpp"
 #include "handles.hpp"
 #include "snug/core/input_error.hpp"
@@ -97,6 +99,11 @@ void bind_packing(py::module_& m) {
            py::arg("seed") = 1, py::arg("decision_time") = packing::DecisionRun{}.time)
       .def("decide", &Packer::decide, py::arg("parcel"))
       .def("place", &Packer::place, py::arg("parcel"), py::arg("candidate") = 0)
+      .def("__repr__",
+           [](const Packer& p) {
+             return fmt::format("<snug.Packer: {} boxes, {:.1f} % of the container>", p.state().boxes.size(),
+                                packing::filling_percent(p.state()));
+           })
       .def_property_readonly("percent", [](const Packer& p) { return packing::filling_percent(p.state()); })
       .def("boxes", [](const Packer& p) {
         py::list list;

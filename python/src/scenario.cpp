@@ -1,9 +1,12 @@
 // Scenario, Program: what is simulated, and what the tool does.
+#include <fmt/format.h>
+
 #include "core.hpp"
 #include "handles.hpp"
 #include "snug/model/items_file.hpp"
 #include "snug/model/other_container.hpp"
 #include "snug/model/scenario_edit.hpp"
+#include "snug/model/scenario_names.hpp"
 #include "snug/motion/program_csv.hpp"
 #include "snug/motion/waypoint_name.hpp"
 
@@ -47,6 +50,17 @@ py::object container_of(const model::Scenario& scenario) {
   dict["pose"] = as_array(container->X_WT);
   dict["walls"] = container->has_walls;
   return dict;
+}
+
+/// <snug.Scenario 'box-demonstrator': 45 parcels, 5 sequences, 9 bodies, container 370 x 570 x 250 mm>
+std::string describe(const Held<model::Scenario>& s) {
+  std::string text = fmt::format("<snug.Scenario '{}': {} parcels, {} sequences, {} bodies", s->name, s->parcels.size(),
+                                 s->sequences.size(), s->bodies.size());
+  if (const model::Container* container = model::find_container(*s, s->target)) {
+    const Vector3 mm = container->inner_size * 1e3;
+    text += fmt::format(", container {:.0f} x {:.0f} x {:.0f} mm", mm.x(), mm.y(), mm.z());
+  }
+  return text + ">";
 }
 
 ScenarioHandle held(model::Scenario scenario) { return std::make_shared<Held<model::Scenario>>(std::move(scenario)); }
@@ -98,18 +112,28 @@ void bind_scenario(py::module_& m) {
           py::arg("words"))
       .def(
           "with_items",
-          [](const Held<model::Scenario>& s, const std::filesystem::path& path) {
+          [](const Held<model::Scenario>& s, const py::object& items) {
             model::Scenario changed = *s;
-            model::add_items(changed, path);
+            if (py::isinstance<py::str>(items) || py::hasattr(items, "__fspath__")) {
+              model::add_items(changed, items.cast<std::filesystem::path>());
+            } else {
+              const auto table = py::module_::import("snug._items").attr("as_csv")(items).cast<std::string>();
+              model::add_orders(changed, model::parse_orders_csv(table, "items"), "items");
+            }
             return held(std::move(changed));
           },
-          py::arg("path"))
+          py::arg("items"))
+      .def("__repr__", &describe)
       .def(
           "__eq__", [](const Held<model::Scenario>& a, const Held<model::Scenario>& b) { return *a == *b; },
           py::is_operator());
   m.def(
-      "load_scenario", [](const std::filesystem::path& path) { return held(model::load_scenario(path)); },
-      py::arg("path"));
+      "load_scenario",
+      [](const std::string& words, const std::filesystem::path& shipped) {
+        return held(model::load_scenario(model::find_scenario_file(words, shipped)));
+      },
+      py::arg("words"), py::arg("shipped"));
+  m.def("list_scenarios", &model::list_scenarios, py::arg("shipped"));
   m.def(
       "parse_scenario",
       [](const std::string& text, const std::string& name) { return held(model::parse_scenario(text, name)); },
@@ -128,6 +152,10 @@ void bind_scenario(py::module_& m) {
           "save",
           [](const Held<motion::Program>& p, const std::filesystem::path& path) { motion::write_program(*p, path); },
           py::arg("path"))
+      .def("__repr__",
+           [](const Held<motion::Program>& p) {
+             return fmt::format("<snug.Program '{}': {} waypoints>", p->name, p->waypoints.size());
+           })
       .def("__len__", [](const Held<motion::Program>& p) { return p->waypoints.size(); });
   m.def(
       "load_program",

@@ -1,4 +1,6 @@
 // Packing sessions, runs of programs, recordings and their report: results are the documented JSON of the command line.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "core.hpp"
@@ -315,6 +317,13 @@ void bind_session(py::module_& m) {
                                }
                                return list;
                              })
+      .def("__repr__",
+           [](const Recording& r) {
+             const std::vector<double>& times = r.reader().times();
+             return fmt::format("<snug.Recording '{}': {} frames, {:.2f} s, {} bodies{}>", r.name(), times.size(),
+                                times.empty() ? 0.0 : times.back() - times.front(), r.header().bodies.size(),
+                                r.reader().is_complete() ? "" : ", not complete");
+           })
       .def("read", &Recording::read, py::arg("every") = 1)
       .def("page", &Recording::page, py::arg("page"), py::arg("every") = 1);
   m.def(

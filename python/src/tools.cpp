@@ -101,6 +101,11 @@ Array joints_as_array(const robot::JointVector& q) { return Array(static_cast<py
 void bind_tools(py::module_& m) {
   py::class_<Cup>(m, "Cup")
       .def(py::init<const ScenarioHandle&>(), py::arg("scenario"))
+      .def("__repr__",
+           [](const Cup& c) {
+             return fmt::format("<snug.Cup: lip radius {:.1f} mm, {:.0f} N/m along its axis>",
+                                1e3 * c.params.lip_radius, c.K(2, 2));
+           })
       .def_property_readonly("stiffness", [](const Cup& c) { return as_array(c.K); })
       .def_property_readonly("damping", [](const Cup& c) { return as_array(cup::as_matrix(c.params.damping)); })
       .def_property_readonly("hold_length", [](const Cup& c) { return c.params.hold_length; })
@@ -125,6 +130,8 @@ void bind_tools(py::module_& m) {
             return std::make_unique<Arm>(robot::load_urdf(path, tool_frame));
           },
           py::arg("path"), py::arg("tool_frame") = "E")
+      .def("__repr__",
+           [](const Arm& a) { return fmt::format("<snug.Arm '{}': {} joints>", a.arm.name, a.arm.joint_count()); })
       .def_property_readonly("name", [](const Arm& a) { return a.arm.name; })
       .def_property_readonly("joints",
                              [](const Arm& a) {

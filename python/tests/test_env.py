@@ -195,11 +195,101 @@ def test_spaces_sample_and_know_what_they_hold():
     assert both.contains(both.sample())
 
 
-@pytest.mark.skipif(not spaces.HAS_GYMNASIUM, reason="gymnasium is not installed")
-def test_the_checker_of_gymnasium_is_content(demonstrator):
-    from gymnasium.utils.env_checker import check_env
+def items_of(reset):
+    return reset[0]["item"].tolist()
 
-    check_env(env.Packing(demonstrator), skip_render_check=True)
+
+def test_vector_resets_go_on_without_a_seed_and_repeat_with_it(demonstrator):
+    many, again = env.VectorPacking(demonstrator, 3), env.VectorPacking(demonstrator, 3)
+    first = [items_of(many.reset(seed=5)), items_of(many.reset()), items_of(many.reset(seed=None, options=None))]
+    assert first == [items_of(again.reset(seed=[5, 6, 7])), items_of(again.reset()), items_of(again.reset(options={}))]
+    assert first[0] != first[1] != first[2]
+    # Without any seed chance decides: of 3^4 items in two runs, all equal with probability 15^-12.
+    fresh = [[items_of(env.VectorPacking(demonstrator, 3).reset()) for _ in range(4)] for _ in range(2)]
+    assert fresh[0] != fresh[1]
+
+
+def test_one_of_many_has_the_episodes_of_packing(demonstrator):
+    many, one = env.VectorPacking(demonstrator, 2), env.Packing(demonstrator)
+    seen, _ = many.reset(seed=3)
+    alone, _ = one.reset(seed=4)
+    for _ in range(60):
+        assert all(np.array_equal(seen[key][1], alone[key]) for key in alone)
+        assert np.array_equal(many.action_masks()[1], one.action_masks())
+        assert np.array_equal(alone["action_mask"].astype(bool), one.action_masks())
+        seen, reward, terminated, _, info = many.step([0, 0])
+        if alone_ended := one._core.has_ended:
+            alone, _ = one.reset()
+            assert reward[1] == 0.0 and not terminated[1]
+        else:
+            alone, alone_reward, alone_terminated, _, alone_info = one.step(0)
+            assert (reward[1], terminated[1]) == (alone_reward, alone_terminated)
+            if alone_terminated:
+                assert info["_reason"][1] and info["reason"][1] == alone_info["reason"]
+                assert info["packed_percent"][1] == alone_info["packed_percent"]
+    assert not alone_ended or one._core.packed_percent == 0
+
+
+def test_reset_mask_begins_those_anew_and_no_others(demonstrator):
+    many = env.VectorPacking(demonstrator, 3)
+    many.reset(seed=1)
+    many.step([0, 0, 0])
+    before = many.hashes
+    seen, _ = many.reset(options={"reset_mask": np.array([False, True, False])})
+    after = many.hashes
+    assert (after[0], after[2]) == (before[0], before[2]) and after[1] != before[1]
+    assert many.packed_percent[1] == 0 < many.packed_percent[0] and seen["height_map"][1].max() == 0
+    for options in ({"reset_mask": [1, 0, 0]}, {"reset_mask": np.ones(2, bool)}, {"reset_msk": None}):
+        with pytest.raises(snug.InputError, match="reset_m"):
+            many.reset(options=options)
+    with pytest.raises(snug.InputError, match="options"):
+        env.Packing(demonstrator).reset(options={"seed": 1})
+
+
+def roll_to_an_end(many):
+    observation, _ = many.reset(seed=1)
+    for _ in range(100):
+        observation, reward, terminated, truncated, info = many.step([0, 0])
+        if (terminated | truncated).any():
+            return observation, reward, terminated | truncated, info
+    raise AssertionError("no episode has ended")
+
+
+def test_same_step_resets_return_the_last_observation_in_info(demonstrator):
+    expected, _, ended, _ = roll_to_an_end(env.VectorPacking(demonstrator, 2))
+    many = env.VectorPacking(demonstrator, 2, autoreset_mode="same_step")
+    seen, _, also_ended, info = roll_to_an_end(many)
+    assert np.array_equal(ended, also_ended) and np.array_equal(info["_final_obs"], ended)
+    for i in range(2):
+        if not ended[i]:
+            assert info["final_obs"][i] is None
+            continue
+        assert all(np.array_equal(info["final_obs"][i][key], expected[key][i]) for key in expected)
+        assert seen["height_map"][i].max() == 0 and info["final_info"]["packed_percent"][i] > 20
+    many.step([0, 0])
+    assert (many.packed_percent[ended] > 0).all()  # the first box of the new episode
+
+
+def test_without_autoreset_the_ended_wait_for_their_reset(demonstrator):
+    many = env.VectorPacking(demonstrator, 2, autoreset_mode="disabled")
+    _, _, ended, _ = roll_to_an_end(many)
+    with pytest.raises(snug.InputError, match="have ended"):
+        many.step([0, 0])
+    many.reset(options={"reset_mask": ended})
+    many.step([0, 0])
+    with pytest.raises(snug.InputError, match="next_step"):
+        env.VectorPacking(demonstrator, 2, autoreset_mode="later")
+
+
+def test_vector_spaces_hold_what_is_observed(demonstrator):
+    for action in ("candidate", "place"):
+        many = env.VectorPacking(demonstrator, 3, action=action, observation="both")
+        observation, _ = many.reset(seed=1)
+        assert many.observation_space.contains(observation)
+        assert many.action_space.contains(many.action_space.sample())
+        many.step(many.action_space.sample())
+        assert "3 environments" in repr(many)
+        many.close()
 
 
 def test_the_planned_interference_is_read_under_its_earlier_name_too(demonstrator):

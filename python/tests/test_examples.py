@@ -29,6 +29,12 @@ def test_simulate_and_plot(tmp_path):
     assert (tmp_path / "heights.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_examples_run_without_words(tmp_path):
+    assert "% of the container" in run("02_pack_and_report.py", cwd=tmp_path)
+    assert "executed_boxes" in run("03_agent.py", cwd=tmp_path)
+    assert "on average" in run("04_environment.py", cwd=tmp_path)
+
+
 def test_pack_and_report(tmp_path):
     assert "% of the container" in run("02_pack_and_report.py", DEMONSTRATOR, "1", "run.html", cwd=tmp_path)
     assert (tmp_path / "run.html").stat().st_size > 100_000
@@ -42,10 +48,6 @@ def test_agent():
         sys.path.pop(0)
     result = snug.pack(snug.load_scenario(DEMONSTRATOR), "1", agent=agent, samples=0, robot="none")
     assert result.executed_boxes >= 5
-
-
-def test_environment(tmp_path):
-    assert "on average" in run("04_environment.py", DEMONSTRATOR, cwd=tmp_path)
 
 
 @pytest.mark.parametrize("name", ["01_simulate_and_plot.py", "02_pack_and_report.py"])

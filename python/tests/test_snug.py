@@ -1,5 +1,8 @@
 """The module: views and their lifetime, snapshots, errors, runs and recordings."""
+import csv
+import dataclasses
 import gc
+import io
 import json
 import threading
 from pathlib import Path
@@ -84,6 +87,50 @@ class TestScenario:
         assert (changed.time_step, demonstrator.time_step) == (0.002, 0.001)
         assert snug.parse_scenario(changed.text, changed.source).time_step == 0.002
         assert changed != demonstrator
+
+    def test_those_that_come_with_it_are_found_by_name(self, demonstrator, tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
+        assert snug.load_scenario("box-demonstrator").text == demonstrator.text
+        assert {"box-demonstrator", "drop", "bench/s6a"} <= set(snug.scenario_names())
+        with pytest.raises(snug.InputError, match="'box-demonstrator'"):
+            snug.load_scenario("box-demonstratr")
+        (tmp_path / "drop.yaml").write_text("materials: [{name: m}]\nseed: 77\n")
+        try:
+            assert snug.load_scenario("drop").seed == 77  # one's own comes first
+        except snug.InputError as error:
+            assert error.file == "drop.yaml"
+
+    def test_items_come_from_a_file_or_a_table(self, demonstrator, tmp_path):
+        @dataclasses.dataclass
+        class Line:
+            order: str
+            article: str
+            length_mm: float
+            width_mm: float
+            height_mm: float
+            mass_kg: float
+            count: int
+
+        lines = [Line("mine", "kettle, large", 235, 170, 190, 1.2, 2), Line("mine", "plates", 200, 200, 95, 2.4, 1)]
+        path = tmp_path / "items.csv"
+        path.write_text('order,article,length_mm,width_mm,height_mm,mass_kg,count\n'
+                        'mine,"kettle, large",235,170,190,1.2,2\nmine,plates,200,200,95,2.4,1\n')
+        try:
+            expected = demonstrator.with_items(path).parcels[len(demonstrator.parcels):]
+        except snug.InputError:
+            pytest.fail("quoted cells are read")
+        for table in (lines, [dataclasses.asdict(line) for line in lines], (vars(line) for line in lines)):
+            changed = demonstrator.with_items(table)
+            assert len(changed.sequences["mine"]) == 3
+            assert [p["size"].tolist() for p in changed.parcels[len(demonstrator.parcels):]] == [p["size"].tolist() for p in expected]
+        for wrong in ([], [3], [{"order": "a"}], [{**vars(lines[0]), "mass_kg": "heavy"}], 7):
+            with pytest.raises((snug.InputError, TypeError)):
+                demonstrator.with_items(wrong)
+
+    def test_empty_cells_of_a_table_are_left_to_their_defaults(self, demonstrator):
+        line = {"order": "o", "article": "a", "length_mm": 200, "width_mm": 150, "height_mm": 100, "mass_kg": 1.0}
+        lines = [{**line, "upright_only": True}, {**line, "upright_only": float("nan")}, line]
+        assert len(demonstrator.with_items(lines).sequences["o"]) == 3
 
     def test_poses_turn_into_matrices_and_back(self):
         pose = np.array([1.0, 2.0, 3.0, 0.5, 0.5, 0.5, 0.5])
@@ -380,3 +427,46 @@ def test_a_report_is_one_file(demonstrator, tmp_path):
     text = page.read_text()
     assert "<html" in text and len(text) > 100_000
     assert "<iframe" in snug.Recording(record)._repr_html_()
+
+
+def test_objects_say_what_they_are(demonstrator, world):
+    assert repr(demonstrator) == ("<snug.Scenario 'box-demonstrator': %d parcels, %d sequences, %s, container 370 x 570 x 250 mm>" % (
+        len(demonstrator.parcels), len(demonstrator.sequences), repr(demonstrator).split(", ")[2]))
+    world.step(100)
+    assert repr(world).startswith("<snug.World 'drop': ") and repr(world).endswith("t = 0.100 s>")
+    assert "lip radius" in repr(snug.Cup(demonstrator)) and "6 joints" in repr(snug.Arm(demonstrator))
+    assert repr(snug.Packer(demonstrator)) == "<snug.Packer: 0 boxes, 0.0 % of the container>"
+    assert "0.0 % packed" in repr(snug.env.Packing(demonstrator))
+
+
+def test_results_are_short_to_look_at_and_flat_records(world):
+    result = snug.simulate(world.scenario, until=0.1)
+    assert "duration_s: 0.1" in repr(result) and "solver: 6 of them" in repr(result) and len(repr(result)) < 1500
+    (record,) = result.records("bodies")
+    assert record["X_WB.p.2"] == result["bodies"][0]["X_WB"]["p"][2] and record["name"] == "parcel"
+    assert result.records("events") == []
+    table = io.StringIO()
+    writer = csv.DictWriter(table, record)
+    writer.writeheader()
+    writer.writerow(record)
+    for key in ("solver", "nothing", "duration_s"):
+        with pytest.raises(snug.InputError, match="bodies"):
+            result.records(key)
+
+
+def test_the_command_of_the_wheel_gives_way_to_the_program(tmp_path):
+    """With a program that tells its words; exit codes pass."""
+    import shutil
+    import subprocess
+    import sys
+
+    shutil.copy(ROOT / "python" / "_snug_program.py", tmp_path)
+    run = [sys.executable, "-c", "import sys; sys.argv[0] = 'snug'; import _snug_program; _snug_program.main()", "a b", "--c"]
+    missing = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert missing.returncode == 1 and "expected the program of the wheel" in missing.stderr
+    program = tmp_path / "snug" / "bin" / "snug"
+    program.parent.mkdir(parents=True)
+    program.write_text('#!/bin/sh\nprintf "%s|" "$@" "$SNUG_PYTHON"\nexit 3\n')
+    program.chmod(0o755)
+    done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (3, f"a b|--c|{sys.executable}|")

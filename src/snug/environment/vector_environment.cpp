@@ -12,6 +12,10 @@ namespace {
 
 constexpr int kBlocksAThread = 8;  ///< environments differ in what they have to do
 
+void expect_one_each(const char* what, std::size_t got, std::size_t expected) {
+  if (got != expected) throw InputError("environments", what, std::to_string(got), std::to_string(expected));
+}
+
 }  // namespace
 
 VectorEnvironment::VectorEnvironment(std::vector<Environment> environments, int threads)
@@ -49,27 +53,37 @@ void VectorEnvironment::for_each(const std::function<void(int)>& job) {
 }
 
 void VectorEnvironment::reset(std::span<const std::uint64_t> seeds, const Observe& observe) {
-  if (seeds.size() != environments_.size())
-    throw InputError("environments", "seeds", std::to_string(seeds.size()), std::to_string(environments_.size()));
-  std::ranges::copy(seeds, seeds_.begin());
-  std::ranges::fill(episodes_, 0U);
+  reset(std::vector<std::uint8_t>(environments_.size(), 1), seeds, observe);
+}
+
+void VectorEnvironment::reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds,
+                              const Observe& observe) {
+  expect_one_each("seeds", seeds.size(), environments_.size());
+  expect_one_each("mask", mask.size(), environments_.size());
   for_each([&](int i) {
     const auto k = static_cast<std::size_t>(i);
-    environments_[k].reset(seeds_[k]);
-    reasons_[k] = {};
+    if (mask[k] != 0) {
+      seeds_[k] = seeds[k];
+      episodes_[k] = 0;
+      environments_[k].reset(seeds_[k]);
+      reasons_[k] = {};
+    }
     observe(i, environments_[k]);
   });
 }
 
-void VectorEnvironment::step(std::span<const Action> actions, const BatchView& results, const Observe& observe) {
-  if (actions.size() != environments_.size())
-    throw InputError("environments", "actions", std::to_string(actions.size()), std::to_string(environments_.size()));
+void VectorEnvironment::step(std::span<const Action> actions, std::span<const std::uint64_t> next_seeds,
+                             const BatchView& results, const Observe& observe) {
+  expect_one_each("actions", actions.size(), environments_.size());
+  if (!next_seeds.empty()) expect_one_each("next_seeds", next_seeds.size(), environments_.size());
   for_each([&](int i) {
     const auto k = static_cast<std::size_t>(i);
     Environment& environment = environments_[k];
     Step result;
     if (environment.has_ended()) {
-      environment.reset(Rng(seeds_[k]).split("episode " + std::to_string(++episodes_[k])).next());
+      ++episodes_[k];
+      environment.reset(next_seeds.empty() ? Rng(seeds_[k]).split("episode " + std::to_string(episodes_[k])).next()
+                                           : next_seeds[k]);
     } else {
       result = environment.step(actions[k]);
     }

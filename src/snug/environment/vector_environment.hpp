@@ -28,7 +28,15 @@ class VectorEnvironment {
   /// `observe(i)` is called on the thread that has just worked on environment i.
   using Observe = std::function<void(int index, const Environment& environment)>;
   void reset(std::span<const std::uint64_t> seeds, const Observe& observe);
-  void step(std::span<const Action> actions, const BatchView& results, const Observe& observe);
+  /// Only those with a mask that is not 0 begin anew; all are observed.
+  void reset(std::span<const std::uint8_t> mask, std::span<const std::uint64_t> seeds, const Observe& observe);
+  /// `next_seeds`: of the episodes that begin in this step, one for each environment; empty: drawn from the seeds of
+  /// the last reset.
+  void step(std::span<const Action> actions, std::span<const std::uint64_t> next_seeds, const BatchView& results,
+            const Observe& observe);
+  void step(std::span<const Action> actions, const BatchView& results, const Observe& observe) {
+    step(actions, {}, results, observe);
+  }
 
   [[nodiscard]] int count() const { return static_cast<int>(environments_.size()); }
   [[nodiscard]] const Environment& environment(int index) const {
