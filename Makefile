@@ -10,7 +10,7 @@ SOURCES = $(shell find src apps bench tests examples python -name '*.hpp' -o -na
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)
 
-.PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python package reproducible check \
+.PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python wheel package reproducible check \
   format-check clang headers fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
 
 help: ## list the verbs
@@ -52,6 +52,9 @@ acceptance: build ## run the demonstrator's own programs in FOLDER, print the ta
 python: setup-python ## build the Python module and install it: into VENV=DIR, else for /usr/bin/python3
 	@cmake --preset release --log-level=WARNING && cmake --build --preset release -j $(JOBS) --target snug_python
 	@scripts/install-python.sh build $(VENV)
+
+wheel: setup-python ## make a wheel that needs nothing but numpy, and try it: build/wheel/snug-*.whl (build tools from PyPI)
+	@JOBS=$(JOBS) scripts/make-wheel.sh
 
 install: build ## install the program, its scenarios and the libraries under PREFIX (/usr/local)
 	@cmake --install build --prefix "$(PREFIX)"

@@ -14,6 +14,8 @@ copies: they change with the next step and keep their object alive. Everything e
 """
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from . import _core, agent
 from ._core import (Arm, Cell, CellSnapshot, Packer, Program, Scenario, World, WorldSnapshot,
                     agent_names, load_program, parse_program, parse_scenario)
@@ -24,8 +26,18 @@ from ._scenarios import load_scenario, scenario_names
 
 _core.set_input_error(InputError)
 
-from . import env  # noqa: E402
+if TYPE_CHECKING:
+    from . import env
 __version__: str = _core.__version__
+
+
+def __getattr__(name: str) -> Any:
+    """snug.env, which brings Gymnasium where it is installed, when it is asked for."""
+    if name == "env":
+        import importlib
+
+        return importlib.import_module(".env", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 __all__ = ["Arm", "Cell", "CellSnapshot", "Cup", "InputError", "Packer", "Program", "Recording", "Result", "Scenario",
            "World", "WorldSnapshot", "agent", "agent_names", "env", "load_program", "load_scenario", "matrix", "pack", "parse_program",
