@@ -3,12 +3,15 @@
 
 #include "apps/snug/command_line/outputs.hpp"
 #include "snug/robot/load_arm.hpp"
+#include "snug/robot/urdf_warnings.hpp"
 
 namespace snug::app {
 
 void print_robot_warnings(const model::Scenario& scenario) {
   if (!scenario.robot) return;
-  print_warnings(robot::find_unknown_efforts(robot::urdf_path(scenario)));
+  const std::filesystem::path urdf = robot::urdf_path(scenario);
+  print_warnings(robot::find_assumptions(urdf, scenario.robot->tool_frame));
+  print_warnings(robot::find_unknown_efforts(urdf));
 }
 
 }  // namespace snug::app

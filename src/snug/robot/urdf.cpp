@@ -117,6 +117,14 @@ namespace {
 
 constexpr std::size_t kMostLinks = 1000;
 
+/// In the elements, not in comments: expanded files tell there what they were made of.
+bool has_macros(const tinyxml2::XMLElement& element) {
+  if (std::string_view(element.Name()).starts_with("xacro:")) return true;
+  for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    if (has_macros(*e)) return true;
+  return false;
+}
+
 /// A <joint> as written.
 struct RawJoint {
   Element element;
@@ -133,8 +141,9 @@ struct RawRobot {
   std::vector<RawJoint> joints;
 };
 
-/// Mass, centre and inertia of a link in its frame; all zero without <inertial>.
-SpatialInertia read_inertial(const Element& link) {
+/// Mass, centre and inertia of a link in its frame; all zero without <inertial>. The tensor of a link that never moves
+/// has no influence: it is not looked at, and zero (public files have many that no body could have).
+SpatialInertia read_inertial(const Element& link, bool moves) {
   SpatialInertia result{0.0, Vector3::Zero(), Matrix3::Zero()};
   if (!link.has("inertial")) return result;
   const Element inertial = link.child("inertial");
@@ -144,6 +153,7 @@ SpatialInertia read_inertial(const Element& link) {
   result.mass = mass.number("value");
   if (!(result.mass >= 0.0)) mass.fail("value=\"" + mass.text("value") + "\"", "a mass in kg >= 0");
   result.com = X_LI.p;
+  if (!moves) return result;
   const Element tensor = inertial.child("inertia");
   const double xy = tensor.number_or("ixy", 0.0), xz = tensor.number_or("ixz", 0.0), yz = tensor.number_or("iyz", 0.0);
   const double xx = tensor.number("ixx"), yy = tensor.number("iyy"), zz = tensor.number("izz");
@@ -173,7 +183,7 @@ RawRobot read_raw(const Element& robot) {
   std::map<std::string, std::string> parent_joint;
   std::vector<std::string> names;
   for (const auto& [name, index] : raw.link_index) names.push_back(name);
-  const std::vector<std::string> types = {"revolute", "continuous", "prismatic", "fixed"};
+  const std::vector<std::string> types = {"revolute", "continuous", "prismatic", "fixed", "planar", "floating"};
   std::map<std::string, bool> seen;
   for (const Element& joint : robot.children("joint")) {
     joint.check_tags(
@@ -183,8 +193,6 @@ RawRobot read_raw(const Element& robot) {
     if (!seen.emplace(entry.name, true).second) joint.fail("a second joint of this name", "each name once");
     if (std::find(types.begin(), types.end(), entry.type) == types.end())
       joint.fail("type=\"" + entry.type + "\"", "revolute, continuous, prismatic or fixed");
-    if (joint.has("mimic"))
-      joint.child("mimic").fail("a joint that mimics another", "a serial arm: each joint moves by itself");
     for (const auto& [key, value] :
          {std::pair<const char*, std::string>{"parent", entry.parent}, {"child", entry.child}}) {
       if (raw.link_index.contains(value)) continue;
@@ -201,23 +209,32 @@ RawRobot read_raw(const Element& robot) {
   return raw;
 }
 
+/// Unit, in the joint's frame.
+Vector3 read_axis(const RawJoint& raw) {
+  if (!raw.element.has("axis")) return Vector3::UnitX();  // the default of the format
+  const Vector3 axis = raw.element.child("axis").vector3_or("xyz", Vector3::UnitX());
+  const double length = axis.norm();
+  if (!(length > 1e-6)) raw.element.child("axis").fail("an axis of length 0", "a direction");
+  return axis / length;
+}
+
 Joint read_moving_joint(const RawJoint& raw) {
   Joint joint;
   joint.name = raw.name;
   joint.kind = raw.type == "prismatic" ? JointKind::Prismatic : JointKind::Revolute;
-  if (raw.element.has("axis"))
-    joint.axis = raw.element.child("axis").vector3_or("xyz", Vector3::UnitX());
-  else
-    joint.axis = Vector3::UnitX();  // the default of the format
-  const double length = joint.axis.norm();
-  if (!(length > 1e-6)) raw.element.child("axis").fail("an axis of length 0", "a direction");
-  joint.axis /= length;
+  joint.axis = read_axis(raw);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (raw.type == "continuous" && !raw.element.has("limit")) {  // find_assumptions says so
+    joint.max_speed = kAssumedSpeed;
+    joint.max_effort = joint.upper = kInfinity;
+    joint.lower = -kInfinity;
+    return joint;
+  }
   const Element limit = raw.element.child("limit");
   joint.max_speed = limit.number("velocity");
   joint.max_effort = limit.number("effort");
   if (!(joint.max_speed > 0.0 && joint.max_effort >= 0.0))
     limit.fail("velocity " + limit.text("velocity") + ", effort " + limit.text("effort"), "velocity > 0, effort >= 0");
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (joint.max_effort == 0.0) joint.max_effort = kInfinity;  // nobody knew it: find_unknown_efforts
   joint.lower = raw.type == "continuous" ? -kInfinity : limit.number("lower");
   joint.upper = raw.type == "continuous" ? kInfinity : limit.number("upper");
@@ -281,7 +298,7 @@ class Assembler {
     link.parent = parent;
     link.segment = segment;
     link.X_SL = X_SL;
-    link.inertia = read_inertial(element);
+    link.inertia = read_inertial(element, segment > 0);
     link.shapes = read_shapes(element);
     if (name == tool_frame_) {
       arm_.tool_link = static_cast<int>(arm_.links.size());
@@ -299,9 +316,17 @@ class Assembler {
       add_link(raw.child, parent, segment, X_SJ);
       return;
     }
-    if (!on_path_.contains(raw.child))
-      raw.element.fail("a moving joint that does not lie between the root and the tool frame '" + tool_frame_ + "'",
-                       "a serial arm: fix it, or name another tool frame");
+    if (!on_path_.contains(raw.child)) {
+      add_link(raw.child, parent, segment, X_SJ * frozen_pose(raw));
+      return;
+    }
+    if (raw.type == "planar" || raw.type == "floating")
+      raw.element.fail("type=\"" + raw.type + "\" between the root and the tool frame '" + tool_frame_ + "'",
+                       "revolute, continuous, prismatic or fixed");
+    if (raw.element.has("mimic"))
+      raw.element.child("mimic").fail(
+          "a joint that mimics another between the root and the tool frame '" + tool_frame_ + "'",
+          "a serial arm: there each joint moves by itself");
     if (arm_.joint_count() == kMaxJoints)
       raw.element.fail("a moving joint more than " + std::to_string(kMaxJoints), "no more than that");
     Joint joint = read_moving_joint(raw);
@@ -309,6 +334,35 @@ class Assembler {
     arm_.joints.push_back(joint);
     arm_.segments.push_back({0.0, Vector3::Zero(), Matrix3::Zero()});
     add_link(raw.child, parent, arm_.joint_count(), Pose{});
+  }
+
+  /// Where a joint off the path stands for good: at 0, or at the limit nearest to it; one that mimics, where it stands
+  /// with what it mimics (a joint of the path at 0).
+  double frozen_value(const RawJoint& raw, bool follows = true) const {
+    if (follows && raw.element.has("mimic")) {
+      const Element mimic = raw.element.child("mimic");
+      const std::string leader = mimic.text("joint");
+      const auto found = std::ranges::find(raw_.joints, leader, &RawJoint::name);
+      if (found == raw_.joints.end()) mimic.fail("joint '" + leader + "', which is not there", "the name of a joint");
+      const double value = on_path_.contains(found->child) ? 0.0 : frozen_value(*found, false);
+      return mimic.number_or("multiplier", 1.0) * value + mimic.number_or("offset", 0.0);
+    }
+    if (raw.type == "continuous" || !raw.element.has("limit")) return 0.0;
+    const Element limit = raw.element.child("limit");
+    const double lower = limit.number_or("lower", 0.0), upper = limit.number_or("upper", 0.0);
+    return lower <= upper ? std::clamp(0.0, lower, upper) : 0.0;
+  }
+
+  Pose frozen_pose(const RawJoint& raw) const {
+    Pose X_JC;  // what the joint adds
+    if (raw.type == "planar" || raw.type == "floating") return X_JC;
+    const Vector3 axis = read_axis(raw);
+    const double value = frozen_value(raw);
+    if (raw.type == "prismatic")
+      X_JC.p = value * axis;
+    else
+      X_JC.R = exp_rotation(value * axis);
+    return X_JC;
   }
 
   void sum_segments() {
@@ -346,8 +400,7 @@ ArmModel parse_urdf(const std::string& text, const std::string& name, const std:
   const internal::Element robot(root, source, "robot");
   if (robot.tag() != "robot")
     robot.fail("<" + robot.tag() + ">", robot.tag() == "sdf" ? "<robot>: this is SDF, not URDF" : "<robot>");
-  if (text.find("xmlns:xacro") != std::string::npos && text.find("<xacro:") != std::string::npos)
-    robot.fail("xacro macros", "an expanded URDF: xacro FILE.xacro > FILE.urdf");
+  if (internal::has_macros(*root)) robot.fail("xacro macros", "an expanded URDF: xacro FILE.xacro > FILE.urdf");
   internal::Element top(root, source, "");
   ArmModel arm = internal::Assembler(robot, internal::read_raw(top), tool_frame).assemble();
   if (robot.has_attribute("name")) arm.name = robot.text("name");
@@ -357,41 +410,6 @@ ArmModel parse_urdf(const std::string& text, const std::string& name, const std:
 
 ArmModel load_urdf(const std::filesystem::path& path, const std::string& tool_frame) {
   return parse_urdf(read_file(path, "a URDF", internal::kLargestUrdf), path.string(), tool_frame, path.parent_path());
-}
-
-namespace {
-
-/// Calls visit(joint, its limit) for each joint that has one and moves; nothing of what is no XML.
-template <class Visit>
-void visit_limits(const std::string& text, const internal::UrdfSource& source, const Visit& visit) {
-  tinyxml2::XMLDocument document;
-  if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) return;
-  for (const internal::Element& joint : internal::Element(document.RootElement(), source, "").children("joint")) {
-    if (joint.has("limit") && joint.text("type") != "fixed") visit(joint, joint.child("limit"));
-  }
-}
-
-}  // namespace
-
-std::vector<std::string> find_unknown_efforts(const std::filesystem::path& path) {
-  std::vector<std::string> found;
-  const std::string text = read_file(path, "a URDF", internal::kLargestUrdf);
-  visit_limits(text, {path.string(), path.parent_path()}, [&](const auto& joint, const auto& limit) {
-    if (limit.number("effort") != 0.0) return;
-    found.push_back(limit.where() + ": " + joint.path() +
-                    ": effort 0 is taken as unknown: its torque does not stop the robot");
-  });
-  return found;
-}
-
-std::vector<JointLimits> parse_joint_limits(const std::string& text, const std::string& name) {
-  std::vector<JointLimits> limits;
-  visit_limits(text, {name, {}}, [&](const auto& joint, const auto& limit) {
-    const double effort = limit.number("effort");
-    limits.push_back({joint.text("name"), limit.number("velocity"),
-                      effort > 0.0 ? effort : std::numeric_limits<double>::infinity()});
-  });
-  return limits;
 }
 
 }  // namespace snug::robot

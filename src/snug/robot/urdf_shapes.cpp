@@ -33,6 +33,19 @@ double positive(const Element& element, const char* key) {
   return value;
 }
 
+/// A shape whose every number is 0, or a mesh without a name: exporters write them for links without shape.
+bool has_no_extent(const Element& kind) {
+  const auto is_zero = [&](const char* key) { return !kind.has_attribute(key) || kind.number(key) == 0.0; };
+  if (kind.tag() == "box" && kind.has_attribute("size")) {
+    const std::vector<double> size = kind.numbers("size", 3);
+    return size[0] == 0.0 && size[1] == 0.0 && size[2] == 0.0;
+  }
+  if (kind.tag() == "sphere") return kind.has_attribute("radius") && is_zero("radius");
+  if (kind.tag() == "cylinder" || kind.tag() == "capsule")
+    return kind.has_attribute("radius") && is_zero("radius") && is_zero("length");
+  return kind.tag() == "mesh" && kind.has_attribute("filename") && kind.is_empty("filename");
+}
+
 geometry::ConvexHull make_prism(double radius, double length) {
   std::vector<Vector3> points;
   const double outer = radius / std::cos(std::numbers::pi / kCylinderCorners);
@@ -68,8 +81,10 @@ std::vector<model::PlacedShape> read_shapes(const Element& link) {
   for (const Element& collision : link.children("collision")) {
     collision.check_tags({"origin", "geometry", "verbose"});
     const Pose X_LG = read_origin(collision);
+    if (!collision.has("geometry")) continue;  // empty, as exporters write for links without shape
     const Element geometry = collision.child("geometry");
     const std::vector<Element> kinds = geometry.children();
+    if (kinds.empty() || has_no_extent(kinds.front())) continue;
     if (kinds.size() != 1)
       geometry.fail(std::to_string(kinds.size()) + " elements", "one of <box>, <cylinder>, <sphere>, <mesh>");
     const Element& kind = kinds.front();

@@ -4,6 +4,7 @@
 #include <tinyxml2.h>
 
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace snug::robot::internal {
 
 /// Bytes of a URDF and of a mesh that it names: far above those of any arm, and little enough to be held whole.
 inline constexpr std::size_t kLargestUrdf = std::size_t{4} << 20U;
+
+/// rad/s, of a continuous joint whose <limit> the file leaves out, as the format allows: 180 degrees a second, what the
+/// wrists of collaborative arms reach.
+inline constexpr double kAssumedSpeed = std::numbers::pi;
 
 /// What is known about the text being read.
 struct UrdfSource {
@@ -43,6 +48,8 @@ class Element {
   void check_tags(const std::vector<std::string>& known) const;
 
   [[nodiscard]] bool has_attribute(const char* key) const { return node_->Attribute(key) != nullptr; }
+  /// Is the attribute there without a word?
+  [[nodiscard]] bool is_empty(const char* key) const { return has_attribute(key) && *node_->Attribute(key) == '\0'; }
   [[nodiscard]] std::string text(const char* key) const;
   /// Finite; fails when absent.
   [[nodiscard]] double number(const char* key) const;

@@ -11,6 +11,7 @@
 #include "snug/core/input_error.hpp"
 #include "snug/core/test/scratch_folder.hpp"
 #include "snug/robot/kinematics.hpp"
+#include "snug/robot/urdf_warnings.hpp"
 
 namespace snug::robot {
 namespace {
@@ -33,6 +34,13 @@ std::string small_arm(const std::string& more = "", const std::string& last = ""
          "<origin xyz=\"0.1 0 0\" rpy=\"0 1.5707963267948966 0\"/></joint>\n" +                            // 12
          last +
          "</robot>\n";  // 13
+}
+
+/// The small arm with a finger that slides along y of its tool; `more` stands inside the joint.
+std::string finger(const std::string& more, const char* type = "prismatic") {
+  return small_arm("", "<link name=\"f\"/><joint name=\"grip\" type=\"" + std::string(type) +
+                           "\"><parent link=\"E\"/><child link=\"f\"/><origin xyz=\"0 0 0.2\"/><axis xyz=\"0 1 0\"/>" +
+                           more + "</joint>");
 }
 
 void expect_refused(const std::string& text, const std::string& part, const std::string& where = "") {
@@ -123,6 +131,11 @@ TEST(Urdf, RefusesWhatItCannotUseWithLineAndElement) {
   expect_refused(replaced(small_arm(), "0 0 2", "0 0 inf"), "3 finite numbers", "7");
   expect_refused(replaced(small_arm(), "velocity=\"2\"", "velocity=\"0\""), "velocity > 0", "8");
   expect_refused(replaced(small_arm(), "type=\"prismatic\"", "type=\"planar\""), "revolute, continuous", "9");
+  expect_refused(replaced(small_arm(), "type=\"prismatic\"", "type=\"screw\""), "revolute, continuous", "9");
+  expect_refused(replaced(small_arm(), "<axis xyz=\"1 0 0\"/>", "<mimic joint=\"turn\"/>"), "moves by itself", "10");
+  expect_refused(finger("<mimic joint=\"trun\"/>"), "'trun', which is not there", "13");
+  expect_refused(replaced(small_arm(), "<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>", ""),
+                 "no <limit>", "6");
   expect_refused(replaced(small_arm(), "<child link=\"upper\"/>", "<child link=\"uper\"/>"), "'upper' perhaps", "6");
   expect_refused(replaced(small_arm(), "link name=\"slider\"", "link name=\"upper\""), "a second link", "4");
   expect_refused(replaced(small_arm(), "<parent link=\"base\"/>", "<parent link=\"E\"/>"), "circle");
@@ -131,10 +144,6 @@ TEST(Urdf, RefusesWhatItCannotUseWithLineAndElement) {
                            "<link name=\"f\"/><joint name=\"turn\" type=\"fixed\"><parent link=\"E\"/><child "
                            "link=\"f\"/></joint>"),
                  "a second joint", "13");
-  expect_refused(small_arm("",
-                           "<link name=\"f\"/><joint name=\"f\" type=\"continuous\"><parent link=\"base\"/><child "
-                           "link=\"f\"/><limit effort=\"1\" velocity=\"1\"/></joint>"),
-                 "a serial arm", "13");
   expect_refused(
       replaced(replaced(small_arm(), "link name=\"E\"", "link name=\"e\""), "child link=\"E\"", "child link=\"e\""),
       "tool frame");
@@ -179,6 +188,96 @@ TEST(Urdf, TakesAnEffortOfZeroAsUnknownAndSaysWhere) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(warnings[0].starts_with(path.string() + ":10: joint 'slide'")) << warnings[0];
   EXPECT_TRUE(find_unknown_efforts(SNUG_SOURCE_DIR "/scenarios/robots/ur10.urdf").empty());
+}
+
+/// p_Ef of the finger: along y where it was fixed.
+double slid(const std::string& more) {
+  const ArmModel arm = parse_urdf(finger(more), "arm.urdf");
+  EXPECT_EQ(arm.joint_count(), 2);
+  const Link& link = arm.links[static_cast<std::size_t>(find_link(arm, "f"))];
+  EXPECT_EQ(link.segment, 2);
+  const Pose X_Ef = arm.X_SE.inverse() * link.X_SL;
+  EXPECT_NEAR(X_Ef.p.z(), 0.2, 1e-15);
+  return X_Ef.p.y();
+}
+
+TEST(Urdf, FixesJointsOffThePathWhereTheyAreNearestToZero) {
+  EXPECT_NEAR(slid("<limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/>"), 0.0, 1e-15);
+  EXPECT_NEAR(slid("<limit lower=\"0.01\" upper=\"0.04\" effort=\"1\" velocity=\"1\"/>"), 0.01, 1e-15);
+  EXPECT_NEAR(slid("<limit lower=\"-0.4\" upper=\"-0.1\" effort=\"0\" velocity=\"0\"/>"), -0.1, 1e-15);
+  EXPECT_NEAR(slid(""), 0.0, 1e-15);
+  // One that mimics a joint of the path stands where that joint is at 0.
+  EXPECT_NEAR(slid("<mimic joint=\"turn\" multiplier=\"-1\" offset=\"0.03\"/>"), 0.03, 1e-15);
+  EXPECT_NEAR(slid("<mimic joint=\"grip\" multiplier=\"2\" offset=\"0.03\"/><limit lower=\"0.01\" upper=\"1\"/>"), 0.05,
+              1e-15);
+  for (const char* type : {"revolute", "continuous", "planar", "floating"})
+    EXPECT_EQ(parse_urdf(finger("", type), "arm.urdf").links.back().X_SL.p,
+              parse_urdf(finger(""), "arm.urdf").links.back().X_SL.p);
+}
+
+TEST(Urdf, SaysInOneLineWhichJointsItFixed) {
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "fingers.urdf";
+  std::ofstream(path) << finger("");
+  const std::vector<std::string> found = find_assumptions(path, "E");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0], path.string() + ":13: 1 moving joint off the path to the tool frame 'E' fixed: 'grip'");
+  EXPECT_TRUE(find_assumptions(SNUG_SOURCE_DIR "/scenarios/robots/ur10.urdf", "E").empty());
+  std::ofstream(path) << "no XML";
+  EXPECT_TRUE(find_assumptions(path, "E").empty());
+}
+
+TEST(Urdf, TakesContinuousJointsWithoutLimitAndSaysSo) {
+  const std::string limit = "<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>";
+  const std::string text = replaced(replaced(small_arm(), limit, ""), "type=\"revolute\"", "type=\"continuous\"");
+  const ArmModel arm = parse_urdf(text, "arm.urdf");
+  EXPECT_EQ(arm.joints[0].upper, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(arm.joints[0].lower, -std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(arm.joints[0].max_speed, 3.14159265358979, 1e-12);
+  const snug::test::ScratchFolder folder;
+  const std::filesystem::path path = folder / "endless.urdf";
+  std::ofstream(path) << text;
+  const std::vector<std::string> found = find_assumptions(path, "E");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].starts_with(path.string() + ":6: joint 'turn': continuous, without limit")) << found[0];
+}
+
+TEST(Urdf, SkipsShapesWithoutExtent) {
+  for (const char* empty : {"<collision/>", "<collision><geometry/></collision>",
+                            "<collision><geometry><box size=\"0 0 0\"/></geometry></collision>",
+                            "<collision><geometry><sphere radius=\"0\"/></geometry></collision>",
+                            "<collision><geometry><cylinder radius=\"0\" length=\"0\"/></geometry></collision>",
+                            "<collision><geometry><mesh filename=\"\"/></geometry></collision>"})
+    EXPECT_TRUE(parse_urdf(small_arm(empty), "arm.urdf").links[1].shapes.empty()) << empty;
+  expect_refused(small_arm("<collision><geometry><cylinder radius=\"0\" length=\"1\"/></geometry></collision>"),
+                 "metres", "3");
+  expect_refused(small_arm("<collision><geometry><box size=\"0 1 1\"/></geometry></collision>"), "metres", "3");
+}
+
+TEST(Urdf, LooksAtTheInertiaOfLinksThatMoveOnly) {
+  const std::string no_body = "<inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"5\"/></inertial>";
+  const ArmModel arm = parse_urdf(
+      replaced(small_arm(), "<link name=\"base\"/>", "<link name=\"base\">" + no_body + "</link>"), "arm.urdf");
+  EXPECT_EQ(arm.links[0].inertia.mass, 1.0);
+  expect_refused(small_arm(no_body), "no distribution of mass", "3");
+}
+
+TEST(Urdf, RefusesMacrosButNotCommentsOnThem) {
+  const std::string with_names =
+      replaced(small_arm(), "name=\"small\"", "name=\"small\" xmlns:xacro=\"http://ros.org/wiki/xacro\"");
+  EXPECT_EQ(parse_urdf(replaced(with_names, "<link", "<!-- <xacro:arm/> --><link"), "arm.urdf").joint_count(), 2);
+  expect_refused(replaced(with_names, "<link", "<xacro:arm/><link"), "xacro macros", "1");
+  expect_refused(replaced(with_names, "<link name=\"upper\">", "<link name=\"upper\"><xacro:mass/>"), "xacro macros",
+                 "1");
+}
+
+TEST(Urdf, WindowsLineEndsCommentsAndAByteOrderMarkChangeNothing) {
+  std::string text =
+      "\xEF\xBB\xBF<?xml version=\"1.0\"?>\r\n<!-- made by hand -->\r\n" + small_arm("<!-- a link -->", "<!-- end -->");
+  for (std::size_t at = 0; (at = text.find("\n", at)) != std::string::npos; at += 2)
+    if (text[at - 1] != '\r') text.insert(at, "\r");
+  ArmModel arm = parse_urdf(text, "arm.urdf");
+  EXPECT_EQ(arm, parse_urdf(small_arm(), "arm.urdf"));
 }
 
 TEST(LoadArm, RefusesWhatTheScenarioSaysOfLinksThatAreNotThere) {

@@ -1,0 +1,94 @@
+// UrdfWarnings: what was assumed of a URDF that says too little, or more than an arm needs; and its limits alone.
+#include "snug/robot/urdf_warnings.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "snug/core/read_file.hpp"
+#include "snug/robot/internal/urdf.hpp"
+#include "snug/robot/load_arm.hpp"
+
+namespace snug::robot {
+namespace {
+
+using internal::Element;
+
+/// Calls visit(joint) for each joint that moves; nothing of what is no XML.
+template <class Visit>
+void visit_moving(const std::string& text, const internal::UrdfSource& source, const Visit& visit) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) return;
+  for (const Element& joint : Element(document.RootElement(), source, "").children("joint")) {
+    if (joint.text("type") != "fixed") visit(joint);
+  }
+}
+
+bool is_without_limit(const Element& joint) { return joint.text("type") == "continuous" && !joint.has("limit"); }
+
+/// Links from the tool to the root.
+std::vector<std::string> path_of(const std::vector<Element>& joints, const std::string& tool_frame) {
+  std::vector<std::string> path = {tool_frame};
+  for (std::size_t i = 0; i < path.size() && i <= joints.size(); ++i) {
+    for (const Element& joint : joints)
+      if (joint.child("child").text("link") == path[i]) path.push_back(joint.child("parent").text("link"));
+  }
+  return path;
+}
+
+}  // namespace
+
+std::vector<std::string> find_assumptions(const std::filesystem::path& path, const std::string& tool_frame) {
+  const std::string text = read_file(path, "a URDF", internal::kLargestUrdf);
+  const internal::UrdfSource source{path.string(), path.parent_path()};
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
+    return {};
+  const std::vector<Element> joints = Element(document.RootElement(), source, "").children("joint");
+  const std::vector<std::string> path_links = path_of(joints, tool_frame);
+  std::vector<std::string> found;
+  constexpr std::size_t kMostNames = 4;
+  std::vector<Element> fixed;
+  for (const Element& joint : joints) {
+    if (joint.text("type") == "fixed") continue;
+    if (std::ranges::find(path_links, joint.child("child").text("link")) == path_links.end())
+      fixed.push_back(joint);
+    else if (is_without_limit(joint))
+      found.push_back(joint.where() + ": " + joint.path() +
+                      ": continuous, without limit: 180 degrees a second are assumed");
+  }
+  if (fixed.empty()) return found;
+  std::string line = fixed.front().where() + ": " + std::to_string(fixed.size()) + " moving joint" +
+                     (fixed.size() == 1 ? "" : "s") + " off the path to the tool frame '" + tool_frame + "' fixed:";
+  for (std::size_t i = 0; i < std::min(kMostNames, fixed.size()); ++i)
+    line += (i == 0 ? " '" : ", '") + fixed[i].text("name") + "'";
+  found.push_back(line + (fixed.size() > kMostNames ? ", ..." : ""));
+  return found;
+}
+
+std::vector<std::string> find_unknown_efforts(const std::filesystem::path& path) {
+  std::vector<std::string> found;
+  const std::string text = read_file(path, "a URDF", internal::kLargestUrdf);
+  visit_moving(text, {path.string(), path.parent_path()}, [&](const Element& joint) {
+    if (!joint.has("limit")) return;
+    const Element limit = joint.child("limit");
+    if (limit.number_or("effort", 1.0) != 0.0) return;
+    found.push_back(limit.where() + ": " + joint.path() +
+                    ": effort 0 is taken as unknown: its torque does not stop the robot");
+  });
+  return found;
+}
+
+std::vector<JointLimits> parse_joint_limits(const std::string& text, const std::string& name) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<JointLimits> limits;
+  visit_moving(text, {name, {}}, [&](const Element& joint) {
+    if (is_without_limit(joint)) limits.push_back({joint.text("name"), internal::kAssumedSpeed, kInfinity});
+    if (!joint.has("limit")) return;
+    const Element limit = joint.child("limit");
+    const double effort = limit.number("effort");
+    limits.push_back({joint.text("name"), limit.number("velocity"), effort > 0.0 ? effort : kInfinity});
+  });
+  return limits;
+}
+
+}  // namespace snug::robot
