@@ -1,4 +1,4 @@
-// serve: the cell as a CLICK simulator that controllers in other programs drive.
+// serve: the cell for controllers in other programs: as a CLICK simulator, or as a controller of Universal Robots.
 #pragma once
 
 #include <optional>
@@ -11,6 +11,14 @@
 #include "snug/served_cell/server.hpp"
 
 namespace snug::app {
+
+/// Of --ur.
+struct UrOptions {
+  std::optional<std::string> host;  ///< present: the cell is served so
+  std::string model = "ur10";
+  int port_offset = 0;
+  std::vector<std::string> clients;  ///< addresses that may connect
+};
 
 struct ServeOptions {
   std::string scenario;
@@ -26,6 +34,7 @@ struct ServeOptions {
   std::vector<std::string> controls = {"velocity"};
   served_cell::ServedCellSettings cell;
   served_cell::ServerSettings server;
+  UrOptions ur;
   std::optional<double> batch;        ///< s, simulated
   std::optional<std::string> keys;    ///< folder: who may drive it
   bool once = false;                  ///< ends after the first run

@@ -15,6 +15,7 @@ constexpr const char* kServeExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --sequence 1 --plant-seed 7 --once
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --async --view
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --robot-object ur10_FTSensor_sr_gripper
+  snug serve scenarios/box-demonstrator.yaml --ur 127.0.0.1 --sequence 1 --record run.h5
   snug keys keys
   snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys   # for other machines
 One Control is one step, unless --async. Ctrl-C ends it. docs/click.md describes the protocol as it is served.)";
@@ -91,10 +92,34 @@ void add_served_time(CLI::App& verb, ServeOptions& options) {
   verb.add_flag("--json", options.json, "print the result of each run as a line of JSON");
 }
 
+void add_served_ur(CLI::App& verb, UrOptions& ur) {
+  CLI::Option* host = verb.add_option("--ur", ur.host,
+                                      "be a controller of Universal Robots at this address instead: RTDE 30004, "
+                                      "dashboard 29999, primary 30001, secondary 30002, real-time 30003 (docs/ur.md)");
+  host->type_name("ADDRESS")->excludes("--click", "--keys", "--async", "--batch", "--step-by-step");
+  verb.add_option("--model", ur.model, "of that controller: ur10 runs at 125 Hz, ur10e and ur5e at 500 Hz")
+      ->check(one_of({"ur10", "ur10e", "ur5e"}))
+      ->needs(host)
+      ->type_name("MODEL")
+      ->capture_default_str();
+  verb.add_option("--ur-port-offset", ur.port_offset, "added to each of its five ports")
+      ->check(whole(0, 35531))
+      ->needs(host)
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--ur-clients", ur.clients,
+                  "addresses of other machines that may move the robot, with commas between, or `any`; an address that "
+                  "other machines can reach needs it: clients of a UR show no keys")
+      ->delimiter(',')
+      ->needs(host)
+      ->type_name("ADDRESSES");
+}
+
 }  // namespace
 
 void add_serve(CLI::App& app, Action& action) {
-  CLI::App& verb = *app.add_subcommand("serve", "let a controller in another program drive the cell (CLICK)");
+  CLI::App& verb =
+      *app.add_subcommand("serve", "let a controller in another program drive the cell (CLICK), or be a UR");
   const auto options = std::make_shared<ServeOptions>();
   const auto is_quiet = std::make_shared<bool>(false);
   verb.add_option("scenario", options->scenario, "scenario file with a robot, or name of one that comes with snug")
@@ -115,6 +140,7 @@ void add_serve(CLI::App& app, Action& action) {
   add_served_cell(verb, *options);
   add_served_names(verb, *options);
   add_served_time(verb, *options);
+  add_served_ur(verb, options->ur);
   verb.add_flag("--view", options->shows, "show the run that goes on in the browser, one after the other");
   verb.add_option("--port", options->page.port, "port of the page on this machine; 0 any that is free")
       ->check(whole(0, 65535))

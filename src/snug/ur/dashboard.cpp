@@ -5,6 +5,8 @@
 #include <array>
 #include <cctype>
 
+#include "snug/core/text.hpp"
+
 namespace snug::ur {
 namespace {
 
@@ -46,24 +48,17 @@ constexpr std::array kCommands = {
     Words{"version", DashboardCommand::Version},
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
 }  // namespace
 
 DashboardLine parse_dashboard(std::string_view line) {
-  const std::string_view text = trimmed(line);
+  const std::string_view text = trim(line);
   std::string lower(text);
   std::ranges::transform(lower, lower.begin(),
                          [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
   for (const Words& known : kCommands) {
     if (lower == known.text) return {known.command, {}};
     if (!known.has_argument || !lower.starts_with(known.text) || lower[known.text.size()] != ' ') continue;
-    return {known.command, std::string(trimmed(text.substr(known.text.size())))};
+    return {known.command, std::string(trim(text.substr(known.text.size())))};
   }
   return {DashboardCommand::Unknown, std::string(text)};
 }

@@ -61,13 +61,36 @@ std::string encode(Frame type, std::string_view payload) {
   return out.take();
 }
 
+namespace {
+
+/// The first bytes of a request of HTTP are none of these: "POS" would be a long Start.
+bool is_possible(std::uint8_t type, std::size_t size) {
+  switch (static_cast<Frame>(type)) {
+    case Frame::Version:
+      return size == 5;
+    case Frame::ControllerVersion:
+    case Frame::Start:
+    case Frame::Pause:
+      return size == 3;
+    case Frame::Text:
+    case Frame::Data:
+    case Frame::Outputs:
+    case Frame::Inputs:
+      return size >= 3;
+  }
+  return false;
+}
+
+}  // namespace
+
 NextFrame next_frame(std::string_view bytes) {
   if (bytes.size() < 3) return {};
   ByteReader in(bytes);
   const std::size_t size = in.u16();
-  if (size < 3) return {std::nullopt, 0, true};
+  const std::uint8_t type = in.u8();
+  if (!is_possible(type, size)) return {std::nullopt, 0, true};
   if (bytes.size() < size) return {};
-  return {FrameView{in.u8(), bytes.substr(3, size - 3)}, size, false};
+  return {FrameView{type, bytes.substr(3, size - 3)}, size, false};
 }
 
 const char* output_type(std::string_view name) {
@@ -160,7 +183,7 @@ RtdeSession::Reply RtdeSession::answer(const rtde::FrameView& frame, RobotInputs
     case rtde::Frame::Text:
       return {};
     default:
-      return {message(fmt::format("a frame of type {} is unknown", frame.type)), false};
+      break;  // next_frame() gives no other
   }
   return {rtde::encode(type, out.bytes()), false};
 }

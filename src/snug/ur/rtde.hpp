@@ -32,8 +32,8 @@ struct FrameView {
   std::uint8_t type = 0;
   std::string_view payload;
 };
-/// What the frame at the beginning of `bytes` is, none when it is not whole yet; `size`: bytes to go on behind. A size
-/// below 3 gives size 0: what follows cannot be read.
+/// What the frame at the beginning of `bytes` is, none when it is not whole yet; `size`: bytes to go on behind. Broken:
+/// a type that is unknown, or a size that the type cannot have; what follows cannot be read.
 struct NextFrame {
   std::optional<FrameView> frame;
   std::size_t size = 0;

@@ -120,6 +120,10 @@ TEST(Rtde, FramesAreTakenOnlyWhenTheyAreWhole) {
   EXPECT_FALSE(rtde::next_frame("\x00\x05V\x00"s).frame);
   EXPECT_TRUE(rtde::next_frame("\x00\x02V\x00\x02"s).is_broken);
   EXPECT_EQ(rtde::next_frame("\x00\x03v\x00\x03"s).size, 3U);
+  EXPECT_FALSE(rtde::next_frame("\xff\xffI"s).is_broken);
+  for (const char* request : {"GET /", "POST /", "PUT /", "OPTIONS", "HEAD", "DELETE", "PATCH"}) {
+    EXPECT_TRUE(rtde::next_frame(request).is_broken) << request;
+  }
 }
 
 TEST(Rtde, SlowerClientsGetFewerPackages) {

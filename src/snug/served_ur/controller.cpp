@@ -1,0 +1,270 @@
+// Controller: the simulated cell as what a UR controller makes of it, one period after the other.
+#include "snug/served_ur/controller.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "snug/core/check.hpp"
+#include "snug/core/text.hpp"
+#include "snug/cup/phases.hpp"
+#include "snug/ur/primary.hpp"
+
+namespace snug::served_ur {
+namespace {
+
+using ur::RobotMode;
+using ur::RuntimeState;
+using ur::SafetyMode;
+
+constexpr double kPowerTime = 0.5;  ///< s, from power on to idle, and from there until the brakes are released
+constexpr std::size_t kMostMessages = 1000;
+
+// Wiring of the gripper: bits of outputs and inputs.
+constexpr std::uint64_t kVacuum = 1U << 0U, kBlowOff = 1U << 1U;
+constexpr std::uint64_t kVacuumReached = 1U << 0U, kPartPresent = 1U << 1U;
+
+std::uint64_t with_bits(std::uint64_t word, std::uint8_t mask, std::uint8_t bits, int shift) {
+  const std::uint64_t at = std::uint64_t{mask} << shift;
+  return (word & ~at) | ((std::uint64_t{bits} << shift) & at);
+}
+
+}  // namespace
+
+Controller::Controller(const cell::Simulation& simulation, ControllerSettings settings)
+    : simulation_(simulation),
+      settings_(std::move(settings)),
+      arm_(simulation),
+      initial_(simulation.make_state()),
+      initial_reading_(simulation.read_still(initial_)) {
+  SNUG_CHECK(std::abs(simulation.scenario().controller.tick - period_of(settings_.model)) < 1e-12,
+             "the cell's tick is the controller's period");
+  data_.robot_mode = RobotMode::Running;
+  data_.tcp_offset = to_values(arm_.tool());
+  data_.payload = arm_.tool_load().mass;
+  data_.payload_cog = {arm_.tool_load().com.x(), arm_.tool_load().com.y(), arm_.tool_load().com.z()};
+  data_.target_q = to_values(initial_.arm->machine.joints.q);
+  read_cell();
+}
+
+Controller::~Controller() = default;
+
+std::vector<std::string> Controller::take_messages() { return std::exchange(messages_, {}); }
+
+void Controller::step() {
+  const auto start = std::chrono::steady_clock::now();
+  ++period_;
+  data_.timestamp = static_cast<double>(period_) * period_of(settings_.model);
+  take_inputs();
+  advance_mode();
+  hold();
+  advance_cell();
+  read_cell();
+  data_.execution_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Masks say which bits are meant in this period; registers keep what they were given.
+void Controller::take_inputs() {
+  data_.inputs = inputs_.registers;
+  data_.digital_outputs = with_bits(data_.digital_outputs, inputs_.standard_mask, inputs_.standard, 0);
+  data_.digital_outputs = with_bits(data_.digital_outputs, inputs_.configurable_mask, inputs_.configurable, 8);
+  data_.digital_outputs = with_bits(data_.digital_outputs, inputs_.tool_mask & 3U, inputs_.tool, 16);
+  for (std::size_t n = 0; n < 2; ++n) {
+    if (((inputs_.analog_mask >> n) & 1U) == 0) continue;
+    // a fraction of 10 V, or of the range 4 .. 20 mA
+    const double fraction = std::clamp(inputs_.analog[n], 0.0, 1.0);
+    data_.analog_outputs[n] = ((inputs_.analog_type >> n) & 1U) != 0 ? 10.0 * fraction : 0.004 + 0.016 * fraction;
+  }
+  if (inputs_.speed_slider_mask != 0) {
+    data_.target_speed_fraction = std::clamp(inputs_.speed_slider_fraction, 0.0, 1.0);
+  }
+  inputs_.standard_mask = inputs_.configurable_mask = inputs_.tool_mask = inputs_.analog_mask = 0;
+  inputs_.speed_slider_mask = 0;
+}
+
+void Controller::set_mode(RobotMode mode) {
+  data_.robot_mode = mode;
+  mode_since_ = period_;
+}
+
+void Controller::set_safety(SafetyMode mode) {
+  data_.safety_mode = mode;
+  messages_.push_back(ur::safety_mode_message(data_.timestamp, mode));
+}
+
+void Controller::power_on() {
+  if (data_.robot_mode == RobotMode::PowerOff && data_.safety_mode != SafetyMode::Fault) set_mode(RobotMode::PowerOn);
+}
+
+void Controller::power_off() {
+  wants_brakes_released_ = false;
+  if (data_.robot_mode == RobotMode::PowerOff) return;
+  if (run_ && !is_ended_) run_->stand();
+  set_mode(RobotMode::PowerOff);
+}
+
+void Controller::release_brakes() {
+  if (data_.safety_mode == SafetyMode::Fault || data_.robot_mode == RobotMode::Running) return;
+  power_on();
+  if (!wants_brakes_released_ && data_.robot_mode == RobotMode::Idle) mode_since_ = period_;
+  wants_brakes_released_ = true;
+}
+
+bool Controller::unlock_protective_stop() {
+  if (data_.safety_mode != SafetyMode::ProtectiveStop) return false;
+  set_safety(SafetyMode::Normal);
+  return true;
+}
+
+void Controller::restart_safety() {
+  if (data_.safety_mode != SafetyMode::Fault) return;
+  run_.reset();
+  is_ended_ = false;
+  feeder_ = {};
+  data_.digital_outputs = 0;
+  data_.target_q = to_values(initial_.arm->machine.joints.q);
+  set_safety(SafetyMode::Normal);
+  set_mode(RobotMode::PowerOff);
+}
+
+bool Controller::obey(std::string_view line) {
+  line = trim(line);
+  if (line == "power on")
+    power_on();
+  else if (line == "power off")
+    power_off();
+  else if (line == "set robotmode run")
+    release_brakes();
+  else if (line == "set unlock protective stop")
+    (void)unlock_protective_stop();
+  else
+    return line == "stop program";
+  return true;
+}
+
+void Controller::advance_mode() {
+  const double since = static_cast<double>(period_ - mode_since_) * period_of(settings_.model);
+  if (since < kPowerTime) return;
+  if (data_.robot_mode == RobotMode::PowerOn) {
+    set_mode(RobotMode::Idle);
+  } else if (data_.robot_mode == RobotMode::Idle && wants_brakes_released_) {
+    wants_brakes_released_ = false;
+    set_mode(RobotMode::Running);
+  }
+}
+
+bool Controller::may_move() const {
+  return data_.robot_mode == RobotMode::Running && data_.safety_mode == SafetyMode::Normal;
+}
+
+void Controller::hold() {
+  if (!may_move()) data_.target_q = to_values(state().arm->machine.joints.q);
+  data_.target_qd = data_.target_qdd = {};
+}
+
+void Controller::begin_run() {
+  ++run_count_;
+  run_ = std::make_unique<runs::OutsideRun>(
+      simulation_, settings_.begin_run ? settings_.begin_run(run_count_) : runs::OutsideRunOptions{});
+}
+
+void Controller::advance_cell() {
+  if (is_ended_) return;
+  if (!run_ && data_.digital_outputs == 0) return;
+  if (!run_) begin_run();
+  const int item = feeder_.next(simulation_, run_->state());
+  if (item >= 0) {
+    (void)run_->feed(item, 0);
+    feeder_.advance();
+  }
+  cell::OutsideCommand command;
+  command.joints.kinds.assign(6, control::DriveKind::Position);
+  command.joints.target = to_vector(data_.target_q);
+  command.cup = {(data_.digital_outputs & kVacuum) != 0, (data_.digital_outputs & kBlowOff) != 0};
+  const cell::Failure failure = run_->advance(command).failure;
+  if (failure) fail(failure);
+}
+
+/// The arm's stop is released at once: it is the controller that keeps it standing, so that the cell goes on.
+void Controller::fail(const cell::Failure& failure) {
+  if (run_->is_stopped_for_protection()) {
+    run_->acknowledge();
+    data_.target_q = to_values(run_->state().arm->machine.joints.q);
+    data_.target_qd = data_.target_qdd = {};
+    if (data_.safety_mode == SafetyMode::ProtectiveStop) return;
+    if (messages_.size() < kMostMessages) {
+      messages_.push_back(ur::error_message(data_.timestamp, 157, 0, 3, failure.text));
+    }
+    set_safety(SafetyMode::ProtectiveStop);
+    return;
+  }
+  end(failure.text);
+  is_ended_ = true;
+  messages_.push_back(ur::error_message(data_.timestamp, 100, 0, 4, failure.text));
+  set_safety(SafetyMode::Fault);
+  set_mode(RobotMode::PowerOff);
+}
+
+void Controller::end(const std::string& why) {
+  if (!run_ || is_ended_) return;
+  is_ended_ = true;
+  const runs::RunResult result = run_->finish(why);
+  if (settings_.end_run) settings_.end_run(run_count_, result);
+}
+
+std::uint64_t Controller::read_inputs(const cell::CellState& state) const {
+  const cup::CupState& cup = state.gripper.cup;
+  const double reached = cup::kEstablishedVacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold;
+  const bool is_reached = cup.body >= 0 && cup.pressure_gauge <= reached;
+  return (is_reached ? kVacuumReached : 0U) | (state.waiting_item >= 0 ? kPartPresent : 0U);
+}
+
+void Controller::read_cell() {
+  const cell::CellState& now = state();
+  const cell::ArmReading& reading = run_ ? run_->reading() : initial_reading_;
+  const control::JointMotion& joints = now.arm->machine.joints;
+  data_.actual_q = to_values(joints.q);
+  data_.actual_qd = to_values(joints.qd);
+  for (std::size_t j = 0; j < std::min<std::size_t>(6, reading.joints.size()); ++j) {
+    data_.target_moment[j] = reading.joints[j].torque;
+  }
+  const Pose X_FT = to_pose(data_.tcp_offset);
+  data_.actual_tcp_pose = to_values(arm_.forward(data_.actual_q) * X_FT);
+  data_.target_tcp_pose = to_values(arm_.forward(data_.target_q) * X_FT);
+  data_.actual_tcp_speed = arm_.tcp_speed(data_.actual_q, data_.actual_qd, X_FT);
+  data_.target_tcp_speed = arm_.tcp_speed(data_.target_q, data_.target_qd, X_FT);
+  data_.digital_inputs = read_inputs(now);
+  data_.tool_analog_input = std::clamp(-now.gripper.cup.pressure_gauge / 1e5, 0.0, 1.0) * 10.0;
+  data_.speed_scaling = data_.target_speed_fraction;
+  const Pose X_WT = arm_.base() * arm_.forward(data_.actual_q) * X_FT;
+  read_force(now, X_WT);
+  const robot::ArmPose at = robot::forward(arm_.model(), joints.q);
+  const Vector3 elbow = arm_.base().inverse() * at.X_WS[3].p;
+  data_.elbow_position = {elbow.x(), elbow.y(), elbow.z()};
+  // at rest: what an accelerometer in the tool reads of gravity
+  const Vector3 felt = -(X_WT.R.transpose() * simulation_.scenario().gravity);
+  data_.tool_acceleration = {felt.x(), felt.y(), felt.z()};
+}
+
+/// On the tool, of all but what the controller believes to be its payload; about the TCP, in the axes of Base.
+void Controller::read_force(const cell::CellState& state, const Pose& X_WT) {
+  const Wrench load = run_ ? run_->tool_load() : Wrench{};
+  const Pose& X_WE = state.arm->machine.tool.X_WE;
+  const Vector3& gravity = simulation_.scenario().gravity;
+  const Pose X_WF = X_WE * arm_.tool().inverse();
+  Vector3 force = X_WE.R * load.force;
+  Vector3 torque = X_WE.R * load.torque + (X_WE.p - X_WT.p).cross(force);
+  const auto add_weight = [&](double mass, const Vector3& p_FCo) {
+    force += mass * gravity;
+    torque += (X_WF * p_FCo - X_WT.p).cross(mass * gravity);
+  };
+  add_weight(arm_.tool_load().mass, arm_.tool_load().com);
+  add_weight(-data_.payload, Vector3(data_.payload_cog[0], data_.payload_cog[1], data_.payload_cog[2]));
+  force = arm_.base().R.transpose() * force;
+  torque = arm_.base().R.transpose() * torque;
+  data_.actual_tcp_force = {force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z()};
+  data_.ft_raw_wrench = data_.actual_tcp_force;
+}
+
+}  // namespace snug::served_ur

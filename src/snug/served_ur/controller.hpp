@@ -1,0 +1,108 @@
+// Controller: the simulated cell as what a UR controller makes of it, one period after the other.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "snug/runs/outside_run.hpp"
+#include "snug/served_cell/feeder.hpp"
+#include "snug/served_ur/ur_arm.hpp"
+#include "snug/ur/robot_data.hpp"
+
+namespace snug::served_ur {
+
+struct ControllerSettings {
+  ur::Model model = ur::Model::Ur10;
+  /// What is to be done with each run, from 1; asked for when it begins.
+  std::function<runs::OutsideRunOptions(int run)> begin_run = {};
+  std::function<void(int run, const runs::RunResult& result)> end_run = {};
+};
+
+/// No sockets and no clock: the same calls in the same periods give the same cell, bit by bit.
+///
+/// The controller starts with the robot ready: power on, brakes released. A run of the cell begins with the first
+/// output that is switched, and with the first program; before, the cell is at time 0. It ends with end(), and when the
+/// cell fails (a box that leaves it): then the controller is in a fault until restart_safety(), which begins a new
+/// cell. After a protective stop the arm stands, a program pauses, and the cell goes on.
+class Controller {
+ public:
+  /// The simulation's tick is the period of the model (checked). Throws as UrArm. The simulation outlives the
+  /// controller.
+  Controller(const cell::Simulation& simulation, ControllerSettings settings);
+  ~Controller();
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+  /// s, of a controller of this model.
+  [[nodiscard]] static double period_of(ur::Model model) { return 1.0 / ur::facts_of(model).rate; }
+
+  /// One period. Throws OutputError when a recording cannot be written.
+  void step();
+  /// Periods so far.
+  [[nodiscard]] std::int64_t period() const { return period_; }
+  [[nodiscard]] const ur::RobotData& data() const { return data_; }
+  [[nodiscard]] const ur::RobotFacts& robot() const { return arm_.facts(); }
+  [[nodiscard]] const ur::ModelFacts& model() const { return ur::facts_of(settings_.model); }
+  /// Messages for the primary and secondary ports since they were taken last, as packets.
+  [[nodiscard]] std::vector<std::string> take_messages();
+
+  /// What clients of RTDE set; acts in the next period.
+  [[nodiscard]] ur::RobotInputs& inputs() { return inputs_; }
+
+  void power_on();
+  void power_off();
+  /// With power, if that is off.
+  void release_brakes();
+  /// False: there is no protective stop.
+  bool unlock_protective_stop();
+  /// After a fault: the controller starts again without power, with a new cell. It does nothing else.
+  void restart_safety();
+
+  /// A line of the script ports that is a command of its own: `power on`, `power off`, `set robotmode run`,
+  /// `set unlock protective stop`, `stop program`. False: it is none.
+  bool obey(std::string_view line);
+
+  /// Ends the run, if there is one.
+  void end(const std::string& why);
+  [[nodiscard]] int runs() const { return run_count_; }
+  /// s of the clock that the last period took.
+  [[nodiscard]] double step_seconds() const { return data_.execution_time; }
+
+ private:
+  void take_inputs();
+  void advance_mode();
+  void set_mode(ur::RobotMode mode);
+  void set_safety(ur::SafetyMode mode);
+  [[nodiscard]] bool may_move() const;
+  void hold();
+  void begin_run();
+  void advance_cell();
+  void fail(const cell::Failure& failure);
+  void read_cell();
+  void read_force(const cell::CellState& state, const Pose& X_WT);
+  [[nodiscard]] std::uint64_t read_inputs(const cell::CellState& state) const;
+  [[nodiscard]] const cell::CellState& state() const { return run_ ? run_->state() : initial_; }
+
+  const cell::Simulation& simulation_;
+  ControllerSettings settings_;
+  UrArm arm_;
+  cell::CellState initial_;
+  cell::ArmReading initial_reading_;
+  std::unique_ptr<runs::OutsideRun> run_;
+  bool is_ended_ = false;  ///< the run, by a failure
+  int run_count_ = 0;
+  served_cell::Feeder feeder_;
+  ur::RobotData data_;
+  ur::RobotInputs inputs_;
+  std::int64_t period_ = 0;
+  std::int64_t mode_since_ = 0;         ///< period
+  bool wants_brakes_released_ = false;  ///< once it is idle
+  std::vector<std::string> messages_;
+};
+
+}  // namespace snug::served_ur

@@ -1,0 +1,96 @@
+// answer_dashboard: what the dashboard answers to a line, and what the line does.
+#include "snug/served_ur/dashboard.hpp"
+
+#include <fmt/format.h>
+
+#include "snug/ur/dashboard.hpp"
+
+namespace snug::served_ur {
+namespace {
+
+using ur::DashboardCommand;
+
+std::string version_of(const ur::ModelFacts& model) {
+  return fmt::format("URSoftware {}.{}.{}.{} (Jan 01 2020)", model.version[0], model.version[1], model.version[2],
+                     model.version[3]);
+}
+
+std::string ask(DashboardCommand command, const Controller& controller) {
+  const ur::RobotData& data = controller.data();
+  switch (command) {
+    case DashboardCommand::GetLoadedProgram:
+      return "No program loaded";
+    case DashboardCommand::GetOperationalMode:
+      return "NONE";
+    case DashboardCommand::GetRobotModel:
+      return controller.model().dashboard;
+    case DashboardCommand::GetSerialNumber:
+      return "0000000000";
+    case DashboardCommand::IsInRemoteControl:
+      return "true";
+    case DashboardCommand::IsProgramSaved:
+      return "true";
+    case DashboardCommand::PolyscopeVersion:
+    case DashboardCommand::Version:
+      return version_of(controller.model());
+    case DashboardCommand::ProgramState:
+      return "STOPPED <unnamed>";
+    case DashboardCommand::RobotMode:
+      return fmt::format("Robotmode: {}", name_of(data.robot_mode));
+    case DashboardCommand::Running:
+      return fmt::format("Program running: {}", data.is_program_running());
+    case DashboardCommand::SafetyMode:
+      return fmt::format("Safetymode: {}", name_of(data.safety_mode));
+    case DashboardCommand::SafetyStatus:
+      return fmt::format("Safetystatus: {}", name_of(data.safety_mode));
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::string dashboard_greeting() { return "Connected: Universal Robots Dashboard Server"; }
+
+DashboardAnswer answer_dashboard(std::string_view line, Controller& controller) {
+  const ur::DashboardLine said = ur::parse_dashboard(line);
+  switch (said.command) {
+    case DashboardCommand::PowerOn:
+      controller.power_on();
+      return {"Powering on"};
+    case DashboardCommand::PowerOff:
+      controller.power_off();
+      return {"Powering off"};
+    case DashboardCommand::BrakeRelease:
+      controller.release_brakes();
+      return {"Brake releasing"};
+    case DashboardCommand::UnlockProtectiveStop:
+      (void)controller.unlock_protective_stop();
+      return {"Protective stop releasing"};
+    case DashboardCommand::RestartSafety:
+      controller.restart_safety();
+      return {"Restarting safety"};
+    case DashboardCommand::ClosePopup:
+      return {"closing popup"};
+    case DashboardCommand::CloseSafetyPopup:
+      return {"closing safety popup"};
+    case DashboardCommand::Popup:
+      return {"showing popup"};
+    case DashboardCommand::AddToLog:
+      return {"Added log message"};
+    case DashboardCommand::ClearOperationalMode:
+      return {"No longer controlling the operational mode. Current operational mode: 'NONE'."};
+    case DashboardCommand::Load:
+      return {fmt::format("File not found: {}", said.argument)};
+    case DashboardCommand::Quit:
+      return {"Disconnected", true};
+    case DashboardCommand::Shutdown:
+      return {"Shutting down", true, true};
+    default:
+      break;
+  }
+  const std::string answer = ask(said.command, controller);
+  return {answer.empty() ? fmt::format("could not understand: '{}'", said.argument) : answer};
+}
+
+}  // namespace snug::served_ur

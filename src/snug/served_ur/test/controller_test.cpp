@@ -1,0 +1,142 @@
+// Controller: modes, safety, outputs and what is told of the cell, a period after the other.
+#include "snug/served_ur/controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cell.hpp"
+#include "snug/served_ur/dashboard.hpp"
+
+namespace snug::served_ur {
+namespace {
+
+using test::demonstrator_cell;
+
+std::string ask(Controller& controller, std::string_view line) { return answer_dashboard(line, controller).line; }
+
+void step(Controller& controller, int periods) {
+  for (int i = 0; i < periods; ++i) controller.step();
+}
+
+TEST(Controller, StartsReadyAndGoesThroughItsModes) {
+  Controller controller(demonstrator_cell(), {});
+  EXPECT_EQ(ask(controller, "robotmode"), "Robotmode: RUNNING");
+  EXPECT_EQ(ask(controller, "power off"), "Powering off");
+  controller.step();
+  EXPECT_EQ(ask(controller, "robotmode"), "Robotmode: POWER_OFF");
+  step(controller, 200);
+  EXPECT_EQ(ask(controller, "robotmode"), "Robotmode: POWER_OFF");
+  EXPECT_EQ(ask(controller, "power on"), "Powering on");
+  controller.step();
+  EXPECT_EQ(ask(controller, "robotmode"), "Robotmode: POWER_ON");
+  step(controller, 200);
+  EXPECT_EQ(ask(controller, "robotmode"), "Robotmode: IDLE");
+  EXPECT_EQ(ask(controller, "brake release"), "Brake releasing");
+  controller.step();
+  EXPECT_EQ(ask(controller, "robotmode"), "Robotmode: IDLE");
+  step(controller, 200);
+  EXPECT_EQ(ask(controller, "robotmode"), "Robotmode: RUNNING");
+  EXPECT_EQ(ask(controller, "safetystatus"), "Safetystatus: NORMAL");
+}
+
+TEST(Controller, ReleasesBrakesOfARobotWithoutPower) {
+  Controller controller(demonstrator_cell(), {});
+  controller.power_off();
+  controller.release_brakes();
+  step(controller, 200);
+  EXPECT_EQ(controller.data().robot_mode, ur::RobotMode::Running);
+}
+
+TEST(Controller, TellsThePoseOfTheToolInTheControllersBase) {
+  const cell::Simulation& simulation = demonstrator_cell();
+  Controller controller(simulation, {});
+  controller.step();
+  // W is the base of this scenario, and the first TCP is the tool's end.
+  const Pose X_WE = simulation.make_state().arm->machine.tool.X_WE;
+  const Pose told = to_pose(controller.data().actual_tcp_pose);
+  EXPECT_LT((told.p - X_WE.p).norm(), 1e-9);
+  EXPECT_LT(angle_between(told.R, X_WE.R), 1e-9);
+}
+
+TEST(Controller, InverseFindsTheJointsOfItsForward) {
+  const UrArm arm(demonstrator_cell());
+  const ur::Values6 q = {-3.0, -1.4, -1.7, -1.5, 1.6, 1.2};
+  const auto found = arm.inverse(arm.forward(q), q);
+  ASSERT_TRUE(found);
+  for (std::size_t j = 0; j < 6; ++j) EXPECT_NEAR((*found)[j], q[j], 1e-8);
+  EXPECT_FALSE(arm.inverse({Matrix3::Identity(), Vector3(3.0, 0.0, 0.0)}, q));
+}
+
+TEST(Controller, SpeedOfTheTcpIsThatOfItsPose) {
+  const UrArm arm(demonstrator_cell());
+  const ur::Values6 q = {-3.0, -1.4, -1.7, -1.5, 1.6, 1.2}, qd = {0.3, -0.2, 0.5, 0.1, -0.4, 0.7};
+  const Pose X_FT{exp_rotation(Vector3(0.1, 0.2, 0.3)), Vector3(0.02, -0.03, 0.25)};
+  constexpr double kStep = 1e-6;
+  ur::Values6 before = q, after = q;
+  for (std::size_t j = 0; j < 6; ++j) {
+    before[j] -= kStep * qd[j];
+    after[j] += kStep * qd[j];
+  }
+  const Pose a = arm.forward(before) * X_FT, b = arm.forward(after) * X_FT;
+  const Vector3 v = (b.p - a.p) / (2.0 * kStep), w = log_rotation(b.R * a.R.transpose()) / (2.0 * kStep);
+  const ur::Values6 speed = arm.tcp_speed(q, qd, X_FT);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(speed[static_cast<std::size_t>(i)], v[i], 1e-6);  // central differences of 1e-6 s: 1e-9 of rounding
+    EXPECT_NEAR(speed[static_cast<std::size_t>(i) + 3], w[i], 1e-6);
+  }
+}
+
+TEST(Controller, OutputsSwitchTheCupAndBeginTheRun) {
+  int begun = 0, ended = 0;
+  ControllerSettings settings;
+  settings.begin_run = [&](int) {
+    ++begun;
+    return runs::OutsideRunOptions{};
+  };
+  settings.end_run = [&](int, const runs::RunResult&) { ++ended; };
+  Controller controller(demonstrator_cell(), std::move(settings));
+  step(controller, 10);
+  EXPECT_EQ(begun, 0);
+  controller.inputs().standard_mask = 0x81;
+  controller.inputs().standard = 0xff;
+  controller.step();
+  EXPECT_EQ(begun, 1);
+  EXPECT_EQ(controller.data().digital_outputs, 0x81u);
+  EXPECT_EQ(controller.inputs().standard_mask, 0);  // used up
+  step(controller, 5);
+  EXPECT_EQ(controller.data().digital_inputs, 2u);  // the first box has come to the aligner; no vacuum in free air
+  controller.end("enough");
+  EXPECT_EQ(ended, 1);
+}
+
+TEST(Controller, WithoutALoadTheForceIsZeroAndAWrongPayloadShows) {
+  Controller controller(demonstrator_cell(), {});
+  controller.step();
+  for (const double value : controller.data().actual_tcp_force) EXPECT_NEAR(value, 0.0, 1e-9);
+}
+
+TEST(Controller, TwoOfThemGiveTheSameBytes) {
+  Controller a(demonstrator_cell(), {}), b(demonstrator_cell(), {});
+  for (Controller* controller : {&a, &b}) {
+    controller->inputs().standard_mask = controller->inputs().standard = 1;
+    step(*controller, 40);
+  }
+  EXPECT_EQ(a.data().actual_q, b.data().actual_q);
+  EXPECT_EQ(a.data().actual_tcp_force, b.data().actual_tcp_force);
+  EXPECT_EQ(a.data().digital_inputs, b.data().digital_inputs);
+}
+
+TEST(Dashboard, AnswersAsAController) {
+  Controller controller(demonstrator_cell(), {});
+  EXPECT_EQ(ask(controller, "PolyscopeVersion"), "URSoftware 3.15.8.106339 (Jan 01 2020)");
+  EXPECT_EQ(ask(controller, "get robot model"), "UR10");
+  EXPECT_EQ(ask(controller, "running"), "Program running: false");
+  EXPECT_EQ(ask(controller, "is in remote control"), "true");
+  EXPECT_EQ(ask(controller, "load x.urp"), "File not found: x.urp");
+  EXPECT_EQ(ask(controller, "make coffee"), "could not understand: 'make coffee'");
+  EXPECT_TRUE(answer_dashboard("quit", controller).is_last);
+}
+
+}  // namespace
+}  // namespace snug::served_ur

@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""ur_test.py: the served UR as its clients meet it: RTDE, dashboard and primary written by hand, and the wheel ur_rtde where it can be
+imported. SNUG names the program."""
+import os
+import signal
+import socket
+import struct
+import subprocess
+import threading
+import time
+import unittest
+from pathlib import Path
+
+try:
+    import rtde_control
+    import rtde_io
+    import rtde_receive
+except ImportError:
+    rtde_control = None
+
+ROOT = Path(__file__).resolve().parent.parent
+SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
+CELL = ROOT / "scenarios" / "box-demonstrator.yaml"
+DASHBOARD, PRIMARY, SECONDARY, REAL_TIME, RTDE = 29999, 30001, 30002, 30003, 30004
+
+
+class Served:
+    """`snug serve --ur` in a process of its own, at ports of its own, until it is left."""
+
+    def __init__(self, *words, offset=None, address="127.0.0.1"):
+        for self.offset in [offset] if offset is not None else range(2000 + os.getpid() % 200 * 100, 30000, 10):
+            self.process = subprocess.Popen([SNUG, "serve", str(CELL), "--sequence", "1", "--ur", address, "--ur-port-offset",
+                                             str(self.offset), *map(str, words)], text=True,
+                                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.said = []
+            for line in self.process.stderr:
+                self.said.append(line)
+                if "serving" in line:
+                    break
+            if not any("in use" in line for line in self.said):
+                break
+            self.process.communicate()
+        self.reader = threading.Thread(target=lambda: self.said.extend(self.process.stderr), daemon=True)
+        self.reader.start()
+
+    def connect(self, port):
+        return socket.create_connection(("127.0.0.1", port + self.offset), timeout=10)
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        out = self.process.stdout.read()
+        self.process.wait(60)
+        self.reader.join(10)
+        self.process.stdout.close()
+        self.process.stderr.close()
+        return out
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if not self.process.stdout.closed:
+            self.end()
+
+
+def receive(connection, count):
+    data = b""
+    while len(data) < count:
+        more = connection.recv(count - len(data))
+        if not more:
+            raise ConnectionError("closed")
+        data += more
+    return data
+
+
+class Rtde:
+    """A client of RTDE, version 2."""
+
+    def __init__(self, served):
+        self.socket = served.connect(RTDE)
+        assert self.ask(b"V", struct.pack(">H", 2)) == b"\x01"
+
+    def send(self, kind, payload=b""):
+        self.socket.sendall(struct.pack(">H", len(payload) + 3) + kind + payload)
+
+    def frame(self):
+        size, kind = struct.unpack(">Hc", receive(self.socket, 3))
+        return kind, receive(self.socket, size - 3)
+
+    def ask(self, kind, payload=b""):
+        self.send(kind, payload)
+        while True:
+            got, answer = self.frame()
+            if got == kind:
+                return answer
+
+    def outputs(self, names, frequency=0.0):
+        return self.ask(b"O", struct.pack(">d", frequency) + names.encode())
+
+    def inputs(self, names):
+        return self.ask(b"I", names.encode())
+
+    def close(self):
+        self.socket.close()
+
+
+class Dashboard:
+    def __init__(self, served):
+        with served.connect(DASHBOARD) as connection:
+            self.file = connection.makefile("rw", newline="\n")
+        self.greeting = self.file.readline()
+
+    def close(self):
+        self.file.close()
+
+    def ask(self, line):
+        self.file.write(line + "\n")
+        self.file.flush()
+        return self.file.readline().strip()
+
+    def wait_for(self, question, answer, seconds=10):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if self.ask(question).startswith(answer):
+                return True
+            time.sleep(0.02)
+        return False
+
+
+class ServedUr(unittest.TestCase):
+    def test_clients_by_hand_read_and_switch_the_robot(self):
+        with Served() as served:
+            rtde = Rtde(served)
+            self.assertEqual(rtde.outputs("timestamp,actual_q,actual_digital_input_bits,actual_digital_output_bits,"),
+                             b"\x01DOUBLE,VECTOR6D,UINT64,UINT64")
+            self.assertEqual(rtde.inputs("standard_digital_output_mask,standard_digital_output"), b"\x01UINT8,UINT8")
+            self.assertEqual(rtde.ask(b"S"), b"\x01")
+            stamps = []
+            rtde.send(b"U", b"\x01\x03\x01")
+            while len(stamps) < 60:
+                kind, payload = rtde.frame()
+                self.assertEqual(kind, b"U")
+                values = struct.unpack(">B7d2Q", payload)
+                stamps.append(values[1])
+            for before, after in zip(stamps, stamps[1:]):
+                self.assertAlmostEqual(after - before, 0.008, places=9)  # no package is lost
+            self.assertEqual(values[-1], 1)  # vacuum on
+            self.assertEqual(values[-2], 2)  # a part is present
+            other = Rtde(served)
+            self.assertEqual(other.inputs("standard_digital_output"), b"\x00IN_USE")
+            self.assertEqual(other.outputs("nothing"), b"\x00NOT_FOUND")
+            rtde.close()
+            other.close()
+            dashboard = Dashboard(served)
+            self.assertTrue(dashboard.greeting.startswith("Connected: "))
+            self.assertEqual(dashboard.ask("power off"), "Powering off")
+            self.assertTrue(dashboard.wait_for("robotmode", "Robotmode: POWER_OFF"))
+            self.assertEqual(dashboard.ask("brake release"), "Brake releasing")
+            self.assertTrue(dashboard.wait_for("robotmode", "Robotmode: RUNNING"))
+            dashboard.close()
+            primary = served.connect(PRIMARY)
+            size, kind = struct.unpack(">iB", receive(primary, 5))
+            self.assertEqual(kind, 20)
+            receive(primary, size - 5)
+            size, kind = struct.unpack(">iB", receive(primary, 5))
+            self.assertEqual(kind, 16)
+            self.assertLess(size, 2000)
+            primary.close()
+            self.assertIn("packed", served.end())
+
+    def test_a_page_in_a_browser_moves_nothing(self):
+        with Served() as served:
+            for port in (DASHBOARD, PRIMARY, SECONDARY, REAL_TIME, RTDE):
+                page = served.connect(port)
+                page.sendall(b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: text/plain\r\n\r\npower off\n")
+                try:
+                    while page.recv(4096):
+                        pass
+                except ConnectionError:
+                    pass
+                page.close()
+            dashboard = Dashboard(served)
+            self.assertEqual(dashboard.ask("robotmode"), "Robotmode: RUNNING")
+            dashboard.close()
+
+    def test_addresses_of_others_need_consent(self):
+        with Served(offset=40, address="0.0.0.0") as served:
+            self.assertEqual(served.process.wait(20), 2)
+            self.assertIn("--ur-clients", "".join(served.said))
+
+
+@unittest.skipUnless(rtde_control, "the wheel ur_rtde is not installed: its clients are not tried")
+class UrRtde(unittest.TestCase):
+    """It knows no other ports than the real ones."""
+
+    def test_wheel_ur_rtde_receives_and_switches(self):
+        with Served("--model", "ur10e", offset=0):
+            receiver = rtde_receive.RTDEReceiveInterface("127.0.0.1")
+            io = rtde_io.RTDEIOInterface("127.0.0.1")
+            self.assertEqual(receiver.getRobotMode(), 7)
+            self.assertTrue(io.setStandardDigitalOut(0, True))
+            time.sleep(0.3)
+            self.assertTrue(receiver.getDigitalOutState(0))
+            self.assertTrue(io.setSpeedSlider(0.5))
+            time.sleep(0.3)
+            self.assertAlmostEqual(receiver.getTargetSpeedFraction(), 0.5)
+            io.disconnect()
+            receiver.disconnect()
+
+
+if __name__ == "__main__":
+    unittest.main()
