@@ -1,0 +1,88 @@
+// Tests of the progress of a run: at every event of a log, and of logs that are broken.
+#include "snug/workspace/run_progress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "snug/core/input_error.hpp"
+
+namespace snug::workspace {
+namespace {
+
+/// Two items: the first is placed, the second has no place; then the first is gone.
+session::EventLog small_log() {
+  namespace event = session::event;
+  event::SessionStarted started;
+  started.sequence = "mine";
+  started.agent = "margin";
+  started.plant = "by hand";
+  started.items = {model::ParcelId("A"), model::ParcelId("B")};
+  const model::ItemIndex first(0), second(1);
+  event::Counted one, two;
+  one.time = 5.0;
+  one.planned_percent = 12.5;
+  two.time = 7.0;
+  two.planned_percent = 12.5;
+  event::SessionEnded over;
+  over.time = 8.0;
+  session::EventLog log;
+  log.events = {started,
+                event::ItemStarted{0.0, first, {}},
+                event::ItemEnded{5.0, first, session::ItemEnd::Placed, ""},
+                one,
+                event::ItemStarted{5.0, second, {}},
+                event::ItemEnded{7.0, second, session::ItemEnd::NoPlace, "too large"},
+                two,
+                event::ItemLost{first, session::ItemEnd::Gone, "not seen"},
+                over};
+  return log;
+}
+
+TEST(RunProgress, FollowsEveryEventOfALog) {
+  const session::EventLog whole = small_log();
+  const std::vector<std::array<int, 3>> expected = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 1, 0}, {1, 1, 0},
+                                                    {1, 1, 0}, {2, 1, 0}, {2, 1, 0}, {2, 0, 1}, {2, 0, 1}};
+  for (std::size_t count = 0; count <= whole.events.size(); ++count) {
+    SCOPED_TRACE(count);
+    session::EventLog part;
+    part.events.assign(whole.events.begin(), whole.events.begin() + static_cast<std::ptrdiff_t>(count));
+    const RunProgress progress = progress_of(part);
+    EXPECT_EQ((std::array{progress.done, progress.packed, progress.lost}), expected[count]);
+    EXPECT_EQ(progress.items, count > 0 ? 2 : 0);
+    EXPECT_EQ(progress.is_over, count == whole.events.size());
+    EXPECT_EQ(progress.planned_percent, count > 3 ? 12.5 : 0.0);
+  }
+  EXPECT_EQ(progress_of(whole).time, 8.0);
+  EXPECT_EQ(progress_of(whole).plant, "by hand");
+}
+
+TEST(RunProgress, OfATextThatEndsAnywhereIsThatOfItsWholeLines) {
+  std::string text;
+  session::EventLog part;
+  for (const session::SessionEvent& one : small_log().events) {
+    const RunProgress before = progress_of(part);
+    const std::string line = session::format_event(one);
+    for (std::size_t cut = 0; cut <= line.size(); cut += 7)
+      EXPECT_EQ(read_progress(text + line.substr(0, cut), "log"), before) << cut;
+    text += line + "\n";
+    part.events.push_back(one);
+    EXPECT_EQ(read_progress(text, "log"), progress_of(part));
+  }
+}
+
+TEST(RunProgress, IsRefusedWithTheLineOfWhatIsNoEvent) {
+  const std::string first = session::format_event(small_log().events.front()) + "\n";
+  for (const char* wrong : {"nonsense\n", "{}\n", "{\"event\":\"dance\"}\n", "[1]\n"}) {
+    SCOPED_TRACE(wrong);
+    try {
+      (void)read_progress(first + wrong, "log");
+      ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+      EXPECT_TRUE(error.where.starts_with("log:2")) << error.where;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug::workspace
