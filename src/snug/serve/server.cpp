@@ -3,33 +3,18 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string_view>
-#include <thread>
 #include <utility>
 
-#include "snug/core/input_error.hpp"
-#include "snug/serve/internal/guarded_server.hpp"
-#include "snug/serve/internal/visitors.hpp"
+#include "snug/serve/internal/listener.hpp"
 
 namespace snug::serve {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMaxWatchers = 8;                       // each holds a thread
-constexpr std::chrono::milliseconds kHeartbeat(500);  // how soon a watcher that left is noticed
-
-/// Not set_content: that packs with brotli at its slowest, seconds for a page.
-void answer(httplib::Response& response, std::shared_ptr<const std::string> bytes, const char* type) {
-  const std::size_t size = bytes->size();
-  response.set_content_provider(size, type, [bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-    return sink.write(bytes->data() + offset, length);
-  });
-}
+constexpr int kMaxWatchers = 8;  // each holds a thread
 
 }  // namespace
 
@@ -41,43 +26,26 @@ struct Server::Impl {
   void serve_events(const httplib::Request& request, httplib::Response& response);
   [[nodiscard]] Json recordings_json() const;
 
-  ServerSettings settings;
   Content content;
   std::shared_ptr<const std::string> page;
   std::vector<std::shared_ptr<const std::string>> forms;  ///< of the recordings
-  internal::GuardedServer server;
-  std::atomic<int> watchers = 0;
-  std::atomic<bool> is_stopping = false, is_in_run = false;
-  std::optional<internal::Visitors> visitors;  ///< once it is known where the server listens
-  int port = 0;
+  internal::Listener listener;
 };
 
 Server::Impl::Impl(const ServerSettings& server_settings, Content server_content)
-    : settings(server_settings), content(std::move(server_content)) {
+    : content(std::move(server_content)), listener(server_settings) {
   page = std::make_shared<const std::string>(report::assemble_page(content.page, {}));
   for (report::PageRecording& recording : content.recordings) {
     forms.push_back(std::make_shared<const std::string>(std::move(recording.bytes)));
   }
-  server.set_payload_max_length(0);
-  server.set_tcp_nodelay(true);
-  server.set_socket_options([](socket_t socket) {  // the library's own let two servers share a port
-    const int yes = 1;
-    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  });
-  server.set_default_headers(
+  listener.server.set_payload_max_length(0);
+  listener.server.set_default_headers(
       {{"X-Content-Type-Options", "nosniff"},
        {"Cache-Control", "no-store"},
        {"Referrer-Policy", "no-referrer"},
        {"Content-Security-Policy", "default-src 'self' 'unsafe-inline' data: blob:; frame-ancestors 'none'"}});
   add_routes();
-  const bool is_bound = settings.port == 0 ? (port = server.bind_to_any_port(settings.host)) > 0
-                                           : server.bind_to_port(settings.host, port = settings.port);
-  if (!is_bound) {
-    throw InputError("command line", "--host, --port", settings.host + " port " + std::to_string(settings.port),
-                     "an address of this machine and a port that is free");
-  }
-  visitors.emplace(server.is_at_loopback(), settings.names, port);
-  server.widen_queue();
+  listener.bind(TokenUse::BeyondLoopback);
 }
 
 Json Server::Impl::recordings_json() const {
@@ -97,7 +65,7 @@ bool Server::Impl::is_for_us(const httplib::Request& request, httplib::Response&
     response.status = 413;  // the body is not read: each connection ends after its answer
     return false;
   }
-  if (visitors->refuse(request, response) != 0) return false;
+  if (listener.visitors().refuse(request, response) != 0) return false;
   if (request.method == "GET" || request.method == "HEAD" || request.method == "POST") return true;
   response.status = 405;
   response.set_header("Allow", "GET, HEAD, POST");
@@ -105,6 +73,7 @@ bool Server::Impl::is_for_us(const httplib::Request& request, httplib::Response&
 }
 
 void Server::Impl::add_routes() {
+  internal::GuardedServer& server = listener.server;
   using Answer = httplib::Server::HandlerResponse;
   server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
     if (!is_for_us(request, response)) return Answer::Handled;
@@ -118,7 +87,7 @@ void Server::Impl::add_routes() {
     });
   }
   server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
-    answer(response, page, "text/html; charset=utf-8");
+    internal::answer_whole(response, page, "text/html; charset=utf-8");
   });
   server.Get("/recordings.json", [this](const httplib::Request&, httplib::Response& response) {
     response.set_content(recordings_json().dump(-1, ' ', false, Json::error_handler_t::replace), "application/json");
@@ -127,9 +96,9 @@ void Server::Impl::add_routes() {
     const auto index = static_cast<std::size_t>(request.matches[1].str().front() - '0');
     const std::shared_ptr<const std::string> whole = content.live != nullptr ? content.live->whole_form() : nullptr;
     if (index < forms.size()) {
-      answer(response, forms[index], "application/octet-stream");
+      internal::answer_whole(response, forms[index], "application/octet-stream");
     } else if (index == 0 && whole) {
-      answer(response, whole, "application/octet-stream");
+      internal::answer_whole(response, whole, "application/octet-stream");
     } else {
       response.status = 404;
     }
@@ -153,23 +122,18 @@ void Server::Impl::command(const httplib::Request& request, httplib::Response& r
 }
 
 void Server::Impl::serve_events(const httplib::Request&, httplib::Response& response) {
-  if (watchers.fetch_add(1) >= kMaxWatchers) {
-    watchers.fetch_sub(1);
-    response.status = 503;
-    response.set_content("There are too many watchers.\n", "text/plain");
-    return;
-  }
+  if (!internal::take_place(listener.watchers, kMaxWatchers, response)) return;
   const auto place = std::make_shared<LiveRun::Place>();
   response.set_chunked_content_provider(
       "text/event-stream",
       [this, place](std::size_t, httplib::DataSink& sink) {
-        if (is_stopping) return false;
-        const std::shared_ptr<const std::string> text = content.live->next(*place, kHeartbeat);
+        if (listener.is_stopping()) return false;
+        const std::shared_ptr<const std::string> text = content.live->next(*place, internal::kHeartbeat);
         const std::string nothing = ":\n\n";  // a comment; fails when the watcher has left
         const std::string& out = text ? *text : nothing;
-        return !is_stopping && sink.write(out.data(), out.size());
+        return !listener.is_stopping() && sink.write(out.data(), out.size());
       },
-      [this](bool) { watchers.fetch_sub(1); });
+      [this](bool) { listener.watchers.fetch_sub(1); });
 }
 
 Server::Server(const ServerSettings& settings, Content content)
@@ -177,28 +141,12 @@ Server::Server(const ServerSettings& settings, Content content)
 
 Server::~Server() { stop(); }
 
-int Server::port() const { return impl_->port; }
+int Server::port() const { return impl_->listener.port(); }
 
-std::string Server::address() const {
-  const std::string& asked = impl_->settings.host;
-  const bool is_any = asked == "0.0.0.0" || asked == "::" || asked == "*";
-  const std::string host = is_any ? internal::Visitors::own_address() : asked;
-  return "http://" + (host.find(':') == std::string::npos ? host : "[" + host + "]") + ":" + std::to_string(port()) +
-         "/" + impl_->visitors->query();
-}
+std::string Server::address() const { return impl_->listener.address(); }
 
-void Server::run() {
-  impl_->is_in_run = true;
-  if (!impl_->is_stopping) impl_->server.listen_after_bind();
-  impl_->is_in_run = false;
-}
+void Server::run() { impl_->listener.run(); }
 
-void Server::stop() {
-  impl_->is_stopping = true;
-  // The library ignores a stop that comes before its loop runs.
-  while (impl_->is_in_run && !impl_->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  impl_->server.stop();
-  impl_->server.close_connections();
-}
+void Server::stop() { impl_->listener.stop(); }
 
 }  // namespace snug::serve

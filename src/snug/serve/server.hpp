@@ -17,6 +17,9 @@ struct ServerSettings {
   std::vector<std::string> names = {};
 };
 
+/// Who has to know a token: it stands in the address that is printed.
+enum class TokenUse { BeyondLoopback, Always };
+
 /// What is shown: recordings, or a run that goes on.
 struct Content {
   std::string page;                               ///< that viewer/ builds, without recordings

@@ -106,11 +106,11 @@ std::string_view find_cookie(std::string_view header, std::string_view name) {
 
 }  // namespace
 
-Visitors::Visitors(bool is_local, std::vector<std::string> names, int port)
+Visitors::Visitors(bool is_local, std::vector<std::string> names, int port, TokenUse token)
     : is_local_(is_local), names_(std::move(names)), cookie_("snug" + std::to_string(port)) {
   for (std::string& name : names_) name = lower(name);
+  if (!is_local_ || token == TokenUse::Always) token_ = make_token();
   if (is_local_) return;
-  token_ = make_token();
   if (const std::string name = machine_name(); !name.empty()) names_.insert(names_.end(), {name, name + ".local"});
 }
 
@@ -160,7 +160,7 @@ int Visitors::refuse(const httplib::Request& request, httplib::Response& respons
     return 403;
   }
   if (!knows_token(request, response))
-    return forbid("The address that `snug view` prints has a token: open that one.\n");
+    return forbid("The address that the program prints has a token: open that one.\n");
   return 0;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "snug/serve/server.hpp"
+
 namespace snug::serve::internal {
 
 /// Two things keep strangers out. Names: a page of another site can have its own name resolve to this machine, and its
@@ -13,9 +15,10 @@ namespace snug::serve::internal {
 /// shown to the user, and the browser keeps it as a cookie.
 class Visitors {
  public:
-  /// `is_local`: only this machine can reach the server; then there is no token. `names`: more than those of this
-  /// machine's own: localhost, and where others reach it the machine's name and the addresses of its interfaces.
-  Visitors(bool is_local, std::vector<std::string> names, int port);
+  /// `is_local`: only this machine can reach the server; then there is a token only if it is always asked for. `names`:
+  /// more than those of this machine's own: localhost, and where others reach it the machine's name and the addresses
+  /// of its interfaces.
+  Visitors(bool is_local, std::vector<std::string> names, int port, TokenUse token);
 
   /// 0, or the status and text by which it is refused.
   [[nodiscard]] int refuse(const httplib::Request& request, httplib::Response& response) const;
