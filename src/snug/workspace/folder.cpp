@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include "snug/core/input_error.hpp"
 #include "snug/core/output_file.hpp"
@@ -22,7 +24,8 @@ namespace snug::workspace {
 namespace {
 
 constexpr std::string_view kNameRule =
-    "at most 100 letters, digits, '.', '_' and '-', a letter or digit first, ending in .yaml, .csv or .jsonl";
+    "at most 100 letters, digits, '.', '_' and '-', a letter or digit first, ending in .yaml or .csv (files of runs: "
+    ".jsonl, .txt, .h5, .program.csv, .html)";
 
 bool is_letter_or_digit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
 
@@ -72,9 +75,17 @@ FileKind kind_of_name(std::string_view name) {
   const bool is_plain =
       !name.empty() && name.size() <= kLongestName && is_letter_or_digit(name.front()) &&
       std::ranges::all_of(name, [](char c) { return is_letter_or_digit(c) || c == '.' || c == '_' || c == '-'; });
-  if (is_plain && name.ends_with(".yaml")) return FileKind::Scenario;
-  if (is_plain && name.ends_with(".csv")) return FileKind::Items;
-  if (is_plain && name.ends_with(".jsonl")) return FileKind::Log;
+  static constexpr std::array<std::pair<std::string_view, FileKind>, 7> kEndings = {
+      {{".yaml", FileKind::Scenario},
+       {".program.csv", FileKind::Program},
+       {".csv", FileKind::Items},
+       {".jsonl", FileKind::Log},
+       {".txt", FileKind::Words},
+       {".h5", FileKind::Recording},
+       {".html", FileKind::Report}}};
+  for (const auto& [ending, kind] : kEndings) {
+    if (is_plain && name.ends_with(ending)) return kind;
+  }
   throw InputError("name", "", "'" + printable(name, kLongestName) + "'", std::string(kNameRule));
 }
 
@@ -108,14 +119,17 @@ std::vector<Entry> Folder::list() const {
   return entries;
 }
 
-std::string Folder::read(const std::string& name) const {
-  const std::size_t most = kind_of_name(name) == FileKind::Log ? kLargestLog : kLargestUpload;
+std::string Folder::read_from(const std::string& name, std::uintmax_t offset) const {
+  const FileKind kind = kind_of_name(name);
+  const bool is_written_here = kind == FileKind::Scenario || kind == FileKind::Items;
   struct stat status {};
-  const Descriptor file = open_file(folder_.get(), name, most, status);
-  std::string text(static_cast<std::size_t>(status.st_size), '\0');
+  const Descriptor file = open_file(folder_.get(), name, is_written_here ? kLargestUpload : kLargestRead, status);
+  const auto size = static_cast<std::uintmax_t>(status.st_size);
+  std::string text(static_cast<std::size_t>(size - std::min(size, offset)), '\0');
   std::size_t done = 0;
   while (done < text.size()) {  // a log that grows meanwhile is read up to where it was
-    const ssize_t count = ::read(file.get(), text.data() + done, text.size() - done);
+    const ssize_t count =
+        ::pread(file.get(), text.data() + done, text.size() - done, static_cast<off_t>(offset + done));
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw InputError(name, "", std::strerror(errno), "a file that can be read");
     if (count == 0) break;
@@ -125,9 +139,17 @@ std::string Folder::read(const std::string& name) const {
   return text;
 }
 
+std::uintmax_t Folder::size(const std::string& name) const {
+  (void)kind_of_name(name);
+  struct stat status {};
+  (void)open_file(folder_.get(), name, SIZE_MAX, status);
+  return static_cast<std::uintmax_t>(status.st_size);
+}
+
 void Folder::check(const std::string& name, std::string_view text) const {
   const FileKind kind = kind_of_name(name);
-  if (kind == FileKind::Log) throw InputError(name, "", "a log", "a scenario or items: logs are written by runs");
+  if (kind != FileKind::Scenario && kind != FileKind::Items)
+    throw InputError(name, "", "a file that runs write", "a scenario (.yaml) or items (.csv)");
   if (text.size() > kLargestUpload)
     throw InputError(name, "", std::to_string(text.size()) + " bytes", "at most " + std::to_string(kLargestUpload));
   if (kind == FileKind::Items) {
@@ -169,6 +191,14 @@ void Folder::remove(const std::string& name) const {
       ::fstatat(folder_.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(status.st_mode);
   if (!is_file) throw InputError(name, "", "no file", "a file of the folder");
   if (::unlinkat(folder_.get(), name.c_str(), 0) != 0) throw OutputError(name, std::strerror(errno));
+}
+
+Descriptor Folder::create(const std::string& name) const {
+  (void)kind_of_name(name);
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_APPEND | O_CLOEXEC;
+  Descriptor file(::openat(folder_.get(), name.c_str(), kFlags, 0666));
+  if (!file.is_open()) throw InputError(name, "", std::strerror(errno), "a free name in a folder that can be written");
+  return file;
 }
 
 }  // namespace snug::workspace

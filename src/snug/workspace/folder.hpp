@@ -13,14 +13,18 @@
 namespace snug::workspace {
 
 inline constexpr std::size_t kLargestUpload = std::size_t{4} << 20U;  ///< bytes of a text that is written
-inline constexpr std::size_t kLargestLog = std::size_t{256} << 20U;   ///< bytes of a log that is read
+inline constexpr std::size_t kLargestRead = std::size_t{256} << 20U;  ///< bytes of what runs leave
 inline constexpr std::size_t kLongestName = 100;                      ///< bytes
 inline constexpr std::size_t kMostEntries = 10000;                    ///< in a list
 
 enum class FileKind {
-  Scenario,  ///< NAME.yaml
-  Items,     ///< NAME.csv, orders
-  Log,       ///< NAME.jsonl, events that `snug pack --log` writes
+  Scenario,   ///< NAME.yaml
+  Items,      ///< NAME.csv, orders
+  Log,        ///< NAME.jsonl, events that `snug pack --log` writes
+  Words,      ///< NAME.txt, the command of a run and what it printed
+  Recording,  ///< NAME.h5
+  Program,    ///< NAME.program.csv
+  Report,     ///< NAME.html
 };
 
 struct Entry {
@@ -45,7 +49,10 @@ class Folder {
   /// By name. Files with names that kind_of_name() refuses are left out. Throws InputError for more than kMostEntries.
   [[nodiscard]] std::vector<Entry> list() const;
   /// Throws InputError for a name that is refused, and for what is no regular file of a bounded size.
-  [[nodiscard]] std::string read(const std::string& name) const;
+  [[nodiscard]] std::string read(const std::string& name) const { return read_from(name, 0); }
+  /// What lies behind the first `offset` bytes; empty where there are not so many.
+  [[nodiscard]] std::string read_from(const std::string& name, std::uintmax_t offset) const;
+  [[nodiscard]] std::uintmax_t size(const std::string& name) const;
   /// Scenario or items, read as the command line reads them before anything is written; then in one step in the place
   /// of what was there. Throws InputError: with file, line and key for a text that cannot be used; for a log; for a
   /// file that is being written by another. Throws OutputError when writing fails; then what was there stays.
@@ -54,6 +61,12 @@ class Folder {
   void check(const std::string& name, std::string_view text) const;
   /// Throws InputError where there is no such file.
   void remove(const std::string& name) const;
+  /// A file that was not there, open for writing. Throws InputError where something has that name.
+  [[nodiscard]] Descriptor create(const std::string& name) const;
+  /// As it was given.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Of the folder itself.
+  [[nodiscard]] int descriptor() const { return folder_.get(); }
 
  private:
   std::filesystem::path path_;

@@ -1,43 +1,62 @@
 // RunProgress: how far a run has come, by the log of events that `snug pack --log` writes while it goes on.
 #include "snug/workspace/run_progress.hpp"
 
-#include <algorithm>
 #include <variant>
 
-#include "snug/session/fold.hpp"
+#include "snug/core/text.hpp"
 
 namespace snug::workspace {
 namespace {
-
-bool is_packed(session::ItemEnd end) { return end == session::ItemEnd::Placed || end == session::ItemEnd::Accepted; }
 
 bool is_lost(session::ItemEnd end) { return end == session::ItemEnd::Left || end == session::ItemEnd::Gone; }
 
 }  // namespace
 
-RunProgress progress_of(const session::EventLog& log) {
-  RunProgress progress;
-  for (const session::SessionEvent& one : log.events) {
-    if (const auto* started = std::get_if<session::event::SessionStarted>(&one)) {
-      progress.sequence = started->sequence;
-      progress.agent = started->agent;
-      progress.plant = started->plant;
-      progress.items = static_cast<int>(started->items.size());
-    } else if (const auto* counted = std::get_if<session::event::Counted>(&one)) {
-      progress.planned_percent = counted->planned_percent;
-      progress.time = counted->time;
-    } else if (const auto* ended = std::get_if<session::event::SessionEnded>(&one)) {
-      progress.is_over = true;
-      progress.time = ended->time;
-      progress.failure = ended->text;
-    }
+void ProgressFold::add(const session::SessionEvent& one) {
+  fold_.add(one);
+  if (const auto* started = std::get_if<session::event::SessionStarted>(&one)) {
+    said_.sequence = started->sequence;
+    said_.agent = started->agent;
+    said_.plant = started->plant;
+    said_.items = static_cast<int>(started->items.size());
+  } else if (const auto* counted = std::get_if<session::event::Counted>(&one)) {
+    said_.planned_percent = counted->planned_percent;
+    said_.time = counted->time;
+  } else if (const auto* stopped = std::get_if<session::event::Stopped>(&one)) {
+    said_.stopped = stopped->text;
+  } else if (const auto* ended = std::get_if<session::event::SessionEnded>(&one)) {
+    said_.is_over = true;
+    said_.time = ended->time;
+    said_.failure = ended->text;
   }
-  const session::SessionResult result = session::fold(log.events);
-  progress.done = static_cast<int>(result.items.size());
-  const auto count = [&](auto holds) { return static_cast<int>(std::ranges::count_if(result.items, holds)); };
-  progress.packed = count([](const session::ItemReport& item) { return is_packed(item.end); });
-  progress.lost = count([](const session::ItemReport& item) { return is_lost(item.end); });
+}
+
+RunProgress ProgressFold::progress() const {
+  RunProgress progress = said_;
+  for (const session::ItemReport& item : fold_.result().items) {
+    ++progress.done;
+    progress.packed += item.is_packed() ? 1 : 0;
+    progress.lost += is_lost(item.end) ? 1 : 0;
+    progress.boxes.push_back({item.id, session::name_of(item.end), item.reason, item.is_packed()});
+  }
   return progress;
+}
+
+void LogReader::read(const Folder& folder, const std::string& name) {
+  if (folder.size(name) < offset_) *this = {};  // begun anew
+  const std::string text = folder.read_from(name, offset_);
+  for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    check_utf8(line, name);
+    fold_.add(session::parse_event(line, name, ++lines_));
+    offset_ += line.size() + 1;
+  }
+}
+
+RunProgress progress_of(const session::EventLog& log) {
+  ProgressFold fold;
+  for (const session::SessionEvent& one : log.events) fold.add(one);
+  return fold.progress();
 }
 
 RunProgress read_progress(std::string_view text, const std::string& name) {

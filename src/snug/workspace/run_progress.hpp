@@ -3,10 +3,22 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "snug/session/event_log.hpp"
+#include "snug/session/fold.hpp"
+#include "snug/workspace/folder.hpp"
 
 namespace snug::workspace {
+
+/// An item that came to an end.
+struct BoxProgress {
+  std::string id;
+  std::string end;     ///< as session::name_of() says it
+  std::string reason;  ///< for people, where it is not placed
+  bool is_packed = false;
+  bool operator==(const BoxProgress&) const = default;
+};
 
 struct RunProgress {
   std::string sequence, agent, plant;
@@ -18,8 +30,35 @@ struct RunProgress {
   double time = 0.0;             ///< s, of the plant
   /// The session said its end. False: it goes on, or was killed (`snug pack --resume` goes on with it).
   bool is_over = false;
+  std::string stopped;  ///< why no more items came, for people
   std::string failure;  ///< of a session that is over; empty: none
+  std::vector<BoxProgress> boxes;
   bool operator==(const RunProgress&) const = default;
+};
+
+/// Takes events one by one; the progress so far can be read after each.
+class ProgressFold {
+ public:
+  void add(const session::SessionEvent& one);
+  [[nodiscard]] RunProgress progress() const;
+
+ private:
+  RunProgress said_;  ///< without what the result counts
+  session::ResultFold fold_;
+};
+
+/// A log that grows: reads only what is new.
+class LogReader {
+ public:
+  /// Throws InputError for whole lines that are no events.
+  void read(const Folder& folder, const std::string& name);
+  [[nodiscard]] std::uintmax_t offset() const { return offset_; }
+  [[nodiscard]] RunProgress progress() const { return fold_.progress(); }
+
+ private:
+  std::uintmax_t offset_ = 0;  ///< behind the last whole line
+  int lines_ = 0;
+  ProgressFold fold_;
 };
 
 [[nodiscard]] RunProgress progress_of(const session::EventLog& log);

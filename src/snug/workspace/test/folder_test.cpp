@@ -44,7 +44,7 @@ TEST_F(FolderTest, ListsItsOwnFilesByNameAndLeavesOutAllElse) {
   put(path_ / "b.yaml", "x");
   put(path_ / "a.csv", kOrders);
   put(path_ / "run.jsonl", "");
-  for (const char* other : {".hidden.yaml", "-o.yaml", "a b.csv", "run.h5", "\xff.yaml"}) put(path_ / other, "");
+  for (const char* other : {".hidden.yaml", "-o.yaml", "a b.csv", "run.json", "\xff.yaml"}) put(path_ / other, "");
   fs::create_directory(path_ / "folder.yaml");
   put(top_ / "secret.yaml", "secret");
   fs::create_symlink(top_ / "secret.yaml", path_ / "link.yaml");
@@ -72,7 +72,7 @@ TEST_F(FolderTest, RefusesNamesThatLeadElsewhere) {
                                           "-o.yaml",
                                           ".a.yaml",
                                           "a.yaml.snug-part",
-                                          "a.html",
+                                          "a.htm",
                                           "a\n.yaml",
                                           "a\\b.yaml",
                                           "\xc3\xa4.yaml",

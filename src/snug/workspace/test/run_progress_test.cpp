@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/test/scratch_folder.hpp"
 
 namespace snug::workspace {
 namespace {
@@ -82,6 +84,30 @@ TEST(RunProgress, IsRefusedWithTheLineOfWhatIsNoEvent) {
       EXPECT_TRUE(error.where.starts_with("log:2")) << error.where;
     }
   }
+}
+
+// Read piece by piece, as it grows, it is the same as read at once.
+TEST(LogReader, IsTheSameInPiecesAndBeginsAgainWithAShorterFile) {
+  const test::ScratchFolder scratch;
+  const Folder folder(scratch.path());
+  std::string text;
+  for (const session::SessionEvent& one : small_log().events) text += session::format_event(one) + "\n";
+  LogReader reader;
+  std::ofstream file(scratch / "a.jsonl", std::ios::binary);
+  for (std::size_t at = 0; at < text.size(); at += 37) {
+    file << text.substr(at, 37) << std::flush;
+    reader.read(folder, "a.jsonl");
+    EXPECT_EQ(reader.progress(), read_progress(text.substr(0, at + 37), "a.jsonl")) << at;
+  }
+  EXPECT_EQ(reader.progress(), progress_of(small_log()));
+  EXPECT_EQ(reader.progress().boxes.size(), 2U);
+  file.close();
+  const std::string first = text.substr(0, text.find('\n') + 1);
+  std::ofstream(scratch / "a.jsonl") << first;
+  reader.read(folder, "a.jsonl");
+  EXPECT_EQ(reader.progress(), read_progress(first, "a.jsonl"));
+  std::ofstream(scratch / "a.jsonl", std::ios::app) << "{\"event\":\"nothing\"}\n";
+  EXPECT_THROW(reader.read(folder, "a.jsonl"), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,113 @@
+// Runs: commands `snug pack` as processes of their own, started, watched and stopped; what they leave is in the folder.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "snug/workspace/folder.hpp"
+#include "snug/workspace/run_progress.hpp"
+
+namespace snug::workspace {
+
+inline constexpr int kMostPlants = 100;    ///< of one order, in one request
+inline constexpr int kMostWaiting = 1000;  ///< runs that wait for their turn
+
+/// What is packed, as words of `snug pack`.
+struct RunRequest {
+  std::string name;      ///< of its files: NAME.txt, NAME.jsonl, NAME.h5, NAME.program.csv
+  std::string scenario;  ///< a file of the folder
+  std::string items;     ///< a file of the folder; empty: the scenario's own
+  std::string sequence;
+  std::uint64_t plant_seed = 0;
+  std::optional<double> tempo;  ///< 0.5 to 1
+  std::string resumes;          ///< name of a run that was killed; empty: none
+  int threads = 0;              ///< 0: all cores
+};
+
+/// "snug", "pack", ... for a shell in the folder; each a word of its own.
+[[nodiscard]] std::vector<std::string> command_of(const RunRequest& request);
+/// The words as one line that a shell takes apart in the same way.
+[[nodiscard]] std::string as_shell_line(const std::vector<std::string>& words);
+/// Throws InputError for names that kind_of_name() refuses, numbers out of range, and words that are none.
+void check(const RunRequest& request);
+
+enum class RunState {
+  Waiting,     ///< for its turn
+  Running,     ///< this process or another has it
+  Done,        ///< to its end
+  Failed,      ///< it ended without packing, see RunStatus::message
+  Ended,       ///< before its end: it was killed, and can be resumed
+  NotStarted,  ///< whoever had it waiting has ended
+};
+[[nodiscard]] const char* name_of(RunState state);
+
+struct RunStatus {
+  std::string name;
+  RunState state = RunState::NotStarted;
+  bool can_be_stopped = false;  ///< it is a process of this one
+  std::string command;
+  std::string message;  ///< the last line that it printed about a failure
+  RunProgress progress;
+  std::vector<std::string> files;
+};
+
+/// All may be called from several threads.
+///
+/// A process holds a lock on its NAME.txt while it lives, also when the one that started it was killed: so every
+/// program that looks into the folder can tell what goes on from what was killed.
+class Runs {
+ public:
+  /// `program`: the file of snug; `at_once`: processes, at least 1. The folder must outlive it.
+  Runs(const Folder& folder, std::filesystem::path program, int at_once);
+  /// Interrupts the runs of this process, and waits until they have written their end.
+  ~Runs();
+  Runs(const Runs&) = delete;
+  Runs& operator=(const Runs&) = delete;
+
+  /// Waits for its turn, then runs. Throws InputError for a request that is wrong and a name that is taken.
+  void start(const RunRequest& request);
+  /// It ends after the item at hand; at a second time at once. False: it is no run of this process.
+  bool stop(const std::string& name);
+  /// All its files. Throws InputError for no run, and for one that goes on.
+  void remove(const std::string& name);
+  /// Throws InputError where there is no run of that name.
+  [[nodiscard]] RunStatus status(const std::string& name);
+  /// By name. A run that cannot be read has its state Failed and says why.
+  [[nodiscard]] std::vector<RunStatus> list();
+  /// Makes NAME.html of NAME.h5 with `snug report`, unless it is there and newer. Throws InputError with what the
+  /// command said.
+  void make_report(const std::string& name);
+
+ private:
+  struct Job {
+    std::vector<std::string> words;
+    Descriptor output;  ///< holds the lock until the process has it
+  };
+  void work();
+  /// Runs the words in the folder; their exit code, 128 and more for a signal.
+  int run(const std::vector<std::string>& words, int output, const std::string& name);
+  [[nodiscard]] RunStatus look(const std::string& name, const std::vector<std::string>& files);
+  [[nodiscard]] RunProgress progress_of(const std::string& name);
+
+  const Folder& folder_;
+  const std::filesystem::path program_;
+  std::mutex mutex_, reports_;
+  std::condition_variable changed_;
+  std::deque<std::string> waiting_;
+  std::map<std::string, Job> jobs_;         ///< those that wait
+  std::map<std::string, pid_t> processes_;  ///< those that run
+  std::map<std::string, int> interrupts_;   ///< how often they were told to stop
+  std::map<std::string, LogReader> logs_;
+  bool is_ending_ = false;
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace snug::workspace

@@ -1,0 +1,210 @@
+// Tests of runs with a small script in the place of snug: started in order, watched, stopped, told from killed ones.
+#include "snug/workspace/runs.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "snug/core/input_error.hpp"
+#include "snug/core/read_file.hpp"
+#include "snug/core/test/scratch_folder.hpp"
+
+namespace snug::workspace {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+/// Writes what snug pack does first into its log; then what the order's name says.
+constexpr const char* kScript = R"sh(#!/bin/sh
+echo "in $(pwd)"
+for word in "$@"; do echo "<$word>"; done
+while [ $# -gt 0 ]; do
+  case "$1" in --log) log="$2";; --sequence) sequence="$2";; report) [ "$2" = good.h5 ] && { echo page > good.html; exit 0; }; echo "snug: no recording"; exit 2;; esac
+  shift
+done
+echo '{"event":"session started","sequence":"mine","agent":"a","plant":"p","items":["A","B"],"places_are_chosen":false,"tracking":{"kind":"fast","tempo":1.0}}' > "$log"
+case "$sequence" in
+  killed) kill -9 $$;;
+  wrong) rm "$log"; echo "snug: wrong words"; exit 2;;
+  waits) trap 'echo "snug: interrupted"; echo "{\"event\":\"session ended\",\"time\":1.0,\"failure\":\"none\",\"text\":\"\"}" >> "$log"; exit 1' INT; while true; do sleep 0.02; done;;
+  deaf) trap '' INT; while true; do sleep 0.02; done;;
+esac
+echo '{"event":"session ended","time":1.0,"failure":"none","text":""}' >> "$log"
+)sh";
+
+class RunsTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    program_ = scratch_.path() / "snug";
+    std::ofstream(program_) << kScript;
+    fs::permissions(program_, fs::perms::owner_all);
+    cells_ = scratch_.path() / "cells";
+    fs::create_directory(cells_);
+    std::ofstream(cells_ / "cell.yaml") << "name: cell\n";
+    folder_ = std::make_unique<Folder>(cells_);
+  }
+  static RunRequest request(const std::string& name, const std::string& sequence) {
+    RunRequest one;
+    one.name = name;
+    one.scenario = "cell.yaml";
+    one.sequence = sequence;
+    return one;
+  }
+  static bool wait_until(const std::function<bool()>& holds) {
+    for (int i = 0; i < 500 && !holds(); ++i) std::this_thread::sleep_for(milliseconds(10));
+    return holds();
+  }
+  static bool reaches(Runs& runs, const std::string& name, RunState state) {
+    return wait_until([&] { return runs.status(name).state == state && runs.status(name).progress.items == 2; });
+  }
+
+  test::ScratchFolder scratch_;
+  fs::path program_, cells_;
+  std::unique_ptr<Folder> folder_;
+};
+
+TEST_F(RunsTest, StartTheCommandThatIsShownInTheFolder) {
+  Runs runs(*folder_, program_, 1);
+  RunRequest one = request("a", "it's $(mine)");
+  one.tempo = 0.85;
+  runs.start(one);
+  ASSERT_TRUE(reaches(runs, "a", RunState::Done));
+  const RunStatus status = runs.status("a");
+  EXPECT_EQ(status.command,
+            "snug pack cell.yaml --sequence 'it'\\''s $(mine)' --plant-seed 0 --tempo 0.85 --log a.jsonl --program "
+            "a.program.csv -o a.h5");
+  const std::string said = read_file(cells_ / "a.txt", "what it printed");
+  EXPECT_NE(said.find("in " + fs::canonical(cells_).string() + "\n<pack>\n<cell.yaml>\n<--sequence>\n<it's $(mine)>\n"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(status.files, (std::vector<std::string>{"a.jsonl", "a.txt"}));
+  EXPECT_THROW(runs.start(one), InputError);  // the name is taken
+  runs.remove("a");
+  EXPECT_THROW((void)runs.status("a"), InputError);
+  EXPECT_EQ(folder_->list().size(), 1U);
+}
+
+TEST_F(RunsTest, WaitForTheirTurnAndStopWhenTold) {
+  Runs runs(*folder_, program_, 1);
+  runs.start(request("a", "waits"));
+  runs.start(request("b", "mine"));
+  runs.start(request("c", "mine"));
+  ASSERT_TRUE(reaches(runs, "a", RunState::Running));
+  EXPECT_EQ(runs.status("b").state, RunState::Waiting);
+  EXPECT_THROW(runs.remove("b"), InputError);
+  EXPECT_TRUE(runs.stop("b"));
+  EXPECT_EQ(runs.status("b").state, RunState::Failed);
+  EXPECT_EQ(runs.status("b").message, "stopped before it began");
+  EXPECT_TRUE(runs.stop("a"));
+  EXPECT_TRUE(reaches(runs, "a", RunState::Done));
+  EXPECT_EQ(runs.status("a").message, "interrupted");
+  EXPECT_TRUE(reaches(runs, "c", RunState::Done));
+  EXPECT_FALSE(runs.stop("c"));
+  EXPECT_EQ(runs.list().size(), 3U);
+}
+
+TEST_F(RunsTest, EndAtOnceWhenToldTwice) {
+  Runs runs(*folder_, program_, 1);
+  runs.start(request("a", "deaf"));
+  ASSERT_TRUE(reaches(runs, "a", RunState::Running));
+  EXPECT_TRUE(runs.stop("a"));
+  EXPECT_TRUE(runs.stop("a"));
+  EXPECT_TRUE(reaches(runs, "a", RunState::Ended));
+}
+
+TEST_F(RunsTest, TellWhatGoesOnElsewhereFromWhatWasKilled) {
+  Runs runs(*folder_, program_, 2), other(*folder_, program_, 1);
+  runs.start(request("a", "waits"));
+  runs.start(request("k", "killed"));
+  runs.start(request("w", "wrong"));
+  ASSERT_TRUE(reaches(other, "a", RunState::Running));
+  EXPECT_FALSE(other.status("a").can_be_stopped);
+  EXPECT_FALSE(other.stop("a"));
+  EXPECT_THROW(other.remove("a"), InputError);
+  EXPECT_TRUE(reaches(other, "k", RunState::Ended));
+  EXPECT_TRUE(wait_until([&] { return other.status("w").state == RunState::Failed; }));
+  EXPECT_EQ(other.status("w").message, "wrong words");
+  EXPECT_TRUE(runs.stop("a"));
+  EXPECT_TRUE(reaches(other, "a", RunState::Done));
+}
+
+TEST_F(RunsTest, AreInterruptedWhenTheirOwnerEnds) {
+  auto runs = std::make_unique<Runs>(*folder_, program_, 1);
+  runs->start(request("a", "waits"));
+  runs->start(request("b", "mine"));
+  ASSERT_TRUE(reaches(*runs, "a", RunState::Running));
+  runs.reset();
+  Runs after(*folder_, program_, 1);
+  EXPECT_EQ(after.status("a").state, RunState::Done);
+  EXPECT_EQ(after.status("b").state, RunState::NotStarted);
+  EXPECT_NE(after.status("b").command, "");
+}
+
+TEST_F(RunsTest, MakeReportsOfRecordingsAndSayWhyNot) {
+  Runs runs(*folder_, program_, 1);
+  EXPECT_THROW(runs.make_report("good"), InputError);
+  std::ofstream(cells_ / "good.h5") << "x";
+  std::ofstream(cells_ / "bad.h5") << "x";
+  runs.make_report("good");
+  EXPECT_EQ(folder_->read("good.html"), "page\n");
+  try {
+    runs.make_report("bad");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.got, "no recording");
+  }
+  fs::remove(cells_ / "good.html");
+  fs::create_symlink(scratch_.path() / "outside.html", cells_ / "good.html");
+  EXPECT_THROW(runs.make_report("good"), InputError);
+  EXPECT_FALSE(fs::exists(scratch_.path() / "outside.html"));
+}
+
+TEST_F(RunsTest, RefuseWhatIsNoNameAndNoWord) {
+  Runs runs(*folder_, program_, 1);
+  fs::create_symlink("/etc/hostname", cells_ / "link.yaml");
+  const std::vector<std::function<void(RunRequest&)>> wrongs = {
+      [](RunRequest& one) { one.name = ""; },
+      [](RunRequest& one) { one.name = "../a"; },
+      [](RunRequest& one) { one.name = "-a"; },
+      [](RunRequest& one) { one.name = std::string(100, 'a'); },
+      [](RunRequest& one) { one.scenario = "../cell.yaml"; },
+      [](RunRequest& one) { one.scenario = "link.yaml"; },
+      [](RunRequest& one) { one.scenario = "a.csv"; },
+      [](RunRequest& one) { one.scenario = "none.yaml"; },
+      [](RunRequest& one) { one.items = "cell.yaml"; },
+      [](RunRequest& one) { one.sequence = ""; },
+      [](RunRequest& one) { one.sequence = "--agent"; },
+      [](RunRequest& one) { one.sequence = "a\nb"; },
+      [](RunRequest& one) { one.sequence = std::string("a\0b", 3); },
+      [](RunRequest& one) { one.sequence = "\xff"; },
+      [](RunRequest& one) { one.tempo = 0.4; },
+      [](RunRequest& one) { one.tempo = std::numeric_limits<double>::quiet_NaN(); },
+      [](RunRequest& one) { one.resumes = "../a"; }};
+  for (std::size_t i = 0; i < wrongs.size(); ++i) {
+    SCOPED_TRACE(i);
+    RunRequest one = request("a", "mine");
+    wrongs[i](one);
+    EXPECT_THROW(runs.start(one), InputError);
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(cells_), {}), 2);
+}
+
+// A second opinion: the shell itself.
+TEST(ShellLine, IsTakenApartIntoTheSameWords) {
+  const std::vector<std::string> words = {"printf", "<%s>", "a b", "it's", "$HOME", "`id`",
+                                          "",       "*",    "\\",  "\"",   "a\nb",  "-x"};
+  const std::unique_ptr<FILE, int (*)(FILE*)> shell(::popen(as_shell_line(words).c_str(), "r"), ::pclose);
+  std::array<char, 400> said{};
+  const std::size_t count = std::fread(said.data(), 1, said.size(), shell.get());
+  EXPECT_EQ(std::string(said.data(), count), "<a b><it's><$HOME><`id`><><*><\\><\"><a\nb><-x>");
+}
+
+}  // namespace
+}  // namespace snug::workspace

@@ -1,0 +1,149 @@
+// Tests of the interface of `snug ui`: right requests, wrong ones, and random ones; nothing outside the folder is read.
+#include "snug/workspace/service.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "snug/core/read_file.hpp"
+#include "snug/core/rng.hpp"
+#include "snug/core/test/scratch_folder.hpp"
+
+namespace snug::workspace {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kTwoOrders =
+    "order,article,length_mm,width_mm,height_mm,mass_kg,count\nmine,A,200,150,100,0.5,1\nyours,B,180,120,90,0.4,2\n";
+
+class ServiceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    cells_ = scratch_.path() / "cells";
+    fs::create_directory(cells_);
+    std::ofstream(scratch_.path() / "secret.yaml") << "secret";
+    const fs::path init = fs::path(SNUG_SOURCE_DIR) / "scenarios/init/cell.yaml";
+    cell_ = read_file(init, "a scenario");
+    // A program that does nothing: runs are not what is tested here.
+    service_ = std::make_unique<Service>(ServiceSettings{cells_, "/bin/true", "1.0", {{"cell", "a cell", init}}, 1});
+  }
+  [[nodiscard]] serve::ApiAnswer ask(const std::string& method, const std::string& path, const std::string& body = "") {
+    return service_->answer({method, "/api/1/" + path, body});
+  }
+  [[nodiscard]] Json json(const std::string& method, const std::string& path, const std::string& body = "",
+                          int status = 200) {
+    const serve::ApiAnswer answer = ask(method, path, body);
+    EXPECT_EQ(answer.status, status) << path << ": " << answer.body;
+    return Json::parse(answer.body);
+  }
+
+  test::ScratchFolder scratch_;
+  fs::path cells_;
+  std::string cell_;
+  std::unique_ptr<Service> service_;
+};
+
+TEST_F(ServiceTest, WritesAndListsScenariosAndItems) {
+  EXPECT_EQ(json("GET", "templates/cell")["text"], cell_);
+  EXPECT_EQ(json("PUT", "files/a.yaml", cell_)["facts"]["sequences"], Json({"first"}));
+  const Json items = json("PUT", "files/b.csv", kTwoOrders)["facts"];
+  EXPECT_EQ(items["sequences"], Json({"mine", "yours"}));
+  EXPECT_EQ(items["lines"][1]["count"], 2);
+  EXPECT_NEAR(items["lines"][0]["size_mm"][0].get<double>(), 200.0, 1e-9);
+  const Json folder = json("GET", "folder");
+  EXPECT_EQ(folder["scenarios"][0]["name"], "a.yaml");
+  EXPECT_EQ(folder["items"][0]["name"], "b.csv");
+  EXPECT_EQ(json("GET", "facts/a.yaml")["facts"]["containers"][0]["name"], "tote");
+  EXPECT_EQ(ask("GET", "files/a.yaml").body, cell_);
+  EXPECT_EQ(ask("GET", "files/a.yaml").attachment, "a.yaml");
+  (void)json("DELETE", "files/a.yaml");
+  EXPECT_FALSE(fs::exists(cells_ / "a.yaml"));
+}
+
+TEST_F(ServiceTest, TellsMistakesWithTheirLineAndKeepsWhatWasThere) {
+  (void)json("PUT", "files/a.yaml", cell_);
+  const std::string wrong = "name: x\nsteps: 3\n";
+  const Json mistake = json("POST", "check/a.yaml", wrong)["mistake"];
+  EXPECT_EQ(mistake["line"], 2);
+  EXPECT_EQ(mistake["key"], "steps");
+  EXPECT_EQ(json("PUT", "files/a.yaml", wrong, 422)["mistake"]["line"], 2);
+  EXPECT_EQ(ask("GET", "files/a.yaml").body, cell_);
+  EXPECT_EQ(json("POST", "check/b.csv", std::string(kTwoOrders) + "mine,C,x,1,1,1,1\n")["mistake"]["line"], 4);
+}
+
+TEST_F(ServiceTest, ShowsCommandsAndStartsThemOncePerPlant) {
+  (void)json("PUT", "files/a.yaml", cell_);
+  const std::string request = R"({"name":"r","scenario":"a.yaml","sequence":"first","plants":2,"plant_seed":7})";
+  const Json shown = json("POST", "commands", request);
+  EXPECT_TRUE(json("GET", "folder")["runs"].empty());
+  EXPECT_EQ(json("POST", "runs", request, 201), shown);
+  EXPECT_EQ(shown["runs"][1]["command"],
+            "snug pack a.yaml --sequence first --plant-seed 8 --threads 1 --log r-2.jsonl --program r-2.program.csv -o "
+            "r-2.h5");
+  EXPECT_EQ(json("GET", "runs/r-2")["command"], shown["runs"][1]["command"]);
+  const serve::ApiAnswer events = ask("GET", "runs/r-1/events");
+  ASSERT_TRUE(events.next);
+  EXPECT_TRUE(events.next()->starts_with("event: status\ndata: {\"name\":\"r-1\""));
+  int pieces = 0;
+  while (events.next() && pieces < 50) ++pieces;
+  EXPECT_LT(pieces, 50);  // the stream ends with the run
+}
+
+TEST_F(ServiceTest, RefusesRequestsThatAreWrong) {
+  for (const char* body :
+       {"", "[]", "{", "nul", "{\"name\":1}", "{\"plants\":-1}", "{\"plants\":0}", "{\"plants\":101}",
+        "{\"plants\":1.5}", "{\"plants\":1e99}", "{\"agent\":\"x\"}",
+        "{\"name\":\"r\",\"scenario\":\"a.yaml\",\"sequence\":\"--agent\"}", "{\"tempo\":\"fast\"}",
+        "{\"name\":\"r\",\"plant_seed\":18446744073709551615}", "\xff\xfe", "{\"name\":\"\\u0000\"}"}) {
+    EXPECT_EQ(ask("POST", "runs", body).status, 422) << body;
+  }
+  std::string deep = "{\"name\":";
+  deep.append(60000, '[');
+  EXPECT_EQ(ask("POST", "runs", deep).status, 422);
+  for (const char* path :
+       {"", "nothing", "files", "runs/a/b/c", "files/a/b", "templates/none", "templates/../cell", "../2/folder"}) {
+    EXPECT_EQ(ask("GET", path).status, 404) << path;
+  }
+  EXPECT_EQ(service_->answer({"GET", "/api/2/folder", ""}).status, 404);
+  for (const char* path :
+       {"files/../secret.yaml", "files/..", "files/", "facts/secret", "runs/..", "runs//report", "runs/-o/report"})
+    EXPECT_GE(ask("GET", path).status, 400) << path;
+  fs::create_symlink(scratch_.path() / "secret.yaml", cells_ / "link.yaml");
+  fs::create_symlink(scratch_.path() / "secret.yaml", cells_ / "link.html");
+  EXPECT_EQ(ask("GET", "files/link.yaml").body.find("secret\""), std::string::npos);
+  EXPECT_EQ(ask("GET", "files/link.yaml").status, 422);
+  EXPECT_EQ(ask("GET", "files/link.html").status, 422);
+  EXPECT_EQ(ask("PUT", "files/link.yaml", cell_).status, 422);
+}
+
+TEST_F(ServiceTest, AnswersRandomRequestsWithoutLeavingTheFolder) {
+  (void)json("PUT", "files/a.yaml", cell_);
+  Rng rng(11);
+  const std::vector<std::string> words = {"files",  "runs",   "check", "facts", "templates",  "folder", "commands",
+                                          "a.yaml", "a",      "..",    ".",     "",           "%2e%2e", "stop",
+                                          "events", "report", "\n",    "\xff",  "secret.yaml"};
+  const std::vector<std::string> methods = {"GET", "POST", "PUT", "DELETE", "PATCH", ""};
+  const auto any = [&](const std::vector<std::string>& of) {
+    return of[static_cast<std::size_t>(rng.index(static_cast<int>(of.size())))];
+  };
+  for (int i = 0; i < 3000; ++i) {
+    std::string path = any(words);
+    for (int k = rng.index(4); k > 0; --k) path += "/" + any(words);
+    std::string body = any(words);
+    for (int k = rng.index(20); k > 0; --k) body += static_cast<char>(rng.index(256));
+    const serve::ApiAnswer answer = ask(any(methods), path, body);
+    EXPECT_TRUE(answer.status == 200 || (answer.status >= 404 && answer.status <= 422)) << answer.status << " " << path;
+    if (answer.type == "application/json" && !answer.next) {
+      EXPECT_TRUE(Json::accept(answer.body)) << path;
+    }
+  }
+  EXPECT_EQ(read_file(scratch_.path() / "secret.yaml", "a file"), "secret");
+  EXPECT_EQ(std::distance(fs::directory_iterator(scratch_.path()), {}), 2);
+}
+
+}  // namespace
+}  // namespace snug::workspace
