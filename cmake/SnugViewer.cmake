@@ -1,4 +1,4 @@
-# snug_embed_viewer(target source): builds the page of viewer/ into the build folder and has `source` of `target` embed it.
+# snug_embed_viewer(target sources...): builds the pages of viewer/ into the build folder and has the sources of `target` embed them.
 #
 # npm only runs the build here; its packages are fetched by the set-up step (`make setup`), never by configuring or
 # building: at most these wait for it. With SNUG_VIEWER off the program is built without the page and says so when it is needed.
@@ -23,6 +23,7 @@ function(snug_viewer_page)
   file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${viewer}/src/*)
   file(GLOB settings CONFIGURE_DEPENDS ${viewer}/*.json ${viewer}/*.html ${viewer}/*.ts ${viewer}/*.mjs)
   add_custom_command(OUTPUT ${page}
+    BYPRODUCTS ${PROJECT_BINARY_DIR}/viewer/workspace.html ${PROJECT_BINARY_DIR}/viewer/workspace.js ${PROJECT_BINARY_DIR}/viewer/workspace.css
     COMMAND ${PROJECT_SOURCE_DIR}/scripts/build-viewer.sh ${PROJECT_BINARY_DIR}/viewer
     DEPENDS ${inputs} ${settings}
     COMMENT "Building the viewer's page"
@@ -30,8 +31,8 @@ function(snug_viewer_page)
   add_custom_target(snug_viewer_page DEPENDS ${page})
 endfunction()
 
-function(snug_embed_viewer target source)
-  add_library(snug_viewer_embedded OBJECT ${source})
+function(snug_embed_viewer target)
+  add_library(snug_viewer_embedded OBJECT ${ARGN})
   target_include_directories(snug_viewer_embedded PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
   snug_compile_options(snug_viewer_embedded)
   # A compiler cache does not see the page behind the assembler's .incbin: it would bring back an old one.
@@ -42,6 +43,6 @@ function(snug_embed_viewer target source)
   endif()
   snug_viewer_page()
   add_dependencies(snug_viewer_embedded snug_viewer_page)
-  set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${SNUG_VIEWER_PAGE}
-    COMPILE_DEFINITIONS "SNUG_VIEWER_PAGE=\"${SNUG_VIEWER_PAGE}\"")
+  set_source_files_properties(${ARGN} PROPERTIES OBJECT_DEPENDS ${SNUG_VIEWER_PAGE}
+    COMPILE_DEFINITIONS "SNUG_VIEWER_PAGE=\"${SNUG_VIEWER_PAGE}\";SNUG_WORKSPACE_FOLDER=\"${PROJECT_BINARY_DIR}/viewer\"")
 endfunction()

@@ -22,7 +22,7 @@ SNUG_LONG = bool(os.environ.get("SNUG_LONG"))
 WAIT = 3600.0 if SNUG_LONG else LONG
 
 # Of these the beginning is enough: minutes of computing, or servers that end with Ctrl-C.
-LONG_COMMANDS = re.compile(r"snug (bench|view|compare|study examples|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
+LONG_COMMANDS = re.compile(r"snug (bench|view|ui|compare|study examples|identify (damping|stiffness .*(21|errors))|picture .*--video|simulate .*--monte-carlo|"
                            r"pack .*--monte-carlo|pack (?!.*(small\.csv|kitchen\.h5|my-cell)))")
 # Not commands of snug: shells, other programs, and places of the reader's own machine.
 # `--slurm` submits jobs to a scheduler, which a test of studies has of its own; the rest is not of this program.

@@ -29,6 +29,7 @@
 #include "apps/snug/shake/shake.hpp"
 #include "apps/snug/simulate/simulate.hpp"
 #include "apps/snug/study/study.hpp"
+#include "apps/snug/ui/ui.hpp"
 #include "apps/snug/validate/validate.hpp"
 #include "apps/snug/view/view.hpp"
 
@@ -48,6 +49,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_keys(app, action);
   add_report(app, action);
   add_view(app, action);
+  add_ui(app, action);
   add_plot(app, action);
   add_picture(app, action);
   add_export(app, action);

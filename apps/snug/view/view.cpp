@@ -44,7 +44,7 @@ int view_recordings(const ViewOptions& options) {
   }
   serve::Server server(options.server, std::move(content));
   const StopSignal signal([&] { server.stop(); });
-  announce(server, options.opens_browser);
+  announce(server.address(), options.opens_browser);
   server.run();
   return kSuccess;
 }
@@ -117,7 +117,7 @@ int view_live(const ViewOptions& options) {
   });
   simulation.start([&] { server.stop(); });
   while (!live.wait_for(0, std::chrono::milliseconds(200)) && !live.is_over()) continue;  // bad input shows here
-  if (!live.is_over() || live.whole_form()) announce(server, options.opens_browser);
+  if (!live.is_over() || live.whole_form()) announce(server.address(), options.opens_browser);
   server.run();
   const runs::RunResult& result = simulation.result();
   print(format_table(result));
@@ -128,9 +128,9 @@ int view_live(const ViewOptions& options) {
 
 }  // namespace
 
-void announce(const serve::Server& server, bool opens_browser) {
-  std::fprintf(stderr, "snug: showing at %s (Ctrl-C ends it)\n", server.address().c_str());
-  if (opens_browser) open_browser(server.address());
+void announce(const std::string& address, bool opens_browser) {
+  std::fprintf(stderr, "snug: showing at %s (Ctrl-C ends it)\n", address.c_str());
+  if (opens_browser) open_browser(address);
 }
 
 int run_view(const ViewOptions& options) {

@@ -27,7 +27,7 @@ struct ViewOptions {
 
 void add_view(CLI::App& app, Action& action);
 /// Says on stderr where the page is, and opens it.
-void announce(const serve::Server& server, bool opens_browser);
+void announce(const std::string& address, bool opens_browser);
 /// Serves until the program is told to stop (Ctrl-C).
 [[nodiscard]] int run_view(const ViewOptions& options);
 

@@ -101,7 +101,7 @@ int view_served(const ViewOptions& options) {
     if (!trouble.empty())
       std::fprintf(stderr, "snug: the cell is seen no more: %s\n", printable(trouble, kLongestMessage).c_str());
   });
-  announce(server, options.opens_browser);
+  announce(server.address(), options.opens_browser);
   server.run();
   looking.join();
   return trouble.empty() ? kSuccess : kRunFailed;

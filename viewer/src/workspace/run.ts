@@ -1,0 +1,151 @@
+// Run: what is packed with what, as the command that does it; its progress while it goes on; all runs of the folder.
+
+import { api, isGoingOn, type RunRequest, type RunStatus } from "./api";
+import { action, field, later, make, numberInput, setChoices, table, textInput } from "./dom";
+import type { Shell } from "./shell";
+
+const MOST_SHOWN = 300; // runs in the list
+
+/** In a few words: how far, or how it ended. */
+export function describe(run: RunStatus): string {
+  const counts = run.items > 0 ? `${run.packed} of ${run.items} packed, ${run.percent.toFixed(1)} % full` : "";
+  if (run.state === "ended early") return `${counts}; it was killed, and can be resumed`;
+  if (run.state === "not started") return "the program that would have started it has ended";
+  return [counts, run.lost > 0 ? `${run.lost} lost` : "", run.state === "running" ? "" : run.message || run.stopped].filter(Boolean).join("; ");
+}
+
+export function makeRun(shell: Shell): { element: HTMLElement; refresh(): void } {
+  const scenario = make("select");
+  const items = make("select");
+  const sequence = make("select");
+  const plants = numberInput(1, 1, 100, 1);
+  const seed = numberInput(1, 0, 1e9, 1);
+  const tempo = make("select");
+  setChoices(tempo, [["", "1 (full speed)"], ["0.9", "0.9"], ["0.8", "0.8"], ["0.7", "0.7"], ["0.6", "0.6"], ["0.5", "0.5"]]);
+  const name = textInput("run-1");
+  const command = make("pre", "command");
+  const live = make("div", "live");
+  live.setAttribute("role", "status");
+  const list = make("div", "scroll");
+  let watched: EventSource | null = null;
+  let isNameTyped = false;
+
+  const request = (): RunRequest => ({
+    name: name.value.trim(), scenario: scenario.value, items: items.value, sequence: sequence.value,
+    plants: plants.valueAsNumber, plant_seed: seed.valueAsNumber, tempo: tempo.value ? Number(tempo.value) : null, resumes: "",
+  });
+
+  function freeName(): string {
+    const taken = (stem: string): boolean => shell.folder.runs.some((run) => run.name === stem || run.name.startsWith(`${stem}-`));
+    let k = 1;
+    while (taken(`run-${k}`)) ++k;
+    return `run-${k}`;
+  }
+
+  async function preview(): Promise<void> {
+    if (!scenario.value) return void (command.textContent = "Save a cell first.");
+    try {
+      const found = await api.commands(request());
+      command.textContent = found.runs.map((run) => run.command).join("\n");
+    } catch (error) {
+      command.textContent = shell.say(error);
+    }
+  }
+
+  async function loadSequences(): Promise<void> {
+    const from = items.value || scenario.value;
+    const checked = from ? await shell.attempt(() => api.facts(from)) : undefined;
+    setChoices(sequence, (checked?.facts?.sequences ?? []).map((one): [string, string] => [one, one]));
+    await preview();
+  }
+
+  function showLive(run: RunStatus): void {
+    const bar = make("progress");
+    bar.max = Math.max(1, run.items);
+    bar.value = run.done;
+    bar.setAttribute("aria-label", "Boxes done");
+    const boxes = make("ol", "box-list", ...(run.boxes ?? []).map((box) =>
+      make("li", box.packed ? "" : "bad", make("b", "", box.id), ` ${box.end}${box.reason ? `: ${box.reason}` : ""}`)));
+    const buttons = make("div", "bar");
+    if (isGoingOn(run) && run.can_be_stopped) buttons.append(action("Stop", async () => void (await shell.attempt(() => api.stop(run.name)))));
+    if (isGoingOn(run) && !run.can_be_stopped) buttons.append("Another program started this run: it can be stopped there.");
+    live.replaceChildren(make("h2", "", `${run.name}: ${run.state}`), make("p", "", describe(run)), bar, boxes, buttons, make("pre", "command", run.command));
+  }
+
+  function watch(which: string): void {
+    watched?.close();
+    const source = api.events(which);
+    watched = source;
+    source.addEventListener("status", (event) => {
+      const run = JSON.parse((event as MessageEvent<string>).data) as RunStatus;
+      showLive(run);
+      if (isGoingOn(run)) return;
+      source.close(); // it would ask again and again
+      void shell.refresh();
+    });
+  }
+
+  async function start(wanted: RunRequest): Promise<void> {
+    const started = await shell.attempt(() => api.start(wanted));
+    if (!started) return;
+    shell.tell(`${started.runs.map((run) => run.name).slice(0, 3).join(", ")} started.`);
+    isNameTyped = false;
+    watch(started.runs[0]!.name);
+    await shell.refresh();
+  }
+
+  /** The words of the command that was killed, with its log to go on from. */
+  async function resume(run: RunStatus): Promise<void> {
+    const word = (option: string): string => new RegExp(`${option} (?:'([^']*)'|(\\S+))`).exec(run.command)?.slice(1).find(Boolean) ?? "";
+    const of = /^snug pack (\S+)/.exec(run.command)?.[1] ?? "";
+    await start({ name: `${run.name}-resumed`, scenario: of, items: word("--items"), sequence: word("--sequence"), plants: 1,
+      plant_seed: Number(word("--plant-seed")), tempo: word("--tempo") ? Number(word("--tempo")) : null, resumes: run.name });
+  }
+
+  function showList(): void {
+    const runs = shell.folder.runs;
+    const rows = runs.slice(0, MOST_SHOWN).map((run) => {
+      const buttons = make("span", "buttons", action("Show", () => watch(run.name)));
+      if (isGoingOn(run)) {
+        if (run.can_be_stopped) buttons.append(action("Stop", async () => void (await shell.attempt(() => api.stop(run.name)))));
+      } else {
+        if (run.state === "ended early" && run.command) buttons.append(action("Resume", () => resume(run)));
+        buttons.append(action("Remove", async () => {
+          if (!window.confirm(`Remove ${run.files.join(", ")}?`)) return;
+          if (await shell.attempt(() => api.removeRun(run.name))) await shell.refresh();
+        }));
+      }
+      return [run.name, run.state, describe(run), buttons];
+    });
+    list.replaceChildren(runs.length === 0 ? make("p", "", "There are no runs yet.") : table(["Run", "State", "Boxes", "Actions"], rows, "runs"));
+    if (runs.length > MOST_SHOWN) list.append(make("p", "", `${runs.length - MOST_SHOWN} more runs are not shown.`));
+  }
+
+  for (const select of [scenario, items]) select.addEventListener("change", () => void loadSequences());
+  const changed = later(200, () => void preview());
+  for (const input of [plants, seed, name]) input.addEventListener("input", changed);
+  for (const select of [sequence, tempo]) select.addEventListener("change", changed);
+  name.addEventListener("input", () => (isNameTyped = true));
+
+  let known = "";
+  const element = make("section", "page",
+    make("div", "bar", field("Cell", scenario), field("Items", items), field("Order", sequence)),
+    make("div", "bar", field("Plants", plants), field("First plant seed", seed), field("Tempo", tempo), field("Name of the run", name),
+      action("Start", () => start(request()), "main")),
+    make("p", "hint", "What Start does, as a command in the folder:"), command, live, make("h2", "", "Runs of the folder"), list);
+  return {
+    element,
+    refresh: () => {
+      setChoices(scenario, shell.folder.scenarios.map((one): [string, string] => [one.name, one.name]), shell.chosen.scenario);
+      setChoices(items, [["", "those of the cell"], ...shell.folder.items.map((one): [string, string] => [one.name, one.name])], shell.chosen.items);
+      shell.chosen = {};
+      if (!isNameTyped) name.value = freeName();
+      showList();
+      const now = [scenario.value, items.value, name.value].join("\n");
+      if (now !== known) void loadSequences();
+      known = now;
+      const going = shell.folder.runs.find(isGoingOn);
+      if (going && (!watched || watched.readyState === EventSource.CLOSED)) watch(going.name);
+    },
+  };
+}

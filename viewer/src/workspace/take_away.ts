@@ -1,0 +1,51 @@
+// Take away: what a run left, to open or to store, and the commands that make more of it.
+
+import { api, isGoingOn } from "./api";
+import { field, link, make, setChoices } from "./dom";
+import type { Shell } from "./shell";
+
+const FILES: [ending: string, text: string][] = [
+  [".h5", "Recording (HDF5)"],
+  [".program.csv", "Program (waypoints, CSV)"],
+  [".jsonl", "Log of events (JSON lines)"],
+  [".txt", "Command and what it printed"],
+];
+
+export function makeTakeAway(shell: Shell): { element: HTMLElement; refresh(): void } {
+  const which = make("select");
+  const place = make("div");
+
+  function show(): void {
+    const run = shell.folder.runs.find((one) => one.name === which.value);
+    if (!run) return place.replaceChildren(make("p", "", "There is no run yet."));
+    const has = (ending: string): boolean => run.files.includes(run.name + ending);
+    const links = make("ul", "links");
+    if (has(".h5") && !isGoingOn(run)) links.append(make("li", "", link("Open the report", api.reportAddress(run.name)), " (made when it is first opened)"));
+    if (has(".html")) links.append(make("li", "", link("Store the report", api.fileAddress(`${run.name}.html`), `${run.name}.html`)));
+    for (const [ending, text] of FILES) {
+      if (has(ending)) links.append(make("li", "", link(text, api.fileAddress(run.name + ending), run.name + ending)));
+    }
+    // As words of a shell: the files' names have no letters that would need quotes.
+    const scenario = /^snug pack (\S+)/.exec(run.command)?.[1] ?? "cell.yaml";
+    const more = [" --items", " --sequence"].map((option) => new RegExp(`${option} ('[^']*'|\\S+)`).exec(run.command)?.[0] ?? "").join("");
+    const program = `${run.name}.program.csv --scenario ${scenario}${more}`;
+    const commands = [
+      `snug report ${run.name}.h5 -o ${run.name}.html`,
+      `snug export ${run.name}.h5 --format mcap -o ${run.name}.mcap`,
+      `snug export ${program} --format urscript -o ${run.name}.script`,
+      `snug export ${program} --format ros-trajectory -o ${run.name}.ros.yaml`,
+    ];
+    place.replaceChildren(links, make("h2", "", "Commands in the folder"), make("pre", "command", commands.join("\n")),
+      make("p", "hint", "URScript and ROS trajectories need a cell with a robot."));
+  }
+
+  which.addEventListener("change", show);
+  const element = make("section", "page", make("div", "bar", field("Run", which)), place);
+  return {
+    element,
+    refresh: () => {
+      setChoices(which, shell.folder.runs.map((run): [string, string] => [run.name, `${run.name} (${run.state})`]));
+      show();
+    },
+  };
+}

@@ -1,0 +1,179 @@
+// The page of `snug ui` in Chromium, with the program behind it: by visible labels alone, as a person would.
+
+import type { ChildProcess } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import type { Browser, Page } from "playwright-core";
+import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
+import { openBrowser } from "../support/browser";
+import { serveWith } from "../support/program";
+
+const ORDERS = "order,article,length_mm,width_mm,height_mm,mass_kg\nmine,<img src=x onerror=alert(1)>,180,120,90,0.4\nmine,B,150,120,90,0.3\n";
+
+let browser: Browser;
+let folder = "";
+let child: ChildProcess | null = null;
+let address = "";
+const errors: string[] = [];
+
+async function serve(): Promise<void> {
+  ({ child, address } = await serveWith("ui", folder, "--no-open"));
+}
+
+async function end(signal: NodeJS.Signals): Promise<void> {
+  const ended = new Promise((resolve) => child!.once("exit", resolve));
+  child!.kill(signal);
+  await ended;
+  child = null;
+}
+
+async function openPage(width = 1280, height = 720): Promise<Page> {
+  const context = await browser.newContext({ viewport: { width, height } });
+  const page = await context.newPage();
+  page.on("pageerror", (error) => errors.push(error.message));
+  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  page.on("request", (request) => !/^(blob|data):/.test(request.url()) && !request.url().startsWith(new URL(address).origin) && errors.push(request.url()));
+  page.on("dialog", (dialog) => void dialog.accept());
+  await page.goto(address);
+  await page.waitForFunction(() => (window as unknown as { snugReady?: boolean }).snugReady === true);
+  return page;
+}
+
+const ask = (path: string, init: RequestInit = {}): Promise<Response> => fetch(new URL(path, address), init);
+/** With the token, as the page has it in its cookie. */
+const askKnown = (path: string, init: RequestInit = {}): Promise<Response> => fetch(`${new URL(path, address)}${new URL(address).search}`, init);
+
+beforeAll(async () => {
+  folder = mkdtempSync(join(tmpdir(), "snug-ui-"));
+  browser = await openBrowser();
+  await serve();
+});
+afterEach(() => void errors.splice(0));
+afterAll(async () => {
+  await browser?.close();
+  if (child) await end("SIGTERM");
+  rmSync(folder, { recursive: true, force: true });
+});
+
+describe("the page of snug ui", () => {
+  it("leads from nothing to the first packed own order by its labels", async () => {
+    const page = await openPage();
+    let actions = 0;
+    const click = async (role: "button" | "tab", name: string): Promise<void> => {
+      ++actions;
+      await page.getByRole(role, { name, exact: true }).click();
+    };
+    const shows = (text: string | RegExp): Promise<void> => page.getByText(text).first().waitFor();
+
+    ++actions;
+    await page.getByLabel("Choose a CSV").setInputFiles({ name: "my orders (1).csv", mimeType: "text/csv", buffer: Buffer.from(ORDERS.replace("180", "18x")) });
+    await shows(/length_mm/);
+    expect(await page.locator("tr.bad").innerText()).toContain("18x");
+    ++actions;
+    await page.getByLabel("Text of the items").fill(ORDERS);
+    await shows("2 boxes; orders: mine");
+    await click("button", "Save items");
+    await shows("my-orders-1-.csv is saved.");
+    await page.screenshot({ path: "test/out/workspace-items.png" });
+
+    await click("tab", "Cell");
+    await click("button", "Begin from the template");
+    await shows(/This cell can be used/);
+    ++actions;
+    await page.getByLabel("Container height in mm").fill("180");
+    await page.waitForFunction(() => document.querySelector("textarea.tall") !== null && (document.querySelector("textarea.tall") as HTMLTextAreaElement).value.includes("[0.4, 0.3, 0.18]"));
+    await click("button", "Save cell");
+    await shows("cell.yaml is saved.");
+    await page.screenshot({ path: "test/out/workspace-cell.png" });
+
+    await click("tab", "Run");
+    await shows(/snug pack cell.yaml --items my-orders-1-.csv --sequence mine --plant-seed 1 --log run-1.jsonl/);
+    await click("button", "Start");
+    await shows("run-1: done");
+    await shows(/2 of 2 packed/);
+    await page.screenshot({ path: "test/out/workspace-run.png" });
+    expect(actions).toBeLessThanOrEqual(25);
+    expect(readFileSync(join(folder, "run-1.txt"), "utf8").split("\n")[0]).toBe(
+      "$ snug pack cell.yaml --items my-orders-1-.csv --sequence mine --plant-seed 1 --log run-1.jsonl --program run-1.program.csv -o run-1.h5");
+    expect(readFileSync(join(folder, "cell.yaml"), "utf8")).toContain("# What is packed into: a tote"); // comments stay
+
+    await click("tab", "Compare");
+    await shows("Boxes an hour");
+    const [csv] = await Promise.all([page.waitForEvent("download"), click("button", "Download CSV")]);
+    expect(readFileSync((await csv.path())!, "utf8")).toMatch(/^,run-1\r\nState,done\r\n/);
+    await click("tab", "Take away");
+    const [report] = await Promise.all([page.context().waitForEvent("page"), page.getByRole("link", { name: "Open the report" }).click()]);
+    await report.waitForFunction(() => (window as unknown as { snugReady?: boolean }).snugReady === true);
+    expect(await report.evaluate(() => window.origin)).toBe("null"); // no address of its own
+    expect(await report.evaluate((path) => fetch(path).then(() => "reached", () => "refused"), `${new URL(address).origin}/api/1/folder`)).toBe("refused");
+    errors.splice(0); // of that refusal, which the console tells
+    expect(existsSync(join(folder, "run-1.html"))).toBe(true);
+
+    await page.setViewportSize({ width: 390, height: 800 });
+    for (const tab of ["Items", "Cell", "Run", "Compare", "Take away"]) {
+      await click("tab", tab);
+      expect(await page.evaluate(() => document.documentElement.scrollWidth), tab).toBeLessThanOrEqual(390);
+    }
+    await click("tab", "Run");
+    await page.screenshot({ path: "test/out/workspace-390.png" });
+    await page.reload();
+    await shows("2 of 2 packed, ");
+    expect(errors).toEqual([]);
+    await page.context().close();
+  });
+
+  it("can be worked in by keys, and gives every field a name", async () => {
+    const page = await openPage();
+    await page.getByRole("tab", { name: "Items" }).focus();
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("ArrowRight");
+    expect(await page.getByRole("tab", { selected: true }).innerText()).toBe("Run");
+    await page.keyboard.press("Tab");
+    expect(await page.evaluate(() => document.activeElement!.closest("label")?.innerText)).toContain("Cell");
+    const unnamed = await page.evaluate(() => [...document.querySelectorAll("input, select, textarea, button, a")]
+      .filter((one) => !(one as HTMLInputElement).labels?.[0]?.textContent && !one.textContent && !one.getAttribute("aria-label") && !one.closest("[hidden]"))
+      .map((one) => one.outerHTML));
+    expect(unnamed).toEqual([]);
+    await page.context().close();
+  });
+
+  it("says so when the program was killed in the middle of a run, and goes on with its folder", async () => {
+    const page = await openPage();
+    await page.getByRole("tab", { name: "Run" }).click();
+    await page.getByLabel("Items", { exact: true }).selectOption("my-orders-1-.csv");
+    await page.getByText(/--sequence mine .*--log run-2.jsonl/).first().waitFor();
+    await page.getByRole("button", { name: "Start", exact: true }).click();
+    await page.getByText("run-2: running").waitFor();
+    await end("SIGKILL");
+    await page.getByText(/The program does not answer. Is it still running/).waitFor();
+    await page.context().close();
+    errors.splice(0);
+    await serve();
+    const again = await openPage();
+    await again.getByRole("tab", { name: "Run" }).click();
+    await again.getByRole("row", { name: /run-2 done/ }).waitFor(); // it was not killed with the program
+    await again.context().close();
+  });
+
+  it("answers who knows the token only, and nothing out of the folder", async () => {
+    writeFileSync(join(folder, "..", "snug-ui-secret.yaml"), "secret");
+    symlinkSync(join(folder, "..", "snug-ui-secret.yaml"), join(folder, "link.yaml"));
+    for (const path of ["/", "/workspace.js", "/api/1/folder"]) expect((await ask(path)).status).toBe(403);
+    expect((await askKnown("/api/1/folder")).status).toBe(200);
+    expect((await askKnown("/api/1/folder", { headers: { "Sec-Fetch-Site": "cross-site" } })).status).toBeGreaterThanOrEqual(200);
+    const put = (name: string, headers: Record<string, string>, body = "name: x\n"): Promise<Response> => askKnown(`/api/1/files/${name}`, { method: "PUT", headers, body });
+    const right = { "X-Snug": "1", "Content-Type": "text/plain" };
+    expect((await put("a.yaml", { "Content-Type": "text/plain" })).status).toBe(403);
+    expect((await put("a.yaml", { ...right, "Content-Type": "application/x-www-form-urlencoded" })).status).toBe(415);
+    expect((await put("..%2fsnug-ui-other.yaml", right)).status).toBeGreaterThanOrEqual(404);
+    expect((await put("link.yaml", right)).status).toBe(422);
+    expect((await put("a.yaml", right, "x".repeat(5 << 20))).status).toBe(413);
+    expect((await askKnown("/api/1/files/link.yaml")).status).toBe(422);
+    const page = await askKnown("/");
+    expect(page.headers.get("Content-Security-Policy")).toMatch(/^default-src 'none'; script-src 'self';(?!.*unsafe)/);
+    expect(existsSync(join(folder, "a.yaml"))).toBe(false);
+    expect(existsSync(join(folder, "..", "snug-ui-other.yaml"))).toBe(false);
+    rmSync(join(folder, "..", "snug-ui-secret.yaml"));
+  });
+});

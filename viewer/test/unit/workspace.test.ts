@@ -1,0 +1,53 @@
+// What the page of `snug ui` computes itself: edits of YAML, names, the CSV of a comparison.
+
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { describe, expect, it } from "vitest";
+import type { RunStatus } from "../../src/workspace/api";
+import { csvOf } from "../../src/workspace/compare";
+import { plainName } from "../../src/workspace/dom";
+import { canEditCup, canEditSize, setCupRadius, setInnerSize } from "../../src/workspace/yaml_edit";
+
+const cell = readFileSync(join(__dirname, "../../../scenarios/init/cell.yaml"), "utf8");
+
+/** Lines of `after` that are not in `before` at the same place. */
+const changed = (before: string, after: string): string[] => after.split("\n").filter((line, k) => line !== before.split("\n")[k]);
+
+describe("edits of a scenario's text", () => {
+  it("change the one number and nothing else", () => {
+    expect(canEditSize(cell, 1)).toBe(true);
+    expect(changed(cell, setInnerSize(cell, 0, [600, 400, 220.5]))).toEqual([
+      "  - {name: tote, pose: {position: [0.45, 0.0, 0.02]}, inner_size: [0.6, 0.4, 0.2205], material: tote}"]);
+    expect(changed(cell, setCupRadius(cell, 20))).toEqual(["cup: {lip_radius: 0.02}"]);
+    expect(setCupRadius(setCupRadius(cell, 20), 30)).toBe(setCupRadius(cell, 30));
+  });
+  it("find the cup in its forms", () => {
+    for (const [before, after] of [
+      ["cup: {mass: 1}", "cup: {lip_radius: 0.02, mass: 1}"],
+      ["cup: {mass: 1, lip_radius: 3.5e-2} # lip_radius: 9", "cup: {mass: 1, lip_radius: 0.02} # lip_radius: 9"],
+      ["cup:\n  mass: 1\nx: 2\n", "cup:\n  lip_radius: 0.02\n  mass: 1\nx: 2\n"],
+      ["cup:\n  # lip_radius: 1\n  lip_radius: 0.035   # m\nx:\n", "cup:\n  # lip_radius: 1\n  lip_radius: 0.02   # m\nx:\n"],
+    ]) expect(setCupRadius(before!, 20)).toBe(after);
+    for (const other of ["", "# cup: {}\n", "tool: {cup: {}}", "cup: *other\n"]) expect([canEditCup(other), setCupRadius(other, 20)]).toEqual([false, other]);
+  });
+  it("keep off where it is not clear which number is meant", () => {
+    expect(canEditSize("a: {inner_size: [1, 1, 1]}\n# inner_size: [2, 2, 2]\n", 1)).toBe(true);
+    expect(canEditSize("a: 1", 1)).toBe(false);
+    expect(canEditSize(cell, 2)).toBe(false);
+    expect(setInnerSize(cell, 1, [1, 1, 1])).toBe(cell);
+  });
+});
+
+describe("names and tables", () => {
+  it("make a plain name of any file's", () => {
+    expect(["My orders (1).csv", "../../etc/passwd", ".hidden.csv", "äö.csv", "--o.csv", "", "日本.csv"].map((name) => plainName(name, "items")))
+      .toEqual(["My-orders-1-", "etc-passwd", "hidden", "ao", "o", "items", "items"]);
+  });
+  it("keep a spreadsheet from computing what others wrote", () => {
+    const run = { name: "=1+1", state: "done", sequence: '@a,"b"', plant: "-x", items: 2, packed: 2, lost: 0, percent: 20, time: 10 } as RunStatus;
+    const csv = csvOf([run]);
+    expect(csv.split("\r\n")[0]).toBe(",'=1+1");
+    expect(csv).toContain(`Order,"'@a,""b"""\r\nPlant,'-x`);
+    expect(csv).toContain("Boxes an hour,720");
+  });
+});
