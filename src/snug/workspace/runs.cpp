@@ -261,7 +261,7 @@ RunProgress Runs::progress_of(const std::string& name) {
   return reader.progress();
 }
 
-RunStatus Runs::look(const std::string& name, const std::vector<std::string>& files) {
+std::optional<RunStatus> Runs::look(const std::string& name, const std::vector<std::string>& files) {
   RunStatus status;
   status.name = name;
   status.files = files;
@@ -274,16 +274,22 @@ RunStatus Runs::look(const std::string& name, const std::vector<std::string>& fi
   }
   const bool is_held = has(".txt") && !status.can_be_stopped && is_locked(folder_, name + ".txt");
   if (is_held) status.state = RunState::Running;
+  constexpr std::string_view kBegin = "$ snug pack ";
   try {
     const std::string text = has(".txt") ? folder_.read(name + ".txt") : std::string();
-    if (text.starts_with("$ ")) status.command = printable(text.substr(2, text.find('\n') - 2), 4 * kLongestMessage);
-    status.message = find_message(text);
+    if (text.starts_with(kBegin)) {
+      status.command = printable(text.substr(2, text.find('\n') - 2), 4 * kLongestMessage);
+      status.message = find_message(text);
+    } else {
+      std::erase(status.files, name + ".txt");  // somebody's notes
+    }
     if (has(".jsonl")) status.progress = progress_of(name);
   } catch (const InputError& error) {
     if (!status.can_be_stopped && !is_held) status.state = RunState::Failed;
     status.message = error.what();
-    return status;
   }
+  if (status.command.empty() && status.progress.items == 0) return std::nullopt;
+  if (status.state == RunState::Failed) return status;
   if (status.can_be_stopped || is_held) return status;
   if (status.progress.is_over) {
     const bool is_good = status.progress.failure.empty() && !status.message.starts_with("failed");
@@ -322,13 +328,17 @@ RunStatus Runs::status(const std::string& name) {
   require_run_name(name);
   const auto runs = find_runs(folder_);
   const auto found = runs.find(name);
-  if (found == runs.end()) throw InputError("run", "name", name, "a run of the folder");
-  return look(name, found->second);
+  std::optional<RunStatus> status;
+  if (found != runs.end()) status = look(name, found->second);
+  if (!status) throw InputError("run", "name", name, "a run of the folder");
+  return *std::move(status);
 }
 
 std::vector<RunStatus> Runs::list() {
   std::vector<RunStatus> all;
-  for (const auto& [name, files] : find_runs(folder_)) all.push_back(look(name, files));
+  for (const auto& [name, files] : find_runs(folder_)) {
+    if (std::optional<RunStatus> status = look(name, files)) all.push_back(*std::move(status));
+  }
   return all;
 }
 

@@ -94,7 +94,8 @@ class Runs {
   void work();
   /// Runs the words in the folder; their exit code, 128 and more for a signal.
   int run(const std::vector<std::string>& words, int output, const std::string& name);
-  [[nodiscard]] RunStatus look(const std::string& name, const std::vector<std::string>& files);
+  /// Nothing where the files are those of no run.
+  [[nodiscard]] std::optional<RunStatus> look(const std::string& name, const std::vector<std::string>& files);
   [[nodiscard]] RunProgress progress_of(const std::string& name);
 
   const Folder& folder_;

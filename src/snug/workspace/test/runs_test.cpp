@@ -196,6 +196,23 @@ TEST_F(RunsTest, RefuseWhatIsNoNameAndNoWord) {
   EXPECT_EQ(std::distance(fs::directory_iterator(cells_), {}), 2);
 }
 
+TEST_F(RunsTest, AreNotOtherPeoplesFiles) {
+  Runs runs(*folder_, program_, 1);
+  std::ofstream(cells_ / "notes.txt") << "$ echo mine\n";
+  std::ofstream(cells_ / "notes.h5") << "mine";
+  std::ofstream(cells_ / "data.jsonl") << "{\"a\":1}\n";
+  EXPECT_TRUE(runs.list().empty());
+  EXPECT_THROW(runs.remove("notes"), InputError);
+  EXPECT_THROW(runs.remove("data"), InputError);
+  runs.start(request("a", "mine"));
+  ASSERT_TRUE(reaches(runs, "a", RunState::Done));
+  std::ofstream(cells_ / "a.txt") << "mine";  // the log says that it was a run; these words are somebody else's
+  runs.remove("a");
+  EXPECT_TRUE(fs::exists(cells_ / "a.txt"));
+  EXPECT_FALSE(fs::exists(cells_ / "a.jsonl"));
+  EXPECT_TRUE(fs::exists(cells_ / "notes.h5"));
+}
+
 // A second opinion: the shell itself.
 TEST(ShellLine, IsTakenApartIntoTheSameWords) {
   const std::vector<std::string> words = {"printf", "<%s>", "a b", "it's", "$HOME", "`id`",
