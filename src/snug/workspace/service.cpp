@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "snug/core/input_error.hpp"
@@ -71,6 +72,7 @@ Json in_mm(const Vector3& size) { return {1e3 * size.x(), 1e3 * size.y(), 1e3 * 
 Json facts_of(FileKind kind, const std::string& text, const std::string& name) {
   if (kind == FileKind::Items) {
     Json lines = Json::array(), orders = Json::array();
+    std::set<std::string> known;
     for (const model::OrderLine& line : model::parse_orders_csv(text, name)) {
       lines.push_back({{"line", line.line},
                        {"order", line.order},
@@ -78,7 +80,7 @@ Json facts_of(FileKind kind, const std::string& text, const std::string& name) {
                        {"size_mm", in_mm(line.size)},
                        {"mass_kg", line.mass},
                        {"count", line.count}});
-      if (std::ranges::find(orders, Json(line.order)) == orders.end()) orders.push_back(line.order);
+      if (known.insert(line.order).second) orders.push_back(line.order);
     }
     return {{"lines", std::move(lines)}, {"sequences", std::move(orders)}};
   }
