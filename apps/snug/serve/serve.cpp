@@ -85,13 +85,6 @@ class Serving {
       server_->stop();
     });
     std::fprintf(stderr, "snug: serving %s at %s (Ctrl-C ends it)\n", runs_.simulation().scenario().source_name.c_str(),
-    const StopSignal signal([this] { stop(); });
-    std::thread page_thread;
-    if (page_) {
-      announce(page_->address(), options_.opens_browser);
-      page_thread = std::thread([this] { page_->run(); });
-    }
-    std::fprintf(stderr, "snug: serving %s at %s (Ctrl-C ends it)\n", simulation_.scenario().source_name.c_str(),
                  server_->endpoint().c_str());
     server_->run();
     simulator_->end("the server was stopped");

@@ -10,15 +10,11 @@
 namespace snug::app {
 namespace {
 
-ur::Model model_of(const std::string& name) {
-  return name == "ur10e" ? ur::Model::Ur10e : name == "ur5e" ? ur::Model::Ur5e : ur::Model::Ur10;
-}
-
 class ServingUr {
  public:
   explicit ServingUr(const ServeOptions& options)
       : options_(options),
-        model_(ur::facts_of(model_of(options.ur.model))),
+        model_(ur::facts_of(ur_model_of(options.ur.model))),
         runs_(options, served_ur::Controller::period_of(model_.model)) {
     served_ur::ControllerSettings settings;
     settings.model = model_.model;
@@ -66,6 +62,10 @@ class ServingUr {
 };
 
 }  // namespace
+
+ur::Model ur_model_of(const std::string& name) {
+  return name == "ur10e" ? ur::Model::Ur10e : name == "ur5e" ? ur::Model::Ur5e : ur::Model::Ur10;
+}
 
 int run_serve_ur(const ServeOptions& options) { return ServingUr(options).run(); }
 

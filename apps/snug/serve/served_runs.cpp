@@ -95,7 +95,7 @@ void ServedRuns::begin_page() {
   live_.emplace(std::filesystem::path(options_.scenario).stem().string(), 0.0);
   shown_ = std::make_unique<ShownRun>(*live_);
   page_.emplace(options_.page, serve::Content{std::string(viewer_page()), {}, &*live_, true});
-  announce(*page_, options_.opens_browser);
+  announce(page_->address(), options_.opens_browser);
   page_thread_ = std::thread([this] { page_->run(); });
 }
 
