@@ -18,6 +18,9 @@ endif()
 set(SNUG_CODEGEN -ffp-contract=off -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 # An error in memory becomes an end of the program: canaries, stacks that are touched page by page, marked targets of jumps, checked
 # copies, and tables of functions that nobody can write once the program runs (docs/dependencies.md says what is loaded).
+# Libraries are found where the system has them: CMake would add the folder of each and an empty entry, which is the
+# current folder of whoever starts the program.
+set(CMAKE_SKIP_RPATH ON)
 set(SNUG_HARDENING -fstack-protector-strong)
 if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
   list(APPEND SNUG_HARDENING -fstack-clash-protection)

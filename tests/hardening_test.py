@@ -33,6 +33,10 @@ class Hardening(unittest.TestCase):
         self.assertRegex(run("readelf", "-dW", SNUG), r"\(FLAGS(_1)?\).*NOW")
         self.assertNotRegex(headers, r"LOAD\s.*\sRWE\s")
 
+    def test_no_library_is_looked_for_in_the_current_folder(self):
+        for file in (SNUG, *(BUILD / "python" / "snug").glob("*.so")):
+            self.assertNotRegex(run("readelf", "-dW", file), r"\(R(UN)?PATH\)")
+
     def test_stacks_and_copies_are_checked(self):
         symbols = run("nm", "-D", "--undefined-only", SNUG)
         self.assertIn("__stack_chk_fail", symbols)

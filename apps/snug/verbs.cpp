@@ -25,6 +25,7 @@
 #include "apps/snug/plot/plot.hpp"
 #include "apps/snug/program/program.hpp"
 #include "apps/snug/report/report.hpp"
+#include "apps/snug/run/run.hpp"
 #include "apps/snug/serve/serve.hpp"
 #include "apps/snug/shake/shake.hpp"
 #include "apps/snug/simulate/simulate.hpp"
@@ -44,6 +45,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_study(app, action);
   add_program(app, action);
   add_check(app, action);
+  add_run(app, action);
   add_serve(app, action);
   add_control(app, action);
   add_keys(app, action);
