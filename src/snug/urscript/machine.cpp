@@ -398,9 +398,11 @@ void Machine::Impl::step(Host& host) {
     time += dt;
   }
   if (state.is_protectively_stopped) {
-    motion.stop(host);
     pace = 0.0;
-    if (status.state == MachineState::Braking) status.state = status.outcome;
+    if (status.state == MachineState::Braking) {
+      motion.stop(host);
+      status.state = status.outcome;
+    }
     return;
   }
   pace = std::clamp(pace + (is_paused ? -dt : dt) / kPauseTime, 0.0, 1.0);
@@ -414,7 +416,8 @@ void Machine::Impl::step(Host& host) {
       is_braking = true;
       threads.clear();
       motion.end_force(host);
-      motion.brake(host, 4.0);
+      motion.brake(host,
+                   *std::min_element(host.limits().max_acceleration.begin(), host.limits().max_acceleration.end()));
       pace = 1.0;
     }
     motion.step(host, is_braking ? 1.0 : pace * std::clamp(state.speed_fraction, 0.0, 1.0));

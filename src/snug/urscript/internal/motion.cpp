@@ -12,6 +12,8 @@ namespace {
 constexpr double kLongestMove = 120.0;  // s
 constexpr double kSmall = 1e-9;         // m or rad: no way
 constexpr double kForceGain = 4e-4;     // m/s for each newton that is missing
+constexpr double kReturnSpeed = 0.1;    // of what a joint may do
+constexpr double kTolerance = 1e-6;     // rad, and share of a speed
 constexpr double kLeastServo = 0.5;     // of a period
 
 Joints plus(const Joints& a, const Joints& b, double factor) {
@@ -221,6 +223,26 @@ void Motion::stop(const Host& host) {
   end_ = host.state().target.q;
 }
 
+/// The host moved the target, as after a stop: the arm comes back to its path, slowly, and goes on there.
+void Motion::return_to_path(Host& host) {
+  JointTarget& target = host.state().target;
+  target.qd = {};
+  if (mode_ != Mode::Path) return stop(host);
+  if (!end_) return;
+  const Joints off = plus(target.q, path_now(), -1.0);
+  double slowest = 0.0;
+  for (std::size_t j = 0; j < kJoints; ++j)
+    slowest = std::max(slowest, std::abs(off[j]) / (kReturnSpeed * host.limits().max_speed[j]));
+  if (slowest > kLongestMove) throw Fault{"the arm was moved too far from its path"};
+  const auto count = static_cast<std::size_t>(std::ceil(slowest / host.period()) + 1.0);
+  Move back;
+  for (std::size_t k = 0; k <= count; ++k) {
+    const double u = static_cast<double>(k) / static_cast<double>(count);
+    back.way.push_back(plus({}, off, 1.0 - u * u * (3.0 - 2.0 * u)));
+  }
+  moves_.push_front(std::move(back));
+}
+
 void Motion::end_force(const Host& host) {
   force_.reset();
   pushed_.setZero();
@@ -268,11 +290,7 @@ void Motion::push(const Host& host, Joints& q) {
 void Motion::step(Host& host, double share) {
   JointTarget& target = host.state().target;
   const double dt = host.period();
-  // The host moved the target: after a stop the arm goes on from where it stands.
-  if (has_written_ && target.q != written_) {
-    stop(host);
-    target.qd = {};
-  }
+  if (has_written_ && target.q != written_) return_to_path(host);
   Joints q = target.q;
   if (mode_ == Mode::Path) {
     if (!end_) end_ = target.q;
@@ -304,9 +322,17 @@ void Motion::step(Host& host, double share) {
   if (force_) push(host, q);
   JointTarget next;
   next.q = q;
+  bool is_possible = true;
   for (std::size_t j = 0; j < kJoints; ++j) {
     next.qd[j] = (q[j] - target.q[j]) / dt;
     next.qdd[j] = (next.qd[j] - target.qd[j]) / dt;
+    is_possible = is_possible && std::abs(next.qd[j]) <= host.limits().max_speed[j] * (1.0 + kTolerance) &&
+                  q[j] >= host.limits().lower[j] - kTolerance && q[j] <= host.limits().upper[j] + kTolerance;
+  }
+  if (!is_possible) {
+    stop(host);
+    target.qd = target.qdd = {};
+    throw Fault{"a joint would be beyond its limit of position or speed"};
   }
   target = next;
   written_ = q;

@@ -29,7 +29,7 @@ struct ForceMode {
 
 /// Moves are paths of joints, sampled each period, that end at rest. A move that begins while another one still goes to
 /// its end is added to what is left of that one: so blends are continuous in position and speed. All throw Fault where
-/// the arm does not reach.
+/// the arm does not reach, step() where a joint would be too fast or beyond its range: then the target stays.
 class Motion {
  public:
   void move_joints(const Host& host, const Joints& to, const MoveSettings& settings);
@@ -69,6 +69,7 @@ class Motion {
   void follow(const Host& host, double length, const MoveSettings& settings, double distance_per_length,
               const At& joints_at);
   [[nodiscard]] Joints path_now() const;
+  void return_to_path(Host& host);
   void push(const Host& host, Joints& q);
 
   Mode mode_ = Mode::Path;

@@ -228,6 +228,37 @@ TEST(UrScriptMachine, ALoopThatNeverWaitsTakesItsShareOfEachPeriodAndNoMore) {
   EXPECT_EQ(host.run(machine).state, MachineState::Stopped);
 }
 
+TEST(UrScriptMachine, NoTargetIsBeyondAJointsSpeedOrRange) {
+  for (const std::string body :
+       {"  servoj([3,0,0,0,0,0], t=0.008)\n  stopj(10)", "  speedl([50,0,0,0,0,0], a=1000, t=1)",
+        "  i = 0\n  while True:\n    i = i + 1\n    servoj([0.02 * i,0,0,0,0,0], t=0.008)\n  end"}) {
+    FakeHost host;
+    Machine machine = machine_of(body);
+    EXPECT_EQ(host.run(machine, 5000).state, MachineState::Failed) << body;
+    EXPECT_LE(host.fastest, 3.0 * (1.0 + 1e-5)) << body;
+    for (const Joints& q : host.way) EXPECT_LE(std::abs(q[0]), 6.3 + 1e-5) << body;
+  }
+}
+
+TEST(UrScriptMachine, AfterAProtectiveStopTheMoveGoesOnBeforeTheNextStatement) {
+  FakeHost host;
+  Machine machine = machine_of("  movej([1, 0, 0, 0, 0, 0], a=2, v=0.5)\n  set_digital_out(0, True)");
+  (void)host.run(machine, 80);
+  host.state_.is_protectively_stopped = true;
+  host.state_.target.q[0] -= 0.01;  // where the arm came to stand
+  host.state_.target.qd = {};
+  (void)host.run(machine, 50);
+  const double stood = host.state_.q[0];
+  EXPECT_LT(stood, 0.5);
+  EXPECT_EQ(host.state_.digital_outputs, 0U);
+  host.jump = 0.0;
+  host.state_.is_protectively_stopped = false;
+  EXPECT_EQ(host.run(machine).state, MachineState::Ended);
+  EXPECT_NEAR(host.state_.q[0], 1.0, 1e-9);
+  EXPECT_EQ(host.state_.digital_outputs, 1U);
+  EXPECT_LE(host.jump, 10.0);
+}
+
 TEST(UrScriptMachine, AStoppedProgramBrakesAPausedOneGoesOn) {
   FakeHost host;
   Machine machine = machine_of("  movej([1, 0, 0, 0, 0, 0], a=2, v=0.5)");
