@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "snug/physics/internal/contact_path.hpp"
 #include "snug/physics/internal/scratch.hpp"
 #include "snug/physics/world.hpp"
 
@@ -28,7 +29,7 @@ void start_body(const BodyModel& body, const WorldModel::MassProperties& mass, c
     work.p_WB = state.p_WBcm - work.R_WB * body.inertia.com;
   }
   work.active = work.island = -1;
-  work.is_moving = work.has_element = work.is_steady = work.has_result = false;
+  work.is_moving = work.has_element = work.is_steady = work.has_result = work.turns = false;
   work.has_same_pose = same;
   work.velocity_start = work.velocity = state.velocity;
   work.angular_start = work.angular = state.angular_velocity;
@@ -70,12 +71,15 @@ void start_kinematic(const BodyState& state, const KinematicTarget& target, doub
   work.angular_start = log_rotation(R_end_start) / dt;
   work.velocity = work.velocity_start;
   work.angular = work.angular_start;
+  work.angular_guess = work.angular;
+  work.turns = turns_within(dt, work.angular_start);
   work.speed = work.velocity_start.norm() + work.angular_start.norm() * radius;
   if (target.V_WB_end) {  // the mean of both ends stays what leads to the end
     work.velocity = target.V_WB_end->linear;
     work.angular = target.V_WB_end->angular;
     work.velocity_start = 2.0 * work.velocity_start - work.velocity;
     work.angular_start = 2.0 * work.angular_start - work.angular;
+    work.angular_guess = work.angular;
     for (const auto& [v, w] :
          {std::pair(work.velocity, work.angular), std::pair(work.velocity_start, work.angular_start)})
       work.speed = std::max(work.speed, v.norm() + w.norm() * radius);
@@ -252,7 +256,7 @@ bool solve_step(const WorldModel& model, const WorldInput& input, WorldState& st
                 StepReport& report) {
   for (int again = kSweptSolves;; --again) {
     StepReport solved = report;
-    free_motion(model, input, work);
+    free_motion(model, input, state, work);
     build_islands(input, work);
     solve_islands(model, input, state, work, solved);
     const bool is_last = again == 0 || solved.culprit.is_valid();

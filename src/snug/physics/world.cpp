@@ -132,6 +132,7 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   active.resize(n);
   carriers.reserve(n);
   whitening.resize(n);
+  last_torque.resize(n);
   u.resize(6 * n + 2);
   shift.resize(6 * n + 2);
   parent.resize(n);

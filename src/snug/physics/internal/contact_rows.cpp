@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/physics/internal/contact_path.hpp"
 #include "snug/physics/internal/scratch.hpp"
 
 namespace snug::physics::internal {
@@ -40,8 +41,7 @@ Side side_of(const Scratch& work, const BodyWork& body, const Patch& patch, cons
 }
 
 /// From `column` on.
-void fill_side(const Side& side, const Patch& patch, const Vector3& p_WQ, int column, Row& row) {
-  const Vector3 arm = p_WQ - side.p_WBcm;
+void fill_side(const Side& side, const Patch& patch, const Vector3& arm, int column, Row& row) {
   if (side.whitening->is_dense) {
     const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
     for (int i = 0; i < 3; ++i) {
@@ -61,12 +61,16 @@ void fill_side(const Side& side, const Patch& patch, const Vector3& p_WQ, int co
   }
 }
 
-/// Relative velocity that a moving kinematic body brings in.
+/// Relative velocity that the unknowns do not hold.
+void add_velocity(const Vector3& velocity, const Patch& patch, double sign, Row& row) {
+  row.bias[0] += sign * patch.n.dot(velocity);
+  row.bias[1] += sign * patch.t1.dot(velocity);
+  row.bias[2] += sign * patch.t2.dot(velocity);
+}
+
+/// What a moving kinematic body brings in.
 void add_bias(const BodyWork& body, const Patch& patch, const Vector3& arm, double sign, Row& row) {
-  const Vector3 v = sign * (body.velocity + body.angular.cross(arm));
-  row.bias[0] += patch.n.dot(v);
-  row.bias[1] += patch.t1.dot(v);
-  row.bias[2] += patch.t2.dot(v);
+  add_velocity(body.velocity + body.angular.cross(arm), patch, sign, row);
 }
 
 /// Large piles do not fit into the caches near the core: asks for a row before it is needed.
@@ -77,18 +81,37 @@ void prefetch(const Row* row) {
 }
 
 /// J of a contact, index in Scratch::contacts, and what moving kinematic bodies and belts bring in.
-void fill_contact_row(const Scratch& work, const Patch& patch, const BodyWork& a, const BodyWork& b, const Side& side_a,
-                      const Side& side_b, int index, Row& row) {
-  const Vector3& p_WQ = work.contacts[static_cast<std::size_t>(index)].p_WQ;
+void fill_contact_row(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch,
+                      const BodyWork& a, const BodyWork& b, const Side& side_a, const Side& side_b, int index,
+                      Row& row) {
+  const Contact& contact = work.contacts[static_cast<std::size_t>(index)];
+  const Vector3& p_WQ = contact.p_WQ;
   row.ia = a.active;
   row.ib = b.active;
   row.contact = index;
   row.kind = RowKind::Contact;
   std::fill_n(row.bias, 3, 0.0);
-  if (a.active >= 0) fill_side(side_a, patch, p_WQ, 0, row);
-  if (b.active >= 0) fill_side(side_b, patch, p_WQ, 6, row);
-  if (a.active < 0 && a.is_moving) add_bias(a, patch, p_WQ - a.p_WBcm - patch.way_a, -1.0, row);
-  if (b.active < 0 && b.is_moving) add_bias(b, patch, p_WQ - b.p_WBcm - patch.way_b, 1.0, row);
+  if (follows_path(model, state, work, patch, contact)) {
+    // Impulses act at the middle of the step; the law is that of the velocities at its end, with the arms of there.
+    const ContactArms arms = arms_of(model, state, work, patch, contact);
+    if (a.active >= 0) {
+      fill_side(side_a, patch, arms.a_mid, 0, row);
+      add_velocity(a.angular_guess.cross(arms.a_end - arms.a_mid), patch, -1.0, row);
+    } else if (a.is_moving) {
+      add_bias(a, patch, arms.a_end, -1.0, row);
+    }
+    if (b.active >= 0) {
+      fill_side(side_b, patch, arms.b_mid, 6, row);
+      add_velocity(b.angular_guess.cross(arms.b_end - arms.b_mid), patch, 1.0, row);
+    } else if (b.is_moving) {
+      add_bias(b, patch, arms.b_end, 1.0, row);
+    }
+  } else {
+    if (a.active >= 0) fill_side(side_a, patch, p_WQ - side_a.p_WBcm, 0, row);
+    if (b.active >= 0) fill_side(side_b, patch, p_WQ - side_b.p_WBcm, 6, row);
+    if (a.active < 0 && a.is_moving) add_bias(a, patch, p_WQ - a.p_WBcm - patch.way_a, -1.0, row);
+    if (b.active < 0 && b.is_moving) add_bias(b, patch, p_WQ - b.p_WBcm - patch.way_b, 1.0, row);
+  }
   if (patch.has_belt) row.bias[1] += patch.t1.dot(patch.belt_W), row.bias[2] += patch.t2.dot(patch.belt_W);
 }
 
@@ -219,7 +242,7 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
       Side side_a = side_of(work, a, patch, patch.way_a, -1.0), side_b = side_of(work, b, patch, patch.way_b, 1.0);
       for (int k = 0; k < patch.contact_count; ++k) {
         prefetch(row + k + 4);
-        fill_contact_row(work, patch, a, b, side_a, side_b, patch.first_contact + k, row[k]);
+        fill_contact_row(model, state, work, patch, a, b, side_a, side_b, patch.first_contact + k, row[k]);
       }
     }
     const int bearing = count_bearing(model, work, patch, row);

@@ -26,10 +26,12 @@ struct BodyWork {
   Vector3 angular_start = Vector3::Zero();
   Vector3 velocity = Vector3::Zero();  ///< at the end of the step; before the solver: without contacts
   Vector3 angular = Vector3::Zero();
-  double speed = 0.0;      ///< bound on the speed of any of its points, m/s
-  int active = -1;         ///< index among the bodies that move in this step
-  int island = -1;         ///< of a body with an element
-  bool is_moving = false;  ///< dynamic and awake, or kinematic with a motion
+  Vector3 angular_guess = Vector3::Zero();  ///< at the end of the step, with the impulses of the step before
+  bool turns = false;                       ///< beyond rounding: contacts that last follow it
+  double speed = 0.0;                       ///< bound on the speed of any of its points, m/s
+  int active = -1;                          ///< index among the bodies that move in this step
+  int island = -1;                          ///< of a body with an element
+  bool is_moving = false;                   ///< dynamic and awake, or kinematic with a motion
   bool has_element = false;
   bool has_same_pose = false;  ///< as in this workspace's last step, bit by bit
   bool is_steady = false;      ///< and enters the rows of its contacts as it did then
@@ -158,10 +160,12 @@ struct Scratch {
   int active_count = 0;
   std::vector<ElementQuery> carriers;  ///< of each element in use, at the middle of the step
   std::vector<Whitening> whitening;    ///< by active index
-  std::vector<double> u;               ///< 6 per active body
-  std::vector<double> shift;           ///< 6 per active body, position correction in whitened coordinates
-  std::vector<BodyEnd> ends;           ///< of each body; of steps in which one turns fast
-  std::vector<int> parent;             ///< union-find over active bodies
+  std::vector<Vector3>
+      last_torque;            ///< N m s, by active index: of the contacts of the step before, where that turns fast
+  std::vector<double> u;      ///< 6 per active body
+  std::vector<double> shift;  ///< 6 per active body, position correction in whitened coordinates
+  std::vector<BodyEnd> ends;  ///< of each body; of steps in which one turns fast
+  std::vector<int> parent;    ///< union-find over active bodies
   std::vector<int> island_of_root;
   BoundedVector<Patch> patches;
   BoundedVector<Contact> contacts;  ///< by patch
@@ -205,7 +209,7 @@ void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& 
 /// Marks a sleeping group as moving, from within a step.
 void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int group);
 /// Velocities at the end of the step without contacts (bodies with force elements: done in solve_islands).
-void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work);
+void free_motion(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work);
 void build_islands(const WorldInput& input, Scratch& work);
 /// Velocities at the end of the step; leaves the impulses in the state.
 void solve_islands(const WorldModel& model, const WorldInput& input, WorldState& state, Scratch& work,

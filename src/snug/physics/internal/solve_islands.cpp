@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "snug/physics/internal/contact_path.hpp"
 #include "snug/physics/internal/scratch.hpp"
 
 namespace snug::physics::internal {
@@ -190,15 +191,21 @@ void keep_memory(BodyWork& body, BodyMemory& memory) {
   memory.active = -1;
 }
 
-/// Euler's equations in principal axes by the implicit midpoint rule; keeps energy and angular momentum.
-Vector3 turn_freely(const WorldModel::MassProperties& mass, const BodyWork& body, double dt) {
+/// Euler's equations in principal axes by the implicit midpoint rule; keeps energy and angular momentum where the
+/// impulse of the torque [N m s, W, at the middle of the step] is zero. Returns the angular velocity at the end.
+Vector3 turn(const WorldModel::MassProperties& mass, const BodyWork& body, const Vector3& torque_W, double dt) {
   const Matrix3 R_WI = body.R_WB * mass.R_BI;
   const Vector3 inertia = mass.inverse_inertia.cwiseInverse();
   const Vector3 w0 = R_WI.transpose() * body.angular_start;
+  const bool is_pushed = !torque_W.isZero(0.0);
+  const Matrix3 R_WI_mid = is_pushed ? Matrix3(exp_rotation(0.5 * dt * body.angular_start) * R_WI) : R_WI;
+  const Vector3 push =
+      is_pushed ? Vector3(mass.inverse_inertia.cwiseProduct(R_WI_mid.transpose() * torque_W)) : Vector3::Zero();
   Vector3 w1 = w0;
   for (int k = 0; k < 20; ++k) {
     const Vector3 mid = 0.5 * (w0 + w1);
-    const Vector3 next = w0 - dt * mass.inverse_inertia.cwiseProduct(mid.cross(inertia.cwiseProduct(mid)));
+    Vector3 next = w0 - dt * mass.inverse_inertia.cwiseProduct(mid.cross(inertia.cwiseProduct(mid)));
+    if (is_pushed) next += push;
     const double change = (next - w1).norm();
     w1 = next;
     if (change <= 1e-14 * (1.0 + w0.norm())) break;
@@ -206,8 +213,13 @@ Vector3 turn_freely(const WorldModel::MassProperties& mass, const BodyWork& body
   return R_WI * (exp_rotation(0.5 * dt * (w0 + w1)) * w1);
 }
 
-void move_freely(const WorldModel& model, const WorldModel::MassProperties& mass, BodyWork& body, BodyMemory& memory,
-                 Whitening& whitening) {
+/// Whether gyroscopic torque matters.
+bool turns_fast(const BodyWork& body, double dt) {
+  return !body.has_element && dt * body.angular_start.squaredNorm() > 1e-9;
+}
+
+void move_freely(const WorldModel& model, const WorldModel::MassProperties& mass, const Vector3& last_torque,
+                 BodyWork& body, BodyMemory& memory, Whitening& whitening) {
   const double dt = model.settings.dt;
   body.velocity = body.velocity_start + dt * model.gravity;
   body.angular = body.angular_start;
@@ -226,21 +238,56 @@ void move_freely(const WorldModel& model, const WorldModel::MassProperties& mass
     body.velocity = body.velocity_start;
     return;
   }
-  if (dt * body.angular_start.squaredNorm() > 1e-9) body.angular = turn_freely(mass, body, dt);
+  if (!turns_fast(body, dt)) return;
+  // The gyroscopic torque is that of the motion under the contacts of the step before; what these push is left to the
+  // solver.
+  body.angular_guess = turn(mass, body, last_torque, dt);
+  body.angular = body.angular_guess;
+  if (!last_torque.isZero(0.0)) body.angular -= whitening.angular * (whitening.angular.transpose() * last_torque);
+}
+
+/// What the contacts of the step before push on bodies that turn fast.
+void find_last_torques(const WorldModel& model, const WorldState& state, Scratch& work) {
+  bool has_fast = false;
+  for (int i = 0; i < work.active_count; ++i) {
+    BodyWork& body = work.bodies[static_cast<std::size_t>(work.active[static_cast<std::size_t>(i)])];
+    body.angular_guess = body.angular_start;
+    body.turns = turns_within(model.settings.dt, body.angular_start);
+    has_fast |= turns_fast(body, model.settings.dt);
+    work.last_torque[static_cast<std::size_t>(i)].setZero();
+  }
+  if (!has_fast) return;
+  for (const Patch& patch : work.patches) {
+    if (patch.is_swept) continue;
+    for (const bool is_b : {false, true}) {
+      const BodyWork& body = work.bodies[static_cast<std::size_t>(is_b ? patch.body_b : patch.body_a)];
+      if (body.active < 0 || !turns_fast(body, model.settings.dt)) continue;
+      for (int i = patch.first_contact; i < patch.first_contact + patch.contact_count; ++i) {
+        const Contact& contact = work.contacts[static_cast<std::size_t>(i)];
+        const auto& impulse = state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)];
+        if (!follows_path(model, state, work, patch, contact)) continue;
+        const Vector3 on_b = impulse[0] * patch.n + impulse[1] * patch.t1 + impulse[2] * patch.t2;
+        const ContactArms arms = arms_of(model, state, work, patch, contact);
+        const Vector3& arm = is_b ? arms.b_mid : arms.a_mid;
+        work.last_torque[static_cast<std::size_t>(body.active)] += arm.cross(is_b ? on_b : Vector3(-on_b));
+      }
+    }
+  }
 }
 
 }  // namespace
 
-void free_motion(const WorldModel& model, const WorldInput& input, Scratch& work) {
+void free_motion(const WorldModel& model, const WorldInput& input, const WorldState& state, Scratch& work) {
   const double dt = model.settings.dt;
+  find_last_torques(model, state, work);
   for_ranges(work.pool, work.bodies.size(), [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       BodyWork& body = work.bodies[i];
       if (body.active < 0) {
         keep_memory(body, work.memories[i]);
       } else {
-        move_freely(model, model.masses[i], body, work.memories[i],
-                    work.whitening[static_cast<std::size_t>(body.active)]);
+        const auto active = static_cast<std::size_t>(body.active);
+        move_freely(model, model.masses[i], work.last_torque[active], body, work.memories[i], work.whitening[active]);
       }
     }
   });
