@@ -9,6 +9,7 @@
 #include "snug/core/check.hpp"
 #include "snug/core/text.hpp"
 #include "snug/cup/phases.hpp"
+#include "snug/served_ur/internal/programs.hpp"
 #include "snug/ur/primary.hpp"
 
 namespace snug::served_ur {
@@ -37,7 +38,9 @@ Controller::Controller(const cell::Simulation& simulation, ControllerSettings se
       settings_(std::move(settings)),
       arm_(simulation),
       initial_(simulation.make_state()),
-      initial_reading_(simulation.read_still(initial_)) {
+      initial_reading_(simulation.read_still(initial_)),
+      programs_(
+          std::make_unique<internal::Programs>(arm_, period_of(settings_.model), settings_.programs_reach_others)) {
   SNUG_CHECK(std::abs(simulation.scenario().controller.tick - period_of(settings_.model)) < 1e-12,
              "the cell's tick is the controller's period");
   data_.robot_mode = RobotMode::Running;
@@ -52,6 +55,10 @@ Controller::~Controller() = default;
 
 std::vector<std::string> Controller::take_messages() { return std::exchange(messages_, {}); }
 
+void Controller::tell(std::string packet) {
+  if (messages_.size() < kMostMessages) messages_.push_back(std::move(packet));
+}
+
 void Controller::step() {
   const auto start = std::chrono::steady_clock::now();
   ++period_;
@@ -59,6 +66,7 @@ void Controller::step() {
   take_inputs();
   advance_mode();
   hold();
+  run_programs();
   advance_cell();
   read_cell();
   data_.execution_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -90,7 +98,7 @@ void Controller::set_mode(RobotMode mode) {
 
 void Controller::set_safety(SafetyMode mode) {
   data_.safety_mode = mode;
-  messages_.push_back(ur::safety_mode_message(data_.timestamp, mode));
+  tell(ur::safety_mode_message(data_.timestamp, mode));
 }
 
 void Controller::power_on() {
@@ -100,6 +108,7 @@ void Controller::power_on() {
 void Controller::power_off() {
   wants_brakes_released_ = false;
   if (data_.robot_mode == RobotMode::PowerOff) return;
+  programs_->abort();
   if (run_ && !is_ended_) run_->stand();
   set_mode(RobotMode::PowerOff);
 }
@@ -138,9 +147,42 @@ bool Controller::obey(std::string_view line) {
     release_brakes();
   else if (line == "set unlock protective stop")
     (void)unlock_protective_stop();
+  else if (line == "stop program")
+    stop_program();
   else
-    return line == "stop program";
+    return false;
   return true;
+}
+
+void Controller::run_program(std::string_view text) { programs_->start(text, data_, may_move()); }
+void Controller::stop_program() { programs_->stop(); }
+bool Controller::pause_program() { return programs_->pause(); }
+bool Controller::resume_program() { return programs_->resume(); }
+void Controller::close_popup() { programs_->close_popup(); }
+const std::string& Controller::program_name() const { return programs_->name(); }
+
+void Controller::run_programs() {
+  using Kind = internal::ProgramNews::Kind;
+  programs_->step(data_);
+  data_.runtime_state = !programs_->is_active()  ? RuntimeState::Stopped
+                        : programs_->is_paused() ? RuntimeState::Paused
+                                                 : RuntimeState::Playing;
+  for (const internal::ProgramNews& news : programs_->take_news()) {
+    switch (news.kind) {
+      case Kind::Started:
+        tell(ur::key_message(data_.timestamp, "PROGRAM_XXX_STARTED", news.text));
+        break;
+      case Kind::Stopped:
+        tell(ur::key_message(data_.timestamp, "PROGRAM_XXX_STOPPED", news.text));
+        break;
+      case Kind::Failed:
+        tell(ur::runtime_exception(data_.timestamp, news.line, news.column, news.text));
+        break;
+      case Kind::Text:
+        tell(ur::text_message(data_.timestamp, news.text));
+        break;
+    }
+  }
 }
 
 void Controller::advance_mode() {
@@ -160,7 +202,7 @@ bool Controller::may_move() const {
 
 void Controller::hold() {
   if (!may_move()) data_.target_q = to_values(state().arm->machine.joints.q);
-  data_.target_qd = data_.target_qdd = {};
+  if (!programs_->is_active()) data_.target_qd = data_.target_qdd = {};
 }
 
 void Controller::begin_run() {
@@ -171,7 +213,7 @@ void Controller::begin_run() {
 
 void Controller::advance_cell() {
   if (is_ended_) return;
-  if (!run_ && data_.digital_outputs == 0) return;
+  if (!run_ && data_.digital_outputs == 0 && !programs_->is_active()) return;
   if (!run_) begin_run();
   const int item = feeder_.next(simulation_, run_->state());
   if (item >= 0) {
@@ -193,15 +235,15 @@ void Controller::fail(const cell::Failure& failure) {
     data_.target_q = to_values(run_->state().arm->machine.joints.q);
     data_.target_qd = data_.target_qdd = {};
     if (data_.safety_mode == SafetyMode::ProtectiveStop) return;
-    if (messages_.size() < kMostMessages) {
-      messages_.push_back(ur::error_message(data_.timestamp, 157, 0, 3, failure.text));
-    }
+    programs_->abort();
+    tell(ur::error_message(data_.timestamp, 157, 0, 3, failure.text));
     set_safety(SafetyMode::ProtectiveStop);
     return;
   }
   end(failure.text);
   is_ended_ = true;
-  messages_.push_back(ur::error_message(data_.timestamp, 100, 0, 4, failure.text));
+  programs_->abort();
+  tell(ur::error_message(data_.timestamp, 100, 0, 4, failure.text));
   set_safety(SafetyMode::Fault);
   set_mode(RobotMode::PowerOff);
 }

@@ -16,8 +16,13 @@
 
 namespace snug::served_ur {
 
+namespace internal {
+class Programs;
+}
+
 struct ControllerSettings {
   ur::Model model = ur::Model::Ur10;
+  bool programs_reach_others = false;  ///< programs may open sockets to other machines
   /// What is to be done with each run, from 1; asked for when it begins.
   std::function<runs::OutsideRunOptions(int run)> begin_run = {};
   std::function<void(int run, const runs::RunResult& result)> end_run = {};
@@ -63,6 +68,18 @@ class Controller {
   /// After a fault: the controller starts again without power, with a new cell. It does nothing else.
   void restart_safety();
 
+  /// Starts a program (urscript::parse); clients hear what becomes of it. It ends the one that runs; a secondary one
+  /// runs beside it.
+  void run_program(std::string_view text);
+  void stop_program();
+  /// False: no program runs.
+  bool pause_program();
+  /// False: no program is paused.
+  bool resume_program();
+  void close_popup();
+  /// Of the program that runs or ran last; empty before the first.
+  [[nodiscard]] const std::string& program_name() const;
+
   /// A line of the script ports that is a command of its own: `power on`, `power off`, `set robotmode run`,
   /// `set unlock protective stop`, `stop program`. False: it is none.
   bool obey(std::string_view line);
@@ -80,6 +97,8 @@ class Controller {
   void set_safety(ur::SafetyMode mode);
   [[nodiscard]] bool may_move() const;
   void hold();
+  void run_programs();
+  void tell(std::string packet);
   void begin_run();
   void advance_cell();
   void fail(const cell::Failure& failure);
@@ -97,6 +116,7 @@ class Controller {
   bool is_ended_ = false;  ///< the run, by a failure
   int run_count_ = 0;
   served_cell::Feeder feeder_;
+  std::unique_ptr<internal::Programs> programs_;
   ur::RobotData data_;
   ur::RobotInputs inputs_;
   std::int64_t period_ = 0;

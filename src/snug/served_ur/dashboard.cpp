@@ -15,6 +15,10 @@ std::string version_of(const ur::ModelFacts& model) {
                      model.version[3]);
 }
 
+const char* state_of(ur::RuntimeState state) {
+  return state == ur::RuntimeState::Playing ? "PLAYING" : state == ur::RuntimeState::Paused ? "PAUSED" : "STOPPED";
+}
+
 std::string ask(DashboardCommand command, const Controller& controller) {
   const ur::RobotData& data = controller.data();
   switch (command) {
@@ -34,7 +38,8 @@ std::string ask(DashboardCommand command, const Controller& controller) {
     case DashboardCommand::Version:
       return version_of(controller.model());
     case DashboardCommand::ProgramState:
-      return "STOPPED <unnamed>";
+      return fmt::format("{} {}", state_of(data.runtime_state),
+                         controller.program_name().empty() ? "<unnamed>" : controller.program_name());
     case DashboardCommand::RobotMode:
       return fmt::format("Robotmode: {}", name_of(data.robot_mode));
     case DashboardCommand::Running:
@@ -71,7 +76,15 @@ DashboardAnswer answer_dashboard(std::string_view line, Controller& controller) 
       controller.restart_safety();
       return {"Restarting safety"};
     case DashboardCommand::ClosePopup:
+      controller.close_popup();
       return {"closing popup"};
+    case DashboardCommand::Stop:
+      controller.stop_program();
+      return {"Stopped"};
+    case DashboardCommand::Pause:
+      return {controller.pause_program() ? "Pausing program" : "Failed to execute: pause"};
+    case DashboardCommand::Play:
+      return {controller.resume_program() ? "Starting program" : "Failed to execute: play"};
     case DashboardCommand::CloseSafetyPopup:
       return {"closing safety popup"};
     case DashboardCommand::Popup:

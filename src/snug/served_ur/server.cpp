@@ -20,6 +20,7 @@
 #include "snug/served_ur/internal/address.hpp"
 #include "snug/served_ur/internal/connection.hpp"
 #include "snug/ur/primary.hpp"
+#include "snug/urscript/program.hpp"
 
 namespace snug::served_ur {
 namespace {
@@ -192,11 +193,20 @@ void Server::Impl::read_dashboard(Connection& client) {
 }
 
 void Server::Impl::read_scripts(Connection& client) {
-  std::string line;
-  while (client.is_open() && client.take_line(line)) {
+  while (client.is_open()) {
+    const std::string_view bytes = client.received();
+    const std::size_t end = bytes.find('\n');
+    if (end == std::string_view::npos) return;
+    const std::string_view line = bytes.substr(0, end);
     if (internal::is_http(line)) return client.close();
-    if (controller.obey(line) || trim(line).empty()) continue;
-    client.send(ur::runtime_exception(controller.data().timestamp, 1, 1, "programs are not run"));
+    if (controller.obey(line) || trim(line).empty()) {
+      client.take(end + 1);
+      continue;
+    }
+    const std::size_t size = urscript::find_program_end(bytes);
+    if (size == 0) return;
+    controller.run_program(bytes.substr(0, size));
+    client.take(size);
   }
 }
 

@@ -116,6 +116,67 @@ TEST(Controller, WithoutALoadTheForceIsZeroAndAWrongPayloadShows) {
   for (const double value : controller.data().actual_tcp_force) EXPECT_NEAR(value, 0.0, 1e-9);
 }
 
+std::string messages_of(Controller& controller) {
+  std::string all;
+  for (const std::string& message : controller.take_messages()) all += message;
+  return all;
+}
+
+TEST(Controller, RunsAProgramThatMovesTheArmAndSaysSo) {
+  Controller controller(demonstrator_cell(), {});
+  const ur::Values6 start = controller.data().actual_q;
+  controller.run_program(
+      "def lift():\n  q = get_actual_joint_positions()\n  q[0] = q[0] + 0.1\n  movej(q, a=1.4, v=1.05)\n"
+      "  set_standard_digital_out(2, True)\n  write_output_integer_register(3, 7)\nend\n");
+  controller.step();
+  EXPECT_NE(messages_of(controller).find("PROGRAM_XXX_STARTEDlift"), std::string::npos);
+  EXPECT_EQ(ask(controller, "programState"), "PLAYING lift");
+  for (int i = 0; i < 500 && controller.data().is_program_running(); ++i) controller.step();
+  EXPECT_NE(messages_of(controller).find("PROGRAM_XXX_STOPPEDlift"), std::string::npos);
+  EXPECT_EQ(ask(controller, "running"), "Program running: false");
+  EXPECT_NEAR(controller.data().actual_q[0], start[0] + 0.1, 1e-6);
+  for (std::size_t j = 1; j < 6; ++j) EXPECT_NEAR(controller.data().actual_q[j], start[j], 1e-6);
+  EXPECT_EQ(controller.data().digital_outputs, 4u);
+  EXPECT_EQ(controller.data().outputs.ints[3], 7);
+}
+
+TEST(Controller, SecondaryProgramsSwitchOutputsWhileAnotherRuns) {
+  Controller controller(demonstrator_cell(), {});
+  controller.run_program("def wait():\n  sleep(1)\nend\n");
+  step(controller, 5);
+  controller.run_program("sec out():\n  set_standard_digital_out(3, True)\nend\n");
+  step(controller, 3);
+  EXPECT_EQ(controller.data().digital_outputs, 8u);
+  EXPECT_EQ(ask(controller, "programState"), "PLAYING wait");
+  EXPECT_TRUE(controller.obey("stop program"));
+  step(controller, 3);
+  EXPECT_FALSE(controller.data().is_program_running());
+}
+
+TEST(Controller, SaysWhatIsWrongWithAProgram) {
+  Controller controller(demonstrator_cell(), {});
+  controller.run_program("def bad():\n  x = = 1\nend\n");
+  controller.step();
+  const std::string message = messages_of(controller);
+  ASSERT_GE(message.size(), 24u);
+  EXPECT_EQ(message[14], 10);  // a runtime exception
+  EXPECT_EQ(message[18], 2);   // in this line
+  EXPECT_FALSE(controller.data().is_program_running());
+}
+
+TEST(Controller, StartsNoProgramWithoutPowerAndEndsOneThatRuns) {
+  Controller controller(demonstrator_cell(), {});
+  controller.run_program("def wait():\n  sleep(5)\nend\n");
+  step(controller, 3);
+  EXPECT_TRUE(controller.data().is_program_running());
+  controller.power_off();
+  step(controller, 2);
+  EXPECT_FALSE(controller.data().is_program_running());
+  controller.run_program("def wait():\n  sleep(5)\nend\n");
+  step(controller, 2);
+  EXPECT_FALSE(controller.data().is_program_running());
+}
+
 TEST(Controller, TwoOfThemGiveTheSameBytes) {
   Controller a(demonstrator_cell(), {}), b(demonstrator_cell(), {});
   for (Controller* controller : {&a, &b}) {
