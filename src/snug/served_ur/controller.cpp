@@ -154,7 +154,10 @@ bool Controller::obey(std::string_view line) {
   return true;
 }
 
-void Controller::run_program(std::string_view text) { programs_->start(text, data_, may_move()); }
+void Controller::run_program(std::string_view text) {
+  program_error_.clear();
+  programs_->start(text, data_, may_move());
+}
 void Controller::stop_program() { programs_->stop(); }
 bool Controller::pause_program() { return programs_->pause(); }
 bool Controller::resume_program() { return programs_->resume(); }
@@ -176,7 +179,11 @@ void Controller::run_programs() {
         tell(ur::key_message(data_.timestamp, "PROGRAM_XXX_STOPPED", news.text));
         break;
       case Kind::Failed:
+        program_error_ = std::to_string(news.line) + ":" + std::to_string(news.column) + ": " + news.text;
         tell(ur::runtime_exception(data_.timestamp, news.line, news.column, news.text));
+        break;
+      case Kind::Halted:
+        program_error_ = std::to_string(news.line) + ": " + news.text;
         break;
       case Kind::Text:
         tell(ur::text_message(data_.timestamp, news.text));

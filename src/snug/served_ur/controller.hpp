@@ -79,6 +79,8 @@ class Controller {
   void close_popup();
   /// Of the program that runs or ran last; empty before the first.
   [[nodiscard]] const std::string& program_name() const;
+  /// Line, column and what was wrong with the program that failed last; empty: none since run_program().
+  [[nodiscard]] const std::string& program_error() const { return program_error_; }
 
   /// A line of the script ports that is a command of its own: `power on`, `power off`, `set robotmode run`,
   /// `set unlock protective stop`, `stop program`. False: it is none.
@@ -117,6 +119,7 @@ class Controller {
   int run_count_ = 0;
   served_cell::Feeder feeder_;
   std::unique_ptr<internal::Programs> programs_;
+  std::string program_error_;
   ur::RobotData data_;
   ur::RobotInputs inputs_;
   std::int64_t period_ = 0;

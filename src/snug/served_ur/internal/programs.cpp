@@ -117,6 +117,7 @@ void Programs::step(ur::RobotData& data) {
     if (status.state == MachineState::Failed) {
       tell({ProgramNews::Kind::Failed, status.error.text, status.error.line, status.error.column});
     }
+    if (status.state == MachineState::Halted) tell({ProgramNews::Kind::Halted, "the program halted", status.line, 0});
     if (!status.is_active()) abort();
   }
   write(data);

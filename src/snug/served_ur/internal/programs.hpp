@@ -15,9 +15,9 @@ namespace snug::served_ur::internal {
 
 /// What became of programs, for the clients.
 struct ProgramNews {
-  enum class Kind { Started, Stopped, Failed, Text } kind = Kind::Started;
+  enum class Kind { Started, Stopped, Failed, Halted, Text } kind = Kind::Started;
   std::string text;  ///< the program's name; what is wrong; the message
-  int line = 0;      ///< Failed, from 1; 0: of no line
+  int line = 0;      ///< Failed, Halted, from 1; 0: of no line
   int column = 0;
 };
 
