@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
 CUP_DATA = ROOT.parent / "shared" / "data" / "cup"
 RELEASES = ROOT.parent / "shared" / "data" / "releases" / "releases.csv"
+POSES = ROOT.parent / "shared" / "data" / "cup-poses" / "poses.csv"
 
 
 def snug(*words, stdin=""):
@@ -874,7 +875,7 @@ class Identify(unittest.TestCase):
 
     def test_help_names_the_parts_and_has_examples(self):
         self.assertIn("stiffness", snug("identify", "--help").stdout)
-        for part in ("stiffness", "damping", "pluck", "release", "scene"):
+        for part in ("stiffness", "damping", "pluck", "poses", "release", "scene"):
             self.assertIn("Examples:", snug("identify", part, "--help").stdout)
 
     @unittest.skipUnless(CUP_DATA.exists(), f"no reference data at {CUP_DATA}")
@@ -923,6 +924,27 @@ class Identify(unittest.TestCase):
         result = snug("identify", "release", record)
         self.assertEqual(result.returncode, 2)
         self.assertIn("releases.csv:2", result.stderr)
+
+    def test_another_makes_cup_is_found_from_poses_and_evaluated_as_fitted(self):
+        poses, law = ROOT / "scenarios/examples/cup-poses.csv", self.path / "law.yaml"
+        found = json.loads(snug("identify", "poses", poses, "-o", law, "--json").stdout)
+        self.assertTrue(found["is_explained"])
+        self.assertLess(found["normalised_error"], found["linear_error"] / 5)  # noise is 0.6 % of a standard deviation
+        evaluated = json.loads(snug("identify", "poses", poses, "--cup", law, "--evaluate", "--json").stdout)
+        self.assertLess(evaluated["normalised_error"], found["normalised_error"])
+        other = json.loads(snug("identify", "poses", poses, "--cup", ROOT / "scenarios/cups/other-make.yaml", "--evaluate", "--json").stdout)
+        self.assertFalse(other["is_explained"], "another cup's law")
+        law.write_text(law.read_text().replace("bend_1:", "bent_1:"))
+        broken = snug("identify", "poses", poses, "--cup", law, "--evaluate")
+        self.assertEqual(broken.returncode, 2)
+        self.assertIn("law.bend_1", broken.stderr)
+
+    @unittest.skipUnless(POSES.exists(), f"no poses of a cup at {POSES}")
+    def test_the_shipped_law_of_another_make_is_that_of_its_poses(self):
+        found = json.loads(snug("identify", "poses", POSES, "--cup", ROOT / "scenarios/cups/other-make.yaml", "--evaluate", "--json").stdout)
+        self.assertLess(found["normalised_error"], found["linear_error"])
+        self.assertLess(max(found["components"][name] for name in ("fx", "fy", "fz")), 0.35)  # docs/decisions/0073
+        self.assertIn("does not explain", found["verdict"])
 
     def test_axial_pluck_tells_the_axial_damping_and_a_swing_does_not(self):
         verdicts = {}

@@ -51,6 +51,14 @@ struct IdentifyReleaseOptions : IdentifyOptions {
   bool evaluate = false;  ///< only what the cup of the scenario predicts
 };
 
+struct IdentifyPosesOptions {
+  std::string input;
+  std::optional<std::string> cup;     ///< the law that is evaluated
+  std::optional<std::string> output;  ///< the law found
+  bool evaluate = false;              ///< fit nothing
+  bool json = false;
+};
+
 struct IdentifySceneOptions {
   std::string task;
   std::vector<std::string> recordings;                        ///< those of the task unless given
@@ -70,6 +78,7 @@ void add_identify(CLI::App& app, Action& action);
 [[nodiscard]] int run_identify_stiffness(const IdentifyStiffnessOptions& options);
 [[nodiscard]] int run_identify_damping(const IdentifyDampingOptions& options);
 [[nodiscard]] int run_identify_release(const IdentifyReleaseOptions& options);
+[[nodiscard]] int run_identify_poses(const IdentifyPosesOptions& options);
 [[nodiscard]] int run_identify_scene(const IdentifySceneOptions& options);
 [[nodiscard]] int run_identify_payload(const IdentifyPayloadOptions& options);
 [[nodiscard]] int run_identify_pluck(const IdentifyPluckOptions& options);

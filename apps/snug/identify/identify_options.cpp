@@ -54,6 +54,16 @@ Examples:
   snug identify release scenarios/examples/releases.csv -o cup.yaml
   snug identify release scenarios/examples/releases.csv --evaluate)";
 
+constexpr const char* kPosesHelp =
+    R"(Another make of cup: a robot deforms it, a sensor reads the wrench. The law is the gradient of one potential, so it is passive;
+lateral and bending stiffness change with compression. Each fifth pose in turn is predicted from the others, beside a linear
+fit. Where it leaves more than half a standard deviation of a component it says that it does not explain the data.
+Columns x_mm, y_mm, z_mm, qw .. qz, fx_N .. fz_N, tx_Nmm .. tz_Nmm: docs/formats.md, cup poses; theory: docs/theory/cup.md, section 8.
+Examples:
+  snug identify poses scenarios/examples/cup-poses.csv --json
+  snug identify poses scenarios/examples/cup-poses.csv -o law.yaml
+  snug identify poses scenarios/examples/cup-poses.csv --cup scenarios/cups/other-make.yaml --evaluate)";
+
 constexpr const char* kSceneHelp =
     R"(The task names a scenario, the bodies that were recorded, and which numbers of the scenario are open, with bounds. First
 comes what each of them changes; combinations that the recordings cannot tell are named and left alone. Then the search, and
@@ -184,6 +194,21 @@ void add_release(CLI::App& verb, Action& action) {
   part.callback([options, &action] { action = [options] { return run_identify_release(*options); }; });
 }
 
+void add_poses(CLI::App& verb, Action& action) {
+  CLI::App& part = *verb.add_subcommand("poses", "a cup's law from wrenches in many poses");
+  const auto options = std::make_shared<IdentifyPosesOptions>();
+  part.add_option("poses", options->input, "poses and wrenches")->required()->type_name("FILE.csv");
+  CLI::Option* cup = part.add_option("--cup", options->cup, "the law that is evaluated")->type_name("CUP.yaml");
+  CLI::Option* evaluate =
+      part.add_flag("--evaluate", options->evaluate, "fit nothing: only what the law of --cup predicts");
+  cup->needs(evaluate);
+  evaluate->needs(cup);
+  part.add_option("-o,--output", options->output, "the law found")->type_name("FILE.yaml")->excludes(evaluate);
+  part.add_flag("--json", options->json, "the result as one JSON object on stdout");
+  part.footer(kPosesHelp);
+  part.callback([options, &action] { action = [options] { return run_identify_poses(*options); }; });
+}
+
 void add_scene(CLI::App& verb, Action& action) {
   CLI::App& part = *verb.add_subcommand("scene", "numbers of a scenario, from recordings of its bodies");
   const auto options = std::make_shared<IdentifySceneOptions>();
@@ -224,6 +249,7 @@ void add_identify(CLI::App& app, Action& action) {
   add_pluck(verb, action);
   add_payload(verb, action);
   add_release(verb, action);
+  add_poses(verb, action);
   add_scene(verb, action);
   verb.footer(
       "`snug identify stiffness --help` and so on tell files and methods; docs/theory/identification.md the rest.");
