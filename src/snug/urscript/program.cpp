@@ -19,6 +19,13 @@ constexpr std::size_t kLongest = 4'000'000;  // bytes
 constexpr int kDeepest = 100;                // blocks or brackets in each other
 constexpr std::size_t kMostArguments = 64;
 
+bool is_reserved(std::string_view word) {
+  static const std::set<std::string_view> kWords = {
+      "def",   "sec",    "thread", "if",       "elif",           "else",          "while", "end",  "break", "return",
+      "local", "global", "halt",   "continue", "enter_critical", "exit_critical", "join",  "kill", "pass"};
+  return kWords.count(word) > 0;
+}
+
 class Compiler {
  public:
   explicit Compiler(std::string_view text) : tokens_(tokens_of(text)) {}
@@ -112,7 +119,8 @@ class Compiler {
     for (std::size_t i = 0; i + 1 < tokens_.size(); ++i) {
       const Token& token = tokens_[i];
       const Token& next = tokens_[i + 1];
-      if (token.kind == Token::Kind::Name && is_begin) {
+      const bool is_declaration = token.kind == Token::Kind::Name && (token.text == "global" || token.text == "local");
+      if (token.kind == Token::Kind::Name && (is_begin || is_declaration)) {
         const bool opens = token.text == "def" || token.text == "thread" || token.text == "sec";
         if (opens) {
           if (!is_first || token.text == "thread") {
@@ -190,7 +198,9 @@ class Compiler {
       expression();
       emit(Op::Pop);
     }
-    if (peek().kind != Token::Kind::NewLine && peek().kind != Token::Kind::End && !is_word("end"))
+    // A statement that begins with a word of the language needs no line of its own.
+    const bool is_next = peek().kind == Token::Kind::Name && is_reserved(peek().text);
+    if (peek().kind != Token::Kind::NewLine && peek().kind != Token::Kind::End && !is_next)
       fail(peek(), fmt::format("got {}, expected the end of the line", shown(peek())));
   }
 
@@ -490,8 +500,11 @@ class Compiler {
   }
 
   void primary() {
+    skip_lines();  // a value may stand on the next line
     const Token token = take();
     where_ = token;
+    if (token.kind == Token::Kind::Name && is_reserved(token.text))
+      fail(token, fmt::format("got {}, expected a value", shown(token)));
     if (token.kind == Token::Kind::Number) {
       Value value = Value::of(token.number);
       if (token.is_whole && token.number <= 2147483647.0) value.kind = Value::Kind::Int;
@@ -509,7 +522,7 @@ class Compiler {
       return;
     }
     if (token.kind != Token::Kind::Name) fail(token, fmt::format("got {}, expected a value", shown(token)));
-    if (token.text == "p" && is_symbol("[")) {
+    if (token.text == "p" && is_symbol("[") && !is_variable(token.text)) {
       take();
       const int count = elements();
       if (count != 6) fail(token, fmt::format("a pose of {} numbers, not 6", count));
@@ -520,6 +533,9 @@ class Compiler {
     if (token.text == "run") return start_thread(token);
     if (is_symbol("(")) return call(token, false);
     variable(token);
+  }
+  [[nodiscard]] bool is_variable(const std::string& text) const {
+    return scopes_.back().locals.count(text) > 0 || globals_.count(text) > 0;
   }
   int elements() {
     int count = 0;

@@ -47,6 +47,9 @@ Value set_payload(CallContext& call) {
 }
 
 Value no_effect(CallContext&) { return {}; }
+Value not_there(CallContext&) {
+  throw Fault{"the simulated arm has no such mode: it is moved by its joints' positions only"};
+}
 
 const Builtin kRobot[] = {
     {"get_actual_joint_positions", "", 0, [](CallContext& c) { return Value::list(c.host.state().q); }},
@@ -133,6 +136,13 @@ const Builtin kRobot[] = {
        c.host.state().tool_voltage = static_cast<int>(voltage);
        return Value{};
      }},
+    {"teach_mode", "", 0, not_there},
+    {"end_teach_mode", "", 0, no_effect},
+    {"freedrive_mode", "freeAxes feature", 0, not_there},
+    {"end_freedrive_mode", "", 0, no_effect},
+    {"direct_torque", "torque friction_comp", 1, not_there},
+    {"get_joint_torques", "", 0, not_there},
+    {"protective_stop", "", 0, [](CallContext&) -> Value { throw Fault{"the program asked for a protective stop"}; }},
     // The simulated sensor needs none of these.
     {"zero_ftsensor", "", 0, no_effect},
     {"force_mode_set_damping", "damping", 1, no_effect},

@@ -24,10 +24,12 @@ TEST(UrScriptProgram, NamesAndKinds) {
   EXPECT_TRUE(secondary->is_secondary());
   EXPECT_TRUE(parse("set_digital_out(2, False)\n"));
   EXPECT_TRUE(parse("def p():\nend\np()\n"));
+  // As a client of UR sends it: a value on the next line, a statement behind it.
+  EXPECT_TRUE(parse("def p():\n  global a = # offset\n0  global b = # more\n0  global c = 2\n  textmsg(a + b)\nend\n"));
 }
 
 TEST(UrScriptProgram, MistakesHaveALineAndAColumn) {
-  EXPECT_EQ(error_of("def p():\n  x = 1 +\nend\n").line, 2);
+  EXPECT_EQ(error_of("def p():\n  x = 1 +\nend\n").line, 3);
   const ScriptError unknown = error_of("def p():\n  mvoej([0,0,0,0,0,0])\nend\n");
   EXPECT_EQ(unknown.line, 2);
   EXPECT_EQ(unknown.column, 3);
