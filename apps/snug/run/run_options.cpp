@@ -15,6 +15,7 @@ Popups are closed at once. Exit code 0: the program came to its end; 1: it faile
 Examples:
   snug export program.csv --scenario scenarios/box-demonstrator.yaml --format urscript -o program.script
   snug run program.script scenarios/box-demonstrator.yaml --sequence 1
+  snug run program.script scenarios/box-demonstrator.yaml --sequence 1 --skip BOX024,BOX025
   snug run program.script scenarios/box-demonstrator.yaml --sequence 1 --model ur10e -o run.h5 --json)";
 
 }  // namespace
@@ -30,6 +31,10 @@ void add_run(CLI::App& app, Action& action) {
   add_scenario_changes(verb, cell.changes);
   verb.add_option("--sequence", cell.sequence, "item sequence whose boxes come to the aligner; absent: the first")
       ->type_name("NAME");
+  verb.add_option("--skip", cell.skipped,
+                  "boxes of the sequence that do not come, with commas between: those that the session left out")
+      ->delimiter(',')
+      ->type_name("BOXES");
   verb.add_option("--plant-seed", cell.plant_seed,
                   "run it in the plant that `snug pack --plant-seed N` packs: drawn from the scenario's `uncertainty`")
       ->check(whole(0))

@@ -24,6 +24,7 @@ struct ServeOptions {
   std::string scenario;
   ScenarioChanges changes;
   std::optional<std::string> sequence;  ///< absent: the first
+  std::vector<std::string> skipped;     ///< boxes of the sequence that do not come
   std::optional<std::string> robot;     ///< absent: the scenario's
   std::optional<std::string> cup;       ///< holding | phases
   std::optional<std::uint64_t> seed;

@@ -25,6 +25,22 @@ std::string sequence_of(const ServeOptions& options, const model::Scenario& scen
   return options.sequence.value_or(scenario.sequences.front().name);
 }
 
+/// Takes boxes out of a sequence. Throws InputError for one that is not in it.
+void skip(model::Scenario& scenario, const std::string& sequence, const std::vector<std::string>& boxes) {
+  for (model::Sequence& one : scenario.sequences) {
+    if (one.name != sequence) continue;
+    for (const std::string& box : boxes) {
+      const auto is_it = [&](const model::Item& item) { return item.parcel == box; };
+      if (std::erase_if(one.items, is_it) > 0) continue;
+      std::vector<std::string> names;
+      for (const model::Item& item : one.items) names.push_back(item.parcel);
+      throw InputError(
+          "command line", "--skip", "'" + box + "'",
+          "a box of sequence " + sequence + ", nearest is '" + std::string(find_nearest(box, names)) + "'");
+    }
+  }
+}
+
 model::Scenario load(const ServeOptions& options, std::optional<double> tick) {
   model::Scenario scenario = load_changed(options.scenario, options.changes);
   if (tick) scenario.controller.tick = *tick;
@@ -35,6 +51,7 @@ model::Scenario load(const ServeOptions& options, std::optional<double> tick) {
   if (!scenario.robot) throw InputError(scenario.source_name, "robot", "", "a robot, to be driven");
   if (scenario.sequences.empty()) throw InputError(scenario.source_name, "sequences", "", "a sequence of boxes");
   print_robot_warnings(scenario);
+  skip(scenario, sequence_of(options, scenario), options.skipped);
   if (!options.plant_seed) return scenario;
   const std::string sequence = sequence_of(options, scenario);
   (void)cell::require_sequence(scenario, sequence);
