@@ -153,6 +153,7 @@ class Commands(unittest.TestCase):
             any_free.bind(("127.0.0.1", 0))
             port = any_free.getsockname()[1]
         lines = [line.replace(":5555", f":{port}") for line in lines]
+        lines = [line.replace("--ur 127.0.0.1", f"--ur 127.0.0.1 --ur-port-offset {port - 29999}") for line in lines]
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             for file in self.path.iterdir():

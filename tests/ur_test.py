@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """ur_test.py: the served UR as its clients meet it: RTDE, dashboard and primary written by hand, and the wheel ur_rtde where it can be
 imported. SNUG names the program."""
+import json
 import os
 import signal
 import socket
 import struct
 import subprocess
+import tempfile
 import threading
 import time
 import unittest
@@ -207,6 +209,48 @@ class UrRtde(unittest.TestCase):
             self.assertAlmostEqual(receiver.getTargetSpeedFraction(), 0.5)
             io.disconnect()
             receiver.disconnect()
+
+
+class Run(unittest.TestCase):
+    """`snug run`: an exported program on the cell, by the interpreter, against `simulate`."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.script = Path(cls.folder.name) / "small.script"
+        program = Path(cls.folder.name) / "small.csv"
+        cls.cell = [str(CELL), "--container", "400x300x200", "--sequence", "1"]
+        cls.call("pack", *cls.cell, "--samples", "0", "--program", program)
+        cls.call("export", program, "--scenario", *cls.cell, "--format", "urscript", "-o", cls.script)
+        simulated = json.loads(cls.call("simulate", *cls.cell, "--program", program, "--robot", "ur10", "--json").stdout)
+        cls.packed = {box["id"] for box in simulated["boxes"] if box["state"] == "packed"}
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @staticmethod
+    def call(*words, code=0):
+        done = subprocess.run([SNUG, *map(str, words)], capture_output=True, text=True)
+        assert done.returncode == code, (words, done.returncode, done.stderr)
+        return done
+
+    def test_exported_program_packs_the_same_boxes_at_either_period(self):
+        self.assertGreater(len(self.packed), 2)
+        for model in ("ur10", "ur10e"):
+            result = json.loads(self.call("run", self.script, *self.cell, "--model", model, "--json").stdout)
+            self.assertEqual({box["id"] for box in result["boxes"] if box["state"] == "packed"}, self.packed)
+
+    def test_mistakes_are_told_with_their_place(self):
+        broken = Path(self.folder.name) / "broken.script"
+        broken.write_text("def p():\n  mvoej([0, 0, 0, 0, 0, 0])\nend\n")
+        self.assertIn("broken.script:2:3: got unknown function 'mvoej', nearest is 'movej'",
+                      self.call("run", broken, *self.cell, code=2).stderr)
+        broken.write_text("def p():\n  sleep(0.1)\n  x = [1][3]\nend\n")
+        self.assertIn("3:", self.call("run", broken, *self.cell, code=1).stderr)
+        broken.write_text("def p():\n  halt\nend\n")
+        self.assertIn("halted", self.call("run", broken, *self.cell, code=1).stderr)
+        self.assertIn("BOX027", self.call("run", self.script, *self.cell, "--skip", "BOX02", code=2).stderr)
 
 
 if __name__ == "__main__":
