@@ -1,4 +1,5 @@
-// shared_information, shared_step, squares_covariance: how well least squares of simulations know their shared unknowns.
+// shared_information, shared_step, squares_covariance: how well least squares of simulations know their shared
+// unknowns.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -86,8 +87,7 @@ Eigen::MatrixXd shared_information(const BatchedDerivatives& at, Eigen::Index n)
   return information;
 }
 
-Eigen::VectorXd shared_step(const BatchedDerivatives& at, const std::vector<Eigen::VectorXd>& changes,
-                            Eigen::Index n) {
+Eigen::VectorXd shared_step(const BatchedDerivatives& at, const std::vector<Eigen::VectorXd>& changes, Eigen::Index n) {
   Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
   for (std::size_t i = 0; i < at.jacobians.size(); ++i) {
     const Eigen::MatrixXd& J = at.jacobians[i];
