@@ -35,10 +35,10 @@ inline std::string read_text(const std::filesystem::path& path) {
 inline std::vector<std::filesystem::path> shipped_scenarios() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(project_file("scenarios")))
-    // Placements are lists of boxes, sensors what is measured with, examples and tasks what verbs read: no scenarios.
+    // Placements are lists of boxes, sensors and cups what is measured with, examples and tasks what verbs read.
     if (entry.path().extension() == ".yaml" && !entry.path().stem().string().ends_with("placements") &&
         entry.path().stem() != "task" && entry.path().parent_path().filename() != "examples" &&
-        entry.path().parent_path().filename() != "sensors")
+        entry.path().parent_path().filename() != "sensors" && entry.path().parent_path().filename() != "cups")
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
