@@ -210,6 +210,30 @@ class UrRtde(unittest.TestCase):
             io.disconnect()
             receiver.disconnect()
 
+    def test_wheel_ur_rtde_moves_the_arm(self):
+        with Served("--model", "ur10e", offset=0):
+            receiver = rtde_receive.RTDEReceiveInterface("127.0.0.1")
+            control = rtde_control.RTDEControlInterface("127.0.0.1")
+            joints = receiver.getActualQ()
+            joints[5] += 0.2
+            self.assertTrue(control.moveJ(joints, 1.0, 1.0))
+            self.assertLess(max(abs(a - b) for a, b in zip(receiver.getActualQ(), joints)), 1e-6)
+            pose = receiver.getActualTCPPose()
+            pose[2] += 0.03
+            self.assertTrue(control.moveL(pose, 0.2, 0.3))
+            self.assertLess(max(abs(a - b) for a, b in zip(receiver.getActualTCPPose()[:3], pose)), 1e-4)
+            self.assertTrue(control.speedL([0, 0, -0.05, 0, 0, 0], 0.5, 0.1))
+            self.assertTrue(control.speedStop())
+            self.assertTrue(control.forceMode([0] * 6, [0, 0, 1, 0, 0, 0], [0, 0, -5, 0, 0, 0], 2, [0.1] * 6))
+            self.assertTrue(control.forceModeStop())
+            target = receiver.getTargetQ()
+            for step in range(50):
+                begin = control.initPeriod()
+                self.assertTrue(control.servoJ([target[0] + 0.001 * step, *target[1:]], 0.5, 0.5, 0.002, 0.1, 300))
+                control.waitPeriod(begin)
+            self.assertTrue(control.servoStop())
+            control.stopScript()
+
 
 class Run(unittest.TestCase):
     """`snug run`: an exported program on the cell, by the interpreter, against `simulate`."""

@@ -132,9 +132,8 @@ std::vector<std::string> describe_warnings(const SolverSummary& summary) {
   std::vector<std::string> warnings;
   if (summary.infeasible > 0) {
     warnings.push_back(fmt::format(
-        "{} of {} steps had no solution, the first at t = {:.3f} s between '{}' and '{}': a body that moves whatever "
-        "it "
-        "meets presses rigid ones together; end its way earlier or make a pair compliant (contacts: stiffness)",
+        "{} of {} steps had no solution, the first at t = {:.3f} s between '{}' and '{}': a body on a given "
+        "path presses rigid ones together; end its path earlier or make a pair compliant (contacts: stiffness)",
         summary.infeasible, summary.steps, summary.infeasible_time, summary.infeasible_a, summary.infeasible_b));
   }
   const PassedLimit* worst = nullptr;

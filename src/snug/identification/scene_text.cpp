@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <vector>
 
 namespace snug::identification {
 namespace {
@@ -175,10 +176,22 @@ std::string as_text(const SceneFit& fit) {
   for (const Rejected& one : fit.rejected)
     text += fmt::format("rejected: {} samples of {} in {} that jump away from their neighbours\n", one.samples,
                         one.body, one.recording);
-  for (const Smoothing& one : fit.smoothed)
-    text += fmt::format("smoothed: {} in {}, noise of {:.3f} mm and {:.3f} deg found, {:.3g} and {:.3g} Hz followed\n",
-                        one.body, one.recording, 1e3 * one.position_noise,
-                        180.0 / std::numbers::pi * one.rotation_noise, one.position_bandwidth, one.rotation_bandwidth);
+  std::map<std::string, std::vector<Smoothing>> smoothed;  // by body
+  for (const Smoothing& one : fit.smoothed) smoothed[one.body].push_back(one);
+  for (const auto& [body, list] : smoothed) {
+    const auto mean = [&list = list](double Smoothing::*member) {
+      double sum = 0.0;
+      for (const Smoothing& one : list) sum += one.*member;
+      return sum / static_cast<double>(list.size());
+    };
+    text += fmt::format(
+        "smoothed: poses of {} in {} recordings; noise of {:.3f} mm and {:.3f} deg found, {:.3g} and {:.3g} Hz "
+        "followed, "
+        "on average\n",
+        body, list.size(), 1e3 * mean(&Smoothing::position_noise),
+        180.0 / std::numbers::pi * mean(&Smoothing::rotation_noise), mean(&Smoothing::position_bandwidth),
+        mean(&Smoothing::rotation_bandwidth));
+  }
   if (!fit.is_trusted) text += "NOT to be trusted: the simulation misses the recordings by far more than noise\n";
   for (const Parameter& parameter : fit.parameters) {
     const bool is_fixed = std::isnan(parameter.standard_error) && parameter.advice.starts_with("held fixed");

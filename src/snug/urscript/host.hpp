@@ -50,7 +50,7 @@ struct ControllerState {
   std::array<double, 4> analog_inputs{};  ///< V or A: standard 0 and 1, tool 0 and 1
   Registers inputs;
   double speed_fraction = 1.0;           ///< the slider, [0, 1]: time of motions passes so fast
-  bool is_protectively_stopped = false;  ///< the arm stands; the program goes on where it was when this is false again
+  bool is_protectively_stopped = false;  ///< the arm stands; when false again it returns to its path, and goes on there
   bool has_popup = false;                ///< set by a blocking popup; the program goes on when the host has cleared it
 
   // Written by programs; the host may write it between steps, as clients do.

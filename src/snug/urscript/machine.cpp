@@ -140,9 +140,7 @@ struct Machine::Impl {
     return static_cast<std::size_t>(at);
   }
 
-  [[nodiscard]] CallContext context(Host& host) {
-    return {host, motion, time, period, !program.is_secondary(), limits.value_size};
-  }
+  [[nodiscard]] CallContext context(Host& host) { return {host, motion, time, period, !program.is_secondary()}; }
 
   void call_builtin(Thread& thread, const Instruction& instruction, Host& host) {
     const internal::CallNames& names = code().calls[static_cast<std::size_t>(instruction.b)];
@@ -416,8 +414,7 @@ void Machine::Impl::step(Host& host) {
       is_braking = true;
       threads.clear();
       motion.end_force(host);
-      motion.brake(host,
-                   *std::min_element(host.limits().max_acceleration.begin(), host.limits().max_acceleration.end()));
+      motion.brake(host);
       pace = 1.0;
     }
     motion.step(host, is_braking ? 1.0 : pace * std::clamp(state.speed_fraction, 0.0, 1.0));

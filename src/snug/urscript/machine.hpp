@@ -17,7 +17,6 @@ struct MachineLimits {
   std::size_t threads = 64;
   std::size_t value_size = 100'000;  ///< elements of a list with those of lists in it; bytes of a string
   std::size_t memory = 4'000'000;    ///< the same, of all variables together
-  std::size_t sockets = 16;
 };
 
 enum class MachineState {

@@ -3,37 +3,23 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
-#include <optional>
-#include <set>
-
-#include "snug/urscript/internal/builtins.hpp"
-#include "snug/urscript/internal/code.hpp"
+#include "snug/urscript/internal/expressions.hpp"
 
 namespace snug::urscript {
 namespace internal {
 namespace {
 
 constexpr std::size_t kLongest = 4'000'000;  // bytes
-constexpr int kDeepest = 100;                // blocks or brackets in each other
-constexpr std::size_t kMostArguments = 64;
+constexpr std::size_t kMostParameters = 64;
 
-bool is_reserved(std::string_view word) {
-  static const std::set<std::string_view> kWords = {
-      "def",   "sec",    "thread", "if",       "elif",           "else",          "while", "end",  "break", "return",
-      "local", "global", "halt",   "continue", "enter_critical", "exit_critical", "join",  "kill", "pass"};
-  return kWords.count(word) > 0;
-}
-
-class Compiler {
+/// Statements; functions and variables may be used before they come.
+class Compiler : private ExpressionCompiler {
  public:
-  explicit Compiler(std::string_view text) : tokens_(tokens_of(text)) {}
+  explicit Compiler(std::string_view text) : ExpressionCompiler(text) {}
 
   std::unique_ptr<const Code> run() {
     find_names();
     skip_lines();
-    code_.functions.reserve(names_.size() + 1);
     const bool is_def = is_word("def"), is_sec = is_word("sec");
     code_.is_secondary = is_sec;
     Function main;
@@ -46,12 +32,8 @@ class Compiler {
       expect(":");
     }
     code_.name = main.name;
-    code_.functions.push_back(main);
-    for (const auto& [text, index] : names_) {
-      (void)text;
-      (void)index;
-      code_.functions.emplace_back();
-    }
+    code_.functions.resize(names_.size() + 1);
+    code_.functions.front() = main;
     begin_function(0);
     if (is_def || is_sec) {
       block();
@@ -65,52 +47,6 @@ class Compiler {
   }
 
  private:
-  struct Scope {
-    int function = 0;
-    std::map<std::string, int> locals;
-    std::vector<std::vector<int>> breaks;  ///< jumps of each loop that is open, to be patched
-    std::vector<int> loops;                ///< where each begins
-  };
-
-  // --- tokens
-  [[nodiscard]] const Token& peek(std::size_t ahead = 0) const {
-    return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
-  }
-  const Token& take() {
-    const Token& token = peek();
-    if (at_ + 1 < tokens_.size()) ++at_;
-    return token;
-  }
-  [[noreturn]] void fail(const Token& token, std::string text) const {
-    throw ParseFault{{token.line, token.column, std::move(text)}};
-  }
-  [[nodiscard]] static std::string shown(const Token& token) {
-    if (token.kind == Token::Kind::NewLine) return "the end of the line";
-    if (token.kind == Token::Kind::End) return "the end of the program";
-    return "'" + token.text.substr(0, 40) + "'";
-  }
-  [[nodiscard]] bool is_symbol(std::string_view text, std::size_t ahead = 0) const {
-    return peek(ahead).kind == Token::Kind::Symbol && peek(ahead).text == text;
-  }
-  [[nodiscard]] bool is_word(std::string_view text) const {
-    return peek().kind == Token::Kind::Name && peek().text == text;
-  }
-  void expect(std::string_view symbol) {
-    if (!is_symbol(symbol)) fail(peek(), fmt::format("got {}, expected '{}'", shown(peek()), symbol));
-    take();
-  }
-  void word(std::string_view text) {
-    if (!is_word(text)) fail(peek(), fmt::format("got {}, expected '{}'", shown(peek()), text));
-    take();
-  }
-  std::string name(const char* what) {
-    if (peek().kind != Token::Kind::Name) fail(peek(), fmt::format("got {}, expected {}", shown(peek()), what));
-    return take().text;
-  }
-  void skip_lines() {
-    while (peek().kind == Token::Kind::NewLine) take();
-  }
-
   /// Functions, threads and variables of the program, before anything is compiled: they may be used before they come.
   void find_names() {
     int functions = 0;
@@ -152,17 +88,6 @@ class Compiler {
     code_.globals.push_back(text);
   }
 
-  // --- code
-  int emit(Op op, int a = 0, int b = 0) {
-    code_.instructions.push_back({op, a, b, where_.line, where_.column});
-    return static_cast<int>(code_.instructions.size()) - 1;
-  }
-  [[nodiscard]] int here() const { return static_cast<int>(code_.instructions.size()); }
-  void patch(int jump) { code_.instructions[static_cast<std::size_t>(jump)].a = here(); }
-  void constant(Value value) {
-    code_.constants.push_back(std::move(value));
-    emit(Op::Constant, static_cast<int>(code_.constants.size()) - 1);
-  }
   void begin_function(int index) {
     scopes_.push_back({});
     scopes_.back().function = index;
@@ -175,10 +100,6 @@ class Compiler {
     scopes_.pop_back();
   }
   Function& function(int index) { return code_.functions[static_cast<std::size_t>(index)]; }
-
-  void deeper() {
-    if (++depth_ > kDeepest) fail(peek(), "blocks or brackets too deep in each other");
-  }
 
   void block() {
     deeper();
@@ -235,7 +156,7 @@ class Compiler {
     take();
     while (!is_symbol(")")) {
       const std::string parameter = name("the name of a parameter");
-      if (made.parameters.size() >= kMostArguments) fail(peek(), "too many parameters");
+      if (made.parameters.size() >= kMostParameters) fail(peek(), "too many parameters");
       const int slot = static_cast<int>(made.parameters.size());
       if (!scopes_.back().locals.emplace(parameter, slot).second)
         fail(peek(), fmt::format("a second parameter '{}'", parameter));
@@ -416,194 +337,6 @@ class Compiler {
       emit(Op::StoreLocal, local_slot(variable));
   }
 
-  // --- expressions, the loosest binding first
-  void expression() {
-    deeper();
-    logical(0);
-    --depth_;
-  }
-  void logical(int level) {
-    static constexpr std::string_view kWords[] = {"or", "xor", "and"};
-    if (level == 3) return negation();
-    logical(level + 1);
-    while (is_word(kWords[level])) {
-      where_ = take();
-      if (level == 1) {
-        logical(level + 1);
-        emit(Op::Binary, static_cast<int>(Operator::Xor));
-        continue;
-      }
-      const int skip = emit(Op::AndOrSkip, 0, level == 0 ? 1 : 0);
-      logical(level + 1);
-      patch(skip);
-    }
-  }
-  void negation() {
-    if (!is_word("not")) return comparison();
-    where_ = take();
-    deeper();
-    negation();
-    --depth_;
-    emit(Op::Unary, static_cast<int>(Operator::Not));
-  }
-  void comparison() {
-    static const std::map<std::string_view, Operator> kSymbols = {
-        {"==", Operator::Equal},     {"!=", Operator::Unequal}, {"<", Operator::Less},
-        {"<=", Operator::LessEqual}, {">", Operator::Greater},  {">=", Operator::GreaterEqual}};
-    sum();
-    while (peek().kind == Token::Kind::Symbol) {
-      const auto found = kSymbols.find(peek().text);
-      if (found == kSymbols.end()) return;
-      where_ = take();
-      sum();
-      emit(Op::Binary, static_cast<int>(found->second));
-    }
-  }
-  void sum() {
-    product();
-    while (is_symbol("+") || is_symbol("-")) {
-      const Token token = take();
-      product();
-      where_ = token;
-      emit(Op::Binary, static_cast<int>(token.text == "+" ? Operator::Add : Operator::Subtract));
-    }
-  }
-  void product() {
-    sign();
-    while (is_symbol("*") || is_symbol("/") || is_symbol("%")) {
-      const Token token = take();
-      sign();
-      where_ = token;
-      emit(Op::Binary, static_cast<int>(token.text == "*"   ? Operator::Multiply
-                                        : token.text == "/" ? Operator::Divide
-                                                            : Operator::Modulo));
-    }
-  }
-  void sign() {
-    if (!is_symbol("-") && !is_symbol("+")) return postfix();
-    const Token token = take();
-    deeper();
-    sign();
-    --depth_;
-    where_ = token;
-    if (token.text == "-") emit(Op::Unary, static_cast<int>(Operator::Negate));
-  }
-  void postfix() {
-    primary();
-    while (is_symbol("[")) {
-      const Token token = take();
-      expression();
-      expect("]");
-      where_ = token;
-      emit(Op::Index);
-    }
-  }
-
-  void primary() {
-    skip_lines();  // a value may stand on the next line
-    const Token token = take();
-    where_ = token;
-    if (token.kind == Token::Kind::Name && is_reserved(token.text))
-      fail(token, fmt::format("got {}, expected a value", shown(token)));
-    if (token.kind == Token::Kind::Number) {
-      Value value = Value::of(token.number);
-      if (token.is_whole && token.number <= 2147483647.0) value.kind = Value::Kind::Int;
-      return constant(std::move(value));
-    }
-    if (token.kind == Token::Kind::String) return constant(Value::of(token.text));
-    if (token.kind == Token::Kind::Symbol && token.text == "(") {
-      expression();
-      return expect(")");
-    }
-    if (token.kind == Token::Kind::Symbol && token.text == "[") {
-      const int count = elements();
-      where_ = token;
-      emit(Op::MakeList, count);
-      return;
-    }
-    if (token.kind != Token::Kind::Name) fail(token, fmt::format("got {}, expected a value", shown(token)));
-    if (token.text == "p" && is_symbol("[") && !is_variable(token.text)) {
-      take();
-      const int count = elements();
-      if (count != 6) fail(token, fmt::format("a pose of {} numbers, not 6", count));
-      where_ = token;
-      emit(Op::MakePose);
-      return;
-    }
-    if (token.text == "run") return start_thread(token);
-    if (is_symbol("(")) return call(token, false);
-    variable(token);
-  }
-  [[nodiscard]] bool is_variable(const std::string& text) const {
-    return scopes_.back().locals.count(text) > 0 || globals_.count(text) > 0;
-  }
-  int elements() {
-    int count = 0;
-    while (!is_symbol("]")) {
-      expression();
-      ++count;
-      if (!is_symbol(",")) break;
-      take();
-    }
-    expect("]");
-    return count;
-  }
-  void start_thread(const Token& token) {
-    const Token callee = peek();
-    if (names_.count(name("a thread")) == 0) fail(callee, fmt::format("no thread '{}'", callee.text));
-    where_ = token;
-    call(callee, true);
-  }
-
-  void call(const Token& token, bool is_run) {
-    expect("(");
-    CallNames given;
-    while (!is_symbol(")")) {
-      std::string argument;
-      if (peek().kind == Token::Kind::Name && is_symbol("=", 1)) {
-        argument = take().text;
-        take();
-      } else if (!given.empty() && !given.back().empty()) {
-        fail(peek(), "an argument without a name behind one with a name");
-      }
-      if (given.size() >= kMostArguments) fail(peek(), "too many arguments");
-      given.push_back(argument);
-      expression();
-      if (!is_symbol(",")) break;
-      take();
-    }
-    expect(")");
-    where_ = token;
-    code_.calls.push_back(given);
-    const int names = static_cast<int>(code_.calls.size()) - 1;
-    if (const auto found = names_.find(token.text); found != names_.end()) {
-      emit(is_run ? Op::Run : Op::Call, found->second, names);
-      return;
-    }
-    const int builtin = find_builtin(token.text);
-    if (builtin < 0) {
-      const std::string nearest = nearest_builtin(token.text);
-      fail(token, fmt::format("unknown function '{}'{}", token.text,
-                              nearest.empty() ? "" : fmt::format(", nearest is '{}'", nearest)));
-    }
-    emit(Op::CallBuiltin, builtin, names);
-  }
-
-  void variable(const Token& token) {
-    if (const auto local = scopes_.back().locals.find(token.text); local != scopes_.back().locals.end()) {
-      emit(Op::LoadLocal, local->second);
-      return;
-    }
-    if (const auto global = globals_.find(token.text); global != globals_.end()) {
-      emit(Op::LoadGlobal, global->second);
-      return;
-    }
-    if (token.text == "True" || token.text == "False") return constant(Value::of(token.text == "True"));
-    if (token.text == "None") return constant({});
-    if (token.text == "pi" || token.text == "PI") return constant(Value::of(3.14159265358979323846));
-    fail(token, fmt::format("no variable '{}'", token.text));
-  }
-
   /// Behind the program's end: nothing, or a call of it.
   void rest(const std::string& program) {
     skip_lines();
@@ -612,16 +345,30 @@ class Compiler {
     if (peek().kind != Token::Kind::End)
       fail(peek(), fmt::format("got {} behind the end of the program", shown(peek())));
   }
-
-  std::vector<Token> tokens_;
-  std::size_t at_ = 0;
-  Code code_;
-  std::map<std::string, int> names_;  ///< functions and threads
-  std::map<std::string, int> globals_;
-  std::vector<Scope> scopes_;
-  Token where_;
-  int depth_ = 0;
 };
+
+/// Names and numbers of a line, without its strings and comments.
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  const auto is_word = [&](std::size_t at) {
+    return at < line.size() && (std::isalnum(static_cast<unsigned char>(line[at])) != 0 || line[at] == '_');
+  };
+  for (std::size_t at = line.find_first_not_of(" \t\r"); at < line.size();) {
+    if (line[at] == '#' || (line[at] == '$' && words.empty())) break;
+    if (line[at] == '"' || line[at] == '\'') {
+      at = line.find(line[at], at + 1);
+      at = at == std::string_view::npos ? line.size() : at + 1;
+      continue;
+    }
+    const std::size_t begin = at;
+    while (is_word(at)) ++at;
+    if (at > begin)
+      words.push_back(line.substr(begin, at - begin));
+    else
+      ++at;
+  }
+  return words;
+}
 
 }  // namespace
 }  // namespace internal
@@ -644,22 +391,18 @@ Expected<Program, ScriptError> parse(std::string_view text) {
 }
 
 std::size_t find_program_end(std::string_view stream) {
-  std::size_t at = 0;
   int open = 0;
   bool is_begun = false;
-  while (at < stream.size()) {
-    const std::size_t end = stream.find('\n', at);
-    if (end == std::string_view::npos) return 0;
-    std::string_view line = stream.substr(at, end - at);
+  for (std::size_t at = 0, end = stream.find('\n'); end != std::string_view::npos; end = stream.find('\n', at)) {
+    const std::vector<std::string_view> words = internal::words_of(stream.substr(at, end - at));
     at = end + 1;
-    const std::size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == std::string_view::npos || line[begin] == '#' || line[begin] == '$') continue;
-    line = line.substr(begin);
-    const std::string_view word = line.substr(0, line.find_first_of(" \t\r:(#"));
-    if (!is_begun && word != "def" && word != "sec") return at;
+    if (words.empty()) continue;
+    if (!is_begun && words.front() != "def" && words.front() != "sec") return at;
     is_begun = true;
-    if (word == "def" || word == "sec" || word == "thread" || word == "if" || word == "while") ++open;
-    if (word == "end") --open;
+    for (const std::string_view word : words) {
+      if (word == "def" || word == "sec" || word == "thread" || word == "if" || word == "while") ++open;
+      if (word == "end") --open;
+    }
     if (open <= 0) return at;
   }
   return 0;

@@ -358,34 +358,6 @@ Eigen::MatrixXd SceneSearch::covariance() {
   return result;
 }
 
-Eigen::MatrixXd SceneSearch::driven_covariance(const Fitted& at, const numerics::BatchedDerivatives& found) const {
-  const Eigen::Index n = at.x.size();
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
-  if (std::ranges::all_of(fitted_, [&](std::size_t m) { return experiment_.driven_of(m).empty(); })) return covariance;
-  const std::vector<Eigen::VectorXd> points{full(at.x)};
-  const auto residuals_of = [&](int draw) {
-    std::vector<SceneExperiment::Job> jobs;
-    for (std::size_t i = 0; i < fitted_.size(); ++i) jobs.push_back({0, fitted_[i], at.own[i], draw});
-    std::vector<Eigen::VectorXd> residuals;
-    for (MotionError& error : experiment_.evaluate(points, jobs)) {
-      const std::size_t i = residuals.size();
-      weigh(experiment_, fitted_[i], at.rows[i], at.weights[i], error.residuals);
-      residuals.push_back(std::move(error.residuals));
-    }
-    return residuals;
-  };
-  const std::vector<Eigen::VectorXd> smoothed = residuals_of(0);
-  for (int draw = 1; draw <= SceneExperiment::kDraws; ++draw) {
-    std::vector<Eigen::VectorXd> changes = residuals_of(draw);
-    for (std::size_t i = 0; i < changes.size(); ++i)
-      if (changes[i].size() == smoothed[i].size()) changes[i] -= smoothed[i];
-    const Eigen::VectorXd step = numerics::shared_step(found, changes, n);
-    covariance += step * step.transpose() / SceneExperiment::kDraws;
-  }
-  evaluations_ += 1 + SceneExperiment::kDraws;
-  return covariance;
-}
-
 Eigen::VectorXd SceneSearch::curvature_steps(const Eigen::VectorXd& middle) {
   // The cost is rough, and its curvature is seen only where it rises by more than that: steps double until it does.
   constexpr double kRise = 0.05;  // of the cost

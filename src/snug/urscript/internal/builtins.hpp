@@ -16,10 +16,9 @@ namespace snug::urscript::internal {
 struct CallContext {
   Host& host;
   Motion& motion;
-  double time = 0.0;           ///< s, of the program
-  std::int64_t period = 0;     ///< periods so far
-  bool may_move = true;        ///< false: a secondary program
-  std::size_t value_size = 0;  ///< at most, of what is returned
+  double time = 0.0;        ///< s, of the program
+  std::int64_t period = 0;  ///< periods so far
+  bool may_move = true;     ///< false: a secondary program
   std::vector<Value> arguments = {};
   /// Set: the thread waits, until this is true; then it has set the result. Asked once a period.
   std::function<bool(CallContext&, Value&)> wait = {};

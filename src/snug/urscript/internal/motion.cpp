@@ -14,7 +14,7 @@ constexpr double kSmall = 1e-9;         // m or rad: no way
 constexpr double kForceGain = 4e-4;     // m/s for each newton that is missing
 constexpr double kReturnSpeed = 0.1;    // of what a joint may do
 constexpr double kTolerance = 1e-6;     // rad, and share of a speed
-constexpr double kLeastServo = 0.5;     // of a period
+constexpr double kLeastServo = 0.5;     // of a period: the rest of a servo time that gets a period of its own
 
 Joints plus(const Joints& a, const Joints& b, double factor) {
   Joints sum{};
@@ -63,7 +63,7 @@ void check(const MoveSettings& settings) {
 }  // namespace
 
 Joints Motion::end_of(const Host& host) {
-  if (mode_ != Mode::Path) brake(host, largest(host.limits().max_acceleration));
+  if (mode_ != Mode::Path) brake(host);
   if (!end_) end_ = host.state().target.q;
   return *end_;
 }
@@ -214,6 +214,11 @@ void Motion::brake(const Host& host, double acceleration) {
   }
   way.push_back(way.back());  // at rest
   add(host, way, static_cast<double>(count));
+}
+
+void Motion::brake(const Host& host) {
+  const Joints& most = host.limits().max_acceleration;
+  brake(host, *std::min_element(most.begin(), most.end()));
 }
 
 void Motion::stop(const Host& host) {

@@ -42,6 +42,8 @@ class Motion {
   /// m/s and rad/s of the TCP in Base.
   void speed_tool(const std::array<double, 6>& speed, double acceleration);
   void brake(const Host& host, double acceleration);
+  /// By what every joint can.
+  void brake(const Host& host);
   /// Stands at once.
   void stop(const Host& host);
   void start_force(const ForceMode& mode) { force_ = mode; }

@@ -60,13 +60,6 @@ Value move_arc(CallContext& call) {
                        {call.number(2, 1.2), call.number(3, 0.25), 0.0, call.number(4, 0.0)});
   return until_done(call);
 }
-Value servo_circular(CallContext& call) {
-  need_motion(call);
-  call.motion.move_line(call.host, target_pose(call, 0),
-                        {call.number(1, 1.2), call.number(2, 0.25), 0.0, call.number(3, 0.0)});
-  return until_done(call);
-}
-
 Value servo(CallContext& call) {
   need_motion(call);
   const double duration = std::max(call.number(3, call.host.period()), call.host.period());
@@ -167,7 +160,7 @@ const Builtin kMotion[] = {
        return move_line(c);
      }},
     {"servoj", "q a v t lookahead_time gain", 1, servo},
-    {"servoc", "pose a v r", 1, servo_circular},
+    {"servoc", "pose a v r", 1, move_process},
     {"speedj", "qd a t", 1, speed_joints},
     {"speedl", "xd a t aRot", 1, speed_tool},
     {"stopj", "a", 0, [](CallContext& c) { return brake(c, c.number(0, 2.0)); }},

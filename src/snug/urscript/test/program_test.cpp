@@ -47,6 +47,8 @@ TEST(UrScriptProgram, ProgramsEndWhereTheirBlocksDo) {
   const std::string text = "def p():\n  while True:\n    sync()\n  end\nend\n";
   EXPECT_EQ(find_program_end(text + "movej([0,0,0,0,0,0])\n"), text.size());
   EXPECT_EQ(find_program_end(text.substr(0, text.size() - 2)), 0U);
+  const std::string short_blocks = "def p():\n  if True: sync() end  # end\n  textmsg(\"if def\")\nend\n";
+  EXPECT_EQ(find_program_end(short_blocks + "x"), short_blocks.size());
   EXPECT_EQ(find_program_end("\n# x\nsleep(1)\ndef"), 14U);
 }
 
