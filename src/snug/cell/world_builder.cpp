@@ -14,6 +14,18 @@ using physics::BodyId;
 using physics::BodyModel;
 using physics::Geom;
 
+physics::Bearing bearing_of(model::Bearing bearing) {
+  switch (bearing) {
+    case model::Bearing::Corners:
+      return physics::Bearing::Corners;
+    case model::Bearing::Edges:
+      return physics::Bearing::Edges;
+    case model::Bearing::Face:
+      break;
+  }
+  return physics::Bearing::Face;
+}
+
 physics::ContactLaw law_of(const model::Scenario& scenario, int a, int b) {
   physics::ContactLaw law;
   const auto params = model::find_contact(scenario, model::MaterialId{a}, model::MaterialId{b});
@@ -30,6 +42,7 @@ physics::ContactLaw law_of(const model::Scenario& scenario, int a, int b) {
   law.torsional_friction = params->torsional_friction;
   law.damping_ratio = params->damping_ratio.value_or(0.0);
   law.edge_friction = params->edge_friction;
+  law.bearing = bearing_of(params->bearing);
   return law;
 }
 

@@ -20,6 +20,13 @@ struct Material {
   bool operator==(const Material&) const = default;
 };
 
+/// Where a face that lies on another bears, and so where its friction acts.
+enum class Bearing {
+  Corners,  ///< on the corners of the contact patch
+  Edges,    ///< evenly along the rim of the patch
+  Face,     ///< with a pressure over the patch as even as equilibrium allows
+};
+
 /// Law of one contact: exact Coulomb cone, Newton restitution, and compliance where the pair is soft.
 struct ContactParams {
   double friction = 0.3;            ///< Coulomb coefficient mu, >= 0
@@ -39,6 +46,7 @@ struct ContactParams {
   std::optional<double> damping_ratio = std::nullopt;
   /// Coulomb coefficient where one or two points bear: corners, edges, balls. Absent: `friction`.
   std::optional<double> edge_friction = std::nullopt;
+  Bearing bearing = Bearing::Corners;  ///< read by itself, not one of the fields
 
   template <class Archive>
   void fields(Archive& a) {

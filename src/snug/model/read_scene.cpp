@@ -127,15 +127,17 @@ void ScenarioReader::read_contacts(const Value& value) {
     (void)map.require("restitution");
     read_fields(map, params);
     check_softness(map, params);
+    if (const auto bearing = map.find("bearing"))
+      params.bearing = static_cast<Bearing>(bearing->choice({"corners", "edges", "face"}));
     return params;
   };
   const MapReader map = value.map("contacts", {"pairs", "default"});
   if (const auto fallback = map.find("default"))
-    scenario_.default_contact = read_params(fallback->map("default", field_keys<ContactParams>()));
+    scenario_.default_contact = read_params(fallback->map("default", keys_with<ContactParams>({"bearing"})));
   const auto pairs = map.find("pairs");
   if (!pairs) return;
   for (const Value& entry : pairs->list()) {
-    const MapReader pair = entry.map("pair", keys_with<ContactParams>({"between"}));
+    const MapReader pair = entry.map("pair", keys_with<ContactParams>({"between", "bearing"}));
     const std::vector<Value> names = pair.require("between").list_of(2, "material names");
     const MaterialId a = read_material(names[0]);
     const MaterialId b = read_material(names[1]);

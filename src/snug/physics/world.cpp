@@ -144,6 +144,8 @@ internal::Scratch::Scratch(const WorldModel& model, int threads) : pool(threads)
   const bool resists =
       std::any_of(model.laws.begin(), model.laws.end(), [](const auto& l) { return l.resists_turning(); });
   const std::size_t row_capacity = contact_capacity + (resists ? kMaxTurningRows * patches.capacity() : 0);
+  if (std::any_of(model.laws.begin(), model.laws.end(), [](const auto& l) { return l.bearing != Bearing::Corners; }))
+    friction_points.resize(contact_capacity);
   rows = BoundedVector<Row>(row_capacity);
   reports = BoundedVector<ContactReport>(contact_capacity);
   islands.resize(n + 1);

@@ -45,6 +45,13 @@ struct BodyModel {
   bool operator==(const BodyModel&) const = default;
 };
 
+/// Where a face that lies on another bears, and so where its friction acts. docs/theory/contact.md, section 3.
+enum class Bearing {
+  Corners,  ///< on the corners of the patch, shared as the solver finds it
+  Edges,    ///< evenly along the rim of the patch
+  Face,     ///< with a pressure over the patch as even as equilibrium allows
+};
+
 /// What happens where two materials touch.
 struct ContactLaw {
   double friction = 0.3;            ///< Coulomb coefficient, exact disc
@@ -62,6 +69,7 @@ struct ContactLaw {
   double damping_ratio = 0.0;
   /// Coulomb coefficient where one or two points of the patch bear: corners, edges, balls. Absent: `friction`.
   std::optional<double> edge_friction = std::nullopt;
+  Bearing bearing = Bearing::Corners;
   [[nodiscard]] bool resists_turning() const { return rolling_resistance > 0.0 || torsional_friction > 0.0; }
   bool operator==(const ContactLaw&) const = default;
 };

@@ -8,7 +8,9 @@
 namespace snug::physics::internal {
 namespace {
 
-constexpr int kEdgePoints = 2;   ///< as many contacts of a patch, or fewer, are an edge or a corner
+constexpr int kEdgePoints = 2;  ///< as many contacts of a patch, or fewer, are an edge or a corner
+/// m, gap and way in the step up to which a point of a face stays where it is (decision 0099).
+constexpr double kHeld = 1e-5;
 constexpr double kNever = -1e6;  ///< m/s, approach that nothing has: asks a contact for no impulse
 
 /// How a body enters the rows of a patch: whitened J of axis i at arm r is sign (L_i, G_i r), G_i a 3 x 3 matrix.
@@ -40,11 +42,21 @@ Side side_of(const Scratch& work, const BodyWork& body, const Patch& patch, cons
   return side;
 }
 
+/// Axes of a row, [first, end): those of both laws, of the normal law, of friction.
+template <int kFirst, int kEnd>
+struct Axes {
+  static constexpr int first = kFirst, end = kEnd;
+};
+using AllAxes = Axes<0, 3>;
+using NormalAxis = Axes<0, 1>;
+using TangentAxes = Axes<1, 3>;
+
 /// From `column` on.
+template <class Range>
 void fill_side(const Side& side, const Patch& patch, const Vector3& arm, int column, Row& row) {
   if (side.whitening->is_dense) {
     const Vector3* axes[3] = {&patch.n, &patch.t1, &patch.t2};
-    for (int i = 0; i < 3; ++i) {
+    for (int i = Range::first; i < Range::end; ++i) {
       Vector6 j;
       j << side.sign * *axes[i], arm.cross(side.sign * *axes[i]);
       Eigen::Map<Vector6> out(row.j[i] + column);
@@ -53,7 +65,7 @@ void fill_side(const Side& side, const Patch& patch, const Vector3& arm, int col
     return;
   }
   const Eigen::Matrix<double, 9, 1> angular = side.angular * arm;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = Range::first; i < Range::end; ++i) {
     for (int j = 0; j < 3; ++j) {
       row.j[i][column + j] = side.linear[i][j];
       row.j[i][column + 3 + j] = angular[3 * i + j];
@@ -62,15 +74,18 @@ void fill_side(const Side& side, const Patch& patch, const Vector3& arm, int col
 }
 
 /// Relative velocity that the unknowns do not hold.
+template <class Range>
 void add_velocity(const Vector3& velocity, const Patch& patch, double sign, Row& row) {
-  row.bias[0] += sign * patch.n.dot(velocity);
+  if (Range::first == 0) row.bias[0] += sign * patch.n.dot(velocity);
+  if (Range::end < 3) return;
   row.bias[1] += sign * patch.t1.dot(velocity);
   row.bias[2] += sign * patch.t2.dot(velocity);
 }
 
 /// What a moving kinematic body brings in.
+template <class Range>
 void add_bias(const BodyWork& body, const Patch& patch, const Vector3& arm, double sign, Row& row) {
-  add_velocity(body.velocity + body.angular.cross(arm), patch, sign, row);
+  add_velocity<Range>(body.velocity + body.angular.cross(arm), patch, sign, row);
 }
 
 /// Large piles do not fit into the caches near the core: asks for a row before it is needed.
@@ -80,37 +95,58 @@ void prefetch(const Row* row) {
   for (std::size_t i = 0; i < sizeof(Row); i += kLine) __builtin_prefetch(bytes + i, 1);
 }
 
-/// J of a contact, index in Scratch::contacts, and what moving kinematic bodies and belts bring in.
-void fill_contact_row(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch,
-                      const BodyWork& a, const BodyWork& b, const Side& side_a, const Side& side_b, int index,
-                      Row& row) {
-  const Contact& contact = work.contacts[static_cast<std::size_t>(index)];
+/// The bodies of a patch, and how they enter its rows.
+struct Sides {
+  const BodyWork& a;
+  const BodyWork& b;
+  Side side_a, side_b;
+};
+
+/// J of a contact that acts at contact.p_WQ, and what moving kinematic bodies bring in.
+template <class Range>
+void fill_axes(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch,
+               const Sides& sides, const Contact& contact, Row& row) {
+  const BodyWork &a = sides.a, &b = sides.b;
   const Vector3& p_WQ = contact.p_WQ;
-  row.ia = a.active;
-  row.ib = b.active;
-  row.contact = index;
-  row.kind = RowKind::Contact;
-  std::fill_n(row.bias, 3, 0.0);
   if (follows_path(model, state, work, patch, contact)) {
     // Impulses act at the middle of the step; the law is that of the velocities at its end, with the arms of there.
     const ContactArms arms = arms_of(model, state, work, patch, contact);
     if (a.active >= 0) {
-      fill_side(side_a, patch, arms.a_mid, 0, row);
-      add_velocity(a.angular_guess.cross(arms.a_end - arms.a_mid), patch, -1.0, row);
+      fill_side<Range>(sides.side_a, patch, arms.a_mid, 0, row);
+      add_velocity<Range>(a.angular_guess.cross(arms.a_end - arms.a_mid), patch, -1.0, row);
     } else if (a.is_moving) {
-      add_bias(a, patch, arms.a_end, -1.0, row);
+      add_bias<Range>(a, patch, arms.a_end, -1.0, row);
     }
     if (b.active >= 0) {
-      fill_side(side_b, patch, arms.b_mid, 6, row);
-      add_velocity(b.angular_guess.cross(arms.b_end - arms.b_mid), patch, 1.0, row);
+      fill_side<Range>(sides.side_b, patch, arms.b_mid, 6, row);
+      add_velocity<Range>(b.angular_guess.cross(arms.b_end - arms.b_mid), patch, 1.0, row);
     } else if (b.is_moving) {
-      add_bias(b, patch, arms.b_end, 1.0, row);
+      add_bias<Range>(b, patch, arms.b_end, 1.0, row);
     }
+    return;
+  }
+  if (a.active >= 0) fill_side<Range>(sides.side_a, patch, p_WQ - sides.side_a.p_WBcm, 0, row);
+  if (b.active >= 0) fill_side<Range>(sides.side_b, patch, p_WQ - sides.side_b.p_WBcm, 6, row);
+  if (a.active < 0 && a.is_moving) add_bias<Range>(a, patch, p_WQ - a.p_WBcm - patch.way_a, -1.0, row);
+  if (b.active < 0 && b.is_moving) add_bias<Range>(b, patch, p_WQ - b.p_WBcm - patch.way_b, 1.0, row);
+}
+
+/// J of a contact, index in Scratch::contacts, and what moving kinematic bodies and belts bring in.
+void fill_contact_row(const WorldModel& model, const WorldState& state, const Scratch& work, const Patch& patch,
+                      const Sides& sides, int index, Row& row) {
+  const Contact& contact = work.contacts[static_cast<std::size_t>(index)];
+  row.ia = sides.a.active;
+  row.ib = sides.b.active;
+  row.contact = index;
+  row.kind = RowKind::Contact;
+  std::fill_n(row.bias, 3, 0.0);
+  if (patch.moves_friction) {
+    Contact at_friction = contact;
+    at_friction.p_WQ = work.friction_points[static_cast<std::size_t>(index)].p_WQ;
+    fill_axes<NormalAxis>(model, state, work, patch, sides, contact, row);
+    fill_axes<TangentAxes>(model, state, work, patch, sides, at_friction, row);
   } else {
-    if (a.active >= 0) fill_side(side_a, patch, p_WQ - side_a.p_WBcm, 0, row);
-    if (b.active >= 0) fill_side(side_b, patch, p_WQ - side_b.p_WBcm, 6, row);
-    if (a.active < 0 && a.is_moving) add_bias(a, patch, p_WQ - a.p_WBcm - patch.way_a, -1.0, row);
-    if (b.active < 0 && b.is_moving) add_bias(b, patch, p_WQ - b.p_WBcm - patch.way_b, 1.0, row);
+    fill_axes<AllAxes>(model, state, work, patch, sides, contact, row);
   }
   if (patch.has_belt) row.bias[1] += patch.t1.dot(patch.belt_W), row.bias[2] += patch.t2.dot(patch.belt_W);
 }
@@ -179,6 +215,12 @@ void fill_law(const WorldModel& model, const Patch& patch, const Contact& contac
     fill_compliant_law(law, dt, patch, contact, free_velocity, bearing, row);
     return;
   }
+  // Else points of a face that lie a little apart would bear nothing, one after the other.
+  const bool is_held = patch.moves_friction && contact.phi <= kHeld && std::abs(contact.approach) * dt <= kHeld;
+  if (is_held) {
+    row.target = 0.0;
+    return;
+  }
   if (contact.phi + dt * mean > 0.0) {  // does not close by itself: may be pushed as far as closing
     row.target = std::min(0.0, -2.0 * contact.phi / dt - contact.approach);
     return;
@@ -239,10 +281,10 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
                          row->kind == RowKind::Contact &&
                          row_index + static_cast<std::size_t>(patch.row_count) <= work.last_rows;
     if (!is_kept) {
-      Side side_a = side_of(work, a, patch, patch.way_a, -1.0), side_b = side_of(work, b, patch, patch.way_b, 1.0);
+      const Sides sides{a, b, side_of(work, a, patch, patch.way_a, -1.0), side_of(work, b, patch, patch.way_b, 1.0)};
       for (int k = 0; k < patch.contact_count; ++k) {
         prefetch(row + k + 4);
-        fill_contact_row(model, state, work, patch, a, b, side_a, side_b, patch.first_contact + k, row[k]);
+        fill_contact_row(model, state, work, patch, sides, patch.first_contact + k, row[k]);
       }
     }
     const int bearing = count_bearing(model, work, patch, row);
@@ -250,6 +292,7 @@ void build_rows(const WorldModel& model, const WorldState& state, Scratch& work,
       if (is_kept) prefetch(row + 4);
       const Contact& contact = work.contacts[static_cast<std::size_t>(k)];
       fill_law(model, patch, contact, relative_velocity(*row, 0, work.u.data()), bearing, *row);
+      if (patch.moves_friction) row->mu *= work.friction_points[static_cast<std::size_t>(k)].fraction;
       if (!is_kept) finish_row(*row);
       if (!is_first) continue;
       if (patch.is_swept) {

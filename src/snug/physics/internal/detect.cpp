@@ -179,6 +179,11 @@ void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int g
 
 namespace {
 
+/// Whether the law of the pair bears on edges or faces.
+bool is_face(const WorldModel& model, const PairBodies& bodies) {
+  return model.law(bodies.geom_a.material, bodies.geom_b.material).bearing != Bearing::Corners;
+}
+
 /// A held body may go through what is listed as not touching it.
 bool ignores_held(const PairBodies& bodies, const WorldInput& input) {
   const int held = input.held.index;
@@ -212,7 +217,7 @@ void visit_pairs(const WorldModel& model, const WorldInput& input, WorldState& s
       if (work.is_moving[a] == 0 && work.is_moving[b] == 0) continue;
       const PairBodies bodies = bodies_of(model, pair);
       if (ignores_held(bodies, input) || (is_same(memory, work) && stays_clear(memory, reach))) continue;
-      refresh_manifold(bodies, state, work, reach, margin, pair);
+      refresh_manifold(bodies, state, work, reach, margin, is_face(model, bodies), pair);
       work.visits[i] = find_contacts(bodies, reach, model.settings.dt, work, pair, found.data());
     }
   });
@@ -248,7 +253,7 @@ bool visit_pair(const WorldModel& model, const WorldInput& input, WorldState& st
     work.pair_memories[index] = {bodies.a, bodies.b, -1, -1.0, 0};
     return false;
   }
-  refresh_manifold(bodies, state, work, reach, margin, pair);
+  refresh_manifold(bodies, state, work, reach, margin, is_face(model, bodies), pair);
   return add_contacts(model, bodies, index, reach, pair, work);
 }
 
@@ -324,6 +329,7 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
   }
   fill_visited(model, reach, state, work);
   mark_covered_contacts(model, state, work);
+  bear_on_faces(model, state, work);
   report_depth(model, work, report);
 }
 

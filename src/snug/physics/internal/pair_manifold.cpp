@@ -1,7 +1,10 @@
 // Manifolds of near pairs, kept while the pair hardly moves, with impulses handed on by feature.
 #include "snug/physics/internal/pair_manifold.hpp"
 
+#include <array>
 #include <cmath>
+
+#include "snug/physics/internal/face_loads.hpp"
 
 namespace snug::physics::internal {
 namespace {
@@ -10,6 +13,7 @@ namespace {
 // still followed exactly to first order; the neglected part is angle^2 * size, below 1e-8 m for a 0.3 m box.
 constexpr double kKeepDistance = 5e-5;   ///< m
 constexpr double kKeepHalfAngle = 5e-5;  ///< rad/2
+constexpr double kTouches = 1e-5;        ///< m, gap of a point that may bear what others did
 constexpr double kMatchDistance = 4e-3;  ///< m, impulses are handed to a new feature this near to an old one
 
 struct RelativePose {
@@ -85,7 +89,24 @@ Matrix3 axes_of(const PairState& pair) {
   return axes;
 }
 
-void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& b, double margin,
+/// The points that touch take over the whole of what those of the old manifold bore: features come and go under a face
+/// that slides or turns, its load stays.
+void keep_load(const PairState& old, const geometry::Manifold& manifold, PairState& pair) {
+  const Vector3 t2 = pair.n_A.cross(pair.t_A);
+  const auto load_at = [&](const PairPoint& point, const Impulse& impulse, bool touches) {
+    return FaceLoad{pair.t_A.dot(point.p_A), t2.dot(point.p_A), impulse[0], 1.0, touches};
+  };
+  std::array<FaceLoad, geometry::kMaxManifoldPoints> before, loads;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(old.count); ++i)
+    before[i] = load_at(old.points[i], old.impulses[i], true);
+  const auto count = static_cast<std::size_t>(pair.count);
+  for (std::size_t i = 0; i < count; ++i)
+    loads[i] = load_at(pair.points[i], pair.impulses[i], manifold.points[i].phi <= kTouches);
+  if (!even_loads({loads.data(), count}, wrench_of({before.data(), static_cast<std::size_t>(old.count)}))) return;
+  for (std::size_t i = 0; i < count; ++i) pair.impulses[i][0] = loads[i].load;
+}
+
+void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& b, double margin, bool is_face,
                    const RelativePose& now, PairState& pair) {
   const Pose X_WA{a.R_WB, a.p_WB}, X_WB{b.R_WB, b.p_WB};
   geometry::Manifold manifold;
@@ -111,18 +132,19 @@ void find_manifold(const PairBodies& bodies, const BodyWork& a, const BodyWork& 
   if (old.count == 0 || pair.count == 0) return;
   const Matrix3 R_new_old = axes_of(pair).transpose() * axes_of(old);
   hand_on_impulses(old, R_new_old, pair);
+  if (is_face) keep_load(old, manifold, pair);
   pair.turning.moment = R_new_old * old.turning.moment;
 }
 
 }  // namespace
 
 void refresh_manifold(const PairBodies& bodies, const WorldState& state, const Scratch& work, double reach,
-                      double margin, PairState& pair) {
+                      double margin, bool is_face, PairState& pair) {
   const BodyWork& a = work.bodies[static_cast<std::size_t>(bodies.a)];
   const BodyWork& b = work.bodies[static_cast<std::size_t>(bodies.b)];
   const RelativePose now = relative_pose(a, state.bodies[static_cast<std::size_t>(bodies.a)], b,
                                          state.bodies[static_cast<std::size_t>(bodies.b)]);
-  if (!has_kept(pair, now, reach)) find_manifold(bodies, a, b, margin, now, pair);
+  if (!has_kept(pair, now, reach)) find_manifold(bodies, a, b, margin, is_face, now, pair);
 }
 
 }  // namespace snug::physics::internal

@@ -20,6 +20,6 @@ inline PairBodies bodies_of(const WorldModel& model, const PairState& pair) {
 
 /// A manifold that holds for the present poses.
 void refresh_manifold(const PairBodies& bodies, const WorldState& state, const Scratch& work, double reach,
-                      double margin, PairState& pair);
+                      double margin, bool is_face, PairState& pair);
 
 }  // namespace snug::physics::internal

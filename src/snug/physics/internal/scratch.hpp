@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "snug/core/bounded_vector.hpp"
@@ -86,10 +87,12 @@ struct Patch {
   bool is_kept = false;          ///< the same as in the last step, at the same place
   Vector3 n = Vector3::UnitZ();  ///< from A to B, W
   Vector3 t1 = Vector3::UnitX(), t2 = Vector3::UnitY();
-  std::size_t law = 0;    ///< in WorldModel::laws
-  double share = 1.0;     ///< of the law's stiffness and damping
-  bool has_belt = false;  ///< one of the surfaces runs
-  bool is_swept = false;  ///< found at the end of the step: arms and normal are those of there
+  std::size_t law = 0;          ///< in WorldModel::laws
+  double share = 1.0;           ///< of the law's stiffness and damping
+  bool has_belt = false;        ///< one of the surfaces runs
+  bool moves_friction = false;  ///< friction of its contacts acts at Scratch::friction_points
+  bool is_shared = false;       ///< one of several supports of a face that bears on edges or as a face
+  bool is_swept = false;        ///< found at the end of the step: arms and normal are those of there
   Vector3 way_a = Vector3::Zero(), way_b = Vector3::Zero();  ///< swept: of the centres of mass, in this step
   Vector3 belt_W = Vector3::Zero();  ///< of B's surface against A's, beyond the motion of the bodies, m/s
 };
@@ -102,6 +105,14 @@ struct Contact {
   int patch = 0;
   int point = 0;            ///< of the pair's manifold; swept: -1
   bool is_covered = false;  ///< bears nothing: others around it, of the same face and plane, do
+};
+
+/// Where the friction of a contact acts that stands for a part of a face, and the fraction of it that is left where the
+/// part turns about a point within.
+struct FrictionPoint {
+  Vector3 p_WQ = Vector3::Zero();
+  double fraction = 1.0;
+  bool operator==(const FrictionPoint& other) const { return p_WQ == other.p_WQ && fraction == other.fraction; }
 };
 
 /// Of one pair.
@@ -168,9 +179,10 @@ struct Scratch {
   std::vector<int> parent;    ///< union-find over active bodies
   std::vector<int> island_of_root;
   BoundedVector<Patch> patches;
-  BoundedVector<Contact> contacts;  ///< by patch
-  PairContacts no_room;             ///< where contacts go that are too many
-  std::vector<int> patch_order;     ///< patches by island
+  BoundedVector<Contact> contacts;             ///< by patch
+  std::vector<FrictionPoint> friction_points;  ///< of each contact, where its patch says so; empty: no law needs them
+  PairContacts no_room;                        ///< where contacts go that are too many
+  std::vector<int> patch_order;                ///< patches by island
   BoundedVector<Row> rows;
   int row_count = 0;  ///< of this step's islands
   BoundedVector<ContactReport> reports;
@@ -206,6 +218,12 @@ void detect_contacts(const WorldModel& model, const WorldInput& input, WorldStat
 /// Of faces that lie on several fixed geoms in one plane, contacts within the convex hull of all: rigid bodies need
 /// them for nothing, and they would make what bears depend on the order of the file.
 void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& work);
+/// Of laws that bear on edges or faces: evens the loads of the step before and places friction.
+void bear_on_faces(const WorldModel& model, WorldState& state, Scratch& work);
+/// The same for a face on several supports of one plane: patches, and all of their contacts, of which those on the rim
+/// are not covered. False: more of these than a face has.
+bool bear_on_plane(const WorldModel& model, std::span<const int> patches, std::span<const int> contacts,
+                   WorldState& state, Scratch& work);
 /// Marks a sleeping group as moving, from within a step.
 void wake_group(const WorldModel& model, WorldState& state, Scratch& work, int group);
 /// Velocities at the end of the step without contacts (bodies with force elements: done in solve_islands).

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snug/physics/internal/face_loads.hpp"
 #include "snug/physics/internal/scratch.hpp"
 
 namespace snug::physics::internal {
@@ -145,19 +146,29 @@ void hand_on_impulses(const std::vector<SupportPoint>& points, WorldState& state
   }
 }
 
-/// Points of the patches of one plane, in the frame of the moving body, x and y along the plane.
-void add_points(const WorldState& state, const Scratch& work, const Patch& patch, const View& view, int rank,
-                std::vector<SupportPoint>& points) {
+/// Axes along a plane and from it, in the frame of the moving body: one frame for all of its patches.
+struct PlaneAxes {
+  Vector3 ex, ey, n;
+};
+
+PlaneAxes axes_of_plane(const Scratch& work, const View& view) {
   const Vector3 n = work.bodies[static_cast<std::size_t>(view.moving)].R_WB.transpose() * view.n_W;
   int smallest = 0;
   for (int i = 1; i < 3; ++i)
     if (std::abs(n[i]) < std::abs(n[smallest])) smallest = i;
-  const Vector3 ex = n.cross(Vector3::Unit(smallest)).normalized(), ey = n.cross(ex);
+  const Vector3 ex = n.cross(Vector3::Unit(smallest)).normalized();
+  return {ex, n.cross(ex), n};
+}
+
+/// Points of the patches of one plane.
+void add_points(const WorldState& state, const Scratch& work, const Patch& patch, const PlaneAxes& axes, int rank,
+                std::vector<SupportPoint>& points) {
+  const bool is_b = view_of(work, patch).is_b;
   for (int i = patch.first_contact; i < patch.first_contact + patch.contact_count; ++i) {
     const PairPoint& point =
         state.pairs[patch.pair].points[static_cast<std::size_t>(work.contacts[static_cast<std::size_t>(i)].point)];
-    const Vector3& p = view.is_b ? point.p_B : point.p_A;
-    points.push_back({ex.dot(p), ey.dot(p), n.dot(p), i, rank});
+    const Vector3& p = is_b ? point.p_B : point.p_A;
+    points.push_back({axes.ex.dot(p), axes.ey.dot(p), axes.n.dot(p), i, rank});
   }
 }
 
@@ -168,8 +179,45 @@ bool comes_before(const Scratch& work, int body, int other) {
   return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
 }
 
+/// Whether all surfaces of a plane run with the same velocity under the moving body, under one law.
+bool run_alike(const WorldModel& model, const Scratch& work, const std::vector<int>& plane) {
+  const Patch& first = work.patches[static_cast<std::size_t>(plane.front())];
+  const auto belt_of = [&work](const Patch& p) { return view_of(work, p).is_b ? p.belt_W : Vector3(-p.belt_W); };
+  return std::all_of(plane.begin(), plane.end(), [&](int index) {
+    const Patch& patch = work.patches[static_cast<std::size_t>(index)];
+    return model.laws[patch.law] == model.laws[first.law] && (belt_of(patch) - belt_of(first)).isZero(1e-12);
+  });
+}
+
+/// Of laws that bear on edges or faces, on surfaces that do not run alike: every point bears, each support in
+/// proportion to what lies on it.
+void even_plane(const WorldModel& model, SharedSupports& shared, WorldState& state, Scratch& work) {
+  shared.loads.clear();
+  std::size_t first = 0;
+  for (const int index : shared.plane) {
+    const auto count = static_cast<std::size_t>(work.patches[static_cast<std::size_t>(index)].contact_count);
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Contact& contact = work.contacts[static_cast<std::size_t>(shared.points[i].contact)];
+      const Patch& patch = work.patches[static_cast<std::size_t>(index)];
+      const double load = state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)][0];
+      shared.loads.push_back({shared.points[i].x, shared.points[i].y, load, 0.0, bears(model, contact, load)});
+    }
+    weigh_by_area({shared.loads.data() + first, count});
+    first += count;
+  }
+  if (!even_loads(shared.loads)) return;
+  for (std::size_t i = 0; i < shared.loads.size(); ++i) {
+    const Contact& contact = work.contacts[static_cast<std::size_t>(shared.points[i].contact)];
+    Patch& patch = work.patches[static_cast<std::size_t>(contact.patch)];
+    double& load = state.pairs[patch.pair].impulses[static_cast<std::size_t>(contact.point)][0];
+    if (load == shared.loads[i].load) continue;
+    load = shared.loads[i].load;
+    patch.is_kept = false;
+  }
+}
+
 /// The supports of one body that lie in the plane of the first of the chain, taken off the chain.
-void share_plane(WorldState& state, Scratch& work, int& chain) {
+void share_plane(const WorldModel& model, WorldState& state, Scratch& work, int& chain) {
   SharedSupports& shared = work.shared_supports;
   shared.points.clear();
   shared.plane.clear();
@@ -194,21 +242,37 @@ void share_plane(WorldState& state, Scratch& work, int& chain) {
     if (comes_before(work, fixed_of(p), fixed_of(q))) return true;
     return !comes_before(work, fixed_of(q), fixed_of(p)) && p < q;
   });
+  const PlaneAxes axes =
+      axes_of_plane(work, view_of(work, work.patches[static_cast<std::size_t>(shared.plane.front())]));
   for (std::size_t i = 0; i < shared.plane.size(); ++i) {
     const Patch& patch = work.patches[static_cast<std::size_t>(shared.plane[i])];
-    add_points(state, work, patch, view_of(work, patch), static_cast<int>(i), shared.points);
+    add_points(state, work, patch, axes, static_cast<int>(i), shared.points);
   }
   if (!is_flat(shared.points)) return;
+  const bool are_faces = std::all_of(shared.plane.begin(), shared.plane.end(), [&](int index) {
+    return model.laws[work.patches[static_cast<std::size_t>(index)].law].bearing != Bearing::Corners;
+  });
+  if (are_faces && !run_alike(model, work, shared.plane)) {
+    even_plane(model, shared, state, work);
+    return;
+  }
   cover_inner_points(shared.points, work);
+  if (are_faces) {
+    shared.contacts.clear();
+    for (const SupportPoint& point : shared.points) shared.contacts.push_back(point.contact);
+    if (bear_on_plane(model, shared.plane, shared.contacts, state, work)) return;
+  }
   hand_on_impulses(shared.points, state, work);
 }
 
 }  // namespace
 
-SharedSupports::SharedSupports(std::size_t bodies, std::size_t patches, std::size_t contacts)
+SharedSupports::SharedSupports(std::size_t bodies, std::size_t patches, std::size_t contact_count)
     : first(bodies, -1), next(patches, -1) {
   plane.reserve(patches);
-  points.reserve(contacts);
+  points.reserve(contact_count);
+  loads.reserve(contact_count);
+  contacts.reserve(contact_count);
   touched.reserve(bodies);
 }
 
@@ -216,7 +280,8 @@ void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& 
   SharedSupports& shared = work.shared_supports;
   shared.touched.clear();
   for (std::size_t i = 0; i < work.patches.size(); ++i) {
-    const Patch& patch = work.patches[i];
+    Patch& patch = work.patches[i];
+    patch.is_shared = false;
     if (!may_share(model, work, patch)) continue;
     for (int k = patch.first_contact; k < patch.first_contact + patch.contact_count; ++k)
       work.contacts[static_cast<std::size_t>(k)].is_covered = false;
@@ -228,7 +293,7 @@ void mark_covered_contacts(const WorldModel& model, WorldState& state, Scratch& 
   }
   for (const int body : shared.touched) {
     int& chain = shared.first[static_cast<std::size_t>(body)];
-    while (chain >= 0) share_plane(state, work, chain);
+    while (chain >= 0) share_plane(model, state, work, chain);
   }
 }
 

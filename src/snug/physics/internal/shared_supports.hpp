@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "snug/physics/internal/face_loads.hpp"
+
 namespace snug::physics::internal {
 
 /// A contact of a face, in the frame of the body that it belongs to.
@@ -23,6 +25,8 @@ struct SharedSupports {
   std::vector<int> touched;  ///< that have such patches
   std::vector<int> plane;    ///< patches of one plane
   std::vector<SupportPoint> points;
+  std::vector<FaceLoad> loads;  ///< of each point, where faces bear on surfaces that run
+  std::vector<int> contacts;    ///< of the plane
 };
 
 }  // namespace snug::physics::internal
