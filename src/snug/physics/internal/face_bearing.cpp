@@ -19,6 +19,8 @@ constexpr double kSlides = 1e-4, kTurns = 1e-6;
 constexpr double kRound = 1e-6;     ///< of the radius: points of a patch that are on one circle
 constexpr double kParallel = 1e-6;  ///< 1 - cosine, between the axis of a flat end and the normal of its patch
 
+double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+
 /// Contacts of one face, in its plane: of one patch, or of several that lie on supports of one plane.
 struct Face {
   std::array<FaceLoad, geometry::kMaxManifoldPoints> points;
@@ -73,7 +75,7 @@ bool is_disc(const WorldModel& model, const Scratch& work, const Face& face, std
   const Vector3 middle = body.p_WB + body.R_WB * geom.X_BG.p - face.origin;
   spread.x = face.t1.dot(middle), spread.y = face.t2.dot(middle);
   return std::all_of(points.begin(), points.end(), [&](const FaceLoad& p) {
-    const double r = std::hypot(p.x - spread.x, p.y - spread.y);
+    const double r = length_of(p.x - spread.x, p.y - spread.y);
     return std::abs(r - cylinder->radius) <= kRound * cylinder->radius;
   });
 }
@@ -88,7 +90,7 @@ FaceSpread spread_on(const WorldModel& model, const WorldState& state, const Scr
   FaceSpread disc;
   for (const std::uint32_t geom : {pair.geom_a, pair.geom_b}) {
     if (!is_disc(model, work, face, geom, corners, disc)) continue;
-    const double radius = std::hypot(corners[0].x - disc.x, corners[0].y - disc.y);
+    const double radius = length_of(corners[0].x - disc.x, corners[0].y - disc.y);
     disc.distance = bearing == Bearing::Face ? 2.0 / 3.0 * radius : radius;
     return disc;
   }
@@ -155,7 +157,7 @@ FrictionPatch friction_patch_of(const WorldModel& model, const WorldState& state
 void draw_in_corners(const FrictionPatch& f, CornerFrictions& frictions) {
   double distance = 0.0;
   for (std::size_t i = 0; i < f.count; ++i)
-    distance += f.unit[i] * std::hypot(f.corners[i].x - f.spread.x, f.corners[i].y - f.spread.y);
+    distance += f.unit[i] * length_of(f.corners[i].x - f.spread.x, f.corners[i].y - f.spread.y);
   const double scale = distance > 0.0 ? f.spread.distance / distance : 1.0;
   for (std::size_t i = 0; i < f.count; ++i) {
     const FaceLoad& p = f.corners[i];
@@ -198,8 +200,7 @@ double size_of_parts(const FrictionPatch& f, Bearing bearing) {
     const FacePart part = part_of(f, i, bearing);
     const double x = 0.5 * (f.corners[i].x - f.spread.x), y = 0.5 * (f.corners[i].y - f.spread.y);
     for (std::size_t k = 0; k < part.count; ++k)
-      distance +=
-          f.unit[i] / static_cast<double>(part.count) * std::hypot(x + part.samples[k].x, y + part.samples[k].y);
+      distance += f.unit[i] / static_cast<double>(part.count) * length_of(x + part.samples[k].x, y + part.samples[k].y);
   }
   return distance > 0.0 ? f.spread.distance / distance : 1.0;
 }
@@ -216,13 +217,13 @@ CornerFriction friction_of(const FrictionPatch& f, const FacePart& part, double 
   for (std::size_t k = 0; k < part.count; ++k) {
     const Planar arm{size * part.samples[k].x, size * part.samples[k].y};
     const Planar v = slip({middle.x + arm.x, middle.y + arm.y});
-    const double speed = std::hypot(v.x, v.y) + 1e-12, share = 1.0 / static_cast<double>(part.count);
+    const double speed = length_of(v.x, v.y) + 1e-12, share = 1.0 / static_cast<double>(part.count);
     const Planar d{share * v.x / speed, share * v.y / speed};
     force.x += d.x, force.y += d.y, torque += cross(arm, d);
-    radius = std::max(radius, std::hypot(arm.x, arm.y));
+    radius = std::max(radius, length_of(arm.x, arm.y));
   }
   CornerFriction friction;
-  friction.fraction = std::hypot(force.x, force.y);
+  friction.fraction = length_of(force.x, force.y);
   const Planar v = slip(middle);
   if (friction.fraction < 1e-6) {  // turns about its middle
     friction = {middle, {1.0, 0.0}, 0.0};
@@ -255,7 +256,7 @@ void follow_slip(const FrictionPatch& f, Bearing bearing, CornerFrictions& frict
     missing += load * left;
     force.x += load * frictions[i].fraction * frictions[i].direction.x;
     force.y += load * frictions[i].fraction * frictions[i].direction.y;
-    largest = std::max(largest, std::hypot(arm.x, arm.y));
+    largest = std::max(largest, length_of(arm.x, arm.y));
   }
   // The torque of a part that turns about a point within: all others move to its side.
   const double square = force.x * force.x + force.y * force.y;
@@ -287,7 +288,7 @@ void place_friction(const WorldModel& model, const Face& face, WorldState& state
   const FrictionPatch f = friction_patch_of(model, state, work, face);
   const ContactLaw& law = model.laws[face.law];
   CornerFrictions frictions;
-  const double turning = std::abs(f.angular) * f.spread.distance, sliding = std::hypot(f.velocity.x, f.velocity.y);
+  const double turning = std::abs(f.angular) * f.spread.distance, sliding = length_of(f.velocity.x, f.velocity.y);
   const bool follows = turning + sliding > kSlides && turning > kTurns * sliding;
   if (follows) {
     follow_slip(f, law.bearing, frictions);

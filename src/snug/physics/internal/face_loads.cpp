@@ -17,6 +17,8 @@ constexpr double kExact = 1e-7;    ///< of the sum of loads, and of it times the
 constexpr double kThin = 1e-9;     ///< area over size^2 of a polygon that is a line
 constexpr std::size_t kFew = 8;    ///< points, of which those that would pull are left out one by one
 
+double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+
 /// Sums over the points that bear, about their weighted middle.
 struct Moments {
   double weight = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
@@ -83,10 +85,14 @@ double cross(const FaceLoad& a, const FaceLoad& b, const FaceLoad& c) {
 
 /// Counter-clockwise, about a point within.
 void sort_around(std::span<FaceLoad> corners) {
-  bool is_sorted = true;
+  std::size_t left = 0;  // turns
   const std::size_t n = corners.size();
-  for (std::size_t i = 0; i < n; ++i) is_sorted &= cross(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]) > 0.0;
-  if (is_sorted && n == 4) return;  // of more, corners could go round twice
+  for (std::size_t i = 0; i < n; ++i)
+    left += cross(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]) > 0.0 ? 1U : 0U;
+  if (n == 4 && (left == 0 || left == n)) {  // of more, corners could go round twice
+    if (left == 0) std::reverse(corners.begin(), corners.end());
+    return;
+  }
   double x = 0.0, y = 0.0;
   for (const FaceLoad& p : corners) x += p.x / static_cast<double>(n), y += p.y / static_cast<double>(n);
   std::sort(corners.begin(), corners.end(), [x, y](const FaceLoad& p, const FaceLoad& q) {
@@ -104,7 +110,7 @@ double twice_area(std::span<const FaceLoad> corners) {
 /// Sorted corners of an area that is more than a line.
 bool is_area(std::span<const FaceLoad> corners) {
   double size = 0.0;
-  for (const FaceLoad& p : corners) size = std::max(size, std::hypot(p.x - corners[0].x, p.y - corners[0].y));
+  for (const FaceLoad& p : corners) size = std::max(size, length_of(p.x - corners[0].x, p.y - corners[0].y));
   return corners.size() >= 3 && twice_area(corners) > kThin * size * size;
 }
 
@@ -114,7 +120,7 @@ void find_middle(std::span<const FaceLoad> corners, Bearing bearing, FaceSpread&
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const FaceLoad &p = corners[i], &q = corners[(i + 1) % corners.size()];
     const bool is_face = bearing == Bearing::Face;
-    const double part = is_face ? cross(o, p, q) / 3.0 : 0.5 * std::hypot(q.x - p.x, q.y - p.y);
+    const double part = is_face ? cross(o, p, q) / 3.0 : 0.5 * length_of(q.x - p.x, q.y - p.y);
     sum += is_face ? 3.0 * part : 2.0 * part;
     x += part * (p.x + q.x - 2.0 * o.x), y += part * (p.y + q.y - 2.0 * o.y);
   }
@@ -126,15 +132,16 @@ double mean_distance(std::span<const FaceLoad> corners, Bearing bearing, const F
   double distance = 0.0, whole = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const FaceLoad &p = corners[i], &q = corners[(i + 1) % corners.size()];
-    const double length = std::hypot(q.x - p.x, q.y - p.y);
+    const double length = length_of(q.x - p.x, q.y - p.y);
     if (!(length > 0.0)) continue;
     const double ex = (q.x - p.x) / length, ey = (q.y - p.y) / length;
     const double px = p.x - middle.x, py = p.y - middle.y;
     const double height = px * ey - py * ex, from = px * ex + py * ey, to = from + length;
-    const double near = std::hypot(height, from), far = std::hypot(height, to);
-    // integral of the distance along the side: (t r + h^2 asinh(t/h))/2; over the triangle h/3 of that
+    const double near = length_of(height, from), far = length_of(height, to);
+    // integral of the distance along the side: (t r + h^2 log(t + r))/2; over the triangle h/3 of that
     const double reach = std::abs(height);
-    const double turn = reach > 0.0 ? height * height * (std::asinh(to / reach) - std::asinh(from / reach)) : 0.0;
+    const bool is_line = reach <= 1e-9 * length;  // through the middle
+    const double turn = is_line ? 0.0 : height * height * std::log((to + far) / (from + near));
     const double along = 0.5 * (to * far - from * near + turn);
     distance += bearing == Bearing::Face ? height / 3.0 * along : along;
     whole += bearing == Bearing::Face ? 0.5 * height * length : length;
@@ -157,7 +164,7 @@ void weigh_by_area(std::span<FaceLoad> points) {
   }
   const std::span<FaceLoad> bearing{corners.data(), count};
   if (count >= 3) sort_around(bearing);
-  for (const FaceLoad& p : bearing) size = std::max(size, std::hypot(p.x - corners[0].x, p.y - corners[0].y));
+  for (const FaceLoad& p : bearing) size = std::max(size, length_of(p.x - corners[0].x, p.y - corners[0].y));
   // A line still has some share, should nothing else bear.
   const double area = std::max(count >= 3 ? 0.5 * twice_area(bearing) : 0.0, 1e-6 * size * size + 1e-12);
   for (FaceLoad& p : points) p.weight = p.bears ? area / static_cast<double>(count) : 0.0;
@@ -183,7 +190,7 @@ bool even_loads(std::span<FaceLoad> points, const FaceWrench& wrench) {
     if (load < 0.0) return false;
     found.sum += load, found.x += load * p.x, found.y += load * p.y;
     change = std::max(change, std::abs(load - p.load));
-    size = std::max(size, std::hypot(p.x - points[0].x, p.y - points[0].y));
+    size = std::max(size, length_of(p.x - points[0].x, p.y - points[0].y));
   }
   const double missed =
       std::abs(found.sum - wrench.sum) * size + std::abs(found.x - wrench.x) + std::abs(found.y - wrench.y);
@@ -203,7 +210,7 @@ FaceSpread spread_of(std::span<FaceLoad> corners, Bearing bearing) {
     return spread;
   }
   // A line, evenly loaded: half of what its ends are away.
-  for (const FaceLoad& p : corners) spread.distance += 0.5 * std::hypot(p.x - spread.x, p.y - spread.y) / n;
+  for (const FaceLoad& p : corners) spread.distance += 0.5 * length_of(p.x - spread.x, p.y - spread.y) / n;
   return spread;
 }
 
