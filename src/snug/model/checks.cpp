@@ -192,7 +192,8 @@ void ScenarioReader::read() {
                              "aligner",       "tool",        "cup",        "controller", "sequences",
                              "springs",       "drops",       "robot",      "wrenches",   "record_period",
                              "initial_state", "uncertainty", "cameras",    "skills",     "packing",
-                             "place_limits",  "rehearsal",   "belief",     "recovery",   "motion_guards"});
+                             "place_limits",  "rehearsal",   "belief",     "recovery",   "motion_guards",
+                             "gripper"});
   const auto each = [&map](const char* key, auto&& read_one) {
     if (const auto values = map.find(key))
       for (const Value& value : values->list()) read_one(value);
@@ -207,7 +208,8 @@ void ScenarioReader::read() {
   each("bodies", [this](const Value& value) { read_body(value); });
   if (const auto aligner = map.find("aligner")) read_aligner(*aligner);
   if (const auto tool = map.find("tool")) read_tool(*tool);
-  if (const auto cup = map.find("cup")) read_cup(*cup);
+  if (const auto cup = map.find("cup")) read_cup(*cup, scenario_.cup);
+  if (const auto gripper = map.find("gripper")) read_gripper(*gripper);
   each("cameras", [this](const Value& value) { read_camera(value); });
   if (const auto controller = map.find("controller")) read_controller(*controller);
   if (const auto robot = map.find("robot")) read_robot(*robot);

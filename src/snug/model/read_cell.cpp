@@ -179,8 +179,7 @@ void ScenarioReader::read_tool(const Value& value) {
   scenario_.tool = tool;
 }
 
-void ScenarioReader::read_cup(const Value& value) {
-  CupParams& cup = scenario_.cup;
+void ScenarioReader::read_cup(const Value& value, CupParams& cup) const {
   read_fields(value, "cup", cup);
   check_elasticity(value, cup.stiffness, "stiffness", false);
   check_elasticity(value, cup.damping, "damping", true);

@@ -12,6 +12,7 @@
 #include "snug/model/camera_params.hpp"
 #include "snug/model/controller_params.hpp"
 #include "snug/model/cup_params.hpp"
+#include "snug/model/gripper_params.hpp"
 #include "snug/model/material.hpp"
 #include "snug/model/parcel.hpp"
 #include "snug/model/robot_params.hpp"
@@ -116,7 +117,8 @@ struct Scenario {
   std::vector<Body> bodies;  ///< static, kinematic and free ones, in the order written
   std::optional<Aligner> aligner;
   std::optional<ToolParams> tool;
-  CupParams cup;
+  CupParams cup;  ///< with a `gripper`: one cup that stands for all of its cups (equivalent_cup)
+  std::optional<GripperParams> gripper;
   ControllerParams controller;
   std::optional<RobotParams> robot;
   std::vector<CameraParams> cameras;

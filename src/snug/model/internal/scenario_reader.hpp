@@ -46,11 +46,15 @@ class ScenarioReader {
   // read_session_settings.cpp
   void read_session_settings(const MapReader& map);
   void read_tool(const Value& value);
-  void read_cup(const Value& value);
+  void read_cup(const Value& value, CupParams& cup) const;
   void read_controller(const Value& value);
   void read_sequence(const Value& value);
   void read_reported(const MapReader& map, Sequence& sequence) const;
   [[nodiscard]] Item read_item(const Value& value) const;
+  // read_gripper.cpp
+  void read_gripper(const Value& value);
+  void read_mounted_cup(const Value& value, GripperParams& gripper) const;
+  void read_cup_grid(const Value& value, GripperParams& gripper) const;
   // read_robot.cpp
   void read_robot(const Value& value);
   // read_camera.cpp
