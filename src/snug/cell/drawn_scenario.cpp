@@ -91,15 +91,20 @@ void draw_aligner(const model::Uncertainty& half_width, const std::string& seque
 
 void draw_gripper(const model::Uncertainty& half_width, const Rng& rng, model::Scenario& scenario) {
   Draw cup(rng, "cup"), push(rng, "release push"), tracking(rng, "tracking");
-  scale(scenario.cup.stiffness, cup.factor(half_width.cup_stiffness));
-  scale(scenario.cup.damping, cup.factor(half_width.cup_stiffness));
+  const double stiffer = cup.factor(half_width.cup_stiffness), more_damped = cup.factor(half_width.cup_stiffness);
+  scale(scenario.cup.stiffness, stiffer);
+  scale(scenario.cup.damping, more_damped);
   const double longer =
       std::max(cup.within(half_width.cup_length), scenario.cup.centre_from_lip - scenario.cup.hold_length);
   scenario.cup.hold_length += longer;
   scenario.cup.free_length += longer;
+  model::vary_cups(stiffer, more_damped, longer, scenario.gripper);
   const double pushes = scenario.cup.release_push;
   scenario.cup.release_push =
       push.between(std::max(0.0, pushes - half_width.release_push), std::min(1.0, pushes + half_width.release_push));
+  if (scenario.gripper) {
+    for (model::MountedCup& one : scenario.gripper->cups) one.cup.release_push = scenario.cup.release_push;
+  }
   const double quicker = tracking.factor(half_width.tracking);
   scenario.controller.task_stiffness *= quicker;
   for (model::Sequence& sequence : scenario.sequences) {

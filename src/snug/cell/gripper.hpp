@@ -1,52 +1,38 @@
-// Gripper: the cup in the cell: what it seals to, what it does to that box in the coming step, and when it lets go.
+// Gripper: the cups in the cell, one or several: what they hold together, what they do to it in the coming step.
 #pragma once
 
-#include <limits>
-#include <span>
+#include <optional>
 #include <vector>
 
-#include "snug/cell/world_builder.hpp"
-#include "snug/cup/phases.hpp"
+#include "snug/cell/cell_cup.hpp"
 
 namespace snug::cell {
 
-struct GripperEvent {
-  enum class Kind { Seal, NoSeal, BendWarning, HoldLost, Released } kind = Kind::Seal;
-  int body = -1;
-  Vector3 offset_P = Vector3::Zero();  ///< Seal: from the face's centre to the lip, in P, m
-  double length = 0.0;                 ///< Seal: E to face, m
-  double angle = 0.0;                  ///< tilt or bend, rad
-  cup::NoSealReason no_seal;
-  cup::HoldLoss loss = cup::HoldLoss::None;
-};
-
-/// Everything of the gripper that changes.
-struct GripperState {
-  cup::CupState cup;
-  double vacuum_time = 0.0;     ///< s, since the vacuum was switched on
-  bool is_established = false;  ///< the vacuum of the present hold was nearly complete: its limits count
-  bool has_warned = false;      ///< of too much bending, for the present hold
-  bool has_reported = false;    ///< that no seal was found, for the present vacuum command
-  bool is_letting_go = false;   ///< since the vacuum went off on a held box, until it comes on again
-  bool cannot_seal = false;     ///< a fault: the lip leaks
-  /// The least cup::find_hold_factor of a hold whose vacuum was nearly complete, since somebody set it to infinity.
-  double least_hold_factor = std::numeric_limits<double>::infinity();
-  Wrench F_S;  ///< on the held box, at the lip, at the start of the step
+/// Everything of the gripper that changes. Of one cup: its state. Of several: what they do together, told as of one
+/// cup at E, for all that know one cup; and each of them.
+///
+/// Together: `cup.body` is the box that most cups hold (a second box is an event), `cup.X_PS` where Ez met it when the
+/// first cup sealed, `F_S` all their wrenches there, `cup.pressure_gauge` the weakest vacuum of those that hold it (or,
+/// without the vacuum, the deepest of all), `least_hold_factor` that of the cup that was nearest to coming off.
+struct GripperState : CupHold {
+  std::vector<CupHold> cups;   ///< of several, in the order of GripperParams::cups; empty until the first step
+  bool has_two_boxes = false;  ///< reported for the present hold
   bool operator==(const GripperState&) const = default;
 };
 
-/// What the gripper contributes to one step of the physics.
+/// What the gripper contributes to one step of the physics, and scratch memory.
 struct GripperStep {
-  cup::SuctionCup cup;
-  cup::LipPush push;
-  const physics::ForceElement* element = nullptr;  ///< one of the two above, or none
-  int body = -1;                                   ///< it acts on
-  int ignored = -1;                                ///< box that the cup's own shape must not collide with
+  std::vector<CupStep> cups;
+  std::vector<physics::ElementUse> uses;  ///< of the elements in `cups`
+  int ignored = -1;                       ///< box that the cups' own shapes must not collide with
+  std::vector<GripperEvent> events;
+  std::vector<model::LineState> lines;
+  model::SupplyBalance balance;
 };
 
 class Gripper {
  public:
-  Gripper(const model::CupParams& params, cup::CupMode mode, const CellWorld& world);
+  Gripper(const model::Scenario& scenario, cup::CupMode mode, const CellWorld& world);
 
   /// To be called before every physics step, with the tool at the start of the step. Appends what happened.
   void prepare(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
@@ -54,28 +40,34 @@ class Gripper {
                std::vector<GripperEvent>& events) const;
 
  private:
-  struct Target {
-    int body = -1;
-    cup::Seal hit;  ///< where the cup's axis meets it, sealable or not
-    Vector3 half = Vector3::Zero();
-    Pose X_WP;
+  /// What the cups' events of this step say of the box that they hold together.
+  struct Told {
+    std::optional<GripperEvent> seal;
+    std::size_t sealed_cup = 0;
+    std::optional<GripperEvent> end;  ///< of the last cup that let it go
+    std::optional<GripperEvent> no_seal;
+    std::optional<GripperEvent> warning;
   };
-  [[nodiscard]] const model::CupParams& params_of(const GripperState& state) const {
-    return state.is_letting_go ? letting_go_ : params_;
+  void share_supply(const cup::CupCommand& command, GripperState& state, GripperStep& out) const;
+  void prepare_cups(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE,
+                    const cup::CupCommand& command, double dt, GripperState& state, GripperStep& out, Told& told,
+                    std::vector<GripperEvent>& events) const;
+  void end_hold(const Told& told, GripperState& state, std::vector<GripperEvent>& events) const;
+  void begin_hold(const Told& told, GripperState& state, std::vector<GripperEvent>& events) const;
+  void tell_cups(GripperState& state, std::vector<GripperEvent>& events) const;
+  void add_up(const cup::CupCommand& command, const Pose& X_WE, const physics::WorldState& world_state,
+              GripperState& state) const;
+  [[nodiscard]] bool is_on(std::size_t cup, const cup::CupCommand& command) const {
+    return command.vacuum && ((command.zones >> params_->cups[cup].zone) & 1U) != 0;
   }
-  [[nodiscard]] Target find_target(const physics::WorldState& world_state, const Pose& X_WE) const;
-  void try_to_seal(const Target& target, const Pose& X_WE, const cup::CupCommand& command, GripperState& state,
-                   std::vector<GripperEvent>& events) const;
-  void check_hold(const physics::WorldState& world_state, const Pose& X_WE, const Twist& V_WE, double dt,
-                  const cup::SuctionCup& cup, GripperState& state, std::vector<GripperEvent>& events) const;
-  void advance_gas(const physics::WorldState& world_state, const Pose& X_WE, const cup::CupCommand& command, double dt,
-                   GripperState& state) const;
-  void let_go(GripperEvent event, GripperState& state, std::vector<GripperEvent>& events) const;
+  [[nodiscard]] std::string names_of_holding(const GripperState& state, int body) const;
 
-  model::CupParams params_;
-  model::CupParams letting_go_;  ///< the same, grown by its share of the push at release
-  cup::CupMode mode_;
+  std::optional<model::GripperParams> params_;  ///< of several cups
+  std::vector<CellCup> cups_;
   const CellWorld* world_;
 };
+
+/// How many cups hold this body.
+[[nodiscard]] int holding_cups(const GripperState& state, int body);
 
 }  // namespace snug::cell

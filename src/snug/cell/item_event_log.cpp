@@ -142,6 +142,18 @@ void ItemEventLog::add(const GripperEvent& event, double time, const CellWorld& 
     case GripperEvent::Kind::BendWarning:
       log(time, "bend", item, "cup bent beyond the range of its law", {{"bend_deg", degrees(event.angle)}});
       return;
+    case GripperEvent::Kind::CupsHold:
+      log(time, "cups", item, fmt::format("{} of {} cups hold it: {}", event.holding, event.of, event.cups),
+          {{"holding", static_cast<double>(event.holding)}});
+      return;
+    case GripperEvent::Kind::CupLost:
+      log(time, "cup lost", item,
+          fmt::format("cup {} {}; {} hold it still", event.cups, cup::describe(event.loss), event.holding),
+          {{"holding", static_cast<double>(event.holding)}});
+      return;
+    case GripperEvent::Kind::TwoBoxes:
+      log(time, "two boxes", item, fmt::format("cups {} hold this box beside another", event.cups));
+      return;
     case GripperEvent::Kind::Seal: {
       const Pose X_WP = physics::pose_of(world.model, state, physics::BodyId{event.body});
       add_seal(item, event, time, X_WP.R, X_WE.R, waypoint);

@@ -137,7 +137,7 @@ Simulation::Simulation(model::Scenario scenario, const std::string& sequence, co
       arm_(make_arm(scenario_, sequence_, options.robot)),
       world_(build_world(scenario_, arm_ ? WorldOptions{&sequence_, true, &arm_->model(), arm_->start()}
                                          : WorldOptions{&sequence_, true, nullptr, {}})),
-      gripper_(scenario_.cup, options.cup.value_or(cup::CupMode::Phases), world_) {
+      gripper_(scenario_, options.cup.value_or(cup::CupMode::Phases), world_) {
   if (arm_) arm_->attach(world_);
   if (motion::is_fast(options.tracking)) pace_ = make_joint_pace(scenario_, motion::tempo_of(options.tracking));
 }
@@ -364,14 +364,13 @@ void Simulation::advance_step(const motion::Waypoint* waypoint, const motion::To
       state.waiting_item = -1;
     }
   }
-  const physics::ElementUse use{work.gripper.element, world_.tool, Pose{}, physics::BodyId{work.gripper.body}};
   physics::WorldInput input;
   add_body_targets(scenario_, world_, time(state) + world_.model.settings.dt, work.targets);
   input.kinematic = work.targets;
   work.wrenches.clear();
   add_wrenches(scenario_, world_, state.world, work.wrenches);
   input.wrenches = work.wrenches;
-  if (work.gripper.element != nullptr) input.elements = {&use, 1};
+  input.elements = work.gripper.uses;
   input.held = physics::BodyId{work.gripper.ignored};
   tick.step = physics::step(world_.model, input, state.world, work.physics);
   work.solver.add(tick.step, time(state));

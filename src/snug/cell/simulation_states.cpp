@@ -94,15 +94,14 @@ Wrench Simulation::tool_load(const CellState& state, const CellWorkspace& work) 
       if (contact.b == world_.tool) add(contact.force_W, contact.p_WQ);
     }
   }
-  if (work.gripper.element != nullptr) {  // sealed cup or pushing lip
-    const physics::BodyId body{work.gripper.body};
+  for (const physics::ElementUse& use : work.gripper.uses) {  // sealed cups and pushing lips
     physics::ElementQuery query;
-    query.X_WE = X_WE;
-    query.V_WE = tool_of(state).V_WE;
-    query.X_WB = physics::pose_of(world_.model, state.world, body);
-    query.V_WB = physics::twist_of(world_.model, state.world, body);
-    query.p_WBcm = state.world.bodies[static_cast<std::size_t>(body.index)].p_WBcm;
-    const Wrench on_body = wrench_from(work.gripper.element->evaluate(query).wrench);  // about its centre of mass
+    query.X_WE = X_WE * use.X_CE;
+    query.V_WE = twist_at(tool_of(state).V_WE, X_WE.R * use.X_CE.p);
+    query.X_WB = physics::pose_of(world_.model, state.world, use.body);
+    query.V_WB = physics::twist_of(world_.model, state.world, use.body);
+    query.p_WBcm = state.world.bodies[static_cast<std::size_t>(use.body.index)].p_WBcm;
+    const Wrench on_body = wrench_from(use.element->evaluate(query).wrench);  // about its centre of mass
     add(-on_body.force, query.p_WBcm);
     F_W.torque -= on_body.torque;
   }

@@ -141,7 +141,7 @@ void advance_pressure(const model::CupParams& params, const CupCommand& command,
   const model::VacuumParams& vacuum = params.vacuum;
   double wanted = 0.0;
   if (command.vacuum && state.phase == CupPhase::Holding) {
-    wanted = vacuum.pressure_gauge_hold * (1.0 - state.leak);
+    wanted = vacuum.pressure_gauge_hold * state.supply * (1.0 - state.leak);
   } else if (command.blow_off && !command.vacuum) {
     wanted = vacuum.pressure_gauge_blow;
   }

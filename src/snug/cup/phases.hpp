@@ -1,6 +1,7 @@
 // Vacuum phases: when the lip seals, how pressure drives the cup, when it lets go, and the push of an unsealed lip.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "snug/core/expected.hpp"
@@ -23,6 +24,7 @@ enum class CupPhase {
 struct CupCommand {
   bool vacuum = false;
   bool blow_off = false;
+  std::uint32_t zones = ~0U;  ///< of a gripper of several cups, bit by bit: those that the two above are for
 };
 
 /// Everything about the cup that changes. Copying it is a snapshot.
@@ -33,6 +35,7 @@ struct CupState {
   Pose X_PS;                    ///< lip on it
   double bend = 0.0;            ///< rad, of the last step
   double leak = 0.0;            ///< share of the vacuum's set point lost because the lip lifts, 0 .. 1
+  double supply = 1.0;          ///< share of the vacuum's set point that a shared source reaches at this cup
   double release_time = 0.0;    ///< s, since the vacuum went off on a held box
   double peel_impulse = 0.0;    ///< Ns, of what the lip's contact has lacked since the vacuum went off
   double length = 0.0;          ///< m, E to lip along Ez when the pressure was last known; 0: not sealed then

@@ -51,6 +51,7 @@ model::Scenario with_parameters(model::Scenario scenario, const Parameters& p) {
   if (scenario.default_contact) scenario.default_contact->friction *= p.friction_scale;
   scale(scenario.cup.stiffness, p.cup_scale);
   scale(scenario.cup.damping, p.cup_scale);
+  model::vary_cups(p.cup_scale, p.cup_scale, 0.0, scenario.gripper);
   return scenario;
 }
 
