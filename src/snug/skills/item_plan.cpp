@@ -11,6 +11,7 @@
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/motion/way.hpp"
 #include "snug/motion/waypoint_name.hpp"
+#include "snug/skills/gripper_pick.hpp"
 #include "snug/skills/internal/row_parts.hpp"
 #include "snug/skills/unwinding.hpp"
 
@@ -56,6 +57,15 @@ PickIntent pick_intent(const model::Scenario& scenario, const CellLayout& layout
   intent.size = box.size;
   intent.cup_offset_P = cup_offset(scenario.cup, params.seal_margin, box, X_WP.R);
   intent.tool_yaw = layout.neutral_yaw - 0.5 * turn_between(layout, X_WP, X_WP_next);
+  if (scenario.gripper) {
+    const TopFace face{X_WP, box.size, box.inertia.mass, box.inertia.com};
+    const auto pick =
+        choose_gripper_pick(*scenario.gripper, params.seal_margin, face, intent.tool_yaw, scenario.gravity.norm());
+    if (pick) {  // else as with one cup: the rehearsal says why nothing seals
+      intent.tool_yaw = pick->tool_yaw;
+      intent.cup_offset_P = pick->offset_P;
+    }
+  }
   intent.length = cup::pick_length(scenario.cup);
   intent.again = kind != PickKind::First;
   const double height = -2.0 * lowest_corner(X_WP.R, box.size);
