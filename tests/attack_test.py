@@ -155,6 +155,16 @@ class Memory(Attack):
             self.assert_refused(answer, "x.json:1: ")
             self.assert_cheap(answer, len(text))
 
+    def test_nested_json_of_sessions_is_refused(self):
+        deep = '{"event": ' + "[" * 300_000 + "]" * 300_000 + "}\n"
+        path = self.file("x.jsonl", deep)
+        for words in (("pack", CELL, "--sequence", "1", "--resume", path), ("plan", path)):
+            answer = snug(*words)
+            self.assert_refused(answer, "x.jsonl:1: ", "deep")
+            self.assert_cheap(answer, len(deep))
+        path = self.file("y.jsonl", '{"event": "item started", "time": 1e999, "item": 0, "because_of": null}\n')
+        self.assert_refused(snug("pack", CELL, "--sequence", "1", "--resume", path), "y.jsonl:1: ", "double precision")
+
     def test_long_programs_and_tables_are_cheap(self):
         for name, text, words in (
                 ("x.csv", WAYPOINT.format("a") * 110_000, ("simulate", CELL, "--sequence", "1", "--program")),

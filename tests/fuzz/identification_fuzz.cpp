@@ -1,6 +1,7 @@
-// Measurements that parameters are identified from: static poses and releases (JSON, CSV) and motions (CSV), by the
-// first byte.
+// Measurements that parameters are identified from: static poses and releases (JSON, CSV), motions and lifts (CSV), by
+// the first byte.
 #include "fuzz.hpp"
+#include "snug/identification/payload_file.hpp"
 #include "snug/identification/recorded_motion.hpp"
 #include "snug/identification/releases.hpp"
 #include "snug/identification/static_poses.hpp"
@@ -22,6 +23,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         break;
       case 'R':
         (void)identification::parse_releases_csv(text, "x.csv");
+        break;
+      case 'w':
+        (void)identification::parse_lift(text, "x.csv");
         break;
       default:
         (void)identification::parse_motions(task, text, "x.csv");

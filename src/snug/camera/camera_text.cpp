@@ -5,6 +5,7 @@
 
 #include "snug/camera/frame_file.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/core/json_value.hpp"
 
 namespace snug::camera {
 namespace {
@@ -45,7 +46,8 @@ std::string format_camera(const model::CameraParams& camera) {
 
 void parse_camera(const std::string& text, const std::string& name, model::CameraParams& camera) {
   const ordered_json json = ordered_json::parse(text, nullptr, false);
-  if (!json.is_object()) throw InputError(name, "camera", "no JSON object", "the camera as JSON");
+  if (!is_shallow_json(text) || !json.is_object())
+    throw InputError(name, "camera", "no JSON object", "the camera as JSON");
   const auto size = numbers(json, "size_px", 2, 8192, name);
   if (!(size[0] >= 1 && size[1] >= 1)) throw InputError(name, "size_px", json["size_px"].dump(), "1 to 8192 pixels");
   camera.width = static_cast<int>(size[0]);

@@ -315,6 +315,7 @@ Decoded decode_handshake(std::string_view frame) {
 }  // namespace
 
 Expected<ObjectSensors, std::string> wire::decode_object(std::string_view bytes) {
+  const google::protobuf::LogSilencer silencer;
   Room room;
   auto& in = *room.make<proto::SensorMessage_Object>();
   if (!parse(bytes, in)) return Reason(kGarbled);

@@ -75,7 +75,30 @@ std::string format_json(const JsonValue& value) {
 
 bool JsonValue::operator==(const JsonValue& other) const { return value == other.value; }
 
+bool is_shallow_json(std::string_view text) {
+  int depth = 0;
+  bool is_text = false;
+  for (std::size_t i = 0; i < text.size() && depth <= kDeepestJson; ++i) {
+    const char c = text[i];
+    if (is_text) {
+      if (c == '\\') ++i;
+      is_text = c != '"';
+    } else if (c == '"') {
+      is_text = true;
+    } else if (c == '[' || c == '{') {
+      ++depth;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return depth <= kDeepestJson;
+}
+
 JsonValue parse_json(std::string_view text, const std::string& where, int line) {
+  if (!is_shallow_json(text)) {
+    throw InputError(where + ":" + std::to_string(line), "", "lists or objects more than 64 deep in each other",
+                     "JSON text");
+  }
   try {
     return from_library(Json::parse(text));
   } catch (const Json::parse_error& error) {
@@ -83,6 +106,10 @@ JsonValue parse_json(std::string_view text, const std::string& where, int line) 
     const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
     line += static_cast<int>(std::ranges::count(before, '\n'));
     throw InputError(where + ":" + std::to_string(line), "", "", "JSON text");
+  } catch (const Json::exception&) {  // a number; the library does not say where
+    const bool is_line = text.find('\n') == std::string_view::npos;
+    throw InputError(is_line ? where + ":" + std::to_string(line) : where, "",
+                     "a number beyond the range of double precision", "finite numbers");
   }
 }
 

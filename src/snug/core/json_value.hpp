@@ -32,7 +32,11 @@ struct JsonValue::Member {
 
 /// Numbers in the shortest form that reads back exactly; those that are not finite as "inf", "-inf" and "nan".
 [[nodiscard]] std::string format_json(const JsonValue& value);
-/// Throws InputError with `where:line` for text that is no JSON. `line`: of its first character.
+/// Lists and objects in each other, at most this deep: who walks through deeper ones runs out of stack.
+inline constexpr int kDeepestJson = 64;
+[[nodiscard]] bool is_shallow_json(std::string_view text);
+/// Throws InputError with `where:line` for text that is no JSON, or deeper than kDeepestJson. `line`: of its first
+/// character.
 [[nodiscard]] JsonValue parse_json(std::string_view text, const std::string& where, int line = 1);
 
 }  // namespace snug

@@ -39,7 +39,11 @@ class Compiler : private ExpressionCompiler {
       block();
       word("end");
     } else {
-      while (peek().kind != Token::Kind::End) statement();
+      while (peek().kind != Token::Kind::End) {
+        statement();
+        if (is_word("end") || is_word("elif") || is_word("else"))
+          fail(peek(), fmt::format("got {}, outside of a block", shown(peek())));
+      }
     }
     end_function();
     if (is_def || is_sec) rest(main.name);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "snug/core/input_error.hpp"
+#include "snug/core/json_value.hpp"
 #include "snug/core/output_file.hpp"
 #include "snug/core/parallel.hpp"
 #include "snug/core/read_file.hpp"
@@ -109,6 +110,8 @@ T member(const Json& json, const char* key, T otherwise) {
 
 Json parse_object(const std::string& body) {
   if (body.size() > kLargestJson) throw InputError("request", "", "more than 64 kB", "a small JSON object");
+  if (!is_shallow_json(body))
+    throw InputError("request", "", "lists or objects that are too deep", "a small JSON object");
   Json json = Json::parse(body, nullptr, false);
   if (!json.is_object()) throw InputError("request", "", printable(body, 40), "a JSON object");
   return json;

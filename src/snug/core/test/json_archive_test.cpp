@@ -113,5 +113,28 @@ TEST(JsonArchive, TextThatIsNoJsonIsSaidWithItsLine) {
   }
 }
 
+TEST(JsonArchive, NumbersThatAreTooLargeAreSaid) {
+  try {
+    (void)parse_json(R"({"time": 1e999})", "file.json", 3);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where, "file.json:3");
+    EXPECT_NE(error.got.find("double precision"), std::string::npos);
+  }
+}
+
+TEST(JsonArchive, DeepTextIsRefusedAndLongTextIsNot) {
+  const auto nested = [](int depth) {
+    return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']');
+  };
+  EXPECT_NO_THROW((void)parse_json(nested(kDeepestJson), "x"));
+  EXPECT_THROW((void)parse_json(nested(kDeepestJson + 1), "x"), InputError);
+  EXPECT_THROW((void)parse_json(nested(300000), "x"), InputError);
+  EXPECT_NO_THROW((void)parse_json("\"" + std::string(1000, '[') + "\\\"" + std::string(1000, '{') + "\"", "x"));
+  std::string list = "[";
+  for (int i = 0; i < 1000; ++i) list += "[],{},";
+  EXPECT_NO_THROW((void)parse_json(list + "0]", "x"));
+}
+
 }  // namespace
 }  // namespace snug

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "snug/core/hash.hpp"
+#include "snug/core/json_value.hpp"
 
 namespace snug::study::internal {
 namespace {
@@ -31,6 +32,7 @@ std::optional<Json> without_sum(const std::string& line) {
   const std::size_t sum = line.rfind(kSum);
   if (sum == std::string::npos || line.substr(sum + kSum.size()) != sum_of(line.substr(0, sum)) + "\"}")
     return std::nullopt;
+  if (!is_shallow_json(line)) return std::nullopt;
   Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) return std::nullopt;
   return json;

@@ -43,6 +43,12 @@ TEST(UrScriptProgram, MistakesHaveALineAndAColumn) {
   EXPECT_NE(error_of(std::string(5'000'000, ' ')).text, "");
 }
 
+TEST(UrScriptProgram, WordsOfBlocksOutsideOfOneAreMistakes) {
+  for (const char* text : {"else\n", "end\n", "sync()\nelif True:\n  sync()\n", "x = 1 end\n"})
+    EXPECT_NE(error_of(text).text, "") << text;
+  EXPECT_EQ(error_of("sync()\nelse:\n").line, 2);
+}
+
 TEST(UrScriptProgram, ProgramsEndWhereTheirBlocksDo) {
   const std::string text = "def p():\n  while True:\n    sync()\n  end\nend\n";
   EXPECT_EQ(find_program_end(text + "movej([0,0,0,0,0,0])\n"), text.size());

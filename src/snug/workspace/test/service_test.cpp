@@ -120,6 +120,11 @@ TEST_F(ServiceTest, RefusesRequestsThatAreWrong) {
   EXPECT_EQ(ask("PUT", "files/link.yaml", cell_).status, 422);
 }
 
+TEST_F(ServiceTest, RefusesDeepRequests) {
+  const std::string body = "{\"name\":" + std::string(31000, '[') + std::string(31000, ']') + "}";
+  EXPECT_EQ(ask("POST", "runs", body).status, 422);
+}
+
 TEST_F(ServiceTest, AnswersRandomRequestsWithoutLeavingTheFolder) {
   (void)json("PUT", "files/a.yaml", cell_);
   Rng rng(11);

@@ -1,0 +1,57 @@
+// What peers on the wire send: frames of CLICK, RTDE, lines of the dashboard, by the first byte.
+#include "fuzz.hpp"
+#include "snug/click/message.hpp"
+#include "snug/click/sensor_writer.hpp"
+#include "snug/ur/dashboard.hpp"
+#include "snug/ur/rtde.hpp"
+
+namespace {
+
+using namespace snug;
+
+void answer_frames(std::string_view bytes) {
+  ur::InputOwners owners;
+  ur::RtdeSession session(ur::facts_of(ur::Model::Ur10), 1, owners);
+  ur::RobotInputs inputs;
+  while (true) {
+    const ur::rtde::NextFrame next = ur::rtde::next_frame(bytes);
+    if (next.is_broken || !next.frame) return;
+    SNUG_CHECK(next.size >= 3 && next.size <= bytes.size(), "a frame is within what came");
+    const std::string reply = session.answer(*next.frame, inputs).bytes;
+    SNUG_CHECK(reply.size() <= 65535, "an answer is one frame");
+    SNUG_CHECK(session.package(ur::RobotData{}, 0).size() <= 65535, "a package is one frame");
+    bytes.remove_prefix(next.size);
+  }
+}
+
+void decode_twice(std::string_view frame) {
+  const Expected<click::Message, std::string> message = click::decode(frame);
+  if (!message) {
+    SNUG_CHECK(!message.error().empty() && is_utf8(message.error()), "a reason in UTF-8");
+    return;
+  }
+  const std::string bytes = click::encode(*message);
+  const Expected<click::Message, std::string> again = click::decode(bytes);
+  SNUG_CHECK(again.has_value() && click::encode(*again) == bytes, "what was read can be said, and read again");
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string_view bytes = fuzz::text_of(data + 1, size - 1);
+  switch (data[0]) {
+    case 'r':
+      answer_frames(bytes);
+      break;
+    case 'd':
+      SNUG_CHECK(ur::parse_dashboard(bytes).argument.size() <= bytes.size(), "an argument is part of the line");
+      break;
+    case 'o':
+      (void)click::wire::decode_object(bytes);
+      break;
+    default:
+      decode_twice(bytes);
+  }
+  return 0;
+}
