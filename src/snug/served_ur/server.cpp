@@ -179,7 +179,7 @@ void Server::Impl::read(Connection& client) {
 void Server::Impl::read_dashboard(Connection& client) {
   std::string line;
   while (client.is_open() && client.take_line(line)) {
-    if (internal::is_http(line)) return client.close();
+    if (internal::is_strangers(line)) return client.close();
     const DashboardAnswer answer = answer_dashboard(line, controller);
     client.send(answer.line + "\n");
     if (answer.is_last) client.close_after_sending();
@@ -198,7 +198,7 @@ void Server::Impl::read_scripts(Connection& client) {
     const std::size_t end = bytes.find('\n');
     if (end == std::string_view::npos) return;
     const std::string_view line = bytes.substr(0, end);
-    if (internal::is_http(line)) return client.close();
+    if (internal::is_strangers(line)) return client.close();
     if (controller.obey(line) || trim(line).empty()) {
       client.take(end + 1);
       continue;

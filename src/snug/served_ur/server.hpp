@@ -22,8 +22,8 @@ struct ServerSettings {
 enum class Port : int { Dashboard = 29999, Primary = 30001, Secondary = 30002, RealTime = 30003, Rtde = 30004 };
 
 /// One thread answers all clients between the periods of the controller. Not more than kMostClients of a port; a client
-/// that does not read is disconnected, so is one whose first line is that of a request of HTTP: a page in a browser on
-/// this machine could send one, and what follows would be run as a program.
+/// that does not read is disconnected, so is one that says a line of a request of HTTP, or one with control characters
+/// (TLS, STUN): a page in a browser on this machine could send them, and what follows would be run as a program.
 class Server {
  public:
   static constexpr int kMostClients = 16;  ///< of each port

@@ -3,6 +3,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <utility>
@@ -45,6 +46,12 @@ void Connection::close_after_sending() {
   if (out_.empty()) close();
 }
 
-bool is_http(std::string_view line) { return line.find(" HTTP/") != std::string_view::npos; }
+bool is_strangers(std::string_view line) {
+  const auto is_control = [](char c) {
+    return (c > '\0' && c < ' ' && c != '\t' && c != '\r') ||
+           c == '\x7f';  // NUL: clients in C send the end of a string
+  };
+  return line.find(" HTTP/") != std::string_view::npos || std::ranges::any_of(line, is_control);
+}
 
 }  // namespace snug::served_ur::internal

@@ -47,7 +47,8 @@ class Connection {
   bool is_open_ = true, is_closing_ = false;
 };
 
-/// The first line of a request of HTTP, as a page in a browser can send one to any port.
-[[nodiscard]] bool is_http(std::string_view line);
+/// A line that no client of a text port says: the first of a request of HTTP, or one with control characters, as those
+/// of TLS and STUN have. A page in a browser can send all of these to any port, with lines of its own behind.
+[[nodiscard]] bool is_strangers(std::string_view line);
 
 }  // namespace snug::served_ur::internal

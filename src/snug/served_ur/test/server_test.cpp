@@ -149,6 +149,15 @@ TEST(Server, ClosesOnRequestsOfBrowsers) {
     page.say("POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\npower off\n");
     EXPECT_TRUE(page.is_closed()) << static_cast<int>(port);
   }
+  // A ticket of TLS, and a name in STUN, are bytes that a page's server chose.
+  const std::string hello = "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03"s, stun = "\x00\x03\x00\x10\x21\x12\xa4\x42"s;
+  for (const Port port : {Port::Dashboard, Port::Primary, Port::Secondary, Port::RealTime, Port::Rtde}) {
+    for (const std::string& head : {hello, stun}) {
+      Client page(served, port);
+      page.say(head + "\npower off\n");
+      EXPECT_TRUE(page.is_closed()) << static_cast<int>(port);
+    }
+  }
   Client dashboard(served, Port::Dashboard);
   (void)dashboard.line();
   dashboard.say("robotmode\n");
