@@ -10,6 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
+STATES = Path(SNUG).resolve().parent / "tests" / "same_bytes" / "snug_states"
 # Rounded as IEEE 754 says, or exact: the same whatever code does it.
 EXACT = set("ceil ceilf copysign fabs fdim floor floorf fma fmaf fmax fmin fmod fmodf frexp frexpf ilogb ldexp ldexpf llrint llround logb lrint lround "
             "lroundf modf modff nan nearbyint nextafter remainder remquo rint rintf round roundf scalbln scalbn sqrt sqrtf trunc truncf".split())
@@ -54,6 +55,14 @@ class SameBytes(unittest.TestCase):
                                          text=True, check=True, env={**os.environ, **more})
                     hashes.add(json.loads(run.stdout)["state_hash"])
                 self.assertEqual(len(hashes), 1, hashes)
+
+    @unittest.skipUnless(STATES.exists(), "snug_states is not built")
+    def test_twenty_scenes_and_a_session_are_the_same_without_avx2_and_fma(self):
+        found = [json.loads(subprocess.run([STATES, ROOT / "scenarios"], capture_output=True, text=True, check=True, env={**os.environ, **more}).stdout)
+                 for more in ({}, WITHOUT)]
+        self.assertEqual(len(found[0]), 21)
+        self.assertEqual(len(set(found[0].values())), 21, "no two scenes come to one state")
+        self.assertEqual(*found)
 
     def test_a_packing_session_is_the_same_without_avx2_and_fma(self):
         words = ["pack", str(ROOT / "scenarios" / "box-demonstrator.yaml"), "--sequence", "1", "--plant-seed", "4", "--samples", "0",
