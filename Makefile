@@ -11,7 +11,7 @@ configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(J
 run-tests = ctest --preset $(1) -j $(JOBS)
 
 .PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python wheel package reproducible check \
-  format-check clang headers fix san san-fast tsan tidy cover fuzz bench bench-peers docs clean
+  format-check clang headers fix san san-fast tsan tidy cover fuzz same-bytes attack bench bench-peers docs clean
 
 help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -93,6 +93,12 @@ tsan: setup-test ## tests under the thread sanitizer
 fuzz: setup-fuzz ## attack every reader with libFuzzer for an hour; TIME=600 (seconds in all), READER=urdf for one
 	@$(call configure-build,fuzz) && scripts/fuzz.sh build-fuzz "$(or $(TIME),3600)" $(READER)
 
+same-bytes: setup-program setup-lint ## the same states by gcc and clang, -O1 and -O3, without AVX2 and FMA, on aarch64: VARIANTS="clang-O1 aarch64-O3"
+	@python3 tools/same_bytes.py --jobs $(JOBS) $(VARIANTS)
+
+attack: setup-test ## mutated files, strangers at every server, kills of every verb that writes, as often as COUNT says (1000)
+	@$(call configure-build,release) && cmake --build --preset release -j $(JOBS) --target snug_tests && python3 tools/attack.py all $(or $(COUNT),1000)
+
 tidy: setup-lint ## clang-tidy over everything
 	@$(call configure-build,tidy)
 
@@ -110,4 +116,4 @@ docs: setup-docs ## check every link of the documents, build the documentation s
 	@python3 tools/check_docs.py . && python3 tools/build_site.py build/site
 
 clean: ## remove what the verbs built
-	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz out
+	@rm -rf build build-dev build-asan build-clang build-sanitize build-tsan build-tidy build-coverage build-bench build-fuzz build-same out

@@ -9,6 +9,7 @@ import signal
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -207,6 +208,28 @@ class Bounds(Scratch):
         for more in (("--set", "time_step=0.1"), ("--dt", "0.1")):
             result = self.snug(*words, *more, code=2)
             self.assertIn("rad/s", result.stderr)
+
+
+class Counts(Scratch):
+    """Some of what `make attack` does as often as is asked for (tools/attack.py)."""
+
+    def attack(self, what, count):
+        done = subprocess.run([sys.executable, "-B", ROOT / "tools" / "attack.py", what, str(count), "--snug", SNUG], cwd=self.folder, capture_output=True,
+                              text=True, check=False, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    def test_at_every_server_move_nothing_and_end_nothing(self):
+        said = self.attack("servers", 48)
+        self.assertIn("0 motions by strangers", said)
+        for server in ("CLICK", "UR dashboard", "UR primary", "UR secondary", "UR real time", "UR RTDE", "view", "ui"):
+            self.assertIn(f"{server}: ", said)
+
+    def test_verbs_that_are_killed_leave_the_old_file_or_a_whole_one(self):
+        self.assertIn("3 kills over 3 verbs", self.attack("kills", 3))
+
+    def test_a_study_that_is_killed_comes_to_the_same_table(self):
+        self.assertIn("tables are equal", self.attack("studies", 3))
 
 
 if __name__ == "__main__":
