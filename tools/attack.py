@@ -360,17 +360,22 @@ def attack_kills(words):
 
 
 def attack_losses(words):
-    """How old what a killed recording misses is: the time that a simulation was at when it was killed, against its last frame's."""
+    """How long before the kill a simulation that computes without a pause had written its recording last."""
     draw, worst = random.Random(words.seed), 0.0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for _ in range(words.count):
             process = subprocess.Popen([words.snug, "simulate", DROP, "--until", "100000", "-o", "new.h5"], cwd=folder, stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)
-            time.sleep(1.2 + draw.random())
             path = folder / "new.h5"
-            changed = path.stat().st_mtime if path.exists() else 0.0
-            worst = max(worst, time.time() - changed)
+            end = time.monotonic() + 60
+            while not path.exists() and time.monotonic() < end:
+                time.sleep(0.01)
+            time.sleep(1.2 + draw.random())
+            if not path.exists():
+                process.kill()
+                raise Found("no recording within a minute")
+            worst = max(worst, time.time() - path.stat().st_mtime)
             process.kill()
             process.wait()
             for path in folder.glob("new.h5*"):
