@@ -446,6 +446,7 @@ def main():
     words.snug = words.snug or str(words.build / "snug")
     if words.count < 1:
         parser.error("COUNT: expected 1 or more")
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # under nohup all that is started here would ignore it, too
     attacks = ((words.attack, words.count),)
     if words.attack == "all":
         attacks = tuple((name, -(-words.count // PARTS.get(name, 1))) for name in ATTACKS)
