@@ -64,14 +64,16 @@ std::string encode(Frame type, std::string_view payload) {
 namespace {
 
 /// The first bytes of a request of HTTP are none of these: "POS" would be a long Start.
-bool is_possible(std::uint8_t type, std::size_t size) {
+bool is_possible(std::uint8_t type, std::size_t size, From sender) {
+  const bool is_answer = sender == From::Controller;
   switch (static_cast<Frame>(type)) {
     case Frame::Version:
-      return size == 5;
+      return size == (is_answer ? 4 : 5);
     case Frame::ControllerVersion:
+      return size == (is_answer ? 19 : 3);
     case Frame::Start:
     case Frame::Pause:
-      return size == 3;
+      return size == (is_answer ? 4 : 3);
     case Frame::Text:
     case Frame::Data:
     case Frame::Outputs:
@@ -83,12 +85,12 @@ bool is_possible(std::uint8_t type, std::size_t size) {
 
 }  // namespace
 
-NextFrame next_frame(std::string_view bytes) {
+NextFrame next_frame(std::string_view bytes, From sender) {
   if (bytes.size() < 3) return {};
   ByteReader in(bytes);
   const std::size_t size = in.u16();
   const std::uint8_t type = in.u8();
-  if (!is_possible(type, size)) return {std::nullopt, 0, true};
+  if (!is_possible(type, size, sender)) return {std::nullopt, 0, true};
   if (bytes.size() < size) return {};
   return {FrameView{type, bytes.substr(3, size - 3)}, size, false};
 }

@@ -39,7 +39,8 @@ struct NextFrame {
   std::size_t size = 0;
   bool is_broken = false;
 };
-[[nodiscard]] NextFrame next_frame(std::string_view bytes);
+enum class From { Client, Controller };
+[[nodiscard]] NextFrame next_frame(std::string_view bytes, From sender = From::Client);
 
 /// The type of an output or input field ("VECTOR6D"), nullptr for a name that is not known.
 [[nodiscard]] const char* output_type(std::string_view name);
