@@ -186,6 +186,28 @@ class ServedUr(unittest.TestCase):
             self.assertEqual(dashboard.ask("robotmode"), "Robotmode: RUNNING")
             dashboard.close()
 
+    def test_check_reads_a_robot_and_says_what_does_not_fit(self):
+        for model, version in (("ur10", "3.15."), ("ur10e", "5.9.")):
+            with Served("--model", model) as served:
+                check = [SNUG, "ur", "check", "127.0.0.1", "--scenario", str(CELL), "--ur-port-offset", str(served.offset)]
+                fitting = subprocess.run([*check, "--json"], capture_output=True, text=True)
+                self.assertEqual(fitting.returncode, 0, fitting.stdout + fitting.stderr)
+                report = json.loads(fitting.stdout)
+                self.assertTrue(report["fits"])
+                self.assertTrue(report["version"].startswith(version))
+                self.assertEqual({finding["verdict"] for finding in report["findings"]}, {"fits"})
+                dashboard = Dashboard(served)
+                dashboard.ask("power off")
+                dashboard.close()
+                time.sleep(0.3)
+                off = subprocess.run(check, capture_output=True, text=True)
+                self.assertEqual(off.returncode, 1, off.stderr)
+                self.assertIn("POWER_OFF; needed: RUNNING", off.stdout)
+                self.assertIn("release the brakes", off.stdout)
+            gone = subprocess.run([*check, "--timeout", "1"], capture_output=True, text=True)
+            self.assertEqual(gone.returncode, 2)
+            self.assertIn(f"127.0.0.1 port {30001 + served.offset}", gone.stderr)
+
     def test_addresses_of_others_need_consent(self):
         with Served(offset=40, address="0.0.0.0") as served:
             self.assertEqual(served.process.wait(20), 2)

@@ -31,6 +31,7 @@
 #include "apps/snug/simulate/simulate.hpp"
 #include "apps/snug/study/study.hpp"
 #include "apps/snug/ui/ui.hpp"
+#include "apps/snug/ur/ur.hpp"
 #include "apps/snug/validate/validate.hpp"
 #include "apps/snug/view/view.hpp"
 
@@ -48,6 +49,7 @@ void add_verbs(CLI::App& app, Action& action) {
   add_run(app, action);
   add_serve(app, action);
   add_control(app, action);
+  add_ur(app, action);
   add_keys(app, action);
   add_report(app, action);
   add_view(app, action);

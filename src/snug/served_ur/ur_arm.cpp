@@ -24,9 +24,7 @@ Pose base_in_world(const robot::ArmModel& arm) {
   return robot::link_pose(arm, at, root) * Pose{exp_rotation(Vector3(0.0, 0.0, std::numbers::pi)), Vector3::Zero()};
 }
 
-int find_flange(const cell::Simulation& simulation) {
-  const model::Scenario& scenario = simulation.scenario();
-  const robot::ArmModel& arm = arm_of(simulation).model();
+int find_flange(const robot::ArmModel& arm, const model::Scenario& scenario) {
   int flange = robot::find_link(arm, "tool0");
   if (flange < 0) flange = robot::find_link(arm, scenario.robot->flange_frame);
   if (flange < 0 || arm.links[static_cast<std::size_t>(flange)].segment != arm.joint_count()) {
@@ -60,9 +58,11 @@ ur::Values6 to_values(const robot::JointVector& joints) {
   return values;
 }
 
-UrArm::UrArm(const cell::Simulation& simulation)
-    : arm_(arm_of(simulation).model()), inverse_(arm_), flange_(find_flange(simulation)) {
-  const calibration::DhTable dh = calibration::nominal_dh(arm_, simulation.scenario().source_name);
+UrArm::UrArm(const cell::Simulation& simulation) : UrArm(arm_of(simulation).model(), simulation.scenario()) {}
+
+UrArm::UrArm(const robot::ArmModel& arm, const model::Scenario& scenario)
+    : arm_(arm), inverse_(arm_), flange_(find_flange(arm, scenario)) {
+  const calibration::DhTable dh = calibration::nominal_dh(arm_, scenario.source_name);
   for (std::size_t j = 0; j < 6; ++j) {
     const robot::Joint& joint = arm_.joints[j];
     facts_.dh_theta[j] = dh[j].theta;
@@ -72,7 +72,7 @@ UrArm::UrArm(const cell::Simulation& simulation)
     facts_.joint_min[j] = std::max(joint.lower, -2.0 * std::numbers::pi);
     facts_.joint_max[j] = std::min(joint.upper, 2.0 * std::numbers::pi);
     facts_.joint_speed[j] = joint.max_speed;
-    facts_.joint_acceleration[j] = simulation.scenario().robot->max_joint_acceleration;
+    facts_.joint_acceleration[j] = scenario.robot->max_joint_acceleration;
   }
   X_WBase_ = base_in_world(arm_);
   X_FE_ = arm_.links[static_cast<std::size_t>(flange_)].X_SL.inverse() * arm_.X_SE;

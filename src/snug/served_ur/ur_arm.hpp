@@ -15,6 +15,8 @@ class UrArm {
  public:
   /// Throws InputError for an arm that is not built as a UR: six joints between frames of a DH chain.
   explicit UrArm(const cell::Simulation& simulation);
+  /// The same of the arm of a scenario with a robot, which has to outlive this.
+  UrArm(const robot::ArmModel& arm, const model::Scenario& scenario);
 
   [[nodiscard]] const ur::RobotFacts& facts() const { return facts_; }
   [[nodiscard]] const robot::ArmModel& model() const { return arm_; }

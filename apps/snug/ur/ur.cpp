@@ -1,0 +1,92 @@
+// ur: what a UR controller says of itself, and whether it fits a scenario's robot. Nothing is moved.
+#include "apps/snug/ur/ur.hpp"
+
+#include <fmt/format.h>
+#include <fmt/printf.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/snug/command_line/shipped.hpp"
+#include "snug/core/input_error.hpp"
+#include "snug/remote_ur/compare_robot.hpp"
+
+namespace snug::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using remote_ur::Finding;
+using remote_ur::Verdict;
+
+const char* verdict_word(Verdict verdict) {
+  return verdict == Verdict::Fits ? "fits" : verdict == Verdict::Differs ? "differs" : "unknown";
+}
+
+std::string software_text(const remote_ur::RobotReport& robot) {
+  return fmt::format("{}.{}.{}.{}", robot.version[0], robot.version[1], robot.version[2], robot.version[3]);
+}
+
+/// "0, 1" of the bits that are on; "none".
+std::string bits_text(std::uint32_t bits) {
+  std::string text;
+  for (unsigned bit = 0; bit < 32; ++bit)
+    if (((bits >> bit) & 1U) != 0) text += fmt::format("{}{}", text.empty() ? "" : ", ", bit);
+  return text.empty() ? "none" : text;
+}
+
+void print_text(const remote_ur::RobotReport& robot, const std::vector<Finding>& findings) {
+  fmt::print("model              {}, software {}\n", robot.model.empty() ? "not told" : robot.model,
+             software_text(robot));
+  fmt::print("outputs that are on {}\n", bits_text(robot.state.digital_outputs));
+  fmt::print("inputs that are on  {}\n", bits_text(robot.state.digital_inputs));
+  if (robot.tool_voltage) fmt::print("tool analog input 0 {:.2f} V\n", *robot.tool_voltage);
+  fmt::print("\n");
+  for (const Finding& finding : findings) {
+    fmt::print("{:8} {:15} {}", verdict_word(finding.verdict), finding.what, finding.robot);
+    if (finding.verdict != Verdict::Fits) fmt::print("; needed: {}\n{:25}{}", finding.expected, "", finding.remedy);
+    fmt::print("\n");
+  }
+}
+
+Json json_of(const remote_ur::RobotReport& robot, const std::vector<Finding>& findings, bool fits) {
+  Json json = {{"fits", fits},
+               {"model", robot.model},
+               {"version", software_text(robot)},
+               {"robot_mode", ur::robot_mode_name(robot.state.robot_mode)},
+               {"safety_mode", ur::safety_mode_name(robot.state.safety_mode)},
+               {"digital_inputs", robot.state.digital_inputs},
+               {"digital_outputs", robot.state.digital_outputs},
+               {"joints", robot.q},
+               {"findings", Json::array()}};
+  for (const Finding& finding : findings)
+    json["findings"].push_back({{"what", finding.what},
+                                {"verdict", verdict_word(finding.verdict)},
+                                {"robot", finding.robot},
+                                {"expected", finding.expected},
+                                {"remedy", finding.remedy}});
+  return json;
+}
+
+}  // namespace
+
+int run_ur_check(const UrCheckOptions& options) {
+  const std::string file = find_shipped(options.scenario);
+  const model::Scenario scenario = load_changed(file, options.changes);
+  if (!scenario.robot) throw InputError(file, "robot", "nothing", "a scenario with a robot");
+  remote_ur::Endpoint endpoint{options.host, options.port_offset, options.patience};
+  if (endpoint.host.starts_with("ur://")) endpoint.host.erase(0, 5);
+  const remote_ur::RobotReport robot = remote_ur::read_robot(endpoint);
+  remote_ur::Tolerances tolerances;
+  tolerances.position = 1e-3 * options.tolerance_mm;
+  const std::vector<Finding> findings = remote_ur::compare_robot(robot, scenario, tolerances);
+  const bool fits = std::ranges::count(findings, Verdict::Differs, &Finding::verdict) == 0;
+  if (options.json) {
+    fmt::print("{}\n", json_of(robot, findings, fits).dump());
+  } else {
+    print_text(robot, findings);
+  }
+  return fits ? kSuccess : kRunFailed;
+}
+
+}  // namespace snug::app
