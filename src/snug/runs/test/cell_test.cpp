@@ -191,7 +191,7 @@ class GripperAtABox : public ::testing::Test {
         world_(build_world(demonstrator(), {&sequence_, true, nullptr, {}})),
         state_(make_initial_state(demonstrator(), world_)),
         box_(world_.parcels[0]),
-        gripper_(demonstrator().cup, cup::CupMode::Holding, world_) {
+        gripper_(demonstrator(), cup::CupMode::Holding, world_) {
     half_ = 0.5 * model::collision_size(demonstrator(), *model::find_parcel(demonstrator(), "BOX027"));
     physics::set_present(state_, box_, true);
     physics::set_pose(world_.model, state_, box_, Pose{Matrix3::Identity(), Vector3(0.0, 0.0, 1.0)});
@@ -219,7 +219,7 @@ class GripperAtABox : public ::testing::Test {
     EXPECT_EQ(events[0].kind, GripperEvent::Kind::NoSeal);
     EXPECT_EQ(events[0].body, box_.index);
     EXPECT_EQ(events[0].no_seal.reason, reason) << cup::describe(events[0].no_seal.reason);
-    EXPECT_EQ(step_.element, nullptr);
+    EXPECT_TRUE(step_.uses.empty());
   }
 
   const model::Sequence& sequence_;
@@ -241,13 +241,13 @@ TEST_F(GripperAtABox, SealsWhenTheLipIsOnTheFaceAndLetsGoWithTheVacuum) {
   EXPECT_EQ(events[0].body, box_.index);
   EXPECT_NEAR(events[0].length, 0.060, 1e-12);  // rounding
   EXPECT_LT((events[0].offset_P - Vector3(0.02, 0.0, 0.0)).norm(), 1e-12);
-  EXPECT_EQ(step_.body, box_.index);
+  EXPECT_EQ(step_.cups.at(0).body, box_.index);
   EXPECT_EQ(step_.ignored, box_.index);
-  EXPECT_NE(step_.element, nullptr);
+  EXPECT_EQ(step_.uses.size(), 1U);
   events = prepare_for(0.1, X_WE, {false, true});
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].kind, GripperEvent::Kind::Released);
-  EXPECT_EQ(step_.element, nullptr);
+  EXPECT_TRUE(step_.uses.empty());
 }
 
 TEST_F(GripperAtABox, SaysThatTheFaceIsOutOfReach) {

@@ -148,7 +148,7 @@ TEST(FaultInjection, ADroppedBoxFallsFreelyOnceTheCupIsOffIt) {
   int falling = 0;
   bool was_free = false, has_landed = false;
   const auto look = [&](const cell::CellTick&) {
-    const bool is_pushed = plant.work().gripper.element != nullptr, touches = !plant.work().physics.contacts().empty();
+    const bool is_pushed = !plant.work().gripper.uses.empty(), touches = !plant.work().physics.contacts().empty();
     has_landed = has_landed || (was_free && touches);
     const bool is_free = !is_pushed && !touches && !has_landed;
     if (is_free && was_free) {
