@@ -49,15 +49,15 @@ double support_of(const std::vector<Extent>& all, std::size_t own, double slack)
   return std::min(1.0, held / face_of(me));
 }
 
-/// m, that a box lies beyond a wall, and over the rim.
-std::array<double, 2> outside_of(const ContainerState& state, const PlacedBox& box) {
+/// m, that a box lies beyond a wall, over the rim, and under the floor.
+std::array<double, 3> outside_of(const ContainerState& state, const PlacedBox& box) {
   const Extent around = bounding_extent(box);
-  double beyond = -around.low.z();
+  double beyond = 0.0;
   for (int axis = 0; axis < 2; ++axis) {
     const double half = 0.5 * state.inner_size[axis];
     beyond = std::max({beyond, around.high[axis] - half, -half - around.low[axis]});
   }
-  return {beyond, around.high.z() - state.inner_size.z()};
+  return {beyond, around.high.z() - state.inner_size.z(), -around.low.z()};
 }
 
 }  // namespace
@@ -125,7 +125,7 @@ std::vector<LoadFinding> check_finished_load(const ContainerState& state, const 
   for (std::size_t i = 0; i < all.size(); ++i) {
     const PlacedBox& box = state.boxes[i];
     const double lean = lean_of(box.X_TP.R), support = support_of(all, i, limits.support_slack);
-    const auto [beyond, above] = outside_of(state, box);
+    const auto [beyond, above, below] = outside_of(state, box);
     const PoseDoubt doubt = doubts.empty() ? PoseDoubt{} : doubts[i];
     const std::optional<double> most = box.item.no_stack ? std::optional(0.0) : box.item.max_load;
     const double allowed = most ? *most * (1.0 + limits.load_slack) : std::numeric_limits<double>::infinity();
@@ -135,6 +135,8 @@ std::vector<LoadFinding> check_finished_load(const ContainerState& state, const 
       findings.push_back({box.item.id, LoadFault::Outside, beyond, limits.outside});
     } else if (above - doubt.position > limits.above) {
       findings.push_back({box.item.id, LoadFault::Outside, above, limits.above});
+    } else if (below - doubt.position > limits.support_slack) {
+      findings.push_back({box.item.id, LoadFault::Outside, below, limits.support_slack});
     } else if (support < limits.min_support) {
       findings.push_back({box.item.id, LoadFault::Unsupported, support, limits.min_support});
     } else if (loads[i] > allowed + 1e-9) {

@@ -12,11 +12,11 @@ namespace snug::packing {
 /// What is asked of every box of a finished load.
 struct LoadLimits {
   double tilt = 0.105;       ///< rad, from standing on a face
-  double outside = 0.005;    ///< m, beyond a wall (of a pallet: its edge) or under the floor
+  double outside = 0.005;    ///< m, beyond a wall (of a pallet: its edge)
   double above = 0.005;      ///< m, over the rim
   double min_support = 0.3;  ///< part of the lower face over something that is near enough
-  double support_slack =
-      0.010;                 ///< m, between the lower face and what carries it: boxes give way and are seen with errors
+  /// m, between the lower face and what carries it, and under the floor: boxes give way and are seen with errors.
+  double support_slack = 0.010;
   double load_slack = 0.02;  ///< part of `max_load` that may be exceeded: masses are known to a few percent
 };
 

@@ -65,6 +65,12 @@ TEST(FinishedLoad, ABoxThatIsTurnedAboutTheVerticalDoesNotLean) {
   EXPECT_TRUE(check_finished_load(state, {}).empty());
 }
 
+TEST(FinishedLoad, AHeavyStackGivesWayOnTheFloorButDoesNotSinkThroughIt) {
+  // Two boxes of 6 kg on a face of 1.5e4 N/m: 7.8 mm.
+  EXPECT_TRUE(check_finished_load(cubes({{0, 0, 0.0422}}), {}).empty());
+  EXPECT_EQ(check_finished_load(cubes({{0, 0, 0.0395}}), {}).at(0).fault, LoadFault::Outside);
+}
+
 TEST(FinishedLoad, FindsWhatSticksOutHangsInTheAirOrCarriesTooMuch) {
   EXPECT_EQ(check_finished_load(cubes({{0.16, 0, 0.05}}), {}).at(0).fault, LoadFault::Outside);
   EXPECT_EQ(check_finished_load(cubes({{0, 0, 0.05}, {0, 0, 0.15}, {0, 0, 0.26}}), {}).at(0).fault, LoadFault::Outside);
