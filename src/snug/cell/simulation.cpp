@@ -31,6 +31,7 @@ int substeps_of(const model::Scenario& scenario) {
 
 // Shares of the vacuum's set point: from the first on the box is lifted, below the second the tool leaves it.
 constexpr double kSealed = 0.7;
+constexpr double kFullySealed = 0.97;
 constexpr double kReleased = 0.02;
 
 /// The arm that the options ask for, or none. The tool then starts where the arm's joints put it.
@@ -115,6 +116,7 @@ motion::PreparedProgram prepare(const model::Scenario& scenario, const model::Se
     settings.fast.pan_axis = find_pan_axis(scenario);
   }
   settings.fast.sealed_pressure = kSealed * scenario.cup.vacuum.pressure_gauge_hold;
+  settings.fast.fully_sealed_pressure = kFullySealed * scenario.cup.vacuum.pressure_gauge_hold;
   settings.fast.released_pressure = kReleased * scenario.cup.vacuum.pressure_gauge_hold;
   settings.tick = params.tick;
   settings.task_stiffness = sequence.task_stiffness.value_or(params.task_stiffness);

@@ -200,6 +200,11 @@ double find_hold_factor(const model::CupParams& params, double pressure_gauge, c
                    factor(slip, params.lip_friction)});
 }
 
+double carried_hold_factor(const model::CupParams& params, const SpatialInertia& box_S, const Vector3& acceleration_S) {
+  const Vector3 force = box_S.mass * acceleration_S;
+  return find_hold_factor(params, params.vacuum.pressure_gauge_hold, {force, box_S.com.cross(force)});
+}
+
 double sensed_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_E) {
   if (pressure_gauge > kEstablishedVacuum * params.vacuum.pressure_gauge_hold) {
     return std::numeric_limits<double>::infinity();

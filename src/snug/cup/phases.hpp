@@ -98,6 +98,11 @@ enum class HoldLoss { None, Tension, Shear, Peel, Bending };
 /// find_hold_loss begins to say no (the bend is not looked at), infinity where it never does.
 [[nodiscard]] double find_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_S);
 
+/// The same of a box that hangs from the cup, its vacuum established, and is carried. `box_S`: as box_below_lip
+/// (swing.hpp) has it; `acceleration_S`: m/s2, of the gripper less that of gravity. The box does not turn.
+[[nodiscard]] double carried_hold_factor(const model::CupParams& params, const SpatialInertia& box_S,
+                                         const Vector3& acceleration_S);
+
 /// The same from what a robot senses: `F_E`, on the tool about Eo in E, from what it carries. Infinity until the vacuum
 /// is established. The lip is taken for where it is while nothing deforms the cup.
 [[nodiscard]] double sensed_hold_factor(const model::CupParams& params, double pressure_gauge, const Wrench& F_E);

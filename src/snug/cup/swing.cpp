@@ -31,8 +31,8 @@ Swing find_swing(const model::CupParams& params, const SpatialInertia& box_S, do
   return {period(5), period(4)};
 }
 
-Swing find_swing(const model::CupParams& params, const SpatialInertia& box, const Vector3& size, const Vector3& up_P,
-                 double gravity) {
+SpatialInertia box_below_lip(const model::CupParams& params, const SpatialInertia& box, const Vector3& size,
+                             const Vector3& up_P) {
   Matrix3 R_PS;
   R_PS.col(2) = -up_P;
   R_PS.col(0) = up_P.unitOrthogonal();
@@ -45,7 +45,12 @@ Swing find_swing(const model::CupParams& params, const SpatialInertia& box, cons
     p_PS[i] = std::clamp(box.com[i], -most, most);
   }
   const Matrix3 R_SP = R_PS.transpose();
-  return find_swing(params, {box.mass, R_SP * (box.com - p_PS), R_SP * box.inertia * R_PS}, gravity);
+  return {box.mass, R_SP * (box.com - p_PS), R_SP * box.inertia * R_PS};
+}
+
+Swing find_swing(const model::CupParams& params, const SpatialInertia& box, const Vector3& size, const Vector3& up_P,
+                 double gravity) {
+  return find_swing(params, box_below_lip(params, box, size, up_P), gravity);
 }
 
 }  // namespace snug::cup

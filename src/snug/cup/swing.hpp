@@ -18,8 +18,11 @@ struct Swing {
 /// centre counts. Infinite where nothing holds the box in some direction, or its inertia is not positive.
 [[nodiscard]] Swing find_swing(const model::CupParams& params, const SpatialInertia& box_S, double gravity);
 
-/// The same for a box that is picked up as it stands, with `up_P` (along an axis of P) up, over its centre of mass as
-/// far as the disc on which the vacuum acts stays on the face.
+/// Mass, centre of mass from the lip, and inertia about it, in S, of a box that is picked up as it stands, with `up_P`
+/// (along an axis of P) up, over its centre of mass as far as the disc on which the vacuum acts stays on the face.
+[[nodiscard]] SpatialInertia box_below_lip(const model::CupParams& params, const SpatialInertia& box,
+                                           const Vector3& size, const Vector3& up_P);
+/// find_swing of such a box.
 [[nodiscard]] Swing find_swing(const model::CupParams& params, const SpatialInertia& box, const Vector3& size,
                                const Vector3& up_P, double gravity);
 

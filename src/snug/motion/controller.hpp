@@ -64,7 +64,8 @@ struct ControllerState {
   std::int64_t tail_ticks = 0;               ///< since the tail began
   bool was_felt = false;                     ///< the row before ended by a force
   Vector3 force_before_W = Vector3::Zero();  ///< N, felt when the motion to `row` began
-  Sensed sensed;                             ///< at the end of the last tick; whoever moves the tool puts it here
+  double hold_factor_before = std::numeric_limits<double>::infinity();  ///< Sensed::hold_factor then
+  Sensed sensed;  ///< at the end of the last tick; whoever moves the tool puts it here
   bool operator==(const ControllerState&) const = default;
 };
 

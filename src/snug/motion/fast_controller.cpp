@@ -105,7 +105,9 @@ bool feels_contact(const PreparedProgram& plan, const ControllerState& state) {
   if (!std::isfinite(limit)) return false;
   const double left = (state.paced.end().p - state.command.X_WE.p).norm();
   if (left > plan.settings.fast.feel_within) return false;
-  if (row_of(plan, state.row).io.vacuum && state.sensed.hold_factor < plan.settings.fast.felt_hold) return true;
+  const FastSettings& fast = plan.settings.fast;
+  const double felt_hold = std::min(fast.felt_hold, fast.felt_hold_share * state.hold_factor_before);
+  if (row_of(plan, state.row).io.vacuum && state.sensed.hold_factor < felt_hold) return true;
   return -(state.sensed.force_W - state.force_before_W).dot(state.paced.direction_W()) > limit;
 }
 
@@ -161,7 +163,8 @@ Pace pace_of(const PreparedProgram& plan, const Pose& X_WE, int row) noexcept {
       pace.max_speed = std::min(pace.max_speed, 2.0 * std::numbers::pi / waypoint.swing->slow * fast.lift_swing);
     }
   }
-  const double tempo = tempo_of(plan.settings.tracking);
+  const double tempo =
+      tempo_of(plan.settings.tracking) * (waypoint.io.vacuum && waypoint.swing ? waypoint.swing->pace : 1.0);
   pace.max_speed *= tempo;
   pace.max_turn_speed *= tempo;
   pace.max_acceleration *= tempo * tempo;
@@ -173,6 +176,7 @@ void begin_motion(const PreparedProgram& plan, const Pose& X_WE, ControllerState
   state.phase = ControllerPhase::Moving;
   state.phase_ticks = 0;
   state.force_before_W = state.sensed.force_W;
+  state.hold_factor_before = state.sensed.hold_factor;
   state.paced = PacedSegment(way_to(plan, X_WE, state.row), pace_of(plan, X_WE, state.row), plan.path_limits);
 }
 
@@ -206,8 +210,10 @@ void depart(const PreparedProgram& plan, int row, ControllerState& state) {
 bool has_waited(const PreparedProgram& plan, const ControllerState& state) {
   const FastSettings& fast = plan.settings.fast;
   if (seconds_in_phase(plan, state) >= plan.settings.vacuum_wait - 1e-9) return true;
-  return state.io.vacuum ? state.sensed.pressure_gauge <= fast.sealed_pressure
-                         : state.sensed.pressure_gauge >= fast.released_pressure;
+  if (!state.io.vacuum) return state.sensed.pressure_gauge >= fast.released_pressure;
+  const std::optional<Swing>& swing = row_of(plan, state.row).swing;
+  const bool is_heavy = swing && swing->pace < 1.0;
+  return state.sensed.pressure_gauge <= (is_heavy ? fast.fully_sealed_pressure : fast.sealed_pressure);
 }
 
 }  // namespace
@@ -272,7 +278,7 @@ void check_fast(const FastSettings& settings, const std::string& where) {
   }
   for (const double value :
        {settings.lift_swing, settings.contact_window, settings.blend, settings.level_blend, settings.feel_within,
-        settings.pick_force, settings.press_force, settings.push_force, settings.felt_hold}) {
+        settings.pick_force, settings.press_force, settings.push_force, settings.felt_hold, settings.felt_hold_share}) {
     require("limits", value, is_positive(value), "a finite number above 0");
   }
 }

@@ -41,7 +41,11 @@ struct FastSettings {
   double press_force = 40.0;  ///< N: a held box stands on something
   double push_force = 25.0;   ///< N: a held box leans on its neighbour (PlaceSlow)
   double felt_hold = 3.0;     ///< Sensed::hold_factor below which a held box meets something, too
-  double sealed_pressure = -std::numeric_limits<double>::infinity();   ///< Pa, gauge: the box may be lifted
+  /// The same of a box that is heavy for its cup: this fraction of the factor at the start of the motion.
+  double felt_hold_share = 0.7;
+  double sealed_pressure = -std::numeric_limits<double>::infinity();  ///< Pa, gauge: the box may be lifted
+  /// Pa, gauge: the same of a box that is carried at a pace below 1. It hangs from all of the vacuum.
+  double fully_sealed_pressure = -std::numeric_limits<double>::infinity();
   double released_pressure = std::numeric_limits<double>::infinity();  ///< Pa, gauge: the tool may leave the box
   bool operator==(const FastSettings&) const = default;
 };

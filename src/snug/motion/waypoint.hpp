@@ -45,10 +45,12 @@ enum class MotionClass {
 /// Whether a waypoint of this class is brought about in contact: picks, places, twists. The others touch nothing.
 [[nodiscard]] bool is_contact(MotionClass motion_class) noexcept;
 
-/// How a box swings that hangs from the cup: its two longest periods, s, 0.01 to 9.99. A file keeps hundredths.
+/// How a box is carried that hangs from the cup: its two longest periods, s, 0.01 to 9.99, and at which fraction of the
+/// tempo, 0.01 to 1. A file keeps hundredths.
 struct Swing {
   double slow = 0.0;
   double fast = 0.0;
+  double pace = 1.0;
   bool operator==(const Swing&) const = default;
 };
 

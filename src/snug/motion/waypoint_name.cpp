@@ -40,7 +40,12 @@ MotionClass class_of(std::string_view name) noexcept {
 
 bool is_period(double value) noexcept { return value >= 0.01 && value < 9.995; }
 
-std::string text_of(const Swing& swing) { return fmt::format("~{:.2f}+{:.2f}", swing.slow, swing.fast); }
+bool is_pace(double value) noexcept { return value >= 0.005 && value <= 1.0; }
+
+std::string text_of(const Swing& swing) {
+  const std::string pace = swing.pace < 1.0 ? fmt::format("*{:.2f}", swing.pace) : "";
+  return fmt::format("~{:.2f}+{:.2f}{}", swing.slow, swing.fast, pace);
+}
 
 /// What stands behind class and item.
 struct Tail {
@@ -56,10 +61,13 @@ Tail parse_tail(std::string_view text) {
   Swing swing;
   const auto slow = std::from_chars(text.data() + mark + 1, end, swing.slow);
   if (slow.ec != std::errc() || slow.ptr == end || *slow.ptr != '+') return tail;
-  const auto fast = std::from_chars(slow.ptr + 1, end, swing.fast);
-  const bool is_whole = fast.ec == std::errc() && (fast.ptr == end || *fast.ptr == '_');
-  if (!is_whole || !is_period(swing.slow) || !is_period(swing.fast)) return tail;
-  return {std::string(text.substr(0, mark)) + std::string(fast.ptr, end), as_named(swing)};
+  auto last = std::from_chars(slow.ptr + 1, end, swing.fast);
+  if (last.ec == std::errc() && last.ptr != end && *last.ptr == '*') {
+    last = std::from_chars(last.ptr + 1, end, swing.pace);
+  }
+  const bool is_whole = last.ec == std::errc() && (last.ptr == end || *last.ptr == '_');
+  if (!is_whole || !is_period(swing.slow) || !is_period(swing.fast) || !is_pace(swing.pace)) return tail;
+  return {std::string(text.substr(0, mark)) + std::string(last.ptr, end), as_named(swing)};
 }
 
 /// Whether what stands behind a '~' is meant as a swing: a number, or two parts with a '+' between them.
@@ -147,13 +155,14 @@ Waypoint named_waypoint(std::string_view name, const Pose& X_WE, const IO& io) {
 
 Swing as_named(const Swing& swing) {
   SNUG_CHECK(is_period(swing.slow) && is_period(swing.fast), "periods of a swing");
-  const auto rounded = [](double period) {
-    const std::string text = fmt::format("{:.2f}", period);
+  SNUG_CHECK(is_pace(swing.pace), "pace of a swing");
+  const auto rounded = [](double exact) {
+    const std::string text = fmt::format("{:.2f}", exact);
     double value = 0.0;
     std::from_chars(text.data(), text.data() + text.size(), value);
     return value;
   };
-  return {rounded(swing.slow), rounded(swing.fast)};
+  return {rounded(swing.slow), rounded(swing.fast), rounded(swing.pace)};
 }
 
 std::size_t fit_of(const Waypoint& waypoint, std::string_view id) noexcept {

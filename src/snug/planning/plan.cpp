@@ -1,8 +1,11 @@
 // plan: where an item goes and by which motion, as a function of what is believed.
 #include "snug/planning/plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "snug/core/hash.hpp"
@@ -41,6 +44,7 @@ class Planner {
   }
 
   Plan make() {
+    if (is_too_heavy()) return std::move(plan_);
     auto start = Clock::now();
     const packing::ContainerState state = scene_.container_state(plan_.item);
     const std::optional<double> here = expected_percent(scene_, plan_.item, agent_);
@@ -69,6 +73,22 @@ class Planner {
   }
 
  private:
+  /// Hanging still the cup could not carry it as often as it has to.
+  bool is_too_heavy() {
+    const double factor = skills::still_hold_factor(belief_.nominal(), scene_.planned_box(plan_.item));
+    const double asked = scene_.cell.limits.hold_factor;
+    if (factor >= asked) return false;
+    const model::CupParams& cup = belief_.nominal().cup;
+    const double area = asked / std::max(factor, 1e-3);  // what it carries goes with pressure times area
+    plan_.outcome = PlanOutcome::Infeasible;
+    plan_.reason = fmt::format(
+        "too heavy for the cup, which could carry {:.1f} times its weight and is to carry {:.1f} times "
+        "(place_limits.hold_factor); a disc of {:.0f} mm (cup.effective_diameter) or {:.0f} kPa "
+        "(cup.vacuum.pressure_gauge_hold) would",
+        factor, asked, 1e3 * cup.effective_diameter * std::sqrt(area), 1e-3 * cup.vacuum.pressure_gauge_hold * area);
+    return true;
+  }
+
   /// Where the tool goes when the item is at its place: there the next one, as it is expected, would be picked if the
   /// container were `state` then. None: it stays over the box.
   std::optional<Pose> tool_after(const packing::ContainerState& state) {

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "snug/cup/phases.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/cup/statics.hpp"
 #include "snug/cup/swing.hpp"
+#include "snug/motion/fast_settings.hpp"
 #include "snug/motion/tool_yaw.hpp"
 #include "snug/motion/way.hpp"
 #include "snug/motion/waypoint_name.hpp"
@@ -130,11 +132,42 @@ std::vector<motion::Waypoint> plan_leaning_pick(const model::Scenario& scenario,
                            scenario.skills.pick.leaning_lift);
 }
 
+double still_hold_factor(const model::Scenario& scenario, const PlannedBox& box) {
+  double most = 0.0;
+  for (const double sign : {1.0, -1.0}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const SpatialInertia box_S = cup::box_below_lip(scenario.cup, box.inertia, box.size, sign * Vector3::Unit(axis));
+      most = std::max(most, cup::carried_hold_factor(scenario.cup, box_S, {0.0, 0.0, -scenario.gravity.norm()}));
+    }
+  }
+  return most;
+}
+
+double pace_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
+  constexpr double kMargin = 1.05, kLeast = 0.3, kStep = 0.05;
+  constexpr double kOvershoot = 2.0;  ///< a heavy box bounces on the cup longer than the lift's smoothing is
+  const SpatialInertia box_S = cup::box_below_lip(scenario.cup, box.inertia, box.size, up_P);
+  const double gravity = scenario.gravity.norm(), asked = kMargin * scenario.place_limits.hold_factor;
+  const motion::FastSettings fast;
+  const auto holds = [&](double pace) {
+    const double square = pace * pace;
+    const auto factor = [&](double level, double up) {
+      return cup::carried_hold_factor(scenario.cup, box_S, {square * level, 0.0, -gravity - square * up});
+    };
+    const double lift = kOvershoot * fast.held.max_acceleration;
+    return std::min({factor(0.0, lift), factor(0.0, fast.insert.max_acceleration),
+                     factor(fast.held.max_acceleration, 0.0)}) >= asked;
+  };
+  int steps = static_cast<int>(std::lround(1.0 / kStep));
+  while (steps * kStep > kLeast + 0.5 * kStep && !holds(steps * kStep)) --steps;
+  return steps * kStep;
+}
+
 motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
   const settings::TravelParams& travel = scenario.skills.travel;
   const cup::Swing swing = cup::find_swing(scenario.cup, box.inertia, box.size, up_P, scenario.gravity.norm());
   return {std::clamp(swing.slow, travel.shortest_swing, travel.longest_swing),
-          std::clamp(swing.fast, travel.shortest_swing, travel.longest_swing)};
+          std::clamp(swing.fast, travel.shortest_swing, travel.longest_swing), pace_of(scenario, box, up_P)};
 }
 
 std::vector<motion::Waypoint> drivable(const CellLayout& layout, const motion::Waypoint& last,

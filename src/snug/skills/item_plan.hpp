@@ -59,7 +59,14 @@ enum class PickKind {
 /// at the neutral yaw.
 [[nodiscard]] Pose tool_before_pick(const model::Scenario& scenario, const CellLayout& layout, const PlannedBox& box,
                                     const Pose& X_WP, double travel_bottom);
-/// Of the box that hangs from the face that looks along `up_P` (P axis), within TravelParams.
+/// How many times its weight the cup could carry of the box that hangs still, by the face by which it carries most.
+[[nodiscard]] double still_hold_factor(const model::Scenario& scenario, const PlannedBox& box);
+/// Fraction of the tempo, 0.3 to 1 in steps of 0.05, at which the cup holds the box below that face as often as
+/// PlaceLimits::hold_factor asks, and a twentieth more, while the gripper has the accelerations of motion::FastSettings
+/// (they go with the square), in the lift twice that: its end is a step for such a box. 0.3 also where it would not
+/// hold it then.
+[[nodiscard]] double pace_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
+/// Of the box that hangs from the face that looks along `up_P` (P axis), within TravelParams, at its pace.
 [[nodiscard]] motion::Swing swing_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P);
 /// The rows with others in between, so that the wrist does not wind up and the tool keeps away from the robot's base.
 /// `swing`: of what hangs on the way: fast motions are told. None: not known, or nothing does.

@@ -112,6 +112,7 @@ TEST(WaypointName, SaysHowTheBoxOnTheWaySwings) {
   const Program read = parse_program(format_program({"p.csv", {waypoint}}), "p.csv");
   EXPECT_EQ(read.waypoints[0].swing, waypoint.swing);
   EXPECT_EQ(as_named({0.1234, 1.0}), (Swing{0.12, 1.0}));
+  EXPECT_EQ(as_named({0.42, 0.31, 0.704}).pace, 0.70);
   for (const char* other : {"PrePlace(BOX027)", "a~", "a~0.42", "a~0.42+", "a~0.42+x", "a~0.42+0.31x", "a~0+0.3",
                             "a~-1+0.3", "a~0.4+10", "a~nan+inf", "(a~0.42+0.31)", "a~+0.4+0.3", ""}) {
     EXPECT_EQ(parse_waypoint_name(other).swing, std::nullopt) << other;
@@ -119,10 +120,22 @@ TEST(WaypointName, SaysHowTheBoxOnTheWaySwings) {
   }
 }
 
+TEST(WaypointName, SaysAtWhichPaceAHeavyBoxIsCarried) {
+  Waypoint waypoint = make_waypoint(MotionClass::PrePlace, "BOX027", Pose{});
+  waypoint.swing = Swing{0.42, 0.31, 0.7};
+  EXPECT_EQ(name_of(waypoint), "PrePlace(BOX027)~0.42+0.31*0.70");
+  EXPECT_EQ(parse_waypoint_name(name_of(waypoint)), waypoint);
+  EXPECT_EQ(parse_waypoint_name("PrePlace(BOX027)~0.42+0.31*1").swing, (Swing{0.42, 0.31}));
+  const Program read = parse_program(format_program({"p.csv", {waypoint}}), "p.csv");
+  EXPECT_EQ(read.waypoints[0].swing, waypoint.swing);
+}
+
 TEST(WaypointName, WithAMalformedSwingIsRefusedByFiles) {
-  for (const char* name : {"PostPick(BOX027)~nan+0", "PostPick(BOX027)~99999+-3", "PrePlace(B)~0.42",
-                           "PrePlace(B)~0.42+", "PrePlace(B)~+0.4", "PrePlace(B)~0.42+0.31x", "Place(B)~0.4+10_turn",
-                           "Place(B)_2~0+0.3", "Place027~inf+1", "home~1e999", "Place(B)~nan+0~0.42+0.31"}) {
+  for (const char* name :
+       {"PostPick(BOX027)~nan+0", "PostPick(BOX027)~99999+-3", "PrePlace(B)~0.42", "PrePlace(B)~0.42+",
+        "PrePlace(B)~+0.4", "PrePlace(B)~0.42+0.31x", "Place(B)~0.4+10_turn", "Place(B)_2~0+0.3", "Place027~inf+1",
+        "home~1e999", "Place(B)~nan+0~0.42+0.31", "Place(B)~0.42+0.31*", "Place(B)~0.42+0.31*1.1",
+        "Place(B)~0.42+0.31*0", "Place(B)~0.42+0.31*nan"}) {
     SCOPED_TRACE(name);
     EXPECT_TRUE(has_malformed_swing(parse_waypoint_name(name)));
     const std::string row = std::string("0,0,0.5,0,3.14,0,") + name + ",0,0,0,0,0,0\n";

@@ -224,6 +224,43 @@ TEST(Drivable, TellsFastMotionsOfTheSwingInRowsInWhichABoxHangs) {
   EXPECT_TRUE(drivable(layout, before, {}, swing).empty());
 }
 
+TEST(PaceOf, IsTheLargestAtWhichTheCupHoldsAHeavyBox) {
+  const model::Scenario& scenario = demonstrator();
+  double last = 1.0;
+  for (const double mass : {0.5, 1.5, 3.0, 4.0, 5.0, 6.0, 7.0}) {
+    PlannedBox box = box_with(Vector3::Zero());
+    box.inertia.mass = mass;
+    const double pace = pace_of(scenario, box, Vector3::UnitZ());
+    EXPECT_LE(pace, last) << mass;
+    if (mass <= 3.0) {
+      EXPECT_EQ(pace, 1.0) << mass;
+    }
+    // By hand: tension of lift and stop, slip and peel on the level.
+    const double suction = 6.0e4 * std::numbers::pi * 0.03 * 0.03, gravity = scenario.gravity.norm();
+    const double radius = scenario.cup.lip_radius, friction = scenario.cup.lip_friction;
+    const auto holds = [&](double one) {
+      const double level = 5.0 * one * one, depth = 0.5 * box.size.z();
+      const double tension = suction / (mass * (gravity + 2.0 * level));
+      const double slip = friction * suction / (mass * (level + friction * gravity));
+      const double peel = radius * suction / (mass * (level * depth + radius * gravity));
+      return std::min({tension, slip, peel}) >= 1.05 * scenario.place_limits.hold_factor;
+    };
+    if (pace > 0.35) {
+      EXPECT_TRUE(holds(pace)) << mass;
+    }
+    if (pace < 1.0) {
+      EXPECT_FALSE(holds(pace + 0.05)) << mass;
+    }
+    last = pace;
+  }
+  EXPECT_LT(last, 0.5);
+  PlannedBox box = box_with(Vector3::Zero());
+  box.inertia.mass = 1.0;
+  const double one = still_hold_factor(scenario, box);
+  box.inertia.mass = 8.0;
+  EXPECT_NEAR(still_hold_factor(scenario, box), one / 8.0, 1e-9) << "it goes with the weight";
+}
+
 TEST(SwingOf, StaysWithinWhatFastMotionsAvoidAndIsSlowerOfAHeavierBox) {
   const model::Scenario& scenario = demonstrator();
   const settings::TravelParams& travel = scenario.skills.travel;
