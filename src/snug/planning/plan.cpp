@@ -73,19 +73,24 @@ class Planner {
   }
 
  private:
-  /// Hanging still the cup could not carry it as often as it has to.
+  /// Hanging still the cup could not carry it as often as it has to. What is too heavy for the robot is the agent's.
   bool is_too_heavy() {
-    const double factor = skills::still_hold_factor(belief_.nominal(), scene_.planned_box(plan_.item));
-    const double asked = scene_.cell.limits.hold_factor;
-    if (factor >= asked) return false;
+    const skills::PlannedBox box = scene_.planned_box(plan_.item);
+    const double factor = skills::still_hold_factor(belief_.nominal(), box), asked = scene_.cell.limits.hold_factor;
+    if (factor >= asked || box.inertia.mass > scene_.rules().packing.max_item_mass) return false;
     const model::CupParams& cup = belief_.nominal().cup;
     const double area = asked / std::max(factor, 1e-3);  // what it carries goes with pressure times area
+    const double pressure = cup.vacuum.pressure_gauge_hold * area;
+    std::string would =
+        fmt::format("a disc of {:.0f} mm (cup.effective_diameter)", 1e3 * cup.effective_diameter * std::sqrt(area));
+    if (pressure > -cup.vacuum.ambient_pressure_abs) {
+      would += fmt::format(" or {:.0f} kPa (cup.vacuum.pressure_gauge_hold)", 1e-3 * pressure);
+    }
     plan_.outcome = PlanOutcome::Infeasible;
     plan_.reason = fmt::format(
-        "too heavy for the cup, which could carry {:.1f} times its weight and is to carry {:.1f} times "
-        "(place_limits.hold_factor); a disc of {:.0f} mm (cup.effective_diameter) or {:.0f} kPa "
-        "(cup.vacuum.pressure_gauge_hold) would",
-        factor, asked, 1e3 * cup.effective_diameter * std::sqrt(area), 1e-3 * cup.vacuum.pressure_gauge_hold * area);
+        "too heavy for the cup, which could carry {:.2f} times its weight and is to carry {:.2f} times "
+        "(place_limits.hold_factor); {} would",
+        factor, asked, would);
     return true;
   }
 

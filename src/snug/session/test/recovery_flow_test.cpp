@@ -235,6 +235,21 @@ TEST(RecoveryFlow, AnItemThatFitsNowhereEverUsesUpNoSkip) {
   EXPECT_EQ(heavy.stop_reason, StopReason::NoMoreItems);
 }
 
+TEST(RecoveryFlow, AnItemThatTheCupCannotCarrySaysWhatWould) {
+  ScriptedPlant plant;
+  const SessionResult result = pack_items(plant, 2, [](auto& scenario) {
+    std::ranges::find(scenario.parcels, "BOX027", &model::Parcel::id)->inertia.mass =
+        0.8 * scenario.packing.max_item_mass;
+    scenario.cup.vacuum.pressure_gauge_hold *= 0.6;
+  });
+  ASSERT_EQ(result.items.size(), 2U);
+  EXPECT_EQ(result.items[0].end, ItemEnd::Infeasible);
+  for (const char* part : {"place_limits.hold_factor", "cup.effective_diameter", "cup.vacuum.pressure_gauge_hold"}) {
+    EXPECT_NE(result.items[0].reason.find(part), std::string::npos) << result.items[0].reason;
+  }
+  EXPECT_EQ(result.items[1].end, ItemEnd::Placed);
+}
+
 TEST(RecoveryFlow, ABoxThatFellBesideTheContainerIsPickedThere) {
   ScriptedPlant plant;
   plant.ends = {EndReason::VacuumLost};
