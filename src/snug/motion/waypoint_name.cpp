@@ -40,7 +40,7 @@ MotionClass class_of(std::string_view name) noexcept {
 
 bool is_period(double value) noexcept { return value >= 0.01 && value < 9.995; }
 
-bool is_pace(double value) noexcept { return value >= 0.005 && value <= 1.0; }
+bool is_pace(double value) noexcept { return value >= 0.01 && value <= 1.0; }
 
 std::string text_of(const Swing& swing) {
   const std::string pace = swing.pace < 1.0 ? fmt::format("*{:.2f}", swing.pace) : "";

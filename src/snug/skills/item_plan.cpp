@@ -145,7 +145,7 @@ double still_hold_factor(const model::Scenario& scenario, const PlannedBox& box)
 
 double pace_of(const model::Scenario& scenario, const PlannedBox& box, const Vector3& up_P) {
   constexpr double kMargin = 1.05, kLeast = 0.3, kStep = 0.05;
-  constexpr double kOvershoot = 2.0;  ///< a heavy box bounces on the cup longer than the lift's smoothing is
+  constexpr double kOvershoot = 2.0;  ///< of the lift: its smoothing is shorter than a heavy box bounces; 1.9 with 6 kg
   const SpatialInertia box_S = cup::box_below_lip(scenario.cup, box.inertia, box.size, up_P);
   const double gravity = scenario.gravity.norm(), asked = kMargin * scenario.place_limits.hold_factor;
   const motion::FastSettings fast;

@@ -135,7 +135,7 @@ TEST(WaypointName, WithAMalformedSwingIsRefusedByFiles) {
        {"PostPick(BOX027)~nan+0", "PostPick(BOX027)~99999+-3", "PrePlace(B)~0.42", "PrePlace(B)~0.42+",
         "PrePlace(B)~+0.4", "PrePlace(B)~0.42+0.31x", "Place(B)~0.4+10_turn", "Place(B)_2~0+0.3", "Place027~inf+1",
         "home~1e999", "Place(B)~nan+0~0.42+0.31", "Place(B)~0.42+0.31*", "Place(B)~0.42+0.31*1.1",
-        "Place(B)~0.42+0.31*0", "Place(B)~0.42+0.31*nan"}) {
+        "Place(B)~0.42+0.31*0", "Place(B)~0.42+0.31*0.009", "Place(B)~0.42+0.31*nan"}) {
     SCOPED_TRACE(name);
     EXPECT_TRUE(has_malformed_swing(parse_waypoint_name(name)));
     const std::string row = std::string("0,0,0.5,0,3.14,0,") + name + ",0,0,0,0,0,0\n";

@@ -7,57 +7,25 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <limits>
-#include <optional>
-#include <thread>
 
 #include "snug/core/input_error.hpp"
 #include "snug/remote_ur/compare_robot.hpp"
 #include "snug/remote_ur/rtde_client.hpp"
-#include "snug/served_ur/server.hpp"
+#include "snug/served_ur/test/served.hpp"
 
 namespace snug::remote_ur {
 namespace {
 
-const cell::Simulation& served_cell() {
-  static const cell::Simulation simulation(
-      model::load_scenario(std::filesystem::path(SNUG_SOURCE_DIR) / "scenarios/box-demonstrator.yaml"), "1",
-      {motion::LaggedTracking{}, cup::CupMode::Phases, "ur10"});
-  return simulation;
+const cell::Simulation& served_cell() { return served_ur::test::demonstrator_cell(); }
+
+using served_ur::test::Served;
+
+Endpoint endpoint_of(const Served& served) {
+  Endpoint endpoint;
+  endpoint.port_offset = served.offset();
+  return endpoint;
 }
-
-/// A controller that runs in a thread of its own, at ports that were free.
-class Served {
- public:
-  Served() : controller_(served_cell(), {}) {
-    for (endpoint_.port_offset = 1500 + static_cast<int>(::getpid() % 200) * 100; !server_;
-         endpoint_.port_offset += 10) {
-      served_ur::ServerSettings settings;
-      settings.port_offset = endpoint_.port_offset;
-      try {
-        server_.emplace(controller_, settings);
-        break;
-      } catch (const InputError&) {
-        if (endpoint_.port_offset > 33000) throw;
-      }
-    }
-    thread_ = std::thread([this] { server_->run(); });
-  }
-  ~Served() {
-    server_->stop();
-    thread_.join();
-  }
-  Served(const Served&) = delete;
-  Served& operator=(const Served&) = delete;
-  [[nodiscard]] const Endpoint& endpoint() const { return endpoint_; }
-
- private:
-  served_ur::Controller controller_;
-  std::optional<served_ur::Server> server_;
-  Endpoint endpoint_;
-  std::thread thread_;
-};
 
 /// As a served cell says it, without sockets.
 RobotReport report_of_cell() {
@@ -87,7 +55,7 @@ using Names = std::vector<std::string>;
 
 TEST(RemoteUr, AServedCellFitsItsScenario) {
   const Served served;
-  const RobotReport report = read_robot(served.endpoint());
+  const RobotReport report = read_robot(endpoint_of(served));
   EXPECT_EQ(report.model, "UR10");
   EXPECT_EQ(report.version, ur::facts_of(ur::Model::Ur10).version);
   EXPECT_EQ(report.is_in_remote_control, true);
@@ -100,7 +68,7 @@ TEST(RemoteUr, AServedCellFitsItsScenario) {
 
 TEST(RemoteUr, OutputsThatOlderSoftwareLacksAreLeftOut) {
   const Served served;
-  RtdeClient client(served.endpoint(), {"no_such_output", "timestamp", "robot_mode", "actual_q"}, 125.0);
+  RtdeClient client(endpoint_of(served), {"no_such_output", "timestamp", "robot_mode", "actual_q"}, 125.0);
   EXPECT_EQ(client.unknown(), Names{"no_such_output"});
   const RtdeValues first = client.receive();
   const RtdeValues second = client.receive();
@@ -108,7 +76,7 @@ TEST(RemoteUr, OutputsThatOlderSoftwareLacksAreLeftOut) {
   EXPECT_EQ(first.at("robot_mode"), std::vector<double>{7.0});
   EXPECT_EQ(first.at("actual_q").size(), 6U);
   EXPECT_NEAR(second.at("timestamp")[0] - first.at("timestamp")[0], 0.008, 1e-9);
-  EXPECT_THROW(RtdeClient(served.endpoint(), {"no_such_output"}, 125.0), InputError);
+  EXPECT_THROW(RtdeClient(endpoint_of(served), {"no_such_output"}, 125.0), InputError);
 }
 
 TEST(RemoteUr, EachDifferenceIsFoundAndNamed) {

@@ -1,4 +1,4 @@
-// The demonstrator's cell at the tick of a CB3 controller, for the tests of this module.
+// The demonstrator's cell at the tick of a CB3 controller, for tests.
 #pragma once
 
 #include <filesystem>
