@@ -11,7 +11,7 @@ configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(J
 run-tests = ctest --preset $(1) -j $(JOBS)
 
 .PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python wheel package reproducible check \
-  format-check clang headers fix san san-fast tsan tidy cover fuzz same-bytes attack bench bench-peers docs clean
+  format-check clang headers fix san san-fast tsan tidy cover fuzz same-bytes attack bench bench-peers figures docs clean
 
 help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -93,7 +93,7 @@ tsan: setup-test ## tests under the thread sanitizer
 fuzz: setup-fuzz ## attack every reader with libFuzzer for an hour; TIME=600 (seconds in all), READER=urdf for one
 	@$(call configure-build,fuzz) && scripts/fuzz.sh build-fuzz "$(or $(TIME),3600)" $(READER)
 
-same-bytes: setup-program setup-lint ## the same states by gcc and clang, -O1 and -O3, without AVX2 and FMA, on aarch64: VARIANTS="clang-O1 aarch64-O3"
+same-bytes: setup-program setup-lint ## the same states by gcc and clang, -O1 and -O3, without AVX2 and FMA, on aarch64: VARIANTS="clang-O1 aarch64-gcc-O3"
 	@python3 tools/same_bytes.py --jobs $(JOBS) $(VARIANTS)
 
 attack: setup-test ## mutated files, strangers at every server, kills of every verb that writes, as often as COUNT says (1000)
@@ -111,6 +111,9 @@ bench: build ## how fast and how accurate the physics is, beside its targets
 bench-peers: setup-peers ## the same scenes in Bullet and MuJoCo, in one run; TOSSES=FILE.csv for tosses, an hour
 	@$(call configure-build,bench) && build-bench/bench_peers \
 	  $(if $(TOSSES),--tosses $(TOSSES) --engine snug --engine bullet-si10 --engine mujoco-elliptic-stiff)
+
+figures: build ## make the numbers that README and the documents state, and write them there, an hour; NAME="first-run sessions acceptance"
+	@python3 tools/figures.py $(NAME)
 
 docs: setup-docs ## check every link of the documents, build the documentation site: build/site/index.html
 	@python3 tools/check_docs.py . && python3 tools/build_site.py build/site

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""figures_test.py: the numbers that documents state are those that the program makes: those of the tutorial's first run are made again; and
+tools/figures.py finds, replaces and names blocks as it says. SNUG names the program."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+ROOT = Path(__file__).resolve().parent.parent
+SNUG = os.environ.get("SNUG", str(ROOT / "build" / "snug"))
+sys.path.insert(0, str(ROOT / "tools"))
+sys.dont_write_bytecode = True
+import figures  # noqa: E402
+
+
+def row(sequence, plant, percent, **more):
+    return {"agent": "contact-aware", "sequence": sequence, "plant_seed": plant, "executed_boxes": 12, "executed_percent": percent,
+            "percent_before_skips": percent - 2.0, "boxes_per_hour": 400.0, "items_sent": 12, "items_as_planned": 12, "boxes_lost": 0, "recoveries": 1,
+            "failure": "", **more}
+
+
+class Documents(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = Path(self.folder.name) / "page.md"
+        self.path.write_text("It is <!-- figures: one -->3 boxes<!-- end --> here.\n\n<!-- figures: two -->\n| a |\n\n*n = 1; commit 123, x86-64, 2 cores (`make figures`).*\n"
+                             "<!-- end -->\n", encoding="utf-8")
+        for name, value in (("documents", lambda: [self.path]), ("ROOT", Path(self.folder.name))):
+            patch = mock.patch.object(figures, name, value)
+            patch.start()
+            self.addCleanup(patch.stop)
+
+    def test_a_block_is_replaced_and_the_rest_stays(self):
+        different = figures.put({"one": "4 boxes"}, False)
+        self.assertEqual(len(different), 1)
+        text = self.path.read_text(encoding="utf-8")
+        self.assertIn("It is <!-- figures: one -->4 boxes<!-- end --> here.", text)
+        self.assertIn("| a |", text)
+
+    def test_a_check_writes_nothing_and_names_what_differs(self):
+        before = self.path.read_bytes()
+        different = figures.put({"one": "4 boxes"}, True)
+        self.assertIn("page.md: one: stands:\n3 boxes\nmade:\n4 boxes", different[0])
+        self.assertEqual(self.path.read_bytes(), before)
+
+    def test_another_commit_is_no_difference(self):
+        self.assertEqual(figures.put({"two": "| a |\n\n*n = 1; commit 456, aarch64, 8 cores (`make figures`).*"}, True), [])
+        self.assertEqual(len(figures.put({"two": "| b |\n\n*n = 1; commit 456, aarch64, 8 cores (`make figures`).*"}, True)), 1)
+
+    def test_a_figure_without_a_place_is_an_error(self):
+        with self.assertRaisesRegex(figures.CannotMake, "figures: three"):
+            figures.put({"three": "x"}, True)
+
+
+class Made(unittest.TestCase):
+    def test_the_tables_of_sessions(self):
+        rows = [row(name, plant, 70.0 + plant) for name in figures.SEQUENCES for plant in range(1, 7)]
+        rows[3]["items_as_planned"] = 11
+        words = mock.Mock(snug="snug", folder=Path("rows"))
+        with mock.patch.object(figures, "run", return_value=json.dumps({"rows": rows})):
+            made = figures.sessions(words)
+        self.assertIn("| snug, two boxes may be left out | 73.5 % (71.0 to 76.0) | 400 |", made["sessions"])
+        self.assertIn("| snug, ended at the first box without a place | 71.5 % (69.0 to 74.0) |", made["sessions"])
+        self.assertIn("Of 360 boxes that were sent 359 ended as planned; none was lost.", made["sessions"])
+        self.assertIn("| people, by hand (the report) | 71.9 % | |", made["sessions"])
+        self.assertIn("| snug, plant 1 | 12 / 71.0 |", made["sessions-by-sequence"])
+        self.assertIn("30 times the robot recovered", made["sessions-by-sequence"])
+
+    def test_a_session_that_broke_off_makes_no_table(self):
+        words = mock.Mock(snug="snug", folder=Path("rows"))
+        with mock.patch.object(figures, "run", return_value=json.dumps({"rows": [row("1", 1, 70.0, failure="the plant was gone")]})), self.assertRaises(figures.CannotMake):
+            figures.sessions(words)
+
+    def test_every_block_has_its_maker(self):
+        named = {match[2] for path in figures.documents() for match in figures.BLOCK.finditer(path.read_text(encoding="utf-8"))}
+        self.assertEqual(named, {"first-run", "sessions", "sessions-by-sequence", "acceptance"})
+
+    def test_a_name_that_is_none_is_refused(self):
+        done = subprocess.run([sys.executable, ROOT / "tools" / "figures.py", "session"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("expected first-run, sessions, acceptance", done.stderr)
+
+    def test_the_first_run_of_the_tutorial_is_as_it_stands(self):
+        done = subprocess.run([sys.executable, ROOT / "tools" / "figures.py", "--check", "first-run", "--snug", SNUG], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

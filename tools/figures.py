@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+"""figures.py: makes the numbers that README and the documents state, and writes them where they stand: between `<!-- figures: NAME -->` and
+`<!-- end -->`.
+
+  figures.py                 all of them: an hour on two cores; a second call goes on where one was ended
+  figures.py NAME ...        these
+  figures.py --check NAME    nothing is written: exit code 1 where a document says something else
+
+Names: first-run, sessions, acceptance. `acceptance` needs the demonstrator's own programs (--programs FOLDER). The same commit gives the same text on
+every machine; beneath each table stands the commit that last changed the program, and what it was made on."""
+import argparse
+import json
+import os
+import platform
+import re
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SCENARIO = "scenarios/box-demonstrator.yaml"
+SEQUENCES = ("1", "2", "3", "4", "5")
+PLANTS = 6
+TUTORIAL = ["--sequence", "1", "--plant-seed", "4"]  # the command of its first run
+# Boxes that the report's robot and its people packed of each sequence (report, Tables 1 and 2), and their share of the container, %, as `compare` counts it.
+REPORTED = {"the report's robot, programmed by hand": ((12, 74.22), (12, 66.14), (13, 68.69), (14, 66.70), (12, 66.66)),
+            "the report's people, by hand": ((12, 74.22), (12, 66.14), (13, 68.69), (15, 73.79), (14, 76.41))}
+
+
+class CannotMake(Exception):
+    """Why a figure cannot be made here."""
+
+
+def run(words, *more):
+    done = subprocess.run([*map(str, words), *map(str, more)], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
+    if done.returncode not in (0, 1) or not done.stdout:  # 1: it ran, and the robot could not do all
+        raise CannotMake(f"{' '.join(map(str, words))}: exit code {done.returncode}")
+    return done.stdout
+
+
+def commit():
+    """The last one that changed the program or what it reads."""
+    done = subprocess.run(["git", "log", "-1", "--format=%h", "--", "src", "apps", "scenarios"], cwd=ROOT, capture_output=True, text=True, check=False)
+    return done.stdout.strip() or "unknown"
+
+
+def origin(what):
+    """What a table was made from, on what."""
+    return f"*{what}; commit {commit()}, {platform.machine().replace('_', '-')}, {os.cpu_count()} cores (`make figures`).*"
+
+
+def mean_and_range(values, unit=""):
+    return f"{statistics.mean(values):.1f}{unit} ({min(values):.1f} to {max(values):.1f})"
+
+
+def mean_of(cells):
+    return f"{statistics.mean(percent for _, percent in cells) + 1e-9:.1f}"  # a half is rounded up
+
+
+# ---- figures: each gives the texts of its blocks
+
+def first_run(words):
+    """The first session of the tutorial."""
+    result = json.loads(run([words.snug, "pack", SCENARIO, *TUTORIAL, "--json"]))
+    return {"first-run": f"{result['executed_boxes']} boxes fill {result['executed_percent']:.2f} %."}
+
+
+def sessions(words):
+    """Thirty sessions: five sequences in six plants."""
+    kept = words.folder / f"sessions-{commit()}"
+    rows = json.loads(run([words.snug, "compare", SCENARIO, "--agents", "contact-aware", "--plants", PLANTS, "--dir", kept, "--json"]))["rows"]
+    if broken := [row for row in rows if row["failure"]]:
+        raise CannotMake(f"sessions: {len(broken)} of {len(rows)} broke off")
+    by_sequence = {name: [row for row in rows if row["sequence"] == name] for name in SEQUENCES}
+    filled = [row["executed_percent"] for row in rows]
+    before = [row["percent_before_skips"] for row in rows]
+    hours = [row["boxes_per_hour"] for row in rows]
+    sent, planned, lost = (sum(row[key] for row in rows) for key in ("items_sent", "items_as_planned", "boxes_lost"))
+    robot, people = (mean_of(cells) for cells in REPORTED.values())
+    what = f"n = {len(rows)}: plants 1 to {PLANTS}, planner seed 1"
+    short = [
+        "| five sequences | filling, mean (lowest to highest) | boxes an hour |", "|---|---|---|",
+        f"| people, by hand (the report) | {people} % | |",
+        f"| robot, programmed by hand (the report) | {robot} % | |",
+        f"| snug, ended at the first box without a place | {mean_and_range(before, ' %')} | |",
+        f"| snug, two boxes may be left out | {mean_and_range(filled, ' %')} | {statistics.mean(hours):.0f} |", "",
+        f"Of {sent} boxes that were sent {planned} ended as planned; {'none was' if lost == 0 else f'{lost} were'} lost.", "", origin(what)]
+
+    def line(name, cells):
+        return f"| {name} | " + " | ".join(cells) + " |"
+
+    first = [by_sequence[name][0] for name in SEQUENCES]
+    long = [
+        line("boxes / % of the container", [*(f"S{name}" for name in SEQUENCES), "mean (lowest to highest)"]), "|---" * (len(SEQUENCES) + 2) + "|",
+        line("snug, six plants", [mean_and_range([row["executed_percent"] for row in by_sequence[name]]) for name in SEQUENCES] + [mean_and_range(filled)]),
+        line("snug, plant 1", [f"{row['executed_boxes']} / {row['executed_percent']:.1f}" for row in first]
+             + [mean_and_range([row["executed_percent"] for row in first])]),
+        line("snug, six plants, ended at the first box without a place",
+             [mean_and_range([row["percent_before_skips"] for row in by_sequence[name]]) for name in SEQUENCES] + [mean_and_range(before)]),
+        *(line(who, [f"{boxes} / {percent:.1f}" for boxes, percent in cells] + [mean_of(cells)])
+          for who, cells in REPORTED.items()), "",
+        f"Standard deviation over the {len(rows)} sessions {statistics.stdev(filled):.1f} points, {statistics.mean(hours):.0f} boxes an hour "
+        f"({min(hours):.0f} to {max(hours):.0f}) without the time in which the robot waits for a plan. Of {sent} boxes that were sent {planned} ended as "
+        f"planned, {'none was' if lost == 0 else f'{lost} were'} lost, {sum(row['recoveries'] for row in rows)} times the robot recovered.", "", origin(what)]
+    return {"sessions": "\n".join(short), "sessions-by-sequence": "\n".join(long)}
+
+
+def acceptance(words):
+    """The demonstrator's own programs."""
+    if not words.programs.is_dir():
+        raise CannotMake(f"acceptance: there is no folder '{words.programs}' with the demonstrator's own programs (--programs)")
+    table = run([sys.executable, ROOT / "tools" / "acceptance.py", words.programs]).rstrip()
+    return {"acceptance": table + "\n\n" + origin("one run of each program")}
+
+
+MAKERS = {"first-run": first_run, "sessions": sessions, "acceptance": acceptance}
+
+
+# ---- documents
+
+BLOCK = re.compile(r"(<!-- figures: ([\w-]+) -->)(.*?)(<!-- end -->)", re.S)
+
+
+def documents():
+    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def without_origin(text):
+    return re.sub(r"; commit \S+ .*?\(`make figures`\)", "", text)
+
+
+def put(texts, is_check):
+    """Writes the blocks; what differs, as lines."""
+    different, found = [], set()
+    for path in documents():
+        def replace(match, path=path):
+            name = match[2]
+            if name not in texts:
+                return match[0]
+            found.add(name)
+            old = match[3]
+            new = f"\n{texts[name]}\n" if "\n" in texts[name] else texts[name]
+            if without_origin(old).strip() != without_origin(new).strip():
+                different.append(f"{path.relative_to(ROOT)}: {name}: stands:\n{old.strip()}\nmade:\n{new.strip()}")
+            return match[1] + new + match[4]
+        text = path.read_text(encoding="utf-8")
+        changed = BLOCK.sub(replace, text)
+        if not is_check and changed != text:
+            beside = path.with_name(path.name + ".new")
+            beside.write_text(changed, encoding="utf-8")
+            beside.rename(path)
+    if missing := set(texts) - found:
+        raise CannotMake(f"no document has a block <!-- figures: {sorted(missing)[0]} -->")
+    return different
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--check", action="store_true", help="write nothing, exit code 1 where something differs")
+    parser.add_argument("--snug", type=Path, default=ROOT / "build" / "snug", help="the program (default: build/snug)")
+    parser.add_argument("--programs", type=Path, default=ROOT.parent / "shared" / "data" / "waypoints", help="folder of the demonstrator's programs")
+    parser.add_argument("--folder", type=Path, default=ROOT / "build" / "figures", help="where rows are kept (default: build/figures)")
+    words = parser.parse_args()
+    if unknown := [name for name in words.names if name not in MAKERS]:
+        parser.error(f"got '{unknown[0]}'; expected {', '.join(MAKERS)}")
+    words.folder.mkdir(parents=True, exist_ok=True)
+    code = 0
+    for name in words.names or MAKERS:
+        try:
+            different = put(MAKERS[name](words), words.check)
+        except CannotMake as why:
+            print(f"figures.py: {why}", file=sys.stderr)
+            code = 2
+            continue
+        print(f"{name}: {'as it stands' if not different else 'differs' if words.check else 'written'}", flush=True)
+        if words.check and different:
+            print("\n".join(different))
+            code = code or 1
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()
