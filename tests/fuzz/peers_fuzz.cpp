@@ -1,5 +1,8 @@
-// What peers on the wire send: frames of CLICK, RTDE, lines of the dashboard, by the first byte.
+// What peers on the wire send: frames of CLICK, RTDE, lines of the dashboard; and the keys that say who they are, by the
+// first byte.
 #include "fuzz.hpp"
+#include "scratch_file.hpp"
+#include "snug/click/keys.hpp"
 #include "snug/click/message.hpp"
 #include "snug/click/sensor_writer.hpp"
 #include "snug/ur/dashboard.hpp"
@@ -35,6 +38,14 @@ void decode_twice(std::string_view frame) {
   SNUG_CHECK(again.has_value() && click::encode(*again) == bytes, "what was read can be said, and read again");
 }
 
+/// As the secret of a server, as a public key beside it, and as the secret of a client.
+void read_keys(std::string_view bytes) {
+  static const fuzz::ScratchFolder folder;
+  for (const char* name : {"server.key_secret", "cell.key", "server.key"}) folder.write(name, bytes);
+  fuzz::expect_answer([] { (void)click::load_server_keys(folder.path()); });
+  fuzz::expect_answer([] { (void)click::load_client_keys(folder.path() / "server.key_secret"); });
+}
+
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -46,6 +57,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       break;
     case 'd':
       SNUG_CHECK(ur::parse_dashboard(bytes).argument.size() <= bytes.size(), "an argument is part of the line");
+      break;
+    case 'k':
+      read_keys(bytes);
       break;
     case 'o':
       (void)click::wire::decode_object(bytes);
