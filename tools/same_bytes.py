@@ -2,12 +2,13 @@
 """same_bytes.py: builds what simulates and plans with each compiler, optimisation and processor that this machine has, and compares the states that
 twenty scenes and a packing session come to (tests/same_bytes/states.cpp). Exit code 1 where they differ.
 
-Variants: gcc-O3, gcc-O1, clang-O1, clang-O3, aarch64-O3. On x86-64 each runs with the instructions of the processor, and with AVX2 and fused
-multiply-add left out by the C library. aarch64 needs g++ for it and qemu (Debian: g++-aarch64-linux-gnu qemu-user-static); what it links is fetched
-by apt into a folder of its own, nothing is installed. What this machine cannot build is named, and is no success of --all."""
+Variants: gcc-O3, gcc-O1, clang-O3, clang-O1, and the same with aarch64- before. On x86-64 each runs with the instructions of the processor, and with
+AVX2 and fused multiply-add left out by the C library. aarch64 needs g++ for it and qemu (Debian: g++-aarch64-linux-gnu qemu-user-static); what it
+links is fetched by apt into a folder of its own, nothing is installed. What this machine cannot build is named, and is no success of --all."""
 import argparse
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -15,20 +16,23 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 WITHOUT = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
-VARIANTS = {"gcc-O3": ("gcc", "g++", "-O3"), "gcc-O1": ("gcc", "g++", "-O1"), "clang-O1": ("clang", "clang++", "-O1"),
-            "clang-O3": ("clang", "clang++", "-O3"), "aarch64-O3": ("aarch64-linux-gnu-gcc", "aarch64-linux-gnu-g++", "-O3")}
+ARM = "aarch64-linux-gnu"
+VARIANTS = tuple(f"{processor}{compiler}-{level}" for processor in ("", "aarch64-") for compiler in ("gcc", "clang") for level in ("O3", "O1"))
 EMULATOR = "qemu-aarch64-static"
-ARM_PACKAGES = ("libc6-dev libstdc++-12-dev libeigen3-dev libexpected-dev libceres-dev libnlopt-cxx-dev libhdf5-dev libyaml-cpp-dev libfmt-dev "
-                "nlohmann-json3-dev libtinyxml2-dev libassimp-dev libpng-dev zlib1g-dev").split()
+ARM_PACKAGES = ("libc6-dev libstdc++-12-dev libeigen3-dev libexpected-dev libceres-dev libblas-dev liblapack-dev libnlopt-cxx-dev libhdf5-dev "
+                "libyaml-cpp-dev libfmt-dev nlohmann-json3-dev libtinyxml2-dev libassimp-dev libpng-dev zlib1g-dev").split()
 TOOLCHAIN = """set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_SYSROOT {root})
+set(CMAKE_C_COMPILER_TARGET aarch64-linux-gnu)
+set(CMAKE_CXX_COMPILER_TARGET aarch64-linux-gnu)
 set(CMAKE_FIND_ROOT_PATH {root})
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(HDF5_C_LIBRARY_hdf5 {root}/usr/lib/aarch64-linux-gnu/hdf5/serial/libhdf5.so CACHE FILEPATH "")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-rpath-link,{root}/usr/lib/aarch64-linux-gnu{more}")
 set(ENV{{PKG_CONFIG_SYSROOT_DIR}} {root})
 set(ENV{{PKG_CONFIG_LIBDIR}} {root}/usr/lib/aarch64-linux-gnu/pkgconfig:{root}/usr/share/pkgconfig)
@@ -59,13 +63,17 @@ def make_sysroot(folder):
     run("apt-get", "install", "-y", "-qq", "--download-only", "--no-install-recommends", *ARM_PACKAGES, env=environment)
     for package in sorted((apt / "cache" / "archives").glob("*.deb")):
         run("dpkg", "-x", package, root)
-    for link in (root / "usr/lib/aarch64-linux-gnu").iterdir():  # BLAS and LAPACK are alternatives, which nobody has chosen here
-        for name in ("blas", "lapack"):
-            for file in (root / "usr/lib/aarch64-linux-gnu" / name).glob(f"lib{name}.*"):
-                target = root / "usr/lib/aarch64-linux-gnu" / file.name
-                if not target.exists():
-                    target.symlink_to(Path(name) / file.name)
-        break
+    libraries = root / "usr/lib/aarch64-linux-gnu"
+    for name in ("blas", "lapack"):  # alternatives, which nobody has chosen here
+        for file in (libraries / name).glob(f"lib{name}.*"):
+            if not (target := libraries / file.name).exists():
+                target.symlink_to(Path(name) / file.name)
+    for link in libraries.iterdir():
+        if link.is_symlink() and (target := os.readlink(link)).startswith("/"):
+            link.unlink()
+            link.symlink_to(root / target.lstrip("/"))
+    for file in (libraries / "cmake").rglob("*.cmake"):  # some name libraries by whole paths
+        file.write_text(re.sub(r'(?<=["; :])/usr(?=[/";])', f"{root}/usr", file.read_text()))
     (root / "complete").touch()
     return root
 
@@ -75,22 +83,31 @@ def find_compiler(name):
     return Path(found) if found else None
 
 
+def compilers(variant):
+    """The programs that compile C and C++, and the level of optimisation."""
+    compiler, level = variant.removeprefix("aarch64-").split("-")
+    names = ("gcc", "g++") if compiler == "gcc" else ("clang", "clang++")
+    if variant.startswith("aarch64") and compiler == "gcc":
+        names = tuple(f"{ARM}-{name}" for name in names)
+    return *names, "-" + level
+
+
 def what_is_missing(variant):
-    c, cxx, _ = VARIANTS[variant]
-    needed = [c, cxx, *([EMULATOR, "apt-get", "dpkg"] if variant.startswith("aarch64") else [])]
-    return [name for name in needed if find_compiler(name) is None]
+    c, cxx, _ = compilers(variant)
+    more = [f"{ARM}-g++", EMULATOR, "apt-get", "dpkg"] if variant.startswith("aarch64") else []  # clang links with the linker of g++
+    return [name for name in dict.fromkeys([c, cxx, *more]) if find_compiler(name) is None]
 
 
 def build(variant, folder, jobs):
     """The program of a variant, and the words before it."""
-    c, cxx, optimisation = VARIANTS[variant]
+    c, cxx, optimisation = compilers(variant)
     build_folder = folder / variant
     build_folder.mkdir(parents=True, exist_ok=True)
     before = []
     more = []
     if variant.startswith("aarch64"):
         root = make_sysroot(folder / "aarch64")
-        libraries = find_compiler(cxx).resolve().parent.parent / "aarch64-linux-gnu" / "lib"
+        libraries = find_compiler(f"{ARM}-g++").resolve().parent.parent / ARM / "lib"
         toolchain = folder / "aarch64" / "toolchain.cmake"
         toolchain.write_text(TOOLCHAIN.format(root=root, more=f",-rpath-link,{libraries}"))
         more = [f"-DCMAKE_TOOLCHAIN_FILE={toolchain}"]
