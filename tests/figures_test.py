@@ -69,6 +69,7 @@ class Made(unittest.TestCase):
         self.assertIn("Of 360 boxes that were sent 359 ended as planned; none was lost.", made["sessions"])
         self.assertIn("| people, by hand (the report) | 71.9 % | |", made["sessions"])
         self.assertIn("| snug, plant 1 | 12 / 71.0 |", made["sessions-by-sequence"])
+        self.assertIn("| plant 2 | 72.00 | 72.00 | 72.00 | 72.00 | 72.00 | 72.00 |", made["sessions-by-plant"])
         self.assertIn("30 times the robot recovered", made["sessions-by-sequence"])
 
     def test_a_session_that_broke_off_makes_no_table(self):
@@ -78,7 +79,7 @@ class Made(unittest.TestCase):
 
     def test_every_block_has_its_maker(self):
         named = {match[2] for path in figures.documents() for match in figures.BLOCK.finditer(path.read_text(encoding="utf-8"))}
-        self.assertEqual(named, {"first-run", "sessions", "sessions-by-sequence", "acceptance"})
+        self.assertEqual(named, {"first-run", "sessions", "sessions-by-sequence", "sessions-by-plant", "acceptance"})
 
     def test_a_name_that_is_none_is_refused(self):
         done = subprocess.run([sys.executable, ROOT / "tools" / "figures.py", "session"], capture_output=True, text=True, check=False)

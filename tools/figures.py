@@ -103,7 +103,17 @@ def sessions(words):
         f"Standard deviation over the {len(rows)} sessions {statistics.stdev(filled):.1f} points, {statistics.mean(hours):.0f} boxes an hour "
         f"({min(hours):.0f} to {max(hours):.0f}) without the time in which the robot waits for a plan. Of {sent} boxes that were sent {planned} ended as "
         f"planned, {'none was' if lost == 0 else f'{lost} were'} lost, {sum(row['recoveries'] for row in rows)} times the robot recovered.", "", origin(what)]
-    return {"sessions": "\n".join(short), "sessions-by-sequence": "\n".join(long)}
+    by_plant = [
+        line("% of the container", [*(f"S{name}" for name in SEQUENCES), "mean"]), "|---" * (len(SEQUENCES) + 2) + "|",
+        *(line(f"plant {plant}", [f"{percent:.2f}" for percent in cells] + [f"{statistics.mean(cells):.2f}"]) for plant, cells in (
+            (plant, [row["executed_percent"] for name in SEQUENCES for row in by_sequence[name] if row["plant_seed"] == plant])
+            for plant in range(1, PLANTS + 1))),
+        line("mean of the plants", [f"{statistics.mean(row['executed_percent'] for row in by_sequence[name]):.2f}" for name in SEQUENCES]
+             + [f"{statistics.mean(filled):.2f}"]),
+        line("before the first item was skipped, mean", [f"{statistics.mean(row['percent_before_skips'] for row in by_sequence[name]):.2f}" for name in SEQUENCES]
+             + [f"{statistics.mean(before):.2f}"]),
+        *(line(who, [f"{percent:.2f}" for _, percent in cells] + [mean_of(cells)]) for who, cells in REPORTED.items()), "", origin(what)]
+    return {"sessions": "\n".join(short), "sessions-by-sequence": "\n".join(long), "sessions-by-plant": "\n".join(by_plant)}
 
 
 def acceptance(words):

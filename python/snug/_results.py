@@ -30,7 +30,7 @@ def _flat(value: Any, name: str = "") -> Iterator[Tuple[str, Any]]:
 class Result(Dict[str, Any]):
     """What became of a run: the JSON of `snug pack --json` and `snug simulate --json`, its keys also as attributes.
 
-    docs/packing-execution.md and docs/formats.md tell the keys and their units.
+    docs/formats.md tells the keys and their units.
     """
 
     program: Optional[_core.Program] = None  # of a packing session

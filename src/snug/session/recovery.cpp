@@ -1,4 +1,4 @@
-// Recovery: what went wrong with an item, and what is done about it: a table, docs/packing-execution.md.
+// Recovery: what went wrong with an item, and what is done about it: a table, docs/session.md.
 #include "snug/session/recovery.hpp"
 
 namespace snug::session {

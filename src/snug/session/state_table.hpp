@@ -97,7 +97,7 @@ struct Transition {
 /// What a table must not be: a state without an exit, one that cannot be reached, one from which the end cannot be
 /// reached, two transitions for the same signal. Empty: none of these.
 [[nodiscard]] std::vector<std::string> find_faults(std::span<const Transition> table);
-/// The table in Markdown, as docs/packing-execution.md has it.
+/// The table in Markdown, as docs/session.md has it.
 [[nodiscard]] std::string format_table(std::span<const Transition> table);
 
 }  // namespace snug::session

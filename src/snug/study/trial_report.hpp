@@ -16,7 +16,7 @@ namespace snug::study {
 [[nodiscard]] std::string format_item(const session::ItemReport& item, const study::TrueItem& truth);
 /// What stands under the table. Repeated runs with count 0 are left out.
 [[nodiscard]] std::string format_summary(const study::Trial& trial, const study::MonteCarloResult& repeated);
-/// The keys are described in docs/packing-execution.md.
+/// The keys are described in docs/formats.md.
 [[nodiscard]] std::string format_json(const study::Trial& trial, const study::MonteCarloResult& repeated);
 /// The placements, in the order of packing.
 /// `is_complete`: the session has ended.

@@ -72,9 +72,9 @@ TEST(StateTable, EverySignalIsOfSomeTransition) {
 }
 
 TEST(StateTable, IsTheOneOfTheDocs) {
-  const std::string docs = read_file(SNUG_SOURCE_DIR "/docs/packing-execution.md", "the docs");
+  const std::string docs = read_file(SNUG_SOURCE_DIR "/docs/session.md", "the docs");
   EXPECT_NE(docs.find(format_table(transitions())), std::string::npos)
-      << "docs/packing-execution.md has to have this table:\n"
+      << "docs/session.md has to have this table:\n"
       << format_table(transitions());
 }
 
