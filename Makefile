@@ -10,7 +10,7 @@ SOURCES = $(shell find src apps bench tests examples python -name '*.hpp' -o -na
 configure-build = cmake --preset $(1) $(2) && cmake --build --preset $(1) -j $(JOBS)
 run-tests = ctest --preset $(1) -j $(JOBS)
 
-.PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python wheel package reproducible check \
+.PHONY: help setup setup-test setup-program setup-python setup-lint setup-peers setup-package setup-fuzz setup-docs build demo test acceptance install python wheel package release reproducible check \
   format-check clang headers fix san san-fast tsan tidy cover fuzz same-bytes attack bench bench-peers figures docs clean
 
 help: ## list the verbs
@@ -62,6 +62,9 @@ install: build ## install the program, its scenarios and the libraries under PRE
 package: setup-package build ## make Debian packages of the program and of the libraries, and what they consist of (SPDX), in build/
 	@export SOURCE_DATE_EPOCH="$${SOURCE_DATE_EPOCH:-$$(git log -1 --format=%ct 2>/dev/null || echo 0)}" && cd build && cpack -G DEB && \
 	  python3 ../tools/sbom.py snug --version "$$(sed -n 's/^CMAKE_PROJECT_VERSION:.*=//p' CMakeCache.txt)" -o snug.spdx.json && echo "build/snug.spdx.json"
+
+release: setup-package setup-python ## make packages, wheel, sources, notes and sums of the version that is tagged, in build/release
+	@python3 tools/release.py
 
 reproducible: setup-package setup-program ## build the packages twice, in different folders, and compare them byte by byte
 	@python3 tools/reproducible.py
