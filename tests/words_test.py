@@ -13,6 +13,7 @@ import check_commits  # noqa: E402
 REPLACED = {
     "faithful": "lagged", "journey": "item events", "happening": "event", "turn manner": "reorientation", "place manner": "insertion skill",
     "squeeze": "planned interference", "dislike": "cost", "heed": "observe", "take in": "update the belief",
+    "on paper": "planned only", "hopeless": "infeasible", "ensemble": "Monte Carlo",
 }
 
 
