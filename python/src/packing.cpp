@@ -37,7 +37,7 @@ py::dict as_dict(const packing::Candidate& candidate) {
   return dict;
 }
 
-/// An agent and the container that it packs on paper.
+/// An agent and the container that it packs without executing anything.
 class Packer {
  public:
   Packer(const ScenarioHandle& scenario, const std::string& agent, const std::string& sequence, std::uint64_t seed,

@@ -20,7 +20,7 @@ class ManualAgent : public Agent {
 
   Expected<Decision, NoPlace> decide(const ContainerState& state, const Item& item) override {
     Expected<Decision, NoPlace> decision = online_->decide(state, item);
-    if (decision || state.boxes.empty() || is_hopeless(decision.error())) return decision;
+    if (decision || state.boxes.empty() || is_infeasible(decision.error())) return decision;
     const double filled = filling_percent(state) / 100.0 * state.inner_size.prod() + item.size.prod();
     if (filled > state.inner_size.prod()) return decision;
     std::vector<Item> items;

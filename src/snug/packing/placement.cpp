@@ -1,4 +1,4 @@
-// Candidate, NoPlace: plans on paper, and words for the reasons.
+// Candidate, NoPlace: what was decided, and words for the reasons.
 #include "snug/packing/placement.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ bool stands_free(const Candidate& candidate) {
   return room(Side::LowX, Side::HighX) >= kFree && room(Side::LowY, Side::HighY) >= kFree;
 }
 
-bool is_hopeless(NoPlace reason) {
+bool is_infeasible(NoPlace reason) {
   return reason == NoPlace::TooBig || reason == NoPlace::TooHeavy || reason == NoPlace::NotPickable;
 }
 

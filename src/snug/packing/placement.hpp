@@ -53,11 +53,11 @@ enum class NoPlace {
   NotReachable,   ///< every place was refused by the reach function
 };
 
-/// The state as it would be if the candidate's plan came true exactly: what a plan on paper goes on with.
+/// The state as it would be if the candidate's plan came true exactly: what a plan that is not executed goes on with.
 [[nodiscard]] ContainerState with_candidate(ContainerState state, const Item& item, const Candidate& candidate);
 
 /// Whether the item would have no place in the empty container either: nothing to wait for, the next one may fit.
-[[nodiscard]] bool is_hopeless(NoPlace reason);
+[[nodiscard]] bool is_infeasible(NoPlace reason);
 /// "too big" and so on; a sentence's end for tables.
 [[nodiscard]] std::string_view describe(NoPlace reason);
 

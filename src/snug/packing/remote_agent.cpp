@@ -92,7 +92,7 @@ class RemoteAgent final : public Agent {
     std::vector<Place> places;
     if (auto found = finder.find(item, kMostCandidates)) {
       places = std::move(*found);
-    } else if (is_hopeless(found.error())) {
+    } else if (is_infeasible(found.error())) {
       return tl::unexpected(found.error());
     }
     Json question{{"ask", "decide"}, {"item", as_json(item)}, {"boxes", Json::array()}, {"candidates", Json::array()}};

@@ -53,7 +53,7 @@ class Planner {
     auto decision = agent_.decide_with_costs(state, plan_.standing, cost);
     if (!decision) {
       plan_.decision_seconds += seconds_since(start);
-      plan_.outcome = packing::is_hopeless(decision.error()) ? PlanOutcome::Infeasible : PlanOutcome::NoPlace;
+      plan_.outcome = packing::is_infeasible(decision.error()) ? PlanOutcome::Infeasible : PlanOutcome::NoPlace;
       plan_.reason = packing::describe(decision.error());
       return std::move(plan_);
     }

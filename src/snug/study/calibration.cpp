@@ -6,7 +6,7 @@
 namespace snug::study {
 
 void Calibration::add(const Trial& trial) {
-  for (const session::ItemReport& report : trial.session.items) {  // those left out on paper have no truth
+  for (const session::ItemReport& report : trial.session.items) {  // those left out when planned have no truth
     const auto truth = std::ranges::find(trial.items, report.id, &TrueItem::id);
     if (truth == trial.items.end() || report.samples == 0) continue;
     for (std::size_t k = 0; k < std::min(report.sends.size(), truth->succeeded.size()); ++k) {

@@ -335,7 +335,7 @@ std::string format_json(const study::Trial& trial, const study::MonteCarloResult
             {"seconds", as_json(sum_of_seconds(result))},
             {"state_hash", trial.is_elsewhere ? Json() : Json(fmt::format("{:016x}", trial.state_hash))}};
   json["items"] = Json::array();
-  for (const session::ItemReport& item : result.items) {  // those left out on paper have no truth
+  for (const session::ItemReport& item : result.items) {  // those left out when planned have no truth
     const auto truth = std::ranges::find(trial.items, item.id, &study::TrueItem::id);
     json["items"].push_back(as_json(item, truth != trial.items.end() ? *truth : study::TrueItem{}));
   }

@@ -1,4 +1,4 @@
-// packing_bench: counts and filling degrees of the agents on paper, without executing anything.
+// packing_bench: counts and filling degrees of the agents, without executing anything.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

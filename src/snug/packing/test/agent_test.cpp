@@ -205,10 +205,10 @@ TEST_P(EveryAgent, PassesOnWhatAReachFunctionThrowsAtAnyNumberOfThreads) {
 
 TEST(NoPlace, IsHopelessWhereAnEmptyContainerWouldNotHelp) {
   for (const NoPlace reason : {NoPlace::TooBig, NoPlace::TooHeavy, NoPlace::NotPickable}) {
-    EXPECT_TRUE(is_hopeless(reason)) << describe(reason);
+    EXPECT_TRUE(is_infeasible(reason)) << describe(reason);
   }
   for (const NoPlace reason : {NoPlace::NoSpace, NoPlace::NoStablePlace, NoPlace::OverLoad, NoPlace::NotReachable}) {
-    EXPECT_FALSE(is_hopeless(reason)) << describe(reason);
+    EXPECT_FALSE(is_infeasible(reason)) << describe(reason);
   }
 }
 

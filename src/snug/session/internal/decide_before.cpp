@@ -43,7 +43,7 @@ void decide_before(Run& run) {
       planned = packing::with_candidate(std::move(planned), item, decision->candidates.front());
     } else {
       decided.reason = packing::describe(decision.error());
-      decided.is_infeasible = packing::is_hopeless(decision.error());
+      decided.is_infeasible = packing::is_infeasible(decision.error());
       if (decided.is_infeasible) ++run.agenda.reported;
       if (!decided.is_infeasible) run.agenda.order_ends = fmt::format("{}: {}", item.id, decided.reason);
     }
