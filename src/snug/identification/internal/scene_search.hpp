@@ -21,7 +21,9 @@ struct SplitErrors {
   double chi2_per_dof = 0.0;     ///< of what is fitted
   double numbers = 0.0;          ///< that chi2 is of
   double correlation = 0.0;      ///< of each residual with the next one of its body and axis
-  /// Whether residuals hang together by more than chance and a twentieth: then it is no noise that is left.
+  double drift = 0.0;            ///< deviations by which an axis is off through parts of the recordings; see find_drift
+  /// Whether residuals hang together by more than chance and a twentieth, or an axis is off through a part of all
+  /// recordings: then it is no noise that is left.
   [[nodiscard]] bool is_systematic() const;
   /// What the squares of standard errors are to be enlarged by (docs/theory/identification.md, 9).
   [[nodiscard]] double inflation() const;
