@@ -1,8 +1,11 @@
 // Reading the robot: which arm, where it stands, and the limits it is driven with.
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "snug/model/internal/fields.hpp"
 #include "snug/model/internal/scenario_reader.hpp"
+#include "snug/model/robot_io.hpp"
 
 namespace snug::model::internal {
 namespace {
@@ -50,12 +53,78 @@ ForceSensorParams read_sensor(const Value& value) {
   return sensor;
 }
 
+/// What a key of `io` may say instead of a mapping.
+bool is_not_wired(const Value& value) {
+  if (!value.is_scalar()) return false;
+  (void)value.choice({"none"});
+  return true;
+}
+
+DigitalIo read_digital(const Value& value, DigitalIo io) {
+  const MapReader map = value.map("digital_io", {"kind", "number", "active_low"});
+  if (const auto kind = map.find("kind"))
+    io.kind = static_cast<DigitalKind>(kind->choice({"standard", "configurable", "tool"}));
+  if (const auto number = map.find("number")) io.number = static_cast<int>(number->integer(0, 7));
+  if (io.kind == DigitalKind::Tool && io.number > 1)
+    value.fail("number " + std::to_string(io.number) + " of the tool", "0 or 1: the tool has two");
+  if (const auto low = map.find("active_low")) io.active_low = low->boolean();
+  return io;
+}
+
+GaugeIo read_gauge(const Value& value) {
+  constexpr double kMost = 30.0;  // V: no input of a controller takes more
+  const MapReader map = value.map("gauge_io", {"kind", "number", "at_ambient", "at_vacuum", "pressure_gauge"});
+  GaugeIo io;
+  if (const auto kind = map.find("kind")) io.kind = static_cast<AnalogKind>(kind->choice({"standard", "tool"}));
+  if (const auto number = map.find("number")) io.number = static_cast<int>(number->integer(0, 1));
+  if (const auto v = map.find("at_ambient")) io.at_ambient = v->number_within(-kMost, kMost, "V or A");
+  if (const auto v = map.find("at_vacuum")) io.at_vacuum = v->number_within(-kMost, kMost, "V or A");
+  if (io.at_ambient == io.at_vacuum) value.fail("at_ambient = at_vacuum", "two readings that differ");
+  if (const auto v = map.find("pressure_gauge"))
+    io.pressure_gauge = v->number_within(-1.2e5, -1.0, "a vacuum in Pa, gauge");
+  return io;
+}
+
+/// Not wired, or as the mapping says; what is not there stays.
+void read_optional(const MapReader& map, const char* key, std::optional<DigitalIo>& io) {
+  const auto value = map.find(key);
+  if (!value) return;
+  if (is_not_wired(*value)) {
+    io.reset();
+  } else {
+    io = read_digital(*value, *io);
+  }
+}
+
+void expect_apart(const MapReader& map, const char* key, const std::optional<DigitalIo>& one, const char* other_key,
+                  const std::optional<DigitalIo>& other) {
+  if (!one || !other || one->bit() != other->bit()) return;
+  const Value& at = map.has(other_key) ? map.require(other_key) : map.require(key);
+  at.fail("the same as '" + std::string(map.has(other_key) ? key : other_key) + "'", "one of its own, or none");
+}
+
+RobotIo read_io(const Value& value) {
+  const MapReader map = value.map("io", {"vacuum", "blow_off", "vacuum_reached", "vacuum_gauge", "part_present"});
+  RobotIo io;
+  if (const auto vacuum = map.find("vacuum")) io.vacuum = read_digital(*vacuum, io.vacuum);
+  read_optional(map, "blow_off", io.blow_off);
+  read_optional(map, "vacuum_reached", io.vacuum_reached);
+  read_optional(map, "part_present", io.part_present);
+  if (const auto gauge = map.find("vacuum_gauge")) {
+    io.vacuum_gauge.reset();
+    if (!is_not_wired(*gauge)) io.vacuum_gauge = read_gauge(*gauge);
+  }
+  expect_apart(map, "vacuum", io.vacuum, "blow_off", io.blow_off);
+  expect_apart(map, "vacuum_reached", io.vacuum_reached, "part_present", io.part_present);
+  return io;
+}
+
 }  // namespace
 
 void ScenarioReader::read_robot(const Value& value) {
   const MapReader map =
       value.map("robot", keys_with<RobotParams>({"name", "urdf", "tool_frame", "flange_frame", "sensor_frame", "pose",
-                                                 "posture", "joints_start", "self_collision", "sensor"}));
+                                                 "posture", "joints_start", "self_collision", "sensor", "io"}));
   RobotParams robot;
   const Value urdf = map.require("urdf");
   robot.urdf = urdf.name();
@@ -81,7 +150,20 @@ void ScenarioReader::read_robot(const Value& value) {
   if (const auto pairs = map.find("self_collision"))
     for (const Value& entry : pairs->list()) robot.self_collision.push_back(read_pair(entry));
   if (const auto sensor = map.find("sensor")) robot.sensor = read_sensor(*sensor);
+  if (const auto io = map.find("io")) (void)read_io(*io);
   scenario_.robot = robot;
 }
 
 }  // namespace snug::model::internal
+
+namespace snug::model {
+
+RobotIo robot_io(const Scenario& scenario) {
+  const YAML::Node root = YAML::Load(scenario.source_text);
+  if (!root.IsMap() || !root["robot"] || !root["robot"]["io"]) return {};
+  internal::Document document{scenario.source_name, {}};
+  const YAML::Node node = root["robot"]["io"];
+  return internal::read_io(internal::Value(node, "robot.io", document, node.Mark().line + 1));
+}
+
+}  // namespace snug::model
