@@ -104,17 +104,21 @@ void expect_apart(const MapReader& map, const char* key, const std::optional<Dig
 }
 
 RobotIo read_io(const Value& value) {
-  const MapReader map = value.map("io", {"vacuum", "blow_off", "vacuum_reached", "vacuum_gauge", "part_present"});
+  const MapReader map =
+      value.map("io", {"vacuum", "blow_off", "vacuum_reached", "vacuum_gauge", "part_present", "next_part"});
   RobotIo io;
   if (const auto vacuum = map.find("vacuum")) io.vacuum = read_digital(*vacuum, io.vacuum);
   read_optional(map, "blow_off", io.blow_off);
   read_optional(map, "vacuum_reached", io.vacuum_reached);
   read_optional(map, "part_present", io.part_present);
+  read_optional(map, "next_part", io.next_part);
   if (const auto gauge = map.find("vacuum_gauge")) {
     io.vacuum_gauge.reset();
     if (!is_not_wired(*gauge)) io.vacuum_gauge = read_gauge(*gauge);
   }
   expect_apart(map, "vacuum", io.vacuum, "blow_off", io.blow_off);
+  expect_apart(map, "vacuum", io.vacuum, "next_part", io.next_part);
+  expect_apart(map, "blow_off", io.blow_off, "next_part", io.next_part);
   expect_apart(map, "vacuum_reached", io.vacuum_reached, "part_present", io.part_present);
   return io;
 }

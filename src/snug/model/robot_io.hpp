@@ -57,6 +57,8 @@ struct RobotIo {
   std::optional<DigitalIo> vacuum_reached = DigitalIo{DigitalKind::Standard, 0, false};  ///< input
   std::optional<GaugeIo> vacuum_gauge = GaugeIo{};
   std::optional<DigitalIo> part_present = DigitalIo{DigitalKind::Standard, 1, false};  ///< input: a box at the aligner
+  /// Output, switched on for a moment: what stands at the aligner is taken away, and the next box comes.
+  std::optional<DigitalIo> next_part = DigitalIo{DigitalKind::Standard, 2, false};
   bool operator==(const RobotIo&) const = default;
 };
 

@@ -24,6 +24,7 @@ TEST(RobotIo, IsWiredAsServedCellsAreUnlessSaid) {
   EXPECT_EQ(io.blow_off->bit(), 1);
   EXPECT_EQ(io.vacuum_reached->bit(), 0);
   EXPECT_EQ(io.part_present->bit(), 1);
+  EXPECT_EQ(io.next_part->bit(), 2);
   EXPECT_EQ(io.vacuum_gauge->pressure_of(6.0), -6e4);
 }
 
@@ -53,7 +54,7 @@ TEST(RobotIo, IsSetByKeyAndWrittenBack) {
 }
 
 TEST(RobotIo, RefusesWhatCannotBe) {
-  expect_complaint(scenario_with("    vacum: {number: 1}\n"), {"vacum", "robot.io.vacum", "", "nearest is 'vacuum'"});
+  expect_complaint(scenario_with("    vacum: {number: 1}\n"), {"vacum", "robot.io.vacum", "", "'vacuum' (nearest)"});
   expect_complaint(scenario_with("    vacuum: none\n"), {"vacuum: none", "robot.io.vacuum", "none", "mapping"});
   expect_complaint(scenario_with("    blow_off: nothing\n"), {"nothing", "robot.io.blow_off", "nothing", "none"});
   expect_complaint(scenario_with("    vacuum: {kind: standart}\n"),
@@ -62,6 +63,8 @@ TEST(RobotIo, RefusesWhatCannotBe) {
   expect_complaint(scenario_with("    vacuum: {kind: tool, number: 2}\n"),
                    {"kind: tool", "robot.io.vacuum", "number 2", "0 or 1"});
   expect_complaint(scenario_with("    vacuum: {number: 1}\n"), {"number: 1", "robot.io.vacuum", "blow_off", "its own"});
+  expect_complaint(scenario_with("    blow_off: {number: 2}\n"),
+                   {"number: 2", "robot.io.blow_off", "next_part", "its own"});
   expect_complaint(scenario_with("    part_present: {number: 0}\n"),
                    {"part_present", "robot.io.part_present", "vacuum_reached", "its own"});
   expect_complaint(scenario_with("    vacuum_gauge: {at_ambient: 5, at_vacuum: 5}\n"),
