@@ -17,7 +17,8 @@ struct UrOptions {
   std::optional<std::string> host;  ///< present: the cell is served so
   std::string model = "ur10";
   int port_offset = 0;
-  std::vector<std::string> clients;  ///< addresses that may connect
+  std::vector<std::string> clients;      ///< addresses that may connect
+  std::optional<std::string> observers;  ///< CLICK address for who looks on
 };
 
 struct ServeOptions {

@@ -16,6 +16,7 @@ constexpr const char* kServeExamples = R"(Examples:
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --async --view
   snug serve scenarios/box-demonstrator.yaml --click tcp://127.0.0.1:5555 --robot-object ur10_FTSensor_sr_gripper
   snug serve scenarios/box-demonstrator.yaml --ur 127.0.0.1 --sequence 1 --record run.h5
+  snug serve scenarios/box-demonstrator.yaml --ur 127.0.0.1 --sequence 1 --plant-seed 1 --observers tcp://127.0.0.1:5555
   snug keys keys
   snug serve scenarios/box-demonstrator.yaml --click tcp://0.0.0.0:5555 --keys keys   # for other machines
 One Control is one step, unless --async. Ctrl-C ends it. docs/click.md describes the protocol as it is served.)";
@@ -113,6 +114,11 @@ void add_served_ur(CLI::App& verb, UrOptions& ur) {
       ->delimiter(',')
       ->needs(host)
       ->type_name("ADDRESSES");
+  verb.add_option("--observers", ur.observers,
+                  "let observers on this machine see where the boxes are, over CLICK: tcp://127.0.0.1:PORT or "
+                  "ipc://PATH; RTDE tells nothing of boxes (`snug pack --observe`)")
+      ->needs(host)
+      ->type_name("ADDRESS");
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ class ServingUr {
     server.port_offset = options.ur.port_offset;
     server.clients = options.ur.clients;
     server.speed = options.server.speed.value_or(1.0);
+    server.observers = options.ur.observers;
     server.log = [](const std::string& line) { std::fprintf(stderr, "snug: %s\n", line.c_str()); };
     server_.emplace(*controller_, std::move(server));
   }
@@ -46,6 +47,8 @@ class ServingUr {
         "(Ctrl-C ends it)\n",
         runs_.simulation().scenario().source_name.c_str(), model_.name, options_.ur.host->c_str(), model_.rate,
         29999 + offset, 30001 + offset, 30002 + offset, 30003 + offset, 30004 + offset);
+    if (const std::string observers = server_->observers(); !observers.empty())
+      std::fprintf(stderr, "snug: observers of the boxes at %s\n", observers.c_str());
     server_->run();
     controller_->end("the server was stopped");
     runs_.end_page();

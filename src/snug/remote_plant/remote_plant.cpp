@@ -14,6 +14,7 @@
 #include "snug/cup/phases.hpp"
 #include "snug/perception/camera_perception.hpp"
 #include "snug/record/csv.hpp"
+#include "snug/remote_plant/box_observer.hpp"
 #include "snug/robot/load_arm.hpp"
 
 namespace snug::remote_plant {
@@ -48,7 +49,7 @@ std::string endpoint_of(const std::string& address) {
     if (has_port) return "tcp://" + place;
   }
   if (is_of(kIpc)) return "ipc://" + address.substr(kIpc.size());
-  refuse(address, "click://HOST:PORT or click+ipc://PATH, where `snug serve` serves a cell, or simulated");
+  refuse(address, "click://HOST:PORT or click+ipc://PATH, where `snug serve` serves a cell, ur://HOST, or simulated");
 }
 
 RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& sequence,
@@ -124,24 +125,12 @@ plant::Description RemotePlant::describe() const {
 }
 
 Vector3 RemotePlant::size_of(std::size_t item) const {
-  const auto found = link_.last().objects.find(names_[item]);
-  const auto* size = found == link_.last().objects.end()
-                         ? nullptr
-                         : find_sensor(found->second, click::kSizeSensor, click::ValueType::Position);
-  if (size != nullptr && size->vector.allFinite() && size->vector.minCoeff() > 0.0) return size->vector;
-  return model::collision_size(scenario_, *model::find_parcel(scenario_, sequence_.items[item].parcel));
+  const std::string& id = sequence_.items[item].parcel;
+  return sensed_size(link_.last(), names_[item], model::collision_size(scenario_, *model::find_parcel(scenario_, id)));
 }
 
 std::optional<perception::SceneBox> RemotePlant::box_of(std::size_t item) const {
-  const auto found = link_.last().objects.find(names_[item]);
-  if (found == link_.last().objects.end() || !is_active(found->second, click::kPresentSensor)) return std::nullopt;
-  const std::optional<Pose> X_WP = click::sensed_pose(found->second);
-  if (!X_WP) return std::nullopt;
-  perception::SceneBox box;
-  box.item = sequence_.items[item].parcel;
-  box.size = size_of(item);
-  box.X_WP = *X_WP;
-  return box;
+  return sensed_box(link_.last(), names_[item], sequence_.items[item].parcel, size_of(item));
 }
 
 std::vector<std::optional<perception::SceneBox>> RemotePlant::boxes() const {

@@ -16,6 +16,10 @@ double radius_of(const model::Scenario& scenario, const model::Item& item) {
 
 }  // namespace
 
+int Feeder::coming(const cell::Simulation& simulation) const {
+  return next_ < static_cast<int>(simulation.sequence().items.size()) ? next_ : -1;
+}
+
 int Feeder::next(const cell::Simulation& simulation, const cell::CellState& state) const {
   const std::vector<model::Item>& items = simulation.sequence().items;
   if (next_ >= static_cast<int>(items.size()) || state.waiting_item >= 0) return -1;

@@ -11,6 +11,8 @@ class Feeder {
  public:
   /// The item that may come now, or -1.
   [[nodiscard]] int next(const cell::Simulation& simulation, const cell::CellState& state) const;
+  /// The item that comes next, whatever stands there, or -1.
+  [[nodiscard]] int coming(const cell::Simulation& simulation) const;
   /// It came.
   void advance() { ++next_; }
 

@@ -20,11 +20,16 @@ using ur::RuntimeState;
 using ur::SafetyMode;
 
 constexpr double kPowerTime = 0.5;  ///< s, from power on to idle, and from there until the brakes are released
+constexpr double kPartTime = 0.1;   // s, that a part which was asked for takes to come
 constexpr std::size_t kMostMessages = 1000;
 
-// Wiring of the gripper: bits of outputs and inputs.
-constexpr std::uint64_t kVacuum = 1U << 0U, kBlowOff = 1U << 1U;
-constexpr std::uint64_t kVacuumReached = 1U << 0U, kPartPresent = 1U << 1U;
+/// The bit of a signal, as it stands where the signal says yes or no.
+std::uint64_t bit_of(const std::optional<model::DigitalIo>& io, bool says) {
+  return io && says != io->active_low ? std::uint64_t{1} << io->bit() : 0;
+}
+bool says(const std::optional<model::DigitalIo>& io, std::uint64_t bits) {
+  return io && (((bits >> io->bit()) & 1U) != 0) != io->active_low;
+}
 
 std::uint64_t with_bits(std::uint64_t word, std::uint8_t mask, std::uint8_t bits, int shift) {
   const std::uint64_t at = std::uint64_t{mask} << shift;
@@ -36,6 +41,8 @@ std::uint64_t with_bits(std::uint64_t word, std::uint8_t mask, std::uint8_t bits
 Controller::Controller(const cell::Simulation& simulation, ControllerSettings settings)
     : simulation_(simulation),
       settings_(std::move(settings)),
+      io_(model::robot_io(simulation.scenario())),
+      outputs_off_(bit_of(io_.vacuum, false) | bit_of(io_.blow_off, false) | bit_of(io_.next_part, false)),
       arm_(simulation),
       initial_(simulation.make_state()),
       initial_reading_(simulation.read_still(initial_)),
@@ -44,6 +51,7 @@ Controller::Controller(const cell::Simulation& simulation, ControllerSettings se
   SNUG_CHECK(std::abs(simulation.scenario().controller.tick - period_of(settings_.model)) < 1e-12,
              "the cell's tick is the controller's period");
   data_.robot_mode = RobotMode::Running;
+  data_.digital_outputs = outputs_off_;
   data_.tcp_offset = to_values(arm_.tool());
   data_.payload = arm_.tool_load().mass;
   data_.payload_cog = {arm_.tool_load().com.x(), arm_.tool_load().com.y(), arm_.tool_load().com.z()};
@@ -131,7 +139,7 @@ void Controller::restart_safety() {
   run_.reset();
   is_ended_ = false;
   feeder_ = {};
-  data_.digital_outputs = 0;
+  data_.digital_outputs = outputs_off_;
   data_.target_q = to_values(initial_.arm->machine.joints.q);
   set_safety(SafetyMode::Normal);
   set_mode(RobotMode::PowerOff);
@@ -220,8 +228,9 @@ void Controller::begin_run() {
 
 void Controller::advance_cell() {
   if (is_ended_) return;
-  if (!run_ && data_.digital_outputs == 0 && !programs_->is_active()) return;
+  if (!run_ && data_.digital_outputs == outputs_off_ && !programs_->is_active()) return;
   if (!run_) begin_run();
+  take_next_part();
   const int item = feeder_.next(simulation_, run_->state());
   if (item >= 0) {
     (void)run_->feed(item, 0);
@@ -230,9 +239,21 @@ void Controller::advance_cell() {
   cell::OutsideCommand command;
   command.joints.kinds.assign(6, control::DriveKind::Position);
   command.joints.target = to_vector(data_.target_q);
-  command.cup = {(data_.digital_outputs & kVacuum) != 0, (data_.digital_outputs & kBlowOff) != 0};
+  command.cup = {says(io_.vacuum, data_.digital_outputs), says(io_.blow_off, data_.digital_outputs)};
   const cell::Failure failure = run_->advance(command).failure;
   if (failure) fail(failure);
+}
+
+/// In the place of what stands there. The input for it goes off in between, as where boxes take their time.
+void Controller::take_next_part() {
+  const bool is_asked = says(io_.next_part, data_.digital_outputs);
+  const bool has_begun = is_asked && !was_asked_;
+  was_asked_ = is_asked;
+  const int item = feeder_.coming(simulation_);
+  if (!has_begun || item < 0) return;
+  run_->bring(item, 0);
+  feeder_.advance();
+  part_since_ = period_ + std::llround(kPartTime / period_of(settings_.model));
 }
 
 /// The arm's stop is released at once: it is the controller that keeps it standing, so that the cell goes on.
@@ -266,7 +287,16 @@ std::uint64_t Controller::read_inputs(const cell::CellState& state) const {
   const cup::CupState& cup = state.gripper.cup;
   const double reached = cup::kEstablishedVacuum * simulation_.scenario().cup.vacuum.pressure_gauge_hold;
   const bool is_reached = cup.body >= 0 && cup.pressure_gauge <= reached;
-  return (is_reached ? kVacuumReached : 0U) | (state.waiting_item >= 0 ? kPartPresent : 0U);
+  return bit_of(io_.vacuum_reached, is_reached) |
+         bit_of(io_.part_present, state.waiting_item >= 0 && period_ >= part_since_);
+}
+
+void Controller::read_gauge(const cell::CellState& state) {
+  if (!io_.vacuum_gauge) return;
+  const model::GaugeIo& gauge = *io_.vacuum_gauge;
+  const double reading = gauge.reading_of(std::clamp(state.gripper.cup.pressure_gauge, gauge.pressure_gauge, 0.0));
+  auto& inputs = gauge.kind == model::AnalogKind::Tool ? data_.tool_analog_inputs : data_.analog_inputs;
+  inputs[static_cast<std::size_t>(gauge.number)] = reading;
 }
 
 void Controller::read_cell() {
@@ -284,7 +314,7 @@ void Controller::read_cell() {
   data_.actual_tcp_speed = arm_.tcp_speed(data_.actual_q, data_.actual_qd, X_FT);
   data_.target_tcp_speed = arm_.tcp_speed(data_.target_q, data_.target_qd, X_FT);
   data_.digital_inputs = read_inputs(now);
-  data_.tool_analog_input = std::clamp(-now.gripper.cup.pressure_gauge / 1e5, 0.0, 1.0) * 10.0;
+  read_gauge(now);
   data_.speed_scaling = data_.target_speed_fraction;
   const Pose X_WT = arm_.base() * arm_.forward(data_.actual_q) * X_FT;
   read_force(now, X_WT);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "snug/model/robot_io.hpp"
 #include "snug/runs/outside_run.hpp"
 #include "snug/served_cell/feeder.hpp"
 #include "snug/served_ur/ur_arm.hpp"
@@ -28,6 +29,7 @@ struct ControllerSettings {
   std::function<void(int run, const runs::RunResult& result)> end_run = {};
 };
 
+/// Outputs and inputs are wired as `robot.io` of the scenario says.
 /// No sockets and no clock: the same calls in the same periods give the same cell, bit by bit.
 ///
 /// The controller starts with the robot ready: power on, brakes released. A run of the cell begins with the first
@@ -89,6 +91,11 @@ class Controller {
   /// Ends the run, if there is one.
   void end(const std::string& why);
   [[nodiscard]] int runs() const { return run_count_; }
+  [[nodiscard]] const cell::Simulation& simulation() const { return simulation_; }
+  /// The cell as it is, for who looks on: state, what the arm reads, the load on the tool (Simulation::tool_load).
+  [[nodiscard]] const cell::CellState& state() const { return run_ ? run_->state() : initial_; }
+  [[nodiscard]] const cell::ArmReading& reading() const { return run_ ? run_->reading() : initial_reading_; }
+  [[nodiscard]] Wrench tool_load() const { return run_ ? run_->tool_load() : Wrench{}; }
   /// s of the clock that the last period took.
   [[nodiscard]] double step_seconds() const { return data_.execution_time; }
 
@@ -103,14 +110,17 @@ class Controller {
   void tell(std::string packet);
   void begin_run();
   void advance_cell();
+  void take_next_part();
   void fail(const cell::Failure& failure);
   void read_cell();
   void read_force(const cell::CellState& state, const Pose& X_WT);
   [[nodiscard]] std::uint64_t read_inputs(const cell::CellState& state) const;
-  [[nodiscard]] const cell::CellState& state() const { return run_ ? run_->state() : initial_; }
+  void read_gauge(const cell::CellState& state);
 
   const cell::Simulation& simulation_;
   ControllerSettings settings_;
+  model::RobotIo io_;
+  std::uint64_t outputs_off_;  ///< digital outputs with nothing switched on
   UrArm arm_;
   cell::CellState initial_;
   cell::ArmReading initial_reading_;
@@ -118,6 +128,8 @@ class Controller {
   bool is_ended_ = false;  ///< the run, by a failure
   int run_count_ = 0;
   served_cell::Feeder feeder_;
+  bool was_asked_ = false;       ///< for the next part, in the last period
+  std::int64_t part_since_ = 0;  ///< period from which a part that was asked for is told of
   std::unique_ptr<internal::Programs> programs_;
   std::string program_error_;
   ur::RobotData data_;

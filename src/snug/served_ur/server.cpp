@@ -16,6 +16,7 @@
 #include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/core/text.hpp"
+#include "snug/served_cell/observer_port.hpp"
 #include "snug/served_ur/dashboard.hpp"
 #include "snug/served_ur/internal/address.hpp"
 #include "snug/served_ur/internal/connection.hpp"
@@ -57,6 +58,7 @@ struct Server::Impl {
   std::array<Descriptor, kPorts.size()> listeners;
   Descriptor stop_fd;
   std::atomic<bool> is_stopping = false;
+  std::optional<served_cell::ObserverPort> observers;
   ur::InputOwners owners;  ///< outlives the connections
   std::vector<std::unique_ptr<Connection>> clients;
   int connections = 0;  ///< so far
@@ -77,6 +79,7 @@ Server::Impl::Impl(Controller& to_serve, ServerSettings server_settings)
   for (std::size_t i = 0; i < kPorts.size(); ++i) {
     listeners[i] = internal::listen_at(address, static_cast<int>(kPorts[i]) + settings.port_offset, settings.host);
   }
+  if (settings.observers) observers.emplace(controller.simulation(), *settings.observers);
 }
 
 void Server::Impl::run() {
@@ -95,6 +98,7 @@ void Server::Impl::run() {
 
 void Server::Impl::step() {
   controller.step();
+  if (observers) observers->answer(controller.state(), controller.reading(), controller.tool_load());
   const ur::RobotData& data = controller.data();
   const auto states_each = std::llround(kStatePeriod / Controller::period_of(controller.model().model));
   std::string secondary;
@@ -232,5 +236,6 @@ void Server::stop() noexcept {
 }
 
 const served_cell::Pacer& Server::pacer() const { return impl_->pacer; }
+std::string Server::observers() const { return impl_->observers ? impl_->observers->endpoint() : std::string(); }
 
 }  // namespace snug::served_ur

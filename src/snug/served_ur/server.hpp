@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct ServerSettings {
   int port_offset = 0;                    ///< added to each of the five ports
   std::vector<std::string> clients = {};  ///< IPv4 addresses that may connect besides loopback; "any": all
   double speed = 1.0;                     ///< simulated seconds a second
+  /// Address at which observers see the cell over CLICK (served_cell::ObserverPort); none: nobody looks on.
+  std::optional<std::string> observers = {};
   std::function<void(const std::string& line)> log = {};  ///< for people
 };
 
@@ -39,6 +42,8 @@ class Server {
   /// From any thread and from signal handlers.
   void stop() noexcept;
   [[nodiscard]] const served_cell::Pacer& pacer() const;
+  /// As it was bound; empty: there is none.
+  [[nodiscard]] std::string observers() const;
 
  private:
   struct Impl;

@@ -87,8 +87,7 @@ ByteWriter tool_part(const RobotData& data) {
   ByteWriter out;
   out.u8(1);  // ranges of the analog inputs: 0 .. 10 V
   out.u8(1);
-  out.f64(data.tool_analog_input);
-  out.f64(0.0);
+  for (const double volts : data.tool_analog_inputs) out.f64(volts);
   out.f32(static_cast<float>(data.is_powered() ? kSupplyVoltage : 0.0));
   out.u8(0);
   out.f32(0.0F);

@@ -113,6 +113,19 @@ std::optional<std::array<std::uint32_t, 4>> read_version(std::string_view packet
   return version;
 }
 
+std::optional<RuntimeException> read_runtime_exception(std::string_view packet) {
+  ByteReader in(packet);
+  if (in.u32() != packet.size() || in.u8() != static_cast<std::uint8_t>(PacketType::RobotMessage)) return std::nullopt;
+  skip(in, 8 + 1);  // time, source
+  if (in.u8() != static_cast<std::uint8_t>(MessageType::RuntimeException)) return std::nullopt;
+  RuntimeException exception;
+  exception.line = in.i32();
+  skip(in, 4);  // column
+  if (!in.is_good()) return std::nullopt;
+  exception.text = std::string(in.rest());
+  return exception;
+}
+
 const char* robot_mode_name(int mode) {
   constexpr std::array kNames = {"NO_CONTROLLER", "DISCONNECTED", "CONFIRM_SAFETY", "BOOTING", "POWER_OFF",
                                  "POWER_ON",      "IDLE",         "BACKDRIVE",      "RUNNING", "UPDATING_FIRMWARE"};

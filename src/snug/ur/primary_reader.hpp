@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "snug/ur/robot_data.hpp"
@@ -35,6 +36,13 @@ struct PrimaryState {
 [[nodiscard]] std::optional<PrimaryState> read_robot_state(std::string_view packet);
 /// Major, minor, bugfix, build of a version message; none for another packet.
 [[nodiscard]] std::optional<std::array<std::uint32_t, 4>> read_version(std::string_view packet);
+
+/// Line, from 1, and text of a runtime exception; none for another packet. The text may be anything.
+struct RuntimeException {
+  int line = 0;
+  std::string text;
+};
+[[nodiscard]] std::optional<RuntimeException> read_runtime_exception(std::string_view packet);
 
 /// "RUNNING", "PROTECTIVE_STOP", .., as the dashboard says them; "UNKNOWN" for other numbers.
 [[nodiscard]] const char* robot_mode_name(int mode);

@@ -65,7 +65,7 @@ struct RobotData {
   std::uint64_t digital_inputs = 0, digital_outputs = 0;  ///< bits 0-7 standard, 8-15 configurable, 16-17 tool
   std::array<double, 2> analog_inputs{};                  ///< V
   std::array<double, 2> analog_outputs{};                 ///< V
-  double tool_analog_input = 0.0;                         ///< V: the vacuum, 10 V at -100 kPa
+  std::array<double, 2> tool_analog_inputs{};             ///< V
   RobotMode robot_mode = RobotMode::PowerOff;
   SafetyMode safety_mode = SafetyMode::Normal;
   RuntimeState runtime_state = RuntimeState::Stopped;

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <thread>
 
@@ -13,7 +15,9 @@
 #include "snug/cup/pick_length.hpp"
 #include "snug/model/test/shortened.hpp"
 #include "snug/plant/test/suite/plant_contract.hpp"
+#include "snug/remote_plant/box_observer.hpp"
 #include "snug/remote_plant/watched_cell.hpp"
+#include "snug/served_cell/observer_port.hpp"
 #include "snug/served_cell/server.hpp"
 
 namespace snug::remote_plant {
@@ -234,6 +238,45 @@ TEST(WatchedCell, SeesWhatTheControllerDoesAndChangesNothing) {
   served.stop();
   ASSERT_EQ(served.runs().size(), 1u);
   EXPECT_EQ(served.runs().front().ended_by, "reset by the controller") << "not by the one that looked";
+}
+
+TEST(BoxObserver, SeesTheBoxesOfACellThatSomethingElseDrives) {
+  const model::Scenario plant_cell = drawn();
+  const cell::Simulation simulation(plant_cell, "1", {motion::LaggedTracking{}, cup::CupMode::Phases, "ur10"});
+  cell::CellState state = simulation.make_state();
+  ASSERT_TRUE(simulation.feed(0, 0, state));
+  const cell::ArmReading reading = simulation.read_still(state);
+  const snug::test::ScratchFolder folder;
+  served_cell::ObserverPort port(simulation, "ipc://" + (folder / "boxes").string());
+  std::atomic<bool> is_over = false;
+  std::thread answers([&] {
+    while (!is_over) {
+      port.answer(state, reading, Wrench{});
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  {
+    BoxObserver observer(scenario(), "1", port.endpoint(), 20.0);
+    ASSERT_EQ(observer.look(), "");
+    const auto boxes = observer.boxes();
+    ASSERT_TRUE(boxes.at(0).has_value());
+    EXPECT_FALSE(boxes.at(1).has_value()) << "it has not come";
+    const physics::BodyId body = simulation.world().parcels.front();
+    EXPECT_EQ(boxes[0]->X_WP.p, physics::pose_of(simulation.world().model, state.world, body).p);
+    EXPECT_EQ(observer.size_of(0), model::collision_size(plant_cell, *model::find_parcel(plant_cell, "BOX027")));
+    model::Scenario more = scenario();
+    more.sequences.front().items =
+        model::load_scenario(SNUG_SOURCE_DIR "/scenarios/box-demonstrator.yaml").sequences.front().items;
+    EXPECT_THROW(BoxObserver(more, "1", port.endpoint(), 20.0), InputError) << "boxes that are not served";
+    click::Client driver(port.endpoint(), 20.0);
+    ASSERT_TRUE(driver.shake_hands());
+    EXPECT_FALSE(driver.control({})) << "nobody drives the cell from there";
+  }
+  is_over = true;
+  answers.join();
+  EXPECT_THROW(BoxObserver(scenario(), "1", port.endpoint(), 0.05), InputError) << "nobody answers";
+  EXPECT_THROW(served_cell::ObserverPort(simulation, "tcp://0.0.0.0:*"), InputError) << "others could reach it";
+  EXPECT_THROW(served_cell::ObserverPort(simulation, "nowhere"), InputError);
 }
 
 TEST(WatchedCell, SaysWhereThereIsNone) {

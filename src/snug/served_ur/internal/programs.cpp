@@ -79,7 +79,8 @@ void Programs::read(const ur::RobotData& data) {
   state_.F_Eo_Base.force = Vector3(data.actual_tcp_force[0], data.actual_tcp_force[1], data.actual_tcp_force[2]);
   state_.F_Eo_Base.torque = Vector3(data.actual_tcp_force[3], data.actual_tcp_force[4], data.actual_tcp_force[5]);
   state_.digital_inputs = static_cast<std::uint32_t>(data.digital_inputs);
-  state_.analog_inputs = {data.analog_inputs[0], data.analog_inputs[1], data.tool_analog_input, 0.0};
+  state_.analog_inputs = {data.analog_inputs[0], data.analog_inputs[1], data.tool_analog_inputs[0],
+                          data.tool_analog_inputs[1]};
   state_.inputs = {data.inputs.bits, data.inputs.ints, data.inputs.doubles};
   state_.speed_fraction = data.target_speed_fraction;
   state_.digital_outputs = static_cast<std::uint32_t>(data.digital_outputs);

@@ -128,8 +128,8 @@ void add_electric(Outputs& out) {
   }
   out.word("analog_io_types", [](D) { return 0xfU; });  // all volts
   out.word("tool_analog_input_types", [](D) { return 3U; });
-  out.number("tool_analog_input0", [](D d) { return d.tool_analog_input; });
-  out.number("tool_analog_input1", [](D) { return 0.0; });
+  out.number("tool_analog_input0", [](D d) { return d.tool_analog_inputs[0]; });
+  out.number("tool_analog_input1", [](D d) { return d.tool_analog_inputs[1]; });
   out.word("tool_mode", [](D d) { return static_cast<std::uint32_t>(d.joint_mode()); });
   out.signed_number("tool_output_voltage", [](D) { return 0; });
   out.number("tool_output_current", [](D) { return 0.0; });

@@ -107,5 +107,16 @@ TEST(PrimaryReader, MutatedPacketsAreReadOrRefused) {
   EXPECT_LT(refused, 15000);  // most bytes are numbers
 }
 
+TEST(PrimaryReader, ReadsWhyAProgramFailed) {
+  const std::string packet = runtime_exception(1.5, 7, 3, "name 'x' is not defined");
+  const auto exception = read_runtime_exception(packet);
+  ASSERT_TRUE(exception);
+  EXPECT_EQ(exception->line, 7);
+  EXPECT_EQ(exception->text, "name 'x' is not defined");
+  EXPECT_FALSE(read_runtime_exception(text_message(1.5, "hello")));
+  for (std::size_t length = 0; length < packet.size(); ++length)
+    EXPECT_FALSE(read_runtime_exception(packet.substr(0, length))) << length;
+}
+
 }  // namespace
 }  // namespace snug::ur
