@@ -81,12 +81,22 @@ void Connection::wait() {
   pollfd source = {socket_.get(), POLLIN, 0};
   const int left = left_ms();
   if (left == 0 || ::poll(&source, 1, left) <= 0) fail(fmt::format("no answer within {} s", patience_));
+  (void)take();
+}
+
+bool Connection::take() {
   std::array<char, 4096> bytes;
   const ssize_t count = ::recv(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (count == 0) fail("the connection was closed");
   if (count < 0 && errno != EAGAIN && errno != EINTR) fail(std::strerror(errno));
   if (count > 0) received_.append(bytes.data(), static_cast<std::size_t>(count));
   if (received_.size() > kMostReceived) fail("more than 1 MB without an answer");
+  return count > 0;
+}
+
+void Connection::take_waiting() {
+  while (take()) {
+  }
 }
 
 }  // namespace snug::remote_ur

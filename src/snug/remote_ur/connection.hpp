@@ -27,11 +27,15 @@ class Connection {
   void begin_wait();
   /// Waits until something came and appends it to received().
   void wait();
+  /// Appends what has come already; waits for nothing.
+  void take_waiting();
   [[nodiscard]] std::string& received() { return received_; }
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
   [[nodiscard]] int left_ms() const;
+  /// One read of what is there. False: nothing was.
+  bool take();
 
   std::string place_;
   double patience_;

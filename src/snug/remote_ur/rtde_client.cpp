@@ -1,4 +1,4 @@
-// RtdeClient: a client of a controller's real-time data exchange (port 30004), version 2: outputs only.
+// RtdeClient: a client of a controller's real-time data exchange (port 30004), version 2.
 #include "snug/remote_ur/rtde_client.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "snug/core/check.hpp"
 #include "snug/core/text.hpp"
 
 namespace snug::remote_ur {
@@ -50,9 +51,23 @@ double read_number(ur::ByteReader& in, char kind) {
   }
 }
 
+void write_number(ur::ByteWriter& out, char kind, double value) {
+  switch (kind) {
+    case 'i':
+      return out.i32(static_cast<std::int32_t>(value));
+    case 'u':
+      return out.u32(static_cast<std::uint32_t>(value));
+    case 'b':
+      return out.u8(static_cast<std::uint8_t>(value));
+    default:
+      return out.f64(value);
+  }
+}
+
 }  // namespace
 
-RtdeClient::RtdeClient(const Endpoint& endpoint, const std::vector<std::string>& outputs, double frequency) {
+RtdeClient::RtdeClient(const Endpoint& endpoint, const std::vector<std::string>& outputs, double frequency,
+                       const std::vector<std::string>& inputs) {
   connect(endpoint);
   std::vector<std::string> types = set_up(outputs, frequency);
   std::vector<std::string> known;
@@ -69,6 +84,7 @@ RtdeClient::RtdeClient(const Endpoint& endpoint, const std::vector<std::string>&
     const std::size_t count = type.starts_with("VECTOR6") ? 6 : type.starts_with("VECTOR3") ? 3 : 1;
     outputs_.push_back({known[i], kind, count});
   }
+  if (!inputs.empty()) set_up_inputs(inputs);
   if (ask(Frame::Start, "") != "\x01") connection_->fail("the controller does not start to send");
 }
 
@@ -94,6 +110,29 @@ std::vector<std::string> RtdeClient::set_up(const std::vector<std::string>& name
   std::vector<std::string> types = split(in.rest());
   if (types.size() != names.size()) connection_->fail("an answer of RTDE that cannot be read");
   return types;
+}
+
+void RtdeClient::set_up_inputs(const std::vector<std::string>& names) {
+  const std::string answer = ask(Frame::Inputs, fmt::format("{}", fmt::join(names, ",")));
+  ur::ByteReader in(answer);
+  input_recipe_ = in.u8();
+  const std::vector<std::string> types = split(in.rest());
+  if (types.size() != names.size()) connection_->fail("an answer of RTDE that cannot be read");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (types[i] == "IN_USE") connection_->fail(fmt::format("another client holds the input '{}'", names[i]));
+    const char kind = kind_of(types[i]);
+    if (kind == '?' || kind == 'q' || types[i].starts_with("VECTOR"))
+      connection_->fail(fmt::format("input '{}' has the type '{}'", names[i], types[i]));
+    input_kinds_.push_back(kind);
+  }
+}
+
+void RtdeClient::send(std::span<const double> values) {
+  SNUG_CHECK(values.size() == input_kinds_.size(), "a number for each input");
+  ur::ByteWriter out;
+  out.u8(input_recipe_);
+  for (std::size_t i = 0; i < values.size(); ++i) write_number(out, input_kinds_[i], values[i]);
+  connection_->send(ur::rtde::encode(Frame::Data, out.bytes()));
 }
 
 std::string RtdeClient::ask(Frame type, std::string_view payload) {

@@ -1,10 +1,11 @@
-// RtdeClient: a client of a controller's real-time data exchange (port 30004), version 2: outputs only.
+// RtdeClient: a client of a controller's real-time data exchange (port 30004), version 2.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,14 +22,18 @@ using RtdeValues = std::map<std::string, std::vector<double>, std::less<>>;
 class RtdeClient {
  public:
   /// Connects, agrees on the version and asks for `outputs` at `frequency` (Hz; 0: the controller's most). Those that
-  /// the controller does not know are left out: older software has fewer.
-  RtdeClient(const Endpoint& endpoint, const std::vector<std::string>& outputs, double frequency);
+  /// the controller does not know are left out: older software has fewer. `inputs`: what send() sets; one that the
+  /// controller does not know, or that another client holds, is a failure.
+  RtdeClient(const Endpoint& endpoint, const std::vector<std::string>& outputs, double frequency,
+             const std::vector<std::string>& inputs = {});
 
   /// Major, minor, bugfix, build.
   [[nodiscard]] const std::array<std::uint32_t, 4>& version() const { return version_; }
   [[nodiscard]] const std::vector<std::string>& unknown() const { return unknown_; }
   /// The next data package.
   [[nodiscard]] RtdeValues receive();
+  /// A number for each of the inputs.
+  void send(std::span<const double> values);
 
  private:
   struct Output {
@@ -40,12 +45,14 @@ class RtdeClient {
   [[nodiscard]] std::string await(ur::rtde::Frame type);
   [[nodiscard]] std::string ask(ur::rtde::Frame type, std::string_view payload);
   [[nodiscard]] std::vector<std::string> set_up(const std::vector<std::string>& names, double frequency);
+  void set_up_inputs(const std::vector<std::string>& names);
 
   std::optional<Connection> connection_;
   std::array<std::uint32_t, 4> version_{};
   std::vector<std::string> unknown_;
   std::vector<Output> outputs_;
-  std::uint8_t recipe_ = 0;
+  std::vector<char> input_kinds_;  ///< as Output::kind
+  std::uint8_t recipe_ = 0, input_recipe_ = 0;
 };
 
 }  // namespace snug::remote_ur
