@@ -31,7 +31,8 @@ class Served:
 
     def __init__(self, *words, offset=None, address="127.0.0.1"):
         for self.offset in [offset] if offset is not None else range(2000 + os.getpid() % 200 * 100, 30000, 10):
-            self.process = subprocess.Popen([SNUG, "serve", str(CELL), "--sequence", "1", "--ur", address, "--ur-port-offset",
+            sequence = () if "--sequence" in words else ("--sequence", "1")
+            self.process = subprocess.Popen([SNUG, "serve", str(CELL), *sequence, "--ur", address, "--ur-port-offset",
                                              str(self.offset), *map(str, words)], text=True,
                                             stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             self.said = []
@@ -297,6 +298,65 @@ class Run(unittest.TestCase):
         broken.write_text("def p():\n  halt\nend\n")
         self.assertIn("halted", self.call("run", broken, *self.cell, code=1).stderr)
         self.assertIn("BOX027", self.call("run", self.script, *self.cell, "--skip", "BOX02", code=2).stderr)
+
+
+class PackedUr(unittest.TestCase):
+    """`snug pack --plant ur://` in a process of its own, through the ports of a served UR, boxes told by its observers."""
+
+    ITEMS = """parcel_types:
+  - {name: brick, size: [0.11, 0.12, 0.1], mass: 0.4}
+parcels:
+  - {id: b1, type: brick, material: box}
+sequences:
+  - name: one
+    items: [{parcel: b1, up: Z}]
+"""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.items = self.folder / "items.yaml"
+        self.items.write_text(self.ITEMS, encoding="utf-8")
+
+    def pack(self, address, *words):
+        return subprocess.run([SNUG, "pack", CELL, "--items", self.items, "--sequence", "one", "--samples", "0", "--decision-time", "0.02",
+                               "--plant", address, *map(str, words), "--json"], text=True, capture_output=True, timeout=300)
+
+    def test_a_box_is_packed_through_the_robot(self):
+        boxes = f"ipc://{self.folder}/boxes"
+        program = self.folder / "program.csv"
+        with Served("--items", self.items, "--sequence", "one", "--plant-seed", 7, "--observers", boxes, "--json") as served:
+            address = f"ur://127.0.0.1:{served.offset}"
+            packed = self.pack(address, "--observe", boxes, "--program", program)
+            self.assertEqual(packed.returncode, 0, packed.stderr)
+            result = json.loads(packed.stdout)
+            self.assertEqual((result["plant"], result["executed_boxes"], result["boxes_lost"]), (address, 1, 0))
+            self.assertIn("Place(b1)", program.read_text(encoding="utf-8"))
+            dashboard = Dashboard(served)
+            self.assertTrue(dashboard.wait_for("running", "Program running: false"), "nothing runs on the robot any more")
+            dashboard.close()
+            run = json.loads(served.end())
+        self.assertEqual([box["state"] for box in run["boxes"]], ["packed"])
+
+    def test_what_cannot_be_is_refused_before_anything_moves(self):
+        def assert_refused(result, *parts):
+            self.assertEqual((result.returncode, result.stdout), (2, ""), result.stderr)
+            for part in parts:
+                self.assertIn(part, result.stderr)
+        assert_refused(self.pack("ur://192.0.2.1"), "--yes-this-moves-a-robot")
+        assert_refused(self.pack("ur://"), "ur://HOST")
+        assert_refused(self.pack("ur://127.0.0.1:9000", "--perception", "exact"), "--observe")
+        assert_refused(self.pack("ur://127.0.0.1:9000", "--perception", "dead-reckoning", "--plant-timeout", 0.5), "39001")
+        assert_refused(self.pack("simulated", "--dry-run"), "--dry-run", "ur://HOST")
+        for words in (("--fault", "drop@1"), ("-o", self.folder / "run.h5"), ("--robot", "none")):
+            assert_refused(self.pack("ur://127.0.0.1:9000", *words), words[0])
+        with Served() as served:
+            dashboard = Dashboard(served)
+            dashboard.ask("power off")
+            self.assertTrue(dashboard.wait_for("robotmode", "Robotmode: POWER_OFF"))
+            dashboard.close()
+            assert_refused(self.pack(f"ur://127.0.0.1:{served.offset}", "--perception", "dead-reckoning"), "robot mode", "release the brakes")
 
 
 if __name__ == "__main__":

@@ -56,6 +56,17 @@ simulated_plant::TakenUp take_up(const session::ResumePoint& point) {
   return begin;
 }
 
+/// What only a robot at ur://HOST has.
+void refuse_options_of_a_robot(const PackOptions& options) {
+  if (options.plant.starts_with("ur://")) return;
+  const auto refuse = [](const char* option, const std::string& got) {
+    throw InputError("command line", option, got, "nothing, unless --plant ur://HOST");
+  };
+  if (options.observe) refuse("--observe", "'" + *options.observe + "'");
+  if (options.is_dry) refuse("--dry-run", "");
+  if (options.may_move) refuse("--yes-this-moves-a-robot", "");
+}
+
 /// The files that were asked for, reserved before the work begins.
 struct PackFiles {
   std::optional<OutputFile> program, plan, record;
@@ -169,6 +180,7 @@ int run_pack(const PackOptions& options) {
     plant.taken_up = take_up(*session.resume);
   }
   const bool is_served = options.plant != "simulated";
+  refuse_options_of_a_robot(options);
   PackFiles files(options, scenario);
   if (files.log) session.log = [&files](const session::SessionEvent& one) { files.log->write(one); };
   if (options.save_beliefs) session.save_beliefs = *options.save_beliefs;
@@ -187,9 +199,10 @@ int run_pack(const PackOptions& options) {
   if (files.record) written.recording = recording_of(plant, session.agent, *files.record);
   written.describe = [](const runs::RunResult& one) { return runs::format_result(one); };
   if (files.program) written.program = &*files.program;
-  const study::Trial trial = is_served
-                                 ? run_served_trial(options, scenario, session, progress, written.program)
-                                 : study::run_trial(scenario, options.sequence, session, plant, progress, written);
+  const study::Trial trial =
+      options.plant.starts_with("ur://") ? run_ur_trial(options, scenario, session, plant, progress, written.program)
+      : is_served                        ? run_served_trial(options, scenario, session, progress, written.program)
+                  : study::run_trial(scenario, options.sequence, session, plant, progress, written);
   const session::SessionResult& result = trial.session;
   study::MonteCarloResult repeated;
   if (options.monte_carlo) {

@@ -21,7 +21,11 @@ struct PackOptions {
   std::optional<std::uint64_t> random_seed;  ///< the sequence is drawn: every box of the scenario, in random order
   double agent_patience = 600.0;             ///< s, for an answer of an agent in Python
   std::optional<std::string> keys;           ///< folder or file: by which this program is known there
-  std::string plant = "simulated";           ///< or where one is served: click://HOST:PORT, click+ipc://PATH
+  std::string plant = "simulated";           ///< or where one is: click://HOST:PORT, click+ipc://PATH, ur://HOST
+  std::optional<std::string> observe;        ///< CLICK address of who tells where boxes are, of ur://HOST
+  bool is_dry = false;                       ///< of ur://HOST
+  bool may_move = false;                     ///< a robot that is not on this machine
+  double part_patience = 600.0;              ///< s, that a box may take to come to the aligner of ur://HOST
   double patience = 10.0;                    ///< s, for its answers
   std::uint64_t plant_seed = 1;
   double decision_time = packing::DecisionRun{}.time;  ///< s
@@ -58,6 +62,14 @@ void add_packing_options(CLI::App& verb, PackOptions& options);
 [[nodiscard]] study::Trial run_served_trial(const PackOptions& options, const model::Scenario& scenario,
                                             const session::SessionOptions& session,
                                             const study::TrialProgress& progress, OutputFile* program);
+/// Throws InputError for options that only a simulated plant has.
+void expect_options_of_a_served_plant(const PackOptions& options, const session::SessionOptions& session);
+/// Packs through the controller of Universal Robots at `options.plant` (ur://HOST), scored by what its observer says,
+/// or makes each motion of a simulated plant with it first (dry run). As run_served_trial else.
+[[nodiscard]] study::Trial run_ur_trial(const PackOptions& options, const model::Scenario& scenario,
+                                        const session::SessionOptions& session,
+                                        const simulated_plant::SimulatedPlantOptions& plant,
+                                        const study::TrialProgress& progress, OutputFile* program);
 /// What the recording of a simulated plant says of how it was made.
 [[nodiscard]] simulated_plant::LiveRecordingOptions recording_of(const simulated_plant::SimulatedPlantOptions& plant,
                                                                  const std::string& agent, OutputFile& file);

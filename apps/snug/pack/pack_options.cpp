@@ -21,6 +21,7 @@ constexpr const char* kPackExamples = R"(Examples:
   snug pack scenarios/box-demonstrator.yaml --sequence random-1 --random-seed 7
   snug pack scenarios/box-demonstrator.yaml --items scenarios/orders-example.csv --sequence kitchen
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant click://127.0.0.1:5555
+  snug pack scenarios/box-demonstrator.yaml --sequence 1 --plant ur://127.0.0.1 --observe tcp://127.0.0.1:5555
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --container 400x300x200
   snug pack scenarios/box-demonstrator.yaml --sequence 1 --pallet 600x400x300 --program out.csv
   snug pack scenarios/box-demonstrator.yaml --sequence 2 --program out.csv --plan out.json --monte-carlo 10
@@ -128,8 +129,23 @@ void add_pack(CLI::App& app, Action& action) {
   verb.add_option(
           "--plant", options->plant,
           "what is packed: simulated, in this program, or a cell that `snug serve` serves in another one, here or "
-          "elsewhere: click://HOST:PORT, click+ipc://PATH (docs/click.md)")
+          "elsewhere: click://HOST:PORT, click+ipc://PATH (docs/click.md), or through a robot of Universal Robots: "
+          "ur://HOST, or ur://HOST:N with N added to its ports (docs/ur.md)")
       ->type_name("simulated|ADDRESS")
+      ->capture_default_str();
+  verb.add_option("--observe", options->observe,
+                  "of ur://HOST: where boxes are told, tcp://HOST:PORT or ipc://PATH as `snug serve --ur --observers` "
+                  "has it; the perceptions exact, noisy and camera need it")
+      ->type_name("ADDRESS");
+  verb.add_flag("--dry-run", options->is_dry,
+                "of ur://HOST: a simulated plant is packed, and the robot makes each motion first, 20 mm higher, at a "
+                "quarter of the speed, without vacuum");
+  verb.add_flag("--yes-this-moves-a-robot", options->may_move,
+                "of ur://HOST: demanded for every address but this machine's own");
+  verb.add_option("--part-timeout", options->part_patience,
+                  "of ur://HOST: how long a box may take to come to the aligner")
+      ->check(within(0.1, 1e6))
+      ->type_name("SECONDS")
       ->capture_default_str();
   verb.add_option("--keys", options->keys,
                   "keys by which this program is known there, and knows whom it meets (`snug keys`): a folder, or "

@@ -1,59 +1,11 @@
 // pack_served: packs a plant that another program serves, scored by what its object sensors say.
 #include "apps/snug/pack/pack.hpp"
+#include "apps/snug/pack/watched_boxes.hpp"
 #include "snug/core/input_error.hpp"
 #include "snug/plant/sent_program.hpp"
 #include "snug/remote_plant/remote_plant.hpp"
-#include "snug/study/witness.hpp"
 
 namespace snug::app {
-namespace {
-
-constexpr double kWhereItArrived = 0.05;  ///< m
-
-/// Follows the boxes through what their sensors say: what was never seen away from where it came is waiting.
-class Watcher {
- public:
-  Watcher(const model::Scenario& scenario, const remote_plant::RemotePlant& plant)
-      : container_(*model::find_container(scenario, scenario.target)), plant_(plant) {}
-
-  study::TruePoses poses() {
-    const auto boxes = plant_.boxes();
-    study::TruePoses poses;
-    arrived_.resize(boxes.size());
-    has_left_.resize(boxes.size(), false);
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      poses.push_back(boxes[i] ? std::optional<Pose>(boxes[i]->X_WP) : std::nullopt);
-      if (!boxes[i]) continue;
-      if (!arrived_[i]) arrived_[i] = boxes[i]->X_WP.p;
-      has_left_[i] = has_left_[i] || (boxes[i]->X_WP.p - *arrived_[i]).norm() > kWhereItArrived;
-    }
-    return poses;
-  }
-
-  std::vector<cell::BoxResult> boxes(const std::vector<std::string>& items) {
-    const study::TruePoses now = poses();
-    std::vector<cell::BoxResult> results;
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      if (!plant_.was_brought(i)) continue;
-      cell::BoxResult box;
-      box.id = items[i];
-      if (has_left_[i]) box.state = now[i] ? cell::BoxState::Dropped : cell::BoxState::Lost;
-      if (now[i]) {
-        box.X_TP = container_.X_WT.inverse() * *now[i];
-        const cell::ContainerFit fit = cell::fit_in(container_.inner_size, plant_.size_of(i), box.X_TP);
-        if (fit.is_in) box.state = cell::BoxState::Packed;
-      }
-      results.push_back(std::move(box));
-    }
-    return results;
-  }
-
- private:
-  const model::Container& container_;
-  const remote_plant::RemotePlant& plant_;
-  std::vector<std::optional<Vector3>> arrived_;
-  std::vector<bool> has_left_;
-};
 
 void expect_options_of_a_served_plant(const PackOptions& options, const session::SessionOptions& session) {
   const auto refuse = [](const char* option, const std::string& got, const char* expected) {
@@ -67,8 +19,6 @@ void expect_options_of_a_served_plant(const PackOptions& options, const session:
   if (session.simulation.robot.empty()) refuse("--robot", "none", "the scenario's robot: a served plant has one");
 }
 
-}  // namespace
-
 study::Trial run_served_trial(const PackOptions& options, const model::Scenario& scenario,
                               const session::SessionOptions& session, const study::TrialProgress& progress,
                               OutputFile* program) {
@@ -77,14 +27,10 @@ study::Trial run_served_trial(const PackOptions& options, const model::Scenario&
   remote_plant::RemotePlant plant(scenario, options.sequence,
                                   {options.plant, options.patience, kind, options.plant_seed, session.simulation,
                                    click::find_client_keys(options.keys)});
-  Watcher watcher(scenario, plant);
-  study::Witness witness;
-  for (const model::Item& item : model::find_sequence(scenario, options.sequence)->items) {
-    witness.items.push_back(item.parcel);
-  }
-  witness.poses = [&] { return watcher.poses(); };
-  witness.size_of = [&](std::size_t item) { return plant.size_of(item); };
-  witness.boxes = [&] { return watcher.boxes(witness.items); };
+  const study::Witness witness =
+      watch_boxes(scenario, options.sequence,
+                  {[&] { return plant.boxes(); }, [&](std::size_t item) { return plant.size_of(item); },
+                   [&](std::size_t item) { return plant.was_brought(item); }});
   std::optional<plant::SentProgram> sent;
   if (program != nullptr) sent.emplace(plant, *program, session.simulation.tracking);
   plant::Plant& packed = sent ? static_cast<plant::Plant&>(*sent) : plant;

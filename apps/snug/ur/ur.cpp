@@ -5,11 +5,14 @@
 #include <fmt/printf.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "apps/snug/command_line/shipped.hpp"
 #include "snug/core/input_error.hpp"
+#include "snug/model/robot_io.hpp"
 #include "snug/remote_ur/compare_robot.hpp"
 
 namespace snug::app {
@@ -35,12 +38,34 @@ std::string bits_text(std::uint32_t bits) {
   return text.empty() ? "none" : text;
 }
 
-void print_text(const remote_ur::RobotReport& robot, const std::vector<Finding>& findings) {
+/// "vacuum             standard output 0: off"
+void print_signal(const char* name, const std::optional<model::DigitalIo>& io, const char* what, std::uint32_t bits) {
+  constexpr std::array kKinds = {"standard", "configurable", "tool"};
+  if (!io) return fmt::print("{:18} not wired\n", name);
+  const bool is_on = (((bits >> io->bit()) & 1U) != 0) != io->active_low;
+  fmt::print("{:18} {} {} {}: {}{}\n", name, kKinds[static_cast<std::size_t>(io->kind)], what, io->number,
+             is_on ? "on" : "off", io->active_low ? " (active low)" : "");
+}
+
+/// What the scenario's `robot.io` calls them.
+void print_signals(const remote_ur::RobotReport& robot, const model::RobotIo& io) {
+  print_signal("vacuum", io.vacuum, "output", robot.state.digital_outputs);
+  print_signal("blow-off", io.blow_off, "output", robot.state.digital_outputs);
+  print_signal("next part", io.next_part, "output", robot.state.digital_outputs);
+  print_signal("vacuum reached", io.vacuum_reached, "input", robot.state.digital_inputs);
+  print_signal("part present", io.part_present, "input", robot.state.digital_inputs);
+  const auto& gauge = io.vacuum_gauge;
+  if (gauge && gauge->kind == model::AnalogKind::Tool && gauge->number == 0 && robot.tool_voltage)
+    fmt::print("{:18} {:.1f} kPa\n", "vacuum gauge", 1e-3 * gauge->pressure_of(*robot.tool_voltage) + 0.0);
+}
+
+void print_text(const remote_ur::RobotReport& robot, const std::vector<Finding>& findings, const model::RobotIo& io) {
   fmt::print("model              {}, software {}\n", robot.model.empty() ? "not told" : robot.model,
              software_text(robot));
   fmt::print("outputs that are on {}\n", bits_text(robot.state.digital_outputs));
   fmt::print("inputs that are on  {}\n", bits_text(robot.state.digital_inputs));
   if (robot.tool_voltage) fmt::print("tool analog input 0 {:.2f} V\n", *robot.tool_voltage);
+  print_signals(robot, io);
   fmt::print("\n");
   for (const Finding& finding : findings) {
     fmt::print("{:8} {:15} {}", verdict_word(finding.verdict), finding.what, finding.robot);
@@ -84,7 +109,7 @@ int run_ur_check(const UrCheckOptions& options) {
   if (options.json) {
     fmt::print("{}\n", json_of(robot, findings, fits).dump());
   } else {
-    print_text(robot, findings);
+    print_text(robot, findings, model::robot_io(scenario));
   }
   return fits ? kSuccess : kRunFailed;
 }

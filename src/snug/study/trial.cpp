@@ -102,7 +102,8 @@ class Scorer {
   TruePoses before_;
 };
 
-/// What is true of a simulated plant.
+}  // namespace
+
 Witness truth_of(const simulated_plant::SimulatedPlant& plant) {
   Witness truth;
   for (const model::Item& item : plant.simulation().sequence().items) truth.items.push_back(item.parcel);
@@ -126,8 +127,6 @@ Witness truth_of(const simulated_plant::SimulatedPlant& plant) {
   truth.motion = [&plant] { return plant.motion_truth(); };
   return truth;
 }
-
-}  // namespace
 
 Trial run_trial(const model::Scenario& scenario, const std::string& sequence, const session::SessionOptions& session,
                 plant::Plant& plant, const Witness& witness, const TrialProgress& progress) {

@@ -22,6 +22,9 @@ struct Witness {
   std::function<std::uint64_t()> hash;                   ///< of the plant's state; may be empty
 };
 
+/// What is true of a simulated plant, which outlives it.
+[[nodiscard]] Witness truth_of(const simulated_plant::SimulatedPlant& plant);
+
 /// A session with any plant, scored by what the witness says: after each item and at the end. Throws InputError as
 /// session::pack.
 [[nodiscard]] Trial run_trial(const model::Scenario& scenario, const std::string& sequence,
