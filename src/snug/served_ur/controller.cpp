@@ -20,6 +20,7 @@ using ur::RuntimeState;
 using ur::SafetyMode;
 
 constexpr double kPowerTime = 0.5;  ///< s, from power on to idle, and from there until the brakes are released
+constexpr double kMovingOut = 0.5;  // s, of motion after a stop that was released
 constexpr double kPartTime = 0.1;   // s, that a part which was asked for takes to come
 constexpr std::size_t kMostMessages = 1000;
 
@@ -75,6 +76,7 @@ void Controller::step() {
   advance_mode();
   hold();
   run_programs();
+  if (data_.target_qd != ur::Values6{}) moving_out_ = std::max(0, moving_out_ - 1);
   advance_cell();
   read_cell();
   data_.execution_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -131,6 +133,7 @@ void Controller::release_brakes() {
 bool Controller::unlock_protective_stop() {
   if (data_.safety_mode != SafetyMode::ProtectiveStop) return false;
   set_safety(SafetyMode::Normal);
+  moving_out_ = static_cast<int>(std::lround(kMovingOut / period_of(settings_.model)));
   return true;
 }
 
@@ -256,10 +259,12 @@ void Controller::take_next_part() {
   part_since_ = period_ + std::llround(kPartTime / period_of(settings_.model));
 }
 
-/// The arm's stop is released at once: it is the controller that keeps it standing, so that the cell goes on.
+/// The arm's stop is released at once: it is the controller that keeps it standing, so that the cell goes on. What the
+/// arm pressed on comes to rest meanwhile and shows its load again when the arm moves: that is no new stop.
 void Controller::fail(const cell::Failure& failure) {
   if (run_->is_stopped_for_protection()) {
     run_->acknowledge();
+    if (moving_out_ > 0) return;
     data_.target_q = to_values(run_->state().arm->machine.joints.q);
     data_.target_qd = data_.target_qdd = {};
     if (data_.safety_mode == SafetyMode::ProtectiveStop) return;

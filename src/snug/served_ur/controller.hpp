@@ -128,6 +128,7 @@ class Controller {
   bool is_ended_ = false;  ///< the run, by a failure
   int run_count_ = 0;
   served_cell::Feeder feeder_;
+  int moving_out_ = 0;           ///< periods of motion after a stop in which the arm may leave what stopped it
   bool was_asked_ = false;       ///< for the next part, in the last period
   std::int64_t part_since_ = 0;  ///< period from which a part that was asked for is told of
   std::unique_ptr<internal::Programs> programs_;
