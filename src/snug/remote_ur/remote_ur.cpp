@@ -21,16 +21,17 @@
 namespace snug::remote_ur {
 namespace {
 
-constexpr double kStartPatience = 5.0;      // s, until a program that was sent runs
-constexpr double kUnlockPatience = 15.0;    // s: robots take 5 s before they let a stop be released
-constexpr double kUnlockEach = 1.0;         // s, between attempts
-constexpr double kStopDeceleration = 30.0;  // rad/s^2, of the fastest joint, where a motion is stopped
-constexpr double kLongestBraking = 1.0;     // s, then the robot counts as standing
-constexpr double kStillJoint = 0.01;        // rad/s
-constexpr double kFollowed = 2e-3;          // rad, between a joint and its target: the robot has come there
-constexpr double kAskingGap = 0.05;         // s, for which the output is off before
-constexpr double kAskingTime = 0.2;         // s, for which the next box is asked for
-constexpr double kAskAgain = 5.0;           // s
+constexpr double kStartPatience = 5.0;    // s, until a program that was sent runs
+constexpr double kUnlockPatience = 15.0;  // s: robots take 5 s before they let a stop be released
+constexpr double kUnlockEach = 1.0;       // s, between attempts
+// rad/s^2, of the fastest joint, where a motion is stopped: as the maker's client library brakes.
+constexpr double kStopDeceleration = 40.0;
+constexpr double kLongestBraking = 1.0;  // s, then the robot counts as standing
+constexpr double kStillJoint = 0.01;     // rad/s
+constexpr double kFollowed = 2e-3;       // rad, between a joint and its target: the robot has come there
+constexpr double kAskingGap = 0.05;      // s, for which the output is off before
+constexpr double kAskingTime = 0.2;      // s, for which the next box is asked for
+constexpr double kAskAgain = 5.0;        // s
 constexpr double kSamePhase = 1e-9;
 constexpr int kPriority = 10;  // of real-time threads
 

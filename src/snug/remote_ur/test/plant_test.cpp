@@ -6,7 +6,6 @@
 
 #include "snug/cell/drawn_scenario.hpp"
 #include "snug/core/input_error.hpp"
-#include "snug/core/text.hpp"
 #include "snug/cup/pick_length.hpp"
 #include "snug/model/scenario_edit.hpp"
 #include "snug/model/test/shortened.hpp"
@@ -127,9 +126,7 @@ TEST(RemoteUr, StopsForProtectionAndGoesOnWhenAcknowledged) {
   cell.plant->acknowledge();
   EXPECT_EQ(cell.data().safety_mode, ur::SafetyMode::Normal);
   const plant::Feedback out = cell.go({free}, {std::nullopt, false});
-  std::string said;
-  for (const std::string& message : cell.link->controller().take_messages()) said += printable(message, 400) + "\n";
-  EXPECT_EQ(out.end.reason, EndReason::Completed) << describe(out.end, {}) << said;
+  EXPECT_EQ(out.end.reason, EndReason::Completed) << describe(out.end, {});
 }
 
 TEST(RemoteUr, AStopThatCameWhileItStoodIsTold) {
