@@ -1,10 +1,12 @@
-// Files of frames: PNG (16 bit, a tenth of a millimetre each), PLY (points), HDF5 (everything, with the truth).
+// Files of frames: PNG (16 bit, a tenth of a millimetre each), PLY (points), HDF5 (everything, with the truth); and PCD
+// of others.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "snug/camera/camera_file.hpp"
 #include "snug/camera/frame.hpp"
 #include "snug/core/output_file.hpp"
 
@@ -30,11 +32,18 @@ struct FrameHints {
   model::CameraParams camera;         ///< pose and optics; their size must be that of the picture
   std::optional<double> depth_unit;   ///< m, of a step of grey; absent: what the file says, else 1 mm
   bool camera_is_given = false;       ///< use `camera` even where the file says another
-  bool points_are_in_camera = false;  ///< PLY: points in C instead of W
+  bool points_are_in_camera = false;  ///< PLY, PCD: points in the camera's frame instead of W
+  Axes axes = Axes::Optical;          ///< of the camera's frame in which such points are
+  bool has_any_size = false;          ///< the picture says how large it is
+  /// What is said there of the camera (camera_file.hpp) stands for `camera`, whatever the frame says.
+  std::optional<std::filesystem::path> camera_file = {};
 };
 
-/// Reads PNG, PLY or HDF5, by the file's first bytes. Points outside the camera's working range are left out. Throws
-/// InputError for anything that cannot be: truncated, absurd sizes, numbers that are not finite where they must be.
+/// Reads PNG, PLY, PCD or HDF5, by the file's first bytes. A frame that does not say its camera itself is taken with
+/// what a file beside it says (find_camera_file), else with `hints`. Points outside the camera's working range are left
+/// out. Throws InputError for anything that cannot be: truncated, absurd sizes, numbers that are not finite where they
+/// must be; and, with what would help, where next to no point is one that the camera can have seen: another unit,
+/// other axes, points of another frame, too near, too far.
 [[nodiscard]] Frame load_frame(const std::filesystem::path& path, const FrameHints& hints);
 
 /// Pose, optics and size as one line of JSON, and back.

@@ -119,7 +119,12 @@ Frame internal::read_h5(const std::filesystem::path& path, const FrameHints& hin
   if (!hints.camera_is_given) parse_camera(file.read_text("camera"), path.string(), frame.camera);
   frame.depth = read_grid<float>(file, "depth");
   expect_size(frame.camera, frame.depth.cols(), frame.depth.rows(), path.string());
-  for (float& depth : frame.depth.values()) depth = usable(frame.camera, depth);
+  std::vector<double> depths;
+  for (float& depth : frame.depth.values()) {
+    if (depth > 0.0F) depths.push_back(depth);
+    depth = usable(frame.camera, depth);
+  }
+  expect_in_range(frame.camera, std::move(depths), path.string());
   if (file.has("intensity")) frame.intensity = read_grid<std::uint8_t>(file, "intensity");
   return frame;
 }

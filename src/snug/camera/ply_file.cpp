@@ -1,10 +1,13 @@
 // PLY: points with row and column, so that a cloud is a frame again when it is read.
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <sstream>
 
+#include "snug/camera/internal/cloud.hpp"
 #include "snug/camera/internal/file_parts.hpp"
 #include "snug/core/input_error.hpp"
 
@@ -35,26 +38,29 @@ std::size_t size_of(const std::string& type) {
   return 0;
 }
 
+/// A number of the file, whose bytes may stand the other way round.
 template <class T>
-double load_as(const char* at) {
-  T value;
-  std::memcpy(&value, at, sizeof(T));
-  return static_cast<double>(value);
+double load_as(const char* at, bool is_big) {
+  std::array<char, sizeof(T)> bytes{};
+  std::copy_n(at, sizeof(T), bytes.begin());
+  if (is_big) std::ranges::reverse(bytes);
+  return static_cast<double>(std::bit_cast<T>(bytes));
 }
 
-double load(const std::string& type, const char* at) {
-  if (type == "float" || type == "float32") return load_as<float>(at);
-  if (type == "double" || type == "float64") return load_as<double>(at);
-  if (type == "char" || type == "int8") return load_as<std::int8_t>(at);
-  if (type == "uchar" || type == "uint8") return load_as<std::uint8_t>(at);
-  if (type == "short" || type == "int16") return load_as<std::int16_t>(at);
-  if (type == "ushort" || type == "uint16") return load_as<std::uint16_t>(at);
-  if (type == "int" || type == "int32") return load_as<std::int32_t>(at);
-  return load_as<std::uint32_t>(at);
+double load(const std::string& type, const char* at, bool is_big) {
+  if (type == "float" || type == "float32") return load_as<float>(at, is_big);
+  if (type == "double" || type == "float64") return load_as<double>(at, is_big);
+  if (type == "char" || type == "int8") return load_as<std::int8_t>(at, is_big);
+  if (type == "uchar" || type == "uint8") return load_as<std::uint8_t>(at, is_big);
+  if (type == "short" || type == "int16") return load_as<std::int16_t>(at, is_big);
+  if (type == "ushort" || type == "uint16") return load_as<std::uint16_t>(at, is_big);
+  if (type == "int" || type == "int32") return load_as<std::int32_t>(at, is_big);
+  return load_as<std::uint32_t>(at, is_big);
 }
 
 struct Header {
-  bool is_text = false;
+  bool is_text = false, is_big = false;
+  int rows = 0, cols = 0;  ///< of an organised cloud that says so; 0: it does not
   std::size_t count = 0, stride = 0, body = 0;
   std::vector<Property> properties;
   std::string camera;
@@ -83,7 +89,7 @@ class Reader {
       } else {
         if (static_cast<std::size_t>(end - at) < header_.stride) refuse("a file that ends too early");
         for (std::size_t k = 0; k < values.size(); ++k)
-          values[k] = load(header_.properties[k].type, at + header_.properties[k].offset);
+          values[k] = load(header_.properties[k].type, at + header_.properties[k].offset, header_.is_big);
         at += header_.stride;
       }
       visit(i, values);
@@ -92,7 +98,7 @@ class Reader {
 
   [[noreturn]] void refuse(const std::string& got) const {
     throw InputError(name_, "", got,
-                     "a PLY (ascii or binary_little_endian) whose vertices, its first element, have x, y, z");
+                     "a PLY (ascii or binary) whose vertices, its first element, have x, y, z");
   }
 
  private:
@@ -117,8 +123,9 @@ class Reader {
       words >> word;
       if (word == "format") {
         words >> word;
-        if (word != "ascii" && word != "binary_little_endian") refuse("format " + word);
+        if (word != "ascii" && word != "binary_little_endian" && word != "binary_big_endian") refuse("format " + word);
         header_.is_text = word == "ascii";
+        header_.is_big = word == "binary_big_endian";
       } else if (word == "element") {
         std::string what;
         long long count = -1;
@@ -137,6 +144,13 @@ class Reader {
         if (size_of(property.type) == 0) refuse("a property of type '" + property.type + "'");
         header_.stride += size_of(property.type);
         header_.properties.push_back(property);
+      } else if (word == "obj_info") {
+        std::string what;
+        int count = 0;
+        words >> what >> count;
+        if (count < 0 || count > internal::kLargestSide) refuse("an absurd " + what);
+        if (what == "num_cols" || what == "width") header_.cols = count;
+        if (what == "num_rows" || what == "height") header_.rows = count;
       } else if (line.starts_with(kCameraComment)) {
         header_.camera = line.substr(kCameraComment.size());
       }
@@ -187,34 +201,33 @@ std::string format_ply(const Frame& frame, const FrameTruth* truth) {
 Frame internal::read_ply(const std::string& bytes, const std::string& name, const FrameHints& hints) {
   Reader reader(bytes, name);
   const Header& header = reader.header();
-  Frame frame;
-  frame.camera = hints.camera;
+  model::CameraParams camera = hints.camera;
   const bool is_ours = !header.camera.empty() && !hints.camera_is_given;
-  if (is_ours) parse_camera(header.camera, name, frame.camera);
-  const model::CameraParams& camera = frame.camera;
+  if (is_ours) parse_camera(header.camera, name, camera);
   if (is_ours &&
       !has_room(static_cast<std::size_t>(camera.height) * static_cast<std::size_t>(camera.width), bytes.size()))
     throw InputError(name, "size", "more pixels than a file of this size can hold", "as many as there are points");
-  frame.depth = Grid2<float>(camera.height, camera.width);
+  const bool is_organised =
+      header.rows > 0 && static_cast<std::size_t>(header.rows) * static_cast<std::size_t>(header.cols) == header.count;
+  take_size(hints, {header.cols, header.rows}, is_organised, camera, name);
   const int x = header.find("x"), y = header.find("y"), z = header.find("z"), row = header.find("row"),
             col = header.find("col");
-  const Pose X_CW = camera.X_WC.inverse();
-  const bool in_camera = hints.points_are_in_camera && header.camera.empty();
-  const double unit = header.camera.empty() ? hints.depth_unit.value_or(1.0) : 1.0;
-  reader.each([&](std::size_t, const std::vector<double>& values) {
-    const auto at = [&values](int i) { return values[static_cast<std::size_t>(i)]; };
-    const Vector3 p = unit * Vector3(at(x), at(y), at(z));
-    if (!p.allFinite()) return;  // organised clouds mark missing points so
-    const Vector3 p_C = in_camera ? p : X_CW * p;
-    const float depth = usable(camera, p_C.z());
-    if (!(depth > 0.0F)) return;
-    const Eigen::Vector2d pixel = project(camera.intrinsics, p_C);
-    const double r = row >= 0 ? at(row) : std::round(pixel.y()), c = col >= 0 ? at(col) : std::round(pixel.x());
-    if (!(r >= 0.0 && r < camera.height && c >= 0.0 && c < camera.width)) return;
-    float& there = frame.depth(static_cast<int>(r), static_cast<int>(c));
-    if (there == 0.0F || depth < there) there = depth;
+  const bool says_pixels = row >= 0 && col >= 0;
+  const std::size_t pixels = static_cast<std::size_t>(camera.height) * static_cast<std::size_t>(camera.width);
+  const bool goes_by_place = !says_pixels && header.count == pixels;
+  CloudReading reading;
+  if (header.camera.empty()) {
+    reading = {hints.depth_unit.value_or(1.0), hints.points_are_in_camera, hints.axes};
+  }
+  Cloud cloud(camera, reading);
+  reader.each([&](std::size_t i, const std::vector<double>& values) {
+    const auto at = [&values](int k) { return values[static_cast<std::size_t>(k)]; };
+    Pixel pixel;
+    if (says_pixels) pixel = {at(row), at(col)};
+    if (goes_by_place) pixel = pixel_of(i, camera);
+    cloud.add({at(x), at(y), at(z)}, pixel);
   });
-  return frame;
+  return std::move(cloud).finish(name);
 }
 
 }  // namespace snug::camera

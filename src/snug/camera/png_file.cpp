@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csetjmp>
 #include <cstring>
+#include <utility>
 
 #include "snug/camera/internal/file_parts.hpp"
 #include "snug/core/check.hpp"
@@ -138,14 +139,22 @@ Frame internal::read_png(const std::string& bytes, const std::string& name, cons
   Frame frame;
   frame.camera = hints.camera;
   if (!raster.text.empty() && !hints.camera_is_given) parse_camera(raster.text, name, frame.camera);
+  if (hints.has_any_size) {
+    frame.camera.width = raster.cols;
+    frame.camera.height = raster.rows;
+  }
   expect_size(frame.camera, raster.cols, raster.rows, name);
   const double unit = hints.depth_unit.value_or(raster.text.empty() ? 1e-3 : kPngUnit);
   frame.depth = Grid2<float>(raster.rows, raster.cols);
+  std::vector<double> depths;
   for (std::size_t i = 0; i < frame.depth.values().size(); ++i) {
     const auto high = std::bit_cast<std::uint8_t>(raster.bytes[2 * i]),
                low = std::bit_cast<std::uint8_t>(raster.bytes[2 * i + 1]);
-    frame.depth.values()[i] = usable(frame.camera, unit * (256.0 * high + low));
+    const double depth = unit * (256.0 * high + low);
+    if (depth > 0.0) depths.push_back(depth);
+    frame.depth.values()[i] = usable(frame.camera, depth);
   }
+  expect_in_range(frame.camera, std::move(depths), name);
   return frame;
 }
 

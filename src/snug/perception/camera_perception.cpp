@@ -7,6 +7,7 @@
 
 #include "snug/box_estimation/estimate.hpp"
 #include "snug/camera/render.hpp"
+#include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::perception {
@@ -16,11 +17,11 @@ constexpr double kBeyondWall = 0.05;  ///< m, a middle so far beyond the walls i
 
 const model::Container& container_of(const model::Scenario& scenario) {
   if (scenario.cameras.empty()) {
-    throw InputError(scenario.source_name, "cameras", "none", "a camera, for --perception camera");
+    throw InputError(scenario.source_name, "cameras", "none", "a camera, for --perception camera or frames");
   }
   const model::Container* container = model::find_container(scenario, scenario.target);
   if (container == nullptr) {
-    throw InputError(scenario.source_name, "containers", "none", "a container to look into, for --perception camera");
+    throw InputError(scenario.source_name, "containers", "none", "a container to look into, for --perception camera or frames");
   }
   return *container;
 }
@@ -52,73 +53,130 @@ void report_obstacles(const box_estimation::Estimate& estimate, Observation& obs
   for (const float z : seen.height.values()) map.height.push_back(std::isnan(z) ? HeightMap::kUnseen : z);
 }
 
-class Camera final : public Perception {
+/// What a depth camera over the container tells, and stations outside of it.
+class DepthPerception : public Perception {
  public:
-  Camera(std::uint64_t seed, const model::Scenario& scenario)
+  DepthPerception(std::uint64_t seed, const model::Scenario& scenario)
       : container_(container_of(scenario)),
-        params_(scenario.cameras.front()),
-        draw_(camera::draw_camera(params_, seed)),
         known_(box_estimation::make_input(scenario, container_)),
         station_(make_perception(Kind::Noisy, seed, kStationNoise)) {}
 
-  [[nodiscard]] std::string_view name() const override { return name_of(Kind::Camera); }
-
   [[nodiscard]] Observation perceive(const Scene& scene, std::span<const Expectation> expected) override {
     Observation observation = station_->perceive(outside_of(scene), {});
+    observation.obstacles.reset();  // the stations' tell nothing of the container
     box_estimation::EstimateInput input = known_;
     for (const Expectation& one : expected) {
-      if (one.X_WP && find(observation, one.item) == nullptr) {
+      if (one.X_WP && find(observation, one.item) == nullptr && looks_for(*one.X_WP)) {
         input.boxes.push_back({one.item, one.size, *one.X_WP});
       }
     }
-    const box_estimation::Estimate estimate =
-        box_estimation::estimate_boxes(camera::render(view_of(scene), params_, draw_, ++shot_).frame, input);
-    for (const box_estimation::BoxEstimate& box : estimate.boxes) {
-      if (box.sight == box_estimation::Sight::Missing) observation.missing.push_back(box.id);
-      if (box.sight != box_estimation::Sight::Seen) continue;
-      observation.seen.push_back({box.id, box.X_WP, box.covariance, std::nullopt, 0.0, box.common});
+    const Expected<camera::Frame, std::string> frame = take_frame(scene, ++look_);
+    if (frame) {
+      add_estimate(box_estimation::estimate_boxes(*frame, input), observation);
+    } else {
+      observation.fault = LookFault::NoFrame;
+      observation.trouble = frame.error();
     }
-    observation.obstacles.reset();  // the stations' tell nothing of the container
-    observation.fault = fault_of(estimate.fault);
-    if (observation.fault == LookFault::None) report_obstacles(estimate, observation);
     for (const Expectation& one : expected) {
       if (find(observation, one.item) == nullptr) observation.not_seen.push_back(one.item);
     }
     return observation;
   }
 
+ protected:
+  /// `look`: from 1 on.
+  [[nodiscard]] virtual Expected<camera::Frame, std::string> take_frame(const Scene& scene, std::uint64_t look) = 0;
+  /// Is a box that is believed to be there looked for in the frame?
+  [[nodiscard]] virtual bool looks_for(const Pose& X_WP) const = 0;
+  [[nodiscard]] const camera::Scene& surroundings() const { return known_.surroundings; }
+
+  [[nodiscard]] bool is_about_container(const Pose& X_WP) const {
+    const Vector3 half = 0.5 * container_.inner_size + Vector3::Constant(kBeyondWall);
+    const Vector3 p_TP = container_.X_WT.inverse() * X_WP.p;
+    return std::abs(p_TP.x()) < half.x() && std::abs(p_TP.y()) < half.y();
+  }
+
  private:
-  [[nodiscard]] camera::Scene view_of(const Scene& scene) const {
-    camera::Scene view = known_.surroundings;
-    for (const SceneBox& box : scene.boxes) camera::add_box(view, box.item, box.X_WP, box.size);
-    for (const SceneBox& one : scene.objects) camera::add_box(view, one.item, one.X_WP, one.size);
-    return view;
+  static void add_estimate(const box_estimation::Estimate& estimate, Observation& observation) {
+    for (const box_estimation::BoxEstimate& box : estimate.boxes) {
+      if (box.sight == box_estimation::Sight::Missing) observation.missing.push_back(box.id);
+      if (box.sight != box_estimation::Sight::Seen) continue;
+      observation.seen.push_back({box.id, box.X_WP, box.covariance, std::nullopt, 0.0, box.common});
+    }
+    observation.fault = fault_of(estimate.fault);
+    if (observation.fault == LookFault::None) report_obstacles(estimate, observation);
   }
 
   [[nodiscard]] Scene outside_of(const Scene& scene) const {
     Scene outside = scene;
     outside.objects.clear();
-    const Vector3 half = 0.5 * container_.inner_size + Vector3::Constant(kBeyondWall);
-    std::erase_if(outside.boxes, [&](const SceneBox& box) {
-      const Vector3 p_TP = container_.X_WT.inverse() * box.X_WP.p;
-      return std::abs(p_TP.x()) < half.x() && std::abs(p_TP.y()) < half.y();
-    });
+    std::erase_if(outside.boxes, [&](const SceneBox& box) { return is_about_container(box.X_WP); });
     return outside;
   }
 
   model::Container container_;
-  model::CameraParams params_;
-  camera::CameraDraw draw_;
   box_estimation::EstimateInput known_;  ///< no boxes in it
   std::unique_ptr<Perception> station_;
-  std::uint64_t shot_ = 0;
+  std::uint64_t look_ = 0;
+};
+
+/// Frames are rendered here, from the scene.
+class Camera final : public DepthPerception {
+ public:
+  Camera(std::uint64_t seed, const model::Scenario& scenario)
+      : DepthPerception(seed, scenario),
+        params_(scenario.cameras.front()),
+        draw_(camera::draw_camera(params_, seed)) {}
+
+  [[nodiscard]] std::string_view name() const override { return name_of(Kind::Camera); }
+
+ private:
+  [[nodiscard]] Expected<camera::Frame, std::string> take_frame(const Scene& scene, std::uint64_t look) override {
+    camera::Scene view = surroundings();
+    for (const SceneBox& box : scene.boxes) camera::add_box(view, box.item, box.X_WP, box.size);
+    for (const SceneBox& one : scene.objects) camera::add_box(view, one.item, one.X_WP, one.size);
+    return camera::render(view, params_, draw_, look).frame;
+  }
+  [[nodiscard]] bool looks_for(const Pose& /*X_WP*/) const override { return true; }
+
+  model::CameraParams params_;
+  camera::CameraDraw draw_;
+};
+
+/// Frames come from elsewhere.
+class Frames final : public DepthPerception {
+ public:
+  Frames(std::uint64_t seed, const model::Scenario& scenario, camera::FrameSource source)
+      : DepthPerception(seed, scenario), source_(std::move(source)) {}
+
+  [[nodiscard]] std::string_view name() const override { return name_of(Kind::Frames); }
+
+ private:
+  [[nodiscard]] Expected<camera::Frame, std::string> take_frame(const Scene& scene, std::uint64_t look) override {
+    return source_(look, scene.time);
+  }
+  /// At the aligner nobody may have measured it: the frame does not show that place.
+  [[nodiscard]] bool looks_for(const Pose& X_WP) const override { return is_about_container(X_WP); }
+
+  camera::FrameSource source_;
 };
 
 }  // namespace
 
 std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const model::Scenario& scenario) {
   if (kind == Kind::Camera) return std::make_unique<Camera>(seed, scenario);
+  SNUG_CHECK(kind != Kind::Frames, "frames come from somewhere");
   return make_perception(kind, seed);
+}
+
+std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const model::Scenario& scenario,
+                                            camera::FrameSource frames) {
+  if (kind != Kind::Frames) return make_perception(kind, seed, scenario);
+  if (!frames) {
+    throw InputError("command line", "--perception", "frames, without --frames",
+                     "--frames with a folder, or with a command that leaves a frame");
+  }
+  return std::make_unique<Frames>(seed, scenario, std::move(frames));
 }
 
 }  // namespace snug::perception

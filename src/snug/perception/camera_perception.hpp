@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "snug/camera/frame_source.hpp"
 #include "snug/model/scenario.hpp"
 #include "snug/perception/perception.hpp"
 
@@ -19,5 +20,12 @@ inline constexpr NoiseLevels kStationNoise{0.0009, 0.003, 0.0005};
 /// `seed`: of the camera's errors and of noise. Throws InputError for Kind::Camera without a camera or a container.
 [[nodiscard]] std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed,
                                                           const model::Scenario& scenario);
+
+/// As that, with Kind::Frames as well: each look asks `frames` for one. Boxes outside the container are measured by
+/// stations where the scene tells of them, and are not looked for elsewhere. Throws InputError for Kind::Frames without
+/// a source.
+[[nodiscard]] std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed,
+                                                          const model::Scenario& scenario,
+                                                          camera::FrameSource frames);
 
 }  // namespace snug::perception

@@ -31,6 +31,7 @@ enum class LookFault {
   None,
   TooFewPoints,  ///< a dirty or blinded picture
   ViewBlocked,   ///< something is between the camera and the container: the arm, say
+  NoFrame,       ///< the camera gave none that can be used
 };
 [[nodiscard]] const char* name_of(LookFault fault);
 
@@ -40,6 +41,7 @@ struct Observation {
   std::vector<std::string> not_seen;  ///< items that were asked for, in the order asked
   std::vector<std::string> missing;   ///< of these: their place was seen and is empty, and they were found nowhere
   LookFault fault = LookFault::None;
+  std::string trouble = {};  ///< of NoFrame: why, for people
   /// What is there and was not expected, the largest first; absent: this look does not tell.
   std::optional<std::vector<Obstacle>> obstacles;
   /// Absent with obstacles: everything was seen, and what is not among them is not there.

@@ -12,7 +12,7 @@
 namespace snug::perception {
 namespace {
 
-constexpr std::array kKinds{Kind::Exact, Kind::Noisy, Kind::DeadReckoning, Kind::Camera};
+constexpr std::array kKinds{Kind::Exact, Kind::Noisy, Kind::DeadReckoning, Kind::Camera, Kind::Frames};
 
 /// Fills `not_seen` with what was expected and is not in `seen`.
 Observation finished(Observation observation, std::span<const Expectation> expected) {
@@ -113,6 +113,8 @@ const char* name_of(LookFault fault) {
       return "too few points";
     case LookFault::ViewBlocked:
       return "view blocked";
+    case LookFault::NoFrame:
+      return "no frame";
   }
   return "";
 }
@@ -127,6 +129,8 @@ const char* name_of(Kind kind) {
       return "dead-reckoning";
     case Kind::Camera:
       return "camera";
+    case Kind::Frames:
+      return "frames";
   }
   return "";
 }
@@ -136,11 +140,11 @@ Kind kind_of(std::string_view word) {
     if (word == name_of(kind)) return kind;
   }
   throw InputError("command line", "--perception", "'" + std::string(word) + "'",
-                   "exact, noisy, dead-reckoning or camera");
+                   "exact, noisy, dead-reckoning, camera or frames");
 }
 
 std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const NoiseLevels& noise) {
-  SNUG_CHECK(kind != Kind::Camera, "a camera has to know the cell that it looks into");
+  SNUG_CHECK(kind != Kind::Camera && kind != Kind::Frames, "a camera has to know the cell that it looks into");
   if (kind == Kind::Noisy) return std::make_unique<Noisy>(seed, noise);
   if (kind == Kind::DeadReckoning) return std::make_unique<DeadReckoning>();
   return std::make_unique<Exact>();

@@ -15,6 +15,7 @@ enum class Kind {
   Noisy,          ///< with noise, its covariance stated
   DeadReckoning,  ///< nothing is seen: boxes are believed to be where they were meant to be
   Camera,         ///< a depth camera over the container: camera_perception.hpp makes it
+  Frames,         ///< the frames of a camera that is somebody else's: camera_perception.hpp makes it
 };
 [[nodiscard]] const char* name_of(Kind kind);
 /// Throws InputError for a word that is none of `name_of`.
@@ -50,7 +51,7 @@ struct NoiseLevels {
   double size = 0.0005;     ///< m, half width of each edge
 };
 
-/// `seed`: of the noise alone. Not Kind::Camera (checked): it has to know the cell.
+/// `seed`: of the noise alone. Not Kind::Camera, Kind::Frames (checked): they have to know the cell.
 [[nodiscard]] std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const NoiseLevels& noise = {});
 
 }  // namespace snug::perception

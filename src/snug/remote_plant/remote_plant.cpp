@@ -60,7 +60,7 @@ RemotePlant::RemotePlant(const model::Scenario& scenario, const std::string& seq
       model_(robot::load_arm(scenario_)),
       client_(endpoint_of(options.address), options.patience, options.keys),
       link_(client_, model_, {}),
-      perception_(perception::make_perception(options.perception, options.seed, scenario)),
+      perception_(perception::make_perception(options.perception, options.seed, scenario, options.frames)),
       was_brought_(sequence_.items.size(), false),
       runner_(plant::runner_settings(scenario_, !motion::is_fast(options.motions.tracking))) {
   for (const model::Item& item : sequence_.items) names_.push_back(record::log_name(item.parcel));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "snug/camera/frame_source.hpp"
 #include "snug/cell/simulation.hpp"
 #include "snug/click/joint_link.hpp"
 #include "snug/perception/perception.hpp"
@@ -21,6 +22,7 @@ struct RemotePlantOptions {
   /// How the joints are led to the waypoints: the tracking counts.
   cell::SimulationOptions motions;
   std::optional<click::ClientKeys> keys = {};  ///< where the served cell asks for them
+  camera::FrameSource frames = {};             ///< of perception::Kind::Frames
 };
 
 /// The CLICK address of a plant's: "tcp://HOST:PORT" of "click://HOST:PORT". Throws InputError for other words.

@@ -58,6 +58,8 @@ const char* name_of(Trouble trouble) {
       return "bad picture";
     case Trouble::ViewBlocked:
       return "view blocked";
+    case Trouble::NoFrame:
+      return "no frame";
     case Trouble::PlantFault:
       return "plant fault";
   }
@@ -126,6 +128,8 @@ Remedy choose_remedy(const Situation& at, const settings::RecoverySettings& sett
       return Remedy::Skip;
     case Trouble::BadPicture:
       return at.pictures < settings.most_pictures ? Remedy::PerceiveAgain : Remedy::Believe;
+    case Trouble::NoFrame:
+      return at.pictures < settings.most_pictures ? Remedy::PerceiveAgain : Remedy::Stop;
     case Trouble::ViewBlocked:
       if (at.pictures >= settings.most_pictures) return Remedy::Stop;
       return at.is_held ? Remedy::PerceiveAgain : Remedy::MoveAway;

@@ -24,6 +24,7 @@ enum class Trouble {
   WrongItem,       ///< its edges at the aligner are other ones than those of the item that was to come
   BadPicture,      ///< an observation has too few points to tell anything
   ViewBlocked,     ///< something is between camera and container
+  NoFrame,         ///< the camera gives no frame that can be used
   PlantFault,      ///< the cell itself failed
 };
 [[nodiscard]] const char* name_of(Trouble trouble);

@@ -50,6 +50,8 @@ const char* name_of(StopReason reason) {
       return "robot stops";
     case StopReason::ViewBlocked:
       return "view blocked";
+    case StopReason::NoFrame:
+      return "no frame";
     case StopReason::PlantFault:
       return "plant fault";
     case StopReason::Interrupted:

@@ -91,6 +91,7 @@ enum class StopReason {
   NoPlace,      ///< for more items than may be skipped
   RobotStops,   ///< protective stops did not end
   ViewBlocked,  ///< something stays between camera and container
+  NoFrame,      ///< the camera gives no frame that can be used
   PlantFault,
   Interrupted,  ///< by who started it
 };

@@ -66,7 +66,8 @@ ResumePoint find_resume_point(const EventLog& log, const std::string& name) {
   const auto stopped = std::ranges::find_if(all, is_a<event::Stopped>);
   if (stopped != all.end()) {
     const auto& why = std::get<event::Stopped>(*stopped);
-    const bool may_go_on = why.reason == StopReason::Interrupted || why.reason == StopReason::PlantFault;
+    const bool may_go_on = why.reason == StopReason::Interrupted || why.reason == StopReason::PlantFault ||
+                           why.reason == StopReason::NoFrame;
     if (!may_go_on) throw InputError(name, "", "a session that came to its end: " + why.text, "one that ended early");
   }
   ResumePoint point;

@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kStopReasons = {session::StopReason::AllPacked,  session::StopReason::NoMoreItems,
                                      session::StopReason::NoItems,    session::StopReason::NoPlace,
                                      session::StopReason::RobotStops, session::StopReason::ViewBlocked,
+                                     session::StopReason::NoFrame,
                                      session::StopReason::PlantFault, session::StopReason::Interrupted};
 
 /// The names that rows have.

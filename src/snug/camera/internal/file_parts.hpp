@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "snug/camera/frame_file.hpp"
 
@@ -12,6 +13,7 @@ inline constexpr std::size_t kLargestFile = std::size_t{1} << 30U;
 
 [[nodiscard]] Frame read_png(const std::string& bytes, const std::string& name, const FrameHints& hints);
 [[nodiscard]] Frame read_ply(const std::string& bytes, const std::string& name, const FrameHints& hints);
+[[nodiscard]] Frame read_pcd(const std::string& bytes, const std::string& name, const FrameHints& hints);
 [[nodiscard]] Frame read_h5(const std::filesystem::path& path, const FrameHints& hints);
 
 /// Throws unless the picture has the size that the camera says.
@@ -23,5 +25,8 @@ void expect_size(const model::CameraParams& camera, int cols, int rows, const st
 }
 /// `depth` where it is a point within the working range, else 0.
 [[nodiscard]] float usable(const model::CameraParams& camera, double depth);
+
+/// Throws unless a fair part of the depths of a picture, m, can be of the camera.
+void expect_in_range(const model::CameraParams& camera, std::vector<double> depths, const std::string& name);
 
 }  // namespace snug::camera::internal

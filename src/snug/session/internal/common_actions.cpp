@@ -9,20 +9,39 @@
 namespace snug::session::internal {
 namespace {
 
+Trouble trouble_of(perception::LookFault fault) {
+  switch (fault) {
+    case perception::LookFault::None:
+      return Trouble::None;
+    case perception::LookFault::TooFewPoints:
+      return Trouble::BadPicture;
+    case perception::LookFault::ViewBlocked:
+      return Trouble::ViewBlocked;
+    case perception::LookFault::NoFrame:
+      return Trouble::NoFrame;
+  }
+  return Trouble::None;
+}
+
+void stop_blind(Run& run, const perception::Observation& seen) {
+  if (seen.fault != perception::LookFault::NoFrame) return stop(run, StopReason::ViewBlocked);
+  stop(run, StopReason::NoFrame, std::string(name_of(StopReason::NoFrame)) + ": " + seen.trouble);
+}
+
 /// One that tells something, if there is any; troubles with that are in the log.
 perception::Observation observe(Run& run, std::span<const perception::Expectation> expected, bool stays) {
   const settings::RecoverySettings& settings = run.belief.now().scenario.recovery;
   perception::Observation seen = run.executor.perceive(expected);
   Situation at;
   while (seen.fault != perception::LookFault::None && !run.stop) {
-    const bool is_blocked = seen.fault == perception::LookFault::ViewBlocked;
-    at.trouble = is_blocked ? Trouble::ViewBlocked : Trouble::BadPicture;
+    at.trouble = trouble_of(seen.fault);
     at.is_held = stays || run.executor.is_holding();
     ++at.pictures;
     const Remedy remedy = choose_remedy(at, settings);
-    note_remedy(run, at.trouble, remedy, {}, false);
-    if (remedy == Remedy::Stop) stop(run, StopReason::ViewBlocked);
-    if (remedy == Remedy::Stop || remedy == Remedy::Believe) break;
+    note_remedy(run, at.trouble, remedy, seen.trouble, false);
+    if (run.options.is_interrupted && run.options.is_interrupted()) stop(run, StopReason::Interrupted);
+    if (remedy == Remedy::Stop) stop_blind(run, seen);
+    if (run.stop || remedy == Remedy::Believe) break;
     if (remedy == Remedy::MoveAway) move_home(run);
     seen = run.executor.perceive(expected);
   }

@@ -81,7 +81,7 @@ struct JsonEnum<session::SessionFailureKind> {
 };
 template <>
 struct JsonEnum<perception::LookFault> {
-  static constexpr auto all = all_up_to<perception::LookFault, perception::LookFault::ViewBlocked>();
+  static constexpr auto all = all_up_to<perception::LookFault, perception::LookFault::NoFrame>();
 };
 template <>
 struct JsonEnum<plant::EndReason> {

@@ -36,6 +36,7 @@ class ScriptedPlant : public plant::Plant {
   std::vector<std::string> pressed;          ///< items that were pressed on from above
   std::function<void()> when_pressed;        ///< may be empty
   std::deque<perception::LookFault> faults;  ///< of looks; when they are used up: none
+  std::string trouble;                       ///< of looks without a frame
   std::optional<Vector3> size;               ///< measured of what stands at the aligner
   std::map<std::string, Vector3> sizes;      ///< the same of single items
   std::optional<std::vector<perception::Obstacle>> obstacles;  ///< of every look
@@ -121,6 +122,7 @@ class ScriptedPlant : public plant::Plant {
     seen.obstacles = obstacles;
     if (!faults.empty()) {
       seen.fault = faults.front();
+      if (seen.fault == perception::LookFault::NoFrame) seen.trouble = trouble;
       faults.pop_front();
     }
     for (const perception::Expectation& one : expected) {

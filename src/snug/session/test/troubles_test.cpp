@@ -244,6 +244,25 @@ TEST(Troubles, TheToolLeavesAViewThatItBlocksAndASessionEndsWhereThatDoesNotHelp
   EXPECT_TRUE(result.plan.empty());
 }
 
+TEST(Troubles, ACameraThatGivesNoFrameIsAskedAgainAndThenEndsTheSessionWithItsReason) {
+  using perception::LookFault;
+  ScriptedPlant plant;
+  plant.faults = {LookFault::NoFrame};
+  SessionResult result = pack(plant, 1);
+  EXPECT_TRUE(has(result.items[0], Trouble::NoFrame, Remedy::PerceiveAgain));
+  EXPECT_EQ(result.items[0].end, ItemEnd::Placed);
+  ScriptedPlant blind;
+  blind.faults.assign(100, LookFault::NoFrame);
+  blind.trouble = "the cable is out";
+  result = pack(blind, 2);
+  EXPECT_EQ(result.stop_reason, StopReason::NoFrame) << "belief alone packs no real cell";
+  EXPECT_EQ(result.stopped, "no frame: the cable is out");
+  ASSERT_FALSE(result.items[0].recoveries.empty());
+  EXPECT_EQ(result.items[0].recoveries.back().detail, "the cable is out");
+  EXPECT_TRUE(has(result.items[0], Trouble::NoFrame, Remedy::Stop));
+  EXPECT_TRUE(result.plan.empty());
+}
+
 TEST(Troubles, ABoxThatIsNotSeenWhereSomethingHigherStandsOverItsPlaceIsGone) {
   ScriptedPlant plant;
   plant.obstacles.emplace();
