@@ -20,17 +20,35 @@ namespace {
 
 constexpr std::array kAllAxes = {Axes::Optical, Axes::Ros, Axes::OpenGl};
 constexpr double kMostPixels = 8192.0;
-constexpr double kFarthestCamera = 1e4;       ///< m
-constexpr double kUndistorted = 1e-9;         ///< of the coefficients of a lens
+constexpr double kFarthestCamera = 1e4;        ///< m
+constexpr double kUndistorted = 1e-9;          ///< of the coefficients of a lens
 constexpr std::size_t kLargestFile = 1 << 20;  ///< bytes
 
 /// Keys of files that other programs write, which say nothing that is needed.
 const std::set<std::string>& ignored_keys() {
-  static const std::set<std::string> keys = {
-      "header",      "distortion_model", "rectification_matrix", "projection_matrix", "R",         "P",
-      "r",           "p",                "binning_x",            "binning_y",         "roi",       "model",
-      "camera_name", "stream",           "format",               "fps",               "serial",    "stereo_baseline_mm",
-      "date",        "comment",          "time_s",               "look",              "class_name"};
+  static const std::set<std::string> keys = {"header",
+                                             "distortion_model",
+                                             "rectification_matrix",
+                                             "projection_matrix",
+                                             "R",
+                                             "P",
+                                             "r",
+                                             "p",
+                                             "binning_x",
+                                             "binning_y",
+                                             "roi",
+                                             "model",
+                                             "camera_name",
+                                             "stream",
+                                             "format",
+                                             "fps",
+                                             "serial",
+                                             "stereo_baseline_mm",
+                                             "date",
+                                             "comment",
+                                             "time_s",
+                                             "look",
+                                             "class_name"};
   return keys;
 }
 
@@ -161,8 +179,7 @@ class CameraReader {
       if (!size.IsSequence() || size.size() != 2) refuse(size, "size_px", "no two numbers", "width, height");
       file.size = CameraFile::Size{side(size[0], "size_px"), side(size[1], "size_px")};
     }
-    for (const auto& [across, along] :
-         {std::pair{"width", "height"}, std::pair{"image_width", "image_height"}}) {
+    for (const auto& [across, along] : {std::pair{"width", "height"}, std::pair{"image_width", "image_height"}}) {
       const YAML::Node width = root_[across], height = root_[along];
       if (!width && !height) continue;
       if (!width || !height) refuse(root_, width ? along : across, "nothing", std::string(across) + " and " + along);
@@ -185,7 +202,8 @@ class CameraReader {
   void read_optics(const YAML::Node& map, CameraFile& file) const {
     if (map["fx"] || map["fy"]) {
       std::array<double, 4> values{};
-      const std::array<std::array<const char*, 2>, 4> names = {{{"fx", "fx"}, {"fy", "fy"}, {"cx", "ppx"}, {"cy", "ppy"}}};
+      const std::array<std::array<const char*, 2>, 4> names = {
+          {{"fx", "fx"}, {"fy", "fy"}, {"cx", "ppx"}, {"cy", "ppy"}}};
       for (std::size_t i = 0; i < names.size(); ++i) {
         const YAML::Node node = map[map[names[i][0]] ? names[i][0] : names[i][1]];
         if (!node) refuse(map, names[i][0], "nothing", "fx, fy, cx and cy in pixels");
@@ -282,8 +300,8 @@ class CameraReader {
                  "position and quat_wxyz, rotation_vector or rpy_deg");
       }
       const std::vector<double> p = numbers(pose["position"], "pose.position", 3, kFarthestCamera);
-      X_WC = Pose{rotation(pose, pose["quat_wxyz"], pose["rotation_vector"], pose["rpy_deg"]),
-                  Vector3(p[0], p[1], p[2])};
+      X_WC =
+          Pose{rotation(pose, pose["quat_wxyz"], pose["rotation_vector"], pose["rpy_deg"]), Vector3(p[0], p[1], p[2])};
     }
     if (const YAML::Node place = root_["position_m"]) {
       const std::vector<double> p = numbers(place, "position_m", 3, kFarthestCamera);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kLeastPart = 0.02;     ///< of the points: with fewer in the picture the file is misread
 constexpr double kPlausiblePart = 0.5;  ///< of the points: a reading with as many explains the file
+constexpr double kBetterPart = 0.2;     ///< of the points: so many more, and another reading is meant
 constexpr std::size_t kFewPoints = 50;  ///< so few tell nothing of how they are to be read
 constexpr std::size_t kMostSamples = 4096;
 constexpr double kMostOff = 3.0;  ///< px, mean: organised clouds of rectified cameras are off by less than one
@@ -40,9 +41,7 @@ void take_size(const FrameHints& hints, const CameraFile::Size& own, bool is_org
 }
 
 Cloud::Cloud(const model::CameraParams& camera, const CloudReading& reading)
-    : frame_{camera, Grid2<float>(camera.height, camera.width), {}},
-      reading_(reading),
-      X_CW_(camera.X_WC.inverse()) {}
+    : frame_{camera, Grid2<float>(camera.height, camera.width), {}}, reading_(reading), X_CW_(camera.X_WC.inverse()) {}
 
 Vector3 Cloud::in_camera(const Vector3& raw, const CloudReading& reading) const {
   const Vector3 p = reading.unit * raw;
@@ -81,75 +80,86 @@ void Cloud::add(const Vector3& raw, const Pixel& pixel) {
 }
 
 double Cloud::part_in_picture(const CloudReading& reading) const {
-  const auto count = std::ranges::count_if(samples_, [&](const Vector3& raw) { return is_in_picture(in_camera(raw, reading)); });
+  const auto count =
+      std::ranges::count_if(samples_, [&](const Vector3& raw) { return is_in_picture(in_camera(raw, reading)); });
   return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, samples_.size()));
 }
 
-void Cloud::refuse(const std::string& name) const {
+std::string Cloud::find_better_reading() const {
   CloudReading best;
-  double part = 0.0;
+  double part = std::max(kPlausiblePart, part_in_picture(reading_) + kBetterPart);
+  bool is_found = false;
   for (const double unit : kUnits) {
     for (const auto& [is_in_camera, axes] : {std::pair{false, Axes::Optical}, std::pair{true, Axes::Optical},
                                              std::pair{true, Axes::Ros}, std::pair{true, Axes::OpenGl}}) {
       const double with = part_in_picture({unit, is_in_camera, axes});
-      if (with > part) {
-        part = with;
-        best = {unit, is_in_camera, axes};
-      }
+      if (with <= part) continue;
+      part = with;
+      best = {unit, is_in_camera, axes};
+      is_found = true;
     }
   }
-  std::string would = "points " + range_of(frame_.camera) + ", and in its picture";
-  if (part >= kPlausiblePart) {
-    would = fmt::format("with coordinates in steps of {} m, {}{}, {:.0f} % of them would be (--depth-unit {}{}{})",
-                        best.unit, best.is_in_camera ? "in the camera's frame" : "in the world's frame",
-                        best.is_in_camera ? fmt::format(", axes {}", name_of(best.axes)) : std::string(), 100.0 * part,
-                        best.unit, best.is_in_camera ? " --points-in-camera" : "",
-                        best.axes != Axes::Optical ? fmt::format(" --axes {}", name_of(best.axes)) : std::string());
-  } else {
-    std::vector<double> depths;
-    for (const Vector3& raw : samples_) depths.push_back(in_camera(raw, reading_).z());
-    std::ranges::nth_element(depths, depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2));
-    const double middle = depths[depths.size() / 2];
-    const model::CameraRange& range = frame_.camera.range;
-    const char* why = middle <= 0.0          ? "behind the camera: its pose, or axes?"
-                      : middle < range.near  ? "too near"
-                      : middle > range.far   ? "too far"
-                                             : "beside the picture: the camera's pose, or its intrinsics?";
-    would += fmt::format("; the middle one is {:.3g} m before the camera: {}", middle, why);
-  }
-  throw InputError(name, "", fmt::format("{} of {} points in the camera's picture", used_, count_), would);
+  if (!is_found) return {};
+  return fmt::format("with coordinates in steps of {} m, in {}{}, {:.0f} % of them would be (--depth-unit {}{}{})",
+                     best.unit, best.is_in_camera ? "the camera's frame" : "the world's frame",
+                     best.is_in_camera ? fmt::format(", axes {}", name_of(best.axes)) : std::string(), 100.0 * part,
+                     best.unit, best.is_in_camera ? " --points-in-camera" : "",
+                     best.axes != Axes::Optical ? fmt::format(" --axes {}", name_of(best.axes)) : std::string());
+}
+
+std::string Cloud::place_of_points() const {
+  std::vector<double> depths;
+  for (const Vector3& raw : samples_) depths.push_back(in_camera(raw, reading_).z());
+  std::ranges::nth_element(depths, depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2));
+  const double middle = depths[depths.size() / 2];
+  const model::CameraRange& range = frame_.camera.range;
+  const char* why = middle <= 0.0         ? "behind the camera: its pose, or axes?"
+                    : middle < range.near ? "too near"
+                    : middle > range.far  ? "too far"
+                                          : "beside the picture: the camera's pose, or its intrinsics?";
+  return fmt::format("points {}, and in its picture; the middle one is {:.3g} m before the camera: {}",
+                     range_of(frame_.camera), middle, why);
 }
 
 Frame Cloud::finish(const std::string& name) && {
-  if (count_ >= kFewPoints && static_cast<double>(used_) < kLeastPart * static_cast<double>(count_)) refuse(name);
-  if (said_ >= kFewPoints && off_ > kMostOff * static_cast<double>(said_)) {
-    throw InputError(name, "",
-                     fmt::format("points that the camera would see {:.1f} px beside the pixels that the file says, on average",
-                                 off_ / static_cast<double>(said_)),
-                     "the intrinsics of the camera that took the frame, and its pose where points are in the world");
+  const bool is_empty = count_ >= kFewPoints && static_cast<double>(used_) < kLeastPart * static_cast<double>(count_);
+  const bool is_off = said_ >= kFewPoints && off_ > kMostOff * static_cast<double>(said_);
+  if (!is_empty && !is_off) return std::move(frame_);
+  std::string would = find_better_reading();
+  if (is_empty || !would.empty()) {
+    if (would.empty()) would = place_of_points();
+    throw InputError(name, "", fmt::format("{} of {} points in the camera's picture", used_, count_), would);
   }
-  return std::move(frame_);
+  throw InputError(
+      name, "",
+      fmt::format("points that the camera would see {:.1f} px beside the pixels that the file says, on average",
+                  off_ / static_cast<double>(said_)),
+      "the intrinsics of the camera that took the frame, and its pose where points are in the world");
 }
 
-void expect_in_range(const model::CameraParams& camera, std::vector<double> depths, const std::string& name) {
+void expect_in_range(const model::CameraParams& camera, std::vector<double> depths, double unit,
+                     const std::string& name) {
   const auto count_with = [&](double factor) {
-    return std::ranges::count_if(depths, [&](double depth) { return usable(camera, factor * depth) > 0.0F; });
+    return static_cast<double>(
+        std::ranges::count_if(depths, [&](double depth) { return usable(camera, factor * depth) > 0.0F; }));
   };
-  const auto used = static_cast<double>(count_with(1.0)), all = static_cast<double>(depths.size());
+  const double used = count_with(1.0), all = static_cast<double>(depths.size());
   if (depths.size() < kFewPoints || used >= kLeastPart * all) return;
   std::ranges::nth_element(depths, depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2));
   const double middle = depths[depths.size() / 2];
   std::string would = fmt::format("depths {}; the middle one is {:.3g} m: {}", range_of(camera), middle,
                                   middle > camera.range.far ? "too far" : "too near");
   double part = kPlausiblePart;
+  std::string other;
   for (const double factor : {1e-3, 1e3, 0.1, 10.0, 1e-4, 1e-6}) {
-    const double with = static_cast<double>(count_with(factor)) / all;
-    if (with < part) continue;
-    part = with + 1e-9;
-    would = fmt::format("depths {}; the middle one is {:.3g} m, or {:.3g} m with another unit (--depth-unit)",
-                        range_of(camera), middle, factor * middle);
+    const double with = count_with(factor) / all;
+    if (with <= part) continue;
+    part = with;
+    other =
+        fmt::format(", or steps of {:.9g} m (--depth-unit), with which it is {:.3g} m", factor * unit, factor * middle);
   }
-  throw InputError(name, "", fmt::format("{:.0f} of {:.0f} points in the camera's working range", used, all), would);
+  throw InputError(name, "", fmt::format("{:.0f} of {:.0f} points in the camera's working range", used, all),
+                   would + other);
 }
 
 }  // namespace snug::camera::internal

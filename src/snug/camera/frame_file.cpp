@@ -28,10 +28,11 @@ namespace {
 /// Does the file tell of its camera itself, as those of snug do? They say so before their points.
 bool says_camera(const std::string& bytes) {
   constexpr std::size_t kBegin = 8192;
-  return bytes.starts_with("\x89HDF") || std::string_view(bytes).substr(0, kBegin).find("snug-camera") != std::string_view::npos;
+  return bytes.starts_with("\x89HDF") ||
+         std::string_view(bytes).substr(0, kBegin).find("snug-camera") != std::string_view::npos;
 }
 
-void take(const CameraFile& file, FrameHints& hints) {
+void apply(const CameraFile& file, FrameHints& hints) {
   if (!file.name.empty()) hints.camera.name = file.name;
   if (file.intrinsics) hints.camera.intrinsics = *file.intrinsics;
   if (file.size) {
@@ -51,7 +52,7 @@ FrameHints complete(const FrameHints& given, const std::filesystem::path& path, 
   std::optional<std::filesystem::path> file = given.camera_file;
   if (!file && !given.camera_is_given && !says_camera(bytes)) file = find_camera_file(path);
   if (!file) return hints;
-  take(load_camera_file(*file), hints);
+  apply(load_camera_file(*file), hints);
   hints.camera_is_given = true;
   return hints;
 }

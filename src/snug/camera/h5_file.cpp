@@ -124,7 +124,7 @@ Frame internal::read_h5(const std::filesystem::path& path, const FrameHints& hin
     if (depth > 0.0F) depths.push_back(depth);
     depth = usable(frame.camera, depth);
   }
-  expect_in_range(frame.camera, std::move(depths), path.string());
+  expect_in_range(frame.camera, std::move(depths), 1.0, path.string());
   if (file.has("intensity")) frame.intensity = read_grid<std::uint8_t>(file, "intensity");
   return frame;
 }

@@ -227,12 +227,11 @@ Frame internal::read_pcd(const std::string& bytes, const std::string& name, cons
   const bool is_organised = header.height > 1 && header.width * header.height == header.points &&
                             header.width <= static_cast<std::size_t>(kLargestSide) &&
                             header.height <= static_cast<std::size_t>(kLargestSide);
-  take_size(hints, {static_cast<int>(is_organised ? header.width : 0), static_cast<int>(is_organised ? header.height : 0)},
+  take_size(hints,
+            {static_cast<int>(is_organised ? header.width : 0), static_cast<int>(is_organised ? header.height : 0)},
             is_organised, camera, name);
   Cloud cloud(camera, {hints.depth_unit.value_or(1.0), hints.points_are_in_camera, hints.axes});
-  const auto add = [&](std::size_t i, const Vector3& p) {
-    cloud.add(p, is_organised ? pixel_of(i, camera) : Pixel{});
-  };
+  const auto add = [&](std::size_t i, const Vector3& p) { cloud.add(p, is_organised ? pixel_of(i, camera) : Pixel{}); };
   if (is_text) {
     each_ascii(bytes, header, axes, name, add);
   } else {

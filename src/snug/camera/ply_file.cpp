@@ -97,8 +97,7 @@ class Reader {
   }
 
   [[noreturn]] void refuse(const std::string& got) const {
-    throw InputError(name_, "", got,
-                     "a PLY (ascii or binary) whose vertices, its first element, have x, y, z");
+    throw InputError(name_, "", got, "a PLY (ascii or binary) whose vertices, its first element, have x, y, z");
   }
 
  private:

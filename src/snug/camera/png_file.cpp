@@ -154,7 +154,7 @@ Frame internal::read_png(const std::string& bytes, const std::string& name, cons
     if (depth > 0.0) depths.push_back(depth);
     frame.depth.values()[i] = usable(frame.camera, depth);
   }
-  expect_in_range(frame.camera, std::move(depths), name);
+  expect_in_range(frame.camera, std::move(depths), unit, name);
   return frame;
 }
 

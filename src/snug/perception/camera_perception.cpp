@@ -7,7 +7,6 @@
 
 #include "snug/box_estimation/estimate.hpp"
 #include "snug/camera/render.hpp"
-#include "snug/core/check.hpp"
 #include "snug/core/input_error.hpp"
 
 namespace snug::perception {
@@ -21,7 +20,8 @@ const model::Container& container_of(const model::Scenario& scenario) {
   }
   const model::Container* container = model::find_container(scenario, scenario.target);
   if (container == nullptr) {
-    throw InputError(scenario.source_name, "containers", "none", "a container to look into, for --perception camera or frames");
+    throw InputError(scenario.source_name, "containers", "none",
+                     "a container to look into, for --perception camera or frames");
   }
   return *container;
 }
@@ -124,9 +124,7 @@ class DepthPerception : public Perception {
 class Camera final : public DepthPerception {
  public:
   Camera(std::uint64_t seed, const model::Scenario& scenario)
-      : DepthPerception(seed, scenario),
-        params_(scenario.cameras.front()),
-        draw_(camera::draw_camera(params_, seed)) {}
+      : DepthPerception(seed, scenario), params_(scenario.cameras.front()), draw_(camera::draw_camera(params_, seed)) {}
 
   [[nodiscard]] std::string_view name() const override { return name_of(Kind::Camera); }
 
@@ -165,7 +163,7 @@ class Frames final : public DepthPerception {
 
 std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const model::Scenario& scenario) {
   if (kind == Kind::Camera) return std::make_unique<Camera>(seed, scenario);
-  SNUG_CHECK(kind != Kind::Frames, "frames come from somewhere");
+  if (kind == Kind::Frames) return make_perception(kind, seed, scenario, {});
   return make_perception(kind, seed);
 }
 
@@ -174,7 +172,7 @@ std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed, const
   if (kind != Kind::Frames) return make_perception(kind, seed, scenario);
   if (!frames) {
     throw InputError("command line", "--perception", "frames, without --frames",
-                     "--frames with a folder, or with a command that leaves a frame");
+                     "--frames of `snug pack`, with a folder or with a command that leaves a frame");
   }
   return std::make_unique<Frames>(seed, scenario, std::move(frames));
 }

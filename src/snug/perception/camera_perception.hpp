@@ -17,7 +17,8 @@ inline constexpr NoiseLevels kStationNoise{0.0009, 0.003, 0.0005};
 
 /// As make_perception, with Kind::Camera as well: one shot of the scenario's first camera each time, arm
 /// out of the view, and the estimate from its depth. `scenario`: what is known of the cell, not how it was drawn.
-/// `seed`: of the camera's errors and of noise. Throws InputError for Kind::Camera without a camera or a container.
+/// `seed`: of the camera's errors and of noise. Throws InputError for Kind::Camera without a camera or a container, and
+/// for Kind::Frames.
 [[nodiscard]] std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed,
                                                           const model::Scenario& scenario);
 
@@ -25,7 +26,6 @@ inline constexpr NoiseLevels kStationNoise{0.0009, 0.003, 0.0005};
 /// stations where the scene tells of them, and are not looked for elsewhere. Throws InputError for Kind::Frames without
 /// a source.
 [[nodiscard]] std::unique_ptr<Perception> make_perception(Kind kind, std::uint64_t seed,
-                                                          const model::Scenario& scenario,
-                                                          camera::FrameSource frames);
+                                                          const model::Scenario& scenario, camera::FrameSource frames);
 
 }  // namespace snug::perception

@@ -46,7 +46,9 @@ class Cloud {
   [[nodiscard]] Vector3 in_camera(const Vector3& raw, const CloudReading& reading) const;
   [[nodiscard]] bool is_in_picture(const Vector3& p_C) const;
   [[nodiscard]] double part_in_picture(const CloudReading& reading) const;
-  [[noreturn]] void refuse(const std::string& name) const;
+  /// Empty, or the reading with which far more of the points would be in the picture.
+  [[nodiscard]] std::string find_better_reading() const;
+  [[nodiscard]] std::string place_of_points() const;
 
   Frame frame_;
   CloudReading reading_;

@@ -26,7 +26,8 @@ void expect_size(const model::CameraParams& camera, int cols, int rows, const st
 /// `depth` where it is a point within the working range, else 0.
 [[nodiscard]] float usable(const model::CameraParams& camera, double depth);
 
-/// Throws unless a fair part of the depths of a picture, m, can be of the camera.
-void expect_in_range(const model::CameraParams& camera, std::vector<double> depths, const std::string& name);
+/// Throws unless a fair part of the depths of a picture, m, can be of the camera. `unit`: m, of its steps.
+void expect_in_range(const model::CameraParams& camera, std::vector<double> depths, double unit,
+                     const std::string& name);
 
 }  // namespace snug::camera::internal

@@ -51,7 +51,8 @@ TEST(CameraFile, UnitsAreWordsOrMetres) {
 TEST(CameraFile, PosesAreThoseOfFrameCWhateverTheAxes) {
   // A camera that looks straight down from 1 m, its rows along -y: z down, x along W's y.
   const double half = std::numbers::pi;
-  const CameraFile optical = read("pose: {position: [0.1, 0.2, 1.0], rotation_vector: [" + std::to_string(half) + ", 0, 0]}");
+  const CameraFile optical =
+      read("pose: {position: [0.1, 0.2, 1.0], rotation_vector: [" + std::to_string(half) + ", 0, 0]}");
   ASSERT_TRUE(optical.X_WC);
   EXPECT_LT((optical.X_WC->R.col(2) - Vector3(0, 0, -1)).norm(), 1e-5);
   const CameraFile ros = read("axes: ros\npose: {position: [0, 0, 1], rpy_deg: [0, 90, 0]}");  // x forward: down
