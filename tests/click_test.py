@@ -158,7 +158,6 @@ class Click(unittest.TestCase):
 
     def test_bad_messages_get_an_error_and_move_nothing(self):
         with Served() as served, Peer(served.endpoint) as peer:
-            self.assert_error(peer.control(STILL), "before the handshake")
             self.assert_error(peer.handshake(version=7), "version 7 is not supported")
             peer.handshake()
             before = peer.control(STILL)
@@ -203,7 +202,7 @@ class Click(unittest.TestCase):
             first.handshake()
             first.control([0.2] + STILL[1:])
             with Peer(served.endpoint) as second:
-                self.assert_error(second.handshake(), "another controller")
+                self.assertEqual(second.handshake().messageType, second.pb.MessageType.Handshake)  # it may look
                 self.assert_error(second.control([1.0] * 6), "another controller")
                 self.assertAlmostEqual(first.sense().simVars.simulatedTime, 0.008)
                 first.close()
@@ -278,6 +277,8 @@ class Click(unittest.TestCase):
                     peer.control([0.3 * math.sin(0.1 * i), -0.1, 0.1, 0.0, 0.0, 0.2], vacuum=i > 30)
                     time.sleep(pause)
                 peer.reset()
+                self.assertEqual(peer.sense().simVars.simulatedTime, 0.0)  # a reset does not end it
+                peer.close()
                 served.process.wait(60)
                 served.end()
                 hashes.append(json.loads(served.stdout)["state_hash"])
@@ -297,6 +298,30 @@ class Click(unittest.TestCase):
             self.assertEqual(sensor.objects["ur10"].angularVelocitySensors[5], 0.0)
             served.end()
         self.assertIn("real time:", "".join(served.said))
+
+    def test_a_client_that_shakes_no_hands_and_observers_of_any_name(self):
+        with Served("--stop-after", 0.08, "--json") as served, Peer(served.endpoint) as peer:
+            with Peer(served.endpoint) as one, Peer(served.endpoint, name=b"somebody") as other:
+                self.assertEqual(one.handshake().messageType, one.pb.MessageType.Handshake)
+                first = peer.control(STILL)
+                self.assertAlmostEqual(first.simVars.simulatedTime, 0.008)
+                other.handshake()
+                self.assertEqual(other.sense(), first)
+                self.assertEqual(one.sense(), first)
+                self.assert_error(one.control(STILL), "another controller")
+                self.assertEqual(first.objects["ur10"].sensors["pressure_force"].sensor[0].WhichOneof("sensor"), "force3d")
+                self.assertEqual([s.WhichOneof("sensor") for s in first.objects["ur10"].objectSensors], ["position", "rpy"])
+            for _ in range(9):
+                peer.control(STILL)
+            served.process.wait(60)
+            served.end()
+        self.assertEqual(json.loads(served.stdout)["ended_by"], "0.08 s are over")
+
+    def test_runs_at_once_and_stops_by_itself(self):
+        with Served("--async", "--run-at-once", "--stop-after", 0.1, "--json") as served:
+            served.process.wait(60)
+            served.end()
+        self.assertAlmostEqual(json.loads(served.stdout)["duration_s"], 0.104, delta=0.01)
 
     def test_step_by_step_waits_for_the_user(self):
         with Served("--step-by-step") as served, Peer(served.endpoint) as peer:

@@ -15,6 +15,9 @@
 namespace snug::app {
 namespace {
 
+/// What a run is ended by that its controller begins anew: the first one is not over with that.
+constexpr const char* kResetByController = "reset by the controller";
+
 control::DriveKind kind_of(const std::string& word) {
   return word == "position"   ? control::DriveKind::Position
          : word == "velocity" ? control::DriveKind::Speed
@@ -56,6 +59,10 @@ class StepLines {
 class Serving {
  public:
   explicit Serving(const ServeOptions& options) : options_(options), runs_(options) {
+    if (options.runs_at_once && !options.server.is_async) {
+      throw InputError("command line", "--run-at-once", "without --async",
+                       "--async: else steps are those that a controller asks for");
+    }
     served_cell::SimulatorSettings settings;
     settings.cell = options.cell;
     settings.cell.controls.clear();
@@ -63,16 +70,21 @@ class Serving {
     settings.cell.is_plant = options.plant_seed.has_value();
     settings.cell.rpy = *click::parse_rpy_order(options.rpy);
     settings.is_async = options.server.is_async;
+    settings.runs_at_once = options.runs_at_once;
     settings.batch = options.batch;
     settings.begin_run = [this](int run) { return runs_.begin(run); };
     settings.end_run = [this](int run, const runs::RunResult& result) {
       runs_.end(run, result);
-      if (options_.once) server_->stop();
+      has_run_ = true;
+      if (options_.once && result.ended_by != kResetByController) server_->stop();
     };
     simulator_.emplace(runs_.simulation(), std::move(settings));
     served_cell::ServerSettings server = options.server;
     if (options.keys) server.keys = click::load_server_keys(*options.keys);
     server.log = [](const std::string& line) { std::fprintf(stderr, "snug: %s\n", line.c_str()); };
+    server.controller_left = [this] {
+      if (options_.once && has_run_) server_->stop();
+    };
     server.steps_fd = STDIN_FILENO;
     server.read_steps = [this] { return lines_.read(); };
     server_.emplace(*simulator_, std::move(server));
@@ -109,6 +121,7 @@ class Serving {
   const ServeOptions& options_;
   ServedRuns runs_;
   StepLines lines_;
+  bool has_run_ = false;
   std::optional<served_cell::Simulator> simulator_;
   std::optional<served_cell::Server> server_;
 };

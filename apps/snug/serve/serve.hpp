@@ -38,8 +38,9 @@ struct ServeOptions {
   served_cell::ServerSettings server;
   UrOptions ur;
   std::optional<double> batch;        ///< s, simulated
+  bool runs_at_once = false;          ///< async: before there is a controller
   std::optional<std::string> keys;    ///< folder: who may drive it
-  bool once = false;                  ///< ends after the first run
+  bool once = false;                  ///< ends with the first run that its controller does not reset
   std::optional<std::string> record;  ///< HDF5 file; of further runs: with their number before the ending
   bool json = false;
   bool shows = false;  ///< a page with the run

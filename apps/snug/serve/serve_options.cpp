@@ -84,7 +84,13 @@ void add_served_time(CLI::App& verb, ServeOptions& options) {
       ->type_name("SECONDS");
   verb.add_flag("--step-by-step", options.server.step_by_step,
                 "steps wait for lines on stdin: an empty one allows one, a number so many, c all, r resets");
-  verb.add_flag("--once", options.once, "end when the first run is over");
+  verb.add_flag("--run-at-once", options.runs_at_once,
+                "with --async: the cell runs before there is a controller, the robot at rest");
+  verb.add_option("--stop-after", options.server.stop_after, "end when so much simulated time is over")
+      ->check(positive())
+      ->type_name("SECONDS");
+  verb.add_flag("--once", options.once,
+                "end when the first controller has left, or its run has failed; a Reset begins a run anew");
   verb.add_option("-o,--record", options.record, "write a recording; those of further runs have a number: run-2.h5")
       ->type_name("FILE.h5");
   verb.add_option("--record-period", options.record_period, "time between frames, instead of the scenario's or 0.008")
@@ -97,7 +103,8 @@ void add_served_ur(CLI::App& verb, UrOptions& ur) {
   CLI::Option* host = verb.add_option("--ur", ur.host,
                                       "be a controller of Universal Robots at this address instead: RTDE 30004, "
                                       "dashboard 29999, primary 30001, secondary 30002, real-time 30003 (docs/ur.md)");
-  host->type_name("ADDRESS")->excludes("--click", "--keys", "--async", "--batch", "--step-by-step");
+  host->type_name("ADDRESS")->excludes("--click", "--keys", "--async", "--batch", "--step-by-step", "--run-at-once",
+                                       "--stop-after");
   verb.add_option("--model", ur.model, "of that controller: ur10 runs at 125 Hz, ur10e and ur5e at 500 Hz")
       ->check(one_of({"ur10", "ur10e", "ur5e"}))
       ->needs(host)
@@ -139,7 +146,7 @@ void add_serve(CLI::App& app, Action& action) {
                   "address that other machines can reach needs it")
       ->type_name("DIR");
   verb.add_option("--lease", options->server.lease,
-                  "a controller that says nothing for longer gives its place to the next one")
+                  "a controller that says nothing for longer gives its place to the next one that commands")
       ->check(within(0.1, 1e6))
       ->type_name("SECONDS")
       ->capture_default_str();

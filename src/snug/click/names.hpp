@@ -22,6 +22,8 @@ inline constexpr const char* kAcknowledgeEvent = "acknowledge";
 /// accelerates the tool by for an error of 1 m.
 inline constexpr const char* kStoppedSensor = "stopped";
 inline constexpr const char* kPressureSensor = "pressure";
+/// The same along z of E, for clients that read no Force1D.
+inline constexpr const char* kPressureForceSensor = "pressure_force";
 inline constexpr const char* kLoadSensor = "load";
 inline constexpr const char* kTrackingSensor = "tracking";
 /// Sensors of a box: its axes Px, Py, Pz in W, to the last bit; its edges along them.

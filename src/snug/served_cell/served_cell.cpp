@@ -27,6 +27,7 @@ using click::kHalfTurnEvent;
 using click::kHoldingSensor;
 using click::kLoadSensor;
 using click::kPresentSensor;
+using click::kPressureForceSensor;
 using click::kPressureSensor;
 using click::kQuarterTurnEvent;
 using click::kSizeSensor;
@@ -114,6 +115,7 @@ void ServedCell::describe_robot(const ServedCellSettings& settings) {
     robot.control_types.push_back(type_of(kinds_[j]));
   }
   robot.joints = robot.controls;
+  robot.object_sensors = {ValueType::Position, ValueType::Rpy};
   robot.joint_sensors = {ValueType::Angle, ValueType::AngularVelocity1D, ValueType::Torque1D};
   if (settings.joint_forces) robot.joint_sensors.push_back(ValueType::Force3D);
   robot.events[settings.vacuum_event] = ValueType::Activated;
@@ -126,9 +128,10 @@ void ServedCell::describe_robot(const ServedCellSettings& settings) {
   robot.sensors[kHoldingSensor] = {ValueType::Activated};
   robot.sensors[kStoppedSensor] = {ValueType::Activated};
   robot.sensors[kPressureSensor] = {ValueType::Force1D};
+  robot.sensors[kPressureForceSensor] = {ValueType::Force3D};
   robot.sensors[kLoadSensor] = {ValueType::Force3D, ValueType::Torque3D};
   if (settings.is_plant) robot.sensors[kTrackingSensor] = {ValueType::Acceleration3D};
-  if (robot.events.size() != 4 || robot.sensors.size() != (settings.is_plant ? 7U : 6U)) {
+  if (robot.events.size() != 4 || robot.sensors.size() != (settings.is_plant ? 8U : 7U)) {
     throw InputError("command line", "--vacuum-event, --blow-off-event, --force-sensor", "names that are taken",
                      "a name of its own for each");
   }
@@ -319,6 +322,9 @@ ObjectSensors ServedCell::sense_robot(const cell::CellState& state, const cell::
                                       const Wrench& load) const {
   ObjectSensors robot;
   const control::MachineState& machine = state.arm->machine;
+  const Pose& X_WB = simulation_.arm()->model().X_WB;
+  robot.object = {vector_value(ValueType::Position, X_WB.p),
+                  vector_value(ValueType::Rpy, rpy_of(X_WB.R, settings_.rpy))};
   robot.angles.assign(machine.joints.q.begin(), machine.joints.q.end());
   robot.velocities.assign(machine.joints.qd.begin(), machine.joints.qd.end());
   for (const record::JointSample& joint : reading.joints) robot.torques.push_back(joint.torque);
@@ -337,6 +343,8 @@ ObjectSensors ServedCell::sense_robot(const cell::CellState& state, const cell::
   robot.sensors[kHoldingSensor] = {{ValueType::Activated, Vector3::Zero(), 0.0, state.gripper.cup.body >= 0}};
   robot.sensors[kStoppedSensor] = {{ValueType::Activated, Vector3::Zero(), 0.0, reading.stop.has_value()}};
   robot.sensors[kPressureSensor] = {{ValueType::Force1D, Vector3::Zero(), state.gripper.cup.pressure_gauge, false}};
+  robot.sensors[kPressureForceSensor] = {
+      vector_value(ValueType::Force3D, Vector3(0.0, 0.0, state.gripper.cup.pressure_gauge))};
   robot.sensors[kLoadSensor] = {vector_value(ValueType::Force3D, load.force),
                                 vector_value(ValueType::Torque3D, load.torque)};
   if (settings_.is_plant) {

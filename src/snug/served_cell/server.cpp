@@ -1,6 +1,8 @@
 // Server: a simulator at an address: messages in, answers out, steps in time.
 #include "snug/served_cell/server.hpp"
 
+#include <fmt/format.h>
+
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
@@ -196,7 +198,9 @@ void Server::Impl::read_monitor() {
 
 void Server::Impl::lose(const Simulator::Peer& peer, const std::string& why) {
   std::erase_if(kept, [&](const Request& request) { return request.peer == peer; });
-  if (simulator.leave(peer, why)) log(why);
+  if (!simulator.leave(peer, why)) return;
+  log(why);
+  if (settings.controller_left) settings.controller_left();
 }
 
 /// Has the controller nothing to say any more? One that waits for its step has said something.
@@ -253,12 +257,11 @@ bool Server::Impl::must_wait(const Request& request, Clock::time_point& until) {
   until = Clock::time_point::max();
   const Clock::time_point now = Clock::now();
   const bool would_control = !simulator.is_controller(request.peer) && !Simulator::is_watcher(request.peer);
-  if (would_control && is_driven() && simulator.is_handshake(request.frame)) {
-    if (is_silent()) {
+  const bool is_control = would_control && Simulator::is_control(request.frame);
+  if ((is_control || (would_control && Simulator::is_handshake(request.frame))) && is_driven()) {
+    if (is_control && is_silent()) {
       lose(controller, "the controller was silent and another took its place");
-      return false;
-    }
-    if (now < request.received + kTakeOver) {
+    } else if (now < request.received + kTakeOver && (!is_control || simulator.has_commanded())) {
       until = request.received + kTakeOver;
       return true;
     }
@@ -274,7 +277,7 @@ bool Server::Impl::must_wait(const Request& request, Clock::time_point& until) {
 
 void Server::Impl::serve(const Request& request) {
   const std::int64_t steps = simulator.counts().steps;
-  const bool had_controller = simulator.has_controller();
+  const bool had_controller = simulator.has_controller(), had_place = simulator.is_controller(request.peer);
   const double stepped = simulator.step_seconds();
   const Clock::time_point start = Clock::now();
   const std::optional<std::string> reply = simulator.answer(request.peer, request.frame);
@@ -292,12 +295,15 @@ void Server::Impl::serve(const Request& request) {
     if (settings.speed && pacer.is_started()) pacer.step(start);
     if (steps_allowed > 0) --steps_allowed;
   }
-  if (!had_controller && simulator.has_controller()) {
+  if (!had_place && simulator.is_controller(request.peer)) {
     controller = request.peer;
     controller_heard = request.received;
     log("a controller is there");
   }
-  if (had_controller && !simulator.has_controller()) log("the controller ended the session");
+  if (had_controller && !simulator.has_controller()) {
+    log("the controller ended the session");
+    if (settings.controller_left) settings.controller_left();
+  }
   if (!is_sent) lose(request.peer);  // it is gone, or does not read what it asked for
 }
 
@@ -374,6 +380,10 @@ void Server::Impl::run() {
     step_in_time();
     look_for_controller();
     if (authenticator) authenticator->answer();
+    if (settings.stop_after && simulator.time() >= *settings.stop_after) {
+      simulator.end(fmt::format("{} s are over", *settings.stop_after));
+      break;
+    }
     if (!read_message()) wait();
   }
 }

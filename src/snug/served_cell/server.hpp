@@ -16,7 +16,7 @@ struct ServerSettings {
   std::string endpoint = "tcp://127.0.0.1:5555";  ///< or ipc://PATH; port * is any that is free
   /// Whom it lets in, by their keys, and who it is. An address that other machines can reach needs them.
   std::optional<click::ServerKeys> keys = {};
-  /// s of the clock: a controller that says nothing for longer gives its place to the next one that shakes hands.
+  /// s of the clock: a controller that says nothing for longer gives its place to the next one that commands.
   double lease = 60.0;
   /// Simulated seconds a second. Async: 1 when absent. Sync: a Control waits for its time; absent, it does not.
   std::optional<double> speed;
@@ -26,6 +26,8 @@ struct ServerSettings {
   /// How many steps more may be done; -1 to go on without asking, kReset to reset the cell.
   std::function<int()> read_steps = {};
   std::function<void(const std::string& line)> log = {};  ///< for people
+  std::optional<double> stop_after = {};                  ///< s, simulated: the run and the server end then
+  std::function<void()> controller_left = {};             ///< told when one has
 };
 inline constexpr int kReset = -2;
 

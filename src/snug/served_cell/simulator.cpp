@@ -61,7 +61,8 @@ std::optional<std::string> Simulator::answer(const Peer& peer, std::string_view 
 }
 
 bool Simulator::is_step(const Peer& peer, std::string_view frame) const {
-  if (controller_ != peer || is_reset_ || is_ended_ || frame.size() > kLargestFrame) return false;
+  if ((has_commanded_ && controller_ != peer) || is_watcher(peer)) return false;
+  if (is_reset_ || is_ended_ || frame.size() > kLargestFrame) return false;
   const auto message = decode(frame);
   if (!message || !holds<Control>(*message)) return false;
   const auto order = cell_.understand(std::get<Control>(*message), switches_, state());
@@ -74,6 +75,12 @@ bool Simulator::is_handshake(std::string_view frame) {
   return message && holds<HandshakeInit>(*message);
 }
 
+bool Simulator::is_control(std::string_view frame) {
+  if (frame.size() > kLargestFrame) return false;
+  const auto message = decode(frame);
+  return message && holds<Control>(*message);
+}
+
 std::optional<Simulator::Reply> Simulator::respond(const Peer& peer, std::string_view frame) {
   if (frame.size() > kLargestFrame) {
     return reply(Error{fmt::format("a frame of {} bytes; {} are the most", frame.size(), kLargestFrame)});
@@ -81,11 +88,16 @@ std::optional<Simulator::Reply> Simulator::respond(const Peer& peer, std::string
   const Expected<Message, std::string> message = decode(frame);
   if (!message) return reply(Error{message.error()});
   if (is_watcher(peer)) return show(*message);
-  if (controller_ && *controller_ != peer) return reply(Error{kBusy});
+  const auto* command = std::get_if<Control>(&*message);
+  if (command != nullptr && controller_ != peer && !has_commanded_) return control_first(peer, *command);
+  if (controller_ && *controller_ != peer) {
+    return holds<HandshakeInit>(*message) || holds<SensorRequest>(*message) ? show(*message) : reply(Error{kBusy});
+  }
   if (const auto* error = std::get_if<Error>(&*message)) {
     end("the controller reported: " + printable(error->text, kLongestMessage));
     clear();
     controller_.reset();
+    has_commanded_ = false;
     return std::nullopt;
   }
   if (const auto* init = std::get_if<HandshakeInit>(&*message)) return shake_hands(peer, *init);
@@ -99,10 +111,7 @@ std::optional<Simulator::Reply> Simulator::respond(const Peer& peer, std::string
     clear();
     return reply(Reset{});
   }
-  if (const auto* command = std::get_if<Control>(&*message)) {
-    if (!controller_) return reply(Error{"a Control before the handshake: send HandshakeInit first"});
-    return control(*command);
-  }
+  if (command != nullptr) return control(*command);
   return reply(Error{fmt::format("a {} is for controllers; this is a simulator", name_of(*message))});
 }
 
@@ -116,20 +125,35 @@ Simulator::Reply Simulator::show(const Message& message) {
 
 Simulator::Reply Simulator::shake_hands(const Peer& peer, const HandshakeInit& init) {
   if (init.version != kVersion) return reply(unsupported(init.version));
+  take_place(peer);
+  return reply(cell_.handshake());
+}
+
+void Simulator::take_place(const Peer& peer) {
   controller_ = peer;
+  has_commanded_ = false;
   is_reset_ = false;
   if (!failure_.empty()) end(failure_);  // a stop that nobody acknowledged
   if (is_ended_) clear();
   command_.reset();  // nothing moves before the first Control
-  return reply(cell_.handshake());
+}
+
+Simulator::Reply Simulator::control_first(const Peer& peer, const Control& command) {
+  // One that means nothing takes no place.
+  const Expected<Order, std::string> order = cell_.understand(command, switches_, state());
+  if (!order) return reply(Error{order.error()});
+  take_place(peer);
+  return control(command);
 }
 
 Simulator::Reply Simulator::control(const Control& control) {
   if (is_ended_) return reply(Error{failure_});
+  has_commanded_ = true;
   Expected<Order, std::string> order = cell_.understand(control, switches_, state());
   if (!order) return reply(Error{order.error()});
-  if (!run_) {
-    begin_run();
+  if (!run_) begin_run();
+  if (!knows_who_feeds_) {
+    knows_who_feeds_ = true;
     if (!order->names_feeding) feeder_.emplace();
   }
   if (!failure_.empty() && !order->acknowledges) return reply(Error{failure_});
@@ -188,12 +212,16 @@ void Simulator::advance(const cell::OutsideCommand& command) {
   if (!settings_.cell.is_plant || !run_->is_stopped_for_protection()) end(failure_);
 }
 
-bool Simulator::is_running() const { return settings_.is_async && run_ && !is_ended_ && failure_.empty() && command_; }
+bool Simulator::is_running() const {
+  const bool is_on = settings_.runs_at_once || (run_ && command_);
+  return settings_.is_async && !is_ended_ && failure_.empty() && is_on;
+}
 
 void Simulator::step() {
   if (!is_running()) return;
+  if (!run_) begin_run();
   const bool is_silent = static_cast<double>(silent_steps_++) * cell_.handshake().time_step >= kPatience;
-  advance(is_silent ? cell_.stand(command_->cup) : *command_);
+  advance(!command_ ? cell_.stand({}) : is_silent ? cell_.stand(command_->cup) : *command_);
   if (settings_.batch && !is_ended_ && time() >= *settings_.batch) {
     reset(fmt::format("{} s are over", *settings_.batch));
   }
@@ -204,6 +232,7 @@ bool Simulator::leave(const Peer& peer, const std::string& why) {
   end(why);
   clear();
   controller_.reset();
+  has_commanded_ = false;
   is_reset_ = false;
   return true;
 }
@@ -227,6 +256,7 @@ void Simulator::clear() {
   failure_.clear();
   switches_ = cell_.make_switches();
   feeder_.reset();
+  knows_who_feeds_ = false;
   command_.reset();
 }
 

@@ -21,6 +21,8 @@ struct SimulatorSettings {
   ServedCellSettings cell;
   /// Steps come from step() instead of from Controls; those set what the joints do from the next step on.
   bool is_async = false;
+  /// Async: the cell runs from the first step() on, its joints at rest until there is a Control.
+  bool runs_at_once = false;
   std::optional<double> batch;  ///< s, simulated, after which the simulator resets itself
   /// What is to be done with each run, from 1; asked for when it begins.
   std::function<runs::OutsideRunOptions(int run)> begin_run = {};
@@ -38,10 +40,12 @@ struct SimulatorCounts {
 
 /// No sockets, and no clock that steers: the same frames in the same order give the same answers and the same cell.
 ///
-/// One controller at a time: the peer whose handshake was accepted, until it leaves. Between runs the cell is at time
-/// 0; a run begins with the first Control and ends with a reset, an Error, the controller's leaving, or a failure of
-/// the cell; after a failure all Controls are answered by an Error until there is a reset or a new handshake. In a
-/// plant (ServedCellSettings::is_plant) a protective stop ends no run: it may be acknowledged.
+/// One controller at a time: the peer whose handshake was accepted where nobody controlled, or whose Control came where
+/// nobody had commanded yet (a handshake is implied then), until it leaves. Others get handshakes and sensors, too, and
+/// an Error for everything else. Between runs the cell is at time 0; a run begins with the first Control and ends with
+/// a reset, an Error, the controller's leaving, or a failure of the cell; after a failure all Controls are answered by
+/// an Error until there is a reset or a new handshake. In a plant (ServedCellSettings::is_plant) a protective stop ends
+/// no run: it may be acknowledged.
 class Simulator {
  public:
   using Peer = std::string;
@@ -56,6 +60,7 @@ class Simulator {
   [[nodiscard]] std::optional<std::string> answer(const Peer& peer, std::string_view frame);
   /// Would this frame make the cell step? Then it may be kept until it is time.
   [[nodiscard]] bool is_step(const Peer& peer, std::string_view frame) const;
+  [[nodiscard]] static bool is_control(std::string_view frame);
   [[nodiscard]] static bool is_handshake(std::string_view frame);
   /// A peer that says by its name that it only looks.
   [[nodiscard]] static bool is_watcher(const Peer& peer) { return peer.starts_with(click::kWatcher); }
@@ -73,6 +78,7 @@ class Simulator {
 
   [[nodiscard]] const click::Handshake& handshake() const { return cell_.handshake(); }
   [[nodiscard]] bool has_controller() const { return controller_.has_value(); }
+  [[nodiscard]] bool has_commanded() const { return has_commanded_; }
   [[nodiscard]] bool is_controller(const Peer& peer) const { return controller_ == peer; }
   [[nodiscard]] double time() const;
   [[nodiscard]] const SimulatorCounts& counts() const { return counts_; }
@@ -100,6 +106,9 @@ class Simulator {
   /// What of the order takes no time: a box comes, the robot stands, a stop is released.
   void take_at_once(const Order& order);
   void clear();
+  void take_place(const Peer& peer);
+  /// A Control of a peer without the place, where nobody has commanded.
+  [[nodiscard]] Reply control_first(const Peer& peer, const click::Control& command);
   [[nodiscard]] Reply sense();
   [[nodiscard]] const cell::CellState& state() const;
 
@@ -108,6 +117,7 @@ class Simulator {
   const cell::CellState initial_;
   const cell::ArmReading initial_reading_;
   std::optional<Peer> controller_;
+  bool has_commanded_ = false;             ///< the controller, since it has the place
   std::unique_ptr<runs::OutsideRun> run_;  ///< none before the first Control
   bool is_ended_ = false;                  ///< run_ is kept to be looked at
   std::string failure_;                    ///< why it ended by itself, or stopped
@@ -115,6 +125,7 @@ class Simulator {
   Switches switches_;
   WrittenBodies written_;
   std::optional<Feeder> feeder_;
+  bool knows_who_feeds_ = false;                 ///< the first Control of a run tells
   std::optional<cell::OutsideCommand> command_;  ///< async
   std::int64_t silent_steps_ = 0;                ///< since it came
   SimulatorCounts counts_;

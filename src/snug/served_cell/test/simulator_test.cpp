@@ -167,7 +167,51 @@ TEST(Simulator, RefusesAnotherVersion) {
   Talk talk;
   EXPECT_NE(talk.error(HandshakeInit{0}).find("version 0 is not supported, expected 1"), std::string::npos);
   EXPECT_NE(talk.error(HandshakeInit{2}).find("version 2"), std::string::npos);
-  EXPECT_NE(talk.error(control_of(kStill)).find("before the handshake"), std::string::npos);
+}
+
+TEST(Simulator, TakesAFirstControlForAHandshakeWhereNobodyCommands) {
+  Talk talk;
+  EXPECT_NE(talk.error(control_of({1, 2})).find("2 values for the 6 joints"), std::string::npos);
+  EXPECT_FALSE(talk.simulator.has_controller()) << "what means nothing takes no place";
+  (void)talk.say(HandshakeInit{}, "looks on");  // and has the place as long as nobody commands
+  EXPECT_EQ(std::get<Sensor>(talk.say(control_of(kStill), "a")).time, 0.008);
+  EXPECT_TRUE(talk.simulator.is_controller("a"));
+  EXPECT_EQ(std::get<Sensor>(talk.say(SensorRequest{}, "looks on")).time, 0.008);
+  EXPECT_NE(talk.error(control_of(kStill), "looks on").find("another controller"), std::string::npos);
+  EXPECT_FALSE(talk.simulator.leave("looks on"));
+  EXPECT_TRUE(talk.simulator.leave("a"));
+  EXPECT_EQ(std::get<Sensor>(talk.say(control_of(kStill), "looks on")).time, 0.008) << "a new run";
+}
+
+TEST(Simulator, TellsWhereItsRobotStandsAndThePressureTwice) {
+  Talk talk;
+  const auto robot = std::get<Handshake>(talk.say(HandshakeInit{})).objects.at("ur10");
+  EXPECT_EQ(robot.object_sensors, (std::vector<ValueType>{ValueType::Position, ValueType::Rpy}));
+  for (int i = 0; i < 60; ++i) (void)talk.say(control_of(kStill, {{"vacuum", true}}));
+  const auto sensed = std::get<Sensor>(talk.say(SensorRequest{})).objects.at("ur10");
+  const Pose& X_WB = test::demonstrator_cell().arm()->model().X_WB;
+  EXPECT_EQ(sensed.object[0].vector, X_WB.p);
+  const double pressure = sensed.sensors.at("pressure")[0].scalar;
+  const SensorValue& force = sensed.sensors.at("pressure_force")[0];
+  EXPECT_EQ(force.type, ValueType::Force3D) << "clients of other makers read no Force1D";
+  EXPECT_EQ(force.vector, Vector3(0.0, 0.0, pressure));
+}
+
+TEST(Simulator, MayRunBeforeThereIsAController) {
+  SimulatorSettings settings;
+  settings.is_async = settings.runs_at_once = true;
+  Talk talk(settings);
+  for (int i = 0; i < 25; ++i) talk.simulator.step();
+  const Sensor still = std::get<Sensor>(talk.say(SensorRequest{}, "looks on"));
+  EXPECT_DOUBLE_EQ(still.time, 0.2);
+  EXPECT_EQ(still.objects.at("ur10").velocities, kStill);
+  (void)talk.say(control_of({0, 0, 0, 0, 0, 0.24}));
+  for (int i = 0; i < 20; ++i) talk.simulator.step();
+  EXPECT_EQ(std::get<Sensor>(talk.say(SensorRequest{})).objects.at("ur10").velocities[5], 0.24);
+  EXPECT_EQ(talk.simulator.counts().runs, 1);
+  EXPECT_TRUE(talk.simulator.leave("a"));
+  talk.simulator.step();
+  EXPECT_DOUBLE_EQ(talk.simulator.time(), 0.008) << "the next run";
 }
 
 TEST(Simulator, SaysWhatIsWrongWithACommandAndMovesNothing) {
@@ -217,8 +261,9 @@ TEST(Simulator, HasOneControllerAtATime) {
   (void)talk.say(HandshakeInit{}, "a");
   (void)talk.say(control_of({0.3, 0, 0, 0, 0, 0}), "a");
   const std::uint64_t hash = talk.simulator.hash();
-  for (const Message& message : {Message(HandshakeInit{}), Message(control_of({1, 1, 1, 1, 1, 1})), Message(Reset{}),
-                                 Message(SensorRequest{}), Message(Error{"stop"})}) {
+  EXPECT_TRUE(std::holds_alternative<Handshake>(talk.say(HandshakeInit{}, "b"))) << "it may look, whatever its name";
+  EXPECT_EQ(talk.say(SensorRequest{}, "b"), talk.say(SensorRequest{}, "c"));
+  for (const Message& message : {Message(control_of({1, 1, 1, 1, 1, 1})), Message(Reset{}), Message(Error{"stop"})}) {
     EXPECT_NE(talk.error(message, "b").find("another controller"), std::string::npos) << name_of(message);
   }
   EXPECT_FALSE(talk.simulator.leave("b"));
